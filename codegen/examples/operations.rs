@@ -5,7 +5,7 @@
 
 use hamel_codegen::derived::Derived;
 use hamel_codegen::emit::Report;
-use hamel_codegen::emit::formula::Counts;
+use hamel_codegen::formula::Counts;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};

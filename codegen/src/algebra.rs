@@ -1,10 +1,8 @@
 //! Lie algebras of the known groups: standard bases, coordinates, brackets, structure constants, and exp in closed form.
 
-use crate::domain::is_unit;
-use crate::expand::rank::combinations;
 use crate::expr::{Expr, Rational};
 use crate::manifold::{Factor, Ideal, Kind};
-use crate::matrix::Matrix;
+use crate::matrix::{Matrix, combinations};
 use num_traits::One;
 
 /// The standard basis of the algebra of a group, as matrices that multiply its elements from the right.
@@ -103,7 +101,7 @@ pub fn left_inverse(columns: &Matrix) -> Matrix {
     let of_rows = |rows: Vec<usize>| {
         let square = columns.select_rows(&rows);
         let determinant = square.determinant(&simplify);
-        is_unit(&determinant).then(|| {
+        determinant.is_unit().then(|| {
             let inverse = inverse(&square, &determinant);
             Matrix::from_fn(size, columns.rows(), |i, j| {
                 let place = rows.iter().position(|&row| row == j);

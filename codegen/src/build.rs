@@ -165,9 +165,7 @@ impl Build {
             sources.push((label, source));
         }
         let derived = parallel::map(sources, |(label, source)| {
-            let joint = derive(&source, &label)?;
-            crate::emit::rust::simplify(&joint);
-            Ok((label, joint))
+            Ok((label.clone(), derive(&source, &label)?))
         });
         let (mut joints, mut errors) = (vec![], vec![]);
         for result in derived {
@@ -228,7 +226,7 @@ fn spec_files(folder: &Path) -> Result<Vec<PathBuf>, BuildError> {
 fn reject_duplicates(joints: Vec<(String, Derived)>) -> Result<Vec<(String, Derived)>, BuildError> {
     let mut seen: BTreeMap<String, &str> = BTreeMap::new();
     for (label, joint) in &joints {
-        let type_name = crate::emit::names::type_name(&joint.spec.name.value);
+        let type_name = crate::emit::type_name(&joint.spec.name.value);
         if let Some(first) = seen.insert(type_name.clone(), label) {
             let (first, second) = (first.to_owned(), label.clone());
             return Err(BuildError::Duplicate {

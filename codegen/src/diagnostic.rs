@@ -1,6 +1,6 @@
 //! Errors of a spec: where, what, and what to do about it.
 
-use crate::emit::text::visible;
+use crate::text::visible;
 use hamel_diagnostics::{Place, Report};
 use std::ops::Range;
 

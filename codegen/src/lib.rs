@@ -13,16 +13,21 @@ pub mod domain;
 pub mod emit;
 pub mod expand;
 pub mod expr;
+pub mod formula;
+pub mod kernel;
 pub mod manifold;
 pub mod matrix;
 pub mod model;
 mod pipeline;
 pub mod precise;
+pub mod prepare;
 pub mod prove;
 #[cfg(feature = "scene")]
 pub mod scene;
+mod simplify;
 pub mod source;
 pub mod spec;
+pub mod text;
 
 pub use build::{Build, BuildError, GENERATE_VARIABLE};
 pub use pipeline::{WORK_LIMIT, derive};

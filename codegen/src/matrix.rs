@@ -286,6 +286,23 @@ impl Display for Matrix {
     }
 }
 
+/// All ways to choose `size` of `0..count`, ascending.
+pub fn combinations(count: usize, size: usize) -> Vec<Vec<usize>> {
+    if size == 0 {
+        return vec![vec![]];
+    }
+    (size - 1..count)
+        .flat_map(|last| {
+            combinations(last, size - 1)
+                .into_iter()
+                .map(move |mut chosen| {
+                    chosen.push(last);
+                    chosen
+                })
+        })
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::Matrix;

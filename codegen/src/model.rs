@@ -87,6 +87,30 @@ pub struct Requirement {
     pub text: String,
 }
 
+/// A scalar that the author names: a `let`, or an entry of one.
+#[derive(Clone, Debug)]
+pub struct Named {
+    /// `lean`; `contact1` for an entry of a vector, `arm11` for one of a matrix.
+    pub symbol: Symbol,
+    /// Its value in parameters, stored scalars and the names before it.
+    pub value: Expr,
+}
+
+/// What a spec declares in the author's own names.
+#[derive(Clone, Debug, Default)]
+pub struct Worded {
+    /// The `let`s, entry by entry, in order.
+    pub named: Vec<Named>,
+    /// H.
+    pub pose: Option<PoseExpr>,
+    /// X, where declared.
+    pub twist_map: Option<Matrix>,
+    /// A, where declared.
+    pub constraint: Option<Matrix>,
+    /// S̄, where declared.
+    pub speed_basis: Option<Matrix>,
+}
+
 /// One direction of local motion: a local coordinate ϕ and a velocity v of the same name.
 #[derive(Clone, Debug)]
 pub struct Freedom {
@@ -119,6 +143,47 @@ pub struct PoseExpr {
     pub rotation: Matrix,
     /// 3×1.
     pub translation: Matrix,
+}
+
+/// Where a joint lives: its manifold without the exceptions, for the values that its parameters may take.
+#[derive(Clone, Debug)]
+pub struct ConfigurationSpace {
+    /// Parameters in order.
+    pub parameters: Vec<Parameter>,
+    /// Conditions on the parameters.
+    pub requirements: Vec<Declared<Requirement>>,
+    /// Where Q lives.
+    pub manifold: Manifold,
+    /// Where Q must not come.
+    pub loci: Vec<Declared<Locus>>,
+    /// The stored scalars at home, in order.
+    pub home: Vec<Expr>,
+}
+
+impl ConfigurationSpace {
+    /// That of a spec, as declared.
+    pub fn declared(spec: &JointSpec) -> Self {
+        let declared = spec.home.as_ref().map(|home| home.value.clone());
+        Self {
+            parameters: spec.parameters.clone(),
+            requirements: spec.requirements.clone(),
+            manifold: spec.manifold.value.clone(),
+            loci: spec.loci.clone(),
+            home: declared.unwrap_or_else(|| spec.manifold.value.home()),
+        }
+    }
+
+    /// Parameters and stored scalars, in order.
+    pub(crate) fn symbols(&self) -> Vec<Symbol> {
+        let parameters = self.parameters.iter().map(|p| p.symbol.clone());
+        parameters.chain(self.manifold.coordinates()).collect()
+    }
+
+    /// Each stored scalar at home.
+    pub(crate) fn home_values(&self) -> BTreeMap<Symbol, Expr> {
+        let coordinates = self.manifold.coordinates().into_iter();
+        coordinates.zip(self.home.iter().cloned()).collect()
+    }
 }
 
 /// A joint as its spec declares it: parsed, evaluated, shapes checked; nothing derived, nothing proved.
@@ -156,9 +221,24 @@ pub struct JointSpec {
     pub speed_basis: Option<Declared<Matrix>>,
     /// Names of the speeds, where declared.
     pub speed_names: Option<Declared<Vec<String>>>,
+    /// The same in the author's names.
+    pub worded: Worded,
     /// Claims that need no proof.
     pub unproved: Vec<Declared<Unproved>>,
 }
+
+/// The claims that a spec may leave unproved: identities.
+pub const CHECKABLE: &[&str] = &[
+    "pose_in_se3",
+    "retract_at_zero",
+    "retract_on_manifold",
+    "twist_map_in_frame",
+    "twist_map_matches_pose",
+    "velocity_map_first_order",
+    "velocity_map_inverse",
+    "twist_map_child",
+    "speeds_meet_constraint",
+];
 
 /// A claim that the author wants to rest on evaluation at points.
 #[derive(Clone, Debug)]
@@ -170,19 +250,9 @@ pub struct Unproved {
 }
 
 impl JointSpec {
-    /// Parameters and stored scalars, in order.
-    pub(crate) fn symbols(&self) -> Vec<Symbol> {
-        let parameters = self.parameters.iter().map(|p| p.symbol.clone());
-        parameters
-            .chain(self.manifold.value.coordinates())
-            .collect()
-    }
-
-    /// Each stored scalar at home: as declared, else at the identity of each factor.
-    pub(crate) fn home_values(&self) -> BTreeMap<Symbol, Expr> {
-        let manifold = &self.manifold.value;
-        let declared = self.home.as_ref().map(|home| home.value.clone());
-        let home = declared.unwrap_or_else(|| manifold.home());
-        manifold.coordinates().into_iter().zip(home).collect()
+    /// The freedoms of one factor.
+    pub(crate) fn freedoms_of(&self, factor: usize) -> impl Iterator<Item = &Freedom> {
+        let freedoms = self.freedoms.value.iter();
+        freedoms.filter(move |freedom| freedom.factor == factor)
     }
 }

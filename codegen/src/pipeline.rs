@@ -1,14 +1,16 @@
 //! The whole pipeline: text in, proven kernels out.
 
-use crate::derived::{Derived, Kernel, Programs};
+use crate::derived::{Derived, programs};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::domain::{Critical, Domain};
 use crate::expand::task;
 use crate::expand::{self, Expansion};
 use crate::expr::budget::{self, Exhausted};
 use crate::expr::{Expr, Rational};
+use crate::kernel::Kernel;
+use crate::manifold::Ideal;
 use crate::matrix::Matrix;
-use crate::model::{Declared, JointSpec, Locus};
+use crate::model::{ConfigurationSpace, Declared, JointSpec, Locus};
+use crate::prepare::Prepared;
 use crate::{prove, spec};
 use num_bigint::BigInt;
 use std::path::Path;
@@ -63,75 +65,70 @@ fn misnamed(spec: &JointSpec, file: &str) -> Option<Diagnostic> {
     })
 }
 
-fn derive_spec(mut spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
+fn derive_spec(spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
     budget::begin(task::PROOF);
-    let wrong = prove::wrong_conditions(&spec);
-    if !wrong.is_empty() {
-        return Err(wrong);
-    }
-    expand::confine(&mut spec);
-    let positive = crate::domain::positive_parameters(&spec);
-    let vanishing = crate::domain::vanishing_parameters(&spec);
-    spec.manifold.value = spec.manifold.value.clone().with_signs(positive, vanishing);
-    let squares = crate::domain::squares(&spec);
-    spec.manifold.value = spec.manifold.value.clone().with_squares(&squares);
+    let joint = Prepared::new(spec)?;
+    let mut claims = prove::prove_declared(&joint)?;
+    prove::retract_is_smooth(&joint).map_err(|error| vec![*error])?;
+    let expansion = expand::expand(&joint)?;
     budget::begin(task::PROOF);
-    let mut claims = prove::prove_declared(&spec)?;
-    prove::retract_is_smooth(&spec).map_err(|error| vec![*error])?;
-    let expansion = expand::expand(&spec)?;
-    budget::begin(task::PROOF);
-    claims.extend(prove::prove(&spec, &expansion)?);
-    let needless = prove::needlessly_unproved(&spec, &claims);
+    claims.extend(prove::prove(&joint, &expansion)?);
+    let needless = prove::needlessly_unproved(&joint.spec, &claims);
     if !needless.is_empty() {
         return Err(needless);
     }
-    name_sides(&mut spec, &expansion);
+    let loci = loci(&joint);
     budget::begin(task::KERNELS);
-    let kernels = expand::kernels(&spec, &expansion)?;
+    let kernels = expand::kernels(&joint, &expansion, &loci)?;
+    let (kernels, words) = crate::simplify::in_words(&joint, &expansion, kernels);
     if let Some(number) = expand::beyond_doubles(&kernels) {
-        return Err(vec![beyond_doubles(&spec, &number)]);
+        return Err(vec![beyond_doubles(&joint.spec, &number)]);
     }
-    let ideal = spec.manifold.value.ideal();
     budget::begin(task::FORMULAS);
     kernels.iter().for_each(spend_on_formulas);
+    let programs = programs(&joint.spec, &expansion.arguments, &kernels);
+    let ideal = joint.space.manifold.ideal();
     Ok(Derived {
         shape: expansion.shape,
-        cut_out: expand::dimension::cut_out(&spec),
-        speed_names: expand::speed_names(&spec),
+        cut_out: expand::dimension::cut_out(&joint),
+        speed_names: expand::speed_names(&joint.spec),
         tangent: expansion.motion.tangent(),
         local_twist_map: ideal.simplest_entries(&expansion.jacobian.child),
-        speed_map: expand::speed_map(&spec, &expansion),
-        velocity_map_series: series(&spec, &expansion),
+        speed_map: expand::speed_map(&joint, &expansion),
+        velocity_map_series: series(ideal, &expansion),
         arguments: expansion.arguments,
         imperceptible: expansion.imperceptible,
         kernels,
+        words,
         claims,
-        programs: Programs::default(),
-        spec,
+        programs,
+        spec: joint.spec,
+        space: ConfigurationSpace {
+            loci,
+            ..joint.space
+        },
     })
 }
 
-/// Where functions have a value on one component of the manifold alone and nothing is excepted, its border is named like an exception: the
+/// The exceptions. Where functions have a value on one component of the manifold alone and nothing is excepted, its border is one: the
 /// runtime then refuses the other components.
-fn name_sides(spec: &mut JointSpec, expansion: &Expansion) {
-    if !spec.loci.is_empty() {
-        return;
-    }
-    let functions = Critical::declared(spec, expansion.exponential);
-    let sides = Domain::new(spec).sides(&functions);
+fn loci(joint: &Prepared) -> Vec<Declared<Locus>> {
     let locus = |function: Expr| Declared {
-        span: spec.pose.span.clone(),
+        span: joint.spec.pose.span.clone(),
         value: Locus {
             text: format!("{function} = 0"),
             docs: "A root, logarithm or angle has a value on the side of home alone.".into(),
             function,
         },
     };
-    spec.loci = sides.into_iter().map(locus).collect();
+    match joint.space.loci.is_empty() {
+        true => joint.sides().into_iter().map(locus).collect(),
+        false => joint.space.loci.clone(),
+    }
 }
 
 /// S to first order as a product: S₀ and I + Σ S₀⁻¹ S_k ϕ_k.
-fn series(spec: &JointSpec, expansion: &Expansion) -> (Matrix, Matrix) {
+fn series(ideal: &Ideal, expansion: &Expansion) -> (Matrix, Matrix) {
     let s = &expansion.velocity_map;
     let start = Matrix::identity(s.base.rows());
     let right =
@@ -140,14 +137,7 @@ fn series(spec: &JointSpec, expansion: &Expansion) -> (Matrix, Matrix) {
             .zip(&expansion.arguments.local)
             .fold(start, |sum, (slope, local)| {
                 let factored = expansion.velocity_map_inverse.times(slope);
-                sum.plus(
-                    &spec
-                        .manifold
-                        .value
-                        .ideal()
-                        .normal_forms(&factored)
-                        .scale(&Expr::symbol(local)),
-                )
+                sum.plus(&ideal.normal_forms(&factored).scale(&Expr::symbol(local)))
             });
     (s.base.clone(), right)
 }

@@ -3,8 +3,8 @@
 //! The reference is each kernel's expression before it was written, in enough bits for all that cancels.
 
 use hamel_codegen::derived::{Derived, Kernel, Step};
-use hamel_codegen::emit::formula::{Binding, Node};
 use hamel_codegen::expr::{Expr, Number, Symbol};
+use hamel_codegen::formula::{Binding, Node};
 use hamel_codegen::precise::Precise;
 use std::collections::BTreeMap;
 

@@ -4,10 +4,37 @@
 //! trait alone. All methods are pure in their arguments and allocate nothing. Everything that belongs to the local
 //! coordinates ϕ is evaluated at ϕ = 0 unless the method takes `phi`. Equation numbers are those of Duindam and
 //! Stramigioli, *Singularity-free dynamic equations of open-chain mechanisms with general holonomic and nonholonomic joints*.
+//!
+//! A kernel that is zero or the identity need not be written: its default returns that, and does not compile for a joint whose
+//! [`Joint::STRUCTURES`] do not say so. c = Ẋ̄^c v̄ and its dual follow from the other kernels by products.
+//!
+//! Of a slider all kernels are trivial but those that must be written, and its S₀ is the identity:
+//!
+//! ```
+#![doc = include_str!("joint/slider.rs.in")]
+//! slider!(Structures::TRIVIAL);
+//! fn main() {
+//!     assert_eq!(Slider.velocity_map(&SVector::<f64, 1>::zeros())[0], 1.0);
+//! }
+//! ```
+//!
+//! A slider whose S₀ is said to be anything else, and that does not write it, is refused:
+//!
+//! ```compile_fail
+#![doc = include_str!("joint/slider.rs.in")]
+//! slider!(Structures { velocity_map: Structure::Constant, ..Structures::TRIVIAL });
+//! fn main() {
+//!     assert_eq!(Slider.velocity_map(&SVector::<f64, 1>::zeros())[0], 1.0);
+//! }
+//! ```
 
+mod patterns;
 mod products;
+mod structure;
 
+pub use patterns::{Entry, Patterns};
 pub use products::Products;
+pub use structure::{Structure, Structures};
 
 use crate::scalar::Scalar;
 use crate::spatial::Pose;
@@ -15,11 +42,11 @@ use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
 
 /// Version of the [`Joint`] trait. Generated code asserts it at compile time.
-pub const KERNEL_INTERFACE: u32 = 5;
+pub const KERNEL_INTERFACE: u32 = 6;
 
 /// Fails to compile where generated code and runtime differ in the [`Joint`] trait.
 ///
-/// Generated files contain `const _: () = hamel::joint::assert_kernel_interface(5);`.
+/// Generated files contain `const _: () = hamel::joint::assert_kernel_interface(6);`.
 pub const fn assert_kernel_interface(version: u32) {
     assert!(
         version == KERNEL_INTERFACE,
@@ -32,197 +59,17 @@ pub fn from_rows<T: Scalar, const R: usize, const C: usize>(rows: [[T; C]; R]) -
     SMatrix::from_fn(|i, j| rows[i][j])
 }
 
-/// What is known of a kernel's value at compile time, so that an algorithm can skip what it need not compute.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Structure {
-    /// Identically zero.
-    Zero,
-    /// The identity matrix, or the identity map.
-    Identity,
-    /// The same at every configuration.
-    Constant,
-    /// Depends on the configuration.
-    General,
-}
-
-impl Structure {
-    /// Whether the kernel vanishes identically.
-    pub const fn is_zero(self) -> bool {
-        matches!(self, Self::Zero)
-    }
-
-    /// Whether the kernel is the identity.
-    pub const fn is_identity(self) -> bool {
-        matches!(self, Self::Identity)
-    }
-
-    /// Whether the kernel is the same at every configuration.
-    pub const fn is_constant(self) -> bool {
-        !matches!(self, Self::General)
-    }
-}
-
-/// The [`Structure`] of each kernel that can be trivial.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Structures {
-    /// X in the parent frame.
-    pub twist_map: Structure,
-    /// X in the child frame.
-    pub twist_map_child: Structure,
-    /// ∂X^c/∂ϕ.
-    pub twist_map_child_gradient: Structure,
-    /// S₀.
-    pub velocity_map: Structure,
-    /// ∂S/∂ϕ.
-    pub velocity_map_gradient: Structure,
-    /// Σ γ_k v_k, and with it J22.
-    pub gamma: Structure,
-    /// S̄: identity for a holonomic joint.
-    pub speed_basis: Structure,
-    /// ∂S̄/∂ϕ.
-    pub speed_basis_gradient: Structure,
-    /// Differential of Φ at finite ϕ.
-    pub retract_differential: Structure,
-    /// c = Ẋ̄^c v̄.
-    pub bias_acceleration: Structure,
-    /// Ẋ̄^cᵀ h.
-    pub bias_momentum: Structure,
-    /// X̄^c = X^c S̄.
-    pub speed_map: Structure,
-}
-
-/// What is known of one entry of a kernel's value at compile time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Entry {
-    /// 0 at every configuration.
-    Zero,
-    /// 1 at every configuration.
-    One,
-    /// Anything else.
-    Other,
-}
-
-/// The [`Entry`] of each place in the kernels that recursions spend their time on, so that they multiply by nothing that is
-/// known to be 0 or 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Patterns<const K: usize, const S: usize> {
-    /// The rotation matrix of H, by rows.
-    pub rotation: [[Entry; 3]; 3],
-    /// The translation of H.
-    pub translation: [Entry; 3],
-    /// X^c, by rows.
-    pub twist_map_child: [[Entry; K]; 6],
-    /// S̄, by rows.
-    pub speed_basis: [[Entry; S]; K],
-    /// The slices of ∂X^c/∂ϕ, by rows.
-    pub twist_map_child_gradient: [[[Entry; K]; 6]; K],
-    /// The slices of ∂S̄/∂ϕ, by rows.
-    pub speed_basis_gradient: [[[Entry; S]; K]; K],
-}
-
-impl<const K: usize, const S: usize> Patterns<K, S> {
-    /// Nothing is known.
-    pub const DENSE: Self = Self {
-        rotation: [[Entry::Other; 3]; 3],
-        translation: [Entry::Other; 3],
-        twist_map_child: [[Entry::Other; K]; 6],
-        speed_basis: [[Entry::Other; S]; K],
-        twist_map_child_gradient: [[[Entry::Other; K]; 6]; K],
-        speed_basis_gradient: [[[Entry::Other; S]; K]; K],
-    };
-
-    /// A pattern from rows of the signs `0`, `1` and `x` for anything else, as generated code writes it. Of derivatives along ϕ, slices
-    /// that are not zero are given with their numbers.
-    pub const fn new(
-        rotation: [&str; 3],
-        translation: &str,
-        twist_map_child: [&str; 6],
-        speed_basis: [&str; K],
-        twist_map_child_gradient: &[(usize, [&str; 6])],
-        speed_basis_gradient: &[(usize, [&str; K])],
-    ) -> Self {
-        let [translation] = entries([translation]);
-        Self {
-            rotation: entries(rotation),
-            translation,
-            twist_map_child: entries(twist_map_child),
-            speed_basis: entries(speed_basis),
-            twist_map_child_gradient: slices(twist_map_child_gradient),
-            speed_basis_gradient: slices(speed_basis_gradient),
+/// The matrix with the given rows at their numbers, and zeros elsewhere, as emitted kernels write it.
+pub fn rows_at<T: Scalar, const R: usize, const C: usize, const W: usize>(
+    rows: [(usize, [T; C]); W],
+) -> SMatrix<T, R, C> {
+    let mut matrix = SMatrix::zeros();
+    for (i, row) in rows {
+        for (j, entry) in row.into_iter().enumerate() {
+            matrix[(i, j)] = entry;
         }
     }
-
-    /// The pattern of `X^c S̄`, by rows.
-    pub const fn speed_columns(&self) -> [[Entry; S]; 6] {
-        let mut columns = [[Entry::Zero; S]; 6];
-        let mut i = 0;
-        while i < 6 {
-            let mut j = 0;
-            while j < S {
-                let mut k = 0;
-                while k < K {
-                    let term = product(self.twist_map_child[i][k], self.speed_basis[k][j]);
-                    columns[i][j] = sum(columns[i][j], term);
-                    k += 1;
-                }
-                j += 1;
-            }
-            i += 1;
-        }
-        columns
-    }
-}
-
-const fn entries<const R: usize, const C: usize>(rows: [&str; R]) -> [[Entry; C]; R] {
-    let mut entries = [[Entry::Other; C]; R];
-    let mut i = 0;
-    while i < R {
-        let row = rows[i].as_bytes();
-        assert!(
-            row.len() == C,
-            "a row of a pattern has another length than its matrix"
-        );
-        let mut j = 0;
-        while j < C {
-            entries[i][j] = match row[j] {
-                b'0' => Entry::Zero,
-                b'1' => Entry::One,
-                b'x' => Entry::Other,
-                _ => panic!("a pattern is written in the signs 0, 1 and x"),
-            };
-            j += 1;
-        }
-        i += 1;
-    }
-    entries
-}
-
-const fn slices<const R: usize, const C: usize, const K: usize>(
-    given: &[(usize, [&str; R])],
-) -> [[[Entry; C]; R]; K] {
-    let mut slices = [[[Entry::Zero; C]; R]; K];
-    let mut n = 0;
-    while n < given.len() {
-        let (k, rows) = given[n];
-        slices[k] = entries(rows);
-        n += 1;
-    }
-    slices
-}
-
-const fn product(a: Entry, b: Entry) -> Entry {
-    match (a, b) {
-        (Entry::Zero, _) | (_, Entry::Zero) => Entry::Zero,
-        (Entry::One, other) | (other, Entry::One) => other,
-        (Entry::Other, Entry::Other) => Entry::Other,
-    }
-}
-
-const fn sum(a: Entry, b: Entry) -> Entry {
-    match (a, b) {
-        (Entry::Zero, other) | (other, Entry::Zero) => other,
-        _ => Entry::Other,
-    }
+    matrix
 }
 
 /// The frame in which a joint's velocity is read.
@@ -267,7 +114,15 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     const SINGULARITIES: &'static [&'static str];
 
     /// Names and values of the joint's parameters.
-    fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)>;
+    fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        const {
+            assert!(
+                size_of::<Self>() == 0,
+                "the joint holds values: it must implement parameters"
+            )
+        };
+        core::iter::empty()
+    }
 
     /// The configuration from which `phi` is measured when a scene gives no other.
     fn home<T: Scalar>(&self) -> SVector<T, N>;
@@ -282,31 +137,103 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K>;
 
     /// ∂X^c/∂ϕ; slice k is the derivative along ϕ_k.
-    fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, N>) -> [SMatrix<T, 6, K>; K];
+    fn twist_map_child_gradient<T: Scalar>(&self, _q: &SVector<T, N>) -> [SMatrix<T, 6, K>; K] {
+        const {
+            assert!(
+                Self::STRUCTURES.twist_map_child_gradient.is_zero(),
+                "twist_map_child_gradient is not zero: the joint must implement it"
+            )
+        };
+        [SMatrix::zeros(); K]
+    }
 
     /// S₀(Q): ϕ̇ to v at ϕ = 0, (23).
-    fn velocity_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, K, K>;
+    fn velocity_map<T: Scalar>(&self, _q: &SVector<T, N>) -> SMatrix<T, K, K> {
+        const {
+            assert!(
+                Self::STRUCTURES.velocity_map.is_identity(),
+                "velocity_map is not the identity: the joint must implement it"
+            )
+        };
+        SMatrix::identity()
+    }
 
     /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
-    fn velocity_map_inverse<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, K, K>;
+    fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, N>) -> SMatrix<T, K, K> {
+        const {
+            assert!(
+                Self::STRUCTURES.velocity_map.is_identity(),
+                "velocity_map_inverse is not the identity: the joint must implement it"
+            )
+        };
+        SMatrix::identity()
+    }
 
     /// ∂S/∂ϕ at ϕ = 0, (23), (32); slice k is ∂S/∂ϕ_k.
-    fn velocity_map_gradient<T: Scalar>(&self, q: &SVector<T, N>) -> [SMatrix<T, K, K>; K];
+    fn velocity_map_gradient<T: Scalar>(&self, _q: &SVector<T, N>) -> [SMatrix<T, K, K>; K] {
+        const {
+            assert!(
+                Self::STRUCTURES.velocity_map_gradient.is_zero(),
+                "velocity_map_gradient is not zero: the joint must implement it"
+            )
+        };
+        [SMatrix::zeros(); K]
+    }
 
     /// Σ_k γ_k v_k, (17): stands on the left of (24).
-    fn gamma<T: Scalar>(&self, q: &SVector<T, N>, v: &SVector<T, K>) -> SMatrix<T, K, K>;
+    fn gamma<T: Scalar>(&self, _q: &SVector<T, N>, _v: &SVector<T, K>) -> SMatrix<T, K, K> {
+        const {
+            assert!(
+                Self::STRUCTURES.gamma.is_zero(),
+                "gamma is not zero: the joint must implement it"
+            )
+        };
+        SMatrix::zeros()
+    }
 
     /// J22(Q, p), (28): stands on the right of (27).
-    fn j22<T: Scalar>(&self, q: &SVector<T, N>, p: &SVector<T, K>) -> SMatrix<T, K, K>;
+    fn j22<T: Scalar>(&self, _q: &SVector<T, N>, _p: &SVector<T, K>) -> SMatrix<T, K, K> {
+        const {
+            assert!(
+                Self::STRUCTURES.gamma.is_zero(),
+                "j22 is not zero: the joint must implement it"
+            )
+        };
+        SMatrix::zeros()
+    }
 
     /// A(Q) with Aᵀ v = 0, definition 2.
-    fn constraint<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, K, C>;
+    fn constraint<T: Scalar>(&self, _q: &SVector<T, N>) -> SMatrix<T, K, C> {
+        const {
+            assert!(
+                C == 0,
+                "constraint has columns: the joint must implement it"
+            )
+        };
+        SMatrix::zeros()
+    }
 
     /// S̄(Q): speeds v̄ to v, definition 2, (15).
-    fn speed_basis<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, K, S>;
+    fn speed_basis<T: Scalar>(&self, _q: &SVector<T, N>) -> SMatrix<T, K, S> {
+        const {
+            assert!(
+                K == S && Self::STRUCTURES.speed_basis.is_identity(),
+                "speed_basis is not the identity: the joint must implement it"
+            )
+        };
+        SMatrix::identity()
+    }
 
     /// ∂S̄/∂ϕ; slice k is the derivative along ϕ_k.
-    fn speed_basis_gradient<T: Scalar>(&self, q: &SVector<T, N>) -> [SMatrix<T, K, S>; K];
+    fn speed_basis_gradient<T: Scalar>(&self, _q: &SVector<T, N>) -> [SMatrix<T, K, S>; K] {
+        const {
+            assert!(
+                Self::STRUCTURES.speed_basis_gradient.is_zero(),
+                "speed_basis_gradient is not zero: the joint must implement it"
+            )
+        };
+        [SMatrix::zeros(); K]
+    }
 
     /// Q̇(Q, v), (31).
     fn configuration_rate<T: Scalar>(&self, q: &SVector<T, N>, v: &SVector<T, K>) -> SVector<T, N>;
@@ -325,9 +252,17 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     /// For Φ = Q exp(ϕ) it is dexp in child axes, `Σ (−ad_ϕ)ⁿ / (n + 1)!`.
     fn retract_differential<T: Scalar>(
         &self,
-        q: &SVector<T, N>,
-        phi: &SVector<T, K>,
-    ) -> SMatrix<T, K, K>;
+        _q: &SVector<T, N>,
+        _phi: &SVector<T, K>,
+    ) -> SMatrix<T, K, K> {
+        const {
+            assert!(
+                Self::STRUCTURES.retract_differential.is_identity(),
+                "retract_differential is not the identity: the joint must implement it"
+            )
+        };
+        SMatrix::identity()
+    }
 
     /// ϕ̇ at finite ϕ from `rate`, the value S₀(Q′)⁻¹ v at the moved configuration Q′ = Φ(Q, ϕ).
     ///
@@ -335,36 +270,77 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     /// inverse of dexp; its coefficients hold for |ϕ| < 2π.
     fn retract_differential_inverse<T: Scalar>(
         &self,
-        q: &SVector<T, N>,
-        phi: &SVector<T, K>,
+        _q: &SVector<T, N>,
+        _phi: &SVector<T, K>,
         rate: &SVector<T, K>,
-    ) -> SVector<T, K>;
+    ) -> SVector<T, K> {
+        const {
+            assert!(
+                Self::STRUCTURES.retract_differential.is_identity(),
+                "retract_differential_inverse is not the identity: the joint must implement it"
+            )
+        };
+        *rate
+    }
 
     /// The configuration on the manifold that is nearest to `q`, for `q` off it by rounding or input error.
     ///
     /// Where the manifold is one of declared relations, it is found by [`finite::project`](crate::finite::project): NaN in
     /// every entry where that does not converge.
-    fn project<T: Scalar>(&self, q: &SVector<T, N>) -> SVector<T, N>;
+    fn project<T: Scalar>(&self, q: &SVector<T, N>) -> SVector<T, N> {
+        const {
+            assert!(
+                Self::STRUCTURES.project.is_identity(),
+                "project is not the identity: the joint must implement it"
+            )
+        };
+        *q
+    }
 
     /// Root of the sum of squares of the manifold's relations at `q`; 0 on the manifold.
-    fn residual<T: Scalar>(&self, q: &SVector<T, N>) -> T;
+    fn residual<T: Scalar>(&self, _q: &SVector<T, N>) -> T {
+        const {
+            assert!(
+                Self::STRUCTURES.residual.is_zero(),
+                "residual is not zero: the joint must implement it"
+            )
+        };
+        T::zero()
+    }
 
     /// Least absolute value of the functions that [`Joint::SINGULARITIES`] names; +∞ where there are none.
     /// Where H, X, Φ, A or S̄ have a value on one side of them alone, 0 on the other.
-    fn singularity<T: Scalar>(&self, q: &SVector<T, N>) -> T;
+    fn singularity<T: Scalar>(&self, _q: &SVector<T, N>) -> T {
+        const {
+            assert!(
+                Self::SINGULARITIES.is_empty(),
+                "the joint has singularities: it must implement singularity"
+            )
+        };
+        crate::finite::least_absolute([])
+    }
 
     /// c(Q, v̄) = Ẋ̄^c v̄ with X̄ = X S̄: velocity product term of the recursive forms, a twist rate in the child frame.
+    ///
+    /// By default [by products](Products::bias_acceleration_by_products) of the other kernels; a joint whose own formula is much shorter
+    /// has that.
     fn bias_acceleration<T: Scalar>(
         &self,
         q: &SVector<T, N>,
         speeds: &SVector<T, S>,
-    ) -> SVector<T, 6>;
+    ) -> SVector<T, 6> {
+        self.bias_acceleration_by_products(q, speeds)
+    }
 
     /// Ẋ̄^cᵀ h for a momentum `h` (moment; linear) in the child frame: its dual.
+    ///
+    /// By default [by products](Products::bias_momentum_by_products), as c.
     fn bias_momentum<T: Scalar>(
         &self,
         q: &SVector<T, N>,
         speeds: &SVector<T, S>,
         h: &SVector<T, 6>,
-    ) -> SVector<T, S>;
+    ) -> SVector<T, S> {
+        self.bias_momentum_by_products(q, speeds, h)
+    }
 }

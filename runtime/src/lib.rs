@@ -14,8 +14,6 @@ extern crate alloc;
 
 pub use nalgebra;
 
-#[cfg(feature = "alloc")]
-pub mod chart;
 pub mod compiled;
 #[cfg(feature = "alloc")]
 pub mod control;
@@ -31,6 +29,7 @@ pub mod erased;
 #[path = "unshared.rs"]
 pub mod erased;
 pub mod finite;
+pub mod group;
 #[cfg(feature = "alloc")]
 pub mod integrate;
 pub mod joint;

@@ -34,6 +34,53 @@ pub struct ParameterInfo {
 }
 
 impl ParameterInfo {
+    /// A parameter of any finite value.
+    pub const fn new(name: &'static str, unit: &'static str, description: &'static str) -> Self {
+        Self {
+            name,
+            unit,
+            description,
+            lower: None,
+            upper: None,
+        }
+    }
+
+    /// With values greater than this alone.
+    pub const fn above(mut self, value: f64) -> Self {
+        self.lower = Some(Limit {
+            value,
+            included: false,
+        });
+        self
+    }
+
+    /// With values from this on.
+    pub const fn at_least(mut self, value: f64) -> Self {
+        self.lower = Some(Limit {
+            value,
+            included: true,
+        });
+        self
+    }
+
+    /// With values less than this alone.
+    pub const fn below(mut self, value: f64) -> Self {
+        self.upper = Some(Limit {
+            value,
+            included: false,
+        });
+        self
+    }
+
+    /// With values up to this.
+    pub const fn at_most(mut self, value: f64) -> Self {
+        self.upper = Some(Limit {
+            value,
+            included: true,
+        });
+        self
+    }
+
     /// The limit that `value` breaks, and how a value must stand to it.
     fn broken_limit(&self, value: f64) -> Option<(&'static str, f64)> {
         let below = self.lower.filter(|limit| match limit.included {

@@ -14,6 +14,7 @@ pub mod laws;
 pub mod linear_step;
 pub mod motion;
 pub mod newton;
+pub mod operations;
 pub mod oracle;
 #[cfg(doctest)]
 mod pages;

@@ -4,7 +4,7 @@ use crate::diagnostic::Diagnostics;
 use crate::emit::files::FileError;
 use crate::emit::report::AccuracyError;
 use crate::emit::rust::WriteError;
-use crate::emit::text::visible;
+use crate::text::visible;
 use std::fmt::{Debug, Display, Formatter};
 use std::path::{Path, PathBuf};
 

@@ -22,7 +22,7 @@ pub use self::squares::squares;
 use self::sign::Signs;
 use crate::expr::{Atom, Expr, Function, Monomial, Rational, Role, Symbol, budget};
 use crate::manifold::Ideal;
-use crate::model::JointSpec;
+use crate::model::ConfigurationSpace;
 use num_traits::One;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -92,18 +92,18 @@ impl std::fmt::Display for Certificate {
 
 impl<'a> Domain<'a> {
     /// The domain of a joint.
-    pub fn new(spec: &'a JointSpec) -> Self {
+    pub fn new(space: &'a ConfigurationSpace) -> Self {
         Self {
-            ideal: spec.manifold.value.ideal(),
-            loci: spec
+            ideal: space.manifold.ideal(),
+            loci: space
                 .loci
                 .iter()
                 .map(|locus| locus.value.function.clone())
                 .collect(),
-            signs: Signs::new(spec),
-            vanishing: vanishing_parameters(spec),
-            home: spec.home_values(),
-            connected: spec.manifold.value.declared().is_empty(),
+            signs: Signs::new(space),
+            vanishing: vanishing_parameters(&space.parameters),
+            home: space.home_values(),
+            connected: space.manifold.declared().is_empty(),
         }
     }
 
@@ -126,7 +126,7 @@ impl<'a> Domain<'a> {
 
     /// Whether the expression is one term of a rational and parameters that are never 0.
     pub fn is_unit(&self, e: &Expr) -> bool {
-        is_unit(e) && e.symbols().is_disjoint(&self.vanishing)
+        e.is_unit() && e.symbols().is_disjoint(&self.vanishing)
     }
 
     /// Whether the expression is positive everywhere.
@@ -247,11 +247,6 @@ fn under_root(expression: &Expr) -> Option<Expr> {
 fn away_from((index, locus): (usize, &Expr)) -> Expr {
     let t = Symbol::new(Role::Intermediate, index, "inverse_of_locus");
     &Expr::one() - &(&Expr::symbol(&t) * locus)
-}
-
-/// Whether the expression is one term of a rational and parameters.
-pub fn is_unit(e: &Expr) -> bool {
-    e.terms().len() == 1 && e.leading().is_some_and(|(monomial, _)| monomial.is_unit())
 }
 
 /// The expression of one monomial.

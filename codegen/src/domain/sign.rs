@@ -8,7 +8,7 @@ use super::{of_monomial, roots};
 use crate::expr::Number;
 use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, Symbol, budget};
 use crate::manifold::Kind;
-use crate::model::{Interval, JointSpec};
+use crate::model::{ConfigurationSpace, Interval, Parameter};
 use crate::precise::Interval as Enclosed;
 use crate::precise::Precise;
 use num_traits::Zero;
@@ -76,10 +76,10 @@ impl Sign {
 
 impl Signs {
     /// What the spec says.
-    pub fn new(spec: &JointSpec) -> Self {
-        let factors = spec.manifold.value.factors();
-        let parameters = spec.parameters.iter();
-        let required = spec.requirements.iter();
+    pub fn new(space: &ConfigurationSpace) -> Self {
+        let factors = space.manifold.factors();
+        let parameters = space.parameters.iter();
+        let required = space.requirements.iter();
         let required = required.map(|r| (r.value.value.clone(), true));
         let bounded: BTreeSet<Symbol> = factors
             .iter()
@@ -93,14 +93,14 @@ impl Signs {
             )
             .collect();
         Self {
-            positive_parameters: positive_parameters(spec),
+            positive_parameters: positive_parameters(&space.parameters),
             ranges: parameters
                 .map(|p| (p.symbol.clone(), p.range.clone()))
                 .collect(),
-            vanishing: vanishing_parameters(spec),
+            vanishing: vanishing_parameters(&space.parameters),
             with_products: with_products(&conditions),
             conditions,
-            bounds: bounds(spec, &bounded),
+            bounds: bounds(&space.parameters, &bounded),
             bounded,
             unit_vectors: unit_vectors::of_factors(factors),
             circles: unit_vectors::circles(factors),
@@ -385,10 +385,10 @@ fn is_reciprocal(atom: &Atom) -> bool {
 }
 
 /// Enclosures of the parameters with two ends, and of scalars of at most 1.
-fn bounds(spec: &JointSpec, bounded: &BTreeSet<Symbol>) -> BTreeMap<Symbol, Enclosed> {
+fn bounds(parameters: &[Parameter], bounded: &BTreeSet<Symbol>) -> BTreeMap<Symbol, Enclosed> {
     let unit = Enclosed::point(Precise::integer(1, BOUND_BITS));
     let end = |value: &Rational| unit.rational(value);
-    let ranges = spec.parameters.iter().filter_map(|p| {
+    let ranges = parameters.iter().filter_map(|p| {
         let (lower, upper) = (p.range.lower.as_ref()?, p.range.upper.as_ref()?);
         let (lower, upper) = (end(&lower.value), end(&upper.value));
         let range = Enclosed::between(lower.low().clone(), upper.high().clone());
@@ -431,17 +431,16 @@ fn with_products(conditions: &[(Expr, bool)]) -> Vec<(Expr, bool)> {
 }
 
 /// The parameters that are positive.
-pub fn positive_parameters(spec: &JointSpec) -> BTreeSet<Symbol> {
-    let positive = spec
-        .parameters
+pub fn positive_parameters(parameters: &[Parameter]) -> BTreeSet<Symbol> {
+    let positive = parameters
         .iter()
         .filter(|p| is_positive_range(&p.range) && !p.may_vanish());
     positive.map(|p| p.symbol.clone()).collect()
 }
 
 /// The parameters of which the range holds 0.
-pub fn vanishing_parameters(spec: &JointSpec) -> BTreeSet<Symbol> {
-    let vanishing = spec.parameters.iter().filter(|p| p.may_vanish());
+pub fn vanishing_parameters(parameters: &[Parameter]) -> BTreeSet<Symbol> {
+    let vanishing = parameters.iter().filter(|p| p.may_vanish());
     vanishing.map(|p| p.symbol.clone()).collect()
 }
 

@@ -3,16 +3,16 @@
 use super::Domain;
 use crate::expr::{Atom, Expr, Function};
 use crate::matrix::Matrix;
-use crate::model::JointSpec;
+use crate::model::{ConfigurationSpace, JointSpec};
 use std::collections::BTreeSet;
 
 /// The arguments of roots in what a spec declares that are squares on the manifold, each with what it is the square of: that is
 /// nowhere negative.
-pub fn squares(spec: &JointSpec) -> Vec<(Expr, Expr)> {
-    let domain = Domain::new(spec);
+pub fn squares(spec: &JointSpec, space: &ConfigurationSpace) -> Vec<(Expr, Expr)> {
+    let domain = Domain::new(space);
     let arguments = arguments(spec);
     let known = arguments.into_iter().filter_map(|argument| {
-        let root = root(&domain, &argument, spec.manifold.value.declared())?;
+        let root = root(&domain, &argument, space.manifold.declared())?;
         Some((argument, root))
     });
     known.collect()

@@ -4,10 +4,9 @@
 //! the vector of its signed minors, which never vanishes where the part has full rank; any other is solved for the rows of
 //! a minor that is nowhere 0, the other rows being free.
 
-use super::rank;
 use crate::domain::Domain;
 use crate::expr::Expr;
-use crate::matrix::Matrix;
+use crate::matrix::{Matrix, combinations};
 
 /// Why there is no formula.
 #[derive(Clone, Debug)]
@@ -74,7 +73,7 @@ fn of_part(part: &Matrix, domain: &Domain<'_>) -> Result<Matrix, NoComplement> {
         return Ok(Matrix::identity(rows));
     }
     let simplify = |e: &Expr| domain.ideal().normal_form(e);
-    let choices: Vec<(Vec<usize>, Expr)> = rank::combinations(rows, count)
+    let choices: Vec<(Vec<usize>, Expr)> = combinations(rows, count)
         .into_iter()
         .rev()
         .map(|chosen| {

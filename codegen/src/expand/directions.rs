@@ -2,10 +2,9 @@
 
 use super::complement::parts;
 use super::motion::Motion;
-use super::rank;
 use crate::domain::Domain;
 use crate::expr::Expr;
-use crate::matrix::Matrix;
+use crate::matrix::{Matrix, combinations};
 
 /// Most minors of one part that are tried.
 const MOST_MINORS: usize = 120;
@@ -46,7 +45,7 @@ fn of_part(part: &Matrix, domain: &Domain<'_>) -> Option<Matrix> {
         let inverse = gram.adjugate(&simplify).scale(&determinant.recip()?);
         return Some(inverse.times(&part.transpose()));
     }
-    let chosen = rank::combinations(part.rows(), part.columns()).into_iter();
+    let chosen = combinations(part.rows(), part.columns()).into_iter();
     chosen.take(MOST_MINORS).find_map(|rows| {
         let square = part.select_rows(&rows);
         let determinant = square.determinant(&simplify);

@@ -1,32 +1,32 @@
 //! Finite maps of a joint whose Φ is `Q exp(ϕ)` on every factor: Φ, its inverse and differential; projection and residual of any joint.
 
-use super::motion::local_element;
 use super::steps::Steps;
 use crate::algebra;
-use crate::derived::{Primitive, Step};
 use crate::expr::{Expr, Symbol};
+use crate::kernel::{Primitive, Step};
 use crate::manifold::{Factor, Kind};
 use crate::matrix::Matrix;
-use crate::model::{Freedom, JointSpec};
+use crate::model::Freedom;
+use crate::prepare::{Prepared, local_element};
 
 /// Lines and result of a kernel.
 pub type Body = (Vec<Step>, Matrix);
 
 /// Prefix of the names of one factor's intermediate values: none where it is the only one.
-fn prefix(spec: &JointSpec, factor: &Factor) -> String {
-    match spec.manifold.value.factors().len() {
+fn prefix(joint: &Prepared, factor: &Factor) -> String {
+    match joint.space.manifold.factors().len() {
         1 => String::new(),
         _ => format!("{}_", factor.name.to_ascii_lowercase()),
     }
 }
 
 /// Φ(Q, ϕ) = Q exp(Σ b_k ϕ_k); `None` where exp has no closed form.
-pub fn retract(spec: &JointSpec) -> Option<Body> {
+pub fn retract(joint: &Prepared) -> Option<Body> {
     let mut steps = Steps::default();
     let mut moved = vec![];
-    for (n, factor) in spec.manifold.value.factors().iter().enumerate() {
-        let prefix = prefix(spec, factor);
-        let xi = local_element(spec, n);
+    for (n, factor) in joint.space.manifold.factors().iter().enumerate() {
+        let prefix = prefix(joint, factor);
+        let xi = local_element(&joint.spec, n);
         let mut square = None;
         let exp = algebra::exp_by(&xi, |order, s| {
             let bound = square
@@ -44,14 +44,22 @@ pub fn retract(spec: &JointSpec) -> Option<Body> {
 }
 
 /// ϕ with Φ(Q, ϕ) = Q′: `log(Q⁻¹ Q′)` in the declared basis.
-pub fn local(spec: &JointSpec, target: &[Factor]) -> Option<Body> {
+pub fn local(joint: &Prepared, target: &[Factor]) -> Option<Body> {
     let mut steps = Steps::default();
-    let mut locals = vec![Expr::zero(); spec.freedoms.value.len()];
-    for (n, (factor, goal)) in spec.manifold.value.factors().iter().zip(target).enumerate() {
+    let mut locals = vec![Expr::zero(); joint.spec.freedoms.value.len()];
+    for (n, (factor, goal)) in joint
+        .space
+        .manifold
+        .factors()
+        .iter()
+        .zip(target)
+        .enumerate()
+    {
         let relative = factor.inverse(&factor.matrix())?.times(&goal.matrix());
-        let prefix = prefix(spec, factor);
+        let prefix = prefix(joint, factor);
         let standard = logarithm(factor.kind, &relative, &prefix, &mut steps)?;
-        let freedoms = spec
+        let freedoms = joint
+            .spec
             .freedoms
             .value
             .iter()
@@ -66,7 +74,7 @@ pub fn local(spec: &JointSpec, target: &[Factor]) -> Option<Body> {
 }
 
 /// Coordinates in the declared basis of the element with the given standard coordinates.
-fn in_basis(freedoms: &[&Freedom], standard: &[Expr]) -> Vec<Expr> {
+pub fn in_basis(freedoms: &[&Freedom], standard: &[Expr]) -> Vec<Expr> {
     let columns: Vec<Vec<Expr>> = freedoms
         .iter()
         .map(|freedom| freedom.generator.clone())
@@ -138,22 +146,22 @@ fn named_vector(
 
 /// `D⁻¹ u` with `D = Σ (−ad_ϕ)ⁿ/(n+1)!`: `u + ½ [ϕ, u] + G [ϕ, [ϕ, u]] + …`; `None` where no closed form fits.
 pub fn retract_differential_inverse(
-    spec: &JointSpec,
+    joint: &Prepared,
     constants: &[Matrix],
     rate: &[Symbol],
 ) -> Option<Body> {
     let size = rate.len();
     let mut steps = Steps::default();
     let mut rates = Matrix::symbols(rate);
-    for (n, factor) in spec.manifold.value.factors().iter().enumerate() {
+    for (n, factor) in joint.space.manifold.factors().iter().enumerate() {
         let places: Vec<usize> = (0..size)
-            .filter(|&k| spec.freedoms.value[k].factor == n)
+            .filter(|&k| joint.spec.freedoms.value[k].factor == n)
             .collect();
-        let ad = restricted_adjoint(spec, constants, &places);
+        let ad = restricted_adjoint(joint, constants, &places);
         if ad.is_zero() {
             continue;
         }
-        let prefix = prefix(spec, factor);
+        let prefix = prefix(joint, factor);
         let rate = rates.select_rows(&places);
         let solved = inverse_differential(&ad, &rate, &prefix, &mut steps)?;
         rates = Matrix::from_fn(size, 1, |i, _| {
@@ -167,10 +175,11 @@ pub fn retract_differential_inverse(
 }
 
 /// `ad_ϕ` on the freedoms at `places`: entry (i, j) is `Σ_k c^i_kj ϕ_k`.
-fn restricted_adjoint(spec: &JointSpec, constants: &[Matrix], places: &[usize]) -> Matrix {
+fn restricted_adjoint(joint: &Prepared, constants: &[Matrix], places: &[usize]) -> Matrix {
     Matrix::from_fn(places.len(), places.len(), |i, j| {
         let term = |&k: &usize| {
-            constants[k].at(places[i], places[j]) * &Expr::symbol(&spec.freedoms.value[k].local)
+            constants[k].at(places[i], places[j])
+                * &Expr::symbol(&joint.spec.freedoms.value[k].local)
         };
         places.iter().map(term).sum()
     })
@@ -205,19 +214,19 @@ fn inverse_differential(
 }
 
 /// D with `Φ(Q, ϕ + δ) = Φ(Q′, D δ) + O(δ²)`: `Σ (−ad_ϕ)ⁿ/(n+1)!`, K×K; `None` where no closed form fits.
-pub fn retract_differential(spec: &JointSpec, constants: &[Matrix]) -> Option<Body> {
-    let size = spec.freedoms.value.len();
+pub fn retract_differential(joint: &Prepared, constants: &[Matrix]) -> Option<Body> {
+    let size = joint.spec.freedoms.value.len();
     let mut steps = Steps::default();
     let mut whole = Matrix::identity(size);
-    for (n, factor) in spec.manifold.value.factors().iter().enumerate() {
+    for (n, factor) in joint.space.manifold.factors().iter().enumerate() {
         let places: Vec<usize> = (0..size)
-            .filter(|&k| spec.freedoms.value[k].factor == n)
+            .filter(|&k| joint.spec.freedoms.value[k].factor == n)
             .collect();
-        let ad = restricted_adjoint(spec, constants, &places);
+        let ad = restricted_adjoint(joint, constants, &places);
         if ad.is_zero() {
             continue;
         }
-        let own = differential(&ad, &prefix(spec, factor), &mut steps)?;
+        let own = differential(&ad, &prefix(joint, factor), &mut steps)?;
         let place = |i: usize| places.iter().position(|&place| place == i);
         whole = Matrix::from_fn(size, size, |i, j| match (place(i), place(j)) {
             (Some(row), Some(column)) => own.at(row, column).clone(),
@@ -291,11 +300,11 @@ fn differential(ad: &Matrix, prefix: &str, steps: &mut Steps) -> Option<Matrix> 
 }
 
 /// The nearest configuration on the manifold.
-pub fn project(spec: &JointSpec) -> Body {
+pub fn project(joint: &Prepared) -> Body {
     let mut steps = Steps::default();
     let mut projected = vec![];
-    for factor in spec.manifold.value.factors() {
-        projected.extend(projected_factor(factor, &prefix(spec, factor), &mut steps));
+    for factor in joint.space.manifold.factors() {
+        projected.extend(projected_factor(factor, &prefix(joint, factor), &mut steps));
     }
     (steps.finish(), Matrix::column_vector(projected))
 }
@@ -346,14 +355,16 @@ fn normalised(q: &[Expr], prefix: &str, steps: &mut Steps) -> Vec<Expr> {
 }
 
 /// The relations whose residual says how far Q is off its manifold: enough of them, none twice.
-pub fn residual(spec: &JointSpec) -> Matrix {
+pub fn residual(joint: &Prepared) -> Matrix {
     Matrix::column_vector(
-        spec.manifold
+        joint
+            .spec
+            .manifold
             .value
             .factors()
             .iter()
             .flat_map(residual_of_factor)
-            .chain(spec.manifold.value.declared().iter().cloned())
+            .chain(joint.space.manifold.declared().iter().cloned())
             .collect(),
     )
 }

@@ -1,51 +1,20 @@
-//! Finite maps of a joint whose Φ is any map: Φ as declared and its derivatives, the rest by the runtime's Newton method.
+//! What the runtime's Newton method needs: Φ as declared where it is any map, and the relations of declared manifolds.
 
 use super::finite::residual_of_factor;
-use super::motion::exponential;
 use crate::expr::{Expr, Symbol};
 use crate::matrix::Matrix;
-use crate::model::JointSpec;
+use crate::prepare::Prepared;
 use std::collections::BTreeSet;
 
-/// Whether Φ is Q exp(ϕ) on every factor, so that its finite maps have closed forms.
-pub fn is_exponential(spec: &JointSpec) -> bool {
-    if spec
-        .freedoms
-        .value
-        .iter()
-        .any(|freedom| freedom.generator.is_empty())
-    {
-        return false;
-    }
-    let Some(declared) = &spec.retract else {
-        return true;
-    };
-    let Some(expected) = exponential(spec) else {
-        return false;
-    };
-    let ideal = spec.manifold.value.ideal();
-    let mut pairs = declared.value.iter().zip(&expected);
-    pairs.all(|(entry, other)| ideal.vanishes(&(entry - other)))
-}
-
 /// Φ(Q, ϕ) as declared.
-pub fn retract(spec: &JointSpec) -> Option<Matrix> {
-    let declared = spec.retract.as_ref()?;
+pub fn retract(joint: &Prepared) -> Option<Matrix> {
+    let declared = joint.spec.retract.as_ref()?;
     Some(Matrix::column_vector(declared.value.clone()))
 }
 
-/// ∂Φ/∂ϕ of the stored scalars, N×k.
-pub fn retract_tangent(spec: &JointSpec) -> Option<Matrix> {
-    let moved = &spec.retract.as_ref()?.value;
-    let freedoms = &spec.freedoms.value;
-    Some(Matrix::from_fn(moved.len(), freedoms.len(), |i, j| {
-        moved[i].derivative(&freedoms[j].local)
-    }))
-}
-
-/// The declared relations with those of the known manifolds that they touch, and their derivatives by the stored scalars.
-pub fn relations(spec: &JointSpec) -> Option<(Matrix, Matrix)> {
-    let manifold = &spec.manifold.value;
+/// The declared relations with those of the known manifolds that they touch, as a column.
+pub fn relations(joint: &Prepared) -> Option<Matrix> {
+    let manifold = &joint.space.manifold;
     let declared: &[Expr] = manifold.declared();
     if declared.is_empty() {
         return None;
@@ -56,10 +25,7 @@ pub fn relations(spec: &JointSpec) -> Option<(Matrix, Matrix)> {
         .iter()
         .filter(|factor| factor.coordinates.iter().any(|q| named.contains(q)));
     let own = touched.flat_map(residual_of_factor);
-    let all: Vec<Expr> = own.chain(declared.iter().cloned()).collect();
-    let coordinates = manifold.coordinates();
-    let gradient = Matrix::from_fn(all.len(), coordinates.len(), |i, j| {
-        all[i].derivative(&coordinates[j])
-    });
-    Some((Matrix::column_vector(all), gradient))
+    Some(Matrix::column_vector(
+        own.chain(declared.iter().cloned()).collect(),
+    ))
 }

@@ -1,59 +1,54 @@
 //! The kernels of a joint from its expansion, in the order in which they are emitted.
 
 use super::{Expansion, finite, general, hamel};
-use crate::derived::{Kernel, KernelKind, Method, Step, Structure};
 use crate::diagnostic::Diagnostic;
 use crate::domain::{Critical, Domain};
-use crate::expr::{Expr, Symbol};
+use crate::expr::Symbol;
+use crate::kernel::{Kernel, KernelKind, Method, Step, Structure};
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
-use crate::model::JointSpec;
+use crate::model::{ConfigurationSpace, Declared, Locus};
+use crate::prepare::Prepared;
 use crate::spec::code;
 
-/// Most terms of Ẋ̄^c that are multiplied out: a little more than the longest of the library, that of the ellipsoid.
-const LONGEST_RATE: usize = 250;
-
-fn terms_of(matrix: &Matrix) -> usize {
-    matrix
-        .entries()
-        .iter()
-        .map(|entry| entry.terms().len())
-        .sum()
-}
-
-/// All kernels of a joint.
-pub fn kernels(spec: &JointSpec, expansion: &Expansion) -> Result<Vec<Kernel>, Vec<Diagnostic>> {
+/// All kernels of a joint that must stay away from `loci`.
+pub fn kernels(
+    joint: &Prepared,
+    expansion: &Expansion,
+    loci: &[Declared<Locus>],
+) -> Result<Vec<Kernel>, Vec<Diagnostic>> {
     let maker = Maker {
-        spec,
+        joint,
+        loci,
         x: expansion,
-        ideal: spec.manifold.value.ideal(),
-        child_slopes: child_slopes(spec, expansion),
+        ideal: joint.space.manifold.ideal(),
+        child_slopes: child_slopes(joint, expansion),
     };
     let mut kernels = maker.pose_and_velocity();
     kernels.extend(maker.nonholonomic());
     kernels.extend(maker.finite_maps()?);
-    kernels.extend(maker.bias());
     kernels.sort_by_key(|kernel| kernel.kind);
     Ok(kernels)
 }
 
 struct Maker<'a> {
-    spec: &'a JointSpec,
+    joint: &'a Prepared,
+    loci: &'a [Declared<Locus>],
     x: &'a Expansion,
     ideal: &'a Ideal,
     child_slopes: Vec<Matrix>,
 }
 
 /// X̄^c = X^c S̄.
-pub fn speed_map(spec: &JointSpec, x: &Expansion) -> Matrix {
+pub fn speed_map(joint: &Prepared, x: &Expansion) -> Matrix {
     let map = x.twist_map_child.times(&x.nonholonomic.speed_basis);
-    spec.manifold.value.ideal().simplest_entries(&map)
+    joint.space.manifold.ideal().simplest_entries(&map)
 }
 
 /// ∂X^c/∂ϕ, by the chain rule: multiplied out, what the definition adds up before it divides would cancel.
-fn child_slopes(spec: &JointSpec, x: &Expansion) -> Vec<Matrix> {
+fn child_slopes(joint: &Prepared, x: &Expansion) -> Vec<Matrix> {
     let slope = |k| x.motion.along_each(&x.twist_map_child, k);
-    let ideal = spec.manifold.value.ideal();
+    let ideal = joint.space.manifold.ideal();
     (0..x.shape.freedoms)
         .map(|k| ideal.simplest_entries(&slope(k)))
         .collect()
@@ -65,13 +60,13 @@ impl Maker<'_> {
     }
 
     fn pose_and_velocity(&self) -> Vec<Kernel> {
-        let pose = &self.spec.pose.value;
+        let pose = &self.joint.spec.pose.value;
         let s = &self.x.velocity_map;
         let velocity = Matrix::symbols(&self.x.arguments.velocity);
         let momentum = Matrix::symbols(&self.x.arguments.momentum);
         let inverse = &self.x.velocity_map_inverse;
-        let home = self.spec.home.as_ref().map(|home| home.value.clone());
-        let home = Matrix::column_vector(home.unwrap_or_else(|| self.spec.manifold.value.home()));
+        let home = self.joint.spec.home.as_ref().map(|home| home.value.clone());
+        let home = Matrix::column_vector(home.unwrap_or_else(|| self.joint.space.manifold.home()));
         vec![
             plain(KernelKind::Home, vec![home]),
             plain(
@@ -113,7 +108,7 @@ impl Maker<'_> {
         let moving = match self.x.exponential {
             true => self
                 .exponential_maps()
-                .ok_or_else(|| vec![no_closed_form(self.spec)])?,
+                .ok_or_else(|| vec![no_closed_form(self.joint)])?,
             false => self.general_maps(),
         };
         Ok([moving, self.manifold_maps()].concat())
@@ -121,14 +116,14 @@ impl Maker<'_> {
 
     /// Φ = Q exp(ϕ): closed forms.
     fn exponential_maps(&self) -> Option<Vec<Kernel>> {
-        let (spec, arguments) = (self.spec, &self.x.arguments);
-        let (retract_steps, retract) = finite::retract(spec)?;
-        let (local_steps, local) = finite::local(spec, &spec.manifold.value.target())?;
+        let (joint, arguments) = (self.joint, &self.x.arguments);
+        let (retract_steps, retract) = finite::retract(joint)?;
+        let (local_steps, local) = finite::local(joint, &joint.space.manifold.target())?;
         let constants = &self.x.structure_constants;
         let (inverse_steps, inverse) =
-            finite::retract_differential_inverse(spec, constants, &arguments.velocity)?;
+            finite::retract_differential_inverse(joint, constants, &arguments.velocity)?;
         let structure = same_or_general(&inverse, &arguments.velocity);
-        let (forward_steps, forward) = finite::retract_differential(spec, constants)?;
+        let (forward_steps, forward) = finite::retract_differential(joint, constants)?;
         let forward_structure = match forward.is_identity() {
             true => Structure::Identity,
             false => Structure::General,
@@ -156,33 +151,26 @@ impl Maker<'_> {
         ])
     }
 
-    /// Any other Φ: as declared, with what the runtime's solvers need.
+    /// Any other Φ: as declared, the rest by the runtime's solvers.
     fn general_maps(&self) -> Vec<Kernel> {
-        let formulas = [
-            (KernelKind::Retract, general::retract(self.spec)),
-            (
-                KernelKind::RetractTangent,
-                general::retract_tangent(self.spec),
-            ),
-        ];
-        let formulas = formulas
-            .into_iter()
-            .filter_map(|(kind, value)| Some(with(kind, vec![], value?, Structure::General)));
+        let retract = general::retract(self.joint)
+            .map(|value| with(KernelKind::Retract, vec![], value, Structure::General));
         let solved = [
             (KernelKind::Local, Method::Newton),
             (KernelKind::RetractDifferential, Method::Solve),
             (KernelKind::RetractDifferentialInverse, Method::Solve),
         ];
-        formulas
+        retract
+            .into_iter()
             .chain(solved.map(|(kind, method)| by_runtime(kind, method)))
             .collect()
     }
 
     /// Projection and residual; Newton's method where the spec declares relations.
     fn manifold_maps(&self) -> Vec<Kernel> {
-        let spec = self.spec;
-        let (steps, start) = finite::project(spec);
-        let relations = general::relations(spec);
+        let joint = self.joint;
+        let (steps, start) = finite::project(joint);
+        let relations = general::relations(joint);
         let structure = match relations {
             None => same_or_general(&start, &self.x.arguments.configuration),
             Some(_) => Structure::General,
@@ -192,27 +180,24 @@ impl Maker<'_> {
             KernelKind::ConfigurationRate,
             vec![self.configuration_rate()],
         );
-        let residual = plain(KernelKind::Residual, vec![finite::residual(spec)]);
-        let singular = match spec.loci.is_empty() {
+        let residual = plain(KernelKind::Residual, vec![finite::residual(joint)]);
+        let singular = match self.loci.is_empty() {
             true => Structure::Constant,
             false => Structure::General,
         };
         let mut singular = with(
             KernelKind::Singularity,
             vec![],
-            singular_functions(spec),
+            singular_functions(self.loci),
             singular,
         );
-        singular
-            .outputs
-            .extend(side_of_home(spec, self.x.exponential));
-        let Some((values, gradient)) = relations else {
+        singular.outputs.extend(side_of_home(joint, self.loci));
+        let Some(relations) = relations else {
             return vec![rate, project, residual, singular];
         };
         project.method = Method::Newton;
-        let values = plain(KernelKind::Relations, vec![values]);
-        let gradient = plain(KernelKind::RelationGradient, vec![gradient]);
-        vec![rate, project, residual, singular, values, gradient]
+        let relations = plain(KernelKind::Relations, vec![relations]);
+        vec![rate, project, residual, singular, relations]
     }
 
     /// `Q̇ = Σ_k δ_k (S₀⁻¹ v)_k`, (31).
@@ -223,62 +208,27 @@ impl Maker<'_> {
             .times(&Matrix::symbols(&self.x.arguments.velocity));
         self.short(&self.x.motion.tangent().times(&rates))
     }
-
-    /// `c = Ẋ̄^c v̄` and `Ẋ̄^cᵀ h`, with `ϕ̇ = S₀⁻¹ S̄ v̄`.
-    fn bias(&self) -> Vec<Kernel> {
-        let basis = &self.x.nonholonomic.speed_basis;
-        let speeds = Matrix::symbols(&self.x.arguments.speeds);
-        let rates = self.short(&self.x.velocity_map_inverse.times(basis).times(&speeds));
-        let zero = Matrix::zeros(6, basis.columns());
-        let slopes = self.child_slopes.iter().zip(&self.x.nonholonomic.slopes);
-        let rate = slopes
-            .enumerate()
-            .fold(zero, |sum, (k, (child, of_basis))| {
-                let moved = self.x.twist_map_child.times(of_basis);
-                sum.plus(&child.times(basis).plus(&moved).scale(rates.at(k, 0)))
-            });
-        let rate = self.short(&rate);
-        let rate = match terms_of(&rate) > LONGEST_RATE {
-            true => self.grouped_rate(&rates),
-            false => rate,
-        };
-        let acceleration = rate.times(&speeds);
-        let momentum = rate
-            .transpose()
-            .times(&Matrix::symbols(&self.x.arguments.wrench));
-        vec![
-            plain(KernelKind::BiasAcceleration, vec![acceleration]),
-            plain(KernelKind::BiasMomentum, vec![momentum]),
-        ]
-    }
-
-    /// Ẋ̄^c from derivatives of X̄^c, with sums kept together: multiplied out, products of long ones would be longer than anything
-    /// can be made of.
-    fn grouped_rate(&self, rates: &Matrix) -> Matrix {
-        let map = speed_map(self.spec, self.x);
-        let grouped = |k: usize| {
-            let slope = self.short(&self.x.motion.along_each(&map, k));
-            slope.map(Expr::grouped).scale(&rates.at(k, 0).grouped())
-        };
-        let zero = Matrix::zeros(map.rows(), map.columns());
-        let rate = (0..self.x.shape.freedoms).fold(zero, |sum, k| sum.plus(&grouped(k)));
-        rate.map(Expr::grouped)
-    }
 }
 
 /// The functions whose zeros the joint must stay away from: a column, empty for a joint that is global.
-fn singular_functions(spec: &JointSpec) -> Matrix {
-    let functions = spec.loci.iter().map(|locus| locus.value.function.clone());
+fn singular_functions(loci: &[Declared<Locus>]) -> Matrix {
+    let functions = loci.iter().map(|locus| locus.value.function.clone());
     Matrix::column_vector(functions.collect())
 }
 
 /// What is positive on the side of home of the loci, where functions of the joint have no value on the other.
-fn side_of_home(spec: &JointSpec, exponential: bool) -> Option<Matrix> {
-    if spec.loci.is_empty() {
+fn side_of_home(joint: &Prepared, loci: &[Declared<Locus>]) -> Option<Matrix> {
+    if loci.is_empty() {
         return None;
     }
-    let functions = Critical::declared(spec, exponential);
-    let sides = Domain::new(spec).sides(&functions);
+    let space = ConfigurationSpace {
+        loci: loci.to_vec(),
+        ..joint.space.clone()
+    };
+    let mut functions = joint.critical();
+    let loci = loci.iter().map(|locus| &locus.value.function);
+    loci.for_each(|function| Critical::collect(function, &[], &mut functions));
+    let sides = Domain::new(&space).sides(&functions);
     (!sides.is_empty()).then(|| Matrix::column_vector(sides))
 }
 
@@ -322,10 +272,10 @@ fn with(kind: KernelKind, steps: Vec<Step>, output: Matrix, structure: Structure
     }
 }
 
-fn no_closed_form(spec: &JointSpec) -> Diagnostic {
+fn no_closed_form(joint: &Prepared) -> Diagnostic {
     Diagnostic::new(
         code::NO_CLOSED_FORM,
-        spec.freedoms.span.clone(),
+        joint.spec.freedoms.span.clone(),
         "exp of this basis has no closed form that the generator knows",
     )
     .label("Φ = Q exp(ϕ) cannot be emitted")

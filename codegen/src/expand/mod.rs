@@ -6,7 +6,7 @@ mod complement;
 pub(crate) mod dimension;
 mod directions;
 mod elimination;
-mod finite;
+pub(crate) mod finite;
 mod general;
 mod hamel;
 mod imperceptible;
@@ -19,22 +19,24 @@ mod steps;
 pub(crate) mod task;
 mod velocity;
 
-pub use dimension::{Confinement, confine};
-pub use general::is_exponential;
+pub use dimension::Confinement;
+
 pub use kernels::{kernels, speed_map};
-pub use motion::{Motion, exponential, local_element};
+pub use motion::Motion;
 pub use nonholonomic::{Nonholonomic, speed_names};
 pub use numbers::beyond_doubles;
+pub use steps::Steps;
 pub use velocity::{TwistJacobian, VelocityMap, adjoint_inverse, bracket};
 
 use crate::algebra;
-use crate::derived::{Arguments, Shape};
 use crate::diagnostic::Diagnostic;
 use crate::domain::Domain;
 use crate::expr::{Expr, Role, Symbol, budget};
+use crate::kernel::{Arguments, Shape};
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
-use crate::model::{JointSpec, VelocityFrame};
+use crate::model::VelocityFrame;
+use crate::prepare::Prepared;
 use crate::spec::code;
 
 /// Everything that the kernels and the proofs are made of.
@@ -68,24 +70,24 @@ pub struct Expansion {
     pub imperceptible: Vec<[crate::expr::Rational; 10]>,
 }
 
-/// Expands a spec.
-pub fn expand(spec: &JointSpec) -> Result<Expansion, Vec<Diagnostic>> {
-    let ideal = spec.manifold.value.ideal();
-    let domain = Domain::new(spec);
-    let exponential = is_exponential(spec);
-    dimension::check(spec, exponential)?;
-    let arguments = arguments(spec);
+/// Expands a joint.spec.
+pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
+    let ideal = joint.space.manifold.ideal();
+    let domain = Domain::new(&joint.space);
+    let exponential = joint.exponential;
+    dimension::check(joint, exponential)?;
+    let arguments = arguments(joint);
     budget::begin(task::MOTION);
-    let motion = match (&spec.retract, exponential) {
-        (Some(declared), false) => Motion::of_map(spec, &declared.value),
-        _ => Motion::of_exponential(spec),
+    let motion = match (&joint.spec.retract, exponential) {
+        (Some(declared), false) => Motion::of_map(joint, &declared.value),
+        _ => Motion::of_exponential(joint),
     };
-    let structure_constants = structure_constants(spec);
+    let structure_constants = structure_constants(joint);
     budget::begin(task::TWIST);
-    let jacobian = TwistJacobian::new(&spec.pose.value, &motion, ideal);
+    let jacobian = TwistJacobian::new(&joint.spec.pose.value, &motion, ideal);
     budget::begin(task::TWIST_MAP);
-    let to_child = adjoint_inverse(&spec.pose.value);
-    let twist_map = twist_map(spec, &jacobian, ideal)?;
+    let to_child = adjoint_inverse(&joint.spec.pose.value);
+    let twist_map = twist_map(joint, &jacobian, ideal)?;
     let twist_map_child = match twist_map == jacobian.base {
         true => jacobian.child.clone(),
         false => ideal.simplest_entries(&to_child.times(&twist_map)),
@@ -101,17 +103,17 @@ pub fn expand(spec: &JointSpec) -> Result<Expansion, Vec<Diagnostic>> {
         structure_constants: exponential.then_some(&structure_constants),
     }
     .solve()
-    .ok_or_else(|| vec![singular_twist_map(spec, &twist_map)])?;
+    .ok_or_else(|| vec![singular_twist_map(joint, &twist_map)])?;
     let simplify = |e: &Expr| ideal.normal_form(e);
     let determinant = velocity_map.base.determinant(&simplify);
     let inverse = determinant
         .recip()
-        .ok_or_else(|| vec![singular_velocity_map(spec, &velocity_map.base)])?;
+        .ok_or_else(|| vec![singular_velocity_map(joint, &velocity_map.base)])?;
     let velocity_map_inverse = velocity_map.inverse.clone().unwrap_or_else(|| {
         ideal.simplest_entries(&velocity_map.base.adjugate(&simplify).scale(&inverse))
     });
     budget::begin(task::CONSTRAINT);
-    let nonholonomic = Nonholonomic::new(spec, &motion, &domain)?;
+    let nonholonomic = Nonholonomic::new(joint, &motion, &domain)?;
     Ok(Expansion {
         shape: Shape {
             configuration: arguments.configuration.len(),
@@ -134,16 +136,16 @@ pub fn expand(spec: &JointSpec) -> Result<Expansion, Vec<Diagnostic>> {
     })
 }
 
-fn arguments(spec: &JointSpec) -> Arguments {
-    let manifold = &spec.manifold.value;
-    let freedoms = &spec.freedoms.value;
+fn arguments(joint: &Prepared) -> Arguments {
+    let manifold = &joint.space.manifold;
+    let freedoms = &joint.spec.freedoms.value;
     let named = |role: Role, prefix: &str| -> Vec<Symbol> {
         let name = |(i, freedom): (usize, &crate::model::Freedom)| {
             Symbol::new(role, i, &format!("{prefix}_{}", freedom.name))
         };
         freedoms.iter().enumerate().map(name).collect()
     };
-    let speeds = nonholonomic::speed_names(spec);
+    let speeds = nonholonomic::speed_names(&joint.spec);
     Arguments {
         configuration: manifold.coordinates(),
         target: manifold
@@ -167,11 +169,11 @@ fn arguments(spec: &JointSpec) -> Arguments {
 }
 
 /// `c^i_kj` with `[b_k, b_j] = Σ_i c^i_kj b_i`, in the declared basis. The language has checked that the basis closes.
-fn structure_constants(spec: &JointSpec) -> Vec<Matrix> {
-    let freedoms = &spec.freedoms.value;
+fn structure_constants(joint: &Prepared) -> Vec<Matrix> {
+    let freedoms = &joint.spec.freedoms.value;
     let count = freedoms.len();
     let mut constants = vec![vec![vec![Expr::zero(); count]; count]; count];
-    for (n, factor) in spec.manifold.value.factors().iter().enumerate() {
+    for (n, factor) in joint.space.manifold.factors().iter().enumerate() {
         let belongs = |&k: &usize| freedoms[k].factor == n && !freedoms[k].generator.is_empty();
         let places: Vec<usize> = (0..count).filter(belongs).collect();
         let basis = places
@@ -203,23 +205,23 @@ fn structure_constants(spec: &JointSpec) -> Vec<Matrix> {
 
 /// X: as declared, else the velocity of Φ itself; read in the parent frame, the constant that the latter is in the child frame.
 fn twist_map(
-    spec: &JointSpec,
+    joint: &Prepared,
     jacobian: &TwistJacobian,
     ideal: &Ideal,
 ) -> Result<Matrix, Vec<Diagnostic>> {
-    match &spec.twist_map {
+    match &joint.spec.twist_map {
         Some(declared) => Ok(declared.value.clone()),
-        None => twist_map_in_frame(spec, jacobian, ideal),
+        None => twist_map_in_frame(joint, jacobian, ideal),
     }
 }
 
 /// X as the declared frame of v has it.
 pub(crate) fn twist_map_in_frame(
-    spec: &JointSpec,
+    joint: &Prepared,
     jacobian: &TwistJacobian,
     ideal: &Ideal,
 ) -> Result<Matrix, Vec<Diagnostic>> {
-    if spec.velocity.value != VelocityFrame::Parent {
+    if joint.spec.velocity.value != VelocityFrame::Parent {
         return Ok(jacobian.base.clone());
     }
     let child = ideal.normal_forms(&jacobian.child);
@@ -228,7 +230,7 @@ pub(crate) fn twist_map_in_frame(
         false => Err(vec![
             Diagnostic::new(
                 code::PARENT_FRAME,
-                spec.velocity.span.clone(),
+                joint.spec.velocity.span.clone(),
                 "this joint has no constant velocity directions to read in the parent frame",
             )
             .label("declared here")
@@ -238,11 +240,14 @@ pub(crate) fn twist_map_in_frame(
     }
 }
 
-fn singular_twist_map(spec: &JointSpec, twist_map: &Matrix) -> Diagnostic {
-    let span = spec
+fn singular_twist_map(joint: &Prepared, twist_map: &Matrix) -> Diagnostic {
+    let span = joint
+        .spec
         .twist_map
         .as_ref()
-        .map_or(spec.pose.span.clone(), |declared| declared.span.clone());
+        .map_or(joint.spec.pose.span.clone(), |declared| {
+            declared.span.clone()
+        });
     Diagnostic::new(
         code::DEPENDENT_TWISTS,
         span,
@@ -253,11 +258,14 @@ fn singular_twist_map(spec: &JointSpec, twist_map: &Matrix) -> Diagnostic {
     .help("each velocity must move the child in a way of its own")
 }
 
-fn singular_velocity_map(spec: &JointSpec, base: &Matrix) -> Diagnostic {
-    let span = spec
+fn singular_velocity_map(joint: &Prepared, base: &Matrix) -> Diagnostic {
+    let span = joint
+        .spec
         .twist_map
         .as_ref()
-        .map_or(spec.freedoms.span.clone(), |declared| declared.span.clone());
+        .map_or(joint.spec.freedoms.span.clone(), |declared| {
+            declared.span.clone()
+        });
     Diagnostic::new(
         code::SINGULAR_VELOCITY_MAP,
         span,

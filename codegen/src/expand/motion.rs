@@ -4,7 +4,7 @@ use crate::algebra;
 use crate::expr::{Expr, Role, Symbol};
 use crate::manifold::{Factor, Kind, Manifold};
 use crate::matrix::Matrix;
-use crate::model::JointSpec;
+use crate::prepare::{Prepared, local_element};
 
 /// Φ(Q, ϕ) to second order in ϕ, as stored scalars: Q + Σ δ_k ϕ_k + ½ Σ δ_kl ϕ_k ϕ_l.
 #[derive(Clone, Debug)]
@@ -14,33 +14,6 @@ pub struct Motion {
     first: Vec<Vec<Expr>>,
     /// `second[k][l][i]`: ∂²Φ_i/∂ϕ_k∂ϕ_l.
     second: Vec<Vec<Vec<Expr>>>,
-}
-
-/// The algebra element Σ b_k ϕ_k of one factor, as the matrix that multiplies.
-pub fn local_element(spec: &JointSpec, factor: usize) -> Matrix {
-    let kind = spec.manifold.value.factors()[factor].kind;
-    let mut standard = vec![Expr::zero(); kind.dimension()];
-    for freedom in spec
-        .freedoms
-        .value
-        .iter()
-        .filter(|freedom| freedom.factor == factor && !freedom.generator.is_empty())
-    {
-        for (sum, component) in standard.iter_mut().zip(&freedom.generator) {
-            *sum += &(component * &Expr::symbol(&freedom.local));
-        }
-    }
-    algebra::hat(kind, &standard)
-}
-
-/// Q exp(ϕ) in closed form, as stored scalars; `None` where exp has none.
-pub fn exponential(spec: &JointSpec) -> Option<Vec<Expr>> {
-    let mut moved = vec![];
-    for (n, factor) in spec.manifold.value.factors().iter().enumerate() {
-        let exp = algebra::exp(&local_element(spec, n))?;
-        moved.extend(factor.coordinates_of(&factor.matrix().times(&exp)));
-    }
-    Some(moved)
 }
 
 /// The velocity of a point of the sphere that turns about an axis.
@@ -53,13 +26,13 @@ fn turned(factor: &Factor, axis: &[Expr]) -> Vec<Expr> {
 
 impl Motion {
     /// Φ = Q exp(Σ b_k ϕ_k) on every factor, exp taken to second order.
-    pub fn of_exponential(spec: &JointSpec) -> Self {
-        let factors = spec.manifold.value.factors().iter().enumerate();
+    pub fn of_exponential(joint: &Prepared) -> Self {
+        let factors = joint.space.manifold.factors().iter().enumerate();
         let moved = factors.flat_map(|(n, factor)| {
-            let step = algebra::exp_second_order(&local_element(spec, n));
+            let step = algebra::exp_second_order(&local_element(&joint.spec, n));
             factor.coordinates_of(&factor.matrix().times(&step))
         });
-        Self::of_map(spec, &moved.collect::<Vec<_>>())
+        Self::of_map(joint, &moved.collect::<Vec<_>>())
     }
 
     /// Every direction of the known manifolds, declared relations apart, to first order alone.
@@ -93,14 +66,15 @@ impl Motion {
     }
 
     /// Any Φ, given as stored scalars in Q and ϕ.
-    pub fn of_map(spec: &JointSpec, moved: &[Expr]) -> Self {
-        let locals: Vec<Symbol> = spec
+    pub fn of_map(joint: &Prepared, moved: &[Expr]) -> Self {
+        let locals: Vec<Symbol> = joint
+            .spec
             .freedoms
             .value
             .iter()
             .map(|freedom| freedom.local.clone())
             .collect();
-        let ideal = spec.manifold.value.ideal();
+        let ideal = joint.space.manifold.ideal();
         let at_base = |entries: &[Expr]| {
             entries
                 .iter()
@@ -120,7 +94,7 @@ impl Motion {
                 .collect()
         };
         Self {
-            coordinates: spec.manifold.value.coordinates(),
+            coordinates: joint.space.manifold.coordinates(),
             first: slopes.iter().map(|slope| at_base(slope)).collect(),
             second: (0..locals.len()).map(second).collect(),
         }

@@ -7,6 +7,7 @@ use crate::domain::Domain;
 use crate::expr::Expr;
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
+use crate::prepare::Prepared;
 use crate::spec::code;
 
 /// The nonholonomic parts of a joint; trivial for a holonomic one.
@@ -23,12 +24,12 @@ pub struct Nonholonomic {
 impl Nonholonomic {
     /// Takes what is declared, derives what is missing.
     pub fn new(
-        spec: &JointSpec,
+        joint: &Prepared,
         motion: &Motion,
         domain: &Domain<'_>,
     ) -> Result<Self, Vec<Diagnostic>> {
         let size = motion.freedoms();
-        let (constraint, speed_basis) = match (&spec.constraint, &spec.speed_basis) {
+        let (constraint, speed_basis) = match (&joint.spec.constraint, &joint.spec.speed_basis) {
             (None, None) => (Matrix::zeros(size, 0), Matrix::identity(size)),
             (Some(a), Some(s)) => (a.value.clone(), s.value.clone()),
             (Some(a), None) => (

@@ -1,7 +1,7 @@
 //! Numbers of kernels that doubles do not hold: they would be written as 0 or infinity without a word.
 
-use crate::derived::{Kernel, Step};
 use crate::expr::{Atom, Expr, Rational};
+use crate::kernel::{Kernel, Step};
 use crate::matrix::Matrix;
 use num_traits::{ToPrimitive, Zero};
 

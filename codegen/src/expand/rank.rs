@@ -3,24 +3,7 @@
 use super::elimination;
 use crate::domain::Domain;
 use crate::expr::Expr;
-use crate::matrix::Matrix;
-
-/// All ways to choose `size` of `0..count`, ascending.
-pub fn combinations(count: usize, size: usize) -> Vec<Vec<usize>> {
-    if size == 0 {
-        return vec![vec![]];
-    }
-    (size - 1..count)
-        .flat_map(|last| {
-            combinations(last, size - 1)
-                .into_iter()
-                .map(move |mut chosen| {
-                    chosen.push(last);
-                    chosen
-                })
-        })
-        .collect()
-}
+use crate::matrix::{Matrix, combinations};
 
 /// Why the columns are independent everywhere, in words; `Err` holds det(MᵀM), whose zeros are where they may not be.
 pub fn full_column_rank(m: &Matrix, domain: &Domain<'_>) -> Result<String, Expr> {

@@ -1,7 +1,7 @@
 //! Building a kernel line by line, binding intermediate values to names.
 
-use crate::derived::{Primitive, Step};
 use crate::expr::{Expr, Role, Symbol};
+use crate::kernel::{Primitive, Step};
 use crate::matrix::Matrix;
 
 /// The lines of a kernel so far.

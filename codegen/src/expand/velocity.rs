@@ -1,11 +1,11 @@
 //! The paper's step: J, X and S to first order in ϕ, (23).
 
 use super::motion::Motion;
-use super::{directions, elimination, rank};
+use super::{directions, elimination};
 use crate::domain::Domain;
 use crate::expr::{Expr, budget};
 use crate::manifold::Ideal;
-use crate::matrix::Matrix;
+use crate::matrix::{Matrix, combinations};
 use crate::model::PoseExpr;
 
 /// `Ad_{H⁻¹} = [Rᵀ 0; −Rᵀp~ Rᵀ]`.
@@ -270,7 +270,7 @@ impl Solver<'_, '_> {
     /// The inverse of the first rows with a good determinant, zero elsewhere.
     fn row_inverse(&self, m: &Matrix, good: &dyn Fn(&Expr) -> bool) -> Option<Matrix> {
         let simplify = |e: &Expr| self.domain.ideal().normal_form(e);
-        rank::combinations(m.rows(), m.columns())
+        combinations(m.rows(), m.columns())
             .into_iter()
             .find_map(|rows| {
                 let square = m.select_rows(&rows);

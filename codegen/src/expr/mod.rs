@@ -95,6 +95,14 @@ impl Expr {
         self.terms.is_empty()
     }
 
+    /// Whether this is one term of a rational and parameters.
+    pub fn is_unit(&self) -> bool {
+        self.terms().len() == 1
+            && self
+                .leading()
+                .is_some_and(|(monomial, _)| monomial.is_unit())
+    }
+
     /// Whether this is one.
     pub fn is_one(&self) -> bool {
         self.as_rational().is_some_and(|value| value.is_one())
@@ -128,6 +136,11 @@ impl Expr {
             }
             _ => None,
         }
+    }
+
+    /// Whether a name would say nothing more: a number, a parameter, a symbol, or the opposite of one.
+    pub fn is_plain(&self) -> bool {
+        self.is_constant() || self.as_symbol().is_some() || (-self).as_symbol().is_some()
     }
 
     /// Whether this depends on no symbol but parameters.

@@ -24,6 +24,8 @@ thread_local! {
 #[derive(Clone, Debug, Default)]
 pub struct Ideal {
     own: Arc<Reduction>,
+    /// The relations as they are stated, among which short ones are found sooner than in the basis.
+    stated: Arc<[Expr]>,
     /// Parameters that are positive, so that the root of their square is the parameter itself.
     positive: BTreeSet<Symbol>,
     /// Parameters that may be 0, by which nothing is divided.
@@ -41,12 +43,14 @@ impl Ideal {
     pub fn new(relations: &[Expr]) -> Self {
         Self {
             own: Arc::new(Reduction::new(relations)),
+            stated: relations.into(),
             ..Self::default()
         }
     }
 
     /// The ideal of the relations of known factors; its basis is kept for the next manifold of the same.
     pub fn of_known(relations: Vec<Expr>) -> Self {
+        let stated = relations.clone().into();
         let own = KNOWN.with_borrow_mut(|known| {
             let place = known.iter().position(|(of, _)| *of == relations);
             let entry = match place.and_then(|place| known.remove(place)) {
@@ -63,6 +67,7 @@ impl Ideal {
         });
         Self {
             own,
+            stated,
             ..Self::default()
         }
     }
@@ -266,6 +271,11 @@ impl Ideal {
         }
     }
 
+    /// The relations of the manifold as they are stated, among which short ones are found sooner than in the basis.
+    pub(crate) fn stated(&self) -> &[Expr] {
+        &self.stated
+    }
+
     /// Entry by entry.
     pub fn simplest_entries(&self, matrix: &Matrix) -> Matrix {
         matrix.map(|entry| self.simplest(entry))
@@ -411,7 +421,7 @@ fn angles_and_exponents(expression: &Expr) -> BTreeSet<Expr> {
 }
 
 /// Number of operations to write the expression as it stands, each function of it once.
-fn weight(expression: &Expr) -> usize {
+pub(crate) fn weight(expression: &Expr) -> usize {
     let of_term = |(monomial, _): (&Monomial, &Rational)| {
         let powers = monomial
             .factors()

@@ -11,6 +11,7 @@ mod tests;
 
 pub use factor::{Factor, Kind, LARGEST_CONSTRAINED_REAL, LARGEST_REAL};
 pub use ideal::Ideal;
+pub(crate) use ideal::weight;
 
 use crate::expr::{Expr, Role, Symbol};
 use std::collections::BTreeSet;

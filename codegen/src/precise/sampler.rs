@@ -4,7 +4,7 @@ use super::linear::shortest_solution;
 use super::start::Draw;
 use super::{Point, Precise};
 use crate::expr::{Expr, Symbol};
-use crate::model::JointSpec;
+use crate::model::ConfigurationSpace;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -29,7 +29,7 @@ const ROUGH: (usize, usize) = (64, 10);
 /// A deterministic source of random points of one joint.
 #[derive(Clone, Debug)]
 pub struct Sampler<'a> {
-    spec: &'a JointSpec,
+    space: &'a ConfigurationSpace,
     draw: Draw,
     /// The relations, by which points are corrected; empty where every factor is sampled as it is.
     relations: Vec<Sloped>,
@@ -44,8 +44,8 @@ pub struct Sampler<'a> {
 /// An expression with its derivatives by the stored scalars.
 type Sloped = (Expr, Vec<Expr>);
 
-fn sloped(spec: &JointSpec, expressions: impl IntoIterator<Item = Expr>) -> Vec<Sloped> {
-    let coordinates = spec.manifold.value.coordinates();
+fn sloped(space: &ConfigurationSpace, expressions: impl IntoIterator<Item = Expr>) -> Vec<Sloped> {
+    let coordinates = space.manifold.coordinates();
     let slopes = |e: &Expr| coordinates.iter().map(|q| e.derivative(q)).collect();
     let pairs = expressions.into_iter().map(|e| {
         let slopes = slopes(&e);
@@ -56,20 +56,20 @@ fn sloped(spec: &JointSpec, expressions: impl IntoIterator<Item = Expr>) -> Vec<
 
 impl<'a> Sampler<'a> {
     /// Points of the joint in numbers of `bits` bits, the same in every run.
-    pub fn new(spec: &'a JointSpec, bits: usize) -> Self {
-        let manifold = &spec.manifold.value;
+    pub fn new(space: &'a ConfigurationSpace, bits: usize) -> Self {
+        let manifold = &space.manifold;
         let relations = match manifold.declared().is_empty() {
             true => vec![],
             false => manifold.relations(),
         };
         Self {
-            spec,
+            space,
             draw: Draw {
                 random: ChaCha8Rng::seed_from_u64(1),
                 bits,
                 reach: 1.0,
             },
-            relations: sloped(spec, relations),
+            relations: sloped(space, relations),
             sides: vec![],
             paired: true,
             far: None,
@@ -92,9 +92,9 @@ impl<'a> Sampler<'a> {
     /// Points far from home, every other one beside a locus: the components of the domain are not left out that lie beyond.
     #[must_use]
     pub fn far(self) -> Self {
-        let loci = self.spec.loci.iter().map(|l| l.value.function.clone());
-        let loci = sloped(self.spec, loci);
-        let all = sloped(self.spec, self.spec.manifold.value.relations());
+        let loci = self.space.loci.iter().map(|l| l.value.function.clone());
+        let loci = sloped(self.space, loci);
+        let all = sloped(self.space, self.space.manifold.relations());
         let far = Some((loci, all));
         Self { far, ..self }
     }
@@ -107,7 +107,7 @@ impl<'a> Sampler<'a> {
     /// A point on the manifold with parameters within their ranges, whatever it misses of requirements and loci: for who moves some
     /// of its values, and looks at these then.
     pub fn anywhere(&mut self) -> Option<Point> {
-        let mut free = self.spec.clone();
+        let mut free = self.space.clone();
         free.requirements.clear();
         free.loci.clear();
         let mut sampler = Sampler::new(&free, self.draw.bits).single();
@@ -121,7 +121,7 @@ impl<'a> Sampler<'a> {
     /// and where its relations are not met to the rounding of their terms, however small these are.
     pub fn settled(&self, point: &Point) -> Option<Point> {
         let mut settled = point.clone();
-        let coordinates = self.spec.manifold.value.coordinates();
+        let coordinates = self.space.manifold.coordinates();
         to_zero(&mut settled, &coordinates, &self.relations)?;
         let holds = |(relation, _): &Sloped| {
             let (value, scale) = settled.evaluate_with_scale(relation);
@@ -135,14 +135,19 @@ impl<'a> Sampler<'a> {
             self.draw.reach = REACHES[self.index(REACHES.len())];
         }
         let mut point = Point::new(self.draw.random.next_u64(), self.draw.bits);
-        for parameter in &self.spec.parameters {
+        for parameter in &self.space.parameters {
             point.bind(&parameter.symbol, self.draw.parameter(&parameter.range));
         }
         let holds = |value: &Expr| point.evaluate(value).to_f64() > 0.0;
-        if !self.spec.requirements.iter().all(|r| holds(&r.value.value)) {
+        if !self
+            .space
+            .requirements
+            .iter()
+            .all(|r| holds(&r.value.value))
+        {
             return None;
         }
-        let manifold = &self.spec.manifold.value;
+        let manifold = &self.space.manifold;
         let coordinates = manifold.coordinates();
         let target: Vec<Symbol> = manifold
             .target()
@@ -165,7 +170,7 @@ impl<'a> Sampler<'a> {
 
     /// A configuration on the manifold and away from the loci.
     fn configuration(&mut self, point: &Point, coordinates: &[Symbol]) -> Option<Vec<Precise>> {
-        let manifold = &self.spec.manifold.value;
+        let manifold = &self.space.manifold;
         let mut at = point.clone();
         if self.relations.is_empty() {
             for factor in manifold.factors() {
@@ -182,7 +187,7 @@ impl<'a> Sampler<'a> {
             self.cross(&mut at, coordinates)?;
         }
         let far = |function: &Expr| at.evaluate(function).to_f64().abs() > DISTANCE;
-        let mut loci = self.spec.loci.iter().map(|locus| &locus.value.function);
+        let mut loci = self.space.loci.iter().map(|locus| &locus.value.function);
         let lives = |side: &Expr| at.evaluate(side).to_f64() > 0.0;
         let allowed = loci.all(far) && self.sides.iter().all(lives);
         let values: Vec<Precise> = coordinates.iter().map(|c| at.value(c)).collect();
@@ -190,9 +195,8 @@ impl<'a> Sampler<'a> {
     }
 
     fn home(&self, point: &Point) -> Vec<Precise> {
-        let declared = self.spec.home.as_ref().map(|home| home.value.clone());
-        let home = declared.unwrap_or_else(|| self.spec.manifold.value.home());
-        home.iter().map(|entry| point.evaluate(entry)).collect()
+        let home = self.space.home.iter();
+        home.map(|entry| point.evaluate(entry)).collect()
     }
 
     /// Goes from a far point to some locus, and from there as far as points lie from home, to either side.
@@ -206,7 +210,7 @@ impl<'a> Sampler<'a> {
         };
         let (bits, steps) = ROUGH;
         let mut rough = Point::new(0, bits);
-        let parameters = self.spec.parameters.iter().map(|p| &p.symbol);
+        let parameters = self.space.parameters.iter().map(|p| &p.symbol);
         for symbol in coordinates.iter().chain(parameters) {
             rough.bind(symbol, Precise::from_f64(at.value(symbol).to_f64(), bits));
         }

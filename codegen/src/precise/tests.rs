@@ -220,18 +220,19 @@ const JOINTS: [&str; 5] = [
     "joint plane { config Q: SE2; basis a, b, c of se2; velocity in child; H = pose(rot_z(Q), [Q.x, Q.y, 0]); }",
 ];
 
-fn parsed(text: &str) -> crate::model::JointSpec {
-    spec::parse(&format!("hamel = 1;\n{text}"), "test.joint")
-        .unwrap_or_else(|errors| panic!("{errors}"))
+fn parsed(text: &str) -> crate::model::ConfigurationSpace {
+    let spec = spec::parse(&format!("hamel = 1;\n{text}"), "test.joint")
+        .unwrap_or_else(|errors| panic!("{errors}"));
+    crate::model::ConfigurationSpace::declared(&spec)
 }
 
 #[test]
 fn points_lie_on_the_manifold() {
-    for spec in JOINTS.map(parsed) {
-        let mut sampler = Sampler::new(&spec, BITS);
+    for space in JOINTS.map(parsed) {
+        let mut sampler = Sampler::new(&space, BITS);
         for _ in 0..20 {
             let point = sampler.point().expect("nothing is forbidden");
-            for relation in spec.manifold.value.relations() {
+            for relation in space.manifold.relations() {
                 let (value, scale) = point.evaluate_with_scale(&relation);
                 assert!(
                     value.to_f64().abs() <= scale.max(1.0) * 2f64.powi(-250),
@@ -245,8 +246,8 @@ fn points_lie_on_the_manifold() {
 /// A circle of radius 1/2 declared by relations, twice, and with a redundant third that is the sum of both.
 #[test]
 fn declared_relations_are_met_by_newton() {
-    let mut spec = parsed("joint plane { config z: R3; H = trans(z); }");
-    let manifold = spec.manifold.value.clone();
+    let mut space = parsed("joint plane { config z: R3; H = trans(z); }");
+    let manifold = space.manifold.clone();
     let q: Vec<_> = manifold
         .coordinates()
         .iter()
@@ -255,12 +256,12 @@ fn declared_relations_are_met_by_newton() {
     let circle = &(&q[0].square() + &q[1].square()) - &crate::expr::Expr::fraction(1, 4);
     let height = &q[2] - &(&q[0] * &q[1]);
     let both = &circle + &height;
-    spec.manifold.value = manifold.constrained(vec![circle, height, both]);
-    let mut sampler = Sampler::new(&spec, BITS);
+    space.manifold = manifold.constrained(vec![circle, height, both]);
+    let mut sampler = Sampler::new(&space, BITS);
     let mut different = std::collections::BTreeSet::new();
     for _ in 0..20 {
         let point = sampler.point().expect("Newton converges");
-        for relation in spec.manifold.value.relations() {
+        for relation in space.manifold.relations() {
             let (value, scale) = point.evaluate_with_scale(&relation);
             assert!(
                 value.to_f64().abs() <= scale.max(1.0) * 2f64.powi(-230),
@@ -269,7 +270,7 @@ fn declared_relations_are_met_by_newton() {
         }
         different.insert(
             point
-                .value(&spec.manifold.value.coordinates()[0])
+                .value(&space.manifold.coordinates()[0])
                 .to_f64()
                 .to_bits(),
         );

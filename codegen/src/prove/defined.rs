@@ -3,10 +3,10 @@
 use super::{Attempt, Identities, Prover, certified, refuted};
 use crate::diagnostic::Diagnostic;
 use crate::domain::{Critical, Domain};
-use crate::expand;
 use crate::expr::{Expr, Function};
 use crate::matrix::Matrix;
-use crate::model::{Declared, JointSpec, Locus};
+use crate::model::{Declared, Locus};
+use crate::prepare::Prepared;
 use crate::spec::code;
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -15,18 +15,16 @@ use std::ops::Range;
 const LONGEST: usize = 200;
 
 /// Φ has derivatives at ϕ = 0. They are taken before anything is proved, and mean nothing where it has none.
-pub fn retract_is_smooth(spec: &JointSpec) -> Result<(), Box<Diagnostic>> {
-    let Some(declared) = &spec.retract else {
+pub fn retract_is_smooth(joint: &Prepared) -> Result<(), Box<Diagnostic>> {
+    let Some(declared) = &joint.spec.retract else {
         return Ok(());
     };
-    let domain = Domain::new(spec);
-    let found = Critical::in_retract(spec);
+    let domain = Domain::new(&joint.space);
+    let found = Critical::in_retract(&joint.spec);
     let open = found.iter().find(|f| domain.smooth(f).is_none());
     match open {
         // Φ = Q exp(ϕ) is evaluated in closed form, however it is written.
-        Some(critical) if !expand::is_exponential(spec) => {
-            Err(Box::new(refusal(critical, &declared.span)))
-        }
+        Some(critical) if !joint.exponential => Err(Box::new(refusal(critical, &declared.span))),
         _ => Ok(()),
     }
 }
@@ -34,7 +32,7 @@ pub fn retract_is_smooth(spec: &JointSpec) -> Result<(), Box<Diagnostic>> {
 impl Prover<'_> {
     /// What is declared is smooth; that what is derived from it is so, too, comes after the claims that this rests on.
     pub(super) fn declared_is_defined(&self) -> Attempt {
-        let declared = Critical::declared(self.spec, self.exponential);
+        let declared = self.joint.critical();
         let open = declared.iter().find(|f| self.domain.smooth(f).is_none());
         match open {
             Some(open) => Err(Box::new(refusal(open, &self.statement_with(open)))),
@@ -44,10 +42,7 @@ impl Prover<'_> {
 
     /// Every quotient, root, logarithm and angle in what is evaluated at Q is smooth there.
     pub(super) fn is_defined(&self) -> Attempt {
-        let (declared, derived) = (
-            Critical::declared(self.spec, self.exponential),
-            self.derived_functions(),
-        );
+        let (declared, derived) = (self.joint.critical(), self.derived_functions());
         let count = declared.union(&derived).count();
         if count == 0 {
             return Ok(None);
@@ -77,19 +72,23 @@ impl Prover<'_> {
 
     /// The statement of the spec in which the function stands; that of H, from which most is derived, where it stands in none.
     fn statement_with(&self, critical: &Critical) -> Range<usize> {
-        let spec = self.spec;
+        let joint = self.joint;
         let of_matrix = |declared: &Declared<Matrix>| {
             (declared.value.entries().to_vec(), declared.span.clone())
         };
-        let pose = &spec.pose.value;
+        let pose = &joint.spec.pose.value;
         let of_pose = [pose.rotation.entries(), pose.translation.entries()].concat();
-        let matrices = [&spec.twist_map, &spec.constraint, &spec.speed_basis];
+        let matrices = [
+            &joint.spec.twist_map,
+            &joint.spec.constraint,
+            &joint.spec.speed_basis,
+        ];
         let of_locus =
             |locus: &Declared<Locus>| (vec![locus.value.function.clone()], locus.span.clone());
-        let statements = [(of_pose, spec.pose.span.clone())]
+        let statements = [(of_pose, joint.spec.pose.span.clone())]
             .into_iter()
             .chain(matrices.into_iter().flatten().map(of_matrix))
-            .chain(spec.loci.iter().map(of_locus));
+            .chain(joint.space.loci.iter().map(of_locus));
         let holds = |entries: &[Expr]| {
             let mut found = BTreeSet::new();
             entries
@@ -98,15 +97,15 @@ impl Prover<'_> {
             found.contains(critical)
         };
         let in_retract = || {
-            let declared = spec.retract.as_ref()?;
-            let found = Critical::in_retract(spec);
+            let declared = joint.spec.retract.as_ref()?;
+            let found = Critical::in_retract(&joint.spec);
             found.contains(critical).then(|| declared.span.clone())
         };
         let found = statements.into_iter().find(|(entries, _)| holds(entries));
         found
             .map(|(_, span)| span)
             .or_else(in_retract)
-            .unwrap_or(spec.pose.span.clone())
+            .unwrap_or(joint.spec.pose.span.clone())
     }
 
     /// Functions with a singular argument in what is derived and evaluated at a configuration.
@@ -167,7 +166,7 @@ impl Prover<'_> {
 impl Identities<'_> {
     /// What is positive wherever the joint lives, beside the loci.
     pub(super) fn sides(&self) -> Vec<Expr> {
-        let declared = Critical::declared(self.spec, self.exponential);
+        let declared = self.joint.critical();
         self.domain.sides(&declared)
     }
 }

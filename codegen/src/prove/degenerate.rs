@@ -1,10 +1,9 @@
 //! Where a determinant is zero: home and quarter turns from it are tried, by exact arithmetic, so that an error of a rank can name a place.
 
 use crate::domain::{Critical, Domain};
-use crate::expand::is_exponential;
 use crate::expr::{Expr, Monomial, Rational, Symbol};
 use crate::manifold::{Factor, Kind};
-use crate::model::JointSpec;
+use crate::prepare::Prepared;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Most places that are tried.
@@ -13,12 +12,12 @@ const MOST_PLACES: usize = 256;
 type Place = BTreeMap<Symbol, Expr>;
 
 /// A place in the domain at which the function is zero for all values of the parameters, in the spec's words: `bend = 0, swing = pi/2`.
-pub fn zero(function: &Expr, spec: &JointSpec, domain: &Domain<'_>) -> Option<String> {
+pub fn zero(function: &Expr, joint: &Prepared, domain: &Domain<'_>) -> Option<String> {
     let held = function.symbols();
-    let found = places(spec, &held).into_iter().find(|place| {
+    let found = places(joint, &held).into_iter().find(|place| {
         is_regular(function, place, domain)
             && domain.ideal().vanishes(&function.substitute(place))
-            && in_domain(spec, place, domain)
+            && in_domain(joint, place, domain)
     })?;
     let values = found.iter().filter(|(symbol, _)| held.contains(symbol));
     let texts: Vec<String> = values
@@ -28,13 +27,13 @@ pub fn zero(function: &Expr, spec: &JointSpec, domain: &Domain<'_>) -> Option<St
 }
 
 /// Home, and what is reached from it by quarter turns of the real and unit complex scalars on which the function depends.
-fn places(spec: &JointSpec, held: &BTreeSet<Symbol>) -> Vec<Place> {
-    let home = spec.home_values();
+fn places(joint: &Prepared, held: &BTreeSet<Symbol>) -> Vec<Place> {
+    let home = joint.space.home_values();
     let mut places = vec![home.clone()];
-    if !spec.manifold.value.declared().is_empty() {
+    if !joint.space.manifold.declared().is_empty() {
         return places;
     }
-    for factor in spec.manifold.value.factors() {
+    for factor in joint.space.manifold.factors() {
         for choices in choices(factor, &home, held) {
             let with = |values: &Vec<(Symbol, Expr)>| {
                 let place = |known: &Place| {
@@ -98,14 +97,18 @@ fn is_regular(function: &Expr, place: &Place, domain: &Domain<'_>) -> bool {
 }
 
 /// Whether the place is shown to be off every declared exception, and on the side of home of roots, logarithms and angles.
-fn in_domain(spec: &JointSpec, place: &Place, domain: &Domain<'_>) -> bool {
+fn in_domain(joint: &Prepared, place: &Place, domain: &Domain<'_>) -> bool {
     let off = |function: &Expr| {
         is_regular(function, place, domain) && domain.nonzero(&function.substitute(place)).is_some()
     };
     let beside_home = |side: &Expr| {
         is_regular(side, place, domain) && domain.is_positive(&side.substitute(place))
     };
-    let declared = Critical::declared(spec, is_exponential(spec));
-    spec.loci.iter().all(|locus| off(&locus.value.function))
+    let declared = joint.critical();
+    joint
+        .space
+        .loci
+        .iter()
+        .all(|locus| off(&locus.value.function))
         && domain.sides(&declared).iter().all(beside_home)
 }

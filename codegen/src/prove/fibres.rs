@@ -1,16 +1,15 @@
 //! The fibres of H: whether one pose has one Q.
 
-use crate::derived::{Claim, Proof};
-use crate::domain::{Critical, Domain};
-use crate::expand::is_exponential;
+use super::{Claim, Proof};
+use crate::domain::Domain;
 use crate::expr::{Atom, Expr, Function, Monomial, Rational, Role, Symbol};
 use crate::manifold::{Factor, Kind};
-use crate::model::JointSpec;
+use crate::prepare::Prepared;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What is known of the configurations that share a pose; `None` where it was not decided.
-pub fn claim(spec: &JointSpec, domain: &Domain<'_>) -> Option<Claim> {
-    let (statement, detail) = Fibres::new(spec, domain).statement()?;
+pub fn claim(joint: &Prepared, domain: &Domain<'_>) -> Option<Claim> {
+    let (statement, detail) = Fibres::new(joint, domain).statement()?;
     Some(Claim {
         name: "fibres",
         statement,
@@ -22,18 +21,18 @@ pub fn claim(spec: &JointSpec, domain: &Domain<'_>) -> Option<Claim> {
 
 /// H, entry by entry in normal form.
 struct Fibres<'a> {
-    spec: &'a JointSpec,
+    joint: &'a Prepared,
     domain: &'a Domain<'a>,
     entries: Vec<Expr>,
 }
 
 impl<'a> Fibres<'a> {
-    fn new(spec: &'a JointSpec, domain: &'a Domain<'a>) -> Self {
-        let pose = &spec.pose.value;
+    fn new(joint: &'a Prepared, domain: &'a Domain<'a>) -> Self {
+        let pose = &joint.spec.pose.value;
         let entries = pose.rotation.entries().iter();
         let entries = entries.chain(pose.translation.entries());
         Self {
-            spec,
+            joint,
             domain,
             entries: entries.map(|e| domain.ideal().normal_form(e)).collect(),
         }
@@ -42,7 +41,7 @@ impl<'a> Fibres<'a> {
     /// Statement and reason.
     fn statement(&self) -> Option<(String, String)> {
         let known = self.known();
-        let coordinates = self.spec.manifold.value.coordinates().into_iter();
+        let coordinates = self.joint.space.manifold.coordinates().into_iter();
         let rest: Vec<Symbol> = coordinates
             .filter(|symbol| !known.contains(&Atom::Symbol(symbol.clone())))
             .collect();
@@ -58,7 +57,7 @@ impl<'a> Fibres<'a> {
     /// Scalars, and sines and cosines of them, that a pose determines: those that are linear in an entry of H of which
     /// everything else is determined already.
     fn known(&self) -> BTreeSet<Atom> {
-        let coordinates = self.spec.manifold.value.coordinates();
+        let coordinates = self.joint.space.manifold.coordinates();
         let mut open: BTreeSet<Atom> = coordinates.into_iter().map(Atom::Symbol).collect();
         let atoms = self.entries.iter().flat_map(Expr::atoms);
         open.extend(atoms.filter(|atom| turned(atom).is_some()));
@@ -107,14 +106,14 @@ impl<'a> Fibres<'a> {
     /// The scalars are those of one unit quaternion, and H determines the product of any two of them, so that only their
     /// common sign is open.
     fn double_cover(&self, rest: &[Symbol]) -> Option<(String, String)> {
-        let mut factors = self.spec.manifold.value.factors().iter();
+        let mut factors = self.joint.space.manifold.factors().iter();
         let factor =
             factors.find(|factor| factor.kind == Kind::S3 && factor.coordinates == rest)?;
         if !self.gives_products(factor) || !self.is_even(rest) {
             return None;
         }
         let name = &factor.name;
-        let others = match self.spec.manifold.value.factors().len() {
+        let others = match self.joint.space.manifold.factors().len() {
             1 => "",
             _ => ", all else being equal,",
         };
@@ -182,14 +181,19 @@ impl<'a> Fibres<'a> {
         let negative = |symbol: &Symbol| (symbol.clone(), -Expr::symbol(symbol));
         let negative: BTreeMap<Symbol, Expr> = scalars.iter().map(negative).collect();
         let ideal = self.domain.ideal();
-        let relations = self.spec.manifold.value.relations();
+        let relations = self.joint.space.manifold.relations();
         let stays = relations
             .iter()
             .all(|g| ideal.vanishes(&g.substitute(&negative)));
         let even = |entry: &Expr| ideal.vanishes(&(&entry.substitute(&negative) - entry));
         let odd = |entry: &Expr| ideal.vanishes(&(&entry.substitute(&negative) + entry));
-        let declared = Critical::declared(self.spec, is_exponential(self.spec));
-        let loci = self.spec.loci.iter().map(|locus| &locus.value.function);
+        let declared = self.joint.critical();
+        let loci = self
+            .joint
+            .space
+            .loci
+            .iter()
+            .map(|locus| &locus.value.function);
         stays
             && self.entries.iter().all(even)
             && loci.into_iter().all(|f| even(f) || odd(f))
@@ -244,6 +248,7 @@ fn names(symbols: &[Symbol]) -> String {
 mod tests {
     use super::claim;
     use crate::domain::Domain;
+    use crate::prepare::Prepared;
     use crate::spec;
 
     fn statement(declared: &str) -> Option<String> {
@@ -251,7 +256,8 @@ mod tests {
             "hamel = 1;\njoint test(gain: m >= 0, arm: m > 0) {{ require arm > gain; {declared} }}"
         );
         let joint = spec::parse(&source, "test.joint").expect("a valid spec");
-        claim(&joint, &Domain::new(&joint)).map(|claim| claim.statement)
+        let joint = Prepared::new(joint).expect("its conditions say something");
+        claim(&joint, &Domain::new(&joint.space)).map(|claim| claim.statement)
     }
 
     #[test]

@@ -8,7 +8,8 @@
 //! undecided, unless it says `unproved` for that claim. Ranks, signs and invertibility need a certificate that holds at every
 //! configuration.
 
-mod conditions;
+mod claim;
+
 mod defined;
 mod degenerate;
 mod fibres;
@@ -17,44 +18,32 @@ mod retract;
 mod search;
 mod twist;
 
-pub use conditions::wrong_conditions;
+pub use claim::{Claim, Proof};
+
 pub use defined::retract_is_smooth;
 
-use crate::derived::{Claim, Proof};
 use crate::diagnostic::Diagnostic;
 use crate::domain::{Domain, LAST_PRECISION};
-use crate::expand::{self, Expansion};
+use crate::expand::Expansion;
 use crate::expr::Expr;
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use crate::model::{Declared, JointSpec, Unproved};
+use crate::prepare::Prepared;
 use crate::spec::code;
 use search::{Points, Verdict};
 use std::ops::{Deref, Range};
 
-/// The claims that a spec may leave unproved: identities.
-pub const CHECKABLE: &[&str] = &[
-    "pose_in_se3",
-    "retract_at_zero",
-    "retract_on_manifold",
-    "twist_map_in_frame",
-    "twist_map_matches_pose",
-    "velocity_map_first_order",
-    "velocity_map_inverse",
-    "twist_map_child",
-    "speeds_meet_constraint",
-];
-
 /// The claims about what is declared, which need no derivation; an error of these makes errors of all others.
-pub fn prove_declared(spec: &JointSpec) -> Result<Vec<Claim>, Vec<Diagnostic>> {
-    let declared = Identities::new(spec);
+pub fn prove_declared(joint: &Prepared) -> Result<Vec<Claim>, Vec<Diagnostic>> {
+    let declared = Identities::new(joint);
     declared.settled([declared.pose_is_rigid(), declared.retract_starts_at_q()])
 }
 
 /// All other claims. What rests on a claim that fails is not looked at: the first cause is told, and what does not hang on it.
-pub fn prove(spec: &JointSpec, expansion: &Expansion) -> Result<Vec<Claim>, Vec<Diagnostic>> {
+pub fn prove(joint: &Prepared, expansion: &Expansion) -> Result<Vec<Claim>, Vec<Diagnostic>> {
     let prover = Prover {
-        identities: Identities::new(spec),
+        identities: Identities::new(joint),
         x: expansion,
     };
     let mut claims = prover.settled([prover.declared_is_defined(), prover.has_dimension()])?;
@@ -77,7 +66,7 @@ pub fn prove(spec: &JointSpec, expansion: &Expansion) -> Result<Vec<Claim>, Vec<
         prover.child_twist_map_agrees(),
     ])?);
     claims.sort_by_key(|claim| place(claim.name));
-    claims.extend(fibres::claim(spec, &prover.domain));
+    claims.extend(fibres::claim(joint, &prover.domain));
     Ok(claims)
 }
 
@@ -136,7 +125,7 @@ type Attempt = Result<Option<Claim>, Box<Diagnostic>>;
 
 /// What identities are decided with.
 struct Identities<'a> {
-    spec: &'a JointSpec,
+    joint: &'a Prepared,
     /// Whether Φ is Q exp(ϕ).
     exponential: bool,
     ideal: &'a Ideal,
@@ -158,12 +147,12 @@ impl<'a> Deref for Prover<'a> {
 }
 
 impl<'a> Identities<'a> {
-    fn new(spec: &'a JointSpec) -> Self {
+    fn new(joint: &'a Prepared) -> Self {
         Self {
-            spec,
-            exponential: expand::is_exponential(spec),
-            ideal: spec.manifold.value.ideal(),
-            domain: Domain::new(spec),
+            joint,
+            exponential: joint.exponential,
+            ideal: joint.space.manifold.ideal(),
+            domain: Domain::new(&joint.space),
             points: Points::default(),
         }
     }
@@ -202,6 +191,7 @@ impl<'a> Identities<'a> {
     /// The statement with the places where it is not claimed.
     fn where_it_holds(&self, statement: &str) -> String {
         let loci: Vec<String> = self
+            .joint
             .spec
             .loci
             .iter()
@@ -240,6 +230,7 @@ impl<'a> Identities<'a> {
             .map(|(entry, normal)| (entry.clone(), normal.clone()))
             .collect();
         let said = self
+            .joint
             .spec
             .unproved
             .iter()
@@ -271,7 +262,7 @@ impl<'a> Identities<'a> {
     }
 
     fn pose_is_rigid(&self) -> Attempt {
-        let pose = &self.spec.pose;
+        let pose = &self.joint.spec.pose;
         let r = &pose.value.rotation;
         let gram = r.transpose().times(r).minus(&Matrix::identity(3));
         let volume = &r.determinant(&Expr::clone) - &Expr::one();

@@ -8,14 +8,16 @@ use std::ops::Range;
 
 impl Prover<'_> {
     pub(super) fn is_nonholonomic(&self) -> bool {
-        self.spec.constraint.is_some() || self.spec.speed_basis.is_some()
+        self.joint.spec.constraint.is_some() || self.joint.spec.speed_basis.is_some()
     }
 
     pub(super) fn span_of(&self, declared: Option<&Declared<Matrix>>) -> Range<usize> {
-        let either = declared
-            .or(self.spec.constraint.as_ref())
-            .or(self.spec.speed_basis.as_ref());
-        either.map_or(self.spec.pose.span.clone(), |d| d.span.clone())
+        let either = declared.or(self.joint.spec.constraint.as_ref()).or(self
+            .joint
+            .spec
+            .speed_basis
+            .as_ref());
+        either.map_or(self.joint.spec.pose.span.clone(), |d| d.span.clone())
     }
 
     pub(super) fn constraint_is_met(&self) -> Attempt {
@@ -31,7 +33,7 @@ impl Prover<'_> {
             |residual| {
                 refuted(
                     code::FORBIDDEN_SPEEDS,
-                    &self.span_of(self.spec.speed_basis.as_ref()),
+                    &self.span_of(self.joint.spec.speed_basis.as_ref()),
                     "S_bar holds forbidden velocities",
                     "Aᵀ S̄ is not 0",
                 )
@@ -44,7 +46,7 @@ impl Prover<'_> {
         if !self.is_nonholonomic() {
             return Ok(None);
         }
-        let span = self.span_of(self.spec.speed_basis.as_ref());
+        let span = self.span_of(self.joint.spec.speed_basis.as_ref());
         self.rank_claim(
             &self.x.nonholonomic.speed_basis,
             "speed_basis_rank",
@@ -59,7 +61,7 @@ impl Prover<'_> {
         if !self.is_nonholonomic() {
             return Ok(None);
         }
-        let span = self.span_of(self.spec.constraint.as_ref());
+        let span = self.span_of(self.joint.spec.constraint.as_ref());
         self.rank_claim(
             &self.x.nonholonomic.constraint,
             "constraint_rank",

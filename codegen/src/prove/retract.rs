@@ -1,12 +1,13 @@
 //! Claims about Φ: it starts at Q, stays on the manifold, and is what the generator can invert.
 
+use super::Proof;
 use super::{Attempt, Identities, Prover, certified, refuted, symbolic};
-use crate::derived::Proof;
 use crate::diagnostic::Diagnostic;
-use crate::expand::{Confinement, Motion, dimension, exponential};
+use crate::expand::{Confinement, Motion, dimension};
 use crate::expr::{Expr, Symbol, budget};
 use crate::matrix::Matrix;
 use crate::precise::Sampler;
+use crate::prepare::exponential;
 use crate::spec::code;
 use num_traits::ToPrimitive;
 use std::collections::BTreeMap;
@@ -32,19 +33,19 @@ const POINT_COST: u64 = 500;
 impl Identities<'_> {
     /// Φ as it is used: declared, else Q exp(ϕ).
     pub(super) fn retract(&self) -> Option<(Vec<Expr>, Range<usize>)> {
-        let declared = self.spec.retract.as_ref();
+        let declared = self.joint.spec.retract.as_ref();
         declared.map(|d| (d.value.clone(), d.span.clone()))
     }
 
     pub(super) fn retract_starts_at_q(&self) -> Attempt {
-        let manifold = &self.spec.manifold.value;
+        let manifold = &self.joint.space.manifold;
         let (moved, span) = self.retract().unwrap_or_else(|| {
             (
-                exponential(self.spec).unwrap_or_default(),
-                self.spec.freedoms.span.clone(),
+                exponential(&self.joint.spec).unwrap_or_default(),
+                self.joint.spec.freedoms.span.clone(),
             )
         });
-        let freedoms = self.spec.freedoms.value.iter();
+        let freedoms = self.joint.spec.freedoms.value.iter();
         let local: Vec<Symbol> = freedoms.map(|freedom| freedom.local.clone()).collect();
         let base: Vec<Expr> = moved.iter().map(|entry| entry.at_zero(&local)).collect();
         let difference =
@@ -63,10 +64,10 @@ impl Identities<'_> {
 
 impl Prover<'_> {
     pub(super) fn retract_stays_on_manifold(&self) -> Attempt {
-        let relations = self.spec.manifold.value.relations();
+        let relations = self.joint.space.manifold.relations();
         let declared = self.retract();
         let motion = match &declared {
-            Some((moved, _)) => &Motion::of_map(self.spec, moved),
+            Some((moved, _)) => &Motion::of_map(self.joint, moved),
             None => &self.x.motion,
         };
         let k = motion.freedoms();
@@ -78,7 +79,7 @@ impl Prover<'_> {
         });
         let residual = Matrix::column_vector(first.chain(second).collect());
         let moved = declared.as_ref().map(|(moved, _)| moved.clone());
-        let span = declared.map_or(self.spec.freedoms.span.clone(), |(_, span)| span);
+        let span = declared.map_or(self.joint.spec.freedoms.span.clone(), |(_, span)| span);
         let attempt = self.identity(
             "retract_on_manifold",
             "Φ(Q, ϕ) stays on the manifold to second order in ϕ",
@@ -135,7 +136,7 @@ impl Prover<'_> {
 
     /// Whether the relations are shown to hold at Φ(Q, ϕ) for every ϕ.
     fn stays_at_finite(&self, moved: &[Expr]) -> bool {
-        let manifold = &self.spec.manifold.value;
+        let manifold = &self.joint.space.manifold;
         let coordinates = manifold.coordinates().into_iter();
         let values: BTreeMap<Symbol, Expr> = coordinates.zip(moved.iter().cloned()).collect();
         let shown = budget::scope(FINITE_LIMIT, || {
@@ -147,12 +148,12 @@ impl Prover<'_> {
 
     /// The value of a relation at some Φ(Q, ϕ) where it does not hold, if there is one among a few random points.
     fn leaves_manifold(&self, moved: &[Expr]) -> Option<f64> {
-        let manifold = &self.spec.manifold.value;
+        let manifold = &self.joint.space.manifold;
         let relations = manifold.relations();
         if relations.is_empty() {
             return None;
         }
-        let mut sampler = Sampler::new(self.spec, BITS);
+        let mut sampler = Sampler::new(&self.joint.space, BITS);
         for _ in 0..POINTS {
             let mut point = sampler.point().filter(|_| budget::spend(POINT_COST))?;
             for local in &self.x.arguments.local {
@@ -178,7 +179,7 @@ impl Prover<'_> {
 
     /// How the finite maps of Φ are evaluated.
     pub(super) fn declared_retract(&self) -> Attempt {
-        match (&self.spec.retract, self.exponential) {
+        match (&self.joint.spec.retract, self.exponential) {
             (None, _) => Ok(None),
             (Some(_), true) => Ok(Some(symbolic(
                 "retract_is_exponential",
@@ -196,7 +197,7 @@ impl Prover<'_> {
 
     /// The manifold has as many dimensions as there are freedoms.
     pub(super) fn has_dimension(&self) -> Attempt {
-        let found = dimension::confinement(self.spec, &self.domain, self.exponential);
+        let found = dimension::confinement(self.joint, &self.domain, self.exponential);
         match found {
             Ok(Confinement::Known) => Ok(None),
             Ok(Confinement::Relations(certificate)) => Ok(Some(certified(
@@ -219,7 +220,7 @@ impl Prover<'_> {
     fn wrong_relations(&self, gram: &Expr) -> Diagnostic {
         let error = refuted(
             code::DIMENSION,
-            &self.spec.manifold.span,
+            &self.joint.spec.manifold.span,
             "the relations are not shown to cut out a manifold of as many dimensions as there are freedoms",
             "here",
         );

@@ -11,13 +11,14 @@ use std::ops::Range;
 
 impl Prover<'_> {
     pub(super) fn twist_map_span(&self) -> Range<usize> {
-        let declared = self.spec.twist_map.as_ref();
-        declared.map_or(self.spec.pose.span.clone(), |x| x.span.clone())
+        let declared = self.joint.spec.twist_map.as_ref();
+        declared.map_or(self.joint.spec.pose.span.clone(), |x| x.span.clone())
     }
 
     /// X beside a frame of v is redundant: a claim.
     pub(super) fn declared_twist_map(&self) -> Attempt {
-        let (Some(declared), frame) = (&self.spec.twist_map, self.spec.velocity.value) else {
+        let (Some(declared), frame) = (&self.joint.spec.twist_map, self.joint.spec.velocity.value)
+        else {
             return Ok(None);
         };
         let statement = match frame {
@@ -25,7 +26,7 @@ impl Prover<'_> {
             VelocityFrame::Parent => "X maps velocities in parent axes",
             VelocityFrame::Rates => return Ok(None),
         };
-        let Ok(expected) = twist_map_in_frame(self.spec, &self.x.jacobian, self.ideal) else {
+        let Ok(expected) = twist_map_in_frame(self.joint, &self.x.jacobian, self.ideal) else {
             return Ok(None);
         };
         self.identity(
@@ -98,7 +99,7 @@ impl Prover<'_> {
 
     /// X^c is found from H where X is J₀, not from X: ranks and the kernels of the child frame rest on it.
     pub(super) fn child_twist_map_agrees(&self) -> Attempt {
-        let moved = adjoint_inverse(&self.spec.pose.value).times(&self.x.twist_map);
+        let moved = adjoint_inverse(&self.joint.spec.pose.value).times(&self.x.twist_map);
         self.identity(
             "twist_map_child",
             "X^c = Ad_{H⁻¹} X",
@@ -140,7 +141,7 @@ impl Prover<'_> {
                 refuted(
                     code::VELOCITY_MAP_LOCUS,
                     &self.twist_map_span(),
-                    &match degenerate::zero(determinant, self.spec, &self.domain) {
+                    &match degenerate::zero(determinant, self.joint, &self.domain) {
                         Some(place) => format!("S₀ is singular at {place}"),
                         None => "S₀ is not shown to be invertible at every configuration".into(),
                     },
@@ -181,7 +182,7 @@ impl Prover<'_> {
                 refuted(
                     code,
                     &span,
-                    &match degenerate::zero(&gram, self.spec, &self.domain) {
+                    &match degenerate::zero(&gram, self.joint, &self.domain) {
                         Some(place) => format!("{what} has dependent columns at {place}"),
                         None => {
                             format!("{what} is not shown to have full rank at every configuration")

@@ -4,8 +4,8 @@ use super::graph::{Sym, call, call_two, primitive, sin_cos};
 use super::products::{JointType, Product};
 use super::spatial::{Mat3, Step, Twist, Vec3, Wrench, simplified};
 use crate::derived::KernelKind;
-use crate::emit::formula::{Binding, Node, Program};
 use crate::expr::{Function, Symbol};
+use crate::formula::{Binding, Node, Program};
 use num_traits::ToPrimitive;
 use std::collections::BTreeMap;
 
@@ -201,7 +201,7 @@ impl<'a> Joint<'a> {
         let Some(kernel) = self.joint.derived.kernel(kind) else {
             return vec![];
         };
-        run(&self.joint.derived.program(kernel), self.values_with(given))
+        run(self.joint.derived.program(kernel), self.values_with(given))
     }
 
     /// The entries of a product of kernels, row by row, with values for more symbols.

@@ -4,9 +4,9 @@
 //! The runtime forms the same products in numbers: `hamel::joint::Products`.
 
 use crate::derived::{Derived, KernelKind};
-use crate::emit::formula::Program;
 use crate::expr::budget::{self, Exhausted};
 use crate::expr::{Expr, Symbol};
+use crate::formula::Program;
 use crate::matrix::Matrix;
 use crate::pipeline::WORK_LIMIT;
 use std::cell::OnceCell;
@@ -51,10 +51,8 @@ impl JointType {
 
     /// The formulas of one of its products, in its own names.
     pub fn program<'a>(&self, product: &'a Product) -> &'a Program {
-        let formulas = || {
-            self.derived
-                .formulas(&[], std::slice::from_ref(&product.value))
-        };
+        let value = std::slice::from_ref(&product.value);
+        let formulas = || Program::in_names(&[], value, self.derived.names());
         product.program.get_or_init(formulas)
     }
 }
@@ -88,8 +86,8 @@ impl Products {
         let wrench = Matrix::symbols(&arguments.wrench);
         let map = &derived.speed_map;
         let bias = derived.kernel(KernelKind::BiasAcceleration);
-        let bias = bias.and_then(|kernel| kernel.outputs.first());
-        let bias = bias.cloned().unwrap_or_else(|| Matrix::zeros(6, 1));
+        let bias = bias.and_then(|kernel| kernel.expanded().into_iter().next());
+        let bias = bias.unwrap_or_else(|| Matrix::zeros(6, 1));
         let along = |column: &Matrix| Product::new(along_each(derived, column));
         Self {
             local_twist_map: Product::new(derived.local_twist_map.clone()),
@@ -126,6 +124,6 @@ fn by_each(derived: &Derived, column: &Matrix, symbols: &[Symbol]) -> Matrix {
 
 fn beside(derived: &Derived, rows: usize, columns: impl Iterator<Item = Vec<Expr>>) -> Matrix {
     let columns: Vec<Vec<Expr>> = columns.collect();
-    let ideal = derived.spec.manifold.value.ideal();
+    let ideal = derived.space.manifold.ideal();
     ideal.simplest_entries(&Matrix::from_columns(rows, &columns))
 }

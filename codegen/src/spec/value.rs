@@ -62,6 +62,37 @@ impl Value {
         }
     }
 
+    /// A name for each scalar that it holds: `name`, `name1 …` for a column, `name11 …` for a matrix, `name_r11 …` and `name_p1 …` for a
+    /// pose; in the order of [`Value::entries`].
+    pub fn entry_names(&self, name: &str) -> Vec<String> {
+        match self {
+            Self::Scalar(_) => vec![name.to_owned()],
+            Self::List(entries) | Self::Tangent(_, entries) => by_rows(name, entries.len(), 1),
+            Self::Matrix(matrix) | Self::Element(_, matrix) => {
+                by_rows(name, matrix.rows(), matrix.columns())
+            }
+            Self::Pose(_) => {
+                let rotation = by_rows(&format!("{name}_r"), 3, 3);
+                [rotation, by_rows(&format!("{name}_p"), 3, 1)].concat()
+            }
+        }
+    }
+
+    /// A value of the same shape.
+    pub fn map(&self, mut f: impl FnMut(&Expr) -> Expr) -> Self {
+        match self {
+            Self::Scalar(entry) => Self::Scalar(f(entry)),
+            Self::List(entries) => Self::List(entries.iter().map(f).collect()),
+            Self::Tangent(kind, entries) => Self::Tangent(*kind, entries.iter().map(f).collect()),
+            Self::Matrix(matrix) => Self::Matrix(matrix.map(f)),
+            Self::Element(kind, matrix) => Self::Element(*kind, matrix.map(f)),
+            Self::Pose(pose) => Self::Pose(PoseExpr {
+                rotation: pose.rotation.map(&mut f),
+                translation: pose.translation.map(&mut f),
+            }),
+        }
+    }
+
     /// As a scalar.
     pub fn as_scalar(&self) -> Option<&Expr> {
         match self {
@@ -164,4 +195,13 @@ impl Value {
     pub fn is_pose(&self) -> bool {
         matches!(self, Self::Pose(_) | Self::Element(Kind::Se3, _))
     }
+}
+
+/// `name11 …` row by row, `name1 …` for a column.
+fn by_rows(name: &str, rows: usize, columns: usize) -> Vec<String> {
+    let numbered = |n: usize| match columns {
+        1 => format!("{name}{}", n + 1),
+        _ => format!("{name}{}{}", n / columns + 1, n % columns + 1),
+    };
+    (0..rows * columns).map(numbered).collect()
 }

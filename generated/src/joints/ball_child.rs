@@ -7,6 +7,8 @@
 //! - Configuration: Q ∈ SO3, stored as Q₁₁, Q₁₂, Q₁₃, Q₂₁, Q₂₂, Q₂₃, Q₃₁, Q₃₂, Q₃₃.
 //! - Freedoms: `e1` (ϕ₁, rad), `e2` (ϕ₂, rad), `e3` (ϕ₃, rad).
 //! - Velocity v: read in the axes of the child.
+//! - The identity, and not written: S₀, S₀⁻¹, S̄.
+//! - Zero, and not written: ∂X^c/∂ϕ, A, ∂S̄/∂ϕ, c, the dual of c.
 //!
 //! ```text
 //!     ⎡Q₁₁  Q₁₂  Q₁₃  0⎤
@@ -36,13 +38,14 @@
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
+use ::hamel::group::so3;
 use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo};
+use ::hamel::registry::JointEntry;
 use ::hamel::scalar::Scalar;
-use ::hamel::spatial::{Pose, nearest_rotation};
+use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(5);
+const _: () = ::hamel::joint::assert_kernel_interface(6);
 
 /// Ball joint with its velocity in child axes: what a gyroscope on the child measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,55 +53,25 @@ pub struct BallChild;
 
 impl Joint<9, 3, 3, 0> for BallChild {
     const NAME: &'static str = "ball_child";
-    const COORDINATES: [&'static str; 9] = [
-        "q11",
-        "q12",
-        "q13",
-        "q21",
-        "q22",
-        "q23",
-        "q31",
-        "q32",
-        "q33",
-    ];
+    const COORDINATES: [&'static str; 9] = ["q11", "q12", "q13", "q21", "q22", "q23", "q31", "q32", "q33"];
     const FREEDOMS: [&'static str; 3] = ["e1", "e2", "e3"];
     const SPEEDS: [&'static str; 3] = ["e1", "e2", "e3"];
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Child;
     const STRUCTURES: Structures = Structures {
         twist_map: Structure::General,
-        twist_map_child: Structure::Constant,
-        twist_map_child_gradient: Structure::Zero,
-        velocity_map: Structure::Identity,
         velocity_map_gradient: Structure::Constant,
         gamma: Structure::Constant,
-        speed_basis: Structure::Identity,
-        speed_basis_gradient: Structure::Zero,
         retract_differential: Structure::General,
-        bias_acceleration: Structure::Zero,
-        bias_momentum: Structure::Zero,
-        speed_map: Structure::Constant,
+        project: Structure::General,
+        residual: Structure::General,
+        ..Structures::TRIVIAL
     };
-    const PATTERNS: Patterns<3, 3> = Patterns::new(
-        ["xxx", "xxx", "xxx"],
-        "000",
-        ["100", "010", "001", "000", "000", "000"],
-        ["100", "010", "001"],
-        &[],
-        &[],
-    );
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
-        [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    ];
+    const PATTERNS: Patterns<3, 3> = Patterns::new(["xxx", "xxx", "xxx"], "000", ["100", "010", "001", "000", "000", "000"]);
+    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
-    fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        [].into_iter()
-    }
-
     /// The home configuration.
-    ///
     /// 9-vector. Independent of Q. Operations: none.
-    ///
     /// From line 8 `config Q: SO3;`.
     fn home<T: Scalar>(&self) -> SVector<T, 9> {
         let zero = T::zero();
@@ -107,9 +80,7 @@ impl Joint<9, 3, 3, 0> for BallChild {
     }
 
     /// H(Q): child coordinates to parent coordinates.
-    ///
     /// Rotation matrix and translation in m. Operations: none.
-    ///
     /// From line 11 `H = pose(Q, [0, 0, 0]);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 9>) -> Pose<T> {
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
@@ -120,9 +91,7 @@ impl Joint<9, 3, 3, 0> for BallChild {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: none.
-    ///
     /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 9>) -> SMatrix<T, 6, 3> {
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
@@ -138,9 +107,7 @@ impl Joint<9, 3, 3, 0> for BallChild {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
-    ///
     /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 9>) -> SMatrix<T, 6, 3> {
         let zero = T::zero();
@@ -155,45 +122,10 @@ impl Joint<9, 3, 3, 0> for BallChild {
         ])
     }
 
-    /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 3 slices of 6×3. Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn twist_map_child_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-    ) -> [SMatrix<T, 6, 3>; 3] {
-        [SMatrix::zeros(); 3]
-    }
-
-    /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
-    ///
-    /// 3×3. The identity. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 9>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
-    /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
-    ///
-    /// 3×3. The identity. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 9>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
     /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
-    ///
     /// 3 slices of 3×3. Independent of Q. Operations: none.
-    ///
     /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn velocity_map_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-    ) -> [SMatrix<T, 3, 3>; 3] {
+    fn velocity_map_gradient<T: Scalar>(&self, _q: &SVector<T, 9>) -> [SMatrix<T, 3, 3>; 3] {
         let zero = T::zero();
         let half = T::from_f64(0.5);
         [
@@ -204,24 +136,16 @@ impl Joint<9, 3, 3, 0> for BallChild {
     }
 
     /// Σ_k γ_k v_k (17): stands on the left of (24).
-    ///
     /// 3×3. Independent of Q. Operations: none.
-    ///
     /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn gamma<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-        v: &SVector<T, 3>,
-    ) -> SMatrix<T, 3, 3> {
+    fn gamma<T: Scalar>(&self, _q: &SVector<T, 9>, v: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
         let [v_e1, v_e2, v_e3]: [T; 3] = (*v).into();
         let zero = T::zero();
         from_rows([[zero, -v_e3, v_e2], [v_e3, zero, -v_e1], [-v_e2, v_e1, zero]])
     }
 
     /// J22(Q, p) (28): stands on the right of (27).
-    ///
     /// 3×3. Independent of Q. Operations: none.
-    ///
     /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
     fn j22<T: Scalar>(&self, _q: &SVector<T, 9>, p: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
         let [p_e1, p_e2, p_e3]: [T; 3] = (*p).into();
@@ -229,187 +153,36 @@ impl Joint<9, 3, 3, 0> for BallChild {
         from_rows([[zero, -p_e3, p_e2], [p_e3, zero, -p_e1], [-p_e2, p_e1, zero]])
     }
 
-    /// A(Q) with Aᵀ v = 0 (Definition 2).
-    ///
-    /// 3×0. Zero. Operations: none.
-    fn constraint<T: Scalar>(&self, _q: &SVector<T, 9>) -> SMatrix<T, 3, 0> {
-        SMatrix::zeros()
-    }
-
-    /// S̄(Q): speeds v̄ to v (Definition 2, (15)).
-    ///
-    /// 3×3. The identity. Operations: none.
-    fn speed_basis<T: Scalar>(&self, _q: &SVector<T, 9>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
-    /// ∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 3 slices of 3×3. Zero. Operations: none.
-    fn speed_basis_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-    ) -> [SMatrix<T, 3, 3>; 3] {
-        [SMatrix::zeros(); 3]
-    }
-
     /// Q̇(Q, v) (31): the rates of the stored scalars.
-    ///
     /// 9-vector. Operations: 9 additions, 18 multiplications.
-    ///
     /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn configuration_rate<T: Scalar>(
-        &self,
-        q: &SVector<T, 9>,
-        v: &SVector<T, 3>,
-    ) -> SVector<T, 9> {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let [v_e1, v_e2, v_e3]: [T; 3] = (*v).into();
-        SVector::from([
-            q12 * v_e3 - q13 * v_e2,
-            q13 * v_e1 - q11 * v_e3,
-            q11 * v_e2 - q12 * v_e1,
-            q22 * v_e3 - q23 * v_e2,
-            q23 * v_e1 - q21 * v_e3,
-            q21 * v_e2 - q22 * v_e1,
-            q32 * v_e3 - q33 * v_e2,
-            q33 * v_e1 - q31 * v_e3,
-            q31 * v_e2 - q32 * v_e1,
-        ])
+    fn configuration_rate<T: Scalar>(&self, q: &SVector<T, 9>, v: &SVector<T, 3>) -> SVector<T, 9> {
+        so3::rate(q, v)
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
-    ///
-    /// 9-vector. Operations: 32 additions, 41 multiplications (21 of each fused), 2 function calls.
-    ///
+    /// 9-vector. Operations: 32 additions, 44 multiplications (18 of each fused), 2 function calls.
     /// From line 8 `config`, line 9 `basis`.
-    fn retract<T: Scalar>(
-        &self,
-        q: &SVector<T, 9>,
-        phi: &SVector<T, 3>,
-    ) -> SVector<T, 9> {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let [phi_e1, phi_e2, phi_e3]: [T; 3] = (*phi).into();
-        let one = T::one();
-        let phi_e1_squared = phi_e1 * phi_e1;
-        let phi_e2_squared = phi_e2 * phi_e2;
-        let phi_e3_squared = phi_e3 * phi_e3;
-        let theta_squared = phi_e1_squared + phi_e2_squared + phi_e3_squared;
-        let c1 = theta_squared.stumpff(1);
-        let c2 = theta_squared.stumpff(2);
-        let e11 = c2.mul_add(-(phi_e2_squared + phi_e3_squared), one);
-        let phi_e3_c1 = phi_e3 * c1;
-        let phi_e1_c2 = phi_e1 * c2;
-        let phi_e1_c2_phi_e2 = phi_e1_c2 * phi_e2;
-        let e12 = phi_e1_c2_phi_e2 - phi_e3_c1;
-        let phi_e2_c1 = phi_e2 * c1;
-        let phi_e1_c2_phi_e3 = phi_e1_c2 * phi_e3;
-        let e13 = phi_e2_c1 + phi_e1_c2_phi_e3;
-        let e21 = phi_e3_c1 + phi_e1_c2_phi_e2;
-        let e22 = c2.mul_add(-(phi_e1_squared + phi_e3_squared), one);
-        let phi_e1_c1 = phi_e1 * c1;
-        let phi_e2_phi_e3_c2 = phi_e2 * phi_e3 * c2;
-        let e23 = phi_e2_phi_e3_c2 - phi_e1_c1;
-        let e31 = phi_e1_c2_phi_e3 - phi_e2_c1;
-        let e32 = phi_e1_c1 + phi_e2_phi_e3_c2;
-        let e33 = c2.mul_add(-(phi_e1_squared + phi_e2_squared), one);
-        SVector::from([
-            q11.mul_add(e11, q12.mul_add(e21, q13 * e31)),
-            q11.mul_add(e12, q12.mul_add(e22, q13 * e32)),
-            q11.mul_add(e13, q12.mul_add(e23, q13 * e33)),
-            q21.mul_add(e11, q22.mul_add(e21, q23 * e31)),
-            q21.mul_add(e12, q22.mul_add(e22, q23 * e32)),
-            q21.mul_add(e13, q22.mul_add(e23, q23 * e33)),
-            q31.mul_add(e11, q32.mul_add(e21, q33 * e31)),
-            q31.mul_add(e12, q32.mul_add(e22, q33 * e32)),
-            q31.mul_add(e13, q32.mul_add(e23, q33 * e33)),
-        ])
+    fn retract<T: Scalar>(&self, q: &SVector<T, 9>, phi: &SVector<T, 3>) -> SVector<T, 9> {
+        so3::times_exp(q, phi)
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    ///
     /// 3-vector, rad. Operations: 18 additions, 27 multiplications (18 of each fused), 1 function call.
-    ///
     /// From line 8 `config`, line 9 `basis`.
-    fn local<T: Scalar>(
-        &self,
-        q: &SVector<T, 9>,
-        target: &SVector<T, 9>,
-    ) -> SVector<T, 3> {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let [q11_target, q12_target, q13_target, q21_target, q22_target, q23_target,
-        q31_target, q32_target, q33_target]: [T; 9] = (*target).into();
-        let rotation = from_rows([
-            [
-                q11.mul_add(q11_target, q21.mul_add(q21_target, q31 * q31_target)),
-                q11.mul_add(q12_target, q21.mul_add(q22_target, q31 * q32_target)),
-                q11.mul_add(q13_target, q21.mul_add(q23_target, q31 * q33_target)),
-            ],
-            [
-                q12.mul_add(q11_target, q22.mul_add(q21_target, q32 * q31_target)),
-                q12.mul_add(q12_target, q22.mul_add(q22_target, q32 * q32_target)),
-                q12.mul_add(q13_target, q22.mul_add(q23_target, q32 * q33_target)),
-            ],
-            [
-                q13.mul_add(q11_target, q23.mul_add(q21_target, q33 * q31_target)),
-                q13.mul_add(q12_target, q23.mul_add(q22_target, q33 * q32_target)),
-                q13.mul_add(q13_target, q23.mul_add(q23_target, q33 * q33_target)),
-            ],
-        ]);
-        let [r1, r2, r3]: [T; 3] = T::rotation_vector(&rotation).into();
-        SVector::from([r1, r2, r3])
+    fn local<T: Scalar>(&self, q: &SVector<T, 9>, target: &SVector<T, 9>) -> SVector<T, 3> {
+        so3::log_between(q, target)
     }
 
     /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
-    ///
-    /// 3×3. Operations: 14 additions, 18 multiplications (9 of each fused), 2 function calls.
-    ///
+    /// 3×3. Operations: 14 additions, 17 multiplications, 2 function calls.
     /// From line 8 `config`, line 9 `basis`.
-    fn retract_differential<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-        phi: &SVector<T, 3>,
-    ) -> SMatrix<T, 3, 3> {
-        let [phi_e1, phi_e2, phi_e3]: [T; 3] = (*phi).into();
-        let one = T::one();
-        let phi_e2_squared = phi_e2 * phi_e2;
-        let phi_e3_squared = phi_e3 * phi_e3;
-        let ad_squared11 = -(phi_e2_squared + phi_e3_squared);
-        let ad_squared12 = phi_e1 * phi_e2;
-        let ad_squared13 = phi_e1 * phi_e3;
-        let phi_e1_squared = phi_e1 * phi_e1;
-        let ad_squared22 = -(phi_e1_squared + phi_e3_squared);
-        let ad_squared23 = phi_e2 * phi_e3;
-        let ad_squared33 = -(phi_e1_squared + phi_e2_squared);
-        let theta_squared = phi_e1_squared + phi_e2_squared + phi_e3_squared;
-        let c2 = theta_squared.stumpff(2);
-        let c3 = theta_squared.stumpff(3);
-        let phi_e3_c2 = phi_e3 * c2;
-        let phi_e2_c2 = phi_e2 * c2;
-        let phi_e1_c2 = phi_e1 * c2;
-        from_rows([
-            [
-                ad_squared11.mul_add(c3, one),
-                ad_squared12.mul_add(c3, phi_e3_c2),
-                ad_squared13.mul_add(c3, -phi_e2_c2),
-            ],
-            [
-                ad_squared12.mul_add(c3, -phi_e3_c2),
-                ad_squared22.mul_add(c3, one),
-                ad_squared23.mul_add(c3, phi_e1_c2),
-            ],
-            [
-                ad_squared13.mul_add(c3, phi_e2_c2),
-                ad_squared23.mul_add(c3, -phi_e1_c2),
-                ad_squared33.mul_add(c3, one),
-            ],
-        ])
+    fn retract_differential<T: Scalar>(&self, _q: &SVector<T, 9>, phi: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
+        so3::differential(phi)
     }
 
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    ///
-    /// 3-vector, rad/s. Operations: 14 additions, 21 multiplications (8 of each fused), 1 function call.
-    ///
+    /// 3-vector, rad/s. Operations: 14 additions, 21 multiplications (2 of each fused), 1 function call.
     /// From line 8 `config`, line 9 `basis`.
     fn retract_differential_inverse<T: Scalar>(
         &self,
@@ -417,108 +190,31 @@ impl Joint<9, 3, 3, 0> for BallChild {
         phi: &SVector<T, 3>,
         rate: &SVector<T, 3>,
     ) -> SVector<T, 3> {
-        let [phi_e1, phi_e2, phi_e3]: [T; 3] = (*phi).into();
-        let [v_e1, v_e2, v_e3]: [T; 3] = (*rate).into();
-        let half = T::from_f64(0.5);
-        let bracket1 = phi_e2 * v_e3 - phi_e3 * v_e2;
-        let bracket2 = phi_e3 * v_e1 - phi_e1 * v_e3;
-        let bracket3 = phi_e1 * v_e2 - phi_e2 * v_e1;
-        let theta_squared = phi_e1
-            .mul_add(phi_e1, phi_e2.mul_add(phi_e2, phi_e3 * phi_e3));
-        let g = theta_squared.dexp_inverse(0);
-        let double_bracket1 = phi_e2 * bracket3 - phi_e3 * bracket2;
-        let double_bracket2 = phi_e3 * bracket1 - phi_e1 * bracket3;
-        let double_bracket3 = phi_e1 * bracket2 - phi_e2 * bracket1;
-        SVector::from([
-            half.mul_add(bracket1, g.mul_add(double_bracket1, v_e1)),
-            half.mul_add(bracket2, g.mul_add(double_bracket2, v_e2)),
-            half.mul_add(bracket3, g.mul_add(double_bracket3, v_e3)),
-        ])
+        so3::differential_inverse(phi, rate)
     }
 
     /// The configuration on the manifold that is nearest to `q`.
-    ///
-    /// 9-vector. Operations: 1 function call.
-    ///
+    /// 9-vector. Operations: 108 additions, 216 multiplications.
     /// From line 8 `config Q: SO3;`.
     fn project<T: Scalar>(&self, q: &SVector<T, 9>) -> SVector<T, 9> {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let rotation = nearest_rotation(
-            &from_rows([[q11, q12, q13], [q21, q22, q23], [q31, q32, q33]]),
-        );
-        let [[r11, r21, r31], [r12, r22, r32], [r13, r23, r33]]: [[T; 3]; 3] = rotation
-            .into();
-        SVector::from([r11, r12, r13, r21, r22, r23, r31, r32, r33])
+        so3::nearest(q)
     }
 
     /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
-    ///
-    /// A scalar. Operations: 28 additions, 34 multiplications (22 of each fused), 1 function call.
-    ///
+    /// A scalar. Operations: 27 additions, 34 multiplications (18 of each fused), 1 function call.
     /// From line 8 `config Q: SO3;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 9>) -> T {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let one = T::one();
-        let relations = [
-            q11.mul_add(q11, q21.mul_add(q21, q31.mul_add(q31, -one))),
-            q11.mul_add(q12, q21.mul_add(q22, q31 * q32)),
-            q11.mul_add(q13, q21.mul_add(q23, q31 * q33)),
-            q12.mul_add(q12, q22.mul_add(q22, q32.mul_add(q32, -one))),
-            q12.mul_add(q13, q22.mul_add(q23, q32 * q33)),
-            q13.mul_add(q13, q23.mul_add(q23, q33.mul_add(q33, -one))),
-            q11 * (q22 * q33 - q23 * q32) - q12 * (q21 * q33 - q23 * q31)
-                + q13 * (q21 * q32 - q22 * q31) - one,
-        ];
-        let sum = relations
-            .into_iter()
-            .fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
-        sum.sqrt()
-    }
-
-    /// Least absolute value of the functions whose zeros the joint must stay away from.
-    ///
-    /// A scalar. Independent of Q. Operations: none.
-    fn singularity<T: Scalar>(&self, _q: &SVector<T, 9>) -> T {
-        ::hamel::finite::least_absolute([])
-    }
-
-    /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
-    ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn bias_acceleration<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-        _speeds: &SVector<T, 3>,
-    ) -> SVector<T, 6> {
-        SVector::zeros()
-    }
-
-    /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
-    ///
-    /// 3-vector. Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn bias_momentum<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-        _speeds: &SVector<T, 3>,
-        _h: &SVector<T, 6>,
-    ) -> SVector<T, 3> {
-        SVector::zeros()
+        so3::residual_squared(q).sqrt()
     }
 }
-
-const PARAMETERS: [ParameterInfo; 0] = [];
 
 /// How a scene finds this joint by name.
 pub const ENTRY: JointEntry = JointEntry {
     name: "ball_child",
     summary: "Ball joint with its velocity in child axes: what a gyroscope on the child measures.",
-    parameters: &PARAMETERS,
+    parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("ball_child", &PARAMETERS, values)?;
+        ::hamel::registry::check_parameters("ball_child", &[], values)?;
         Ok(::hamel::erased::erase(BallChild))
     },
 };

@@ -8,6 +8,8 @@
 //! - Configuration: Q ∈ S3, stored as Q.w, Q.x, Q.y, Q.z.
 //! - Freedoms: `e1` (ϕ₁, rad), `e2` (ϕ₂, rad), `e3` (ϕ₃, rad).
 //! - Velocity v: read in the axes of the parent.
+//! - The identity, and not written: S̄.
+//! - Zero, and not written: A, ∂S̄/∂ϕ, c.
 //!
 //! ```text
 //!     ⎡1 − 2 ((Q.y)² + (Q.z)²)    2 (Q.x Q.y − Q.w Q.z)    2 (Q.w Q.y + Q.x Q.z)  0⎤
@@ -41,13 +43,16 @@
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `fibres`: Q and −Q have one pose: a double cover (certificate)
 
-use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::group::s3;
+use ::hamel::joint::{
+    Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
+};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo};
-use ::hamel::scalar::Scalar;
+use ::hamel::registry::JointEntry;
+use ::hamel::scalar::{Scalar, dot};
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(5);
+const _: () = ::hamel::joint::assert_kernel_interface(6);
 
 /// Ball joint on unit quaternions: four stored scalars instead of nine.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,43 +66,23 @@ impl Joint<4, 3, 3, 0> for BallQuaternion {
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Parent;
     const STRUCTURES: Structures = Structures {
         twist_map: Structure::Constant,
-        twist_map_child: Structure::General,
-        twist_map_child_gradient: Structure::General,
-        velocity_map: Structure::General,
-        velocity_map_gradient: Structure::General,
         gamma: Structure::Constant,
         speed_basis: Structure::Identity,
         speed_basis_gradient: Structure::Zero,
-        retract_differential: Structure::General,
         bias_acceleration: Structure::Zero,
-        bias_momentum: Structure::General,
-        speed_map: Structure::General,
+        ..Structures::GENERAL
     };
-    const PATTERNS: Patterns<3, 3> = Patterns::new(
-        ["xxx", "xxx", "xxx"],
-        "000",
-        ["xxx", "xxx", "xxx", "000", "000", "000"],
-        ["100", "010", "001"],
-        &[
-            (0, ["000", "xxx", "xxx", "000", "000", "000"]),
-            (1, ["xxx", "000", "xxx", "000", "000", "000"]),
-            (2, ["xxx", "xxx", "000", "000", "000", "000"]),
-        ],
-        &[],
-    );
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
-        [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    ];
+    const PATTERNS: Patterns<3, 3> = Patterns::new(["xxx", "xxx", "xxx"], "000", ["xxx", "xxx", "xxx", "000", "000", "000"])
+    .twist_map_child_gradient(&[
+        (0, ["000", "xxx", "xxx", "000", "000", "000"]),
+        (1, ["xxx", "000", "xxx", "000", "000", "000"]),
+        (2, ["xxx", "xxx", "000", "000", "000", "000"]),
+    ]);
+    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
-    fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        [].into_iter()
-    }
-
     /// The home configuration.
-    ///
     /// 4-vector. Independent of Q. Operations: none.
-    ///
     /// From line 9 `config Q: S3;`.
     fn home<T: Scalar>(&self) -> SVector<T, 4> {
         let zero = T::zero();
@@ -106,9 +91,7 @@ impl Joint<4, 3, 3, 0> for BallQuaternion {
     }
 
     /// H(Q): child coordinates to parent coordinates.
-    ///
     /// Rotation matrix and translation in m. Operations: 12 additions, 18 multiplications (3 of each fused).
-    ///
     /// From line 12 `H = pose(rot(Q), [0, 0, 0]);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 4>) -> Pose<T> {
         let [q_w, q_x, q_y, q_z]: [T; 4] = (*q).into();
@@ -125,30 +108,16 @@ impl Joint<4, 3, 3, 0> for BallQuaternion {
         let q_y_q_z = q_y * q_z;
         Pose {
             rotation: from_rows([
-                [
-                    two.mul_add(-(q_y_squared + q_z_squared), one),
-                    two * (q_x_q_y - q_w_q_z),
-                    two * (q_w_q_y + q_x_q_z),
-                ],
-                [
-                    two * (q_w_q_z + q_x_q_y),
-                    two.mul_add(-(q_x_squared + q_z_squared), one),
-                    two * (q_y_q_z - q_w_q_x),
-                ],
-                [
-                    two * (q_x_q_z - q_w_q_y),
-                    two * (q_w_q_x + q_y_q_z),
-                    two.mul_add(-(q_x_squared + q_y_squared), one),
-                ],
+                [two.mul_add(-(q_y_squared + q_z_squared), one), two * (q_x_q_y - q_w_q_z), two * (q_w_q_y + q_x_q_z)],
+                [two * (q_w_q_z + q_x_q_y), two.mul_add(-(q_x_squared + q_z_squared), one), two * (q_y_q_z - q_w_q_x)],
+                [two * (q_x_q_z - q_w_q_y), two * (q_w_q_x + q_y_q_z), two.mul_add(-(q_x_squared + q_y_squared), one)],
             ]),
             translation: SVector::zeros(),
         }
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
-    ///
     /// From line 10 `basis`, line 11 `velocity`, line 12 `H`.
     fn twist_map<T: Scalar>(&self, _q: &SVector<T, 4>) -> SMatrix<T, 6, 3> {
         let zero = T::zero();
@@ -164,9 +133,7 @@ impl Joint<4, 3, 3, 0> for BallQuaternion {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 12 additions, 18 multiplications (3 of each fused).
-    ///
     /// From line 10 `basis`, line 11 `velocity`, line 12 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 4>) -> SMatrix<T, 6, 3> {
         let [q_w, q_x, q_y, q_z]: [T; 4] = (*q).into();
@@ -183,21 +150,9 @@ impl Joint<4, 3, 3, 0> for BallQuaternion {
         let q_w_q_x = q_w * q_x;
         let q_y_q_z = q_y * q_z;
         from_rows([
-            [
-                two.mul_add(-(q_y_squared + q_z_squared), one),
-                two * (q_w_q_z + q_x_q_y),
-                two * (q_x_q_z - q_w_q_y),
-            ],
-            [
-                two * (q_x_q_y - q_w_q_z),
-                two.mul_add(-(q_x_squared + q_z_squared), one),
-                two * (q_w_q_x + q_y_q_z),
-            ],
-            [
-                two * (q_w_q_y + q_x_q_z),
-                two * (q_y_q_z - q_w_q_x),
-                two.mul_add(-(q_x_squared + q_y_squared), one),
-            ],
+            [two.mul_add(-(q_y_squared + q_z_squared), one), two * (q_w_q_z + q_x_q_y), two * (q_x_q_z - q_w_q_y)],
+            [two * (q_x_q_y - q_w_q_z), two.mul_add(-(q_x_squared + q_z_squared), one), two * (q_w_q_x + q_y_q_z)],
+            [two * (q_w_q_y + q_x_q_z), two * (q_y_q_z - q_w_q_x), two.mul_add(-(q_x_squared + q_y_squared), one)],
             [zero, zero, zero],
             [zero, zero, zero],
             [zero, zero, zero],
@@ -205,95 +160,42 @@ impl Joint<4, 3, 3, 0> for BallQuaternion {
     }
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 3 slices of 6×3. Operations: 12 additions, 18 multiplications (3 of each fused).
-    ///
+    /// 3 slices of 6×3. Operations: 16 additions, 21 multiplications (4 of each fused).
     /// From line 10 `basis`, line 11 `velocity`, line 12 `H`.
-    fn twist_map_child_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 4>,
-    ) -> [SMatrix<T, 6, 3>; 3] {
+    fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, 4>) -> [SMatrix<T, 6, 3>; 3] {
         let [q_w, q_x, q_y, q_z]: [T; 4] = (*q).into();
-        let zero = T::zero();
         let one = T::one();
         let two = T::from_f64(2.0);
         let q_w_q_y = q_w * q_y;
         let q_x_q_z = q_x * q_z;
-        let two_q_w_q_y_plus_q_x_q_z = two * (q_w_q_y + q_x_q_z);
         let q_w_q_x = q_w * q_x;
         let q_y_q_z = q_y * q_z;
-        let two_q_w_q_x_minus_q_y_q_z = two * (q_w_q_x - q_y_q_z);
         let q_x_squared = q_x * q_x;
         let q_y_squared = q_y * q_y;
-        let sum_of_q_x_squared_q_y_squared = two
-            .mul_add(-(q_x_squared + q_y_squared), one);
         let q_w_q_z = q_w * q_z;
         let q_x_q_y = q_x * q_y;
-        let two_q_w_q_z_minus_q_x_q_y = two * (q_w_q_z - q_x_q_y);
-        let q_w_squared = q_w * q_w;
-        let sum_of_q_w_squared_q_y_squared = two
-            .mul_add(-(q_w_squared + q_y_squared), one);
-        let two_q_w_q_x_plus_q_y_q_z = two * (q_w_q_x + q_y_q_z);
-        let sum_of_q_w_squared_q_x_squared = two
-            .mul_add(-(q_w_squared + q_x_squared), one);
-        let two_q_w_q_z_plus_q_x_q_y = two * (q_w_q_z + q_x_q_y);
-        let two_q_w_q_y_minus_q_x_q_z = two * (q_w_q_y - q_x_q_z);
+        let t1 = two * (q_w_q_z - q_x_q_y);
+        let q_z_squared = q_z * q_z;
+        let t2 = two.mul_add(-(q_x_squared + q_z_squared), one);
+        let t3 = two * (q_w_q_x + q_y_q_z);
+        let t4 = two.mul_add(-(q_y_squared + q_z_squared), one);
+        let t5 = two * (q_w_q_z + q_x_q_y);
+        let t6 = two * (q_w_q_y - q_x_q_z);
         [
-            from_rows([
-                [zero, zero, zero],
-                [
-                    two_q_w_q_y_plus_q_x_q_z,
-                    -two_q_w_q_x_minus_q_y_q_z,
-                    sum_of_q_x_squared_q_y_squared,
-                ],
-                [
-                    two_q_w_q_z_minus_q_x_q_y,
-                    sum_of_q_w_squared_q_y_squared,
-                    -two_q_w_q_x_plus_q_y_q_z,
-                ],
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [zero, zero, zero],
+            rows_at([
+                (1, [two * (q_w_q_y + q_x_q_z), two * (q_y_q_z - q_w_q_x), two.mul_add(-(q_x_squared + q_y_squared), one)]),
+                (2, [t1, -t2, -t3]),
             ]),
-            from_rows([
-                [
-                    -two_q_w_q_y_plus_q_x_q_z,
-                    two_q_w_q_x_minus_q_y_q_z,
-                    -sum_of_q_x_squared_q_y_squared,
-                ],
-                [zero, zero, zero],
-                [
-                    -sum_of_q_w_squared_q_x_squared,
-                    two_q_w_q_z_plus_q_x_q_y,
-                    -two_q_w_q_y_minus_q_x_q_z,
-                ],
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [zero, zero, zero],
+            rows_at([
+                (0, [-two * (q_w_q_y + q_x_q_z), two * (q_w_q_x - q_y_q_z), two.mul_add(q_x_squared + q_y_squared, -one)]),
+                (2, [t4, t5, -t6]),
             ]),
-            from_rows([
-                [
-                    -two_q_w_q_z_minus_q_x_q_y,
-                    -sum_of_q_w_squared_q_y_squared,
-                    two_q_w_q_x_plus_q_y_q_z,
-                ],
-                [
-                    sum_of_q_w_squared_q_x_squared,
-                    -two_q_w_q_z_plus_q_x_q_y,
-                    two_q_w_q_y_minus_q_x_q_z,
-                ],
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [zero, zero, zero],
-            ]),
+            rows_at([(0, [-t1, t2, t3]), (1, [-t4, -t5, t6])]),
         ]
     }
 
     /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
-    ///
     /// 3×3. Operations: 12 additions, 18 multiplications (3 of each fused).
-    ///
     /// From line 10 `basis`, line 11 `velocity`, line 12 `H`.
     fn velocity_map<T: Scalar>(&self, q: &SVector<T, 4>) -> SMatrix<T, 3, 3> {
         let [q_w, q_x, q_y, q_z]: [T; 4] = (*q).into();
@@ -309,28 +211,14 @@ impl Joint<4, 3, 3, 0> for BallQuaternion {
         let q_w_q_x = q_w * q_x;
         let q_y_q_z = q_y * q_z;
         from_rows([
-            [
-                two.mul_add(q_w_squared + q_x_squared, -one),
-                two * (q_x_q_y - q_w_q_z),
-                two * (q_w_q_y + q_x_q_z),
-            ],
-            [
-                two * (q_w_q_z + q_x_q_y),
-                two.mul_add(q_w_squared + q_y_squared, -one),
-                two * (q_y_q_z - q_w_q_x),
-            ],
-            [
-                two * (q_x_q_z - q_w_q_y),
-                two * (q_w_q_x + q_y_q_z),
-                two.mul_add(-(q_x_squared + q_y_squared), one),
-            ],
+            [two.mul_add(q_w_squared + q_x_squared, -one), two * (q_x_q_y - q_w_q_z), two * (q_w_q_y + q_x_q_z)],
+            [two * (q_w_q_z + q_x_q_y), two.mul_add(q_w_squared + q_y_squared, -one), two * (q_y_q_z - q_w_q_x)],
+            [two * (q_x_q_z - q_w_q_y), two * (q_w_q_x + q_y_q_z), two.mul_add(-(q_x_squared + q_y_squared), one)],
         ])
     }
 
     /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
-    ///
     /// 3×3. Operations: 12 additions, 18 multiplications (3 of each fused).
-    ///
     /// From line 10 `basis`, line 11 `velocity`, line 12 `H`.
     fn velocity_map_inverse<T: Scalar>(&self, q: &SVector<T, 4>) -> SMatrix<T, 3, 3> {
         let [q_w, q_x, q_y, q_z]: [T; 4] = (*q).into();
@@ -346,92 +234,52 @@ impl Joint<4, 3, 3, 0> for BallQuaternion {
         let q_w_q_x = q_w * q_x;
         let q_y_q_z = q_y * q_z;
         from_rows([
-            [
-                two.mul_add(q_w_squared + q_x_squared, -one),
-                two * (q_w_q_z + q_x_q_y),
-                two * (q_x_q_z - q_w_q_y),
-            ],
-            [
-                two * (q_x_q_y - q_w_q_z),
-                two.mul_add(q_w_squared + q_y_squared, -one),
-                two * (q_w_q_x + q_y_q_z),
-            ],
-            [
-                two * (q_w_q_y + q_x_q_z),
-                two * (q_y_q_z - q_w_q_x),
-                two.mul_add(-(q_x_squared + q_y_squared), one),
-            ],
+            [two.mul_add(q_w_squared + q_x_squared, -one), two * (q_w_q_z + q_x_q_y), two * (q_x_q_z - q_w_q_y)],
+            [two * (q_x_q_y - q_w_q_z), two.mul_add(q_w_squared + q_y_squared, -one), two * (q_w_q_x + q_y_q_z)],
+            [two * (q_w_q_y + q_x_q_z), two * (q_y_q_z - q_w_q_x), two.mul_add(-(q_x_squared + q_y_squared), one)],
         ])
     }
 
     /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
-    ///
-    /// 3 slices of 3×3. Operations: 12 additions, 9 multiplications.
-    ///
+    /// 3 slices of 3×3. Operations: 15 additions, 9 multiplications.
     /// From line 10 `basis`, line 11 `velocity`, line 12 `H`.
-    fn velocity_map_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 4>,
-    ) -> [SMatrix<T, 3, 3>; 3] {
+    fn velocity_map_gradient<T: Scalar>(&self, q: &SVector<T, 4>) -> [SMatrix<T, 3, 3>; 3] {
         let [q_w, q_x, q_y, q_z]: [T; 4] = (*q).into();
         let zero = T::zero();
         let half = T::from_f64(0.5);
         let q_w_q_y = q_w * q_y;
         let q_x_q_z = q_x * q_z;
-        let q_w_q_y_plus_q_x_q_z = q_w_q_y + q_x_q_z;
         let q_w_q_z = q_w * q_z;
         let q_x_q_y = q_x * q_y;
-        let q_w_q_z_minus_q_x_q_y = q_w_q_z - q_x_q_y;
         let q_w_q_x = q_w * q_x;
         let q_y_q_z = q_y * q_z;
-        let q_w_q_x_minus_q_y_q_z = q_w_q_x - q_y_q_z;
         let q_w_squared = q_w * q_w;
         let q_y_squared = q_y * q_y;
-        let sum_of_q_w_squared_q_y_squared = half - q_w_squared - q_y_squared;
+        let t1 = half - q_w_squared - q_y_squared;
         let q_x_squared = q_x * q_x;
-        let sum_of_q_x_squared_q_y_squared = half - q_x_squared - q_y_squared;
-        let q_w_q_x_plus_q_y_q_z = q_w_q_x + q_y_q_z;
-        let sum_of_q_w_squared_q_x_squared = half - q_w_squared - q_x_squared;
-        let q_w_q_z_plus_q_x_q_y = q_w_q_z + q_x_q_y;
-        let q_w_q_y_minus_q_x_q_z = q_w_q_y - q_x_q_z;
+        let t2 = half - q_x_squared - q_y_squared;
+        let t3 = q_w_q_x + q_y_q_z;
+        let t4 = half - q_w_squared - q_x_squared;
+        let t5 = q_w_q_z + q_x_q_y;
+        let t6 = q_w_q_y - q_x_q_z;
         [
-            from_rows([
-                [zero, q_w_q_y_plus_q_x_q_z, q_w_q_z_minus_q_x_q_y],
-                [zero, -q_w_q_x_minus_q_y_q_z, sum_of_q_w_squared_q_y_squared],
-                [zero, sum_of_q_x_squared_q_y_squared, -q_w_q_x_plus_q_y_q_z],
-            ]),
-            from_rows([
-                [-q_w_q_y_plus_q_x_q_z, zero, -sum_of_q_w_squared_q_x_squared],
-                [q_w_q_x_minus_q_y_q_z, zero, q_w_q_z_plus_q_x_q_y],
-                [-sum_of_q_x_squared_q_y_squared, zero, -q_w_q_y_minus_q_x_q_z],
-            ]),
-            from_rows([
-                [-q_w_q_z_minus_q_x_q_y, sum_of_q_w_squared_q_x_squared, zero],
-                [-sum_of_q_w_squared_q_y_squared, -q_w_q_z_plus_q_x_q_y, zero],
-                [q_w_q_x_plus_q_y_q_z, q_w_q_y_minus_q_x_q_z, zero],
-            ]),
+            from_rows([[zero, q_w_q_y + q_x_q_z, q_w_q_z - q_x_q_y], [zero, q_y_q_z - q_w_q_x, t1], [zero, t2, -t3]]),
+            from_rows([[-(q_w_q_y + q_x_q_z), zero, -t4], [q_w_q_x - q_y_q_z, zero, t5], [-t2, zero, -t6]]),
+            from_rows([[q_x_q_y - q_w_q_z, t4, zero], [-t1, -t5, zero], [t3, t6, zero]]),
         ]
     }
 
     /// Σ_k γ_k v_k (17): stands on the left of (24).
-    ///
     /// 3×3. Independent of Q. Operations: none.
-    ///
     /// From line 10 `basis`, line 11 `velocity`, line 12 `H`.
-    fn gamma<T: Scalar>(
-        &self,
-        _q: &SVector<T, 4>,
-        v: &SVector<T, 3>,
-    ) -> SMatrix<T, 3, 3> {
+    fn gamma<T: Scalar>(&self, _q: &SVector<T, 4>, v: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
         let [v_e1, v_e2, v_e3]: [T; 3] = (*v).into();
         let zero = T::zero();
         from_rows([[zero, v_e3, -v_e2], [-v_e3, zero, v_e1], [v_e2, -v_e1, zero]])
     }
 
     /// J22(Q, p) (28): stands on the right of (27).
-    ///
     /// 3×3. Independent of Q. Operations: none.
-    ///
     /// From line 10 `basis`, line 11 `velocity`, line 12 `H`.
     fn j22<T: Scalar>(&self, _q: &SVector<T, 4>, p: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
         let [p_e1, p_e2, p_e3]: [T; 3] = (*p).into();
@@ -439,200 +287,44 @@ impl Joint<4, 3, 3, 0> for BallQuaternion {
         from_rows([[zero, p_e3, -p_e2], [-p_e3, zero, p_e1], [p_e2, -p_e1, zero]])
     }
 
-    /// A(Q) with Aᵀ v = 0 (Definition 2).
-    ///
-    /// 3×0. Zero. Operations: none.
-    fn constraint<T: Scalar>(&self, _q: &SVector<T, 4>) -> SMatrix<T, 3, 0> {
-        SMatrix::zeros()
-    }
-
-    /// S̄(Q): speeds v̄ to v (Definition 2, (15)).
-    ///
-    /// 3×3. The identity. Operations: none.
-    fn speed_basis<T: Scalar>(&self, _q: &SVector<T, 4>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
-    /// ∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 3 slices of 3×3. Zero. Operations: none.
-    fn speed_basis_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 4>,
-    ) -> [SMatrix<T, 3, 3>; 3] {
-        [SMatrix::zeros(); 3]
-    }
-
     /// Q̇(Q, v) (31): the rates of the stored scalars.
-    ///
     /// 4-vector. Operations: 8 additions, 16 multiplications (8 of each fused).
-    ///
     /// From line 10 `basis`, line 11 `velocity`, line 12 `H`.
-    fn configuration_rate<T: Scalar>(
-        &self,
-        q: &SVector<T, 4>,
-        v: &SVector<T, 3>,
-    ) -> SVector<T, 4> {
+    fn configuration_rate<T: Scalar>(&self, q: &SVector<T, 4>, v: &SVector<T, 3>) -> SVector<T, 4> {
         let [q_w, q_x, q_y, q_z]: [T; 4] = (*q).into();
         let [v_e1, v_e2, v_e3]: [T; 3] = (*v).into();
         let half = T::from_f64(0.5);
         SVector::from([
-            -half * q_x.mul_add(v_e1, q_y.mul_add(v_e2, q_z * v_e3)),
-            half * q_w.mul_add(v_e1, q_y.mul_add(-v_e3, q_z * v_e2)),
-            half * q_w.mul_add(v_e2, q_z.mul_add(-v_e1, q_x * v_e3)),
-            half * q_w.mul_add(v_e3, q_x.mul_add(-v_e2, q_y * v_e1)),
+            -half * dot([q_x, q_y, q_z], [v_e1, v_e2, v_e3]),
+            half * dot([q_w, q_y, q_z], [v_e1, -v_e3, v_e2]),
+            half * dot([q_w, q_z, q_x], [v_e2, -v_e1, v_e3]),
+            half * dot([q_w, q_x, q_y], [v_e3, -v_e2, v_e1]),
         ])
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
-    ///
-    /// 4-vector. Operations: 14 additions, 26 multiplications (14 of each fused), 2 function calls.
-    ///
+    /// 4-vector. Operations: 14 additions, 24 multiplications (14 of each fused), 2 function calls.
     /// From line 9 `config`, line 10 `basis`.
-    fn retract<T: Scalar>(
-        &self,
-        q: &SVector<T, 4>,
-        phi: &SVector<T, 3>,
-    ) -> SVector<T, 4> {
-        let [q_w, q_x, q_y, q_z]: [T; 4] = (*q).into();
-        let [phi_e1, phi_e2, phi_e3]: [T; 3] = (*phi).into();
-        let quarter = T::from_f64(0.25);
-        let half = T::from_f64(0.5);
-        let theta_squared = quarter
-            * phi_e1.mul_add(phi_e1, phi_e2.mul_add(phi_e2, phi_e3 * phi_e3));
-        let c0 = theta_squared.stumpff(0);
-        let c1 = theta_squared.stumpff(1);
-        let half_phi_e1_c1 = half * phi_e1 * c1;
-        let half_phi_e2_c1 = half * phi_e2 * c1;
-        let half_phi_e3_c1 = half * phi_e3 * c1;
-        SVector::from([
-            q_x
-                .mul_add(
-                    -half_phi_e1_c1,
-                    q_y.mul_add(-half_phi_e2_c1, q_z.mul_add(-half_phi_e3_c1, q_w * c0)),
-                ),
-            q_w
-                .mul_add(
-                    half_phi_e1_c1,
-                    q_x.mul_add(c0, q_z.mul_add(-half_phi_e2_c1, q_y * half_phi_e3_c1)),
-                ),
-            q_w
-                .mul_add(
-                    half_phi_e2_c1,
-                    q_x.mul_add(-half_phi_e3_c1, q_y.mul_add(c0, q_z * half_phi_e1_c1)),
-                ),
-            q_w
-                .mul_add(
-                    half_phi_e3_c1,
-                    q_x.mul_add(half_phi_e2_c1, q_y.mul_add(-half_phi_e1_c1, q_z * c0)),
-                ),
-        ])
+    fn retract<T: Scalar>(&self, q: &SVector<T, 4>, phi: &SVector<T, 3>) -> SVector<T, 4> {
+        s3::times_exp(q, phi)
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    ///
     /// 3-vector, rad. Operations: 12 additions, 16 multiplications (12 of each fused), 1 function call.
-    ///
     /// From line 9 `config`, line 10 `basis`.
-    fn local<T: Scalar>(
-        &self,
-        q: &SVector<T, 4>,
-        target: &SVector<T, 4>,
-    ) -> SVector<T, 3> {
-        let [q_w, q_x, q_y, q_z]: [T; 4] = (*q).into();
-        let [q_w_target, q_x_target, q_y_target, q_z_target]: [T; 4] = (*target).into();
-        let [r1, r2, r3]: [T; 3] = T::quaternion_vector([
-                q_w
-                    .mul_add(
-                        q_w_target,
-                        q_x
-                            .mul_add(
-                                q_x_target,
-                                q_y.mul_add(q_y_target, q_z * q_z_target),
-                            ),
-                    ),
-                q_w
-                    .mul_add(
-                        q_x_target,
-                        q_x
-                            .mul_add(
-                                -q_w_target,
-                                q_y.mul_add(-q_z_target, q_z * q_y_target),
-                            ),
-                    ),
-                q_w
-                    .mul_add(
-                        q_y_target,
-                        q_y
-                            .mul_add(
-                                -q_w_target,
-                                q_z.mul_add(-q_x_target, q_x * q_z_target),
-                            ),
-                    ),
-                q_w
-                    .mul_add(
-                        q_z_target,
-                        q_x
-                            .mul_add(
-                                -q_y_target,
-                                q_z.mul_add(-q_w_target, q_y * q_x_target),
-                            ),
-                    ),
-            ])
-            .into();
-        SVector::from([r1, r2, r3])
+    fn local<T: Scalar>(&self, q: &SVector<T, 4>, target: &SVector<T, 4>) -> SVector<T, 3> {
+        s3::log_between(q, target)
     }
 
     /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
-    ///
-    /// 3×3. Operations: 14 additions, 18 multiplications (9 of each fused), 2 function calls.
-    ///
+    /// 3×3. Operations: 14 additions, 17 multiplications, 2 function calls.
     /// From line 9 `config`, line 10 `basis`.
-    fn retract_differential<T: Scalar>(
-        &self,
-        _q: &SVector<T, 4>,
-        phi: &SVector<T, 3>,
-    ) -> SMatrix<T, 3, 3> {
-        let [phi_e1, phi_e2, phi_e3]: [T; 3] = (*phi).into();
-        let one = T::one();
-        let phi_e2_squared = phi_e2 * phi_e2;
-        let phi_e3_squared = phi_e3 * phi_e3;
-        let ad_squared11 = -(phi_e2_squared + phi_e3_squared);
-        let ad_squared12 = phi_e1 * phi_e2;
-        let ad_squared13 = phi_e1 * phi_e3;
-        let phi_e1_squared = phi_e1 * phi_e1;
-        let ad_squared22 = -(phi_e1_squared + phi_e3_squared);
-        let ad_squared23 = phi_e2 * phi_e3;
-        let ad_squared33 = -(phi_e1_squared + phi_e2_squared);
-        let theta_squared = phi_e1_squared + phi_e2_squared + phi_e3_squared;
-        let c2 = theta_squared.stumpff(2);
-        let c3 = theta_squared.stumpff(3);
-        let phi_e3_c2 = phi_e3 * c2;
-        let phi_e2_c2 = phi_e2 * c2;
-        let phi_e1_c2 = phi_e1 * c2;
-        from_rows([
-            [
-                ad_squared11.mul_add(c3, one),
-                ad_squared12.mul_add(c3, phi_e3_c2),
-                ad_squared13.mul_add(c3, -phi_e2_c2),
-            ],
-            [
-                ad_squared12.mul_add(c3, -phi_e3_c2),
-                ad_squared22.mul_add(c3, one),
-                ad_squared23.mul_add(c3, phi_e1_c2),
-            ],
-            [
-                ad_squared13.mul_add(c3, phi_e2_c2),
-                ad_squared23.mul_add(c3, -phi_e1_c2),
-                ad_squared33.mul_add(c3, one),
-            ],
-        ])
+    fn retract_differential<T: Scalar>(&self, _q: &SVector<T, 4>, phi: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
+        s3::differential(phi)
     }
 
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    ///
-    /// 3-vector, rad/s. Operations: 14 additions, 21 multiplications (8 of each fused), 1 function call.
-    ///
+    /// 3-vector, rad/s. Operations: 14 additions, 21 multiplications (2 of each fused), 1 function call.
     /// From line 9 `config`, line 10 `basis`.
     fn retract_differential_inverse<T: Scalar>(
         &self,
@@ -640,153 +332,48 @@ impl Joint<4, 3, 3, 0> for BallQuaternion {
         phi: &SVector<T, 3>,
         rate: &SVector<T, 3>,
     ) -> SVector<T, 3> {
-        let [phi_e1, phi_e2, phi_e3]: [T; 3] = (*phi).into();
-        let [v_e1, v_e2, v_e3]: [T; 3] = (*rate).into();
-        let half = T::from_f64(0.5);
-        let bracket1 = phi_e2 * v_e3 - phi_e3 * v_e2;
-        let bracket2 = phi_e3 * v_e1 - phi_e1 * v_e3;
-        let bracket3 = phi_e1 * v_e2 - phi_e2 * v_e1;
-        let theta_squared = phi_e1
-            .mul_add(phi_e1, phi_e2.mul_add(phi_e2, phi_e3 * phi_e3));
-        let g = theta_squared.dexp_inverse(0);
-        let double_bracket1 = phi_e2 * bracket3 - phi_e3 * bracket2;
-        let double_bracket2 = phi_e3 * bracket1 - phi_e1 * bracket3;
-        let double_bracket3 = phi_e1 * bracket2 - phi_e2 * bracket1;
-        SVector::from([
-            half.mul_add(bracket1, g.mul_add(double_bracket1, v_e1)),
-            half.mul_add(bracket2, g.mul_add(double_bracket2, v_e2)),
-            half.mul_add(bracket3, g.mul_add(double_bracket3, v_e3)),
-        ])
+        s3::differential_inverse(phi, rate)
     }
 
     /// The configuration on the manifold that is nearest to `q`.
-    ///
     /// 4-vector. Operations: 3 additions, 8 multiplications (3 of each fused), 1 division, 1 function call.
-    ///
     /// From line 9 `config Q: S3;`.
     fn project<T: Scalar>(&self, q: &SVector<T, 4>) -> SVector<T, 4> {
-        let [q_w, q_x, q_y, q_z]: [T; 4] = (*q).into();
-        let one = T::one();
-        let norm = q_w
-            .mul_add(q_w, q_x.mul_add(q_x, q_y.mul_add(q_y, q_z * q_z)))
-            .sqrt();
-        let inverse_norm = one / norm;
-        SVector::from([
-            q_w * inverse_norm,
-            q_x * inverse_norm,
-            q_y * inverse_norm,
-            q_z * inverse_norm,
-        ])
+        s3::nearest(q)
     }
 
     /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
-    ///
-    /// A scalar. Operations: 5 additions, 5 multiplications (5 of each fused), 1 function call.
-    ///
+    /// A scalar. Operations: 4 additions, 5 multiplications (3 of each fused), 1 function call.
     /// From line 9 `config Q: S3;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 4>) -> T {
-        let [q_w, q_x, q_y, q_z]: [T; 4] = (*q).into();
-        let one = T::one();
-        let relations = [
-            q_w.mul_add(q_w, q_x.mul_add(q_x, q_y.mul_add(q_y, q_z.mul_add(q_z, -one)))),
-        ];
-        let sum = relations
-            .into_iter()
-            .fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
-        sum.sqrt()
-    }
-
-    /// Least absolute value of the functions whose zeros the joint must stay away from.
-    ///
-    /// A scalar. Independent of Q. Operations: none.
-    fn singularity<T: Scalar>(&self, _q: &SVector<T, 4>) -> T {
-        ::hamel::finite::least_absolute([])
-    }
-
-    /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
-    ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Zero. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `H`.
-    fn bias_acceleration<T: Scalar>(
-        &self,
-        _q: &SVector<T, 4>,
-        _speeds: &SVector<T, 3>,
-    ) -> SVector<T, 6> {
-        SVector::zeros()
+        s3::residual_squared(q).sqrt()
     }
 
     /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
-    ///
-    /// 3-vector. Operations: 15 additions, 24 multiplications (13 of each fused).
-    ///
+    /// 3-vector. Operations: 15 additions, 24 multiplications (9 of each fused), instead of 139 operations by products.
     /// From line 10 `basis`, line 11 `velocity`, line 12 `H`.
-    fn bias_momentum<T: Scalar>(
-        &self,
-        q: &SVector<T, 4>,
-        speeds: &SVector<T, 3>,
-        h: &SVector<T, 6>,
-    ) -> SVector<T, 3> {
+    fn bias_momentum<T: Scalar>(&self, q: &SVector<T, 4>, speeds: &SVector<T, 3>, h: &SVector<T, 6>) -> SVector<T, 3> {
         let [q_w, q_x, q_y, q_z]: [T; 4] = (*q).into();
         let [speed_e1, speed_e2, speed_e3]: [T; 3] = (*speeds).into();
         let (h1, h2, h3) = (h[0], h[1], h[2]);
         let two = T::from_f64(2.0);
-        let q_w_h2_minus_q_x_h3 = q_w * h2 - q_x * h3;
-        let q_w_h1_plus_q_y_h3 = q_w.mul_add(h1, q_y * h3);
-        let q_x_h1_plus_q_y_h2 = q_x.mul_add(h1, q_y * h2);
-        let sum_of_h3_q_x_q_w_h2_minus_q_x_h3 = two
-            .mul_add(
-                q_x
-                    .mul_add(
-                        q_w_h2_minus_q_x_h3,
-                        q_y.mul_add(-q_w_h1_plus_q_y_h3, q_z * q_x_h1_plus_q_y_h2),
-                    ),
-                h3,
-            );
-        let sum_of_h2_q_w_q_w_h2_minus_q_x_h3 = two
-            .mul_add(
-                -q_w
-                    .mul_add(
-                        q_w_h2_minus_q_x_h3,
-                        q_z.mul_add(q_w_h1_plus_q_y_h3, q_y * q_x_h1_plus_q_y_h2),
-                    ),
-                h2,
-            );
-        let sum_of_h1_q_w_q_w_h1_plus_q_y_h3_q_z = two
-            .mul_add(
-                q_x
-                    .mul_add(
-                        -q_x_h1_plus_q_y_h2,
-                        q_w.mul_add(-q_w_h1_plus_q_y_h3, q_z * q_w_h2_minus_q_x_h3),
-                    ),
-                h1,
-            );
-        SVector::from([
-            speed_e2
-                .mul_add(
-                    sum_of_h3_q_x_q_w_h2_minus_q_x_h3,
-                    speed_e3 * sum_of_h2_q_w_q_w_h2_minus_q_x_h3,
-                ),
-            -speed_e1
-                .mul_add(
-                    sum_of_h3_q_x_q_w_h2_minus_q_x_h3,
-                    speed_e3 * sum_of_h1_q_w_q_w_h1_plus_q_y_h3_q_z,
-                ),
-            speed_e2 * sum_of_h1_q_w_q_w_h1_plus_q_y_h3_q_z
-                - speed_e1 * sum_of_h2_q_w_q_w_h2_minus_q_x_h3,
-        ])
+        let t1 = q_x * h2 - q_y * h1;
+        let t2 = q_x * h3 - q_z * h1;
+        let t3 = q_y * h3 - q_z * h2;
+        let t4 = two.mul_add(dot([q_x, q_y, q_w], [-t2, -t3, t1]), h3);
+        let t5 = two.mul_add(dot([q_w, q_x, q_z], [-t2, -t1, t3]), h2);
+        let t6 = two.mul_add(dot([q_y, q_z, q_w], [t1, t2, t3]), h1);
+        SVector::from([speed_e2 * t4 - speed_e3 * t5, speed_e3 * t6 - speed_e1 * t4, speed_e1 * t5 - speed_e2 * t6])
     }
 }
-
-const PARAMETERS: [ParameterInfo; 0] = [];
 
 /// How a scene finds this joint by name.
 pub const ENTRY: JointEntry = JointEntry {
     name: "ball_quaternion",
     summary: "Ball joint on unit quaternions: four stored scalars instead of nine.",
-    parameters: &PARAMETERS,
+    parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("ball_quaternion", &PARAMETERS, values)?;
+        ::hamel::registry::check_parameters("ball_quaternion", &[], values)?;
         Ok(::hamel::erased::erase(BallQuaternion))
     },
 };

@@ -9,6 +9,8 @@
 //! - Freedoms: `turn` (ϕ₁, rad), `forward` (ϕ₂, m), `sideways` (ϕ₃, m).
 //! - Velocity v: read in the axes of the child.
 //! - Speeds v̄: `turn`, `forward`; constraints: 1.
+//! - The identity, and not written: S₀, S₀⁻¹.
+//! - Zero, and not written: ∂X^c/∂ϕ, ∂S̄/∂ϕ, c, the dual of c.
 //!
 //! ```text
 //!     ⎡Q₁₁  Q₁₂  0  Q₁₃⎤
@@ -46,13 +48,16 @@
 //! - `constraint_rank`: rank A = k − k̄ (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::group::se2;
+use ::hamel::joint::{
+    Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
+};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo};
+use ::hamel::registry::JointEntry;
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(5);
+const _: () = ::hamel::joint::assert_kernel_interface(6);
 
 /// Cart: a planar joint that rolls and turns, sideways velocity forbidden (Examples 3 and 6; nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,39 +71,21 @@ impl Joint<6, 3, 2, 1> for Cart {
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Child;
     const STRUCTURES: Structures = Structures {
         twist_map: Structure::General,
-        twist_map_child: Structure::Constant,
-        twist_map_child_gradient: Structure::Zero,
-        velocity_map: Structure::Identity,
         velocity_map_gradient: Structure::Constant,
         gamma: Structure::Constant,
         speed_basis: Structure::Constant,
-        speed_basis_gradient: Structure::Zero,
         retract_differential: Structure::General,
-        bias_acceleration: Structure::Zero,
-        bias_momentum: Structure::Zero,
-        speed_map: Structure::Constant,
+        project: Structure::General,
+        residual: Structure::General,
+        ..Structures::TRIVIAL
     };
-    const PATTERNS: Patterns<3, 2> = Patterns::new(
-        ["xx0", "xx0", "001"],
-        "xx0",
-        ["000", "000", "100", "010", "001", "000"],
-        ["10", "01", "00"],
-        &[],
-        &[],
-    );
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
-        [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
-    ];
+    const PATTERNS: Patterns<3, 2> = Patterns::new(["xx0", "xx0", "001"], "xx0", ["000", "000", "100", "010", "001", "000"])
+    .speed_basis(["10", "01", "00"]);
+    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
-    fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        [].into_iter()
-    }
-
     /// The home configuration.
-    ///
     /// 6-vector. Independent of Q. Operations: none.
-    ///
     /// From line 9 `config Q: SE2;`.
     fn home<T: Scalar>(&self) -> SVector<T, 6> {
         let zero = T::zero();
@@ -107,9 +94,7 @@ impl Joint<6, 3, 2, 1> for Cart {
     }
 
     /// H(Q): child coordinates to parent coordinates.
-    ///
     /// Rotation matrix and translation in m. Operations: none.
-    ///
     /// From line 13 `H = pose(rot_z(Q), [Q.x, Q.y, 0]);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 6>) -> Pose<T> {
         let [q11, q12, q13, q21, q22, q23]: [T; 6] = (*q).into();
@@ -122,9 +107,7 @@ impl Joint<6, 3, 2, 1> for Cart {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s. Operations: none.
-    ///
     /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 3> {
         let [q11, q12, q13, q21, q22, q23]: [T; 6] = (*q).into();
@@ -141,9 +124,7 @@ impl Joint<6, 3, 2, 1> for Cart {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s. Independent of Q. Operations: none.
-    ///
     /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 6>) -> SMatrix<T, 6, 3> {
         let zero = T::zero();
@@ -158,92 +139,39 @@ impl Joint<6, 3, 2, 1> for Cart {
         ])
     }
 
-    /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 3 slices of 6×3. Zero. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn twist_map_child_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 6>,
-    ) -> [SMatrix<T, 6, 3>; 3] {
-        [SMatrix::zeros(); 3]
-    }
-
-    /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
-    ///
-    /// 3×3. The identity. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 6>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
-    /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
-    ///
-    /// 3×3. The identity. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 6>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
     /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
-    ///
     /// 3 slices of 3×3. Independent of Q. Operations: none.
-    ///
     /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn velocity_map_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 6>,
-    ) -> [SMatrix<T, 3, 3>; 3] {
+    fn velocity_map_gradient<T: Scalar>(&self, _q: &SVector<T, 6>) -> [SMatrix<T, 3, 3>; 3] {
         let zero = T::zero();
         let half = T::from_f64(0.5);
         [
             from_rows([[zero, zero, zero], [zero, zero, half], [zero, -half, zero]]),
-            from_rows([[zero, zero, zero], [zero, zero, zero], [half, zero, zero]]),
-            from_rows([[zero, zero, zero], [-half, zero, zero], [zero, zero, zero]]),
+            rows_at([(2, [half, zero, zero])]),
+            rows_at([(1, [-half, zero, zero])]),
         ]
     }
 
     /// Σ_k γ_k v_k (17): stands on the left of (24).
-    ///
     /// 3×3. Independent of Q. Operations: none.
-    ///
     /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn gamma<T: Scalar>(
-        &self,
-        _q: &SVector<T, 6>,
-        v: &SVector<T, 3>,
-    ) -> SMatrix<T, 3, 3> {
+    fn gamma<T: Scalar>(&self, _q: &SVector<T, 6>, v: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
         let [v_turn, v_forward, v_sideways]: [T; 3] = (*v).into();
         let zero = T::zero();
-        from_rows([
-            [zero, -v_sideways, v_forward],
-            [zero, zero, -v_turn],
-            [zero, v_turn, zero],
-        ])
+        from_rows([[zero, -v_sideways, v_forward], [zero, zero, -v_turn], [zero, v_turn, zero]])
     }
 
     /// J22(Q, p) (28): stands on the right of (27).
-    ///
     /// 3×3. Independent of Q. Operations: none.
-    ///
     /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
     fn j22<T: Scalar>(&self, _q: &SVector<T, 6>, p: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
         let (p_forward, p_sideways) = (p[1], p[2]);
         let zero = T::zero();
-        from_rows([
-            [zero, -p_sideways, p_forward],
-            [p_sideways, zero, zero],
-            [-p_forward, zero, zero],
-        ])
+        from_rows([[zero, -p_sideways, p_forward], [p_sideways, zero, zero], [-p_forward, zero, zero]])
     }
 
     /// A(Q) with Aᵀ v = 0 (Definition 2).
-    ///
     /// 3×1. Independent of Q. Operations: none.
-    ///
     /// From line 14 `A = [0; 0; 1];`.
     fn constraint<T: Scalar>(&self, _q: &SVector<T, 6>) -> SMatrix<T, 3, 1> {
         let zero = T::zero();
@@ -252,9 +180,7 @@ impl Joint<6, 3, 2, 1> for Cart {
     }
 
     /// S̄(Q): speeds v̄ to v (Definition 2, (15)).
-    ///
     /// 3×2. Independent of Q. Operations: none.
-    ///
     /// From line 15 `S_bar = [1, 0; 0, 1; 0, 0];`.
     fn speed_basis<T: Scalar>(&self, _q: &SVector<T, 6>) -> SMatrix<T, 3, 2> {
         let zero = T::zero();
@@ -262,144 +188,36 @@ impl Joint<6, 3, 2, 1> for Cart {
         from_rows([[one, zero], [zero, one], [zero, zero]])
     }
 
-    /// ∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 3 slices of 3×2. Zero. Operations: none.
-    ///
-    /// From line 10 `basis`, line 12 `Phi`, line 15 `S_bar`.
-    fn speed_basis_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 6>,
-    ) -> [SMatrix<T, 3, 2>; 3] {
-        [SMatrix::zeros(); 3]
-    }
-
     /// Q̇(Q, v) (31): the rates of the stored scalars.
-    ///
     /// 6-vector. Operations: 2 additions, 8 multiplications (2 of each fused).
-    ///
     /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`.
-    fn configuration_rate<T: Scalar>(
-        &self,
-        q: &SVector<T, 6>,
-        v: &SVector<T, 3>,
-    ) -> SVector<T, 6> {
-        let [q11, q12, _, q21, q22, _]: [T; 6] = (*q).into();
-        let [v_turn, v_forward, v_sideways]: [T; 3] = (*v).into();
-        SVector::from([
-            q12 * v_turn,
-            -q11 * v_turn,
-            q11.mul_add(v_forward, q12 * v_sideways),
-            q22 * v_turn,
-            -q21 * v_turn,
-            q21.mul_add(v_forward, q22 * v_sideways),
-        ])
+    fn configuration_rate<T: Scalar>(&self, q: &SVector<T, 6>, v: &SVector<T, 3>) -> SVector<T, 6> {
+        se2::rate(q, v)
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
-    ///
     /// 6-vector. Operations: 11 additions, 20 multiplications (10 of each fused), 2 function calls.
-    ///
     /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
-    fn retract<T: Scalar>(
-        &self,
-        q: &SVector<T, 6>,
-        phi: &SVector<T, 3>,
-    ) -> SVector<T, 6> {
-        let [q11, q12, q13, q21, q22, q23]: [T; 6] = (*q).into();
-        let [phi_turn, phi_forward, phi_sideways]: [T; 3] = (*phi).into();
-        let one = T::one();
-        let theta_squared = phi_turn * phi_turn;
-        let c1 = theta_squared.stumpff(1);
-        let c2 = theta_squared.stumpff(2);
-        let phi_turn_c2 = phi_turn * c2;
-        let e11 = phi_turn_c2.mul_add(-phi_turn, one);
-        let phi_turn_c1 = phi_turn * c1;
-        let e12 = -phi_turn_c1;
-        let e13 = phi_forward * c1 - phi_turn_c2 * phi_sideways;
-        let e23 = phi_sideways.mul_add(c1, phi_turn_c2 * phi_forward);
-        SVector::from([
-            q11.mul_add(e11, q12 * phi_turn_c1),
-            q11.mul_add(e12, q12 * e11),
-            q11.mul_add(e13, q12.mul_add(e23, q13)),
-            q21.mul_add(e11, q22 * phi_turn_c1),
-            q21.mul_add(e12, q22 * e11),
-            q21.mul_add(e13, q22.mul_add(e23, q23)),
-        ])
+    fn retract<T: Scalar>(&self, q: &SVector<T, 6>, phi: &SVector<T, 3>) -> SVector<T, 6> {
+        se2::times_exp(q, phi)
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    ///
     /// 3-vector, rad, m, m. Operations: 9 additions, 15 multiplications (6 of each fused), 2 function calls.
-    ///
     /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
-    fn local<T: Scalar>(
-        &self,
-        q: &SVector<T, 6>,
-        target: &SVector<T, 6>,
-    ) -> SVector<T, 3> {
-        let [q11, q12, q13, q21, q22, q23]: [T; 6] = (*q).into();
-        let [q11_target, _, q13_target, q21_target, _, q23_target]: [T; 6] = (*target)
-            .into();
-        let half = T::from_f64(0.5);
-        let one = T::one();
-        let angle = q12
-            .mul_add(q11_target, q22 * q21_target)
-            .atan2(q11.mul_add(q11_target, q21 * q21_target));
-        let q13_minus_q13_target = q13 - q13_target;
-        let q23_minus_q23_target = q23 - q23_target;
-        let t1 = -q11.mul_add(q13_minus_q13_target, q21 * q23_minus_q23_target);
-        let t2 = -q12.mul_add(q13_minus_q13_target, q22 * q23_minus_q23_target);
-        let theta_squared = angle * angle;
-        let half_cotangent = theta_squared.mul_add(-theta_squared.dexp_inverse(0), one);
-        let half_angle = half * angle;
-        SVector::from([
-            angle,
-            t1.mul_add(half_cotangent, t2 * half_angle),
-            t2 * half_cotangent - t1 * half_angle,
-        ])
+    fn local<T: Scalar>(&self, q: &SVector<T, 6>, target: &SVector<T, 6>) -> SVector<T, 3> {
+        se2::log_between(q, target)
     }
 
     /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
-    ///
-    /// 3×3. Operations: 4 additions, 10 multiplications (3 of each fused), 2 function calls.
-    ///
+    /// 3×3. Operations: 3 additions, 8 multiplications, 2 function calls.
     /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
-    fn retract_differential<T: Scalar>(
-        &self,
-        _q: &SVector<T, 6>,
-        phi: &SVector<T, 3>,
-    ) -> SMatrix<T, 3, 3> {
-        let [phi_turn, phi_forward, phi_sideways]: [T; 3] = (*phi).into();
-        let zero = T::zero();
-        let one = T::one();
-        let ad_squared21 = phi_turn * phi_forward;
-        let phi_turn_squared = phi_turn * phi_turn;
-        let ad_squared22 = -phi_turn_squared;
-        let ad_squared31 = phi_turn * phi_sideways;
-        let ad_squared33 = -phi_turn_squared;
-        let c2 = phi_turn_squared.stumpff(2);
-        let c3 = phi_turn_squared.stumpff(3);
-        let phi_turn_c2 = phi_turn * c2;
-        from_rows([
-            [one, zero, zero],
-            [
-                ad_squared21 * c3 - phi_sideways * c2,
-                ad_squared22.mul_add(c3, one),
-                phi_turn_c2,
-            ],
-            [
-                phi_forward.mul_add(c2, ad_squared31 * c3),
-                -phi_turn_c2,
-                ad_squared33.mul_add(c3, one),
-            ],
-        ])
+    fn retract_differential<T: Scalar>(&self, _q: &SVector<T, 6>, phi: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
+        se2::differential(phi)
     }
 
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    ///
     /// 3-vector, rad/s, m/s, m/s. Operations: 6 additions, 11 multiplications (4 of each fused), 1 function call.
-    ///
     /// From line 9 `config`, line 10 `basis`, line 12 `Phi`.
     fn retract_differential_inverse<T: Scalar>(
         &self,
@@ -407,106 +225,31 @@ impl Joint<6, 3, 2, 1> for Cart {
         phi: &SVector<T, 3>,
         rate: &SVector<T, 3>,
     ) -> SVector<T, 3> {
-        let [phi_turn, phi_forward, phi_sideways]: [T; 3] = (*phi).into();
-        let [v_turn, v_forward, v_sideways]: [T; 3] = (*rate).into();
-        let half = T::from_f64(0.5);
-        let bracket2 = phi_sideways * v_turn - phi_turn * v_sideways;
-        let bracket3 = phi_turn * v_forward - phi_forward * v_turn;
-        let theta_squared = phi_turn * phi_turn;
-        let g = theta_squared.dexp_inverse(0);
-        let double_bracket2 = -phi_turn * bracket3;
-        let double_bracket3 = phi_turn * bracket2;
-        SVector::from([
-            v_turn,
-            half.mul_add(bracket2, g.mul_add(double_bracket2, v_forward)),
-            half.mul_add(bracket3, g.mul_add(double_bracket3, v_sideways)),
-        ])
+        se2::differential_inverse(phi, rate)
     }
 
     /// The configuration on the manifold that is nearest to `q`.
-    ///
     /// 6-vector. Operations: 3 additions, 6 multiplications (1 of each fused), 1 division, 1 function call.
-    ///
     /// From line 9 `config Q: SE2;`.
     fn project<T: Scalar>(&self, q: &SVector<T, 6>) -> SVector<T, 6> {
-        let [q11, q12, q13, q21, q22, q23]: [T; 6] = (*q).into();
-        let half = T::from_f64(0.5);
-        let one = T::one();
-        let cos = half * (q11 + q22);
-        let sin = half * (q21 - q12);
-        let norm = cos.mul_add(cos, sin * sin).sqrt();
-        let inverse_norm = one / norm;
-        let cos_inverse_norm = cos * inverse_norm;
-        let sin_inverse_norm = sin * inverse_norm;
-        SVector::from([
-            cos_inverse_norm,
-            -sin_inverse_norm,
-            q13,
-            sin_inverse_norm,
-            cos_inverse_norm,
-            q23,
-        ])
+        se2::nearest(q)
     }
 
     /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
-    ///
-    /// A scalar. Operations: 7 additions, 5 multiplications (5 of each fused), 1 function call.
-    ///
+    /// A scalar. Operations: 6 additions, 5 multiplications (3 of each fused), 1 function call.
     /// From line 9 `config Q: SE2;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 6>) -> T {
-        let [q11, q12, _, q21, q22, _]: [T; 6] = (*q).into();
-        let one = T::one();
-        let relations = [q22 - q11, q12 + q21, q11.mul_add(q11, q21.mul_add(q21, -one))];
-        let sum = relations
-            .into_iter()
-            .fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
-        sum.sqrt()
-    }
-
-    /// Least absolute value of the functions whose zeros the joint must stay away from.
-    ///
-    /// A scalar. Independent of Q. Operations: none.
-    fn singularity<T: Scalar>(&self, _q: &SVector<T, 6>) -> T {
-        ::hamel::finite::least_absolute([])
-    }
-
-    /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
-    ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Zero. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`, line 15 `S_bar`.
-    fn bias_acceleration<T: Scalar>(
-        &self,
-        _q: &SVector<T, 6>,
-        _speeds: &SVector<T, 2>,
-    ) -> SVector<T, 6> {
-        SVector::zeros()
-    }
-
-    /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
-    ///
-    /// 2-vector. Zero. Operations: none.
-    ///
-    /// From line 10 `basis`, line 11 `velocity`, line 12 `Phi`, line 13 `H`, line 15 `S_bar`.
-    fn bias_momentum<T: Scalar>(
-        &self,
-        _q: &SVector<T, 6>,
-        _speeds: &SVector<T, 2>,
-        _h: &SVector<T, 6>,
-    ) -> SVector<T, 2> {
-        SVector::zeros()
+        se2::residual_squared(q).sqrt()
     }
 }
-
-const PARAMETERS: [ParameterInfo; 0] = [];
 
 /// How a scene finds this joint by name.
 pub const ENTRY: JointEntry = JointEntry {
     name: "cart",
     summary: "Cart: a planar joint that rolls and turns, sideways velocity forbidden (Examples 3 and 6; nonholonomic).",
-    parameters: &PARAMETERS,
+    parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("cart", &PARAMETERS, values)?;
+        ::hamel::registry::check_parameters("cart", &[], values)?;
         Ok(::hamel::erased::erase(Cart))
     },
 };

@@ -6,6 +6,8 @@
 //! - Configuration: theta ∈ R1, z ∈ R1, stored as θ, z.
 //! - Freedoms: `theta` (ϕ₁, rad), `z` (ϕ₂, m).
 //! - Velocity v: read as the rates of the local coordinates.
+//! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹, the projection.
+//! - Zero, and not written: ∂X^c/∂ϕ, ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, the residual, c, the dual of c.
 //!
 //! ```text
 //!     ⎡cos θ  −sin θ  0  0⎤
@@ -35,13 +37,13 @@
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) (certificate)
 //! - `fibres`: one pose has one Q up to full turns of theta (certificate)
 
-use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo};
+use ::hamel::registry::JointEntry;
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(5);
+const _: () = ::hamel::joint::assert_kernel_interface(6);
 
 /// Cylindrical joint: a turn about and a slide along the common z axis of both frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,50 +55,20 @@ impl Joint<2, 2, 2, 0> for Cylindrical {
     const FREEDOMS: [&'static str; 2] = ["theta", "z"];
     const SPEEDS: [&'static str; 2] = ["theta", "z"];
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Declared;
-    const STRUCTURES: Structures = Structures {
-        twist_map: Structure::Constant,
-        twist_map_child: Structure::Constant,
-        twist_map_child_gradient: Structure::Zero,
-        velocity_map: Structure::Identity,
-        velocity_map_gradient: Structure::Zero,
-        gamma: Structure::Zero,
-        speed_basis: Structure::Identity,
-        speed_basis_gradient: Structure::Zero,
-        retract_differential: Structure::Identity,
-        bias_acceleration: Structure::Zero,
-        bias_momentum: Structure::Zero,
-        speed_map: Structure::Constant,
-    };
-    const PATTERNS: Patterns<2, 2> = Patterns::new(
-        ["xx0", "xx0", "001"],
-        "00x",
-        ["00", "00", "10", "00", "00", "01"],
-        ["10", "01"],
-        &[],
-        &[],
-    );
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
-        [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
-    ];
+    const STRUCTURES: Structures = Structures::TRIVIAL;
+    const PATTERNS: Patterns<2, 2> = Patterns::new(["xx0", "xx0", "001"], "00x", ["00", "00", "10", "00", "00", "01"]);
+    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
-    fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        [].into_iter()
-    }
-
     /// The home configuration.
-    ///
     /// 2-vector. Zero. Operations: none.
-    ///
     /// From line 7 `config theta: R1, z: R1;`.
     fn home<T: Scalar>(&self) -> SVector<T, 2> {
         SVector::zeros()
     }
 
     /// H(Q): child coordinates to parent coordinates.
-    ///
     /// Rotation matrix and translation in m. Operations: 1 function call.
-    ///
     /// From line 8 `H = rot_z(theta) * trans_z(z);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 2>) -> Pose<T> {
         let [theta, z]: [T; 2] = (*q).into();
@@ -104,275 +76,58 @@ impl Joint<2, 2, 2, 0> for Cylindrical {
         let one = T::one();
         let (sin_theta, cos_theta) = theta.sin_cos();
         Pose {
-            rotation: from_rows([
-                [cos_theta, -sin_theta, zero],
-                [sin_theta, cos_theta, zero],
-                [zero, zero, one],
-            ]),
+            rotation: from_rows([[cos_theta, -sin_theta, zero], [sin_theta, cos_theta, zero], [zero, zero, one]]),
             translation: SVector::from([zero, zero, z]),
         }
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    ///
     /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s. Independent of Q. Operations: none.
-    ///
     /// From line 8 `H = rot_z(theta) * trans_z(z);`.
     fn twist_map<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 6, 2> {
         let zero = T::zero();
         let one = T::one();
-        from_rows([
-            [zero, zero],
-            [zero, zero],
-            [one, zero],
-            [zero, zero],
-            [zero, zero],
-            [zero, one],
-        ])
+        from_rows([[zero, zero], [zero, zero], [one, zero], [zero, zero], [zero, zero], [zero, one]])
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    ///
     /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s. Independent of Q. Operations: none.
-    ///
     /// From line 8 `H = rot_z(theta) * trans_z(z);`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 6, 2> {
         let zero = T::zero();
         let one = T::one();
-        from_rows([
-            [zero, zero],
-            [zero, zero],
-            [one, zero],
-            [zero, zero],
-            [zero, zero],
-            [zero, one],
-        ])
-    }
-
-    /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 2 slices of 6×2. Zero. Operations: none.
-    ///
-    /// From line 8 `H = rot_z(theta) * trans_z(z);`.
-    fn twist_map_child_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-    ) -> [SMatrix<T, 6, 2>; 2] {
-        [SMatrix::zeros(); 2]
-    }
-
-    /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
-    ///
-    /// 2×2. The identity. Operations: none.
-    ///
-    /// From line 8 `H = rot_z(theta) * trans_z(z);`.
-    fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 2, 2> {
-        SMatrix::identity()
-    }
-
-    /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
-    ///
-    /// 2×2. The identity. Operations: none.
-    ///
-    /// From line 8 `H = rot_z(theta) * trans_z(z);`.
-    fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 2, 2> {
-        SMatrix::identity()
-    }
-
-    /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
-    ///
-    /// 2 slices of 2×2. Zero. Operations: none.
-    ///
-    /// From line 8 `H = rot_z(theta) * trans_z(z);`.
-    fn velocity_map_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-    ) -> [SMatrix<T, 2, 2>; 2] {
-        [SMatrix::zeros(); 2]
-    }
-
-    /// Σ_k γ_k v_k (17): stands on the left of (24).
-    ///
-    /// 2×2. Zero. Operations: none.
-    ///
-    /// From line 8 `H = rot_z(theta) * trans_z(z);`.
-    fn gamma<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _v: &SVector<T, 2>,
-    ) -> SMatrix<T, 2, 2> {
-        SMatrix::zeros()
-    }
-
-    /// J22(Q, p) (28): stands on the right of (27).
-    ///
-    /// 2×2. Zero. Operations: none.
-    ///
-    /// From line 8 `H = rot_z(theta) * trans_z(z);`.
-    fn j22<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _p: &SVector<T, 2>,
-    ) -> SMatrix<T, 2, 2> {
-        SMatrix::zeros()
-    }
-
-    /// A(Q) with Aᵀ v = 0 (Definition 2).
-    ///
-    /// 2×0. Zero. Operations: none.
-    fn constraint<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 2, 0> {
-        SMatrix::zeros()
-    }
-
-    /// S̄(Q): speeds v̄ to v (Definition 2, (15)).
-    ///
-    /// 2×2. The identity. Operations: none.
-    fn speed_basis<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 2, 2> {
-        SMatrix::identity()
-    }
-
-    /// ∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 2 slices of 2×2. Zero. Operations: none.
-    fn speed_basis_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-    ) -> [SMatrix<T, 2, 2>; 2] {
-        [SMatrix::zeros(); 2]
+        from_rows([[zero, zero], [zero, zero], [one, zero], [zero, zero], [zero, zero], [zero, one]])
     }
 
     /// Q̇(Q, v) (31): the rates of the stored scalars.
-    ///
     /// 2-vector. Independent of Q. Operations: none.
-    ///
     /// From line 8 `H = rot_z(theta) * trans_z(z);`.
-    fn configuration_rate<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        v: &SVector<T, 2>,
-    ) -> SVector<T, 2> {
+    fn configuration_rate<T: Scalar>(&self, _q: &SVector<T, 2>, v: &SVector<T, 2>) -> SVector<T, 2> {
         *v
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
-    ///
     /// 2-vector. Operations: 2 additions.
-    ///
     /// From line 7 `config theta: R1, z: R1;`.
-    fn retract<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        phi: &SVector<T, 2>,
-    ) -> SVector<T, 2> {
-        let [theta, z]: [T; 2] = (*q).into();
-        let [phi_theta, phi_z]: [T; 2] = (*phi).into();
-        SVector::from([theta + phi_theta, z + phi_z])
+    fn retract<T: Scalar>(&self, q: &SVector<T, 2>, phi: &SVector<T, 2>) -> SVector<T, 2> {
+        q + phi
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    ///
     /// 2-vector, rad, m. Operations: 2 additions.
-    ///
     /// From line 7 `config theta: R1, z: R1;`.
-    fn local<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        target: &SVector<T, 2>,
-    ) -> SVector<T, 2> {
-        let [theta, z]: [T; 2] = (*q).into();
-        let [theta_target, z_target]: [T; 2] = (*target).into();
-        SVector::from([theta_target - theta, z_target - z])
-    }
-
-    /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
-    ///
-    /// 2×2. The identity. Operations: none.
-    ///
-    /// From line 7 `config theta: R1, z: R1;`.
-    fn retract_differential<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _phi: &SVector<T, 2>,
-    ) -> SMatrix<T, 2, 2> {
-        SMatrix::identity()
-    }
-
-    /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    ///
-    /// 2-vector, rad/s, m/s. The identity. Operations: none.
-    ///
-    /// From line 7 `config theta: R1, z: R1;`.
-    fn retract_differential_inverse<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _phi: &SVector<T, 2>,
-        rate: &SVector<T, 2>,
-    ) -> SVector<T, 2> {
-        *rate
-    }
-
-    /// The configuration on the manifold that is nearest to `q`.
-    ///
-    /// 2-vector. The identity. Operations: none.
-    ///
-    /// From line 7 `config theta: R1, z: R1;`.
-    fn project<T: Scalar>(&self, q: &SVector<T, 2>) -> SVector<T, 2> {
-        *q
-    }
-
-    /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
-    ///
-    /// A scalar. Zero. Operations: none.
-    ///
-    /// From line 7 `config theta: R1, z: R1;`.
-    fn residual<T: Scalar>(&self, _q: &SVector<T, 2>) -> T {
-        T::zero()
-    }
-
-    /// Least absolute value of the functions whose zeros the joint must stay away from.
-    ///
-    /// A scalar. Independent of Q. Operations: none.
-    fn singularity<T: Scalar>(&self, _q: &SVector<T, 2>) -> T {
-        ::hamel::finite::least_absolute([])
-    }
-
-    /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
-    ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Zero. Operations: none.
-    ///
-    /// From line 8 `H = rot_z(theta) * trans_z(z);`.
-    fn bias_acceleration<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _speeds: &SVector<T, 2>,
-    ) -> SVector<T, 6> {
-        SVector::zeros()
-    }
-
-    /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
-    ///
-    /// 2-vector. Zero. Operations: none.
-    ///
-    /// From line 8 `H = rot_z(theta) * trans_z(z);`.
-    fn bias_momentum<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _speeds: &SVector<T, 2>,
-        _h: &SVector<T, 6>,
-    ) -> SVector<T, 2> {
-        SVector::zeros()
+    fn local<T: Scalar>(&self, q: &SVector<T, 2>, target: &SVector<T, 2>) -> SVector<T, 2> {
+        target - q
     }
 }
-
-const PARAMETERS: [ParameterInfo; 0] = [];
 
 /// How a scene finds this joint by name.
 pub const ENTRY: JointEntry = JointEntry {
     name: "cylindrical",
     summary: "Cylindrical joint: a turn about and a slide along the common z axis of both frames.",
-    parameters: &PARAMETERS,
+    parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("cylindrical", &PARAMETERS, values)?;
+        ::hamel::registry::check_parameters("cylindrical", &[], values)?;
         Ok(::hamel::erased::erase(Cylindrical))
     },
 };

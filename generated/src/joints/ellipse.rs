@@ -7,19 +7,33 @@
 //! - Configuration: q ∈ S1, stored as q.c, q.s.
 //! - Freedoms: `angle` (ϕ, rad).
 //! - Velocity v: read in the axes of the child.
+//! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹.
+//! - Zero, and not written: ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ.
+//! - By products of other kernels, and not written: c, the dual of c.
 //!
 //! ```text
-//!     ⎡−a q.s / √(b² (q.c)² + a² (q.s)²)  −b q.c / √(b² (q.c)² + a² (q.s)²)  0  a q.c⎤
-//! H = ⎢ b q.c / √(b² (q.c)² + a² (q.s)²)  −a q.s / √(b² (q.c)² + a² (q.s)²)  0  b q.s⎥
-//!     ⎢                                0                                  0  1      0⎥
-//!     ⎣                                0                                  0  0      1⎦
+//!     ⎡c  −s  0  a q.c⎤
+//! H = ⎢s   c  0  b q.s⎥
+//!     ⎢0   0  1      0⎥
+//!     ⎣0   0  0      1⎦
 //!
-//!     ⎡                                               0⎤
-//!     ⎢                                               0⎥
-//! X = ⎢           a b / √(a² (1 − (q.c)²) + b² (q.c)²)²⎥
-//!     ⎢a q.s (b² / √(a² (1 − (q.c)²) + b² (q.c)²)² − 1)⎥
-//!     ⎢b q.c (1 − a² / √(a² (1 − (q.c)²) + b² (q.c)²)²)⎥
-//!     ⎣                                               0⎦
+//!     ⎡                                          0⎤
+//!     ⎢                                          0⎥
+//! X = ⎢                          c ∂s/∂ϕ − s ∂c/∂ϕ⎥
+//!     ⎢tangent₁ − ∂tangent₂/∂ϕ (c ∂s/∂ϕ − s ∂c/∂ϕ)⎥
+//!     ⎢tangent₂ + ∂tangent₁/∂ϕ (c ∂s/∂ϕ − s ∂c/∂ϕ)⎥
+//!     ⎣                                          0⎦
+//!
+//! tangent₁ = −a q.s
+//! tangent₂ = b q.c
+//! length = √(tangent₁² + tangent₂²)
+//! c = tangent₁ / length
+//! s = tangent₂ / length
+//! ∂tangent₁/∂ϕ = −a q.c
+//! ∂tangent₂/∂ϕ = −b q.s
+//! ∂length/∂ϕ = c ∂tangent₁/∂ϕ + s ∂tangent₂/∂ϕ
+//! ∂c/∂ϕ = (∂tangent₁/∂ϕ − c ∂length/∂ϕ) / length
+//! ∂s/∂ϕ = (∂tangent₂/∂ϕ − s ∂length/∂ϕ) / length
 //!
 //! S(Q, ϕ) = I
 //! ```
@@ -37,13 +51,16 @@
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::group::s1;
+use ::hamel::joint::{
+    Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
+};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, Limit, ParameterInfo};
-use ::hamel::scalar::Scalar;
+use ::hamel::registry::{JointEntry, ParameterInfo};
+use ::hamel::scalar::{Scalar, dot};
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(5);
+const _: () = ::hamel::joint::assert_kernel_interface(6);
 
 /// Joint on a curve: the child's origin moves on an ellipse in the plane z = 0 of the parent, its x axis along the tangent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,30 +85,17 @@ impl Joint<2, 1, 1, 0> for Ellipse {
     const SPEEDS: [&'static str; 1] = ["angle"];
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Child;
     const STRUCTURES: Structures = Structures {
-        twist_map: Structure::General,
-        twist_map_child: Structure::General,
-        twist_map_child_gradient: Structure::General,
         velocity_map: Structure::Identity,
         velocity_map_gradient: Structure::Zero,
         gamma: Structure::Zero,
         speed_basis: Structure::Identity,
         speed_basis_gradient: Structure::Zero,
         retract_differential: Structure::Identity,
-        bias_acceleration: Structure::General,
-        bias_momentum: Structure::General,
-        speed_map: Structure::General,
+        ..Structures::GENERAL
     };
-    const PATTERNS: Patterns<1, 1> = Patterns::new(
-        ["xx0", "xx0", "001"],
-        "xx0",
-        ["0", "0", "x", "x", "0", "0"],
-        ["1"],
-        &[(0, ["0", "0", "x", "x", "0", "0"])],
-        &[],
-    );
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
-        [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
-    ];
+    const PATTERNS: Patterns<1, 1> = Patterns::new(["xx0", "xx0", "001"], "xx0", ["0", "0", "x", "x", "0", "0"])
+    .twist_map_child_gradient(&[(0, ["0", "0", "x", "x", "0", "0"])]);
+    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
@@ -99,9 +103,7 @@ impl Joint<2, 1, 1, 0> for Ellipse {
     }
 
     /// The home configuration.
-    ///
     /// 2-vector. Independent of Q. Operations: none.
-    ///
     /// From line 13 `config q: S1;`.
     fn home<T: Scalar>(&self) -> SVector<T, 2> {
         let zero = T::zero();
@@ -110,9 +112,7 @@ impl Joint<2, 1, 1, 0> for Ellipse {
     }
 
     /// H(Q): child coordinates to parent coordinates.
-    ///
-    /// Rotation matrix and translation in m. Operations: 1 addition, 6 multiplications (1 of each fused), 3 divisions, 1 function call.
-    ///
+    /// Rotation matrix and translation in m. Operations: 1 addition, 6 multiplications (1 of each fused), 2 divisions, 1 function call.
     /// From line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 2>) -> Pose<T> {
         let a = T::from_f64(self.a);
@@ -120,24 +120,19 @@ impl Joint<2, 1, 1, 0> for Ellipse {
         let [q_c, q_s]: [T; 2] = (*q).into();
         let zero = T::zero();
         let one = T::one();
-        let a_q_s = a * q_s;
-        let b_q_c = b * q_c;
-        let value_of_b_q_c_a_q_s = b_q_c.mul_add(b_q_c, a_q_s * a_q_s).sqrt();
-        let b_q_c_over_value_of_b_q_c_a_q_s = b_q_c / value_of_b_q_c_a_q_s;
+        let tangent1 = -a * q_s;
+        let tangent2 = b * q_c;
+        let length = dot([tangent1, tangent2], [tangent1, tangent2]).sqrt();
+        let c = tangent1 / length;
+        let s = tangent2 / length;
         Pose {
-            rotation: from_rows([
-                [-a_q_s / value_of_b_q_c_a_q_s, -b_q_c_over_value_of_b_q_c_a_q_s, zero],
-                [b_q_c_over_value_of_b_q_c_a_q_s, -a_q_s / value_of_b_q_c_a_q_s, zero],
-                [zero, zero, one],
-            ]),
+            rotation: from_rows([[c, -s, zero], [s, c, zero], [zero, zero, one]]),
             translation: SVector::from([a * q_c, b * q_s, zero]),
         }
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    ///
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 4 additions, 14 multiplications (3 of each fused), 1 division, 1 function call.
-    ///
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 7 additions, 18 multiplications (6 of each fused), 1 division, 1 function call.
     /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 2>) -> SMatrix<T, 6, 1> {
         let a = T::from_f64(self.a);
@@ -145,28 +140,30 @@ impl Joint<2, 1, 1, 0> for Ellipse {
         let [q_c, q_s]: [T; 2] = (*q).into();
         let zero = T::zero();
         let one = T::one();
-        let a_squared = a * a;
-        let q_c_squared = q_c * q_c;
-        let b_squared = b * b;
-        let value_of_a_squared_q_c_squared = a_squared
-            .mul_add(one - q_c_squared, b_squared * q_c_squared)
-            .sqrt();
-        let quotient_of = one
-            / (value_of_a_squared_q_c_squared * value_of_a_squared_q_c_squared);
+        let tangent1 = -a * q_s;
+        let tangent2 = b * q_c;
+        let length = dot([tangent1, tangent2], [tangent1, tangent2]).sqrt();
+        let inverse_length = one / length;
+        let c = tangent1 * inverse_length;
+        let s = tangent2 * inverse_length;
+        let d_tangent1_d_angle = -a * q_c;
+        let d_tangent2_d_angle = -b * q_s;
+        let d_length_d_angle = dot([c, s], [d_tangent1_d_angle, d_tangent2_d_angle]);
+        let d_c_d_angle = c.mul_add(-d_length_d_angle, d_tangent1_d_angle) * inverse_length;
+        let d_s_d_angle = s.mul_add(-d_length_d_angle, d_tangent2_d_angle) * inverse_length;
+        let t1 = c * d_s_d_angle - s * d_c_d_angle;
         from_rows([
             [zero],
             [zero],
-            [a * b * quotient_of],
-            [a * q_s * b_squared.mul_add(quotient_of, -one)],
-            [b * q_c * a_squared.mul_add(-quotient_of, one)],
+            [t1],
+            [d_tangent2_d_angle.mul_add(-t1, tangent1)],
+            [d_tangent1_d_angle.mul_add(t1, tangent2)],
             [zero],
         ])
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    ///
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 3 additions, 9 multiplications (2 of each fused), 2 divisions, 2 function calls.
-    ///
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 3 additions, 13 multiplications (2 of each fused), 1 division, 1 function call.
     /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 2>) -> SMatrix<T, 6, 1> {
         let a = T::from_f64(self.a);
@@ -174,376 +171,76 @@ impl Joint<2, 1, 1, 0> for Ellipse {
         let [q_c, q_s]: [T; 2] = (*q).into();
         let zero = T::zero();
         let one = T::one();
-        let a_squared = a * a;
-        let q_c_squared = q_c * q_c;
-        let b_squared_q_c_squared = b * b * q_c_squared;
-        let value_of_a_squared_q_c_squared = a_squared
-            .mul_add(one - q_c_squared, b_squared_q_c_squared)
-            .sqrt();
-        let sum_of_b_squared_q_c_squared_q_s = (a_squared * q_s)
-            .mul_add(q_s, b_squared_q_c_squared);
+        let tangent1 = -a * q_s;
+        let tangent2 = b * q_c;
+        let length = dot([tangent1, tangent2], [tangent1, tangent2]).sqrt();
+        let inverse_length = one / length;
+        let c = tangent1 * inverse_length;
+        let s = tangent2 * inverse_length;
         from_rows([
             [zero],
             [zero],
-            [a * b / (value_of_a_squared_q_c_squared * value_of_a_squared_q_c_squared)],
-            [sum_of_b_squared_q_c_squared_q_s / sum_of_b_squared_q_c_squared_q_s.sqrt()],
+            [(a * q_c * s - b * q_s * c) * inverse_length],
+            [dot([tangent1, tangent2], [c, s])],
             [zero],
             [zero],
         ])
     }
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 1 slices of 6×1. Operations: 4 additions, 18 multiplications (3 of each fused), 3 divisions, 2 function calls.
-    ///
+    /// 1 slices of 6×1. Operations: 2 additions, 14 multiplications (1 of each fused), 2 divisions, 1 function call.
     /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
-    fn twist_map_child_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-    ) -> [SMatrix<T, 6, 1>; 1] {
+    fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, 2>) -> [SMatrix<T, 6, 1>; 1] {
         let a = T::from_f64(self.a);
         let b = T::from_f64(self.b);
         let [q_c, q_s]: [T; 2] = (*q).into();
-        let zero = T::zero();
         let two = T::from_f64(2.0);
         let a_squared = a * a;
         let b_squared = b * b;
-        let q_c_a_squared_minus_b_squared = q_c * (a_squared - b_squared);
-        let q_c_a_squared_minus_b_squared_q_s = q_c_a_squared_minus_b_squared * q_s;
-        let value_of_a_squared_q_c = q_c_a_squared_minus_b_squared
-            .mul_add(-q_c, a_squared)
-            .sqrt();
-        let sum_of_b_squared_q_c_a_squared_q_s = (b_squared * q_c)
-            .mul_add(q_c, a_squared * q_s * q_s);
-        let value_of = sum_of_b_squared_q_c_a_squared_q_s.sqrt();
-        [
-            from_rows([
-                [zero],
-                [zero],
-                [
-                    -two * a * b * q_c_a_squared_minus_b_squared_q_s
-                        / (value_of_a_squared_q_c * value_of_a_squared_q_c
-                            * value_of_a_squared_q_c * value_of_a_squared_q_c),
-                ],
-                [
-                    two
-                        .mul_add(
-                            q_c_a_squared_minus_b_squared_q_s,
-                            -q_c_a_squared_minus_b_squared_q_s
-                                * sum_of_b_squared_q_c_a_squared_q_s / (value_of * value_of),
-                        ) / value_of,
-                ],
-                [zero],
-                [zero],
-            ]),
-        ]
-    }
-
-    /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
-    ///
-    /// 1×1. The identity. Operations: none.
-    ///
-    /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
-    fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 1, 1> {
-        SMatrix::identity()
-    }
-
-    /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
-    ///
-    /// 1×1. The identity. Operations: none.
-    ///
-    /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
-    fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 1, 1> {
-        SMatrix::identity()
-    }
-
-    /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
-    ///
-    /// 1 slices of 1×1. Zero. Operations: none.
-    ///
-    /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
-    fn velocity_map_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-    ) -> [SMatrix<T, 1, 1>; 1] {
-        [SMatrix::zeros(); 1]
-    }
-
-    /// Σ_k γ_k v_k (17): stands on the left of (24).
-    ///
-    /// 1×1. Zero. Operations: none.
-    ///
-    /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
-    fn gamma<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _v: &SVector<T, 1>,
-    ) -> SMatrix<T, 1, 1> {
-        SMatrix::zeros()
-    }
-
-    /// J22(Q, p) (28): stands on the right of (27).
-    ///
-    /// 1×1. Zero. Operations: none.
-    ///
-    /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
-    fn j22<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _p: &SVector<T, 1>,
-    ) -> SMatrix<T, 1, 1> {
-        SMatrix::zeros()
-    }
-
-    /// A(Q) with Aᵀ v = 0 (Definition 2).
-    ///
-    /// 1×0. Zero. Operations: none.
-    fn constraint<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 1, 0> {
-        SMatrix::zeros()
-    }
-
-    /// S̄(Q): speeds v̄ to v (Definition 2, (15)).
-    ///
-    /// 1×1. The identity. Operations: none.
-    fn speed_basis<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 1, 1> {
-        SMatrix::identity()
-    }
-
-    /// ∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 1 slices of 1×1. Zero. Operations: none.
-    fn speed_basis_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-    ) -> [SMatrix<T, 1, 1>; 1] {
-        [SMatrix::zeros(); 1]
+        let t1 = q_c * q_s * (a_squared - b_squared);
+        let t2 = dot([b_squared * q_c, a_squared * q_s], [q_c, q_s]).sqrt();
+        [rows_at([(2, [-a * b * t1 * two / (t2 * t2 * t2 * t2)]), (3, [t1 / t2])])]
     }
 
     /// Q̇(Q, v) (31): the rates of the stored scalars.
-    ///
     /// 2-vector. Operations: 2 multiplications.
-    ///
     /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
-    fn configuration_rate<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        v: &SVector<T, 1>,
-    ) -> SVector<T, 2> {
-        let [q_c, q_s]: [T; 2] = (*q).into();
-        let v_angle = v[0];
-        SVector::from([-q_s * v_angle, q_c * v_angle])
+    fn configuration_rate<T: Scalar>(&self, q: &SVector<T, 2>, v: &SVector<T, 1>) -> SVector<T, 2> {
+        s1::rate(q, v)
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
-    ///
-    /// 2-vector. Operations: 2 additions, 6 multiplications (1 of each fused), 2 function calls.
-    ///
+    /// 2-vector. Operations: 2 additions, 4 multiplications, 1 function call.
     /// From line 13 `config`, line 14 `basis`.
-    fn retract<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        phi: &SVector<T, 1>,
-    ) -> SVector<T, 2> {
-        let [q_c, q_s]: [T; 2] = (*q).into();
-        let phi_angle = phi[0];
-        let theta_squared = phi_angle * phi_angle;
-        let c0 = theta_squared.stumpff(0);
-        let c1 = theta_squared.stumpff(1);
-        let phi_angle_c1 = phi_angle * c1;
-        SVector::from([
-            q_c * c0 - q_s * phi_angle_c1,
-            q_c.mul_add(phi_angle_c1, q_s * c0),
-        ])
+    fn retract<T: Scalar>(&self, q: &SVector<T, 2>, phi: &SVector<T, 1>) -> SVector<T, 2> {
+        s1::times_exp(q, phi)
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    ///
     /// 1-vector, rad. Operations: 2 additions, 4 multiplications (1 of each fused), 1 function call.
-    ///
     /// From line 13 `config`, line 14 `basis`.
-    fn local<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        target: &SVector<T, 2>,
-    ) -> SVector<T, 1> {
-        let [q_c, q_s]: [T; 2] = (*q).into();
-        let [q_c_target, q_s_target]: [T; 2] = (*target).into();
-        let angle = (q_c * q_s_target - q_s * q_c_target)
-            .atan2(q_c.mul_add(q_c_target, q_s * q_s_target));
-        SVector::from([angle])
-    }
-
-    /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
-    ///
-    /// 1×1. The identity. Operations: none.
-    ///
-    /// From line 13 `config`, line 14 `basis`.
-    fn retract_differential<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _phi: &SVector<T, 1>,
-    ) -> SMatrix<T, 1, 1> {
-        SMatrix::identity()
-    }
-
-    /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    ///
-    /// 1-vector, rad/s. The identity. Operations: none.
-    ///
-    /// From line 13 `config`, line 14 `basis`.
-    fn retract_differential_inverse<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _phi: &SVector<T, 1>,
-        rate: &SVector<T, 1>,
-    ) -> SVector<T, 1> {
-        *rate
+    fn local<T: Scalar>(&self, q: &SVector<T, 2>, target: &SVector<T, 2>) -> SVector<T, 1> {
+        s1::log_between(q, target)
     }
 
     /// The configuration on the manifold that is nearest to `q`.
-    ///
     /// 2-vector. Operations: 1 addition, 4 multiplications (1 of each fused), 1 division, 1 function call.
-    ///
     /// From line 13 `config q: S1;`.
     fn project<T: Scalar>(&self, q: &SVector<T, 2>) -> SVector<T, 2> {
-        let [q_c, q_s]: [T; 2] = (*q).into();
-        let one = T::one();
-        let norm = q_c.mul_add(q_c, q_s * q_s).sqrt();
-        let inverse_norm = one / norm;
-        SVector::from([q_c * inverse_norm, q_s * inverse_norm])
+        s1::nearest(q)
     }
 
     /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
-    ///
-    /// A scalar. Operations: 3 additions, 3 multiplications (3 of each fused), 1 function call.
-    ///
+    /// A scalar. Operations: 2 additions, 3 multiplications (1 of each fused), 1 function call.
     /// From line 13 `config q: S1;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 2>) -> T {
-        let [q_c, q_s]: [T; 2] = (*q).into();
-        let one = T::one();
-        let relations = [q_c.mul_add(q_c, q_s.mul_add(q_s, -one))];
-        let sum = relations
-            .into_iter()
-            .fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
-        sum.sqrt()
-    }
-
-    /// Least absolute value of the functions whose zeros the joint must stay away from.
-    ///
-    /// A scalar. Independent of Q. Operations: none.
-    fn singularity<T: Scalar>(&self, _q: &SVector<T, 2>) -> T {
-        ::hamel::finite::least_absolute([])
-    }
-
-    /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
-    ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 4 additions, 21 multiplications (3 of each fused), 3 divisions, 2 function calls.
-    ///
-    /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
-    fn bias_acceleration<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        speeds: &SVector<T, 1>,
-    ) -> SVector<T, 6> {
-        let a = T::from_f64(self.a);
-        let b = T::from_f64(self.b);
-        let [q_c, q_s]: [T; 2] = (*q).into();
-        let speed_angle = speeds[0];
-        let zero = T::zero();
-        let two = T::from_f64(2.0);
-        let speed_angle_squared = speed_angle * speed_angle;
-        let a_squared = a * a;
-        let b_squared = b * b;
-        let q_c_a_squared_minus_b_squared = q_c * (a_squared - b_squared);
-        let q_c_a_squared_minus_b_squared_q_s = q_c_a_squared_minus_b_squared * q_s;
-        let value_of_a_squared_q_c = q_c_a_squared_minus_b_squared
-            .mul_add(-q_c, a_squared)
-            .sqrt();
-        let sum_of_b_squared_q_c_a_squared_q_s = (b_squared * q_c)
-            .mul_add(q_c, a_squared * q_s * q_s);
-        let value_of = sum_of_b_squared_q_c_a_squared_q_s.sqrt();
-        SVector::from([
-            zero,
-            zero,
-            -two * a * b * speed_angle_squared * q_c_a_squared_minus_b_squared_q_s
-                / (value_of_a_squared_q_c * value_of_a_squared_q_c
-                    * value_of_a_squared_q_c * value_of_a_squared_q_c),
-            speed_angle_squared
-                * two
-                    .mul_add(
-                        q_c_a_squared_minus_b_squared_q_s,
-                        -q_c_a_squared_minus_b_squared_q_s
-                            * sum_of_b_squared_q_c_a_squared_q_s / (value_of * value_of),
-                    ) / value_of,
-            zero,
-            zero,
-        ])
-    }
-
-    /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
-    ///
-    /// 1-vector. Operations: 5 additions, 21 multiplications (3 of each fused), 3 divisions, 2 function calls.
-    ///
-    /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
-    fn bias_momentum<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        speeds: &SVector<T, 1>,
-        h: &SVector<T, 6>,
-    ) -> SVector<T, 1> {
-        let a = T::from_f64(self.a);
-        let b = T::from_f64(self.b);
-        let [q_c, q_s]: [T; 2] = (*q).into();
-        let speed_angle = speeds[0];
-        let (h3, h4) = (h[2], h[3]);
-        let two = T::from_f64(2.0);
-        let a_squared = a * a;
-        let b_squared = b * b;
-        let q_c_a_squared_minus_b_squared = q_c * (a_squared - b_squared);
-        let q_c_a_squared_minus_b_squared_q_s = q_c_a_squared_minus_b_squared * q_s;
-        let sum_of_b_squared_q_c_a_squared_q_s = (b_squared * q_c)
-            .mul_add(q_c, a_squared * q_s * q_s);
-        let value_of = sum_of_b_squared_q_c_a_squared_q_s.sqrt();
-        let value_of_a_squared_q_c = q_c_a_squared_minus_b_squared
-            .mul_add(-q_c, a_squared)
-            .sqrt();
-        SVector::from([
-            speed_angle
-                * (h4
-                    * two
-                        .mul_add(
-                            q_c_a_squared_minus_b_squared_q_s,
-                            -q_c_a_squared_minus_b_squared_q_s
-                                * sum_of_b_squared_q_c_a_squared_q_s / (value_of * value_of),
-                        ) / value_of
-                    - two * a * b * h3 * q_c_a_squared_minus_b_squared_q_s
-                        / (value_of_a_squared_q_c * value_of_a_squared_q_c
-                            * value_of_a_squared_q_c * value_of_a_squared_q_c)),
-        ])
+        s1::residual_squared(q).sqrt()
     }
 }
 
 const PARAMETERS: [ParameterInfo; 2] = [
-    ParameterInfo {
-        name: "a",
-        unit: "m",
-        description: "Half axis along the parent's x.",
-        lower: Some(Limit {
-            value: 0.0,
-            included: false,
-        }),
-        upper: None,
-    },
-    ParameterInfo {
-        name: "b",
-        unit: "m",
-        description: "Half axis along the parent's y.",
-        lower: Some(Limit {
-            value: 0.0,
-            included: false,
-        }),
-        upper: None,
-    },
+    ParameterInfo::new("a", "m", "Half axis along the parent's x.").above(0.0),
+    ParameterInfo::new("b", "m", "Half axis along the parent's y.").above(0.0),
 ];
 
 /// How a scene finds this joint by name.
@@ -552,11 +249,7 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Joint on a curve: the child's origin moves on an ellipse in the plane z = 0 of the parent, its x axis along the tangent.",
     parameters: &PARAMETERS,
     build: |values| {
-        let [a, b] = ::hamel::registry::check_parameters(
-            "ellipse",
-            &PARAMETERS,
-            values,
-        )?;
+        let [a, b] = ::hamel::registry::check_parameters("ellipse", &PARAMETERS, values)?;
         Ok(::hamel::erased::erase(Ellipse::new(a, b)))
     },
 };

@@ -8,43 +8,26 @@
 //! - Configuration: Q ∈ SO3, stored as Q₁₁, Q₁₂, Q₁₃, Q₂₁, Q₂₂, Q₂₃, Q₃₁, Q₃₂, Q₃₃.
 //! - Freedoms: `tilt_x` (ϕ₁, rad), `tilt_y` (ϕ₂, rad), `spin` (ϕ₃, rad).
 //! - Velocity v: read in the axes of the child.
+//! - The identity, and not written: S₀, S₀⁻¹, S̄.
+//! - Zero, and not written: A, ∂S̄/∂ϕ.
+//! - By products of other kernels, and not written: c, the dual of c.
 //!
 //! ```text
-//!     ⎡Q₁₁  Q₁₂  Q₁₃  a² Q₁₃ / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)⎤
-//! H = ⎢Q₂₁  Q₂₂  Q₂₃  b² Q₂₃ / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)⎥
-//!     ⎢Q₃₁  Q₃₂  Q₃₃  c² Q₃₃ / √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)⎥
-//!     ⎣  0    0    0                                        1⎦
+//!     ⎡Q₁₁  Q₁₂  Q₁₃  a² Q₁₃ / support⎤
+//! H = ⎢Q₂₁  Q₂₂  Q₂₃  b² Q₂₃ / support⎥
+//!     ⎢Q₃₁  Q₃₂  Q₃₃  c² Q₃₃ / support⎥
+//!     ⎣  0    0    0                 1⎦
 //!
-//!     ⎡                                      Q₁₁                                         Q₁₂                    Q₁₃⎤
-//!     ⎢                                      Q₂₁                                         Q₂₂                    Q₂₃⎥
-//! X = ⎢                                      Q₃₁                                         Q₃₂                    Q₃₃⎥
-//!     ⎢(w₄ Q₃₁ − w₁ (Q₁₂ − Q₁₃ w₉) − w₆ Q₂₁) w₁₀  (w₁ (Q₁₁ − Q₁₃ w₁₁) − w₆ Q₂₂ + w₄ Q₃₂) w₁₀  Q₂₃ Q₃₃ (w₃ − w₅) w₁₀⎥
-//!     ⎢(w₆ Q₁₁ − w₂ Q₃₁ − w₃ (Q₂₂ − Q₂₃ w₉)) w₁₀  (w₃ (Q₂₁ − Q₂₃ w₁₁) + w₆ Q₁₂ − w₂ Q₃₂) w₁₀      w₁₂ Q₃₃ (w₅ − w₁)⎥
-//!     ⎣(w₂ Q₂₁ − w₅ (Q₃₂ − Q₃₃ w₉) − w₄ Q₁₁) w₁₀  (w₅ (Q₃₁ − Q₃₃ w₁₁) − w₄ Q₁₂ + w₂ Q₂₂) w₁₀      w₁₂ Q₂₃ (w₁ − w₃)⎦
+//!     ⎡                                                                         Q₁₁                                                                          Q₁₂                           Q₁₃⎤
+//!     ⎢                                                                         Q₂₁                                                                          Q₂₂                           Q₂₃⎥
+//! X = ⎢                                                                         Q₃₁                                                                          Q₃₂                           Q₃₃⎥
+//!     ⎢−(a² (Q₁₂ + Q₁₃ ∂support/∂ϕ₁ / support) + c² Q₂₁ Q₃₃ − b² Q₂₃ Q₃₁) / support  (a² (Q₁₁ − Q₁₃ ∂support/∂ϕ₂ / support) − c² Q₂₂ Q₃₃ + b² Q₂₃ Q₃₂) / support   Q₂₃ Q₃₃ (b² − c²) / support⎥
+//!     ⎢−(b² (Q₂₂ + Q₂₃ ∂support/∂ϕ₁ / support) − c² Q₁₁ Q₃₃ + a² Q₁₃ Q₃₁) / support  (b² (Q₂₁ − Q₂₃ ∂support/∂ϕ₂ / support) + c² Q₁₂ Q₃₃ − a² Q₁₃ Q₃₂) / support  −Q₁₃ Q₃₃ (a² − c²) / support⎥
+//!     ⎣−(c² (Q₃₂ + Q₃₃ ∂support/∂ϕ₁ / support) + b² Q₁₁ Q₂₃ − a² Q₁₃ Q₂₁) / support  (c² (Q₃₁ − Q₃₃ ∂support/∂ϕ₂ / support) − b² Q₁₂ Q₂₃ + a² Q₁₃ Q₂₂) / support   Q₁₃ Q₂₃ (a² − b²) / support⎦
 //!
-//! w₁ = a²
-//!
-//! w₂ = w₁ Q₁₃
-//!
-//! w₃ = b²
-//!
-//! w₄ = w₃ Q₂₃
-//!
-//! w₅ = c²
-//!
-//! w₆ = w₅ Q₃₃
-//!
-//! w₇ = √(w₂ Q₁₃ + w₄ Q₂₃ + w₆ Q₃₃)
-//!
-//! w₈ = 1 / w₇²
-//!
-//! w₉ = (w₂ Q₁₂ + w₄ Q₂₂ + w₆ Q₃₂) w₈
-//!
-//! w₁₀ = 1 / w₇
-//!
-//! w₁₁ = (w₂ Q₁₁ + w₄ Q₂₁ + w₆ Q₃₁) w₈
-//!
-//! w₁₂ = Q₁₃ w₁₀
+//! support = √(a² Q₁₃² + b² Q₂₃² + c² Q₃₃²)
+//! ∂support/∂ϕ₁ = −(a² Q₁₂ Q₁₃ + b² Q₂₂ Q₂₃ + c² Q₃₂ Q₃₃) / support
+//! ∂support/∂ϕ₂ = (a² Q₁₁ Q₁₃ + b² Q₂₁ Q₂₃ + c² Q₃₁ Q₃₃) / support
 //!
 //! S(Q, ϕ) = I − ½ ϕ~ + O(ϕ²)
 //! ```
@@ -62,13 +45,16 @@
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::group::so3;
+use ::hamel::joint::{
+    Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
+};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, Limit, ParameterInfo};
-use ::hamel::scalar::Scalar;
-use ::hamel::spatial::{Pose, nearest_rotation};
+use ::hamel::registry::{JointEntry, ParameterInfo};
+use ::hamel::scalar::{Scalar, dot};
+use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(5);
+const _: () = ::hamel::joint::assert_kernel_interface(6);
 
 /// Joint on an ellipsoid with spin about the normal: the child's origin moves on the surface, its z axis along the outward normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,46 +76,24 @@ impl Ellipsoid {
 
 impl Joint<9, 3, 3, 0> for Ellipsoid {
     const NAME: &'static str = "ellipsoid";
-    const COORDINATES: [&'static str; 9] = [
-        "q11",
-        "q12",
-        "q13",
-        "q21",
-        "q22",
-        "q23",
-        "q31",
-        "q32",
-        "q33",
-    ];
+    const COORDINATES: [&'static str; 9] = ["q11", "q12", "q13", "q21", "q22", "q23", "q31", "q32", "q33"];
     const FREEDOMS: [&'static str; 3] = ["tilt_x", "tilt_y", "spin"];
     const SPEEDS: [&'static str; 3] = ["tilt_x", "tilt_y", "spin"];
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Child;
     const STRUCTURES: Structures = Structures {
-        twist_map: Structure::General,
-        twist_map_child: Structure::General,
-        twist_map_child_gradient: Structure::General,
         velocity_map: Structure::Identity,
         velocity_map_gradient: Structure::Constant,
         gamma: Structure::Constant,
         speed_basis: Structure::Identity,
         speed_basis_gradient: Structure::Zero,
-        retract_differential: Structure::General,
-        bias_acceleration: Structure::General,
-        bias_momentum: Structure::General,
-        speed_map: Structure::General,
+        ..Structures::GENERAL
     };
-    const PATTERNS: Patterns<3, 3> = Patterns::new(
-        ["xxx", "xxx", "xxx"],
-        "xxx",
-        ["100", "010", "001", "xx0", "xx0", "xx0"],
-        ["100", "010", "001"],
-        &[
-            (0, ["000", "000", "000", "xx0", "xx0", "xx0"]),
-            (1, ["000", "000", "000", "xx0", "xx0", "xx0"]),
-            (2, ["000", "000", "000", "xx0", "xx0", "xx0"]),
-        ],
-        &[],
-    );
+    const PATTERNS: Patterns<3, 3> = Patterns::new(["xxx", "xxx", "xxx"], "xxx", ["100", "010", "001", "xx0", "xx0", "000"])
+    .twist_map_child_gradient(&[
+        (0, ["000", "000", "000", "xx0", "xx0", "000"]),
+        (1, ["000", "000", "000", "xx0", "xx0", "000"]),
+        (2, ["000", "000", "000", "xx0", "xx0", "000"]),
+    ]);
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
 
@@ -138,9 +102,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
     }
 
     /// The home configuration.
-    ///
     /// 9-vector. Independent of Q. Operations: none.
-    ///
     /// From line 16 `config Q: SO3;`.
     fn home<T: Scalar>(&self) -> SVector<T, 9> {
         let zero = T::zero();
@@ -149,9 +111,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
     }
 
     /// H(Q): child coordinates to parent coordinates.
-    ///
     /// Rotation matrix and translation in m. Operations: 2 additions, 12 multiplications (2 of each fused), 1 division, 1 function call.
-    ///
     /// From line 19 `let`, line 20 `H`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 9>) -> Pose<T> {
         let a = T::from_f64(self.a);
@@ -159,27 +119,19 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let c = T::from_f64(self.c);
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         let one = T::one();
-        let a_squared_q13 = a * a * q13;
-        let b_squared_q23 = b * b * q23;
-        let c_squared_q33 = c * c * q33;
-        let quotient_of_a_squared_q13_q13_q23 = one
-            / a_squared_q13
-                .mul_add(q13, b_squared_q23.mul_add(q23, c_squared_q33 * q33))
-                .sqrt();
+        let t1 = a * a * q13;
+        let t2 = b * b * q23;
+        let t3 = c * c * q33;
+        let support = dot([t1, t2, t3], [q13, q23, q33]).sqrt();
+        let inverse_support = one / support;
         Pose {
             rotation: from_rows([[q11, q12, q13], [q21, q22, q23], [q31, q32, q33]]),
-            translation: SVector::from([
-                a_squared_q13 * quotient_of_a_squared_q13_q13_q23,
-                b_squared_q23 * quotient_of_a_squared_q13_q13_q23,
-                c_squared_q33 * quotient_of_a_squared_q13_q13_q23,
-            ]),
+            translation: SVector::from([t1 * inverse_support, t2 * inverse_support, t3 * inverse_support]),
         }
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    ///
-    /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 27 additions, 56 multiplications (24 of each fused), 2 divisions, 1 function call.
-    ///
+    /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 27 additions, 56 multiplications (24 of each fused), 1 division, 1 function call.
     /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 9>) -> SMatrix<T, 6, 3> {
         let a = T::from_f64(self.a);
@@ -188,76 +140,42 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
         let one = T::one();
         let a_squared = a * a;
-        let a_squared_q13 = a_squared * q13;
+        let t1 = a_squared * q13;
         let b_squared = b * b;
-        let b_squared_q23 = b_squared * q23;
+        let t2 = b_squared * q23;
         let c_squared = c * c;
-        let c_squared_q33 = c_squared * q33;
-        let value_of_a_squared_q13_q13_q23_q33 = a_squared_q13
-            .mul_add(q13, b_squared_q23.mul_add(q23, c_squared_q33 * q33))
-            .sqrt();
-        let quotient_of = one
-            / (value_of_a_squared_q13_q13_q23_q33 * value_of_a_squared_q13_q13_q23_q33);
-        let product_of_a_squared_q13_q12_q22_q32 = a_squared_q13
-            .mul_add(q12, b_squared_q23.mul_add(q22, c_squared_q33 * q32)) * quotient_of;
-        let quotient_of_2 = one / value_of_a_squared_q13_q13_q23_q33;
-        let product_of_a_squared_q13_q11_q21_q31 = a_squared_q13
-            .mul_add(q11, b_squared_q23.mul_add(q21, c_squared_q33 * q31)) * quotient_of;
-        let q13_quotient_of_2 = q13 * quotient_of_2;
+        let t3 = c_squared * q33;
+        let support = dot([t1, t2, t3], [q13, q23, q33]).sqrt();
+        let inverse_support = one / support;
+        let d_support_d_tilt_x = -dot([t1, t2, t3], [q12, q22, q32]) * inverse_support;
+        let d_support_d_tilt_y = dot([t1, t2, t3], [q11, q21, q31]) * inverse_support;
+        let t4 = q13 * inverse_support;
+        let t5 = q23 * inverse_support;
+        let t6 = q33 * inverse_support;
         from_rows([
             [q11, q12, q13],
             [q21, q22, q23],
             [q31, q32, q33],
             [
-                a_squared
-                    .mul_add(
-                        q13.mul_add(product_of_a_squared_q13_q12_q22_q32, -q12),
-                        c_squared_q33.mul_add(-q21, b_squared_q23 * q31),
-                    ) * quotient_of_2,
-                a_squared
-                    .mul_add(
-                        q13.mul_add(-product_of_a_squared_q13_q11_q21_q31, q11),
-                        c_squared_q33.mul_add(-q22, b_squared_q23 * q32),
-                    ) * quotient_of_2,
-                q23 * q33 * (b_squared - c_squared) * quotient_of_2,
+                dot([a_squared, t3, t2], [-t4.mul_add(d_support_d_tilt_x, q12), -q21, q31]) * inverse_support,
+                dot([a_squared, t3, t2], [t4.mul_add(-d_support_d_tilt_y, q11), -q22, q32]) * inverse_support,
+                t5 * q33 * (b_squared - c_squared),
             ],
             [
-                a_squared_q13
-                    .mul_add(
-                        -q31,
-                        b_squared
-                            .mul_add(
-                                q23.mul_add(product_of_a_squared_q13_q12_q22_q32, -q22),
-                                c_squared_q33 * q11,
-                            ),
-                    ) * quotient_of_2,
-                b_squared
-                    .mul_add(
-                        q23.mul_add(-product_of_a_squared_q13_q11_q21_q31, q21),
-                        a_squared_q13.mul_add(-q32, c_squared_q33 * q12),
-                    ) * quotient_of_2,
-                q13_quotient_of_2 * q33 * (c_squared - a_squared),
+                dot([t1, b_squared, t3], [-q31, -t5.mul_add(d_support_d_tilt_x, q22), q11]) * inverse_support,
+                dot([b_squared, t1, t3], [t5.mul_add(-d_support_d_tilt_y, q21), -q32, q12]) * inverse_support,
+                t4 * q33 * (c_squared - a_squared),
             ],
             [
-                c_squared
-                    .mul_add(
-                        q33.mul_add(product_of_a_squared_q13_q12_q22_q32, -q32),
-                        b_squared_q23.mul_add(-q11, a_squared_q13 * q21),
-                    ) * quotient_of_2,
-                c_squared
-                    .mul_add(
-                        q33.mul_add(-product_of_a_squared_q13_q11_q21_q31, q31),
-                        b_squared_q23.mul_add(-q12, a_squared_q13 * q22),
-                    ) * quotient_of_2,
-                q13_quotient_of_2 * q23 * (a_squared - b_squared),
+                dot([c_squared, t2, t1], [-t6.mul_add(d_support_d_tilt_x, q32), -q11, q21]) * inverse_support,
+                dot([c_squared, t2, t1], [t6.mul_add(-d_support_d_tilt_y, q31), -q12, q22]) * inverse_support,
+                t4 * q23 * (a_squared - b_squared),
             ],
         ])
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    ///
-    /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 18 additions, 45 multiplications (18 of each fused), 2 divisions, 1 function call.
-    ///
+    /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 15 additions, 39 multiplications (15 of each fused), 1 division, 1 function call.
     /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 9>) -> SMatrix<T, 6, 3> {
         let a = T::from_f64(self.a);
@@ -267,101 +185,36 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let zero = T::zero();
         let one = T::one();
         let a_squared = a * a;
-        let a_squared_q11 = a_squared * q11;
         let b_squared = b * b;
-        let b_squared_q21 = b_squared * q21;
         let c_squared = c * c;
-        let c_squared_q31 = c_squared * q31;
-        let sum_of_a_squared_q11_q12_q22_q32 = a_squared_q11
-            .mul_add(q12, b_squared_q21.mul_add(q22, c_squared_q31 * q32));
-        let a_squared_q12 = a_squared * q12;
-        let b_squared_q22 = b_squared * q22;
-        let c_squared_q32 = c_squared * q32;
-        let sum_of_a_squared_q12_q13_q23_q33 = a_squared_q12
-            .mul_add(q13, b_squared_q22.mul_add(q23, c_squared_q32 * q33));
-        let sum_of_a_squared_q11_q13_q23_q33 = a_squared_q11
-            .mul_add(q13, b_squared_q21.mul_add(q23, c_squared_q31 * q33));
-        let sum_of_a_squared_q13_b_squared_q23 = (a_squared * q13)
-            .mul_add(q13, (b_squared * q23).mul_add(q23, c_squared * q33 * q33));
-        let value_of = sum_of_a_squared_q13_b_squared_q23.sqrt();
-        let inverse_value_of_squared = one / (value_of * value_of);
-        let product_of_inverse_value_of_squared = sum_of_a_squared_q11_q13_q23_q33
-            * inverse_value_of_squared;
-        let inverse_value_of = one / value_of;
-        let product_of_inverse_value_of_squared_2 = sum_of_a_squared_q12_q13_q23_q33
-            * inverse_value_of_squared;
+        let support = dot([a_squared * q13, b_squared * q23, c_squared * q33], [q13, q23, q33])
+        .sqrt();
+        let t1 = b_squared * q22;
+        let t2 = c_squared * q32;
+        let inverse_support = one / support;
+        let d_support_d_tilt_x = -dot([a_squared * q12, t1, t2], [q13, q23, q33]) * inverse_support;
+        let t3 = a_squared * q11;
+        let t4 = b_squared * q21;
+        let t5 = c_squared * q31;
+        let d_support_d_tilt_y = dot([t3, t4, t5], [q13, q23, q33]) * inverse_support;
+        let t6 = dot([t3, t4, t5, d_support_d_tilt_x], [q12, q22, q32, d_support_d_tilt_y]) * inverse_support;
         from_rows([
             [one, zero, zero],
             [zero, one, zero],
             [zero, zero, one],
+            [-t6, dot([t3, t4, d_support_d_tilt_y, t5], [q11, q21, -d_support_d_tilt_y, q31]) * inverse_support, zero],
             [
-                sum_of_a_squared_q12_q13_q23_q33
-                    .mul_add(
-                        product_of_inverse_value_of_squared,
-                        -sum_of_a_squared_q11_q12_q22_q32,
-                    ) * inverse_value_of,
-                a_squared_q11
-                    .mul_add(
-                        q11,
-                        b_squared_q21
-                            .mul_add(
-                                q21,
-                                product_of_inverse_value_of_squared
-                                    .mul_add(
-                                        -sum_of_a_squared_q11_q13_q23_q33,
-                                        c_squared_q31 * q31,
-                                    ),
-                            ),
-                    ) * inverse_value_of,
-                zero,
+                dot([a_squared * q12, t1, t2, d_support_d_tilt_x], [-q12, -q22, -q32, d_support_d_tilt_x]) * inverse_support,
+                t6, zero,
             ],
-            [
-                a_squared_q12
-                    .mul_add(
-                        -q12,
-                        b_squared_q22
-                            .mul_add(
-                                -q22,
-                                c_squared_q32
-                                    .mul_add(
-                                        -q32,
-                                        product_of_inverse_value_of_squared_2
-                                            * sum_of_a_squared_q12_q13_q23_q33,
-                                    ),
-                            ),
-                    ) * inverse_value_of,
-                product_of_inverse_value_of_squared
-                    .mul_add(
-                        -sum_of_a_squared_q12_q13_q23_q33,
-                        sum_of_a_squared_q11_q12_q22_q32,
-                    ) * inverse_value_of,
-                zero,
-            ],
-            [
-                product_of_inverse_value_of_squared_2
-                    .mul_add(
-                        sum_of_a_squared_q13_b_squared_q23,
-                        -sum_of_a_squared_q12_q13_q23_q33,
-                    ) * inverse_value_of,
-                product_of_inverse_value_of_squared
-                    .mul_add(
-                        -sum_of_a_squared_q13_b_squared_q23,
-                        sum_of_a_squared_q11_q13_q23_q33,
-                    ) * inverse_value_of,
-                zero,
-            ],
+            [zero, zero, zero],
         ])
     }
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 3 slices of 6×3. Operations: 49 additions, 97 multiplications (36 of each fused), 4 divisions, 1 function call.
-    ///
+    /// 3 slices of 6×3. Operations: 26 additions, 64 multiplications (24 of each fused), 1 division, 1 function call.
     /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
-    fn twist_map_child_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 9>,
-    ) -> [SMatrix<T, 6, 3>; 3] {
+    fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, 9>) -> [SMatrix<T, 6, 3>; 3] {
         let a = T::from_f64(self.a);
         let b = T::from_f64(self.b);
         let c = T::from_f64(self.c);
@@ -371,228 +224,62 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let two = T::from_f64(2.0);
         let three = T::from_f64(3.0);
         let a_squared = a * a;
-        let a_squared_q11 = a_squared * q11;
         let b_squared = b * b;
-        let b_squared_q21 = b_squared * q21;
         let c_squared = c * c;
-        let c_squared_q31 = c_squared * q31;
-        let sum_of_a_squared_q11_q13_q23_q33 = a_squared_q11
-            .mul_add(q13, b_squared_q21.mul_add(q23, c_squared_q31 * q33));
-        let sum_of_a_squared_q13_b_squared_q23 = (a_squared * q13)
-            .mul_add(q13, (b_squared * q23).mul_add(q23, c_squared * q33 * q33));
-        let a_squared_q12 = a_squared * q12;
-        let b_squared_q22 = b_squared * q22;
-        let c_squared_q32 = c_squared * q32;
-        let sum_of_a_squared_q12_q12_q22_q32 = a_squared_q12
-            .mul_add(q12, b_squared_q22.mul_add(q22, c_squared_q32 * q32));
-        let sum_of_a_squared_q12_q13_q23_q33 = a_squared_q12
-            .mul_add(q13, b_squared_q22.mul_add(q23, c_squared_q32 * q33));
-        let value_of = sum_of_a_squared_q13_b_squared_q23.sqrt();
-        let value_of_squared = value_of * value_of;
-        let inverse_value_of_squared = one / value_of_squared;
-        let product_of_inverse_value_of_squared = sum_of_a_squared_q12_q13_q23_q33
-            * inverse_value_of_squared;
-        let product_of = three * product_of_inverse_value_of_squared
-            * sum_of_a_squared_q12_q13_q23_q33;
-        let sum_of_product_of = sum_of_a_squared_q13_b_squared_q23
-            - sum_of_a_squared_q12_q12_q22_q32 + product_of;
-        let sum_of_sum_of_product_of = sum_of_product_of
-            .mul_add(-inverse_value_of_squared, one);
-        let sum_of_a_squared_q11_q12_q22_q32 = a_squared_q11
-            .mul_add(q12, b_squared_q21.mul_add(q22, c_squared_q31 * q32));
-        let inverse_value_of = one / value_of;
-        let product_of_inverse_value_of_squared_2 = sum_of_a_squared_q11_q13_q23_q33
-            * inverse_value_of_squared;
-        let sum_of = (three * sum_of_a_squared_q12_q13_q23_q33)
-            .mul_add(
-                -product_of_inverse_value_of_squared_2,
-                sum_of_a_squared_q11_q12_q22_q32,
-            );
-        let sum_of_a_squared_q11_q11_q21_q31 = a_squared_q11
-            .mul_add(q11, b_squared_q21.mul_add(q21, c_squared_q31 * q31));
-        let sum_of_sum_of = sum_of_a_squared_q11_q13_q23_q33
-            .mul_add(
-                sum_of_a_squared_q11_q12_q22_q32,
-                sum_of
-                    .mul_add(
-                        sum_of_a_squared_q11_q13_q23_q33,
-                        sum_of_a_squared_q12_q13_q23_q33
-                            * sum_of_a_squared_q11_q11_q21_q31,
-                    ),
-            );
-        let value_of_squared_value_of = value_of_squared * value_of;
-        let sum_of_2 = product_of_inverse_value_of_squared_2
-            .mul_add(
-                -sum_of_a_squared_q13_b_squared_q23,
-                sum_of_a_squared_q11_q13_q23_q33,
-            );
-        let sum_of_sum_of_2 = sum_of_a_squared_q12_q13_q23_q33
-            .mul_add(
-                sum_of_a_squared_q11_q12_q22_q32,
-                sum_of
-                    .mul_add(
-                        sum_of_a_squared_q12_q13_q23_q33,
-                        sum_of_a_squared_q11_q13_q23_q33
-                            * sum_of_a_squared_q12_q12_q22_q32,
-                    ),
-            );
-        let sum_of_sum_of_3 = (sum_of * sum_of_a_squared_q13_b_squared_q23)
-            .mul_add(-inverse_value_of_squared, sum_of_a_squared_q11_q12_q22_q32);
-        let product_of_2 = sum_of_a_squared_q12_q13_q23_q33
-            * sum_of_a_squared_q11_q13_q23_q33;
-        let product_of_3 = sum_of_a_squared_q11_q13_q23_q33
-            * sum_of_a_squared_q12_q13_q23_q33;
-        let sum_of_3 = product_of_inverse_value_of_squared
-            .mul_add(
-                -sum_of_a_squared_q13_b_squared_q23,
-                sum_of_a_squared_q12_q13_q23_q33,
-            );
-        let product_of_4 = three * product_of_inverse_value_of_squared_2
-            * sum_of_a_squared_q11_q13_q23_q33;
-        let sum_of_product_of_4 = sum_of_a_squared_q13_b_squared_q23
-            - sum_of_a_squared_q11_q11_q21_q31 + product_of_4;
-        let sum_of_sum_of_product_of_4 = sum_of_product_of_4
-            .mul_add(-inverse_value_of_squared, one);
-        let product_of_inverse_value_of_squared_3 = (sum_of_a_squared_q12_q12_q22_q32
-            - sum_of_a_squared_q11_q11_q21_q31
-            - (sum_of_a_squared_q12_q13_q23_q33 * sum_of_a_squared_q12_q13_q23_q33
-                - sum_of_a_squared_q11_q13_q23_q33 * sum_of_a_squared_q11_q13_q23_q33)
-                * inverse_value_of_squared) * inverse_value_of;
-        let product_of_product_of_2_product_of_3 = (two
-            * sum_of_a_squared_q11_q12_q22_q32
-            - (product_of_2 + product_of_3) * inverse_value_of_squared)
-            * inverse_value_of;
+        let support = dot([a_squared * q13, b_squared * q23, c_squared * q33], [q13, q23, q33])
+        .sqrt();
+        let inverse_support = one / support;
+        let d_support_d_tilt_x = -dot([a_squared * q12, b_squared * q22, c_squared * q32], [q13, q23, q33]) * inverse_support;
+        let t1 = a_squared * q11;
+        let t2 = b_squared * q21;
+        let t3 = c_squared * q31;
+        let d_support_d_tilt_y = dot([t1, t2, t3], [q13, q23, q33]) * inverse_support;
+        let d2_support_d_tilt_x_d_tilt_x = dot(
+            [a_squared * q12, b_squared * q22, d_support_d_tilt_x, c_squared * q32],
+            [q12, q22, -d_support_d_tilt_x, q32],
+        )
+        .mul_add(inverse_support, -support);
+        let d2_support_d_tilt_y_d_tilt_x = -dot(
+            [t1, t2, t3, d_support_d_tilt_x],
+            [q12, q22, q32, d_support_d_tilt_y],
+        ) * inverse_support;
+        let t4 = dot([t1, t2, d_support_d_tilt_y, t3], [q11, q21, -d_support_d_tilt_y, q31]);
+        let d2_support_d_tilt_y_d_tilt_y = t4.mul_add(inverse_support, -support);
+        let t5 = dot(
+            [d_support_d_tilt_y, two * d_support_d_tilt_x * inverse_support],
+            [d2_support_d_tilt_x_d_tilt_x.mul_add(inverse_support, one), d2_support_d_tilt_y_d_tilt_x],
+        );
+        let t6 = dot(
+            [d_support_d_tilt_x, two * d_support_d_tilt_y * d2_support_d_tilt_y_d_tilt_x],
+            [d2_support_d_tilt_y_d_tilt_y.mul_add(inverse_support, one), inverse_support],
+        );
         [
-            from_rows([
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [
-                    -sum_of_a_squared_q11_q13_q23_q33
-                        .mul_add(
-                            sum_of_sum_of_product_of,
-                            two * product_of_inverse_value_of_squared
-                                * sum_of_a_squared_q11_q12_q22_q32,
-                        ) * inverse_value_of,
-                    sum_of_sum_of / value_of_squared_value_of,
+            rows_at([
+                (3, [
+                    -t5,
+                    -dot(
+                        [two * d_support_d_tilt_y, d_support_d_tilt_x * inverse_support],
+                        [d2_support_d_tilt_y_d_tilt_x, t4],
+                    ) * inverse_support,
                     zero,
-                ],
-                [
-                    (sum_of_a_squared_q12_q13_q23_q33
-                        .mul_add(
-                            two
-                                .mul_add(
-                                    -sum_of_a_squared_q12_q12_q22_q32,
-                                    sum_of_a_squared_q13_b_squared_q23,
-                                ),
-                            sum_of_a_squared_q12_q13_q23_q33 * sum_of_product_of,
-                        ) * inverse_value_of_squared
-                        - two * sum_of_a_squared_q12_q13_q23_q33) * inverse_value_of,
-                    sum_of_sum_of_2.mul_add(inverse_value_of_squared, sum_of_2)
-                        * inverse_value_of,
-                    zero,
-                ],
-                [
-                    sum_of_a_squared_q13_b_squared_q23
-                        .mul_add(
-                            -sum_of_sum_of_product_of,
-                            sum_of_a_squared_q12_q12_q22_q32 - product_of,
-                        ) * inverse_value_of,
-                    two
-                        .mul_add(product_of_3, product_of_2)
-                        .mul_add(inverse_value_of_squared, -sum_of_sum_of_3)
-                        * inverse_value_of,
-                    zero,
-                ],
+                ]),
+                (4, [d_support_d_tilt_x * three * d2_support_d_tilt_x_d_tilt_x.mul_add(inverse_support, one), t5, zero]),
             ]),
-            from_rows([
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [
-                    sum_of_sum_of.mul_add(inverse_value_of_squared, sum_of_3)
-                        * inverse_value_of,
-                    (sum_of_a_squared_q11_q13_q23_q33
-                        .mul_add(
-                            two
-                                .mul_add(
-                                    -sum_of_a_squared_q11_q11_q21_q31,
-                                    sum_of_a_squared_q13_b_squared_q23,
-                                ),
-                            sum_of_a_squared_q11_q13_q23_q33 * sum_of_product_of_4,
-                        ) * inverse_value_of_squared
-                        - two * sum_of_a_squared_q11_q13_q23_q33) * inverse_value_of,
-                    zero,
-                ],
-                [
-                    sum_of_sum_of_2 / value_of_squared_value_of,
-                    -sum_of_a_squared_q12_q13_q23_q33
-                        .mul_add(
-                            sum_of_sum_of_product_of_4,
-                            two * product_of_inverse_value_of_squared_2
-                                * sum_of_a_squared_q11_q12_q22_q32,
-                        ) * inverse_value_of,
-                    zero,
-                ],
-                [
-                    two
-                        .mul_add(product_of_2, product_of_3)
-                        .mul_add(inverse_value_of_squared, -sum_of_sum_of_3)
-                        * inverse_value_of,
-                    sum_of_a_squared_q13_b_squared_q23
-                        .mul_add(
-                            -sum_of_sum_of_product_of_4,
-                            sum_of_a_squared_q11_q11_q21_q31 - product_of_4,
-                        ) * inverse_value_of,
-                    zero,
-                ],
+            rows_at([
+                (3, [-t6, -d_support_d_tilt_y * three * d2_support_d_tilt_y_d_tilt_y.mul_add(inverse_support, one), zero]),
+                (4, [t5, t6, zero]),
             ]),
-            from_rows([
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [
-                    -product_of_inverse_value_of_squared_3,
-                    product_of_product_of_2_product_of_3,
-                    zero,
-                ],
-                [
-                    product_of_product_of_2_product_of_3,
-                    product_of_inverse_value_of_squared_3,
-                    zero,
-                ],
-                [sum_of_2 * inverse_value_of, sum_of_3 * inverse_value_of, zero],
+            rows_at([
+                (3, [d2_support_d_tilt_y_d_tilt_y - d2_support_d_tilt_x_d_tilt_x, -two * d2_support_d_tilt_y_d_tilt_x, zero]),
+                (4, [-two * d2_support_d_tilt_y_d_tilt_x, d2_support_d_tilt_x_d_tilt_x - d2_support_d_tilt_y_d_tilt_y, zero]),
             ]),
         ]
     }
 
-    /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
-    ///
-    /// 3×3. The identity. Operations: none.
-    ///
-    /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
-    fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 9>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
-    /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
-    ///
-    /// 3×3. The identity. Operations: none.
-    ///
-    /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
-    fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 9>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
     /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
-    ///
     /// 3 slices of 3×3. Independent of Q. Operations: none.
-    ///
     /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
-    fn velocity_map_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-    ) -> [SMatrix<T, 3, 3>; 3] {
+    fn velocity_map_gradient<T: Scalar>(&self, _q: &SVector<T, 9>) -> [SMatrix<T, 3, 3>; 3] {
         let zero = T::zero();
         let half = T::from_f64(0.5);
         [
@@ -603,220 +290,53 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
     }
 
     /// Σ_k γ_k v_k (17): stands on the left of (24).
-    ///
     /// 3×3. Independent of Q. Operations: none.
-    ///
     /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
-    fn gamma<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-        v: &SVector<T, 3>,
-    ) -> SMatrix<T, 3, 3> {
+    fn gamma<T: Scalar>(&self, _q: &SVector<T, 9>, v: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
         let [v_tilt_x, v_tilt_y, v_spin]: [T; 3] = (*v).into();
         let zero = T::zero();
-        from_rows([
-            [zero, -v_spin, v_tilt_y],
-            [v_spin, zero, -v_tilt_x],
-            [-v_tilt_y, v_tilt_x, zero],
-        ])
+        from_rows([[zero, -v_spin, v_tilt_y], [v_spin, zero, -v_tilt_x], [-v_tilt_y, v_tilt_x, zero]])
     }
 
     /// J22(Q, p) (28): stands on the right of (27).
-    ///
     /// 3×3. Independent of Q. Operations: none.
-    ///
     /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
     fn j22<T: Scalar>(&self, _q: &SVector<T, 9>, p: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
         let [p_tilt_x, p_tilt_y, p_spin]: [T; 3] = (*p).into();
         let zero = T::zero();
-        from_rows([
-            [zero, -p_spin, p_tilt_y],
-            [p_spin, zero, -p_tilt_x],
-            [-p_tilt_y, p_tilt_x, zero],
-        ])
-    }
-
-    /// A(Q) with Aᵀ v = 0 (Definition 2).
-    ///
-    /// 3×0. Zero. Operations: none.
-    fn constraint<T: Scalar>(&self, _q: &SVector<T, 9>) -> SMatrix<T, 3, 0> {
-        SMatrix::zeros()
-    }
-
-    /// S̄(Q): speeds v̄ to v (Definition 2, (15)).
-    ///
-    /// 3×3. The identity. Operations: none.
-    fn speed_basis<T: Scalar>(&self, _q: &SVector<T, 9>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
-    /// ∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 3 slices of 3×3. Zero. Operations: none.
-    fn speed_basis_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-    ) -> [SMatrix<T, 3, 3>; 3] {
-        [SMatrix::zeros(); 3]
+        from_rows([[zero, -p_spin, p_tilt_y], [p_spin, zero, -p_tilt_x], [-p_tilt_y, p_tilt_x, zero]])
     }
 
     /// Q̇(Q, v) (31): the rates of the stored scalars.
-    ///
     /// 9-vector. Operations: 9 additions, 18 multiplications.
-    ///
     /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
-    fn configuration_rate<T: Scalar>(
-        &self,
-        q: &SVector<T, 9>,
-        v: &SVector<T, 3>,
-    ) -> SVector<T, 9> {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let [v_tilt_x, v_tilt_y, v_spin]: [T; 3] = (*v).into();
-        SVector::from([
-            q12 * v_spin - q13 * v_tilt_y,
-            q13 * v_tilt_x - q11 * v_spin,
-            q11 * v_tilt_y - q12 * v_tilt_x,
-            q22 * v_spin - q23 * v_tilt_y,
-            q23 * v_tilt_x - q21 * v_spin,
-            q21 * v_tilt_y - q22 * v_tilt_x,
-            q32 * v_spin - q33 * v_tilt_y,
-            q33 * v_tilt_x - q31 * v_spin,
-            q31 * v_tilt_y - q32 * v_tilt_x,
-        ])
+    fn configuration_rate<T: Scalar>(&self, q: &SVector<T, 9>, v: &SVector<T, 3>) -> SVector<T, 9> {
+        so3::rate(q, v)
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
-    ///
-    /// 9-vector. Operations: 32 additions, 41 multiplications (21 of each fused), 2 function calls.
-    ///
+    /// 9-vector. Operations: 32 additions, 44 multiplications (18 of each fused), 2 function calls.
     /// From line 16 `config`, line 17 `basis`.
-    fn retract<T: Scalar>(
-        &self,
-        q: &SVector<T, 9>,
-        phi: &SVector<T, 3>,
-    ) -> SVector<T, 9> {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let [phi_tilt_x, phi_tilt_y, phi_spin]: [T; 3] = (*phi).into();
-        let one = T::one();
-        let phi_tilt_x_squared = phi_tilt_x * phi_tilt_x;
-        let phi_tilt_y_squared = phi_tilt_y * phi_tilt_y;
-        let phi_spin_squared = phi_spin * phi_spin;
-        let theta_squared = phi_tilt_x_squared + phi_tilt_y_squared + phi_spin_squared;
-        let c1 = theta_squared.stumpff(1);
-        let c2 = theta_squared.stumpff(2);
-        let e11 = c2.mul_add(-(phi_tilt_y_squared + phi_spin_squared), one);
-        let phi_spin_c1 = phi_spin * c1;
-        let phi_tilt_x_c2 = phi_tilt_x * c2;
-        let phi_tilt_x_c2_phi_tilt_y = phi_tilt_x_c2 * phi_tilt_y;
-        let e12 = phi_tilt_x_c2_phi_tilt_y - phi_spin_c1;
-        let phi_tilt_y_c1 = phi_tilt_y * c1;
-        let phi_tilt_x_c2_phi_spin = phi_tilt_x_c2 * phi_spin;
-        let e13 = phi_tilt_y_c1 + phi_tilt_x_c2_phi_spin;
-        let e21 = phi_spin_c1 + phi_tilt_x_c2_phi_tilt_y;
-        let e22 = c2.mul_add(-(phi_tilt_x_squared + phi_spin_squared), one);
-        let phi_tilt_x_c1 = phi_tilt_x * c1;
-        let phi_tilt_y_phi_spin_c2 = phi_tilt_y * phi_spin * c2;
-        let e23 = phi_tilt_y_phi_spin_c2 - phi_tilt_x_c1;
-        let e31 = phi_tilt_x_c2_phi_spin - phi_tilt_y_c1;
-        let e32 = phi_tilt_x_c1 + phi_tilt_y_phi_spin_c2;
-        let e33 = c2.mul_add(-(phi_tilt_x_squared + phi_tilt_y_squared), one);
-        SVector::from([
-            q11.mul_add(e11, q12.mul_add(e21, q13 * e31)),
-            q11.mul_add(e12, q12.mul_add(e22, q13 * e32)),
-            q11.mul_add(e13, q12.mul_add(e23, q13 * e33)),
-            q21.mul_add(e11, q22.mul_add(e21, q23 * e31)),
-            q21.mul_add(e12, q22.mul_add(e22, q23 * e32)),
-            q21.mul_add(e13, q22.mul_add(e23, q23 * e33)),
-            q31.mul_add(e11, q32.mul_add(e21, q33 * e31)),
-            q31.mul_add(e12, q32.mul_add(e22, q33 * e32)),
-            q31.mul_add(e13, q32.mul_add(e23, q33 * e33)),
-        ])
+    fn retract<T: Scalar>(&self, q: &SVector<T, 9>, phi: &SVector<T, 3>) -> SVector<T, 9> {
+        so3::times_exp(q, phi)
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    ///
     /// 3-vector, rad. Operations: 18 additions, 27 multiplications (18 of each fused), 1 function call.
-    ///
     /// From line 16 `config`, line 17 `basis`.
-    fn local<T: Scalar>(
-        &self,
-        q: &SVector<T, 9>,
-        target: &SVector<T, 9>,
-    ) -> SVector<T, 3> {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let [q11_target, q12_target, q13_target, q21_target, q22_target, q23_target,
-        q31_target, q32_target, q33_target]: [T; 9] = (*target).into();
-        let rotation = from_rows([
-            [
-                q11.mul_add(q11_target, q21.mul_add(q21_target, q31 * q31_target)),
-                q11.mul_add(q12_target, q21.mul_add(q22_target, q31 * q32_target)),
-                q11.mul_add(q13_target, q21.mul_add(q23_target, q31 * q33_target)),
-            ],
-            [
-                q12.mul_add(q11_target, q22.mul_add(q21_target, q32 * q31_target)),
-                q12.mul_add(q12_target, q22.mul_add(q22_target, q32 * q32_target)),
-                q12.mul_add(q13_target, q22.mul_add(q23_target, q32 * q33_target)),
-            ],
-            [
-                q13.mul_add(q11_target, q23.mul_add(q21_target, q33 * q31_target)),
-                q13.mul_add(q12_target, q23.mul_add(q22_target, q33 * q32_target)),
-                q13.mul_add(q13_target, q23.mul_add(q23_target, q33 * q33_target)),
-            ],
-        ]);
-        let [r1, r2, r3]: [T; 3] = T::rotation_vector(&rotation).into();
-        SVector::from([r1, r2, r3])
+    fn local<T: Scalar>(&self, q: &SVector<T, 9>, target: &SVector<T, 9>) -> SVector<T, 3> {
+        so3::log_between(q, target)
     }
 
     /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
-    ///
-    /// 3×3. Operations: 14 additions, 18 multiplications (9 of each fused), 2 function calls.
-    ///
+    /// 3×3. Operations: 14 additions, 17 multiplications, 2 function calls.
     /// From line 16 `config`, line 17 `basis`.
-    fn retract_differential<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-        phi: &SVector<T, 3>,
-    ) -> SMatrix<T, 3, 3> {
-        let [phi_tilt_x, phi_tilt_y, phi_spin]: [T; 3] = (*phi).into();
-        let one = T::one();
-        let phi_tilt_y_squared = phi_tilt_y * phi_tilt_y;
-        let phi_spin_squared = phi_spin * phi_spin;
-        let ad_squared11 = -(phi_tilt_y_squared + phi_spin_squared);
-        let ad_squared12 = phi_tilt_x * phi_tilt_y;
-        let ad_squared13 = phi_tilt_x * phi_spin;
-        let phi_tilt_x_squared = phi_tilt_x * phi_tilt_x;
-        let ad_squared22 = -(phi_tilt_x_squared + phi_spin_squared);
-        let ad_squared23 = phi_tilt_y * phi_spin;
-        let ad_squared33 = -(phi_tilt_x_squared + phi_tilt_y_squared);
-        let theta_squared = phi_tilt_x_squared + phi_tilt_y_squared + phi_spin_squared;
-        let c2 = theta_squared.stumpff(2);
-        let c3 = theta_squared.stumpff(3);
-        let phi_spin_c2 = phi_spin * c2;
-        let phi_tilt_y_c2 = phi_tilt_y * c2;
-        let phi_tilt_x_c2 = phi_tilt_x * c2;
-        from_rows([
-            [
-                ad_squared11.mul_add(c3, one),
-                ad_squared12.mul_add(c3, phi_spin_c2),
-                ad_squared13.mul_add(c3, -phi_tilt_y_c2),
-            ],
-            [
-                ad_squared12.mul_add(c3, -phi_spin_c2),
-                ad_squared22.mul_add(c3, one),
-                ad_squared23.mul_add(c3, phi_tilt_x_c2),
-            ],
-            [
-                ad_squared13.mul_add(c3, phi_tilt_y_c2),
-                ad_squared23.mul_add(c3, -phi_tilt_x_c2),
-                ad_squared33.mul_add(c3, one),
-            ],
-        ])
+    fn retract_differential<T: Scalar>(&self, _q: &SVector<T, 9>, phi: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
+        so3::differential(phi)
     }
 
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    ///
-    /// 3-vector, rad/s. Operations: 14 additions, 21 multiplications (8 of each fused), 1 function call.
-    ///
+    /// 3-vector, rad/s. Operations: 14 additions, 21 multiplications (2 of each fused), 1 function call.
     /// From line 16 `config`, line 17 `basis`.
     fn retract_differential_inverse<T: Scalar>(
         &self,
@@ -824,574 +344,28 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         phi: &SVector<T, 3>,
         rate: &SVector<T, 3>,
     ) -> SVector<T, 3> {
-        let [phi_tilt_x, phi_tilt_y, phi_spin]: [T; 3] = (*phi).into();
-        let [v_tilt_x, v_tilt_y, v_spin]: [T; 3] = (*rate).into();
-        let half = T::from_f64(0.5);
-        let bracket1 = phi_tilt_y * v_spin - phi_spin * v_tilt_y;
-        let bracket2 = phi_spin * v_tilt_x - phi_tilt_x * v_spin;
-        let bracket3 = phi_tilt_x * v_tilt_y - phi_tilt_y * v_tilt_x;
-        let theta_squared = phi_tilt_x
-            .mul_add(phi_tilt_x, phi_tilt_y.mul_add(phi_tilt_y, phi_spin * phi_spin));
-        let g = theta_squared.dexp_inverse(0);
-        let double_bracket1 = phi_tilt_y * bracket3 - phi_spin * bracket2;
-        let double_bracket2 = phi_spin * bracket1 - phi_tilt_x * bracket3;
-        let double_bracket3 = phi_tilt_x * bracket2 - phi_tilt_y * bracket1;
-        SVector::from([
-            half.mul_add(bracket1, g.mul_add(double_bracket1, v_tilt_x)),
-            half.mul_add(bracket2, g.mul_add(double_bracket2, v_tilt_y)),
-            half.mul_add(bracket3, g.mul_add(double_bracket3, v_spin)),
-        ])
+        so3::differential_inverse(phi, rate)
     }
 
     /// The configuration on the manifold that is nearest to `q`.
-    ///
-    /// 9-vector. Operations: 1 function call.
-    ///
+    /// 9-vector. Operations: 108 additions, 216 multiplications.
     /// From line 16 `config Q: SO3;`.
     fn project<T: Scalar>(&self, q: &SVector<T, 9>) -> SVector<T, 9> {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let rotation = nearest_rotation(
-            &from_rows([[q11, q12, q13], [q21, q22, q23], [q31, q32, q33]]),
-        );
-        let [[r11, r21, r31], [r12, r22, r32], [r13, r23, r33]]: [[T; 3]; 3] = rotation
-            .into();
-        SVector::from([r11, r12, r13, r21, r22, r23, r31, r32, r33])
+        so3::nearest(q)
     }
 
     /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
-    ///
-    /// A scalar. Operations: 28 additions, 34 multiplications (22 of each fused), 1 function call.
-    ///
+    /// A scalar. Operations: 27 additions, 34 multiplications (18 of each fused), 1 function call.
     /// From line 16 `config Q: SO3;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 9>) -> T {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let one = T::one();
-        let relations = [
-            q11.mul_add(q11, q21.mul_add(q21, q31.mul_add(q31, -one))),
-            q11.mul_add(q12, q21.mul_add(q22, q31 * q32)),
-            q11.mul_add(q13, q21.mul_add(q23, q31 * q33)),
-            q12.mul_add(q12, q22.mul_add(q22, q32.mul_add(q32, -one))),
-            q12.mul_add(q13, q22.mul_add(q23, q32 * q33)),
-            q13.mul_add(q13, q23.mul_add(q23, q33.mul_add(q33, -one))),
-            q11 * (q22 * q33 - q23 * q32) - q12 * (q21 * q33 - q23 * q31)
-                + q13 * (q21 * q32 - q22 * q31) - one,
-        ];
-        let sum = relations
-            .into_iter()
-            .fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
-        sum.sqrt()
-    }
-
-    /// Least absolute value of the functions whose zeros the joint must stay away from.
-    ///
-    /// A scalar. Independent of Q. Operations: none.
-    fn singularity<T: Scalar>(&self, _q: &SVector<T, 9>) -> T {
-        ::hamel::finite::least_absolute([])
-    }
-
-    /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
-    ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 69 additions, 130 multiplications (54 of each fused), 2 divisions, 1 function call.
-    ///
-    /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
-    fn bias_acceleration<T: Scalar>(
-        &self,
-        q: &SVector<T, 9>,
-        speeds: &SVector<T, 3>,
-    ) -> SVector<T, 6> {
-        let a = T::from_f64(self.a);
-        let b = T::from_f64(self.b);
-        let c = T::from_f64(self.c);
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let [speed_tilt_x, speed_tilt_y, speed_spin]: [T; 3] = (*speeds).into();
-        let zero = T::zero();
-        let one = T::one();
-        let two = T::from_f64(2.0);
-        let three = T::from_f64(3.0);
-        let six = T::from_f64(6.0);
-        let a_squared = a * a;
-        let a_squared_q11 = a_squared * q11;
-        let b_squared = b * b;
-        let b_squared_q21 = b_squared * q21;
-        let c_squared = c * c;
-        let c_squared_q31 = c_squared * q31;
-        let sum_of_a_squared_q11_q13_q23_q33 = a_squared_q11
-            .mul_add(q13, b_squared_q21.mul_add(q23, c_squared_q31 * q33));
-        let a_squared_q12 = a_squared * q12;
-        let b_squared_q22 = b_squared * q22;
-        let c_squared_q32 = c_squared * q32;
-        let sum_of_a_squared_q12_q13_q23_q33 = a_squared_q12
-            .mul_add(q13, b_squared_q22.mul_add(q23, c_squared_q32 * q33));
-        let product_of_speed_tilt_y = speed_tilt_y * sum_of_a_squared_q12_q13_q23_q33;
-        let sum_of_a_squared_q11_q11_q21_q31 = a_squared_q11
-            .mul_add(q11, b_squared_q21.mul_add(q21, c_squared_q31 * q31));
-        let sum_of_a_squared_q12_q12_q22_q32 = a_squared_q12
-            .mul_add(q12, b_squared_q22.mul_add(q22, c_squared_q32 * q32));
-        let product_of_speed_spin = speed_spin
-            * (sum_of_a_squared_q11_q11_q21_q31 - sum_of_a_squared_q12_q12_q22_q32);
-        let product_of_speed_tilt_y_2 = speed_tilt_y * sum_of_a_squared_q11_q13_q23_q33;
-        let sum_of_a_squared_q11_q12_q22_q32 = a_squared_q11
-            .mul_add(q12, b_squared_q21.mul_add(q22, c_squared_q31 * q32));
-        let product_of_speed_spin_2 = speed_spin * two
-            * sum_of_a_squared_q11_q12_q22_q32;
-        let sum_of_a_squared_q13_b_squared_q23 = (a_squared * q13)
-            .mul_add(q13, (b_squared * q23).mul_add(q23, c_squared * q33 * q33));
-        let sum_of = sum_of_a_squared_q13_b_squared_q23
-            - sum_of_a_squared_q12_q12_q22_q32;
-        let speed_tilt_x_sum_of = speed_tilt_x * sum_of;
-        let two_sum_of_a_squared_q11_q12_q22_q32 = two
-            * sum_of_a_squared_q11_q12_q22_q32;
-        let value_of = sum_of_a_squared_q13_b_squared_q23.sqrt();
-        let inverse_value_of_squared = one / (value_of * value_of);
-        let product_of_inverse_value_of_squared = sum_of_a_squared_q11_q13_q23_q33
-            * inverse_value_of_squared;
-        let sum_of_2 = two
-            .mul_add(
-                -sum_of_a_squared_q11_q11_q21_q31,
-                sum_of_a_squared_q13_b_squared_q23,
-            );
-        let product_of = product_of_inverse_value_of_squared
-            * sum_of_a_squared_q11_q13_q23_q33;
-        let product_of_speed_spin_3 = speed_spin * sum_of_a_squared_q12_q13_q23_q33;
-        let product_of_speed_spin_4 = speed_spin * sum_of_a_squared_q11_q13_q23_q33;
-        let sum_of_3 = sum_of_a_squared_q13_b_squared_q23
-            - sum_of_a_squared_q11_q11_q21_q31;
-        let product_of_2 = sum_of_a_squared_q11_q13_q23_q33
-            * sum_of_a_squared_q12_q13_q23_q33;
-        let inverse_value_of = one / value_of;
-        let sum_of_4 = two
-            .mul_add(
-                -sum_of_a_squared_q12_q12_q22_q32,
-                sum_of_a_squared_q13_b_squared_q23,
-            );
-        let product_of_3 = sum_of_a_squared_q12_q13_q23_q33
-            * sum_of_a_squared_q12_q13_q23_q33;
-        let product_of_4 = product_of_inverse_value_of_squared
-            * sum_of_a_squared_q12_q13_q23_q33;
-        let product_of_5 = three * sum_of_a_squared_q11_q13_q23_q33;
-        let product_of_6 = product_of_inverse_value_of_squared
-            * sum_of_a_squared_q13_b_squared_q23;
-        SVector::from([
-            zero,
-            zero,
-            zero,
-            speed_tilt_x
-                .mul_add(
-                    speed_tilt_x
-                        .mul_add(
-                            -sum_of_a_squared_q11_q13_q23_q33,
-                            product_of_speed_tilt_y + product_of_speed_spin,
-                        ),
-                    speed_tilt_y
-                        .mul_add(
-                            product_of_speed_tilt_y_2
-                                .mul_add(-two, product_of_speed_spin_2),
-                            speed_tilt_x
-                                .mul_add(
-                                    speed_tilt_x_sum_of
-                                        .mul_add(
-                                            sum_of_a_squared_q11_q13_q23_q33,
-                                            sum_of_a_squared_q12_q13_q23_q33
-                                                .mul_add(
-                                                    speed_tilt_x
-                                                        .mul_add(
-                                                            (sum_of_a_squared_q12_q13_q23_q33 * three)
-                                                                .mul_add(
-                                                                    product_of_inverse_value_of_squared,
-                                                                    -two_sum_of_a_squared_q11_q12_q22_q32,
-                                                                ),
-                                                            speed_tilt_y
-                                                                .mul_add(
-                                                                    -product_of.mul_add(six, sum_of_2),
-                                                                    product_of_speed_spin_3,
-                                                                ),
-                                                        ),
-                                                    product_of_speed_spin_4
-                                                        .mul_add(
-                                                            -sum_of_a_squared_q11_q13_q23_q33,
-                                                            speed_tilt_y
-                                                                * (two * sum_of_a_squared_q11_q13_q23_q33)
-                                                                    .mul_add(
-                                                                        sum_of_a_squared_q11_q12_q22_q32,
-                                                                        two * sum_of_a_squared_q11_q12_q22_q32
-                                                                            * sum_of_a_squared_q11_q13_q23_q33,
-                                                                    ),
-                                                        ),
-                                                ),
-                                        ),
-                                    speed_tilt_y
-                                        * (speed_tilt_y
-                                            * sum_of_a_squared_q11_q13_q23_q33
-                                                .mul_add(
-                                                    product_of.mul_add(three, sum_of_2),
-                                                    sum_of_a_squared_q11_q13_q23_q33 * sum_of_3,
-                                                )
-                                            - speed_spin
-                                                * sum_of_a_squared_q12_q13_q23_q33
-                                                    .mul_add(sum_of_a_squared_q11_q13_q23_q33, product_of_2)),
-                                ) * inverse_value_of_squared,
-                        ),
-                ) * inverse_value_of,
-            speed_tilt_x
-                .mul_add(
-                    (speed_tilt_x * two)
-                        .mul_add(
-                            -sum_of_a_squared_q12_q13_q23_q33,
-                            product_of_speed_tilt_y_2 + product_of_speed_spin_2,
-                        ),
-                    speed_tilt_y
-                        .mul_add(
-                            -(product_of_speed_tilt_y + product_of_speed_spin),
-                            (speed_tilt_x
-                                * speed_tilt_x_sum_of
-                                    .mul_add(
-                                        sum_of_a_squared_q12_q13_q23_q33,
-                                        sum_of_a_squared_q12_q13_q23_q33
-                                            .mul_add(
-                                                speed_tilt_x
-                                                    .mul_add(
-                                                        (product_of_3 * three)
-                                                            .mul_add(inverse_value_of_squared, sum_of_4),
-                                                        speed_tilt_y
-                                                            .mul_add(
-                                                                product_of_4
-                                                                    .mul_add(-six, two_sum_of_a_squared_q11_q12_q22_q32),
-                                                                -product_of_speed_spin_4,
-                                                            ),
-                                                    ),
-                                                product_of_speed_spin_4
-                                                    .mul_add(
-                                                        -sum_of_a_squared_q12_q13_q23_q33,
-                                                        speed_tilt_y
-                                                            * (sum_of_a_squared_q11_q12_q22_q32 * two
-                                                                * sum_of_a_squared_q12_q13_q23_q33
-                                                                - sum_of_a_squared_q11_q13_q23_q33 * sum_of_4),
-                                                    ),
-                                            ),
-                                    )
-                                - speed_tilt_y
-                                    * speed_spin
-                                        .mul_add(
-                                            sum_of_a_squared_q11_q13_q23_q33
-                                                .mul_add(-sum_of_a_squared_q11_q13_q23_q33, product_of_3),
-                                            speed_tilt_y
-                                                * (sum_of_a_squared_q11_q13_q23_q33
-                                                    * product_of_4
-                                                        .mul_add(-three, two_sum_of_a_squared_q11_q12_q22_q32)
-                                                    - sum_of_3 * sum_of_a_squared_q12_q13_q23_q33),
-                                        )) * inverse_value_of_squared,
-                        ),
-                ) * inverse_value_of,
-            speed_tilt_x
-                .mul_add(
-                    (speed_tilt_y * two)
-                        .mul_add(
-                            -sum_of_a_squared_q11_q12_q22_q32,
-                            product_of_speed_spin_4 - speed_tilt_x_sum_of,
-                        ),
-                    speed_tilt_y
-                        .mul_add(
-                            speed_tilt_y.mul_add(-sum_of_3, product_of_speed_spin_3),
-                            (speed_tilt_x
-                                * speed_tilt_y
-                                    .mul_add(
-                                        sum_of_a_squared_q12_q13_q23_q33
-                                            .mul_add(
-                                                product_of_6.mul_add(-six, product_of_5),
-                                                (sum_of_a_squared_q11_q12_q22_q32 * two)
-                                                    .mul_add(
-                                                        sum_of_a_squared_q13_b_squared_q23,
-                                                        product_of_2 * three,
-                                                    ),
-                                            ),
-                                        product_of_speed_spin_4
-                                            .mul_add(
-                                                -sum_of_a_squared_q13_b_squared_q23,
-                                                speed_tilt_x
-                                                    * (sum_of * sum_of_a_squared_q13_b_squared_q23
-                                                        - sum_of_a_squared_q12_q13_q23_q33
-                                                            * (three * sum_of_a_squared_q12_q13_q23_q33
-                                                                - sum_of_a_squared_q12_q13_q23_q33 * three
-                                                                    * sum_of_a_squared_q13_b_squared_q23
-                                                                    * inverse_value_of_squared)),
-                                            ),
-                                    )
-                                - speed_tilt_y
-                                    * product_of_speed_spin_3
-                                        .mul_add(
-                                            sum_of_a_squared_q13_b_squared_q23,
-                                            speed_tilt_y
-                                                * (sum_of_a_squared_q11_q13_q23_q33
-                                                    * product_of_6.mul_add(-three, product_of_5)
-                                                    - sum_of_3 * sum_of_a_squared_q13_b_squared_q23),
-                                        )) * inverse_value_of_squared,
-                        ),
-                ) * inverse_value_of,
-        ])
-    }
-
-    /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
-    ///
-    /// 3-vector. Operations: 66 additions, 94 multiplications (50 of each fused), 3 divisions, 1 function call.
-    ///
-    /// From line 17 `basis`, line 18 `velocity`, line 19 `let`, line 20 `H`.
-    fn bias_momentum<T: Scalar>(
-        &self,
-        q: &SVector<T, 9>,
-        speeds: &SVector<T, 3>,
-        h: &SVector<T, 6>,
-    ) -> SVector<T, 3> {
-        let a = T::from_f64(self.a);
-        let b = T::from_f64(self.b);
-        let c = T::from_f64(self.c);
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let [speed_tilt_x, speed_tilt_y, speed_spin]: [T; 3] = (*speeds).into();
-        let (h4, h5, h6) = (h[3], h[4], h[5]);
-        let zero = T::zero();
-        let one = T::one();
-        let two = T::from_f64(2.0);
-        let three = T::from_f64(3.0);
-        let a_squared = a * a;
-        let a_squared_q11 = a_squared * q11;
-        let b_squared = b * b;
-        let b_squared_q21 = b_squared * q21;
-        let c_squared = c * c;
-        let c_squared_q31 = c_squared * q31;
-        let sum_of_a_squared_q11_q13_q23_q33 = a_squared_q11
-            .mul_add(q13, b_squared_q21.mul_add(q23, c_squared_q31 * q33));
-        let h4_sum_of_a_squared_q11_q13_q23_q33 = h4 * sum_of_a_squared_q11_q13_q23_q33;
-        let a_squared_q12 = a_squared * q12;
-        let b_squared_q22 = b_squared * q22;
-        let c_squared_q32 = c_squared * q32;
-        let sum_of_a_squared_q12_q13_q23_q33 = a_squared_q12
-            .mul_add(q13, b_squared_q22.mul_add(q23, c_squared_q32 * q33));
-        let h5_sum_of_a_squared_q12_q13_q23_q33 = h5 * sum_of_a_squared_q12_q13_q23_q33;
-        let sum_of_a_squared_q13_b_squared_q23 = (a_squared * q13)
-            .mul_add(q13, (b_squared * q23).mul_add(q23, c_squared * q33 * q33));
-        let sum_of_a_squared_q12_q12_q22_q32 = a_squared_q12
-            .mul_add(q12, b_squared_q22.mul_add(q22, c_squared_q32 * q32));
-        let sum_of = sum_of_a_squared_q13_b_squared_q23
-            - sum_of_a_squared_q12_q12_q22_q32;
-        let h4_sum_of_a_squared_q12_q13_q23_q33 = h4 * sum_of_a_squared_q12_q13_q23_q33;
-        let sum_of_a_squared_q11_q12_q22_q32 = a_squared_q11
-            .mul_add(q12, b_squared_q21.mul_add(q22, c_squared_q31 * q32));
-        let h6_sum_of_a_squared_q11_q12_q22_q32 = h6 * sum_of_a_squared_q11_q12_q22_q32;
-        let sum_of_a_squared_q11_q11_q21_q31 = a_squared_q11
-            .mul_add(q11, b_squared_q21.mul_add(q21, c_squared_q31 * q31));
-        let sum_of_2 = sum_of_a_squared_q12_q12_q22_q32
-            - sum_of_a_squared_q11_q11_q21_q31;
-        let h5_sum_of_a_squared_q11_q12_q22_q32 = h5 * sum_of_a_squared_q11_q12_q22_q32;
-        let product_of = h5_sum_of_a_squared_q11_q12_q22_q32 * two;
-        let h6_sum_of_a_squared_q11_q13_q23_q33 = h6 * sum_of_a_squared_q11_q13_q23_q33;
-        let product_of_h6 = h6 * sum_of_a_squared_q13_b_squared_q23;
-        let sum_of_product_of_h6 = h4_sum_of_a_squared_q11_q13_q23_q33
-            + h5_sum_of_a_squared_q12_q13_q23_q33 + product_of_h6;
-        let h4_sum_of_a_squared_q11_q12_q22_q32 = h4 * sum_of_a_squared_q11_q12_q22_q32;
-        let product_of_2 = h4_sum_of_a_squared_q11_q12_q22_q32 * two;
-        let h6_sum_of_a_squared_q12_q13_q23_q33 = h6 * sum_of_a_squared_q12_q13_q23_q33;
-        let value_of = sum_of_a_squared_q13_b_squared_q23.sqrt();
-        let inverse_value_of_squared = one / (value_of * value_of);
-        let product_of_product_of_h6 = h4_sum_of_a_squared_q11_q13_q23_q33
-            .mul_add(
-                three,
-                h5_sum_of_a_squared_q12_q13_q23_q33.mul_add(three, product_of_h6 * three),
-            ) * inverse_value_of_squared;
-        let product_of_product_of_product_of_h6 = sum_of_a_squared_q12_q13_q23_q33
-            * product_of_product_of_h6;
-        let sum_of_3 = sum_of_a_squared_q13_b_squared_q23
-            - sum_of_a_squared_q11_q11_q21_q31;
-        let product_of_product_of_product_of_h6_2 = sum_of_a_squared_q11_q13_q23_q33
-            * product_of_product_of_h6;
-        let h5_sum_of_a_squared_q11_q13_q23_q33 = h5 * sum_of_a_squared_q11_q13_q23_q33;
-        let product_of_speed_spin = speed_spin
-            * (h4_sum_of_a_squared_q12_q13_q23_q33
-                - h5_sum_of_a_squared_q11_q13_q23_q33);
-        let product_of_sum_of_product_of_h6 = sum_of_a_squared_q11_q12_q22_q32
-            * sum_of_product_of_h6;
-        let speed_spin_sum_of_product_of_h6 = speed_spin * sum_of_product_of_h6;
-        SVector::from([
-            -speed_tilt_x
-                .mul_add(
-                    h5_sum_of_a_squared_q12_q13_q23_q33
-                        .mul_add(
-                            two,
-                            h6.mul_add(sum_of, h4_sum_of_a_squared_q11_q13_q23_q33),
-                        ),
-                    speed_tilt_y
-                        .mul_add(
-                            h6_sum_of_a_squared_q11_q12_q22_q32
-                                - h4_sum_of_a_squared_q12_q13_q23_q33,
-                            (speed_tilt_x * sum_of)
-                                .mul_add(
-                                    sum_of_product_of_h6,
-                                    sum_of_a_squared_q12_q13_q23_q33
-                                        .mul_add(
-                                            speed_tilt_x
-                                                .mul_add(
-                                                    h5
-                                                        .mul_add(
-                                                            two
-                                                                .mul_add(
-                                                                    -sum_of_a_squared_q12_q12_q22_q32,
-                                                                    sum_of_a_squared_q13_b_squared_q23,
-                                                                ),
-                                                            h6_sum_of_a_squared_q12_q13_q23_q33
-                                                                .mul_add(
-                                                                    -three,
-                                                                    product_of_product_of_product_of_h6 - product_of_2,
-                                                                ),
-                                                        ),
-                                                    speed_tilt_y
-                                                        .mul_add(
-                                                            h6_sum_of_a_squared_q11_q13_q23_q33
-                                                                .mul_add(
-                                                                    two,
-                                                                    h4
-                                                                        .mul_add(
-                                                                            -sum_of_3,
-                                                                            h5_sum_of_a_squared_q11_q12_q22_q32
-                                                                                - product_of_product_of_product_of_h6_2,
-                                                                        ),
-                                                                ),
-                                                            product_of_speed_spin,
-                                                        ),
-                                                ),
-                                            speed_spin_sum_of_product_of_h6
-                                                .mul_add(
-                                                    -sum_of_a_squared_q11_q13_q23_q33,
-                                                    speed_tilt_y
-                                                        * sum_of_a_squared_q11_q13_q23_q33
-                                                            .mul_add(
-                                                                h5
-                                                                    .mul_add(
-                                                                        sum_of_a_squared_q12_q12_q22_q32,
-                                                                        h4_sum_of_a_squared_q11_q12_q22_q32
-                                                                            + h6_sum_of_a_squared_q12_q13_q23_q33,
-                                                                    ),
-                                                                product_of_sum_of_product_of_h6,
-                                                            ),
-                                                ),
-                                        ),
-                                )
-                                .mul_add(
-                                    -inverse_value_of_squared,
-                                    speed_spin
-                                        * h4
-                                            .mul_add(
-                                                sum_of_2,
-                                                -product_of - h6_sum_of_a_squared_q11_q13_q23_q33,
-                                            ),
-                                ),
-                        ),
-                ) / value_of,
-            speed_tilt_x
-                .mul_add(
-                    h5_sum_of_a_squared_q11_q13_q23_q33
-                        - h6_sum_of_a_squared_q11_q12_q22_q32,
-                    speed_tilt_y
-                        .mul_add(
-                            -h4_sum_of_a_squared_q11_q13_q23_q33
-                                .mul_add(
-                                    two,
-                                    h6.mul_add(sum_of_3, h5_sum_of_a_squared_q12_q13_q23_q33),
-                                ),
-                            speed_spin
-                                .mul_add(
-                                    h5
-                                        .mul_add(
-                                            sum_of_2,
-                                            product_of_2 + h6_sum_of_a_squared_q12_q13_q23_q33,
-                                        ),
-                                    speed_tilt_x
-                                        .mul_add(
-                                            sum_of_a_squared_q12_q13_q23_q33
-                                                .mul_add(
-                                                    h4
-                                                        .mul_add(
-                                                            sum_of_a_squared_q11_q11_q21_q31,
-                                                            h5_sum_of_a_squared_q11_q12_q22_q32
-                                                                + h6_sum_of_a_squared_q11_q13_q23_q33,
-                                                        ),
-                                                    product_of_sum_of_product_of_h6,
-                                                ),
-                                            sum_of_a_squared_q11_q13_q23_q33
-                                                .mul_add(
-                                                    speed_tilt_x
-                                                        .mul_add(
-                                                            h5
-                                                                .mul_add(
-                                                                    -sum_of,
-                                                                    h6_sum_of_a_squared_q12_q13_q23_q33
-                                                                        .mul_add(
-                                                                            two,
-                                                                            h4_sum_of_a_squared_q11_q12_q22_q32
-                                                                                - product_of_product_of_product_of_h6,
-                                                                        ),
-                                                                ),
-                                                            speed_tilt_y
-                                                                .mul_add(
-                                                                    h4
-                                                                        .mul_add(
-                                                                            two
-                                                                                .mul_add(
-                                                                                    -sum_of_a_squared_q11_q11_q21_q31,
-                                                                                    sum_of_a_squared_q13_b_squared_q23,
-                                                                                ),
-                                                                            h6_sum_of_a_squared_q11_q13_q23_q33
-                                                                                .mul_add(
-                                                                                    -three,
-                                                                                    -product_of + product_of_product_of_product_of_h6_2,
-                                                                                ),
-                                                                        ),
-                                                                    -product_of_speed_spin,
-                                                                ),
-                                                        ),
-                                                    speed_spin_sum_of_product_of_h6
-                                                        .mul_add(
-                                                            -sum_of_a_squared_q12_q13_q23_q33,
-                                                            speed_tilt_y * sum_of_3 * sum_of_product_of_h6,
-                                                        ),
-                                                ),
-                                        ) * inverse_value_of_squared,
-                                ),
-                        ),
-                ) / value_of,
-            zero,
-        ])
+        so3::residual_squared(q).sqrt()
     }
 }
 
 const PARAMETERS: [ParameterInfo; 3] = [
-    ParameterInfo {
-        name: "a",
-        unit: "m",
-        description: "Half axis along the parent's x.",
-        lower: Some(Limit {
-            value: 0.0,
-            included: false,
-        }),
-        upper: None,
-    },
-    ParameterInfo {
-        name: "b",
-        unit: "m",
-        description: "Half axis along the parent's y.",
-        lower: Some(Limit {
-            value: 0.0,
-            included: false,
-        }),
-        upper: None,
-    },
-    ParameterInfo {
-        name: "c",
-        unit: "m",
-        description: "Half axis along the parent's z.",
-        lower: Some(Limit {
-            value: 0.0,
-            included: false,
-        }),
-        upper: None,
-    },
+    ParameterInfo::new("a", "m", "Half axis along the parent's x.").above(0.0),
+    ParameterInfo::new("b", "m", "Half axis along the parent's y.").above(0.0),
+    ParameterInfo::new("c", "m", "Half axis along the parent's z.").above(0.0),
 ];
 
 /// How a scene finds this joint by name.
@@ -1400,11 +374,7 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Joint on an ellipsoid with spin about the normal: the child's origin moves on the surface, its z axis along the outward normal.",
     parameters: &PARAMETERS,
     build: |values| {
-        let [a, b, c] = ::hamel::registry::check_parameters(
-            "ellipsoid",
-            &PARAMETERS,
-            values,
-        )?;
+        let [a, b, c] = ::hamel::registry::check_parameters("ellipsoid", &PARAMETERS, values)?;
         Ok(::hamel::erased::erase(Ellipsoid::new(a, b, c)))
     },
 };

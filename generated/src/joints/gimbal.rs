@@ -7,6 +7,9 @@
 //! - Configuration: yaw ∈ R1, pitch ∈ R1, roll ∈ R1, stored as yaw, pitch, roll.
 //! - Freedoms: `yaw` (ϕ₁, rad), `pitch` (ϕ₂, rad), `roll` (ϕ₃, rad).
 //! - Velocity v: read as the rates of the local coordinates.
+//! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹, the projection.
+//! - Zero, and not written: ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, the residual.
+//! - By products of other kernels, and not written: c, the dual of c.
 //!
 //! ```text
 //!     ⎡cos yaw cos pitch  cos yaw sin pitch sin roll − cos roll sin yaw  sin yaw sin roll + cos yaw cos roll sin pitch  0⎤
@@ -35,13 +38,15 @@
 //! - `twist_map_child`: X^c = Ad_{H⁻¹} X (normal form)
 //! - `twist_map_rank`: rank X = k where cos(pitch) ≠ 0 (certificate)
 
-use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{
+    Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
+};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo};
+use ::hamel::registry::JointEntry;
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(5);
+const _: () = ::hamel::joint::assert_kernel_interface(6);
 
 /// Gimbal: three turns about z, y′ and x″ by yaw, pitch and roll; the Euler angles that a ball joint does without.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,71 +62,41 @@ impl Joint<3, 3, 3, 0> for Gimbal {
         twist_map: Structure::General,
         twist_map_child: Structure::General,
         twist_map_child_gradient: Structure::General,
-        velocity_map: Structure::Identity,
-        velocity_map_gradient: Structure::Zero,
-        gamma: Structure::Zero,
-        speed_basis: Structure::Identity,
-        speed_basis_gradient: Structure::Zero,
-        retract_differential: Structure::Identity,
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
         speed_map: Structure::General,
+        ..Structures::TRIVIAL
     };
-    const PATTERNS: Patterns<3, 3> = Patterns::new(
-        ["xxx", "xxx", "xxx"],
-        "000",
-        ["x01", "xx0", "xx0", "000", "000", "000"],
-        ["100", "010", "001"],
-        &[
-            (1, ["x00", "x00", "x00", "000", "000", "000"]),
-            (2, ["000", "xx0", "xx0", "000", "000", "000"]),
-        ],
-        &[],
+    const PATTERNS: Patterns<3, 3> = Patterns::new(["xxx", "xxx", "xxx"], "000", ["x01", "xx0", "xx0", "000", "000", "000"])
+    .twist_map_child_gradient(
+        &[(1, ["x00", "x00", "x00", "000", "000", "000"]), (2, ["000", "xx0", "xx0", "000", "000", "000"])],
     );
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
-        [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    ];
+    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &["cos(pitch) = 0"];
 
-    fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        [].into_iter()
-    }
-
     /// The home configuration.
-    ///
     /// 3-vector. Zero. Operations: none.
-    ///
     /// From line 8 `config yaw: R1, pitch: R1, roll: R1;`.
     fn home<T: Scalar>(&self) -> SVector<T, 3> {
         SVector::zeros()
     }
 
     /// H(Q): child coordinates to parent coordinates.
-    ///
     /// Rotation matrix and translation in m. Operations: 4 additions, 12 multiplications (4 of each fused), 3 function calls.
-    ///
     /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 3>) -> Pose<T> {
         let [yaw, pitch, roll]: [T; 3] = (*q).into();
         let (sin_yaw, cos_yaw) = yaw.sin_cos();
         let (sin_pitch, cos_pitch) = pitch.sin_cos();
         let (sin_roll, cos_roll) = roll.sin_cos();
-        let cos_roll_sin_yaw = cos_roll * sin_yaw;
-        let cos_yaw_sin_roll = cos_yaw * sin_roll;
-        let sin_yaw_sin_roll = sin_yaw * sin_roll;
-        let cos_yaw_cos_roll = cos_yaw * cos_roll;
+        let t1 = cos_roll * sin_yaw;
+        let t2 = cos_yaw * sin_roll;
+        let t3 = sin_yaw * sin_roll;
+        let t4 = cos_yaw * cos_roll;
         Pose {
             rotation: from_rows([
-                [
-                    cos_yaw * cos_pitch,
-                    cos_yaw_sin_roll.mul_add(sin_pitch, -cos_roll_sin_yaw),
-                    cos_yaw_cos_roll.mul_add(sin_pitch, sin_yaw_sin_roll),
-                ],
-                [
-                    cos_pitch * sin_yaw,
-                    sin_yaw_sin_roll.mul_add(sin_pitch, cos_yaw_cos_roll),
-                    cos_roll_sin_yaw.mul_add(sin_pitch, -cos_yaw_sin_roll),
-                ],
+                [cos_yaw * cos_pitch, t2.mul_add(sin_pitch, -t1), t4.mul_add(sin_pitch, t3)],
+                [cos_pitch * sin_yaw, t3.mul_add(sin_pitch, t4), t1.mul_add(sin_pitch, -t2)],
                 [-sin_pitch, cos_pitch * sin_roll, cos_pitch * cos_roll],
             ]),
             translation: SVector::zeros(),
@@ -129,9 +104,7 @@ impl Joint<3, 3, 3, 0> for Gimbal {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 2 multiplications, 2 function calls.
-    ///
     /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 3>) -> SMatrix<T, 6, 3> {
         let (yaw, pitch) = (q[0], q[1]);
@@ -150,9 +123,7 @@ impl Joint<3, 3, 3, 0> for Gimbal {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 2 multiplications, 2 function calls.
-    ///
     /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 3>) -> SMatrix<T, 6, 3> {
         let (pitch, roll) = (q[1], q[2]);
@@ -171,286 +142,62 @@ impl Joint<3, 3, 3, 0> for Gimbal {
     }
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
     /// 3 slices of 6×3. Operations: 4 multiplications, 2 function calls.
-    ///
     /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
-    fn twist_map_child_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-    ) -> [SMatrix<T, 6, 3>; 3] {
+    fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, 3>) -> [SMatrix<T, 6, 3>; 3] {
         let (pitch, roll) = (q[1], q[2]);
         let zero = T::zero();
         let (sin_pitch, cos_pitch) = pitch.sin_cos();
         let (sin_roll, cos_roll) = roll.sin_cos();
         [
             SMatrix::zeros(),
-            from_rows([
-                [-cos_pitch, zero, zero],
-                [-sin_pitch * sin_roll, zero, zero],
-                [-cos_roll * sin_pitch, zero, zero],
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [zero, zero, zero],
+            rows_at([
+                (0, [-cos_pitch, zero, zero]),
+                (1, [-sin_pitch * sin_roll, zero, zero]),
+                (2, [-cos_roll * sin_pitch, zero, zero]),
             ]),
-            from_rows([
-                [zero, zero, zero],
-                [cos_pitch * cos_roll, -sin_roll, zero],
-                [-cos_pitch * sin_roll, -cos_roll, zero],
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [zero, zero, zero],
-            ]),
+            rows_at([(1, [cos_pitch * cos_roll, -sin_roll, zero]), (2, [-cos_pitch * sin_roll, -cos_roll, zero])]),
         ]
     }
 
-    /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
-    ///
-    /// 3×3. The identity. Operations: none.
-    ///
-    /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
-    fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
-    /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
-    ///
-    /// 3×3. The identity. Operations: none.
-    ///
-    /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
-    fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
-    /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
-    ///
-    /// 3 slices of 3×3. Zero. Operations: none.
-    ///
-    /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
-    fn velocity_map_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-    ) -> [SMatrix<T, 3, 3>; 3] {
-        [SMatrix::zeros(); 3]
-    }
-
-    /// Σ_k γ_k v_k (17): stands on the left of (24).
-    ///
-    /// 3×3. Zero. Operations: none.
-    ///
-    /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
-    fn gamma<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _v: &SVector<T, 3>,
-    ) -> SMatrix<T, 3, 3> {
-        SMatrix::zeros()
-    }
-
-    /// J22(Q, p) (28): stands on the right of (27).
-    ///
-    /// 3×3. Zero. Operations: none.
-    ///
-    /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
-    fn j22<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _p: &SVector<T, 3>,
-    ) -> SMatrix<T, 3, 3> {
-        SMatrix::zeros()
-    }
-
-    /// A(Q) with Aᵀ v = 0 (Definition 2).
-    ///
-    /// 3×0. Zero. Operations: none.
-    fn constraint<T: Scalar>(&self, _q: &SVector<T, 3>) -> SMatrix<T, 3, 0> {
-        SMatrix::zeros()
-    }
-
-    /// S̄(Q): speeds v̄ to v (Definition 2, (15)).
-    ///
-    /// 3×3. The identity. Operations: none.
-    fn speed_basis<T: Scalar>(&self, _q: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
-    /// ∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 3 slices of 3×3. Zero. Operations: none.
-    fn speed_basis_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-    ) -> [SMatrix<T, 3, 3>; 3] {
-        [SMatrix::zeros(); 3]
-    }
-
     /// Q̇(Q, v) (31): the rates of the stored scalars.
-    ///
     /// 3-vector. Independent of Q. Operations: none.
-    ///
     /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
-    fn configuration_rate<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        v: &SVector<T, 3>,
-    ) -> SVector<T, 3> {
+    fn configuration_rate<T: Scalar>(&self, _q: &SVector<T, 3>, v: &SVector<T, 3>) -> SVector<T, 3> {
         *v
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
-    ///
     /// 3-vector. Operations: 3 additions.
-    ///
     /// From line 8 `config yaw: R1, pitch: R1, roll: R1;`.
-    fn retract<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        phi: &SVector<T, 3>,
-    ) -> SVector<T, 3> {
-        let [yaw, pitch, roll]: [T; 3] = (*q).into();
-        let [phi_yaw, phi_pitch, phi_roll]: [T; 3] = (*phi).into();
-        SVector::from([yaw + phi_yaw, pitch + phi_pitch, roll + phi_roll])
+    fn retract<T: Scalar>(&self, q: &SVector<T, 3>, phi: &SVector<T, 3>) -> SVector<T, 3> {
+        q + phi
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    ///
     /// 3-vector, rad. Operations: 3 additions.
-    ///
     /// From line 8 `config yaw: R1, pitch: R1, roll: R1;`.
-    fn local<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        target: &SVector<T, 3>,
-    ) -> SVector<T, 3> {
-        let [yaw, pitch, roll]: [T; 3] = (*q).into();
-        let [yaw_target, pitch_target, roll_target]: [T; 3] = (*target).into();
-        SVector::from([yaw_target - yaw, pitch_target - pitch, roll_target - roll])
-    }
-
-    /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
-    ///
-    /// 3×3. The identity. Operations: none.
-    ///
-    /// From line 8 `config yaw: R1, pitch: R1, roll: R1;`.
-    fn retract_differential<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _phi: &SVector<T, 3>,
-    ) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
-    /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    ///
-    /// 3-vector, rad/s. The identity. Operations: none.
-    ///
-    /// From line 8 `config yaw: R1, pitch: R1, roll: R1;`.
-    fn retract_differential_inverse<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _phi: &SVector<T, 3>,
-        rate: &SVector<T, 3>,
-    ) -> SVector<T, 3> {
-        *rate
-    }
-
-    /// The configuration on the manifold that is nearest to `q`.
-    ///
-    /// 3-vector. The identity. Operations: none.
-    ///
-    /// From line 8 `config yaw: R1, pitch: R1, roll: R1;`.
-    fn project<T: Scalar>(&self, q: &SVector<T, 3>) -> SVector<T, 3> {
-        *q
-    }
-
-    /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
-    ///
-    /// A scalar. Zero. Operations: none.
-    ///
-    /// From line 8 `config yaw: R1, pitch: R1, roll: R1;`.
-    fn residual<T: Scalar>(&self, _q: &SVector<T, 3>) -> T {
-        T::zero()
+    fn local<T: Scalar>(&self, q: &SVector<T, 3>, target: &SVector<T, 3>) -> SVector<T, 3> {
+        target - q
     }
 
     /// Least absolute value of the functions whose zeros the joint must stay away from.
-    ///
     /// A scalar. Operations: 1 function call.
-    ///
     /// From line 12 `except cos(pitch) = 0;`.
     fn singularity<T: Scalar>(&self, q: &SVector<T, 3>) -> T {
         let pitch = q[1];
         let (_, cos_pitch) = pitch.sin_cos();
         ::hamel::finite::least_absolute([cos_pitch])
     }
-
-    /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
-    ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 3 additions, 9 multiplications (2 of each fused), 2 function calls.
-    ///
-    /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
-    fn bias_acceleration<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        speeds: &SVector<T, 3>,
-    ) -> SVector<T, 6> {
-        let (pitch, roll) = (q[1], q[2]);
-        let [speed_yaw, speed_pitch, speed_roll]: [T; 3] = (*speeds).into();
-        let zero = T::zero();
-        let (sin_pitch, cos_pitch) = pitch.sin_cos();
-        let speed_yaw_cos_pitch = speed_yaw * cos_pitch;
-        let product_of_speed_pitch_speed_roll = speed_pitch
-            * speed_yaw.mul_add(sin_pitch, speed_roll);
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        let speed_yaw_cos_pitch_speed_roll = speed_yaw_cos_pitch * speed_roll;
-        SVector::from([
-            -speed_yaw_cos_pitch * speed_pitch,
-            speed_yaw_cos_pitch_speed_roll * cos_roll
-                - product_of_speed_pitch_speed_roll * sin_roll,
-            -product_of_speed_pitch_speed_roll
-                .mul_add(cos_roll, speed_yaw_cos_pitch_speed_roll * sin_roll),
-            zero,
-            zero,
-            zero,
-        ])
-    }
-
-    /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
-    ///
-    /// 3-vector. Operations: 4 additions, 10 multiplications (2 of each fused), 2 function calls.
-    ///
-    /// From line 9 `H = rot_z(yaw) * rot_y(pitch) * rot_x(roll);`.
-    fn bias_momentum<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        speeds: &SVector<T, 3>,
-        h: &SVector<T, 6>,
-    ) -> SVector<T, 3> {
-        let (pitch, roll) = (q[1], q[2]);
-        let (speed_pitch, speed_roll) = (speeds[1], speeds[2]);
-        let (h1, h2, h3) = (h[0], h[1], h[2]);
-        let zero = T::zero();
-        let (sin_pitch, cos_pitch) = pitch.sin_cos();
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        let h2_sin_roll_plus_h3_cos_roll = h2.mul_add(sin_roll, h3 * cos_roll);
-        SVector::from([
-            speed_roll * cos_pitch * (h2 * cos_roll - h3 * sin_roll)
-                - speed_pitch
-                    * h1.mul_add(cos_pitch, sin_pitch * h2_sin_roll_plus_h3_cos_roll),
-            -speed_roll * h2_sin_roll_plus_h3_cos_roll,
-            zero,
-        ])
-    }
 }
-
-const PARAMETERS: [ParameterInfo; 0] = [];
 
 /// How a scene finds this joint by name.
 pub const ENTRY: JointEntry = JointEntry {
     name: "gimbal",
     summary: "Gimbal: three turns about z, y′ and x″ by yaw, pitch and roll; the Euler angles that a ball joint does without.",
-    parameters: &PARAMETERS,
+    parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("gimbal", &PARAMETERS, values)?;
+        ::hamel::registry::check_parameters("gimbal", &[], values)?;
         Ok(::hamel::erased::erase(Gimbal))
     },
 };

@@ -7,6 +7,9 @@
 //! - Configuration: theta ∈ R1, x ∈ R1, y ∈ R1, stored as θ, x, y.
 //! - Freedoms: `theta` (ϕ₁, rad), `x` (ϕ₂, m), `y` (ϕ₃, m).
 //! - Velocity v: read as the rates of the local coordinates.
+//! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹, the projection.
+//! - Zero, and not written: ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, the residual.
+//! - By products of other kernels, and not written: c, the dual of c.
 //!
 //! ```text
 //!     ⎡cos θ  −sin θ  0  x⎤
@@ -36,13 +39,15 @@
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `fibres`: one pose has one Q up to full turns of theta (certificate)
 
-use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{
+    Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
+};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo};
+use ::hamel::registry::JointEntry;
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(5);
+const _: () = ::hamel::joint::assert_kernel_interface(6);
 
 /// Planar joint in the Euclidean set of coordinates (closing note of Example 2).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,46 +63,25 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
         twist_map: Structure::General,
         twist_map_child: Structure::General,
         twist_map_child_gradient: Structure::General,
-        velocity_map: Structure::Identity,
-        velocity_map_gradient: Structure::Zero,
-        gamma: Structure::Zero,
-        speed_basis: Structure::Identity,
-        speed_basis_gradient: Structure::Zero,
-        retract_differential: Structure::Identity,
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
         speed_map: Structure::General,
+        ..Structures::TRIVIAL
     };
-    const PATTERNS: Patterns<3, 3> = Patterns::new(
-        ["xx0", "xx0", "001"],
-        "xx0",
-        ["000", "000", "100", "0xx", "0xx", "000"],
-        ["100", "010", "001"],
-        &[(0, ["000", "000", "000", "0xx", "0xx", "000"])],
-        &[],
-    );
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
-        [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
-    ];
+    const PATTERNS: Patterns<3, 3> = Patterns::new(["xx0", "xx0", "001"], "xx0", ["000", "000", "100", "0xx", "0xx", "000"])
+    .twist_map_child_gradient(&[(0, ["000", "000", "000", "0xx", "0xx", "000"])]);
+    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
-    fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        [].into_iter()
-    }
-
     /// The home configuration.
-    ///
     /// 3-vector. Zero. Operations: none.
-    ///
     /// From line 8 `config theta: R1, x: R1, y: R1;`.
     fn home<T: Scalar>(&self) -> SVector<T, 3> {
         SVector::zeros()
     }
 
     /// H(Q): child coordinates to parent coordinates.
-    ///
     /// Rotation matrix and translation in m. Operations: 1 function call.
-    ///
     /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 3>) -> Pose<T> {
         let [theta, x, y]: [T; 3] = (*q).into();
@@ -105,19 +89,13 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
         let one = T::one();
         let (sin_theta, cos_theta) = theta.sin_cos();
         Pose {
-            rotation: from_rows([
-                [cos_theta, -sin_theta, zero],
-                [sin_theta, cos_theta, zero],
-                [zero, zero, one],
-            ]),
+            rotation: from_rows([[cos_theta, -sin_theta, zero], [sin_theta, cos_theta, zero], [zero, zero, one]]),
             translation: SVector::from([x, y, zero]),
         }
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s. Operations: none.
-    ///
     /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 3>) -> SMatrix<T, 6, 3> {
         let (x, y) = (q[1], q[2]);
@@ -134,9 +112,7 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s. Operations: 1 function call.
-    ///
     /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 3>) -> SMatrix<T, 6, 3> {
         let theta = q[0];
@@ -154,263 +130,44 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     }
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
     /// 3 slices of 6×3. Operations: 1 function call.
-    ///
     /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
-    fn twist_map_child_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-    ) -> [SMatrix<T, 6, 3>; 3] {
+    fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, 3>) -> [SMatrix<T, 6, 3>; 3] {
         let theta = q[0];
         let zero = T::zero();
         let (sin_theta, cos_theta) = theta.sin_cos();
-        [
-            from_rows([
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [zero, zero, zero],
-                [zero, -sin_theta, cos_theta],
-                [zero, -cos_theta, -sin_theta],
-                [zero, zero, zero],
-            ]),
-            SMatrix::zeros(),
-            SMatrix::zeros(),
-        ]
-    }
-
-    /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
-    ///
-    /// 3×3. The identity. Operations: none.
-    ///
-    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
-    fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
-    /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
-    ///
-    /// 3×3. The identity. Operations: none.
-    ///
-    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
-    fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
-    /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
-    ///
-    /// 3 slices of 3×3. Zero. Operations: none.
-    ///
-    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
-    fn velocity_map_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-    ) -> [SMatrix<T, 3, 3>; 3] {
-        [SMatrix::zeros(); 3]
-    }
-
-    /// Σ_k γ_k v_k (17): stands on the left of (24).
-    ///
-    /// 3×3. Zero. Operations: none.
-    ///
-    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
-    fn gamma<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _v: &SVector<T, 3>,
-    ) -> SMatrix<T, 3, 3> {
-        SMatrix::zeros()
-    }
-
-    /// J22(Q, p) (28): stands on the right of (27).
-    ///
-    /// 3×3. Zero. Operations: none.
-    ///
-    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
-    fn j22<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _p: &SVector<T, 3>,
-    ) -> SMatrix<T, 3, 3> {
-        SMatrix::zeros()
-    }
-
-    /// A(Q) with Aᵀ v = 0 (Definition 2).
-    ///
-    /// 3×0. Zero. Operations: none.
-    fn constraint<T: Scalar>(&self, _q: &SVector<T, 3>) -> SMatrix<T, 3, 0> {
-        SMatrix::zeros()
-    }
-
-    /// S̄(Q): speeds v̄ to v (Definition 2, (15)).
-    ///
-    /// 3×3. The identity. Operations: none.
-    fn speed_basis<T: Scalar>(&self, _q: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
-    /// ∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 3 slices of 3×3. Zero. Operations: none.
-    fn speed_basis_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-    ) -> [SMatrix<T, 3, 3>; 3] {
-        [SMatrix::zeros(); 3]
+        [rows_at([(3, [zero, -sin_theta, cos_theta]), (4, [zero, -cos_theta, -sin_theta])]), SMatrix::zeros(), SMatrix::zeros()]
     }
 
     /// Q̇(Q, v) (31): the rates of the stored scalars.
-    ///
     /// 3-vector. Independent of Q. Operations: none.
-    ///
     /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
-    fn configuration_rate<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        v: &SVector<T, 3>,
-    ) -> SVector<T, 3> {
+    fn configuration_rate<T: Scalar>(&self, _q: &SVector<T, 3>, v: &SVector<T, 3>) -> SVector<T, 3> {
         *v
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
-    ///
     /// 3-vector. Operations: 3 additions.
-    ///
     /// From line 8 `config theta: R1, x: R1, y: R1;`.
-    fn retract<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        phi: &SVector<T, 3>,
-    ) -> SVector<T, 3> {
-        let [theta, x, y]: [T; 3] = (*q).into();
-        let [phi_theta, phi_x, phi_y]: [T; 3] = (*phi).into();
-        SVector::from([theta + phi_theta, x + phi_x, y + phi_y])
+    fn retract<T: Scalar>(&self, q: &SVector<T, 3>, phi: &SVector<T, 3>) -> SVector<T, 3> {
+        q + phi
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    ///
     /// 3-vector, rad, m, m. Operations: 3 additions.
-    ///
     /// From line 8 `config theta: R1, x: R1, y: R1;`.
-    fn local<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        target: &SVector<T, 3>,
-    ) -> SVector<T, 3> {
-        let [theta, x, y]: [T; 3] = (*q).into();
-        let [theta_target, x_target, y_target]: [T; 3] = (*target).into();
-        SVector::from([theta_target - theta, x_target - x, y_target - y])
-    }
-
-    /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
-    ///
-    /// 3×3. The identity. Operations: none.
-    ///
-    /// From line 8 `config theta: R1, x: R1, y: R1;`.
-    fn retract_differential<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _phi: &SVector<T, 3>,
-    ) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
-    /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    ///
-    /// 3-vector, rad/s, m/s, m/s. The identity. Operations: none.
-    ///
-    /// From line 8 `config theta: R1, x: R1, y: R1;`.
-    fn retract_differential_inverse<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _phi: &SVector<T, 3>,
-        rate: &SVector<T, 3>,
-    ) -> SVector<T, 3> {
-        *rate
-    }
-
-    /// The configuration on the manifold that is nearest to `q`.
-    ///
-    /// 3-vector. The identity. Operations: none.
-    ///
-    /// From line 8 `config theta: R1, x: R1, y: R1;`.
-    fn project<T: Scalar>(&self, q: &SVector<T, 3>) -> SVector<T, 3> {
-        *q
-    }
-
-    /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
-    ///
-    /// A scalar. Zero. Operations: none.
-    ///
-    /// From line 8 `config theta: R1, x: R1, y: R1;`.
-    fn residual<T: Scalar>(&self, _q: &SVector<T, 3>) -> T {
-        T::zero()
-    }
-
-    /// Least absolute value of the functions whose zeros the joint must stay away from.
-    ///
-    /// A scalar. Independent of Q. Operations: none.
-    fn singularity<T: Scalar>(&self, _q: &SVector<T, 3>) -> T {
-        ::hamel::finite::least_absolute([])
-    }
-
-    /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
-    ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 2 additions, 6 multiplications (1 of each fused), 1 function call.
-    ///
-    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
-    fn bias_acceleration<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        speeds: &SVector<T, 3>,
-    ) -> SVector<T, 6> {
-        let theta = q[0];
-        let [speed_theta, speed_x, speed_y]: [T; 3] = (*speeds).into();
-        let zero = T::zero();
-        let (sin_theta, cos_theta) = theta.sin_cos();
-        SVector::from([
-            zero,
-            zero,
-            zero,
-            speed_theta * (speed_y * cos_theta - speed_x * sin_theta),
-            -speed_theta * speed_x.mul_add(cos_theta, speed_y * sin_theta),
-            zero,
-        ])
-    }
-
-    /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
-    ///
-    /// 3-vector. Operations: 2 additions, 6 multiplications (1 of each fused), 1 function call.
-    ///
-    /// From line 9 `H = pose(rot_z(theta), [x, y, 0]);`.
-    fn bias_momentum<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        speeds: &SVector<T, 3>,
-        h: &SVector<T, 6>,
-    ) -> SVector<T, 3> {
-        let theta = q[0];
-        let speed_theta = speeds[0];
-        let (h4, h5) = (h[3], h[4]);
-        let zero = T::zero();
-        let (sin_theta, cos_theta) = theta.sin_cos();
-        SVector::from([
-            zero,
-            -speed_theta * h4.mul_add(sin_theta, h5 * cos_theta),
-            speed_theta * (h4 * cos_theta - h5 * sin_theta),
-        ])
+    fn local<T: Scalar>(&self, q: &SVector<T, 3>, target: &SVector<T, 3>) -> SVector<T, 3> {
+        target - q
     }
 }
-
-const PARAMETERS: [ParameterInfo; 0] = [];
 
 /// How a scene finds this joint by name.
 pub const ENTRY: JointEntry = JointEntry {
     name: "planar_euclidean",
     summary: "Planar joint in the Euclidean set of coordinates (closing note of Example 2).",
-    parameters: &PARAMETERS,
+    parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("planar_euclidean", &PARAMETERS, values)?;
+        ::hamel::registry::check_parameters("planar_euclidean", &[], values)?;
         Ok(::hamel::erased::erase(PlanarEuclidean))
     },
 };

@@ -8,6 +8,8 @@
 //! - Freedoms: `tilt_x` (ϕ₁, rad), `tilt_y` (ϕ₂, rad), `spin` (ϕ₃, rad).
 //! - Velocity v: read in the axes of the child.
 //! - Speeds v̄: `tilt_x`, `tilt_y`; constraints: 1.
+//! - The identity, and not written: S₀, S₀⁻¹.
+//! - Zero, and not written: ∂X^c/∂ϕ, ∂S̄/∂ϕ, c, the dual of c.
 //!
 //! ```text
 //!     ⎡Q₁₁  Q₁₂  Q₁₃  0⎤
@@ -40,13 +42,14 @@
 //! - `constraint_rank`: rank A = k − k̄ (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
+use ::hamel::group::so3;
 use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo};
+use ::hamel::registry::JointEntry;
 use ::hamel::scalar::Scalar;
-use ::hamel::spatial::{Pose, nearest_rotation};
+use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(5);
+const _: () = ::hamel::joint::assert_kernel_interface(6);
 
 /// Pointing joint: the child's z axis points anywhere, and the child does not spin about it (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,55 +57,27 @@ pub struct Pointing;
 
 impl Joint<9, 3, 2, 1> for Pointing {
     const NAME: &'static str = "pointing";
-    const COORDINATES: [&'static str; 9] = [
-        "q11",
-        "q12",
-        "q13",
-        "q21",
-        "q22",
-        "q23",
-        "q31",
-        "q32",
-        "q33",
-    ];
+    const COORDINATES: [&'static str; 9] = ["q11", "q12", "q13", "q21", "q22", "q23", "q31", "q32", "q33"];
     const FREEDOMS: [&'static str; 3] = ["tilt_x", "tilt_y", "spin"];
     const SPEEDS: [&'static str; 2] = ["tilt_x", "tilt_y"];
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Child;
     const STRUCTURES: Structures = Structures {
         twist_map: Structure::General,
-        twist_map_child: Structure::Constant,
-        twist_map_child_gradient: Structure::Zero,
-        velocity_map: Structure::Identity,
         velocity_map_gradient: Structure::Constant,
         gamma: Structure::Constant,
         speed_basis: Structure::Constant,
-        speed_basis_gradient: Structure::Zero,
         retract_differential: Structure::General,
-        bias_acceleration: Structure::Zero,
-        bias_momentum: Structure::Zero,
-        speed_map: Structure::Constant,
+        project: Structure::General,
+        residual: Structure::General,
+        ..Structures::TRIVIAL
     };
-    const PATTERNS: Patterns<3, 2> = Patterns::new(
-        ["xxx", "xxx", "xxx"],
-        "000",
-        ["100", "010", "001", "000", "000", "000"],
-        ["10", "01", "00"],
-        &[],
-        &[],
-    );
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
-        [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    ];
+    const PATTERNS: Patterns<3, 2> = Patterns::new(["xxx", "xxx", "xxx"], "000", ["100", "010", "001", "000", "000", "000"])
+    .speed_basis(["10", "01", "00"]);
+    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
-    fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        [].into_iter()
-    }
-
     /// The home configuration.
-    ///
     /// 9-vector. Independent of Q. Operations: none.
-    ///
     /// From line 8 `config Q: SO3;`.
     fn home<T: Scalar>(&self) -> SVector<T, 9> {
         let zero = T::zero();
@@ -111,9 +86,7 @@ impl Joint<9, 3, 2, 1> for Pointing {
     }
 
     /// H(Q): child coordinates to parent coordinates.
-    ///
     /// Rotation matrix and translation in m. Operations: none.
-    ///
     /// From line 11 `H = pose(Q, [0, 0, 0]);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 9>) -> Pose<T> {
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
@@ -124,9 +97,7 @@ impl Joint<9, 3, 2, 1> for Pointing {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: none.
-    ///
     /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 9>) -> SMatrix<T, 6, 3> {
         let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
@@ -142,9 +113,7 @@ impl Joint<9, 3, 2, 1> for Pointing {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
-    ///
     /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 9>) -> SMatrix<T, 6, 3> {
         let zero = T::zero();
@@ -159,45 +128,10 @@ impl Joint<9, 3, 2, 1> for Pointing {
         ])
     }
 
-    /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 3 slices of 6×3. Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn twist_map_child_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-    ) -> [SMatrix<T, 6, 3>; 3] {
-        [SMatrix::zeros(); 3]
-    }
-
-    /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
-    ///
-    /// 3×3. The identity. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 9>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
-    /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
-    ///
-    /// 3×3. The identity. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 9>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
     /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
-    ///
     /// 3 slices of 3×3. Independent of Q. Operations: none.
-    ///
     /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn velocity_map_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-    ) -> [SMatrix<T, 3, 3>; 3] {
+    fn velocity_map_gradient<T: Scalar>(&self, _q: &SVector<T, 9>) -> [SMatrix<T, 3, 3>; 3] {
         let zero = T::zero();
         let half = T::from_f64(0.5);
         [
@@ -208,43 +142,25 @@ impl Joint<9, 3, 2, 1> for Pointing {
     }
 
     /// Σ_k γ_k v_k (17): stands on the left of (24).
-    ///
     /// 3×3. Independent of Q. Operations: none.
-    ///
     /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn gamma<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-        v: &SVector<T, 3>,
-    ) -> SMatrix<T, 3, 3> {
+    fn gamma<T: Scalar>(&self, _q: &SVector<T, 9>, v: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
         let [v_tilt_x, v_tilt_y, v_spin]: [T; 3] = (*v).into();
         let zero = T::zero();
-        from_rows([
-            [zero, -v_spin, v_tilt_y],
-            [v_spin, zero, -v_tilt_x],
-            [-v_tilt_y, v_tilt_x, zero],
-        ])
+        from_rows([[zero, -v_spin, v_tilt_y], [v_spin, zero, -v_tilt_x], [-v_tilt_y, v_tilt_x, zero]])
     }
 
     /// J22(Q, p) (28): stands on the right of (27).
-    ///
     /// 3×3. Independent of Q. Operations: none.
-    ///
     /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
     fn j22<T: Scalar>(&self, _q: &SVector<T, 9>, p: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
         let [p_tilt_x, p_tilt_y, p_spin]: [T; 3] = (*p).into();
         let zero = T::zero();
-        from_rows([
-            [zero, -p_spin, p_tilt_y],
-            [p_spin, zero, -p_tilt_x],
-            [-p_tilt_y, p_tilt_x, zero],
-        ])
+        from_rows([[zero, -p_spin, p_tilt_y], [p_spin, zero, -p_tilt_x], [-p_tilt_y, p_tilt_x, zero]])
     }
 
     /// A(Q) with Aᵀ v = 0 (Definition 2).
-    ///
     /// 3×1. Independent of Q. Operations: none.
-    ///
     /// From line 12 `A = [0; 0; 1];`.
     fn constraint<T: Scalar>(&self, _q: &SVector<T, 9>) -> SMatrix<T, 3, 1> {
         let zero = T::zero();
@@ -253,9 +169,7 @@ impl Joint<9, 3, 2, 1> for Pointing {
     }
 
     /// S̄(Q): speeds v̄ to v (Definition 2, (15)).
-    ///
     /// 3×2. Independent of Q. Operations: none.
-    ///
     /// From line 13 `S_bar = [1, 0; 0, 1; 0, 0];`.
     fn speed_basis<T: Scalar>(&self, _q: &SVector<T, 9>) -> SMatrix<T, 3, 2> {
         let zero = T::zero();
@@ -263,175 +177,36 @@ impl Joint<9, 3, 2, 1> for Pointing {
         from_rows([[one, zero], [zero, one], [zero, zero]])
     }
 
-    /// ∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 3 slices of 3×2. Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 13 `S_bar`.
-    fn speed_basis_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-    ) -> [SMatrix<T, 3, 2>; 3] {
-        [SMatrix::zeros(); 3]
-    }
-
     /// Q̇(Q, v) (31): the rates of the stored scalars.
-    ///
     /// 9-vector. Operations: 9 additions, 18 multiplications.
-    ///
     /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn configuration_rate<T: Scalar>(
-        &self,
-        q: &SVector<T, 9>,
-        v: &SVector<T, 3>,
-    ) -> SVector<T, 9> {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let [v_tilt_x, v_tilt_y, v_spin]: [T; 3] = (*v).into();
-        SVector::from([
-            q12 * v_spin - q13 * v_tilt_y,
-            q13 * v_tilt_x - q11 * v_spin,
-            q11 * v_tilt_y - q12 * v_tilt_x,
-            q22 * v_spin - q23 * v_tilt_y,
-            q23 * v_tilt_x - q21 * v_spin,
-            q21 * v_tilt_y - q22 * v_tilt_x,
-            q32 * v_spin - q33 * v_tilt_y,
-            q33 * v_tilt_x - q31 * v_spin,
-            q31 * v_tilt_y - q32 * v_tilt_x,
-        ])
+    fn configuration_rate<T: Scalar>(&self, q: &SVector<T, 9>, v: &SVector<T, 3>) -> SVector<T, 9> {
+        so3::rate(q, v)
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
-    ///
-    /// 9-vector. Operations: 32 additions, 41 multiplications (21 of each fused), 2 function calls.
-    ///
+    /// 9-vector. Operations: 32 additions, 44 multiplications (18 of each fused), 2 function calls.
     /// From line 8 `config`, line 9 `basis`.
-    fn retract<T: Scalar>(
-        &self,
-        q: &SVector<T, 9>,
-        phi: &SVector<T, 3>,
-    ) -> SVector<T, 9> {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let [phi_tilt_x, phi_tilt_y, phi_spin]: [T; 3] = (*phi).into();
-        let one = T::one();
-        let phi_tilt_x_squared = phi_tilt_x * phi_tilt_x;
-        let phi_tilt_y_squared = phi_tilt_y * phi_tilt_y;
-        let phi_spin_squared = phi_spin * phi_spin;
-        let theta_squared = phi_tilt_x_squared + phi_tilt_y_squared + phi_spin_squared;
-        let c1 = theta_squared.stumpff(1);
-        let c2 = theta_squared.stumpff(2);
-        let e11 = c2.mul_add(-(phi_tilt_y_squared + phi_spin_squared), one);
-        let phi_spin_c1 = phi_spin * c1;
-        let phi_tilt_x_c2 = phi_tilt_x * c2;
-        let phi_tilt_x_c2_phi_tilt_y = phi_tilt_x_c2 * phi_tilt_y;
-        let e12 = phi_tilt_x_c2_phi_tilt_y - phi_spin_c1;
-        let phi_tilt_y_c1 = phi_tilt_y * c1;
-        let phi_tilt_x_c2_phi_spin = phi_tilt_x_c2 * phi_spin;
-        let e13 = phi_tilt_y_c1 + phi_tilt_x_c2_phi_spin;
-        let e21 = phi_spin_c1 + phi_tilt_x_c2_phi_tilt_y;
-        let e22 = c2.mul_add(-(phi_tilt_x_squared + phi_spin_squared), one);
-        let phi_tilt_x_c1 = phi_tilt_x * c1;
-        let phi_tilt_y_phi_spin_c2 = phi_tilt_y * phi_spin * c2;
-        let e23 = phi_tilt_y_phi_spin_c2 - phi_tilt_x_c1;
-        let e31 = phi_tilt_x_c2_phi_spin - phi_tilt_y_c1;
-        let e32 = phi_tilt_x_c1 + phi_tilt_y_phi_spin_c2;
-        let e33 = c2.mul_add(-(phi_tilt_x_squared + phi_tilt_y_squared), one);
-        SVector::from([
-            q11.mul_add(e11, q12.mul_add(e21, q13 * e31)),
-            q11.mul_add(e12, q12.mul_add(e22, q13 * e32)),
-            q11.mul_add(e13, q12.mul_add(e23, q13 * e33)),
-            q21.mul_add(e11, q22.mul_add(e21, q23 * e31)),
-            q21.mul_add(e12, q22.mul_add(e22, q23 * e32)),
-            q21.mul_add(e13, q22.mul_add(e23, q23 * e33)),
-            q31.mul_add(e11, q32.mul_add(e21, q33 * e31)),
-            q31.mul_add(e12, q32.mul_add(e22, q33 * e32)),
-            q31.mul_add(e13, q32.mul_add(e23, q33 * e33)),
-        ])
+    fn retract<T: Scalar>(&self, q: &SVector<T, 9>, phi: &SVector<T, 3>) -> SVector<T, 9> {
+        so3::times_exp(q, phi)
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    ///
     /// 3-vector, rad. Operations: 18 additions, 27 multiplications (18 of each fused), 1 function call.
-    ///
     /// From line 8 `config`, line 9 `basis`.
-    fn local<T: Scalar>(
-        &self,
-        q: &SVector<T, 9>,
-        target: &SVector<T, 9>,
-    ) -> SVector<T, 3> {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let [q11_target, q12_target, q13_target, q21_target, q22_target, q23_target,
-        q31_target, q32_target, q33_target]: [T; 9] = (*target).into();
-        let rotation = from_rows([
-            [
-                q11.mul_add(q11_target, q21.mul_add(q21_target, q31 * q31_target)),
-                q11.mul_add(q12_target, q21.mul_add(q22_target, q31 * q32_target)),
-                q11.mul_add(q13_target, q21.mul_add(q23_target, q31 * q33_target)),
-            ],
-            [
-                q12.mul_add(q11_target, q22.mul_add(q21_target, q32 * q31_target)),
-                q12.mul_add(q12_target, q22.mul_add(q22_target, q32 * q32_target)),
-                q12.mul_add(q13_target, q22.mul_add(q23_target, q32 * q33_target)),
-            ],
-            [
-                q13.mul_add(q11_target, q23.mul_add(q21_target, q33 * q31_target)),
-                q13.mul_add(q12_target, q23.mul_add(q22_target, q33 * q32_target)),
-                q13.mul_add(q13_target, q23.mul_add(q23_target, q33 * q33_target)),
-            ],
-        ]);
-        let [r1, r2, r3]: [T; 3] = T::rotation_vector(&rotation).into();
-        SVector::from([r1, r2, r3])
+    fn local<T: Scalar>(&self, q: &SVector<T, 9>, target: &SVector<T, 9>) -> SVector<T, 3> {
+        so3::log_between(q, target)
     }
 
     /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
-    ///
-    /// 3×3. Operations: 14 additions, 18 multiplications (9 of each fused), 2 function calls.
-    ///
+    /// 3×3. Operations: 14 additions, 17 multiplications, 2 function calls.
     /// From line 8 `config`, line 9 `basis`.
-    fn retract_differential<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-        phi: &SVector<T, 3>,
-    ) -> SMatrix<T, 3, 3> {
-        let [phi_tilt_x, phi_tilt_y, phi_spin]: [T; 3] = (*phi).into();
-        let one = T::one();
-        let phi_tilt_y_squared = phi_tilt_y * phi_tilt_y;
-        let phi_spin_squared = phi_spin * phi_spin;
-        let ad_squared11 = -(phi_tilt_y_squared + phi_spin_squared);
-        let ad_squared12 = phi_tilt_x * phi_tilt_y;
-        let ad_squared13 = phi_tilt_x * phi_spin;
-        let phi_tilt_x_squared = phi_tilt_x * phi_tilt_x;
-        let ad_squared22 = -(phi_tilt_x_squared + phi_spin_squared);
-        let ad_squared23 = phi_tilt_y * phi_spin;
-        let ad_squared33 = -(phi_tilt_x_squared + phi_tilt_y_squared);
-        let theta_squared = phi_tilt_x_squared + phi_tilt_y_squared + phi_spin_squared;
-        let c2 = theta_squared.stumpff(2);
-        let c3 = theta_squared.stumpff(3);
-        let phi_spin_c2 = phi_spin * c2;
-        let phi_tilt_y_c2 = phi_tilt_y * c2;
-        let phi_tilt_x_c2 = phi_tilt_x * c2;
-        from_rows([
-            [
-                ad_squared11.mul_add(c3, one),
-                ad_squared12.mul_add(c3, phi_spin_c2),
-                ad_squared13.mul_add(c3, -phi_tilt_y_c2),
-            ],
-            [
-                ad_squared12.mul_add(c3, -phi_spin_c2),
-                ad_squared22.mul_add(c3, one),
-                ad_squared23.mul_add(c3, phi_tilt_x_c2),
-            ],
-            [
-                ad_squared13.mul_add(c3, phi_tilt_y_c2),
-                ad_squared23.mul_add(c3, -phi_tilt_x_c2),
-                ad_squared33.mul_add(c3, one),
-            ],
-        ])
+    fn retract_differential<T: Scalar>(&self, _q: &SVector<T, 9>, phi: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
+        so3::differential(phi)
     }
 
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    ///
-    /// 3-vector, rad/s. Operations: 14 additions, 21 multiplications (8 of each fused), 1 function call.
-    ///
+    /// 3-vector, rad/s. Operations: 14 additions, 21 multiplications (2 of each fused), 1 function call.
     /// From line 8 `config`, line 9 `basis`.
     fn retract_differential_inverse<T: Scalar>(
         &self,
@@ -439,108 +214,31 @@ impl Joint<9, 3, 2, 1> for Pointing {
         phi: &SVector<T, 3>,
         rate: &SVector<T, 3>,
     ) -> SVector<T, 3> {
-        let [phi_tilt_x, phi_tilt_y, phi_spin]: [T; 3] = (*phi).into();
-        let [v_tilt_x, v_tilt_y, v_spin]: [T; 3] = (*rate).into();
-        let half = T::from_f64(0.5);
-        let bracket1 = phi_tilt_y * v_spin - phi_spin * v_tilt_y;
-        let bracket2 = phi_spin * v_tilt_x - phi_tilt_x * v_spin;
-        let bracket3 = phi_tilt_x * v_tilt_y - phi_tilt_y * v_tilt_x;
-        let theta_squared = phi_tilt_x
-            .mul_add(phi_tilt_x, phi_tilt_y.mul_add(phi_tilt_y, phi_spin * phi_spin));
-        let g = theta_squared.dexp_inverse(0);
-        let double_bracket1 = phi_tilt_y * bracket3 - phi_spin * bracket2;
-        let double_bracket2 = phi_spin * bracket1 - phi_tilt_x * bracket3;
-        let double_bracket3 = phi_tilt_x * bracket2 - phi_tilt_y * bracket1;
-        SVector::from([
-            half.mul_add(bracket1, g.mul_add(double_bracket1, v_tilt_x)),
-            half.mul_add(bracket2, g.mul_add(double_bracket2, v_tilt_y)),
-            half.mul_add(bracket3, g.mul_add(double_bracket3, v_spin)),
-        ])
+        so3::differential_inverse(phi, rate)
     }
 
     /// The configuration on the manifold that is nearest to `q`.
-    ///
-    /// 9-vector. Operations: 1 function call.
-    ///
+    /// 9-vector. Operations: 108 additions, 216 multiplications.
     /// From line 8 `config Q: SO3;`.
     fn project<T: Scalar>(&self, q: &SVector<T, 9>) -> SVector<T, 9> {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let rotation = nearest_rotation(
-            &from_rows([[q11, q12, q13], [q21, q22, q23], [q31, q32, q33]]),
-        );
-        let [[r11, r21, r31], [r12, r22, r32], [r13, r23, r33]]: [[T; 3]; 3] = rotation
-            .into();
-        SVector::from([r11, r12, r13, r21, r22, r23, r31, r32, r33])
+        so3::nearest(q)
     }
 
     /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
-    ///
-    /// A scalar. Operations: 28 additions, 34 multiplications (22 of each fused), 1 function call.
-    ///
+    /// A scalar. Operations: 27 additions, 34 multiplications (18 of each fused), 1 function call.
     /// From line 8 `config Q: SO3;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 9>) -> T {
-        let [q11, q12, q13, q21, q22, q23, q31, q32, q33]: [T; 9] = (*q).into();
-        let one = T::one();
-        let relations = [
-            q11.mul_add(q11, q21.mul_add(q21, q31.mul_add(q31, -one))),
-            q11.mul_add(q12, q21.mul_add(q22, q31 * q32)),
-            q11.mul_add(q13, q21.mul_add(q23, q31 * q33)),
-            q12.mul_add(q12, q22.mul_add(q22, q32.mul_add(q32, -one))),
-            q12.mul_add(q13, q22.mul_add(q23, q32 * q33)),
-            q13.mul_add(q13, q23.mul_add(q23, q33.mul_add(q33, -one))),
-            q11 * (q22 * q33 - q23 * q32) - q12 * (q21 * q33 - q23 * q31)
-                + q13 * (q21 * q32 - q22 * q31) - one,
-        ];
-        let sum = relations
-            .into_iter()
-            .fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
-        sum.sqrt()
-    }
-
-    /// Least absolute value of the functions whose zeros the joint must stay away from.
-    ///
-    /// A scalar. Independent of Q. Operations: none.
-    fn singularity<T: Scalar>(&self, _q: &SVector<T, 9>) -> T {
-        ::hamel::finite::least_absolute([])
-    }
-
-    /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
-    ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`, line 13 `S_bar`.
-    fn bias_acceleration<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-        _speeds: &SVector<T, 2>,
-    ) -> SVector<T, 6> {
-        SVector::zeros()
-    }
-
-    /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
-    ///
-    /// 2-vector. Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`, line 13 `S_bar`.
-    fn bias_momentum<T: Scalar>(
-        &self,
-        _q: &SVector<T, 9>,
-        _speeds: &SVector<T, 2>,
-        _h: &SVector<T, 6>,
-    ) -> SVector<T, 2> {
-        SVector::zeros()
+        so3::residual_squared(q).sqrt()
     }
 }
-
-const PARAMETERS: [ParameterInfo; 0] = [];
 
 /// How a scene finds this joint by name.
 pub const ENTRY: JointEntry = JointEntry {
     name: "pointing",
     summary: "Pointing joint: the child's z axis points anywhere, and the child does not spin about it (nonholonomic).",
-    parameters: &PARAMETERS,
+    parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("pointing", &PARAMETERS, values)?;
+        ::hamel::registry::check_parameters("pointing", &[], values)?;
         Ok(::hamel::erased::erase(Pointing))
     },
 };

@@ -7,6 +7,8 @@
 //! - Configuration: q ∈ R1, stored as q.
 //! - Freedoms: `q` (ϕ, rad).
 //! - Velocity v: read as the rates of the local coordinates.
+//! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹, the projection.
+//! - Zero, and not written: ∂X^c/∂ϕ, ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, the residual, c, the dual of c.
 //!
 //! ```text
 //!     ⎡cos q  −sin q  0  0⎤
@@ -36,13 +38,13 @@
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) (certificate)
 //! - `fibres`: one pose has one Q up to full turns of q (certificate)
 
-use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo};
+use ::hamel::registry::JointEntry;
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(5);
+const _: () = ::hamel::joint::assert_kernel_interface(6);
 
 /// Revolute joint: one turn about the common z axis of both frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,28 +56,8 @@ impl Joint<1, 1, 1, 0> for Revolute {
     const FREEDOMS: [&'static str; 1] = ["q"];
     const SPEEDS: [&'static str; 1] = ["q"];
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Declared;
-    const STRUCTURES: Structures = Structures {
-        twist_map: Structure::Constant,
-        twist_map_child: Structure::Constant,
-        twist_map_child_gradient: Structure::Zero,
-        velocity_map: Structure::Identity,
-        velocity_map_gradient: Structure::Zero,
-        gamma: Structure::Zero,
-        speed_basis: Structure::Identity,
-        speed_basis_gradient: Structure::Zero,
-        retract_differential: Structure::Identity,
-        bias_acceleration: Structure::Zero,
-        bias_momentum: Structure::Zero,
-        speed_map: Structure::Constant,
-    };
-    const PATTERNS: Patterns<1, 1> = Patterns::new(
-        ["xx0", "xx0", "001"],
-        "000",
-        ["0", "0", "1", "0", "0", "0"],
-        ["1"],
-        &[],
-        &[],
-    );
+    const STRUCTURES: Structures = Structures::TRIVIAL;
+    const PATTERNS: Patterns<1, 1> = Patterns::new(["xx0", "xx0", "001"], "000", ["0", "0", "1", "0", "0", "0"]);
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -83,23 +65,15 @@ impl Joint<1, 1, 1, 0> for Revolute {
     ];
     const SINGULARITIES: &'static [&'static str] = &[];
 
-    fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        [].into_iter()
-    }
-
     /// The home configuration.
-    ///
     /// 1-vector. Zero. Operations: none.
-    ///
     /// From line 8 `config q: R1;`.
     fn home<T: Scalar>(&self) -> SVector<T, 1> {
         SVector::zeros()
     }
 
     /// H(Q): child coordinates to parent coordinates.
-    ///
     /// Rotation matrix and translation in m. Operations: 1 function call.
-    ///
     /// From line 9 `H = rot_z(q);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 1>) -> Pose<T> {
         let q = q[0];
@@ -107,19 +81,13 @@ impl Joint<1, 1, 1, 0> for Revolute {
         let one = T::one();
         let (sin_q, cos_q) = q.sin_cos();
         Pose {
-            rotation: from_rows([
-                [cos_q, -sin_q, zero],
-                [sin_q, cos_q, zero],
-                [zero, zero, one],
-            ]),
+            rotation: from_rows([[cos_q, -sin_q, zero], [sin_q, cos_q, zero], [zero, zero, one]]),
             translation: SVector::zeros(),
         }
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    ///
     /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
-    ///
     /// From line 9 `H = rot_z(q);`.
     fn twist_map<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let zero = T::zero();
@@ -128,9 +96,7 @@ impl Joint<1, 1, 1, 0> for Revolute {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    ///
     /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
-    ///
     /// From line 9 `H = rot_z(q);`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let zero = T::zero();
@@ -138,230 +104,35 @@ impl Joint<1, 1, 1, 0> for Revolute {
         from_rows([[zero], [zero], [one], [zero], [zero], [zero]])
     }
 
-    /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 1 slices of 6×1. Zero. Operations: none.
-    ///
-    /// From line 9 `H = rot_z(q);`.
-    fn twist_map_child_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 1>,
-    ) -> [SMatrix<T, 6, 1>; 1] {
-        [SMatrix::zeros(); 1]
-    }
-
-    /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
-    ///
-    /// 1×1. The identity. Operations: none.
-    ///
-    /// From line 9 `H = rot_z(q);`.
-    fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 1, 1> {
-        SMatrix::identity()
-    }
-
-    /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
-    ///
-    /// 1×1. The identity. Operations: none.
-    ///
-    /// From line 9 `H = rot_z(q);`.
-    fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 1, 1> {
-        SMatrix::identity()
-    }
-
-    /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
-    ///
-    /// 1 slices of 1×1. Zero. Operations: none.
-    ///
-    /// From line 9 `H = rot_z(q);`.
-    fn velocity_map_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 1>,
-    ) -> [SMatrix<T, 1, 1>; 1] {
-        [SMatrix::zeros(); 1]
-    }
-
-    /// Σ_k γ_k v_k (17): stands on the left of (24).
-    ///
-    /// 1×1. Zero. Operations: none.
-    ///
-    /// From line 9 `H = rot_z(q);`.
-    fn gamma<T: Scalar>(
-        &self,
-        _q: &SVector<T, 1>,
-        _v: &SVector<T, 1>,
-    ) -> SMatrix<T, 1, 1> {
-        SMatrix::zeros()
-    }
-
-    /// J22(Q, p) (28): stands on the right of (27).
-    ///
-    /// 1×1. Zero. Operations: none.
-    ///
-    /// From line 9 `H = rot_z(q);`.
-    fn j22<T: Scalar>(
-        &self,
-        _q: &SVector<T, 1>,
-        _p: &SVector<T, 1>,
-    ) -> SMatrix<T, 1, 1> {
-        SMatrix::zeros()
-    }
-
-    /// A(Q) with Aᵀ v = 0 (Definition 2).
-    ///
-    /// 1×0. Zero. Operations: none.
-    fn constraint<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 1, 0> {
-        SMatrix::zeros()
-    }
-
-    /// S̄(Q): speeds v̄ to v (Definition 2, (15)).
-    ///
-    /// 1×1. The identity. Operations: none.
-    fn speed_basis<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 1, 1> {
-        SMatrix::identity()
-    }
-
-    /// ∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 1 slices of 1×1. Zero. Operations: none.
-    fn speed_basis_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 1>,
-    ) -> [SMatrix<T, 1, 1>; 1] {
-        [SMatrix::zeros(); 1]
-    }
-
     /// Q̇(Q, v) (31): the rates of the stored scalars.
-    ///
     /// 1-vector. Independent of Q. Operations: none.
-    ///
     /// From line 9 `H = rot_z(q);`.
-    fn configuration_rate<T: Scalar>(
-        &self,
-        _q: &SVector<T, 1>,
-        v: &SVector<T, 1>,
-    ) -> SVector<T, 1> {
+    fn configuration_rate<T: Scalar>(&self, _q: &SVector<T, 1>, v: &SVector<T, 1>) -> SVector<T, 1> {
         *v
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
-    ///
     /// 1-vector. Operations: 1 addition.
-    ///
     /// From line 8 `config q: R1;`.
-    fn retract<T: Scalar>(
-        &self,
-        q: &SVector<T, 1>,
-        phi: &SVector<T, 1>,
-    ) -> SVector<T, 1> {
-        let q = q[0];
-        let phi_q = phi[0];
-        SVector::from([q + phi_q])
+    fn retract<T: Scalar>(&self, q: &SVector<T, 1>, phi: &SVector<T, 1>) -> SVector<T, 1> {
+        q + phi
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    ///
     /// 1-vector, rad. Operations: 1 addition.
-    ///
     /// From line 8 `config q: R1;`.
-    fn local<T: Scalar>(
-        &self,
-        q: &SVector<T, 1>,
-        target: &SVector<T, 1>,
-    ) -> SVector<T, 1> {
-        let q = q[0];
-        let q_target = target[0];
-        SVector::from([q_target - q])
-    }
-
-    /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
-    ///
-    /// 1×1. The identity. Operations: none.
-    ///
-    /// From line 8 `config q: R1;`.
-    fn retract_differential<T: Scalar>(
-        &self,
-        _q: &SVector<T, 1>,
-        _phi: &SVector<T, 1>,
-    ) -> SMatrix<T, 1, 1> {
-        SMatrix::identity()
-    }
-
-    /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    ///
-    /// 1-vector, rad/s. The identity. Operations: none.
-    ///
-    /// From line 8 `config q: R1;`.
-    fn retract_differential_inverse<T: Scalar>(
-        &self,
-        _q: &SVector<T, 1>,
-        _phi: &SVector<T, 1>,
-        rate: &SVector<T, 1>,
-    ) -> SVector<T, 1> {
-        *rate
-    }
-
-    /// The configuration on the manifold that is nearest to `q`.
-    ///
-    /// 1-vector. The identity. Operations: none.
-    ///
-    /// From line 8 `config q: R1;`.
-    fn project<T: Scalar>(&self, q: &SVector<T, 1>) -> SVector<T, 1> {
-        *q
-    }
-
-    /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
-    ///
-    /// A scalar. Zero. Operations: none.
-    ///
-    /// From line 8 `config q: R1;`.
-    fn residual<T: Scalar>(&self, _q: &SVector<T, 1>) -> T {
-        T::zero()
-    }
-
-    /// Least absolute value of the functions whose zeros the joint must stay away from.
-    ///
-    /// A scalar. Independent of Q. Operations: none.
-    fn singularity<T: Scalar>(&self, _q: &SVector<T, 1>) -> T {
-        ::hamel::finite::least_absolute([])
-    }
-
-    /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
-    ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Zero. Operations: none.
-    ///
-    /// From line 9 `H = rot_z(q);`.
-    fn bias_acceleration<T: Scalar>(
-        &self,
-        _q: &SVector<T, 1>,
-        _speeds: &SVector<T, 1>,
-    ) -> SVector<T, 6> {
-        SVector::zeros()
-    }
-
-    /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
-    ///
-    /// 1-vector. Zero. Operations: none.
-    ///
-    /// From line 9 `H = rot_z(q);`.
-    fn bias_momentum<T: Scalar>(
-        &self,
-        _q: &SVector<T, 1>,
-        _speeds: &SVector<T, 1>,
-        _h: &SVector<T, 6>,
-    ) -> SVector<T, 1> {
-        SVector::zeros()
+    fn local<T: Scalar>(&self, q: &SVector<T, 1>, target: &SVector<T, 1>) -> SVector<T, 1> {
+        target - q
     }
 }
-
-const PARAMETERS: [ParameterInfo; 0] = [];
 
 /// How a scene finds this joint by name.
 pub const ENTRY: JointEntry = JointEntry {
     name: "revolute",
     summary: "Revolute joint: one turn about the common z axis of both frames.",
-    parameters: &PARAMETERS,
+    parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("revolute", &PARAMETERS, values)?;
+        ::hamel::registry::check_parameters("revolute", &[], values)?;
         Ok(::hamel::erased::erase(Revolute))
     },
 };

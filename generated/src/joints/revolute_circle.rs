@@ -7,6 +7,8 @@
 //! - Configuration: q ∈ S1, stored as q.c, q.s.
 //! - Freedoms: `turn` (ϕ, rad).
 //! - Velocity v: read in the axes of the child.
+//! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹.
+//! - Zero, and not written: ∂X^c/∂ϕ, ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, c, the dual of c.
 //!
 //! ```text
 //!     ⎡q.c  −q.s  0  0⎤
@@ -36,13 +38,14 @@
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
+use ::hamel::group::s1;
 use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo};
+use ::hamel::registry::JointEntry;
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(5);
+const _: () = ::hamel::joint::assert_kernel_interface(6);
 
 /// Revolute joint on the circle: one turn about the common z axis of both frames, without trigonometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,27 +58,11 @@ impl Joint<2, 1, 1, 0> for RevoluteCircle {
     const SPEEDS: [&'static str; 1] = ["turn"];
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Child;
     const STRUCTURES: Structures = Structures {
-        twist_map: Structure::Constant,
-        twist_map_child: Structure::Constant,
-        twist_map_child_gradient: Structure::Zero,
-        velocity_map: Structure::Identity,
-        velocity_map_gradient: Structure::Zero,
-        gamma: Structure::Zero,
-        speed_basis: Structure::Identity,
-        speed_basis_gradient: Structure::Zero,
-        retract_differential: Structure::Identity,
-        bias_acceleration: Structure::Zero,
-        bias_momentum: Structure::Zero,
-        speed_map: Structure::Constant,
+        project: Structure::General,
+        residual: Structure::General,
+        ..Structures::TRIVIAL
     };
-    const PATTERNS: Patterns<1, 1> = Patterns::new(
-        ["xx0", "xx0", "001"],
-        "000",
-        ["0", "0", "1", "0", "0", "0"],
-        ["1"],
-        &[],
-        &[],
-    );
+    const PATTERNS: Patterns<1, 1> = Patterns::new(["xx0", "xx0", "001"], "000", ["0", "0", "1", "0", "0", "0"]);
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -83,14 +70,8 @@ impl Joint<2, 1, 1, 0> for RevoluteCircle {
     ];
     const SINGULARITIES: &'static [&'static str] = &[];
 
-    fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        [].into_iter()
-    }
-
     /// The home configuration.
-    ///
     /// 2-vector. Independent of Q. Operations: none.
-    ///
     /// From line 8 `config q: S1;`.
     fn home<T: Scalar>(&self) -> SVector<T, 2> {
         let zero = T::zero();
@@ -99,28 +80,20 @@ impl Joint<2, 1, 1, 0> for RevoluteCircle {
     }
 
     /// H(Q): child coordinates to parent coordinates.
-    ///
     /// Rotation matrix and translation in m. Operations: none.
-    ///
     /// From line 11 `H = rot_z(q);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 2>) -> Pose<T> {
         let [q_c, q_s]: [T; 2] = (*q).into();
         let zero = T::zero();
         let one = T::one();
         Pose {
-            rotation: from_rows([
-                [q_c, -q_s, zero],
-                [q_s, q_c, zero],
-                [zero, zero, one],
-            ]),
+            rotation: from_rows([[q_c, -q_s, zero], [q_s, q_c, zero], [zero, zero, one]]),
             translation: SVector::zeros(),
         }
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    ///
     /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
-    ///
     /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
     fn twist_map<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 6, 1> {
         let zero = T::zero();
@@ -129,9 +102,7 @@ impl Joint<2, 1, 1, 0> for RevoluteCircle {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    ///
     /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
-    ///
     /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 6, 1> {
         let zero = T::zero();
@@ -139,248 +110,49 @@ impl Joint<2, 1, 1, 0> for RevoluteCircle {
         from_rows([[zero], [zero], [one], [zero], [zero], [zero]])
     }
 
-    /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 1 slices of 6×1. Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn twist_map_child_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-    ) -> [SMatrix<T, 6, 1>; 1] {
-        [SMatrix::zeros(); 1]
-    }
-
-    /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
-    ///
-    /// 1×1. The identity. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 1, 1> {
-        SMatrix::identity()
-    }
-
-    /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
-    ///
-    /// 1×1. The identity. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 1, 1> {
-        SMatrix::identity()
-    }
-
-    /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
-    ///
-    /// 1 slices of 1×1. Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn velocity_map_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-    ) -> [SMatrix<T, 1, 1>; 1] {
-        [SMatrix::zeros(); 1]
-    }
-
-    /// Σ_k γ_k v_k (17): stands on the left of (24).
-    ///
-    /// 1×1. Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn gamma<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _v: &SVector<T, 1>,
-    ) -> SMatrix<T, 1, 1> {
-        SMatrix::zeros()
-    }
-
-    /// J22(Q, p) (28): stands on the right of (27).
-    ///
-    /// 1×1. Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn j22<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _p: &SVector<T, 1>,
-    ) -> SMatrix<T, 1, 1> {
-        SMatrix::zeros()
-    }
-
-    /// A(Q) with Aᵀ v = 0 (Definition 2).
-    ///
-    /// 1×0. Zero. Operations: none.
-    fn constraint<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 1, 0> {
-        SMatrix::zeros()
-    }
-
-    /// S̄(Q): speeds v̄ to v (Definition 2, (15)).
-    ///
-    /// 1×1. The identity. Operations: none.
-    fn speed_basis<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 1, 1> {
-        SMatrix::identity()
-    }
-
-    /// ∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 1 slices of 1×1. Zero. Operations: none.
-    fn speed_basis_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-    ) -> [SMatrix<T, 1, 1>; 1] {
-        [SMatrix::zeros(); 1]
-    }
-
     /// Q̇(Q, v) (31): the rates of the stored scalars.
-    ///
     /// 2-vector. Operations: 2 multiplications.
-    ///
     /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn configuration_rate<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        v: &SVector<T, 1>,
-    ) -> SVector<T, 2> {
-        let [q_c, q_s]: [T; 2] = (*q).into();
-        let v_turn = v[0];
-        SVector::from([-q_s * v_turn, q_c * v_turn])
+    fn configuration_rate<T: Scalar>(&self, q: &SVector<T, 2>, v: &SVector<T, 1>) -> SVector<T, 2> {
+        s1::rate(q, v)
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
-    ///
-    /// 2-vector. Operations: 2 additions, 6 multiplications (1 of each fused), 2 function calls.
-    ///
+    /// 2-vector. Operations: 2 additions, 4 multiplications, 1 function call.
     /// From line 8 `config`, line 9 `basis`.
-    fn retract<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        phi: &SVector<T, 1>,
-    ) -> SVector<T, 2> {
-        let [q_c, q_s]: [T; 2] = (*q).into();
-        let phi_turn = phi[0];
-        let theta_squared = phi_turn * phi_turn;
-        let c0 = theta_squared.stumpff(0);
-        let c1 = theta_squared.stumpff(1);
-        let phi_turn_c1 = phi_turn * c1;
-        SVector::from([q_c * c0 - q_s * phi_turn_c1, q_c.mul_add(phi_turn_c1, q_s * c0)])
+    fn retract<T: Scalar>(&self, q: &SVector<T, 2>, phi: &SVector<T, 1>) -> SVector<T, 2> {
+        s1::times_exp(q, phi)
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    ///
     /// 1-vector, rad. Operations: 2 additions, 4 multiplications (1 of each fused), 1 function call.
-    ///
     /// From line 8 `config`, line 9 `basis`.
-    fn local<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        target: &SVector<T, 2>,
-    ) -> SVector<T, 1> {
-        let [q_c, q_s]: [T; 2] = (*q).into();
-        let [q_c_target, q_s_target]: [T; 2] = (*target).into();
-        let angle = (q_c * q_s_target - q_s * q_c_target)
-            .atan2(q_c.mul_add(q_c_target, q_s * q_s_target));
-        SVector::from([angle])
-    }
-
-    /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
-    ///
-    /// 1×1. The identity. Operations: none.
-    ///
-    /// From line 8 `config`, line 9 `basis`.
-    fn retract_differential<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _phi: &SVector<T, 1>,
-    ) -> SMatrix<T, 1, 1> {
-        SMatrix::identity()
-    }
-
-    /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    ///
-    /// 1-vector, rad/s. The identity. Operations: none.
-    ///
-    /// From line 8 `config`, line 9 `basis`.
-    fn retract_differential_inverse<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _phi: &SVector<T, 1>,
-        rate: &SVector<T, 1>,
-    ) -> SVector<T, 1> {
-        *rate
+    fn local<T: Scalar>(&self, q: &SVector<T, 2>, target: &SVector<T, 2>) -> SVector<T, 1> {
+        s1::log_between(q, target)
     }
 
     /// The configuration on the manifold that is nearest to `q`.
-    ///
     /// 2-vector. Operations: 1 addition, 4 multiplications (1 of each fused), 1 division, 1 function call.
-    ///
     /// From line 8 `config q: S1;`.
     fn project<T: Scalar>(&self, q: &SVector<T, 2>) -> SVector<T, 2> {
-        let [q_c, q_s]: [T; 2] = (*q).into();
-        let one = T::one();
-        let norm = q_c.mul_add(q_c, q_s * q_s).sqrt();
-        let inverse_norm = one / norm;
-        SVector::from([q_c * inverse_norm, q_s * inverse_norm])
+        s1::nearest(q)
     }
 
     /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
-    ///
-    /// A scalar. Operations: 3 additions, 3 multiplications (3 of each fused), 1 function call.
-    ///
+    /// A scalar. Operations: 2 additions, 3 multiplications (1 of each fused), 1 function call.
     /// From line 8 `config q: S1;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 2>) -> T {
-        let [q_c, q_s]: [T; 2] = (*q).into();
-        let one = T::one();
-        let relations = [q_c.mul_add(q_c, q_s.mul_add(q_s, -one))];
-        let sum = relations
-            .into_iter()
-            .fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
-        sum.sqrt()
-    }
-
-    /// Least absolute value of the functions whose zeros the joint must stay away from.
-    ///
-    /// A scalar. Independent of Q. Operations: none.
-    fn singularity<T: Scalar>(&self, _q: &SVector<T, 2>) -> T {
-        ::hamel::finite::least_absolute([])
-    }
-
-    /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
-    ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn bias_acceleration<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _speeds: &SVector<T, 1>,
-    ) -> SVector<T, 6> {
-        SVector::zeros()
-    }
-
-    /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
-    ///
-    /// 1-vector. Zero. Operations: none.
-    ///
-    /// From line 9 `basis`, line 10 `velocity`, line 11 `H`.
-    fn bias_momentum<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _speeds: &SVector<T, 1>,
-        _h: &SVector<T, 6>,
-    ) -> SVector<T, 1> {
-        SVector::zeros()
+        s1::residual_squared(q).sqrt()
     }
 }
-
-const PARAMETERS: [ParameterInfo; 0] = [];
 
 /// How a scene finds this joint by name.
 pub const ENTRY: JointEntry = JointEntry {
     name: "revolute_circle",
     summary: "Revolute joint on the circle: one turn about the common z axis of both frames, without trigonometry.",
-    parameters: &PARAMETERS,
+    parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("revolute_circle", &PARAMETERS, values)?;
+        ::hamel::registry::check_parameters("revolute_circle", &[], values)?;
         Ok(::hamel::erased::erase(RevoluteCircle))
     },
 };

@@ -7,6 +7,9 @@
 //! - Configuration: u ∈ S1, w ∈ S1, stored as u.c, u.s, w.c, w.s.
 //! - Freedoms: `around` (ϕ₁, rad), `tube` (ϕ₂, rad).
 //! - Velocity v: read in the axes of the child.
+//! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹.
+//! - Zero, and not written: ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ.
+//! - By products of other kernels, and not written: c, the dual of c.
 //!
 //! ```text
 //!     ⎡−u.c w.s  −u.s  u.c w.c  u.c (outer + inner w.c)⎤
@@ -36,13 +39,16 @@
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::group::{part, put, s1, stacked};
+use ::hamel::joint::{
+    Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
+};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, Limit, ParameterInfo};
+use ::hamel::registry::{JointEntry, ParameterInfo};
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(5);
+const _: () = ::hamel::joint::assert_kernel_interface(6);
 
 /// Joint on a torus: the child's origin moves on a torus about the parent's z axis, its z axis along the outward normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,27 +75,16 @@ impl Joint<4, 2, 2, 0> for Torus {
     const SPEEDS: [&'static str; 2] = ["around", "tube"];
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Child;
     const STRUCTURES: Structures = Structures {
-        twist_map: Structure::General,
-        twist_map_child: Structure::General,
-        twist_map_child_gradient: Structure::General,
         velocity_map: Structure::Identity,
         velocity_map_gradient: Structure::Zero,
         gamma: Structure::Zero,
         speed_basis: Structure::Identity,
         speed_basis_gradient: Structure::Zero,
         retract_differential: Structure::Identity,
-        bias_acceleration: Structure::General,
-        bias_momentum: Structure::General,
-        speed_map: Structure::General,
+        ..Structures::GENERAL
     };
-    const PATTERNS: Patterns<2, 2> = Patterns::new(
-        ["xxx", "xxx", "x0x"],
-        "xxx",
-        ["x0", "01", "x0", "0x", "x0", "00"],
-        ["10", "01"],
-        &[(1, ["x0", "00", "x0", "00", "x0", "00"])],
-        &[],
-    );
+    const PATTERNS: Patterns<2, 2> = Patterns::new(["xxx", "xxx", "x0x"], "xxx", ["x0", "01", "x0", "0x", "x0", "00"])
+    .twist_map_child_gradient(&[(1, ["x0", "00", "x0", "00", "x0", "00"])]);
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
 
@@ -98,9 +93,7 @@ impl Joint<4, 2, 2, 0> for Torus {
     }
 
     /// The home configuration.
-    ///
     /// 4-vector. Independent of Q. Operations: none.
-    ///
     /// From line 13 `config u: S1, w: S1;`.
     fn home<T: Scalar>(&self) -> SVector<T, 4> {
         let zero = T::zero();
@@ -109,54 +102,33 @@ impl Joint<4, 2, 2, 0> for Torus {
     }
 
     /// H(Q): child coordinates to parent coordinates.
-    ///
     /// Rotation matrix and translation in m. Operations: 1 addition, 8 multiplications (1 of each fused).
-    ///
     /// From line 17 `H = rot_z(u) * trans_x(outer) * rot_y(w) * trans_x(inner) * rot_y(pi / 2);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 4>) -> Pose<T> {
         let outer = T::from_f64(self.outer);
         let inner = T::from_f64(self.inner);
         let [u_c, u_s, w_c, w_s]: [T; 4] = (*q).into();
         let zero = T::zero();
-        let outer_plus_inner_w_c = inner.mul_add(w_c, outer);
+        let t1 = inner.mul_add(w_c, outer);
         Pose {
-            rotation: from_rows([
-                [-u_c * w_s, -u_s, u_c * w_c],
-                [-u_s * w_s, u_c, u_s * w_c],
-                [-w_c, zero, -w_s],
-            ]),
-            translation: SVector::from([
-                u_c * outer_plus_inner_w_c,
-                u_s * outer_plus_inner_w_c,
-                -inner * w_s,
-            ]),
+            rotation: from_rows([[-u_c * w_s, -u_s, u_c * w_c], [-u_s * w_s, u_c, u_s * w_c], [-w_c, zero, -w_s]]),
+            translation: SVector::from([u_c * t1, u_s * t1, -inner * w_s]),
         }
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    ///
     /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: none.
-    ///
     /// From line 14 `basis`, line 15 `basis`, line 16 `velocity`, line 17 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 4>) -> SMatrix<T, 6, 2> {
         let outer = T::from_f64(self.outer);
         let (u_c, u_s) = (q[0], q[1]);
         let zero = T::zero();
         let one = T::one();
-        from_rows([
-            [zero, -u_s],
-            [zero, u_c],
-            [one, zero],
-            [zero, zero],
-            [zero, zero],
-            [zero, outer],
-        ])
+        from_rows([[zero, -u_s], [zero, u_c], [one, zero], [zero, zero], [zero, zero], [zero, outer]])
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    ///
     /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 1 addition, 1 multiplication (1 of each fused).
-    ///
     /// From line 14 `basis`, line 15 `basis`, line 16 `velocity`, line 17 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 4>) -> SMatrix<T, 6, 2> {
         let outer = T::from_f64(self.outer);
@@ -164,322 +136,67 @@ impl Joint<4, 2, 2, 0> for Torus {
         let (w_c, w_s) = (q[2], q[3]);
         let zero = T::zero();
         let one = T::one();
-        from_rows([
-            [-w_c, zero],
-            [zero, one],
-            [-w_s, zero],
-            [zero, inner],
-            [inner.mul_add(w_c, outer), zero],
-            [zero, zero],
-        ])
+        from_rows([[-w_c, zero], [zero, one], [-w_s, zero], [zero, inner], [inner.mul_add(w_c, outer), zero], [zero, zero]])
     }
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
     /// 2 slices of 6×2. Operations: 1 multiplication.
-    ///
     /// From line 14 `basis`, line 15 `basis`, line 16 `velocity`, line 17 `H`.
-    fn twist_map_child_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 4>,
-    ) -> [SMatrix<T, 6, 2>; 2] {
+    fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, 4>) -> [SMatrix<T, 6, 2>; 2] {
         let inner = T::from_f64(self.inner);
         let (w_c, w_s) = (q[2], q[3]);
         let zero = T::zero();
-        [
-            SMatrix::zeros(),
-            from_rows([
-                [w_s, zero],
-                [zero, zero],
-                [-w_c, zero],
-                [zero, zero],
-                [-inner * w_s, zero],
-                [zero, zero],
-            ]),
-        ]
-    }
-
-    /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
-    ///
-    /// 2×2. The identity. Operations: none.
-    ///
-    /// From line 14 `basis`, line 15 `basis`, line 16 `velocity`, line 17 `H`.
-    fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 4>) -> SMatrix<T, 2, 2> {
-        SMatrix::identity()
-    }
-
-    /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
-    ///
-    /// 2×2. The identity. Operations: none.
-    ///
-    /// From line 14 `basis`, line 15 `basis`, line 16 `velocity`, line 17 `H`.
-    fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 4>) -> SMatrix<T, 2, 2> {
-        SMatrix::identity()
-    }
-
-    /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
-    ///
-    /// 2 slices of 2×2. Zero. Operations: none.
-    ///
-    /// From line 14 `basis`, line 15 `basis`, line 16 `velocity`, line 17 `H`.
-    fn velocity_map_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 4>,
-    ) -> [SMatrix<T, 2, 2>; 2] {
-        [SMatrix::zeros(); 2]
-    }
-
-    /// Σ_k γ_k v_k (17): stands on the left of (24).
-    ///
-    /// 2×2. Zero. Operations: none.
-    ///
-    /// From line 14 `basis`, line 15 `basis`, line 16 `velocity`, line 17 `H`.
-    fn gamma<T: Scalar>(
-        &self,
-        _q: &SVector<T, 4>,
-        _v: &SVector<T, 2>,
-    ) -> SMatrix<T, 2, 2> {
-        SMatrix::zeros()
-    }
-
-    /// J22(Q, p) (28): stands on the right of (27).
-    ///
-    /// 2×2. Zero. Operations: none.
-    ///
-    /// From line 14 `basis`, line 15 `basis`, line 16 `velocity`, line 17 `H`.
-    fn j22<T: Scalar>(
-        &self,
-        _q: &SVector<T, 4>,
-        _p: &SVector<T, 2>,
-    ) -> SMatrix<T, 2, 2> {
-        SMatrix::zeros()
-    }
-
-    /// A(Q) with Aᵀ v = 0 (Definition 2).
-    ///
-    /// 2×0. Zero. Operations: none.
-    fn constraint<T: Scalar>(&self, _q: &SVector<T, 4>) -> SMatrix<T, 2, 0> {
-        SMatrix::zeros()
-    }
-
-    /// S̄(Q): speeds v̄ to v (Definition 2, (15)).
-    ///
-    /// 2×2. The identity. Operations: none.
-    fn speed_basis<T: Scalar>(&self, _q: &SVector<T, 4>) -> SMatrix<T, 2, 2> {
-        SMatrix::identity()
-    }
-
-    /// ∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 2 slices of 2×2. Zero. Operations: none.
-    fn speed_basis_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 4>,
-    ) -> [SMatrix<T, 2, 2>; 2] {
-        [SMatrix::zeros(); 2]
+        [SMatrix::zeros(), rows_at([(0, [w_s, zero]), (2, [-w_c, zero]), (4, [-inner * w_s, zero])])]
     }
 
     /// Q̇(Q, v) (31): the rates of the stored scalars.
-    ///
     /// 4-vector. Operations: 4 multiplications.
-    ///
     /// From line 14 `basis`, line 15 `basis`, line 16 `velocity`, line 17 `H`.
-    fn configuration_rate<T: Scalar>(
-        &self,
-        q: &SVector<T, 4>,
-        v: &SVector<T, 2>,
-    ) -> SVector<T, 4> {
-        let [u_c, u_s, w_c, w_s]: [T; 4] = (*q).into();
-        let [v_around, v_tube]: [T; 2] = (*v).into();
-        SVector::from([-u_s * v_around, u_c * v_around, -w_s * v_tube, w_c * v_tube])
+    fn configuration_rate<T: Scalar>(&self, q: &SVector<T, 4>, v: &SVector<T, 2>) -> SVector<T, 4> {
+        let u_rate = s1::rate(&part(q, 0), &part(v, 0));
+        let w_rate = s1::rate(&part(q, 2), &part(v, 1));
+        stacked(&[u_rate.as_slice(), w_rate.as_slice()])
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
-    ///
-    /// 4-vector. Operations: 4 additions, 12 multiplications (2 of each fused), 4 function calls.
-    ///
+    /// 4-vector. Operations: 4 additions, 8 multiplications, 2 function calls.
     /// From line 13 `config`, line 14 `basis`, line 15 `basis`.
-    fn retract<T: Scalar>(
-        &self,
-        q: &SVector<T, 4>,
-        phi: &SVector<T, 2>,
-    ) -> SVector<T, 4> {
-        let [u_c, u_s, w_c, w_s]: [T; 4] = (*q).into();
-        let [phi_around, phi_tube]: [T; 2] = (*phi).into();
-        let u_theta_squared = phi_around * phi_around;
-        let u_c0 = u_theta_squared.stumpff(0);
-        let u_c1 = u_theta_squared.stumpff(1);
-        let phi_around_u_c1 = phi_around * u_c1;
-        let w_theta_squared = phi_tube * phi_tube;
-        let w_c0 = w_theta_squared.stumpff(0);
-        let w_c1 = w_theta_squared.stumpff(1);
-        let phi_tube_w_c1 = phi_tube * w_c1;
-        SVector::from([
-            u_c * u_c0 - u_s * phi_around_u_c1,
-            u_c.mul_add(phi_around_u_c1, u_s * u_c0),
-            w_c * w_c0 - w_s * phi_tube_w_c1,
-            w_c.mul_add(phi_tube_w_c1, w_s * w_c0),
-        ])
+    fn retract<T: Scalar>(&self, q: &SVector<T, 4>, phi: &SVector<T, 2>) -> SVector<T, 4> {
+        let u_moved = s1::times_exp(&part(q, 0), &part(phi, 0));
+        let w_moved = s1::times_exp(&part(q, 2), &part(phi, 1));
+        stacked(&[u_moved.as_slice(), w_moved.as_slice()])
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    ///
     /// 2-vector, rad. Operations: 4 additions, 8 multiplications (2 of each fused), 2 function calls.
-    ///
     /// From line 13 `config`, line 14 `basis`, line 15 `basis`.
-    fn local<T: Scalar>(
-        &self,
-        q: &SVector<T, 4>,
-        target: &SVector<T, 4>,
-    ) -> SVector<T, 2> {
-        let [u_c, u_s, w_c, w_s]: [T; 4] = (*q).into();
-        let [u_c_target, u_s_target, w_c_target, w_s_target]: [T; 4] = (*target).into();
-        let u_angle = (u_c * u_s_target - u_s * u_c_target)
-            .atan2(u_c.mul_add(u_c_target, u_s * u_s_target));
-        let w_angle = (w_c * w_s_target - w_s * w_c_target)
-            .atan2(w_c.mul_add(w_c_target, w_s * w_s_target));
-        SVector::from([u_angle, w_angle])
-    }
-
-    /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
-    ///
-    /// 2×2. The identity. Operations: none.
-    ///
-    /// From line 13 `config`, line 14 `basis`, line 15 `basis`.
-    fn retract_differential<T: Scalar>(
-        &self,
-        _q: &SVector<T, 4>,
-        _phi: &SVector<T, 2>,
-    ) -> SMatrix<T, 2, 2> {
-        SMatrix::identity()
-    }
-
-    /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    ///
-    /// 2-vector, rad/s. The identity. Operations: none.
-    ///
-    /// From line 13 `config`, line 14 `basis`, line 15 `basis`.
-    fn retract_differential_inverse<T: Scalar>(
-        &self,
-        _q: &SVector<T, 4>,
-        _phi: &SVector<T, 2>,
-        rate: &SVector<T, 2>,
-    ) -> SVector<T, 2> {
-        *rate
+    fn local<T: Scalar>(&self, q: &SVector<T, 4>, target: &SVector<T, 4>) -> SVector<T, 2> {
+        let u_local = s1::log_between(&part(q, 0), &part(target, 0));
+        let w_local = s1::log_between(&part(q, 2), &part(target, 2));
+        stacked(&[u_local.as_slice(), w_local.as_slice()])
     }
 
     /// The configuration on the manifold that is nearest to `q`.
-    ///
     /// 4-vector. Operations: 2 additions, 8 multiplications (2 of each fused), 2 divisions, 2 function calls.
-    ///
     /// From line 13 `config u: S1, w: S1;`.
     fn project<T: Scalar>(&self, q: &SVector<T, 4>) -> SVector<T, 4> {
-        let [u_c, u_s, w_c, w_s]: [T; 4] = (*q).into();
-        let one = T::one();
-        let u_norm = u_c.mul_add(u_c, u_s * u_s).sqrt();
-        let u_inverse_norm = one / u_norm;
-        let w_norm = w_c.mul_add(w_c, w_s * w_s).sqrt();
-        let w_inverse_norm = one / w_norm;
-        SVector::from([
-            u_c * u_inverse_norm,
-            u_s * u_inverse_norm,
-            w_c * w_inverse_norm,
-            w_s * w_inverse_norm,
-        ])
+        let mut nearest = *q;
+        put(&mut nearest, 0, &s1::nearest(&part(q, 0)));
+        put(&mut nearest, 2, &s1::nearest(&part(q, 2)));
+        nearest
     }
 
     /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
-    ///
-    /// A scalar. Operations: 6 additions, 6 multiplications (6 of each fused), 1 function call.
-    ///
+    /// A scalar. Operations: 5 additions, 6 multiplications (2 of each fused), 1 function call.
     /// From line 13 `config u: S1, w: S1;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 4>) -> T {
-        let [u_c, u_s, w_c, w_s]: [T; 4] = (*q).into();
-        let one = T::one();
-        let relations = [
-            u_c.mul_add(u_c, u_s.mul_add(u_s, -one)),
-            w_c.mul_add(w_c, w_s.mul_add(w_s, -one)),
-        ];
-        let sum = relations
-            .into_iter()
-            .fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
-        sum.sqrt()
-    }
-
-    /// Least absolute value of the functions whose zeros the joint must stay away from.
-    ///
-    /// A scalar. Independent of Q. Operations: none.
-    fn singularity<T: Scalar>(&self, _q: &SVector<T, 4>) -> T {
-        ::hamel::finite::least_absolute([])
-    }
-
-    /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
-    ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 4 multiplications.
-    ///
-    /// From line 14 `basis`, line 15 `basis`, line 16 `velocity`, line 17 `H`.
-    fn bias_acceleration<T: Scalar>(
-        &self,
-        q: &SVector<T, 4>,
-        speeds: &SVector<T, 2>,
-    ) -> SVector<T, 6> {
-        let inner = T::from_f64(self.inner);
-        let (w_c, w_s) = (q[2], q[3]);
-        let [speed_around, speed_tube]: [T; 2] = (*speeds).into();
-        let zero = T::zero();
-        let speed_around_speed_tube = speed_around * speed_tube;
-        let w_s_speed_around_speed_tube = w_s * speed_around_speed_tube;
-        SVector::from([
-            w_s_speed_around_speed_tube,
-            zero,
-            -w_c * speed_around_speed_tube,
-            zero,
-            -inner * w_s_speed_around_speed_tube,
-            zero,
-        ])
-    }
-
-    /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
-    ///
-    /// 2-vector. Operations: 2 additions, 4 multiplications (1 of each fused).
-    ///
-    /// From line 14 `basis`, line 15 `basis`, line 16 `velocity`, line 17 `H`.
-    fn bias_momentum<T: Scalar>(
-        &self,
-        q: &SVector<T, 4>,
-        speeds: &SVector<T, 2>,
-        h: &SVector<T, 6>,
-    ) -> SVector<T, 2> {
-        let inner = T::from_f64(self.inner);
-        let (w_c, w_s) = (q[2], q[3]);
-        let speed_tube = speeds[1];
-        let (h1, h3, h5) = (h[0], h[2], h[4]);
-        let zero = T::zero();
-        SVector::from([speed_tube * (w_s * inner.mul_add(-h5, h1) - w_c * h3), zero])
+        (s1::residual_squared(&part(q, 0)) + s1::residual_squared(&part(q, 2))).sqrt()
     }
 }
 
 const PARAMETERS: [ParameterInfo; 2] = [
-    ParameterInfo {
-        name: "outer",
-        unit: "m",
-        description: "From the axis to the middle of the tube.",
-        lower: Some(Limit {
-            value: 0.0,
-            included: false,
-        }),
-        upper: None,
-    },
-    ParameterInfo {
-        name: "inner",
-        unit: "m",
-        description: "Radius of the tube.",
-        lower: Some(Limit {
-            value: 0.0,
-            included: false,
-        }),
-        upper: None,
-    },
+    ParameterInfo::new("outer", "m", "From the axis to the middle of the tube.").above(0.0),
+    ParameterInfo::new("inner", "m", "Radius of the tube.").above(0.0),
 ];
 
 /// How a scene finds this joint by name.
@@ -488,18 +205,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Joint on a torus: the child's origin moves on a torus about the parent's z axis, its z axis along the outward normal.",
     parameters: &PARAMETERS,
     build: |values| {
-        let [outer, inner] = ::hamel::registry::check_parameters(
-            "torus",
-            &PARAMETERS,
-            values,
-        )?;
-        ::hamel::registry::check_requirement(
-            "torus",
-            "outer > inner",
-            outer - inner,
-            &PARAMETERS,
-            values,
-        )?;
+        let [outer, inner] = ::hamel::registry::check_parameters("torus", &PARAMETERS, values)?;
+        ::hamel::registry::check_requirement("torus", "outer > inner", outer - inner, &PARAMETERS, values)?;
         Ok(::hamel::erased::erase(Torus::new(outer, inner)))
     },
 };

@@ -6,6 +6,8 @@
 //! - Configuration: p ∈ R3, stored as p₁, p₂, p₃.
 //! - Freedoms: `p1` (ϕ₁, m), `p2` (ϕ₂, m), `p3` (ϕ₃, m).
 //! - Velocity v: read as the rates of the local coordinates.
+//! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹, the projection.
+//! - Zero, and not written: ∂X^c/∂ϕ, ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, the residual, c, the dual of c.
 //!
 //! ```text
 //!     ⎡1  0  0  p₁⎤
@@ -35,13 +37,13 @@
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{Joint, Patterns, Structures, VelocityFrame, from_rows};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo};
+use ::hamel::registry::JointEntry;
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(5);
+const _: () = ::hamel::joint::assert_kernel_interface(6);
 
 /// Translation joint: the child slides in all three directions and does not turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,28 +55,8 @@ impl Joint<3, 3, 3, 0> for Translation {
     const FREEDOMS: [&'static str; 3] = ["p1", "p2", "p3"];
     const SPEEDS: [&'static str; 3] = ["p1", "p2", "p3"];
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Declared;
-    const STRUCTURES: Structures = Structures {
-        twist_map: Structure::Constant,
-        twist_map_child: Structure::Constant,
-        twist_map_child_gradient: Structure::Zero,
-        velocity_map: Structure::Identity,
-        velocity_map_gradient: Structure::Zero,
-        gamma: Structure::Zero,
-        speed_basis: Structure::Identity,
-        speed_basis_gradient: Structure::Zero,
-        retract_differential: Structure::Identity,
-        bias_acceleration: Structure::Zero,
-        bias_momentum: Structure::Zero,
-        speed_map: Structure::Constant,
-    };
-    const PATTERNS: Patterns<3, 3> = Patterns::new(
-        ["100", "010", "001"],
-        "xxx",
-        ["000", "000", "000", "100", "010", "001"],
-        ["100", "010", "001"],
-        &[],
-        &[],
-    );
+    const STRUCTURES: Structures = Structures::TRIVIAL;
+    const PATTERNS: Patterns<3, 3> = Patterns::new(["100", "010", "001"], "xxx", ["000", "000", "000", "100", "010", "001"]);
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
         [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
@@ -85,23 +67,15 @@ impl Joint<3, 3, 3, 0> for Translation {
     ];
     const SINGULARITIES: &'static [&'static str] = &[];
 
-    fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        [].into_iter()
-    }
-
     /// The home configuration.
-    ///
     /// 3-vector. Zero. Operations: none.
-    ///
     /// From line 7 `config p: R3;`.
     fn home<T: Scalar>(&self) -> SVector<T, 3> {
         SVector::zeros()
     }
 
     /// H(Q): child coordinates to parent coordinates.
-    ///
     /// Rotation matrix and translation in m. Operations: none.
-    ///
     /// From line 8 `H = trans(p);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 3>) -> Pose<T> {
         let [p1, p2, p3]: [T; 3] = (*q).into();
@@ -112,9 +86,7 @@ impl Joint<3, 3, 3, 0> for Translation {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in m/s. Independent of Q. Operations: none.
-    ///
     /// From line 8 `H = trans(p);`.
     fn twist_map<T: Scalar>(&self, _q: &SVector<T, 3>) -> SMatrix<T, 6, 3> {
         let zero = T::zero();
@@ -130,9 +102,7 @@ impl Joint<3, 3, 3, 0> for Translation {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    ///
     /// 6×3, rows rad/s (angular) and m/s (linear), columns by v in m/s. Independent of Q. Operations: none.
-    ///
     /// From line 8 `H = trans(p);`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 3>) -> SMatrix<T, 6, 3> {
         let zero = T::zero();
@@ -147,230 +117,35 @@ impl Joint<3, 3, 3, 0> for Translation {
         ])
     }
 
-    /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 3 slices of 6×3. Zero. Operations: none.
-    ///
-    /// From line 8 `H = trans(p);`.
-    fn twist_map_child_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-    ) -> [SMatrix<T, 6, 3>; 3] {
-        [SMatrix::zeros(); 3]
-    }
-
-    /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
-    ///
-    /// 3×3. The identity. Operations: none.
-    ///
-    /// From line 8 `H = trans(p);`.
-    fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
-    /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
-    ///
-    /// 3×3. The identity. Operations: none.
-    ///
-    /// From line 8 `H = trans(p);`.
-    fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
-    /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
-    ///
-    /// 3 slices of 3×3. Zero. Operations: none.
-    ///
-    /// From line 8 `H = trans(p);`.
-    fn velocity_map_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-    ) -> [SMatrix<T, 3, 3>; 3] {
-        [SMatrix::zeros(); 3]
-    }
-
-    /// Σ_k γ_k v_k (17): stands on the left of (24).
-    ///
-    /// 3×3. Zero. Operations: none.
-    ///
-    /// From line 8 `H = trans(p);`.
-    fn gamma<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _v: &SVector<T, 3>,
-    ) -> SMatrix<T, 3, 3> {
-        SMatrix::zeros()
-    }
-
-    /// J22(Q, p) (28): stands on the right of (27).
-    ///
-    /// 3×3. Zero. Operations: none.
-    ///
-    /// From line 8 `H = trans(p);`.
-    fn j22<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _p: &SVector<T, 3>,
-    ) -> SMatrix<T, 3, 3> {
-        SMatrix::zeros()
-    }
-
-    /// A(Q) with Aᵀ v = 0 (Definition 2).
-    ///
-    /// 3×0. Zero. Operations: none.
-    fn constraint<T: Scalar>(&self, _q: &SVector<T, 3>) -> SMatrix<T, 3, 0> {
-        SMatrix::zeros()
-    }
-
-    /// S̄(Q): speeds v̄ to v (Definition 2, (15)).
-    ///
-    /// 3×3. The identity. Operations: none.
-    fn speed_basis<T: Scalar>(&self, _q: &SVector<T, 3>) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
-    /// ∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 3 slices of 3×3. Zero. Operations: none.
-    fn speed_basis_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-    ) -> [SMatrix<T, 3, 3>; 3] {
-        [SMatrix::zeros(); 3]
-    }
-
     /// Q̇(Q, v) (31): the rates of the stored scalars.
-    ///
     /// 3-vector. Independent of Q. Operations: none.
-    ///
     /// From line 8 `H = trans(p);`.
-    fn configuration_rate<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        v: &SVector<T, 3>,
-    ) -> SVector<T, 3> {
+    fn configuration_rate<T: Scalar>(&self, _q: &SVector<T, 3>, v: &SVector<T, 3>) -> SVector<T, 3> {
         *v
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
-    ///
     /// 3-vector. Operations: 3 additions.
-    ///
     /// From line 7 `config p: R3;`.
-    fn retract<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        phi: &SVector<T, 3>,
-    ) -> SVector<T, 3> {
-        let [p1, p2, p3]: [T; 3] = (*q).into();
-        let [phi_p1, phi_p2, phi_p3]: [T; 3] = (*phi).into();
-        SVector::from([p1 + phi_p1, p2 + phi_p2, p3 + phi_p3])
+    fn retract<T: Scalar>(&self, q: &SVector<T, 3>, phi: &SVector<T, 3>) -> SVector<T, 3> {
+        q + phi
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    ///
     /// 3-vector, m. Operations: 3 additions.
-    ///
     /// From line 7 `config p: R3;`.
-    fn local<T: Scalar>(
-        &self,
-        q: &SVector<T, 3>,
-        target: &SVector<T, 3>,
-    ) -> SVector<T, 3> {
-        let [p1, p2, p3]: [T; 3] = (*q).into();
-        let [p1_target, p2_target, p3_target]: [T; 3] = (*target).into();
-        SVector::from([p1_target - p1, p2_target - p2, p3_target - p3])
-    }
-
-    /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
-    ///
-    /// 3×3. The identity. Operations: none.
-    ///
-    /// From line 7 `config p: R3;`.
-    fn retract_differential<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _phi: &SVector<T, 3>,
-    ) -> SMatrix<T, 3, 3> {
-        SMatrix::identity()
-    }
-
-    /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    ///
-    /// 3-vector, m/s. The identity. Operations: none.
-    ///
-    /// From line 7 `config p: R3;`.
-    fn retract_differential_inverse<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _phi: &SVector<T, 3>,
-        rate: &SVector<T, 3>,
-    ) -> SVector<T, 3> {
-        *rate
-    }
-
-    /// The configuration on the manifold that is nearest to `q`.
-    ///
-    /// 3-vector. The identity. Operations: none.
-    ///
-    /// From line 7 `config p: R3;`.
-    fn project<T: Scalar>(&self, q: &SVector<T, 3>) -> SVector<T, 3> {
-        *q
-    }
-
-    /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
-    ///
-    /// A scalar. Zero. Operations: none.
-    ///
-    /// From line 7 `config p: R3;`.
-    fn residual<T: Scalar>(&self, _q: &SVector<T, 3>) -> T {
-        T::zero()
-    }
-
-    /// Least absolute value of the functions whose zeros the joint must stay away from.
-    ///
-    /// A scalar. Independent of Q. Operations: none.
-    fn singularity<T: Scalar>(&self, _q: &SVector<T, 3>) -> T {
-        ::hamel::finite::least_absolute([])
-    }
-
-    /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
-    ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Zero. Operations: none.
-    ///
-    /// From line 8 `H = trans(p);`.
-    fn bias_acceleration<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _speeds: &SVector<T, 3>,
-    ) -> SVector<T, 6> {
-        SVector::zeros()
-    }
-
-    /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
-    ///
-    /// 3-vector. Zero. Operations: none.
-    ///
-    /// From line 8 `H = trans(p);`.
-    fn bias_momentum<T: Scalar>(
-        &self,
-        _q: &SVector<T, 3>,
-        _speeds: &SVector<T, 3>,
-        _h: &SVector<T, 6>,
-    ) -> SVector<T, 3> {
-        SVector::zeros()
+    fn local<T: Scalar>(&self, q: &SVector<T, 3>, target: &SVector<T, 3>) -> SVector<T, 3> {
+        target - q
     }
 }
-
-const PARAMETERS: [ParameterInfo; 0] = [];
 
 /// How a scene finds this joint by name.
 pub const ENTRY: JointEntry = JointEntry {
     name: "translation",
     summary: "Translation joint: the child slides in all three directions and does not turn.",
-    parameters: &PARAMETERS,
+    parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("translation", &PARAMETERS, values)?;
+        ::hamel::registry::check_parameters("translation", &[], values)?;
         Ok(::hamel::erased::erase(Translation))
     },
 };

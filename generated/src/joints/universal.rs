@@ -7,6 +7,9 @@
 //! - Configuration: first ∈ R1, second ∈ R1, stored as first, second.
 //! - Freedoms: `first` (ϕ₁, rad), `second` (ϕ₂, rad).
 //! - Velocity v: read as the rates of the local coordinates.
+//! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹, the projection.
+//! - Zero, and not written: ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, the residual.
+//! - By products of other kernels, and not written: c, the dual of c.
 //!
 //! ```text
 //!     ⎡           cos second          0             sin second  0⎤
@@ -36,13 +39,15 @@
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `fibres`: one pose has one Q up to full turns of first, second (certificate)
 
-use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::joint::{
+    Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
+};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo};
+use ::hamel::registry::JointEntry;
 use ::hamel::scalar::Scalar;
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(5);
+const _: () = ::hamel::joint::assert_kernel_interface(6);
 
 /// Universal joint (Cardan, Hooke): a turn about the parent's x axis, then one about the child's y axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,46 +63,25 @@ impl Joint<2, 2, 2, 0> for Universal {
         twist_map: Structure::General,
         twist_map_child: Structure::General,
         twist_map_child_gradient: Structure::General,
-        velocity_map: Structure::Identity,
-        velocity_map_gradient: Structure::Zero,
-        gamma: Structure::Zero,
-        speed_basis: Structure::Identity,
-        speed_basis_gradient: Structure::Zero,
-        retract_differential: Structure::Identity,
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
         speed_map: Structure::General,
+        ..Structures::TRIVIAL
     };
-    const PATTERNS: Patterns<2, 2> = Patterns::new(
-        ["x0x", "xxx", "xxx"],
-        "000",
-        ["x0", "01", "x0", "00", "00", "00"],
-        ["10", "01"],
-        &[(1, ["x0", "00", "x0", "00", "00", "00"])],
-        &[],
-    );
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
-        [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    ];
+    const PATTERNS: Patterns<2, 2> = Patterns::new(["x0x", "xxx", "xxx"], "000", ["x0", "01", "x0", "00", "00", "00"])
+    .twist_map_child_gradient(&[(1, ["x0", "00", "x0", "00", "00", "00"])]);
+    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
-    fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        [].into_iter()
-    }
-
     /// The home configuration.
-    ///
     /// 2-vector. Zero. Operations: none.
-    ///
     /// From line 8 `config first: R1, second: R1;`.
     fn home<T: Scalar>(&self) -> SVector<T, 2> {
         SVector::zeros()
     }
 
     /// H(Q): child coordinates to parent coordinates.
-    ///
     /// Rotation matrix and translation in m. Operations: 4 multiplications, 2 function calls.
-    ///
     /// From line 9 `H = rot_x(first) * rot_y(second);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 2>) -> Pose<T> {
         let [first, second]: [T; 2] = (*q).into();
@@ -115,299 +99,66 @@ impl Joint<2, 2, 2, 0> for Universal {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    ///
     /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 1 function call.
-    ///
     /// From line 9 `H = rot_x(first) * rot_y(second);`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 2>) -> SMatrix<T, 6, 2> {
         let first = q[0];
         let zero = T::zero();
         let one = T::one();
         let (sin_first, cos_first) = first.sin_cos();
-        from_rows([
-            [one, zero],
-            [zero, cos_first],
-            [zero, sin_first],
-            [zero, zero],
-            [zero, zero],
-            [zero, zero],
-        ])
+        from_rows([[one, zero], [zero, cos_first], [zero, sin_first], [zero, zero], [zero, zero], [zero, zero]])
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    ///
     /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 1 function call.
-    ///
     /// From line 9 `H = rot_x(first) * rot_y(second);`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 2>) -> SMatrix<T, 6, 2> {
         let second = q[1];
         let zero = T::zero();
         let one = T::one();
         let (sin_second, cos_second) = second.sin_cos();
-        from_rows([
-            [cos_second, zero],
-            [zero, one],
-            [sin_second, zero],
-            [zero, zero],
-            [zero, zero],
-            [zero, zero],
-        ])
+        from_rows([[cos_second, zero], [zero, one], [sin_second, zero], [zero, zero], [zero, zero], [zero, zero]])
     }
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
     /// 2 slices of 6×2. Operations: 1 function call.
-    ///
     /// From line 9 `H = rot_x(first) * rot_y(second);`.
-    fn twist_map_child_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-    ) -> [SMatrix<T, 6, 2>; 2] {
+    fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, 2>) -> [SMatrix<T, 6, 2>; 2] {
         let second = q[1];
         let zero = T::zero();
         let (sin_second, cos_second) = second.sin_cos();
-        [
-            SMatrix::zeros(),
-            from_rows([
-                [-sin_second, zero],
-                [zero, zero],
-                [cos_second, zero],
-                [zero, zero],
-                [zero, zero],
-                [zero, zero],
-            ]),
-        ]
-    }
-
-    /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
-    ///
-    /// 2×2. The identity. Operations: none.
-    ///
-    /// From line 9 `H = rot_x(first) * rot_y(second);`.
-    fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 2, 2> {
-        SMatrix::identity()
-    }
-
-    /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
-    ///
-    /// 2×2. The identity. Operations: none.
-    ///
-    /// From line 9 `H = rot_x(first) * rot_y(second);`.
-    fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 2, 2> {
-        SMatrix::identity()
-    }
-
-    /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
-    ///
-    /// 2 slices of 2×2. Zero. Operations: none.
-    ///
-    /// From line 9 `H = rot_x(first) * rot_y(second);`.
-    fn velocity_map_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-    ) -> [SMatrix<T, 2, 2>; 2] {
-        [SMatrix::zeros(); 2]
-    }
-
-    /// Σ_k γ_k v_k (17): stands on the left of (24).
-    ///
-    /// 2×2. Zero. Operations: none.
-    ///
-    /// From line 9 `H = rot_x(first) * rot_y(second);`.
-    fn gamma<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _v: &SVector<T, 2>,
-    ) -> SMatrix<T, 2, 2> {
-        SMatrix::zeros()
-    }
-
-    /// J22(Q, p) (28): stands on the right of (27).
-    ///
-    /// 2×2. Zero. Operations: none.
-    ///
-    /// From line 9 `H = rot_x(first) * rot_y(second);`.
-    fn j22<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _p: &SVector<T, 2>,
-    ) -> SMatrix<T, 2, 2> {
-        SMatrix::zeros()
-    }
-
-    /// A(Q) with Aᵀ v = 0 (Definition 2).
-    ///
-    /// 2×0. Zero. Operations: none.
-    fn constraint<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 2, 0> {
-        SMatrix::zeros()
-    }
-
-    /// S̄(Q): speeds v̄ to v (Definition 2, (15)).
-    ///
-    /// 2×2. The identity. Operations: none.
-    fn speed_basis<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 2, 2> {
-        SMatrix::identity()
-    }
-
-    /// ∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 2 slices of 2×2. Zero. Operations: none.
-    fn speed_basis_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-    ) -> [SMatrix<T, 2, 2>; 2] {
-        [SMatrix::zeros(); 2]
+        [SMatrix::zeros(), rows_at([(0, [-sin_second, zero]), (2, [cos_second, zero])])]
     }
 
     /// Q̇(Q, v) (31): the rates of the stored scalars.
-    ///
     /// 2-vector. Independent of Q. Operations: none.
-    ///
     /// From line 9 `H = rot_x(first) * rot_y(second);`.
-    fn configuration_rate<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        v: &SVector<T, 2>,
-    ) -> SVector<T, 2> {
+    fn configuration_rate<T: Scalar>(&self, _q: &SVector<T, 2>, v: &SVector<T, 2>) -> SVector<T, 2> {
         *v
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
-    ///
     /// 2-vector. Operations: 2 additions.
-    ///
     /// From line 8 `config first: R1, second: R1;`.
-    fn retract<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        phi: &SVector<T, 2>,
-    ) -> SVector<T, 2> {
-        let [first, second]: [T; 2] = (*q).into();
-        let [phi_first, phi_second]: [T; 2] = (*phi).into();
-        SVector::from([first + phi_first, second + phi_second])
+    fn retract<T: Scalar>(&self, q: &SVector<T, 2>, phi: &SVector<T, 2>) -> SVector<T, 2> {
+        q + phi
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    ///
     /// 2-vector, rad. Operations: 2 additions.
-    ///
     /// From line 8 `config first: R1, second: R1;`.
-    fn local<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        target: &SVector<T, 2>,
-    ) -> SVector<T, 2> {
-        let [first, second]: [T; 2] = (*q).into();
-        let [first_target, second_target]: [T; 2] = (*target).into();
-        SVector::from([first_target - first, second_target - second])
-    }
-
-    /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
-    ///
-    /// 2×2. The identity. Operations: none.
-    ///
-    /// From line 8 `config first: R1, second: R1;`.
-    fn retract_differential<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _phi: &SVector<T, 2>,
-    ) -> SMatrix<T, 2, 2> {
-        SMatrix::identity()
-    }
-
-    /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    ///
-    /// 2-vector, rad/s. The identity. Operations: none.
-    ///
-    /// From line 8 `config first: R1, second: R1;`.
-    fn retract_differential_inverse<T: Scalar>(
-        &self,
-        _q: &SVector<T, 2>,
-        _phi: &SVector<T, 2>,
-        rate: &SVector<T, 2>,
-    ) -> SVector<T, 2> {
-        *rate
-    }
-
-    /// The configuration on the manifold that is nearest to `q`.
-    ///
-    /// 2-vector. The identity. Operations: none.
-    ///
-    /// From line 8 `config first: R1, second: R1;`.
-    fn project<T: Scalar>(&self, q: &SVector<T, 2>) -> SVector<T, 2> {
-        *q
-    }
-
-    /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
-    ///
-    /// A scalar. Zero. Operations: none.
-    ///
-    /// From line 8 `config first: R1, second: R1;`.
-    fn residual<T: Scalar>(&self, _q: &SVector<T, 2>) -> T {
-        T::zero()
-    }
-
-    /// Least absolute value of the functions whose zeros the joint must stay away from.
-    ///
-    /// A scalar. Independent of Q. Operations: none.
-    fn singularity<T: Scalar>(&self, _q: &SVector<T, 2>) -> T {
-        ::hamel::finite::least_absolute([])
-    }
-
-    /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
-    ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 3 multiplications, 1 function call.
-    ///
-    /// From line 9 `H = rot_x(first) * rot_y(second);`.
-    fn bias_acceleration<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        speeds: &SVector<T, 2>,
-    ) -> SVector<T, 6> {
-        let second = q[1];
-        let [speed_first, speed_second]: [T; 2] = (*speeds).into();
-        let zero = T::zero();
-        let speed_first_speed_second = speed_first * speed_second;
-        let (sin_second, cos_second) = second.sin_cos();
-        SVector::from([
-            -speed_first_speed_second * sin_second,
-            zero,
-            speed_first_speed_second * cos_second,
-            zero,
-            zero,
-            zero,
-        ])
-    }
-
-    /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
-    ///
-    /// 2-vector. Operations: 1 addition, 3 multiplications, 1 function call.
-    ///
-    /// From line 9 `H = rot_x(first) * rot_y(second);`.
-    fn bias_momentum<T: Scalar>(
-        &self,
-        q: &SVector<T, 2>,
-        speeds: &SVector<T, 2>,
-        h: &SVector<T, 6>,
-    ) -> SVector<T, 2> {
-        let second = q[1];
-        let speed_second = speeds[1];
-        let (h1, h3) = (h[0], h[2]);
-        let zero = T::zero();
-        let (sin_second, cos_second) = second.sin_cos();
-        SVector::from([speed_second * (h3 * cos_second - h1 * sin_second), zero])
+    fn local<T: Scalar>(&self, q: &SVector<T, 2>, target: &SVector<T, 2>) -> SVector<T, 2> {
+        target - q
     }
 }
-
-const PARAMETERS: [ParameterInfo; 0] = [];
 
 /// How a scene finds this joint by name.
 pub const ENTRY: JointEntry = JointEntry {
     name: "universal",
     summary: "Universal joint (Cardan, Hooke): a turn about the parent's x axis, then one about the child's y axis.",
-    parameters: &PARAMETERS,
+    parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("universal", &PARAMETERS, values)?;
+        ::hamel::registry::check_parameters("universal", &[], values)?;
         Ok(::hamel::erased::erase(Universal))
     },
 };

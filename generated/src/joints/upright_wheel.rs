@@ -9,6 +9,9 @@
 //! - Freedoms: `turn` (ϕ₁, rad), `forward` (ϕ₂, m), `sideways` (ϕ₃, m), `roll` (ϕ₄, rad).
 //! - Velocity v: read in the axes of the child.
 //! - Speeds v̄: `turn`, `roll`; constraints: 2.
+//! - The identity, and not written: S₀, S₀⁻¹.
+//! - Zero, and not written: ∂S̄/∂ϕ.
+//! - By products of other kernels, and not written: c, the dual of c.
 //!
 //! ```text
 //!     ⎡g₁₁ cos roll  g₁₂  g₁₁ sin roll     g₁₃⎤
@@ -16,12 +19,12 @@
 //!     ⎢   −sin roll    0      cos roll  radius⎥
 //!     ⎣           0    0             0       1⎦
 //!
-//!     ⎡   0    0    0                g₁₂⎤
+//!     ⎡   0    0    0               −g₂₁⎤
 //!     ⎢   0    0    0                g₁₁⎥
 //! X = ⎢   1    0    0                  0⎥
 //!     ⎢ g₂₃  g₁₁  g₁₂        −radius g₁₁⎥
-//!     ⎢−g₁₃  g₂₁  g₂₂         radius g₁₂⎥
-//!     ⎣   0    0    0  g₁₁ g₁₃ − g₁₂ g₂₃⎦
+//!     ⎢−g₁₃  g₂₁  g₂₂        −radius g₂₁⎥
+//!     ⎣   0    0    0  g₁₁ g₁₃ + g₂₁ g₂₃⎦
 //!
 //! S(Q, ϕ) = I + L(ϕ) + O(ϕ²)
 //!
@@ -46,13 +49,16 @@
 //! - `constraint_rank`: rank A = k − k̄ (certificate)
 //! - `fibres`: one pose has one Q up to full turns of roll (certificate)
 
-use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
+use ::hamel::group::{part, put, put_block, real, se2, stacked};
+use ::hamel::joint::{
+    Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
+};
 use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, Limit, ParameterInfo};
-use ::hamel::scalar::Scalar;
+use ::hamel::registry::{JointEntry, ParameterInfo};
+use ::hamel::scalar::{Scalar, dot};
 use ::hamel::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(5);
+const _: () = ::hamel::joint::assert_kernel_interface(6);
 
 /// Upright wheel (vertical disk): rolls without slipping on the plane z = 0 of the parent and turns about the vertical (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,40 +76,25 @@ impl UprightWheel {
 
 impl Joint<7, 4, 2, 2> for UprightWheel {
     const NAME: &'static str = "upright_wheel";
-    const COORDINATES: [&'static str; 7] = [
-        "g_q11",
-        "g_q12",
-        "g_q13",
-        "g_q21",
-        "g_q22",
-        "g_q23",
-        "roll",
-    ];
+    const COORDINATES: [&'static str; 7] = ["g_q11", "g_q12", "g_q13", "g_q21", "g_q22", "g_q23", "roll"];
     const FREEDOMS: [&'static str; 4] = ["turn", "forward", "sideways", "roll"];
     const SPEEDS: [&'static str; 2] = ["turn", "roll"];
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Child;
     const STRUCTURES: Structures = Structures {
-        twist_map: Structure::General,
-        twist_map_child: Structure::General,
-        twist_map_child_gradient: Structure::General,
         velocity_map: Structure::Identity,
         velocity_map_gradient: Structure::Constant,
         gamma: Structure::Constant,
         speed_basis: Structure::Constant,
         speed_basis_gradient: Structure::Zero,
-        retract_differential: Structure::General,
-        bias_acceleration: Structure::General,
-        bias_momentum: Structure::General,
-        speed_map: Structure::General,
+        ..Structures::GENERAL
     };
     const PATTERNS: Patterns<4, 2> = Patterns::new(
         ["xxx", "xxx", "x0x"],
         "xxx",
         ["x000", "0001", "x000", "0x00", "0010", "0x00"],
-        ["10", "0x", "00", "01"],
-        &[(3, ["x000", "0000", "x000", "0x00", "0000", "0x00"])],
-        &[],
-    );
+    )
+    .speed_basis(["10", "0x", "00", "01"])
+    .twist_map_child_gradient(&[(3, ["x000", "0000", "x000", "0x00", "0000", "0x00"])]);
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
 
@@ -112,9 +103,7 @@ impl Joint<7, 4, 2, 2> for UprightWheel {
     }
 
     /// The home configuration.
-    ///
     /// 7-vector. Independent of Q. Operations: none.
-    ///
     /// From line 12 `config g: SE2, roll: R1;`.
     fn home<T: Scalar>(&self) -> SVector<T, 7> {
         let zero = T::zero();
@@ -123,9 +112,7 @@ impl Joint<7, 4, 2, 2> for UprightWheel {
     }
 
     /// H(Q): child coordinates to parent coordinates.
-    ///
     /// Rotation matrix and translation in m. Operations: 4 multiplications, 1 function call.
-    ///
     /// From line 15 `H = pose(rot_z(g), [g.x, g.y, radius]) * rot_y(roll);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 7>) -> Pose<T> {
         let radius = T::from_f64(self.radius);
@@ -143,9 +130,7 @@ impl Joint<7, 4, 2, 2> for UprightWheel {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    ///
-    /// 6×4, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s, rad/s. Operations: 1 addition, 4 multiplications.
-    ///
+    /// 6×4, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s, rad/s. Operations: 1 addition, 4 multiplications (1 of each fused).
     /// From line 13 `basis`, line 14 `velocity`, line 15 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 7>) -> SMatrix<T, 6, 4> {
         let radius = T::from_f64(self.radius);
@@ -153,25 +138,22 @@ impl Joint<7, 4, 2, 2> for UprightWheel {
         let zero = T::zero();
         let one = T::one();
         from_rows([
-            [zero, zero, zero, g_q12],
+            [zero, zero, zero, -g_q21],
             [zero, zero, zero, g_q11],
             [one, zero, zero, zero],
             [g_q23, g_q11, g_q12, -radius * g_q11],
-            [-g_q13, g_q21, g_q22, radius * g_q12],
-            [zero, zero, zero, g_q11 * g_q13 - g_q12 * g_q23],
+            [-g_q13, g_q21, g_q22, -radius * g_q21],
+            [zero, zero, zero, dot([g_q11, g_q21], [g_q13, g_q23])],
         ])
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    ///
     /// 6×4, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s, rad/s. Operations: 1 function call.
-    ///
     /// From line 13 `basis`, line 14 `velocity`, line 15 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 7>) -> SMatrix<T, 6, 4> {
         let roll = q[6];
         let zero = T::zero();
         let one = T::one();
-        // line 15 `H`: sin_roll, cos_roll
         let (sin_roll, cos_roll) = roll.sin_cos();
         from_rows([
             [-sin_roll, zero, zero, zero],
@@ -184,95 +166,43 @@ impl Joint<7, 4, 2, 2> for UprightWheel {
     }
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
     /// 4 slices of 6×4. Operations: 1 function call.
-    ///
     /// From line 13 `basis`, line 14 `velocity`, line 15 `H`.
-    fn twist_map_child_gradient<T: Scalar>(
-        &self,
-        q: &SVector<T, 7>,
-    ) -> [SMatrix<T, 6, 4>; 4] {
+    fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, 7>) -> [SMatrix<T, 6, 4>; 4] {
         let roll = q[6];
         let zero = T::zero();
-        // line 15 `H`: sin_roll, cos_roll
         let (sin_roll, cos_roll) = roll.sin_cos();
         [
             SMatrix::zeros(),
             SMatrix::zeros(),
             SMatrix::zeros(),
-            from_rows([
-                [-cos_roll, zero, zero, zero],
-                [zero, zero, zero, zero],
-                [-sin_roll, zero, zero, zero],
-                [zero, -sin_roll, zero, zero],
-                [zero, zero, zero, zero],
-                [zero, cos_roll, zero, zero],
+            rows_at([
+                (0, [-cos_roll, zero, zero, zero]),
+                (2, [-sin_roll, zero, zero, zero]),
+                (3, [zero, -sin_roll, zero, zero]),
+                (5, [zero, cos_roll, zero, zero]),
             ]),
         ]
     }
 
-    /// S₀(Q): ϕ̇ to v at ϕ = 0 (23).
-    ///
-    /// 4×4. The identity. Operations: none.
-    ///
-    /// From line 13 `basis`, line 14 `velocity`, line 15 `H`.
-    fn velocity_map<T: Scalar>(&self, _q: &SVector<T, 7>) -> SMatrix<T, 4, 4> {
-        SMatrix::identity()
-    }
-
-    /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
-    ///
-    /// 4×4. The identity. Operations: none.
-    ///
-    /// From line 13 `basis`, line 14 `velocity`, line 15 `H`.
-    fn velocity_map_inverse<T: Scalar>(&self, _q: &SVector<T, 7>) -> SMatrix<T, 4, 4> {
-        SMatrix::identity()
-    }
-
     /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
-    ///
     /// 4 slices of 4×4. Independent of Q. Operations: none.
-    ///
     /// From line 13 `basis`, line 14 `velocity`, line 15 `H`.
-    fn velocity_map_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 7>,
-    ) -> [SMatrix<T, 4, 4>; 4] {
+    fn velocity_map_gradient<T: Scalar>(&self, _q: &SVector<T, 7>) -> [SMatrix<T, 4, 4>; 4] {
         let zero = T::zero();
         let half = T::from_f64(0.5);
         [
-            from_rows([
-                [zero, zero, zero, zero],
-                [zero, zero, half, zero],
-                [zero, -half, zero, zero],
-                [zero, zero, zero, zero],
-            ]),
-            from_rows([
-                [zero, zero, zero, zero],
-                [zero, zero, zero, zero],
-                [half, zero, zero, zero],
-                [zero, zero, zero, zero],
-            ]),
-            from_rows([
-                [zero, zero, zero, zero],
-                [-half, zero, zero, zero],
-                [zero, zero, zero, zero],
-                [zero, zero, zero, zero],
-            ]),
+            rows_at([(1, [zero, zero, half, zero]), (2, [zero, -half, zero, zero])]),
+            rows_at([(2, [half, zero, zero, zero])]),
+            rows_at([(1, [-half, zero, zero, zero])]),
             SMatrix::zeros(),
         ]
     }
 
     /// Σ_k γ_k v_k (17): stands on the left of (24).
-    ///
     /// 4×4. Independent of Q. Operations: none.
-    ///
     /// From line 13 `basis`, line 14 `velocity`, line 15 `H`.
-    fn gamma<T: Scalar>(
-        &self,
-        _q: &SVector<T, 7>,
-        v: &SVector<T, 4>,
-    ) -> SMatrix<T, 4, 4> {
+    fn gamma<T: Scalar>(&self, _q: &SVector<T, 7>, v: &SVector<T, 4>) -> SMatrix<T, 4, 4> {
         let (v_turn, v_forward, v_sideways) = (v[0], v[1], v[2]);
         let zero = T::zero();
         from_rows([
@@ -284,9 +214,7 @@ impl Joint<7, 4, 2, 2> for UprightWheel {
     }
 
     /// J22(Q, p) (28): stands on the right of (27).
-    ///
     /// 4×4. Independent of Q. Operations: none.
-    ///
     /// From line 13 `basis`, line 14 `velocity`, line 15 `H`.
     fn j22<T: Scalar>(&self, _q: &SVector<T, 7>, p: &SVector<T, 4>) -> SMatrix<T, 4, 4> {
         let (p_forward, p_sideways) = (p[1], p[2]);
@@ -300,9 +228,7 @@ impl Joint<7, 4, 2, 2> for UprightWheel {
     }
 
     /// A(Q) with Aᵀ v = 0 (Definition 2).
-    ///
     /// 4×2. Independent of Q. Operations: none.
-    ///
     /// From line 16 `A = [0, 0; 1, 0; 0, 1; -radius, 0];`.
     fn constraint<T: Scalar>(&self, _q: &SVector<T, 7>) -> SMatrix<T, 4, 2> {
         let radius = T::from_f64(self.radius);
@@ -312,9 +238,7 @@ impl Joint<7, 4, 2, 2> for UprightWheel {
     }
 
     /// S̄(Q): speeds v̄ to v (Definition 2, (15)).
-    ///
     /// 4×2. Independent of Q. Operations: none.
-    ///
     /// From line 17 `S_bar = [1, 0; 0, radius; 0, 0; 0, 1];`.
     fn speed_basis<T: Scalar>(&self, _q: &SVector<T, 7>) -> SMatrix<T, 4, 2> {
         let radius = T::from_f64(self.radius);
@@ -323,153 +247,44 @@ impl Joint<7, 4, 2, 2> for UprightWheel {
         from_rows([[one, zero], [zero, radius], [zero, zero], [zero, one]])
     }
 
-    /// ∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    ///
-    /// 4 slices of 4×2. Zero. Operations: none.
-    ///
-    /// From line 13 `basis`, line 17 `S_bar`.
-    fn speed_basis_gradient<T: Scalar>(
-        &self,
-        _q: &SVector<T, 7>,
-    ) -> [SMatrix<T, 4, 2>; 4] {
-        [SMatrix::zeros(); 4]
-    }
-
     /// Q̇(Q, v) (31): the rates of the stored scalars.
-    ///
     /// 7-vector. Operations: 2 additions, 8 multiplications (2 of each fused).
-    ///
     /// From line 13 `basis`, line 14 `velocity`, line 15 `H`.
-    fn configuration_rate<T: Scalar>(
-        &self,
-        q: &SVector<T, 7>,
-        v: &SVector<T, 4>,
-    ) -> SVector<T, 7> {
-        let [g_q11, g_q12, _, g_q21, g_q22, _, _]: [T; 7] = (*q).into();
-        let [v_turn, v_forward, v_sideways, v_roll]: [T; 4] = (*v).into();
-        SVector::from([
-            g_q12 * v_turn,
-            -g_q11 * v_turn,
-            g_q11.mul_add(v_forward, g_q12 * v_sideways),
-            g_q22 * v_turn,
-            -g_q21 * v_turn,
-            g_q21.mul_add(v_forward, g_q22 * v_sideways),
-            v_roll,
-        ])
+    fn configuration_rate<T: Scalar>(&self, q: &SVector<T, 7>, v: &SVector<T, 4>) -> SVector<T, 7> {
+        let g_rate = se2::rate(&part(q, 0), &part(v, 0));
+        let roll_rate = v.fixed_rows::<1>(3);
+        stacked(&[g_rate.as_slice(), roll_rate.as_slice()])
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
-    ///
     /// 7-vector. Operations: 12 additions, 20 multiplications (10 of each fused), 2 function calls.
-    ///
     /// From line 12 `config`, line 13 `basis`.
-    fn retract<T: Scalar>(
-        &self,
-        q: &SVector<T, 7>,
-        phi: &SVector<T, 4>,
-    ) -> SVector<T, 7> {
-        let [g_q11, g_q12, g_q13, g_q21, g_q22, g_q23, roll]: [T; 7] = (*q).into();
-        let [phi_turn, phi_forward, phi_sideways, phi_roll]: [T; 4] = (*phi).into();
-        let one = T::one();
-        let g_theta_squared = phi_turn * phi_turn;
-        let g_c1 = g_theta_squared.stumpff(1);
-        let g_c2 = g_theta_squared.stumpff(2);
-        let phi_turn_g_c2 = phi_turn * g_c2;
-        let g_e11 = phi_turn_g_c2.mul_add(-phi_turn, one);
-        let phi_turn_g_c1 = phi_turn * g_c1;
-        let g_e12 = -phi_turn_g_c1;
-        let g_e13 = phi_forward * g_c1 - phi_turn_g_c2 * phi_sideways;
-        let g_e23 = phi_sideways.mul_add(g_c1, phi_turn_g_c2 * phi_forward);
-        SVector::from([
-            g_q11.mul_add(g_e11, g_q12 * phi_turn_g_c1),
-            g_q11.mul_add(g_e12, g_q12 * g_e11),
-            g_q11.mul_add(g_e13, g_q12.mul_add(g_e23, g_q13)),
-            g_q21.mul_add(g_e11, g_q22 * phi_turn_g_c1),
-            g_q21.mul_add(g_e12, g_q22 * g_e11),
-            g_q21.mul_add(g_e13, g_q22.mul_add(g_e23, g_q23)),
-            roll + phi_roll,
-        ])
+    fn retract<T: Scalar>(&self, q: &SVector<T, 7>, phi: &SVector<T, 4>) -> SVector<T, 7> {
+        let g_moved = se2::times_exp(&part(q, 0), &part(phi, 0));
+        let roll_moved = real::times_exp::<T, 1>(&part(q, 6), &part(phi, 3));
+        stacked(&[g_moved.as_slice(), roll_moved.as_slice()])
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    ///
     /// 4-vector, rad, m, m, rad. Operations: 10 additions, 15 multiplications (6 of each fused), 2 function calls.
-    ///
     /// From line 12 `config`, line 13 `basis`.
-    fn local<T: Scalar>(
-        &self,
-        q: &SVector<T, 7>,
-        target: &SVector<T, 7>,
-    ) -> SVector<T, 4> {
-        let [g_q11, g_q12, g_q13, g_q21, g_q22, g_q23, roll]: [T; 7] = (*q).into();
-        let [g_q11_target, _, g_q13_target, g_q21_target, _, g_q23_target, roll_target,
-        ]: [T; 7] = (*target).into();
-        let half = T::from_f64(0.5);
-        let one = T::one();
-        let g_angle = g_q12
-            .mul_add(g_q11_target, g_q22 * g_q21_target)
-            .atan2(g_q11.mul_add(g_q11_target, g_q21 * g_q21_target));
-        let g_q13_minus_g_q13_target = g_q13 - g_q13_target;
-        let g_q23_minus_g_q23_target = g_q23 - g_q23_target;
-        let g_t1 = -g_q11
-            .mul_add(g_q13_minus_g_q13_target, g_q21 * g_q23_minus_g_q23_target);
-        let g_t2 = -g_q12
-            .mul_add(g_q13_minus_g_q13_target, g_q22 * g_q23_minus_g_q23_target);
-        let g_theta_squared = g_angle * g_angle;
-        let g_half_cotangent = g_theta_squared
-            .mul_add(-g_theta_squared.dexp_inverse(0), one);
-        let g_half_angle = half * g_angle;
-        SVector::from([
-            g_angle,
-            g_t1.mul_add(g_half_cotangent, g_t2 * g_half_angle),
-            g_t2 * g_half_cotangent - g_t1 * g_half_angle,
-            roll_target - roll,
-        ])
+    fn local<T: Scalar>(&self, q: &SVector<T, 7>, target: &SVector<T, 7>) -> SVector<T, 4> {
+        let g_local = se2::log_between(&part(q, 0), &part(target, 0));
+        let roll_local = real::log_between::<T, 1>(&part(q, 6), &part(target, 6));
+        stacked(&[g_local.as_slice(), roll_local.as_slice()])
     }
 
     /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
-    ///
-    /// 4×4. Operations: 4 additions, 10 multiplications (3 of each fused), 2 function calls.
-    ///
+    /// 4×4. Operations: 3 additions, 8 multiplications, 2 function calls.
     /// From line 12 `config`, line 13 `basis`.
-    fn retract_differential<T: Scalar>(
-        &self,
-        _q: &SVector<T, 7>,
-        phi: &SVector<T, 4>,
-    ) -> SMatrix<T, 4, 4> {
-        let (phi_turn, phi_forward, phi_sideways) = (phi[0], phi[1], phi[2]);
-        let zero = T::zero();
-        let one = T::one();
-        let g_ad_squared21 = phi_turn * phi_forward;
-        let phi_turn_squared = phi_turn * phi_turn;
-        let g_ad_squared22 = -phi_turn_squared;
-        let g_ad_squared31 = phi_turn * phi_sideways;
-        let g_ad_squared33 = -phi_turn_squared;
-        let g_c2 = phi_turn_squared.stumpff(2);
-        let g_c3 = phi_turn_squared.stumpff(3);
-        let phi_turn_g_c2 = phi_turn * g_c2;
-        from_rows([
-            [one, zero, zero, zero],
-            [
-                g_ad_squared21 * g_c3 - phi_sideways * g_c2,
-                g_ad_squared22.mul_add(g_c3, one),
-                phi_turn_g_c2,
-                zero,
-            ],
-            [
-                phi_forward.mul_add(g_c2, g_ad_squared31 * g_c3),
-                -phi_turn_g_c2,
-                g_ad_squared33.mul_add(g_c3, one),
-                zero,
-            ],
-            [zero, zero, zero, one],
-        ])
+    fn retract_differential<T: Scalar>(&self, _q: &SVector<T, 7>, phi: &SVector<T, 4>) -> SMatrix<T, 4, 4> {
+        let mut differential = SMatrix::<T, 4, 4>::identity();
+        put_block(&mut differential, 0, &se2::differential(&part(phi, 0)));
+        differential
     }
 
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    ///
     /// 4-vector, rad/s, m/s, m/s, rad/s. Operations: 6 additions, 11 multiplications (4 of each fused), 1 function call.
-    ///
     /// From line 12 `config`, line 13 `basis`.
     fn retract_differential_inverse<T: Scalar>(
         &self,
@@ -477,139 +292,29 @@ impl Joint<7, 4, 2, 2> for UprightWheel {
         phi: &SVector<T, 4>,
         rate: &SVector<T, 4>,
     ) -> SVector<T, 4> {
-        let (phi_turn, phi_forward, phi_sideways) = (phi[0], phi[1], phi[2]);
-        let [v_turn, v_forward, v_sideways, v_roll]: [T; 4] = (*rate).into();
-        let half = T::from_f64(0.5);
-        let g_bracket2 = phi_sideways * v_turn - phi_turn * v_sideways;
-        let g_bracket3 = phi_turn * v_forward - phi_forward * v_turn;
-        let g_theta_squared = phi_turn * phi_turn;
-        let g_g = g_theta_squared.dexp_inverse(0);
-        let g_double_bracket2 = -phi_turn * g_bracket3;
-        let g_double_bracket3 = phi_turn * g_bracket2;
-        SVector::from([
-            v_turn,
-            half.mul_add(g_bracket2, g_g.mul_add(g_double_bracket2, v_forward)),
-            half.mul_add(g_bracket3, g_g.mul_add(g_double_bracket3, v_sideways)),
-            v_roll,
-        ])
+        let mut local_rate = *rate;
+        put(&mut local_rate, 0, &se2::differential_inverse(&part(phi, 0), &part(rate, 0)));
+        local_rate
     }
 
     /// The configuration on the manifold that is nearest to `q`.
-    ///
     /// 7-vector. Operations: 3 additions, 6 multiplications (1 of each fused), 1 division, 1 function call.
-    ///
     /// From line 12 `config g: SE2, roll: R1;`.
     fn project<T: Scalar>(&self, q: &SVector<T, 7>) -> SVector<T, 7> {
-        let [g_q11, g_q12, g_q13, g_q21, g_q22, g_q23, roll]: [T; 7] = (*q).into();
-        let half = T::from_f64(0.5);
-        let one = T::one();
-        let g_cos = half * (g_q11 + g_q22);
-        let g_sin = half * (g_q21 - g_q12);
-        let g_norm = g_cos.mul_add(g_cos, g_sin * g_sin).sqrt();
-        let g_inverse_norm = one / g_norm;
-        let g_cos_g_inverse_norm = g_cos * g_inverse_norm;
-        let g_sin_g_inverse_norm = g_sin * g_inverse_norm;
-        SVector::from([
-            g_cos_g_inverse_norm,
-            -g_sin_g_inverse_norm,
-            g_q13,
-            g_sin_g_inverse_norm,
-            g_cos_g_inverse_norm,
-            g_q23,
-            roll,
-        ])
+        let mut nearest = *q;
+        put(&mut nearest, 0, &se2::nearest(&part(q, 0)));
+        nearest
     }
 
     /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
-    ///
-    /// A scalar. Operations: 7 additions, 5 multiplications (5 of each fused), 1 function call.
-    ///
+    /// A scalar. Operations: 6 additions, 5 multiplications (3 of each fused), 1 function call.
     /// From line 12 `config g: SE2, roll: R1;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 7>) -> T {
-        let [g_q11, g_q12, _, g_q21, g_q22, _, _]: [T; 7] = (*q).into();
-        let one = T::one();
-        let relations = [
-            g_q22 - g_q11,
-            g_q12 + g_q21,
-            g_q11.mul_add(g_q11, g_q21.mul_add(g_q21, -one)),
-        ];
-        let sum = relations
-            .into_iter()
-            .fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
-        sum.sqrt()
-    }
-
-    /// Least absolute value of the functions whose zeros the joint must stay away from.
-    ///
-    /// A scalar. Independent of Q. Operations: none.
-    fn singularity<T: Scalar>(&self, _q: &SVector<T, 7>) -> T {
-        ::hamel::finite::least_absolute([])
-    }
-
-    /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
-    ///
-    /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 7 multiplications, 1 function call.
-    ///
-    /// From line 13 `basis`, line 14 `velocity`, line 15 `H`, line 17 `S_bar`.
-    fn bias_acceleration<T: Scalar>(
-        &self,
-        q: &SVector<T, 7>,
-        speeds: &SVector<T, 2>,
-    ) -> SVector<T, 6> {
-        let radius = T::from_f64(self.radius);
-        let roll = q[6];
-        let [speed_turn, speed_roll]: [T; 2] = (*speeds).into();
-        let zero = T::zero();
-        let speed_turn_speed_roll = speed_turn * speed_roll;
-        // line 15 `H`: sin_roll, cos_roll
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        let radius_speed_roll_speed_roll = radius * speed_roll * speed_roll;
-        SVector::from([
-            -speed_turn_speed_roll * cos_roll,
-            zero,
-            -speed_turn_speed_roll * sin_roll,
-            -radius_speed_roll_speed_roll * sin_roll,
-            zero,
-            radius_speed_roll_speed_roll * cos_roll,
-        ])
-    }
-
-    /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
-    ///
-    /// 2-vector. Operations: 2 additions, 7 multiplications (1 of each fused), 1 function call.
-    ///
-    /// From line 13 `basis`, line 14 `velocity`, line 15 `H`, line 17 `S_bar`.
-    fn bias_momentum<T: Scalar>(
-        &self,
-        q: &SVector<T, 7>,
-        speeds: &SVector<T, 2>,
-        h: &SVector<T, 6>,
-    ) -> SVector<T, 2> {
-        let radius = T::from_f64(self.radius);
-        let roll = q[6];
-        let speed_roll = speeds[1];
-        let [h1, _, h3, h4, _, h6]: [T; 6] = (*h).into();
-        // line 15 `H`: sin_roll, cos_roll
-        let (sin_roll, cos_roll) = roll.sin_cos();
-        SVector::from([
-            -speed_roll * h1.mul_add(cos_roll, h3 * sin_roll),
-            radius * speed_roll * (h6 * cos_roll - h4 * sin_roll),
-        ])
+        se2::residual_squared(&part(q, 0)).sqrt()
     }
 }
 
-const PARAMETERS: [ParameterInfo; 1] = [
-    ParameterInfo {
-        name: "radius",
-        unit: "m",
-        description: "Radius of the wheel.",
-        lower: Some(Limit {
-            value: 0.0,
-            included: false,
-        }),
-        upper: None,
-    },
-];
+const PARAMETERS: [ParameterInfo; 1] = [ParameterInfo::new("radius", "m", "Radius of the wheel.").above(0.0)];
 
 /// How a scene finds this joint by name.
 pub const ENTRY: JointEntry = JointEntry {
@@ -617,11 +322,7 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Upright wheel (vertical disk): rolls without slipping on the plane z = 0 of the parent and turns about the vertical (nonholonomic).",
     parameters: &PARAMETERS,
     build: |values| {
-        let [radius] = ::hamel::registry::check_parameters(
-            "upright_wheel",
-            &PARAMETERS,
-            values,
-        )?;
+        let [radius] = ::hamel::registry::check_parameters("upright_wheel", &PARAMETERS, values)?;
         Ok(::hamel::erased::erase(UprightWheel::new(radius)))
     },
 };

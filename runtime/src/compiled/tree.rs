@@ -370,7 +370,7 @@ impl Compiled {
                 rates[ranges.speeds.clone()].copy_from_slice(&tau[..ranges.speeds.len()]);
                 continue;
             }
-            body.kernels()
+            body.joint()
                 .reduce_efforts(body.configuration(q), tau, reduced);
             for (rate, effort) in rates[ranges.speeds.clone()].iter_mut().zip(&*reduced) {
                 *rate += effort;

@@ -190,8 +190,10 @@ impl Slopes<'_> {
         by_local: &[f64],
         by_velocity: &[f64],
     ) {
-        let (Some(own), Some((joint, q))) = (view.mechanism.bodies().get(body), view.kernels(body))
-        else {
+        let (Some(own), Some((joint, q))) = (
+            view.mechanism.bodies().get(body),
+            view.joint_and_configuration(body),
+        ) else {
             return self.spoil();
         };
         let (freedoms, speeds) = (&own.ranges().freedoms, &own.ranges().speeds);

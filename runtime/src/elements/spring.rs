@@ -28,7 +28,7 @@ pub struct JointSpring {
 impl JointSpring {
     /// ϕ and Kϕ; NaN where ϕ cannot be found.
     fn stretch(&self, view: &View<'_>) -> ([f64; 6], [f64; 6]) {
-        let Some((joint, q)) = view.kernels(self.body) else {
+        let Some((joint, q)) = view.joint_and_configuration(self.body) else {
             return ([f64::NAN; 6], [f64::NAN; 6]);
         };
         let size = joint.layout().freedoms;
@@ -103,7 +103,7 @@ impl Element for JointSpring {
 
     fn act(&self, view: &View<'_>, action: &mut Action<'_>) {
         let (phi, load) = self.stretch(view);
-        let Some((joint, q)) = view.kernels(self.body) else {
+        let Some((joint, q)) = view.joint_and_configuration(self.body) else {
             return action.add_effort(view, self.body, &[]);
         };
         let size = joint.layout().freedoms;
@@ -135,15 +135,12 @@ impl Element for JointSpring {
 
 impl Slope for JointSpring {
     fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>) {
-        let Some((joint, q)) = view.kernels(self.body) else {
+        let Some((joint, q)) = view.joint_and_configuration(self.body) else {
             return slopes.add_effort(view, self.body, &[], &[]);
         };
         let (mut by_local, size) = ([f64::NAN; 36], joint.layout().freedoms);
-        let fits = self.rest.len() == q.len() && self.stiffness.len() == size * size;
-        if fits {
-            let own = &mut by_local[..size * size];
-            joint.spring_slope(q, &self.rest, &self.stiffness, own);
-        }
+        let own = &mut by_local[..size * size];
+        joint.spring_slope(q, &self.rest, &self.stiffness, own);
         slopes.add_effort(view, self.body, &by_local, &[0.0; 36]);
     }
 }
@@ -165,7 +162,7 @@ pub struct RotationSpring {
 
 impl RotationSpring {
     fn turn(&self, view: &View<'_>) -> Matrix3<f64> {
-        let known = view.kernels(self.body);
+        let known = view.joint_and_configuration(self.body);
         let rotation = known.map_or(Matrix3::repeat(f64::NAN), |(joint, q)| {
             joint.pose(q).rotation
         });
@@ -197,7 +194,7 @@ impl Element for RotationSpring {
 
     fn act(&self, view: &View<'_>, action: &mut Action<'_>) {
         let moment: Vector3<f64> = vee(&self.turn(view)) * -self.stiffness;
-        let Some((joint, q)) = view.kernels(self.body) else {
+        let Some((joint, q)) = view.joint_and_configuration(self.body) else {
             return action.add_effort(view, self.body, &[]);
         };
         let size = joint.layout().freedoms;
@@ -227,7 +224,7 @@ impl Element for RotationSpring {
 
 impl Slope for RotationSpring {
     fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>) {
-        let Some((joint, q)) = view.kernels(self.body) else {
+        let Some((joint, q)) = view.joint_and_configuration(self.body) else {
             return slopes.add_effort(view, self.body, &[], &[]);
         };
         let size = joint.layout().freedoms;

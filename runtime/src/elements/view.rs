@@ -1,6 +1,6 @@
 //! What an element sees of a mechanism, and how it acts on it.
 
-use crate::erased::{AnyJoint, Kernels};
+use crate::erased::AnyJoint;
 use crate::mechanism::{Body, Mechanism};
 use crate::spatial::fused::{add_cross, apply, cross};
 use crate::spatial::{Pose, split};
@@ -60,10 +60,13 @@ impl<'a> View<'a> {
         self.mechanism.bodies().get(body)
     }
 
-    /// The joint under a body, as elements here use it, and its Q.
-    pub(super) fn kernels(&self, body: usize) -> Option<(&'a dyn Kernels, &'a [f64])> {
+    /// The joint under a body, and its Q.
+    pub(super) fn joint_and_configuration(
+        &self,
+        body: usize,
+    ) -> Option<(&'a dyn AnyJoint, &'a [f64])> {
         let body = self.body(body)?;
-        Some((&**body.kernels(), body.configuration(self.configuration)))
+        Some((body.joint(), body.configuration(self.configuration)))
     }
 
     /// The joint under a body, if there is one of that index.

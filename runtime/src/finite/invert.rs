@@ -1,8 +1,7 @@
-//! Inverse and differential of a Φ that is given by its value and its derivative ∂Φ/∂ϕ of the stored scalars.
+//! Inverse and differential of any Φ; its derivative ∂Φ/∂ϕ of the stored scalars comes from dual numbers.
 
-use super::solve::solve;
-use super::{least_squares, norm, unless_apart};
-use crate::scalar::Scalar;
+use super::{least_squares, norm, unless_apart, with_jacobian};
+use crate::scalar::{Dual, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// Steps of [`local`] that are taken only where they bring Φ nearer to its target.
@@ -15,43 +14,45 @@ const POLISHING: usize = 3;
 /// Bound on the iterations of [`local`].
 pub const LOCAL_ITERATIONS: usize = GUARDED + POLISHING;
 
-/// The ϕ with Φ(ϕ) = `target`, by the Gauss–Newton method from ϕ = 0; NaN in every entry where it does not converge.
+/// The ϕ with Φ(Q, ϕ) = `target`, by the Gauss–Newton method from ϕ = 0; NaN in every entry where it does not converge.
 ///
-/// `retract` is ϕ ↦ Φ(Q, ϕ), `tangent` is ϕ ↦ ∂Φ/∂ϕ (N×K). A step is at most `1 + |ϕ|` long, so that it does not leave the
-/// branch of ϕ = 0; one that does not bring Φ nearer is halved, at most [`LOCAL_ITERATIONS`] times in all. The result is
-/// accepted where the last step and the distance that remains are below √ε of |Q| + |Q′|: a target may be that far off the
-/// manifold, a local minimum of the distance is not.
+/// `retract` is Φ. A step is at most `1 + |ϕ|` long, so that it does not leave the branch of ϕ = 0; one that does not bring Φ
+/// nearer is halved, at most [`LOCAL_ITERATIONS`] times in all. The result is accepted where the last step and the distance that
+/// remains are below √ε of |Q| + |Q′|: a target may be that far off the manifold, a local minimum of the distance is not.
 pub fn local<T: Scalar, const N: usize, const K: usize>(
+    q: &SVector<T, N>,
     target: &SVector<T, N>,
-    retract: impl Fn(&SVector<T, K>) -> SVector<T, N>,
-    tangent: impl Fn(&SVector<T, K>) -> SMatrix<T, N, K>,
+    retract: impl Fn(&SVector<Dual<T>, N>, &SVector<Dual<T>, K>) -> SVector<Dual<T>, N>,
 ) -> SVector<T, K> {
-    let step = |phi: &SVector<T, K>, gap: &SVector<T, N>| least_squares(&tangent(phi), gap);
-    let gap_at = |phi: &SVector<T, K>| target - retract(phi);
-    let mut phi = guarded_descent(&gap_at, &step);
+    let base = q.map(Dual::constant);
+    let linear_at = |phi: &SVector<T, K>| {
+        let (moved, tangent) = with_jacobian(|phi| retract(&base, phi), phi);
+        let gap = target - moved;
+        (gap, tangent, least_squares(&tangent, &gap))
+    };
+    let mut phi = guarded_descent(|phi| {
+        let (gap, _, step) = linear_at(phi);
+        (gap, bounded(phi, &step))
+    });
     for _ in 0..POLISHING {
-        phi += step(&phi, &gap_at(&phi));
+        phi += linear_at(&phi).2;
     }
-    let gap = gap_at(&phi);
-    let missing = tangent(&phi) * step(&phi, &gap);
-    let scale = norm(target) + norm(&retract(&SVector::zeros()));
-    unless_apart(&phi, norm(&gap) + norm(&missing), scale)
+    let (gap, tangent, step) = linear_at(&phi);
+    let missing = tangent * step;
+    unless_apart(&phi, norm(&gap) + norm(&missing), norm(target) + norm(q))
 }
 
-/// Gauss–Newton from 0 with steps bounded and halved.
+/// Descent from 0 with steps halved; `at` gives the gap that remains at ϕ and the step from there.
 fn guarded_descent<T: Scalar, const N: usize, const K: usize>(
-    gap_at: &impl Fn(&SVector<T, K>) -> SVector<T, N>,
-    step: &impl Fn(&SVector<T, K>, &SVector<T, N>) -> SVector<T, K>,
+    at: impl Fn(&SVector<T, K>) -> (SVector<T, N>, SVector<T, K>),
 ) -> SVector<T, K> {
     let (one, half) = (T::one(), T::from_f64(0.5));
     let mut phi = SVector::<T, K>::zeros();
-    let mut gap = gap_at(&phi);
-    let mut direction = bounded(&phi, &step(&phi, &gap));
+    let (mut gap, mut direction) = at(&phi);
     let mut share = one;
     for _ in 0..GUARDED {
         let next = phi + direction * share;
-        let next_gap = gap_at(&next);
-        let next_direction = bounded(&next, &step(&next, &next_gap));
+        let (next_gap, next_direction) = at(&next);
         let nearer = norm(&next_gap).less(norm(&gap));
         phi = either(nearer, &next, &phi);
         gap = either(nearer, &next_gap, &gap);
@@ -76,22 +77,39 @@ fn either<T: Scalar, const D: usize>(
     SVector::from_fn(|i, _| T::select(mask, if_true[i], if_false[i]))
 }
 
-/// D with `Φ(Q, ϕ + δ) = Φ(Q′, D δ) + O(δ²)` at Q′ = Φ(Q, ϕ), K×K.
-///
-/// `tangent` is ∂Φ/∂ϕ at (Q, ϕ), `tangent_there` at (Q′, 0), both N×K of the stored scalars. Their columns span the same
-/// space, that of the motions of Q′, so that `tangent = tangent_there · D` has one solution.
+/// D with `Φ(Q, ϕ + δ) = Φ(Q′, D δ) + O(δ²)` at Q′ = Φ(Q, ϕ), K×K; `retract` is Φ.
 pub fn differential<T: Scalar, const N: usize, const K: usize>(
-    tangent: &SMatrix<T, N, K>,
-    tangent_there: &SMatrix<T, N, K>,
+    q: &SVector<T, N>,
+    phi: &SVector<T, K>,
+    retract: impl Fn(&SVector<Dual<T>, N>, &SVector<Dual<T>, K>) -> SVector<Dual<T>, N>,
 ) -> SMatrix<T, K, K> {
-    solve(tangent_there, tangent)
+    let (tangent, there) = tangents(q, phi, retract);
+    least_squares(&there, &tangent)
 }
 
 /// `D⁻¹ rate` with the D of [`differential`]; infinite or NaN where D is singular.
 pub fn differential_inverse<T: Scalar, const N: usize, const K: usize>(
-    tangent: &SMatrix<T, N, K>,
-    tangent_there: &SMatrix<T, N, K>,
+    q: &SVector<T, N>,
+    phi: &SVector<T, K>,
     rate: &SVector<T, K>,
+    retract: impl Fn(&SVector<Dual<T>, N>, &SVector<Dual<T>, K>) -> SVector<Dual<T>, N>,
 ) -> SVector<T, K> {
-    least_squares(tangent, &(tangent_there * rate))
+    let (tangent, there) = tangents(q, phi, retract);
+    least_squares(&tangent, &(there * rate))
+}
+
+/// ∂Φ/∂ϕ at (Q, ϕ) and at (Q′, 0), both N×K of the stored scalars.
+///
+/// Their columns span the same space, that of the motions of Q′, so that the first is the second times D for one D.
+fn tangents<T: Scalar, const N: usize, const K: usize>(
+    q: &SVector<T, N>,
+    phi: &SVector<T, K>,
+    retract: impl Fn(&SVector<Dual<T>, N>, &SVector<Dual<T>, K>) -> SVector<Dual<T>, N>,
+) -> (SMatrix<T, N, K>, SMatrix<T, N, K>) {
+    let at = |q: &SVector<T, N>, phi: &SVector<T, K>| {
+        let base = q.map(Dual::constant);
+        with_jacobian(|phi| retract(&base, phi), phi)
+    };
+    let (moved, tangent) = at(q, phi);
+    (tangent, at(&moved, &SVector::zeros()).1)
 }

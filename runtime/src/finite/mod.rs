@@ -1,8 +1,9 @@
 //! Finite maps of joints that have no closed form: the inverse of Φ, its differential, projection onto relations.
 //!
-//! Generated joints call these functions with their own Φ, ∂Φ/∂ϕ and relations. Everything is generic over [`Scalar`],
-//! allocates nothing, and does the same operations whatever the data: iteration counts are fixed, choices go through
-//! [`Scalar::select`]. What fails comes back as NaN in every entry of the lane that fails.
+//! Generated joints call these functions with their own Φ and relations as functions of dual numbers, which give the values and
+//! the derivatives. Everything is generic over [`Scalar`], allocates nothing, and does the same operations whatever the data:
+//! iteration counts are fixed, choices go through [`Scalar::select`]. What fails comes back as NaN in every entry of the lane that
+//! fails.
 
 mod invert;
 mod project;
@@ -14,8 +15,24 @@ pub use invert::{LOCAL_ITERATIONS, differential, differential_inverse, local};
 pub use project::{PROJECT_ITERATIONS, project};
 pub use solve::{inverse, least_squares};
 
-use crate::scalar::Scalar;
-use nalgebra::SVector;
+use crate::scalar::{Dual, Scalar};
+use nalgebra::{SMatrix, SVector};
+
+/// A map's value at `x` and its Jacobian there, N×K: one evaluation a column.
+fn with_jacobian<T: Scalar, const N: usize, const K: usize>(
+    map: impl Fn(&SVector<Dual<T>, K>) -> SVector<Dual<T>, N>,
+    x: &SVector<T, K>,
+) -> (SVector<T, N>, SMatrix<T, N, K>) {
+    let columns: [_; K] = core::array::from_fn(|k| {
+        let mut x = x.map(Dual::constant);
+        x[k] = Dual::variable(x[k].value);
+        map(&x)
+    });
+    let jacobian = SMatrix::from_fn(|i, k| columns[k][i].derivative);
+    let first = columns.first().copied();
+    let moved = first.unwrap_or_else(|| map(&x.map(Dual::constant)));
+    (moved.map(|entry| entry.value), jacobian)
+}
 
 /// |x|.
 fn absolute<T: Scalar>(x: T) -> T {

@@ -1,7 +1,7 @@
 //! Projection onto a manifold that is given by relations, redundant ones among them.
 
-use super::{norm, unless_apart};
-use crate::scalar::Scalar;
+use super::{norm, unless_apart, with_jacobian};
+use crate::scalar::{Dual, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// Bound on the iterations of [`project`]: quadratic convergence needs 5 from an error of a tenth; the others are for
@@ -11,21 +11,19 @@ pub const PROJECT_ITERATIONS: usize = 12;
 /// The point of the manifold that is nearest to `start`, to second order in their distance; NaN in every entry where
 /// Newton's method does not converge within [`PROJECT_ITERATIONS`].
 ///
-/// `relations` (R) vanish on the manifold, `gradient` (R×N) are their derivatives by the stored scalars, and `codimension`
-/// is the rank of the latter on the manifold. R may exceed it: each step is the shortest that solves the `codimension`
-/// relations whose gradients are most independent (pivoted Gram–Schmidt). All relations must hold in the end, so that a
-/// reflection, say, is not taken for a rotation.
+/// `relations` (R) vanish on the manifold, and `codimension` is the rank of their derivatives by the stored scalars there. R may
+/// exceed it: each step is the shortest that solves the `codimension` relations whose gradients are most independent (pivoted
+/// Gram–Schmidt). All relations must hold in the end, so that a reflection, say, is not taken for a rotation.
 pub fn project<T: Scalar, const N: usize, const R: usize>(
     start: &SVector<T, N>,
     codimension: usize,
-    relations: impl Fn(&SVector<T, N>) -> SVector<T, R>,
-    gradient: impl Fn(&SVector<T, N>) -> SMatrix<T, R, N>,
+    relations: impl Fn(&SVector<Dual<T>, N>) -> SVector<Dual<T>, R>,
 ) -> SVector<T, N> {
     let mut q = *start;
     for _ in 0..PROJECT_ITERATIONS {
-        q += Equations::new(&relations(&q), &gradient(&q)).shortest_solution(codimension);
+        q += Equations::at(&q, &relations).shortest_solution(codimension);
     }
-    let left = Equations::new(&relations(&q), &gradient(&q));
+    let left = Equations::at(&q, &relations);
     let apart = norm(&left.values);
     let step = norm(&left.shortest_solution(codimension));
     unless_apart(&q, apart + step, norm(&q))
@@ -39,9 +37,12 @@ struct Equations<T, const N: usize, const R: usize> {
 }
 
 impl<T: Scalar, const N: usize, const R: usize> Equations<T, N, R> {
-    fn new(relations: &SVector<T, R>, gradient: &SMatrix<T, R, N>) -> Self {
+    fn at(
+        q: &SVector<T, N>,
+        relations: impl Fn(&SVector<Dual<T>, N>) -> SVector<Dual<T>, R>,
+    ) -> Self {
+        let (mut values, gradient) = with_jacobian(relations, q);
         let mut directions = gradient.transpose();
-        let mut values = *relations;
         for j in 0..R {
             let length = norm(&directions.column(j).into_owned());
             // A relation without gradient cannot be mended, but it is still checked.

@@ -4,23 +4,15 @@ use super::norm;
 use crate::scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
-/// The x (K) with the least ‖F x − r‖₂ for an F of N rows and rank K.
-///
-/// Backward stable, as normal equations are not. Infinite or NaN where F has dependent columns.
-pub fn least_squares<T: Scalar, const N: usize, const K: usize>(
-    matrix: &SMatrix<T, N, K>,
-    side: &SVector<T, N>,
-) -> SVector<T, K> {
-    solve(matrix, side)
-}
-
 /// The inverse of a square matrix; infinite or NaN where it is singular.
 pub fn inverse<T: Scalar, const K: usize>(matrix: &SMatrix<T, K, K>) -> SMatrix<T, K, K> {
-    solve(matrix, &SMatrix::identity())
+    least_squares(matrix, &SMatrix::identity())
 }
 
-/// [`least_squares`] for each column of `side`.
-pub(super) fn solve<T: Scalar, const N: usize, const K: usize, const M: usize>(
+/// For each column r of `side` (N×M) the x (K) with the least ‖F x − r‖₂, for an F (`matrix`) of N rows and rank K.
+///
+/// Backward stable, as normal equations are not. Infinite or NaN where F has dependent columns.
+pub fn least_squares<T: Scalar, const N: usize, const K: usize, const M: usize>(
     matrix: &SMatrix<T, N, K>,
     side: &SMatrix<T, N, M>,
 ) -> SMatrix<T, K, M> {

@@ -112,6 +112,89 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         rate
     }
 
+    /// `c = Ẋ̄^c v̄ = Σ_k (∂X^c_k S̄ v̄ + X^c ∂S̄_k v̄) ϕ̇_k` in the child frame: [`Joint::bias_acceleration`] where a joint has no formula of
+    /// its own.
+    #[inline]
+    fn bias_acceleration_by_products<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+    ) -> SVector<T, 6> {
+        let patterns = const { &Self::PATTERNS };
+        let mut bias = SVector::zeros();
+        if Self::STRUCTURES.bias_acceleration.is_zero() {
+            return bias;
+        }
+        let velocity = self.velocity(q, speeds);
+        let local = self.local_rate(q, &velocity);
+        if !Self::STRUCTURES.twist_map_child_gradient.is_zero() {
+            let slices = self.twist_map_child_gradient(q);
+            bias += turned(
+                &slices,
+                &patterns.twist_map_child_gradient,
+                &local,
+                &velocity,
+            );
+        }
+        if !Self::STRUCTURES.speed_basis_gradient.is_zero() {
+            let slices = self.speed_basis_gradient(q);
+            let moved = turned(&slices, &patterns.speed_basis_gradient, &local, speeds);
+            bias += times(&self.twist_map_child(q), &patterns.twist_map_child, &moved);
+        }
+        bias
+    }
+
+    /// `Ẋ̄^cᵀ h = Σ_k ϕ̇_k (S̄ᵀ ∂X^c_kᵀ h + ∂S̄_kᵀ X^cᵀ h)`: [`Joint::bias_momentum`] where a joint has no formula of its own.
+    #[inline]
+    fn bias_momentum_by_products<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        speeds: &SVector<T, S>,
+        h: &SVector<T, 6>,
+    ) -> SVector<T, S> {
+        let patterns = const { &Self::PATTERNS };
+        let mut bias = SVector::zeros();
+        if Self::STRUCTURES.bias_momentum.is_zero() {
+            return bias;
+        }
+        let local = self.local_rate(q, &self.velocity(q, speeds));
+        if !Self::STRUCTURES.twist_map_child_gradient.is_zero() {
+            let slices = self.twist_map_child_gradient(q);
+            let efforts = turned_back(&slices, &patterns.twist_map_child_gradient, &local, h);
+            bias += self.reduced(q, &efforts);
+        }
+        if !Self::STRUCTURES.speed_basis_gradient.is_zero() {
+            let map = self.twist_map_child(q);
+            let efforts = transposed_times(&map, &patterns.twist_map_child, h);
+            let slices = self.speed_basis_gradient(q);
+            bias += turned_back(&slices, &patterns.speed_basis_gradient, &local, &efforts);
+        }
+        bias
+    }
+
+    /// `v = S̄ v̄`.
+    #[inline]
+    fn velocity<T: Scalar>(&self, q: &SVector<T, N>, speeds: &SVector<T, S>) -> SVector<T, K> {
+        let pattern = const { &Self::PATTERNS.speed_basis };
+        times(&self.speed_basis(q), pattern, speeds)
+    }
+
+    /// `S̄ᵀ e` for efforts `e` on v.
+    #[inline]
+    fn reduced<T: Scalar>(&self, q: &SVector<T, N>, efforts: &SVector<T, K>) -> SVector<T, S> {
+        let pattern = const { &Self::PATTERNS.speed_basis };
+        transposed_times(&self.speed_basis(q), pattern, efforts)
+    }
+
+    /// `ϕ̇ = S₀⁻¹ v` at ϕ = 0.
+    #[inline]
+    fn local_rate<T: Scalar>(&self, q: &SVector<T, N>, velocity: &SVector<T, K>) -> SVector<T, K> {
+        match Self::STRUCTURES.velocity_map.is_identity() {
+            true => *velocity,
+            false => self.velocity_map_inverse(q) * velocity,
+        }
+    }
+
     /// ∂c/∂v̄ of [`Joint::bias_acceleration`]: `Ẋ̄^c + ∂(X̄^c v̄)/∂ϕ S₀⁻¹ S̄`.
     #[inline]
     fn bias_acceleration_slope<T: Scalar>(
@@ -224,6 +307,46 @@ fn combined<T: Scalar, const R: usize, const C: usize, const K: usize>(
             for j in 0..C {
                 let known = patterns[k][i][j];
                 sum[(i, j)] = accumulated(sum[(i, j)], known, slices[k][(i, j)], x[k]);
+            }
+        }
+    }
+    sum
+}
+
+/// `Σ_k M_k x y_k` without what `patterns` know to be 0 or 1.
+#[inline(always)]
+fn turned<T: Scalar, const R: usize, const C: usize, const K: usize>(
+    slices: &[SMatrix<T, R, C>; K],
+    patterns: &[[[Entry; C]; R]; K],
+    y: &SVector<T, K>,
+    x: &SVector<T, C>,
+) -> SVector<T, R> {
+    let mut sum = SVector::zeros();
+    for k in 0..K {
+        let column = times(&slices[k], &patterns[k], x);
+        for i in 0..R {
+            if patterns[k][i].iter().any(|entry| *entry != Entry::Zero) {
+                sum[i] = column[i].mul_add(y[k], sum[i]);
+            }
+        }
+    }
+    sum
+}
+
+/// `Σ_k M_kᵀ x y_k` without what `patterns` know to be 0 or 1.
+#[inline(always)]
+fn turned_back<T: Scalar, const R: usize, const C: usize, const K: usize>(
+    slices: &[SMatrix<T, R, C>; K],
+    patterns: &[[[Entry; C]; R]; K],
+    y: &SVector<T, K>,
+    x: &SVector<T, R>,
+) -> SVector<T, C> {
+    let mut sum = SVector::zeros();
+    for k in 0..K {
+        let column = transposed_times(&slices[k], &patterns[k], x);
+        for j in 0..C {
+            if patterns[k].iter().any(|row| row[j] != Entry::Zero) {
+                sum[j] = column[j].mul_add(y[k], sum[j]);
             }
         }
     }

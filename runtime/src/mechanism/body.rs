@@ -1,6 +1,6 @@
 //! Bodies of a mechanism, each with the joint that it hangs on.
 
-use crate::erased::{AnyJoint, Kernels, Layout, Token};
+use crate::erased::{AnyJoint, Layout};
 use crate::spatial::{MassProperties, Pose, SpatialInertia};
 use alloc::string::String;
 use alloc::sync::Arc;
@@ -58,7 +58,6 @@ impl Ranges {
 #[derive(Clone, Debug)]
 pub struct Body {
     pub(super) spec: BodySpec,
-    kernels: Arc<dyn Kernels>,
     pub(super) ranges: Ranges,
     pub(super) joint_frame: Pose<f64>,
     pub(super) joint_inertia: SpatialInertia<f64>,
@@ -72,17 +71,11 @@ impl Body {
         joint_inertia: SpatialInertia<f64>,
     ) -> Self {
         Self {
-            kernels: Arc::clone(&spec.joint).kernels(Token::OWN),
             spec,
             ranges,
             joint_frame,
             joint_inertia,
         }
-    }
-
-    /// Its joint as recursions use it.
-    pub(crate) const fn kernels(&self) -> &Arc<dyn Kernels> {
-        &self.kernels
     }
 
     /// Name of the body.

@@ -1,11 +1,13 @@
 //! [`Scalar`] for `f64` and `f32`.
 
-use super::{Scalar, hyperbolic, rotation, series};
+use super::{Native, Scalar, hyperbolic, rotation, series};
 use nalgebra::{Matrix3, Vector3};
 use num_traits::Float;
 
 macro_rules! implement_scalar {
     ($float:ident, $($batch:tt)*) => {
+        impl Native for $float {}
+
         impl Scalar for $float {
             type Mask = bool;
 

@@ -1,6 +1,5 @@
 //! Rotations: exponential, logarithm and their differentials.
 
-use super::hat;
 use crate::scalar::Scalar;
 use nalgebra::{Matrix3, Vector3};
 
@@ -40,7 +39,29 @@ pub fn nearest<T: Scalar>(matrix: &Matrix3<T>) -> Matrix3<T> {
 }
 
 /// `I + a r~ + b r~²`.
-fn quadratic<T: Scalar>(r: &Vector3<T>, a: T, b: T) -> Matrix3<T> {
-    let cross = hat(r);
-    Matrix3::identity() + cross * a + cross * cross * b
+#[inline]
+pub(crate) fn quadratic<T: Scalar>(r: &Vector3<T>, a: T, b: T) -> Matrix3<T> {
+    let mut sum = powers(r, a, b);
+    (0..3).for_each(|i| sum[(i, i)] += T::one());
+    sum
+}
+
+/// `a r~ + b r~²`, entry by entry.
+#[inline]
+pub(crate) fn powers<T: Scalar>(r: &Vector3<T>, a: T, b: T) -> Matrix3<T> {
+    let (ax, ay, az) = (a * r.x, a * r.y, a * r.z);
+    let (xx, yy, zz) = (r.x * r.x, r.y * r.y, r.z * r.z);
+    let (bx, by) = (b * r.x, b * r.y);
+    let (xy, xz, yz) = (bx * r.y, bx * r.z, by * r.z);
+    Matrix3::from_row_slice(&[
+        -b * (yy + zz),
+        xy - az,
+        xz + ay,
+        xy + az,
+        -b * (xx + zz),
+        yz - ax,
+        xz - ay,
+        yz + ax,
+        -b * (xx + yy),
+    ])
 }

@@ -1,6 +1,7 @@
 //! Where a joint puts its child, and how it moves it.
 
-use super::Motion;
+use super::{Motion, Steps};
+use crate::erased::nan;
 use crate::joint::{Entry, Joint};
 use crate::scalar::Scalar;
 use crate::spatial::fused::{add_scaled, apply, cross, product};
@@ -28,6 +29,15 @@ impl<T: Scalar> Placement<T> {
             rotation: Matrix3::identity(),
             origin: Vector3::zeros(),
             offset: Vector3::zeros(),
+        }
+    }
+
+    /// NaN.
+    pub(crate) fn unknown() -> Self {
+        Self {
+            rotation: Matrix3::repeat(nan()),
+            origin: Vector3::repeat(nan()),
+            offset: Vector3::repeat(nan()),
         }
     }
 
@@ -59,208 +69,162 @@ fn combine<T: Scalar>(
     sum
 }
 
-/// The child frame of `joint` at `q`.
-#[inline(always)]
-pub(super) fn child<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
-    joint: &J,
-    q: &SVector<T, N>,
-    joint_frame: &Pose<T>,
-    parent: &Placement<T>,
-) -> Placement<T>
-where
-    T: Scalar,
-    J: Joint<N, K, S, C>,
-{
-    let (pose, patterns) = (joint.pose(q), J::PATTERNS);
-    let base = product(&parent.rotation, &joint_frame.rotation);
-    let [x, y, z] = patterns.rotation;
-    // Array methods with closures are not reliably inlined, and then patterns would be read at run time.
-    let mut rotation = Matrix3::zeros();
-    for j in 0..3 {
-        let column = combine(&base, [x[j], y[j], z[j]], pose.rotation.data.0[j]);
-        rotation.data.0[j] = column.map_or([T::zero(); 3], |column| column.data.0[0]);
-    }
-    let fixed = apply(&parent.rotation, &joint_frame.translation);
-    let offset = match combine(&base, patterns.translation, pose.translation.data.0[0]) {
-        Some(moved) => fixed + moved,
-        None => fixed,
-    };
-    Placement {
-        rotation,
-        origin: parent.origin + offset,
-        offset,
-    }
-}
-
-/// Which parts of the columns of X̄ can be other than zero.
-pub(super) struct Parts;
-
-impl Parts {
-    /// Angular and linear part of column `j`.
-    #[inline(always)]
-    pub(super) const fn of<J, const N: usize, const K: usize, const S: usize, const C: usize>(
-        j: usize,
-    ) -> (bool, bool)
-    where
-        J: Joint<N, K, S, C>,
-    {
-        let pattern = const { J::PATTERNS.speed_columns() };
-        (occurs(&pattern, 0, j), occurs(&pattern, 3, j))
-    }
-
-    /// Whether any column has an angular, and whether any has a linear part.
-    #[inline(always)]
-    pub(super) fn any<J, const N: usize, const K: usize, const S: usize, const C: usize>()
-    -> (bool, bool)
-    where
-        J: Joint<N, K, S, C>,
-    {
-        let (mut angular, mut linear) = (false, false);
-        for j in 0..S {
-            let (a, l) = Self::of::<J, N, K, S, C>(j);
-            angular |= a;
-            linear |= l;
-        }
-        (angular, linear)
-    }
-}
-
 const fn occurs<const S: usize>(pattern: &[[Entry; S]; 6], first: usize, j: usize) -> bool {
     !(matches!(pattern[first][j], Entry::Zero)
         && matches!(pattern[first + 1][j], Entry::Zero)
         && matches!(pattern[first + 2][j], Entry::Zero))
 }
 
-/// The columns of `X̄ = X^c S̄`, turned into world axes.
-#[inline(always)]
-pub(super) fn columns<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
-    joint: &J,
-    q: &SVector<T, N>,
-    rotation: &Matrix3<T>,
-) -> [Vector6<T>; S]
+impl<J, const N: usize, const K: usize, const S: usize, const C: usize> Steps<'_, J, N, K, S, C>
 where
-    T: Scalar,
     J: Joint<N, K, S, C>,
 {
-    let pattern = const { J::PATTERNS.speed_columns() };
-    let map = speed_map(joint, q);
-    let [p0, p1, p2, p3, p4, p5] = pattern;
-    let mut columns = [Vector6::zeros(); S];
-    for j in 0..S {
-        let [a, b, c, d, e, f] = map.data.0[j];
-        let angular = combine(rotation, [p0[j], p1[j], p2[j]], [a, b, c]);
-        let linear = combine(rotation, [p3[j], p4[j], p5[j]], [d, e, f]);
-        let zero = Vector3::zeros();
-        columns[j] = join(&angular.unwrap_or(zero), &linear.unwrap_or(zero));
+    /// The child frame of the joint at `q`.
+    #[inline(always)]
+    pub(crate) fn child<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        joint_frame: &Pose<T>,
+        parent: &Placement<T>,
+    ) -> Placement<T> {
+        let (pose, patterns) = (self.0.pose(q), J::PATTERNS);
+        let base = product(&parent.rotation, &joint_frame.rotation);
+        let [x, y, z] = patterns.rotation;
+        // Array methods with closures are not reliably inlined, and then patterns would be read at run time.
+        let mut rotation = Matrix3::zeros();
+        for j in 0..3 {
+            let column = combine(&base, [x[j], y[j], z[j]], pose.rotation.data.0[j]);
+            rotation.data.0[j] = column.map_or([T::zero(); 3], |column| column.data.0[0]);
+        }
+        let fixed = apply(&parent.rotation, &joint_frame.translation);
+        let offset = match combine(&base, patterns.translation, pose.translation.data.0[0]) {
+            Some(moved) => fixed + moved,
+            None => fixed,
+        };
+        Placement {
+            rotation,
+            origin: parent.origin + offset,
+            offset,
+        }
     }
-    columns
-}
 
-/// `X̄ = X^c S̄` in child axes.
-#[inline(always)]
-fn speed_map<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
-    joint: &J,
-    q: &SVector<T, N>,
-) -> SMatrix<T, 6, S>
-where
-    T: Scalar,
-    J: Joint<N, K, S, C>,
-{
-    let map = joint.twist_map_child(q);
-    if J::STRUCTURES.speed_basis.is_identity() {
-        let mut same = SMatrix::zeros();
+    /// Whether column `j` of X̄ can have an angular, and whether it can have a linear part.
+    #[inline(always)]
+    pub(crate) const fn column_parts(j: usize) -> (bool, bool) {
+        let pattern = const { J::PATTERNS.speed_columns() };
+        (occurs(&pattern, 0, j), occurs(&pattern, 3, j))
+    }
+
+    /// The same of any column.
+    #[inline(always)]
+    pub(crate) fn parts() -> (bool, bool) {
+        let (mut angular, mut linear) = (false, false);
         for j in 0..S {
-            same.data.0[j] = map.data.0[j];
+            let (a, l) = Self::column_parts(j);
+            angular |= a;
+            linear |= l;
         }
-        return same;
+        (angular, linear)
     }
-    map * joint.speed_basis(q)
-}
 
-/// The child's motion at v̄̇ = 0, and the columns of X̄.
-#[inline(always)]
-pub(super) fn advance<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
-    joint: &J,
-    (q, speeds): (&SVector<T, N>, &SVector<T, S>),
-    joint_frame: &Pose<T>,
-    parent: &Motion<T>,
-    columns: &mut [Vector6<T>; S],
-) -> Motion<T>
-where
-    T: Scalar,
-    J: Joint<N, K, S, C>,
-{
-    let placement = child(joint, q, joint_frame, &parent.placement);
-    *columns = self::columns(joint, q, &placement.rotation);
-    let relative = relative::<T, J, N, K, S, C>(speeds, columns);
-    let carried = shift_twist(&parent.twist, &placement.offset);
-    // ad_V X̄ v̄ with V = carried + X̄ v̄, where the bracket of the second with itself vanishes.
-    let turned = bracket::<T, J, N, K, S, C>(&carried, &relative);
-    let mut rate = shift_twist(&parent.rate, &placement.offset) + turned;
-    if !J::STRUCTURES.bias_acceleration.is_zero() {
-        rate += turn_out(&placement.rotation, &joint.bias_acceleration(q, speeds));
-    }
-    Motion {
-        placement,
-        twist: carried + relative,
-        rate,
-    }
-}
-
-/// `X̄ v̄`.
-#[inline(always)]
-fn relative<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
-    speeds: &SVector<T, S>,
-    columns: &[Vector6<T>; S],
-) -> Vector6<T>
-where
-    T: Scalar,
-    J: Joint<N, K, S, C>,
-{
-    add_columns::<T, J, N, K, S, C>(&Vector6::zeros(), columns, speeds)
-}
-
-/// `start + X̄ weights`, without the parts that the joint type does not have.
-#[inline(always)]
-pub(super) fn add_columns<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
-    start: &Vector6<T>,
-    columns: &[Vector6<T>; S],
-    weights: &SVector<T, S>,
-) -> Vector6<T>
-where
-    T: Scalar,
-    J: Joint<N, K, S, C>,
-{
-    let (mut angular, mut linear) = split(start);
-    for j in 0..S {
-        let (column_angular, column_linear) = split(&columns[j]);
-        let (turns, slides) = Parts::of::<J, N, K, S, C>(j);
-        if turns {
-            angular = add_scaled(&angular, &column_angular, weights[j]);
+    /// The columns of `X̄ = X^c S̄`, turned into world axes.
+    #[inline(always)]
+    pub(crate) fn columns<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        rotation: &Matrix3<T>,
+    ) -> [Vector6<T>; S] {
+        let pattern = const { J::PATTERNS.speed_columns() };
+        let map = self.speed_map(q);
+        let [p0, p1, p2, p3, p4, p5] = pattern;
+        let mut columns = [Vector6::zeros(); S];
+        for j in 0..S {
+            let [a, b, c, d, e, f] = map.data.0[j];
+            let angular = combine(rotation, [p0[j], p1[j], p2[j]], [a, b, c]);
+            let linear = combine(rotation, [p3[j], p4[j], p5[j]], [d, e, f]);
+            let zero = Vector3::zeros();
+            columns[j] = join(&angular.unwrap_or(zero), &linear.unwrap_or(zero));
         }
-        if slides {
-            linear = add_scaled(&linear, &column_linear, weights[j]);
+        columns
+    }
+
+    /// `X̄ = X^c S̄` in child axes.
+    #[inline(always)]
+    fn speed_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, S> {
+        let map = self.0.twist_map_child(q);
+        if J::STRUCTURES.speed_basis.is_identity() {
+            let mut same = SMatrix::zeros();
+            for j in 0..S {
+                same.data.0[j] = map.data.0[j];
+            }
+            return same;
+        }
+        map * self.0.speed_basis(q)
+    }
+
+    /// The child's motion at v̄̇ = 0, and the columns of X̄.
+    #[inline(always)]
+    pub(crate) fn advance<T: Scalar>(
+        &self,
+        (q, speeds): (&SVector<T, N>, &SVector<T, S>),
+        joint_frame: &Pose<T>,
+        parent: &Motion<T>,
+        columns: &mut [Vector6<T>; S],
+    ) -> Motion<T> {
+        let placement = self.child(q, joint_frame, &parent.placement);
+        *columns = self.columns(q, &placement.rotation);
+        let relative = Self::relative(speeds, columns);
+        let carried = shift_twist(&parent.twist, &placement.offset);
+        // ad_V X̄ v̄ with V = carried + X̄ v̄, where the bracket of the second with itself vanishes.
+        let turned = Self::bracket(&carried, &relative);
+        let mut rate = shift_twist(&parent.rate, &placement.offset) + turned;
+        if !J::STRUCTURES.bias_acceleration.is_zero() {
+            rate += turn_out(&placement.rotation, &self.0.bias_acceleration(q, speeds));
+        }
+        Motion {
+            placement,
+            twist: carried + relative,
+            rate,
         }
     }
-    join(&angular, &linear)
-}
 
-/// `ad_V U` for a U in the joint's range.
-#[inline(always)]
-fn bracket<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
-    twist: &Vector6<T>,
-    relative: &Vector6<T>,
-) -> Vector6<T>
-where
-    T: Scalar,
-    J: Joint<N, K, S, C>,
-{
-    let (angular, linear) = split(twist);
-    let (turn, slide) = split(relative);
-    match Parts::any::<J, N, K, S, C>() {
-        (true, true) => bracket_product(twist, relative),
-        (true, false) => join(&cross(&angular, &turn), &cross(&linear, &turn)),
-        (false, true) => join(&Vector3::zeros(), &cross(&angular, &slide)),
-        (false, false) => Vector6::zeros(),
+    /// `X̄ v̄`.
+    #[inline(always)]
+    fn relative<T: Scalar>(speeds: &SVector<T, S>, columns: &[Vector6<T>; S]) -> Vector6<T> {
+        Self::add_columns(&Vector6::zeros(), columns, speeds)
+    }
+
+    /// `start + X̄ weights`, without the parts that the joint type does not have.
+    #[inline(always)]
+    pub(crate) fn add_columns<T: Scalar>(
+        start: &Vector6<T>,
+        columns: &[Vector6<T>; S],
+        weights: &SVector<T, S>,
+    ) -> Vector6<T> {
+        let (mut angular, mut linear) = split(start);
+        for j in 0..S {
+            let (column_angular, column_linear) = split(&columns[j]);
+            let (turns, slides) = Self::column_parts(j);
+            if turns {
+                angular = add_scaled(&angular, &column_angular, weights[j]);
+            }
+            if slides {
+                linear = add_scaled(&linear, &column_linear, weights[j]);
+            }
+        }
+        join(&angular, &linear)
+    }
+
+    /// `ad_V U` for a U in the joint's range.
+    #[inline(always)]
+    fn bracket<T: Scalar>(twist: &Vector6<T>, relative: &Vector6<T>) -> Vector6<T> {
+        let (angular, linear) = split(twist);
+        let (turn, slide) = split(relative);
+        match Self::parts() {
+            (true, true) => bracket_product(twist, relative),
+            (true, false) => join(&cross(&angular, &turn), &cross(&linear, &turn)),
+            (false, true) => join(&Vector3::zeros(), &cross(&angular, &slide)),
+            (false, false) => Vector6::zeros(),
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! What one unit of each of a joint's local coordinates and speeds changes of the motion of all that it carries.
 
-use super::Motion;
-use super::place::Parts;
+use super::{Motion, Steps};
+use crate::erased::nan;
 use crate::joint::{Joint, Products};
 use crate::scalar::Scalar;
 use crate::spatial::fused::cross;
@@ -27,95 +27,105 @@ pub struct Variation<T> {
 impl<T: Scalar> Variation<T> {
     /// Of nothing.
     pub fn zero() -> Self {
+        Self::repeat(T::zero())
+    }
+
+    /// NaN.
+    pub(crate) fn unknown() -> Self {
+        Self::repeat(nan())
+    }
+
+    fn repeat(entry: T) -> Self {
+        let vector = Vector6::repeat(entry);
         Self {
-            local: Vector6::zeros(),
-            drift: Vector6::zeros(),
-            rate: Vector6::zeros(),
-            speed_rate: Vector6::zeros(),
+            local: vector,
+            drift: vector,
+            rate: vector,
+            speed_rate: vector,
         }
     }
 }
 
-/// `ad_V X` for column `j` of X̄, without the part that this column does not have.
-#[inline(always)]
-fn bracket_of_column<J, T, const N: usize, const K: usize, const S: usize, const C: usize>(
-    j: usize,
-    twist: &Vector6<T>,
-    column: &Vector6<T>,
-) -> Vector6<T>
+impl<J, const N: usize, const K: usize, const S: usize, const C: usize> Steps<'_, J, N, K, S, C>
 where
-    T: Scalar,
     J: Joint<N, K, S, C>,
 {
-    let ((angular, linear), (turn, slide)) = (split(twist), split(column));
-    match Parts::of::<J, N, K, S, C>(j) {
-        (true, true) => bracket_product(twist, column),
-        (true, false) => join(&cross(&angular, &turn), &cross(&linear, &turn)),
-        (false, true) => join(&Vector3::zeros(), &cross(&angular, &slide)),
-        (false, false) => Vector6::zeros(),
+    /// `ad_V X` for column `j` of X̄, without the part that this column does not have.
+    #[inline(always)]
+    fn bracket_of_column<T: Scalar>(
+        j: usize,
+        twist: &Vector6<T>,
+        column: &Vector6<T>,
+    ) -> Vector6<T> {
+        let ((angular, linear), (turn, slide)) = (split(twist), split(column));
+        match Self::column_parts(j) {
+            (true, true) => bracket_product(twist, column),
+            (true, false) => join(&cross(&angular, &turn), &cross(&linear, &turn)),
+            (false, true) => join(&Vector3::zeros(), &cross(&angular, &slide)),
+            (false, false) => Vector6::zeros(),
+        }
     }
-}
 
-/// The variations of one joint at (q, v̄, v̄̇), one a freedom; `own` and `parent` are the motions of the child frames.
-#[inline(always)]
-pub(super) fn variations<J, const N: usize, const K: usize, const S: usize, const C: usize>(
-    joint: &J,
-    (q, speeds, accelerations): (&SVector<f64, N>, &SVector<f64, S>, &SVector<f64, S>),
-    (own, parent): (&Motion<f64>, &Motion<f64>),
-    columns: &[Vector6<f64>; S],
-    out: &mut [Variation<f64>; K],
-) where
-    J: Joint<N, K, S, C>,
-{
-    let placement = &own.placement;
-    let carried = shift_twist(&parent.twist, &placement.offset);
-    let carried_rate = shift_twist(&parent.rate, &placement.offset);
-    let structures = J::STRUCTURES;
-    // Then ϕ̇ = v = v̄, and Z are the columns themselves.
-    let same = structures.velocity_map.is_identity() && structures.speed_basis.is_identity();
-    let local = (!same).then(|| joint.local_twist_map(q));
-    for b in 0..K {
-        let variation = &mut out[b];
-        match &local {
-            Some(local) => {
-                let z = turn_out(&placement.rotation, &local.column(b).into_owned());
-                variation.local = z;
-                variation.drift = bracket_product(&carried, &z);
-                variation.rate = bracket_product(&carried_rate, &z);
+    /// The variations of one joint at (q, v̄, v̄̇), one a freedom; `own` and `parent` are the motions of the child frames.
+    #[inline(always)]
+    pub(crate) fn variations<T: Scalar>(
+        &self,
+        (q, speeds, accelerations): (&SVector<T, N>, &SVector<T, S>, &SVector<T, S>),
+        (own, parent): (&Motion<T>, &Motion<T>),
+        columns: &[Vector6<T>; S],
+        out: &mut [Variation<T>; K],
+    ) {
+        let placement = &own.placement;
+        let carried = shift_twist(&parent.twist, &placement.offset);
+        let carried_rate = shift_twist(&parent.rate, &placement.offset);
+        let structures = J::STRUCTURES;
+        // Then ϕ̇ = v = v̄, and Z are the columns themselves.
+        let same = structures.velocity_map.is_identity() && structures.speed_basis.is_identity();
+        let local = (!same).then(|| self.0.local_twist_map(q));
+        for b in 0..K {
+            let variation = &mut out[b];
+            match &local {
+                Some(local) => {
+                    let z = turn_out(&placement.rotation, &local.column(b).into_owned());
+                    variation.local = z;
+                    variation.drift = bracket_product(&carried, &z);
+                    variation.rate = bracket_product(&carried_rate, &z);
+                }
+                None => {
+                    let z = &columns[b];
+                    variation.local = *z;
+                    variation.drift = Self::bracket_of_column(b, &carried, z);
+                    variation.rate = Self::bracket_of_column(b, &carried_rate, z);
+                }
             }
-            None => {
-                let z = &columns[b];
-                variation.local = *z;
-                variation.drift = bracket_of_column::<J, f64, N, K, S, C>(b, &carried, z);
-                variation.rate = bracket_of_column::<J, f64, N, K, S, C>(b, &carried_rate, z);
+        }
+        if !structures.speed_map.is_constant() {
+            let of_twist = self.0.twist_gradient(q, speeds);
+            let mut of_rate = self.0.twist_gradient(q, accelerations);
+            if !structures.bias_acceleration.is_constant() {
+                of_rate += self.0.bias_acceleration_gradient(q, speeds);
+            }
+            for (b, variation) in out.iter_mut().enumerate() {
+                let own_drift = turn_out(&placement.rotation, &of_twist.column(b).into_owned());
+                variation.drift += own_drift;
+                variation.rate += bracket_product(&own.twist, &own_drift)
+                    + turn_out(&placement.rotation, &of_rate.column(b).into_owned());
             }
         }
-    }
-    if !structures.speed_map.is_constant() {
-        let of_twist = joint.twist_gradient(q, speeds);
-        let mut of_rate = joint.twist_gradient(q, accelerations);
-        if !structures.bias_acceleration.is_constant() {
-            of_rate += joint.bias_acceleration_gradient(q, speeds);
+        for variation in out.iter_mut() {
+            variation.rate += bracket_product(&carried, &variation.drift);
+            variation.speed_rate = Vector6::zeros();
         }
-        for (b, variation) in out.iter_mut().enumerate() {
-            let own_drift = turn_out(&placement.rotation, &of_twist.column(b).into_owned());
-            variation.drift += own_drift;
-            variation.rate += bracket_product(&own.twist, &own_drift)
-                + turn_out(&placement.rotation, &of_rate.column(b).into_owned());
+        let both = own.twist + carried;
+        for (a, column) in columns.iter().enumerate() {
+            out[a].speed_rate = Self::bracket_of_column(a, &both, column);
         }
-    }
-    for variation in out.iter_mut() {
-        variation.rate += bracket_product(&carried, &variation.drift);
-        variation.speed_rate = Vector6::zeros();
-    }
-    let both = own.twist + carried;
-    for (a, column) in columns.iter().enumerate() {
-        out[a].speed_rate = bracket_of_column::<J, f64, N, K, S, C>(a, &both, column);
-    }
-    if !structures.bias_acceleration.is_zero() {
-        let slope = joint.bias_acceleration_slope(q, speeds);
-        for (a, variation) in out.iter_mut().enumerate().take(S) {
-            variation.speed_rate += turn_out(&placement.rotation, &slope.column(a).into_owned());
+        if !structures.bias_acceleration.is_zero() {
+            let slope = self.0.bias_acceleration_slope(q, speeds);
+            for (a, variation) in out.iter_mut().enumerate().take(S) {
+                variation.speed_rate +=
+                    turn_out(&placement.rotation, &slope.column(a).into_owned());
+            }
         }
     }
 }

@@ -156,6 +156,8 @@ where
         },
         speed_basis_gradient: Structure::General,
         retract_differential: Structure::General,
+        project: Structure::General,
+        residual: Structure::General,
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
         speed_map: Structure::General,

@@ -9,4 +9,5 @@ mod integrate;
 mod joints;
 mod mechanism;
 mod numbers;
+mod steps;
 mod support;

@@ -5,8 +5,8 @@ use crate::support::wrong;
 use hamel::compiled::{Batch, Equations, InLanes, Lanes};
 use hamel::finite;
 use hamel::registry::{ParameterInfo, check_parameters};
-use hamel::scalar::Scalar;
-use nalgebra::{SMatrix, SVector};
+use hamel::scalar::{Dual, Scalar};
+use nalgebra::SVector;
 
 const ODD: [f64; 9] = [
     0.0,
@@ -38,9 +38,8 @@ fn projections_of_any_codimension_end() {
     for codimension in [0, 1, 2, usize::MAX] {
         for start in ODD {
             let q = SVector::<f64, 1>::new(start);
-            let relation = |q: &SVector<f64, 1>| SVector::<f64, 1>::new(q[0] - 1.0);
-            let slope = |_: &SVector<f64, 1>| SMatrix::<f64, 1, 1>::new(1.0);
-            let found = finite::project(&q, codimension, relation, slope);
+            let relation = |q: &SVector<Dual<f64>, 1>| q.map(|x| x - Dual::constant(1.0));
+            let found = finite::project(&q, codimension, relation);
             assert!(
                 found[0].is_nan() || (found[0] - 1.0).abs() < 1e-7,
                 "{found}"

@@ -62,7 +62,7 @@ fn expected(derived: &Derived, width: f64, place: f64) -> [Vec<Precise>; 3] {
     let place = &derived.arguments.configuration[0];
     let output = |kind: KernelKind| {
         let kernel = derived.kernel(kind).expect("the joint has the kernel");
-        kernel.outputs[0].clone()
+        kernel.expanded().swap_remove(0)
     };
     let map = output(KernelKind::TwistMapChild);
     let bias = output(KernelKind::BiasAcceleration);

@@ -7,12 +7,13 @@ use super::program::{Program, Sheet};
 use super::{Grid, Node, Tracked};
 use hamel_codegen::derived::{Derived, KernelKind};
 use hamel_codegen::expr::Expr;
-use hamel_codegen::model::JointSpec;
+use hamel_codegen::model::{ConfigurationSpace, JointSpec};
 
 /// What a spec declares and its consequences, with the values of the joint's parameters.
 #[derive(Clone, Debug)]
 pub struct Definition {
     declared: Declared,
+    space: ConfigurationSpace,
     configuration: usize,
     speeds: usize,
     /// Q, v, v̄ and h to the kernels at ϕ = 0.
@@ -47,11 +48,9 @@ fn moved_with_tangent(declared: &Declared, q: &[Node], phi: &[Node]) -> Sheet<No
     sheet
 }
 
-fn functions(declared: &Declared, relations: &[Expr], q: &[Node]) -> Sheet<Node> {
-    let loci = declared.spec.loci.iter();
-    let loci: Vec<Expr> = loci.map(|locus| locus.value.function.clone()).collect();
+fn functions(declared: &Declared, loci: &[Expr], relations: &[Expr], q: &[Node]) -> Sheet<Node> {
     let mut sheet = Sheet::default();
-    sheet.put("loci", declared.evaluate(&loci, &constants(q)));
+    sheet.put("loci", declared.evaluate(loci, &constants(q)));
     sheet.put("relations", declared.evaluate(relations, &constants(q)));
     sheet
 }
@@ -65,6 +64,8 @@ impl Definition {
         let relations = derived.kernel(KernelKind::Residual);
         let relations = relations.map_or(&[][..], |kernel| kernel.outputs[0].entries());
         let zero = declared.zero();
+        let loci = derived.space.loci.iter();
+        let loci: Vec<Expr> = loci.map(|locus| locus.value.function.clone()).collect();
         Self {
             kernels: Program::new(n + k + speeds + 6, |all| {
                 let (q, rest) = all.split_at(n);
@@ -86,16 +87,22 @@ impl Definition {
                 moved_with_tangent(&declared, q, phi)
             }),
             directions: Program::new(n, |q| moved_with_tangent(&declared, q, &zero)),
-            functions: Program::new(n, |q| functions(&declared, relations, q)),
+            functions: Program::new(n, |q| functions(&declared, &loci, relations, q)),
             configuration: n,
             speeds,
             declared,
+            space: derived.space.clone(),
         }
     }
 
     /// The spec.
     pub fn spec(&self) -> &JointSpec {
         &self.declared.spec
+    }
+
+    /// Where the joint lives.
+    pub fn space(&self) -> &ConfigurationSpace {
+        &self.space
     }
 
     /// What the spec declares.

@@ -65,7 +65,7 @@ impl<'a> Points<'a> {
     /// Cases in numbers of that range; `seed` tells batches apart.
     pub fn new(definition: &'a Definition, range: Range, seed: u64) -> Self {
         Self {
-            sampler: Sampler::new(definition.spec(), BITS),
+            sampler: Sampler::new(definition.space(), BITS),
             random: ChaCha8Rng::seed_from_u64(seed),
             range,
             angles: angles(definition),
@@ -131,7 +131,7 @@ impl<'a> Points<'a> {
 
     /// On the manifold, in high precision.
     fn configuration(&mut self, extreme: bool) -> Vec<Wide> {
-        let manifold = &self.definition.spec().manifold.value;
+        let manifold = &self.definition.space().manifold;
         if manifold.declared().is_empty() {
             let factors = manifold.factors().to_vec();
             return factors

@@ -64,19 +64,13 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
     let mut results = [n(0.0); 96];
     // link_2: angular velocity (9 additions, 9 multiplications)
     let link_2_angular_velocity = v[2].mul_add(q[15], v[1].mul_add(q[12], v[0] * q[9]));
-    let link_2_angular_velocity_2 = v[2]
-        .mul_add(q[16], v[1].mul_add(q[13], v[0] * q[10]));
-    let link_2_angular_velocity_3 = v[2]
-        .mul_add(q[17], v[1].mul_add(q[14], v[0] * q[11]));
+    let link_2_angular_velocity_2 = v[2].mul_add(q[16], v[1].mul_add(q[13], v[0] * q[10]));
+    let link_2_angular_velocity_3 = v[2].mul_add(q[17], v[1].mul_add(q[14], v[0] * q[11]));
     let link_2_rate_x = v[3] + link_2_angular_velocity;
     let link_2_rate_y = v[4] + link_2_angular_velocity_2;
     let link_2_rate_z = v[5] + link_2_angular_velocity_3;
     rows_of_6[0] = [
-        link_2_angular_velocity,
-        link_2_angular_velocity_2,
-        link_2_angular_velocity_3,
-        link_2_rate_x,
-        link_2_rate_y,
+        link_2_angular_velocity, link_2_angular_velocity_2, link_2_angular_velocity_3, link_2_rate_x, link_2_rate_y,
         link_2_rate_z,
     ];
     // each of link_3, link_4, … link_32 (30 bodies):
@@ -84,30 +78,16 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
         let parent = &rows_of_6[i];
         // each: angular velocity (9 additions, 9 multiplications)
         let each_angular_velocity = q[9 * i + 24]
-            .mul_add(
-                parent[5],
-                q[9 * i + 21].mul_add(parent[4], q[9 * i + 18] * parent[3]),
-            );
+            .mul_add(parent[5], q[9 * i + 21].mul_add(parent[4], q[9 * i + 18] * parent[3]));
         let each_angular_velocity_2 = q[9 * i + 25]
-            .mul_add(
-                parent[5],
-                q[9 * i + 22].mul_add(parent[4], q[9 * i + 19] * parent[3]),
-            );
+            .mul_add(parent[5], q[9 * i + 22].mul_add(parent[4], q[9 * i + 19] * parent[3]));
         let each_angular_velocity_3 = q[9 * i + 26]
-            .mul_add(
-                parent[5],
-                q[9 * i + 23].mul_add(parent[4], q[9 * i + 20] * parent[3]),
-            );
+            .mul_add(parent[5], q[9 * i + 23].mul_add(parent[4], q[9 * i + 20] * parent[3]));
         let each_rate_x = v[3 * i + 6] + each_angular_velocity;
         let each_rate_y = v[3 * i + 7] + each_angular_velocity_2;
         let each_rate_z = v[3 * i + 8] + each_angular_velocity_3;
         rows_of_6[i + 1] = [
-            each_angular_velocity,
-            each_angular_velocity_2,
-            each_angular_velocity_3,
-            each_rate_x,
-            each_rate_y,
-            each_rate_z,
+            each_angular_velocity, each_angular_velocity_2, each_angular_velocity_3, each_rate_x, each_rate_y, each_rate_z,
         ];
     }
     // link_1: bias (5 additions, 12 multiplications)
@@ -116,12 +96,10 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
     let link_1_bias_3 = v[0] * v[2];
     let link_1_bias_4 = v[1] * v[2];
     let link_1_bias_5 = v[1].mul_add(v[1], link_1_bias);
-    let link_1_bias_6 = (-link_1_bias_2)
-        .mul_add(n(-0.00041000000000000005), link_1_bias_4 * n(-0.5012000000000003));
+    let link_1_bias_6 = (-link_1_bias_2).mul_add(n(-0.00041000000000000005), link_1_bias_4 * n(-0.5012000000000003));
     let link_1_bias_7 = ((-v[2]).mul_add(v[2], link_1_bias))
         .mul_add(n(-0.00041000000000000005), link_1_bias_3 * n(0.5012600000000003));
-    let link_1_bias_8 = link_1_bias_4
-        .mul_add(n(-0.00041000000000000005), link_1_bias_2 * n(-0.00006000000000000002));
+    let link_1_bias_8 = link_1_bias_4.mul_add(n(-0.00041000000000000005), link_1_bias_2 * n(-0.00006000000000000002));
     // link_2: bias (18 additions, 36 multiplications)
     let link_2_bias = link_2_rate_x * link_2_rate_x;
     let link_2_bias_2 = link_2_rate_x * link_2_rate_y;
@@ -130,48 +108,25 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
     let link_2_bias_5 = link_2_rate_y * link_2_rate_z;
     let link_2_bias_6 = link_2_rate_z * link_2_rate_z;
     let link_2_bias_7 = link_2_bias + link_2_bias_4;
-    let link_2_bias_8 = (-link_2_bias_2)
-        .mul_add(n(-0.00041000000000000005), link_2_bias_5 * n(-0.48520000000000035));
+    let link_2_bias_8 = (-link_2_bias_2).mul_add(n(-0.00041000000000000005), link_2_bias_5 * n(-0.48520000000000035));
     let link_2_bias_9 = (link_2_bias - link_2_bias_6)
         .mul_add(n(-0.00041000000000000005), link_2_bias_3 * n(0.48526000000000036));
-    let link_2_bias_10 = link_2_bias_5
-        .mul_add(n(-0.00041000000000000005), link_2_bias_2 * n(-0.00006000000000000002));
-    let link_2_bias_11 = (-link_2_bias_3)
-        .mul_add(n(-2.4400000000000013), (link_2_bias_4 + link_2_bias_6) * n(0.004));
-    let link_2_bias_12 = link_2_bias_5
-        .mul_add(n(-2.4400000000000013), link_2_bias_2 * n(0.004));
-    let link_2_bias_13 = (-link_2_bias_7)
-        .mul_add(n(-2.4400000000000013), link_2_bias_3 * n(0.004));
-    let link_2_bias_14 = (-v[4])
-        .mul_add(link_2_angular_velocity_3, v[5] * link_2_angular_velocity_2);
-    let link_2_bias_15 = (-v[5])
-        .mul_add(link_2_angular_velocity, v[3] * link_2_angular_velocity_3);
-    let link_2_bias_16 = (-v[3])
-        .mul_add(link_2_angular_velocity_2, v[4] * link_2_angular_velocity);
+    let link_2_bias_10 = link_2_bias_5.mul_add(n(-0.00041000000000000005), link_2_bias_2 * n(-0.00006000000000000002));
+    let link_2_bias_11 = (-link_2_bias_3).mul_add(n(-2.4400000000000013), (link_2_bias_4 + link_2_bias_6) * n(0.004));
+    let link_2_bias_12 = link_2_bias_5.mul_add(n(-2.4400000000000013), link_2_bias_2 * n(0.004));
+    let link_2_bias_13 = (-link_2_bias_7).mul_add(n(-2.4400000000000013), link_2_bias_3 * n(0.004));
+    let link_2_bias_14 = (-v[4]).mul_add(link_2_angular_velocity_3, v[5] * link_2_angular_velocity_2);
+    let link_2_bias_15 = (-v[5]).mul_add(link_2_angular_velocity, v[3] * link_2_angular_velocity_3);
+    let link_2_bias_16 = (-v[3]).mul_add(link_2_angular_velocity_2, v[4] * link_2_angular_velocity);
     let link_2_bias_17 = link_1_bias_3 * n(-0.2);
     let link_2_bias_18 = link_1_bias_4 * n(-0.2);
     let link_2_bias_19 = link_1_bias_5 * n(-0.2);
-    let link_2_bias_20 = (-q[15])
-        .mul_add(link_2_bias_19, q[12].mul_add(link_2_bias_18, q[9] * link_2_bias_17));
-    let link_2_bias_21 = (-q[16])
-        .mul_add(link_2_bias_19, q[13].mul_add(link_2_bias_18, q[10] * link_2_bias_17));
-    let link_2_bias_22 = (-q[17])
-        .mul_add(link_2_bias_19, q[14].mul_add(link_2_bias_18, q[11] * link_2_bias_17));
+    let link_2_bias_20 = (-q[15]).mul_add(link_2_bias_19, q[12].mul_add(link_2_bias_18, q[9] * link_2_bias_17));
+    let link_2_bias_21 = (-q[16]).mul_add(link_2_bias_19, q[13].mul_add(link_2_bias_18, q[10] * link_2_bias_17));
+    let link_2_bias_22 = (-q[17]).mul_add(link_2_bias_19, q[14].mul_add(link_2_bias_18, q[11] * link_2_bias_17));
     rows_of_15[0] = [
-        link_2_bias_3,
-        link_2_bias_5,
-        link_2_bias_7,
-        link_2_bias_8,
-        link_2_bias_9,
-        link_2_bias_10,
-        link_2_bias_11,
-        link_2_bias_12,
-        link_2_bias_13,
-        link_2_bias_14,
-        link_2_bias_15,
-        link_2_bias_16,
-        link_2_bias_20,
-        link_2_bias_21,
+        link_2_bias_3, link_2_bias_5, link_2_bias_7, link_2_bias_8, link_2_bias_9, link_2_bias_10, link_2_bias_11,
+        link_2_bias_12, link_2_bias_13, link_2_bias_14, link_2_bias_15, link_2_bias_16, link_2_bias_20, link_2_bias_21,
         link_2_bias_22,
     ];
     // each of link_3, link_4, … link_19 (17 bodies):
@@ -206,17 +161,10 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
         let each_bias_5 = own[4] * own[5];
         let each_bias_6 = own[5] * own[5];
         let each_bias_7 = each_bias + each_bias_4;
-        let each_bias_8 = (-each_bias_2)
-            .mul_add(n(-0.00041000000000000005), each_bias_5 * n(numbers[0]));
-        let each_bias_9 = (each_bias - each_bias_6)
-            .mul_add(n(-0.00041000000000000005), each_bias_3 * n(numbers[1]));
-        let each_bias_10 = each_bias_5
-            .mul_add(
-                n(-0.00041000000000000005),
-                each_bias_2 * n(-0.00006000000000000002),
-            );
-        let each_bias_11 = (-each_bias_3)
-            .mul_add(n(numbers[2]), (each_bias_4 + each_bias_6) * n(0.004));
+        let each_bias_8 = (-each_bias_2).mul_add(n(-0.00041000000000000005), each_bias_5 * n(numbers[0]));
+        let each_bias_9 = (each_bias - each_bias_6).mul_add(n(-0.00041000000000000005), each_bias_3 * n(numbers[1]));
+        let each_bias_10 = each_bias_5.mul_add(n(-0.00041000000000000005), each_bias_2 * n(-0.00006000000000000002));
+        let each_bias_11 = (-each_bias_3).mul_add(n(numbers[2]), (each_bias_4 + each_bias_6) * n(0.004));
         let each_bias_12 = each_bias_5.mul_add(n(numbers[2]), each_bias_2 * n(0.004));
         let each_bias_13 = (-each_bias_7).mul_add(n(numbers[2]), each_bias_3 * n(0.004));
         let each_bias_14 = (-v[3 * i + 7]).mul_add(own[2], v[3 * i + 8] * own[1]);
@@ -226,36 +174,14 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
         let each_bias_18 = parent_2[1] * n(-0.2);
         let each_bias_19 = parent_2[2] * n(-0.2);
         let each_bias_20 = (-q[9 * i + 24])
-            .mul_add(
-                each_bias_19,
-                q[9 * i + 21].mul_add(each_bias_18, q[9 * i + 18] * each_bias_17),
-            );
+            .mul_add(each_bias_19, q[9 * i + 21].mul_add(each_bias_18, q[9 * i + 18] * each_bias_17));
         let each_bias_21 = (-q[9 * i + 25])
-            .mul_add(
-                each_bias_19,
-                q[9 * i + 22].mul_add(each_bias_18, q[9 * i + 19] * each_bias_17),
-            );
+            .mul_add(each_bias_19, q[9 * i + 22].mul_add(each_bias_18, q[9 * i + 19] * each_bias_17));
         let each_bias_22 = (-q[9 * i + 26])
-            .mul_add(
-                each_bias_19,
-                q[9 * i + 23].mul_add(each_bias_18, q[9 * i + 20] * each_bias_17),
-            );
+            .mul_add(each_bias_19, q[9 * i + 23].mul_add(each_bias_18, q[9 * i + 20] * each_bias_17));
         rows_of_15[i + 1] = [
-            each_bias_3,
-            each_bias_5,
-            each_bias_7,
-            each_bias_8,
-            each_bias_9,
-            each_bias_10,
-            each_bias_11,
-            each_bias_12,
-            each_bias_13,
-            each_bias_14,
-            each_bias_15,
-            each_bias_16,
-            each_bias_20,
-            each_bias_21,
-            each_bias_22,
+            each_bias_3, each_bias_5, each_bias_7, each_bias_8, each_bias_9, each_bias_10, each_bias_11, each_bias_12,
+            each_bias_13, each_bias_14, each_bias_15, each_bias_16, each_bias_20, each_bias_21, each_bias_22,
         ];
     }
     // link_20: bias (18 additions, 33 multiplications)
@@ -266,17 +192,11 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
     let link_20_bias_5 = rows_of_6[18][4] * rows_of_6[18][5];
     let link_20_bias_6 = rows_of_6[18][5] * rows_of_6[18][5];
     let link_20_bias_7 = link_20_bias + link_20_bias_4;
-    let link_20_bias_8 = (-link_20_bias_2)
-        .mul_add(n(-0.00041000000000000005), link_20_bias_5 * n(-0.19720000000000001));
+    let link_20_bias_8 = (-link_20_bias_2).mul_add(n(-0.00041000000000000005), link_20_bias_5 * n(-0.19720000000000001));
     let link_20_bias_9 = (link_20_bias - link_20_bias_6)
         .mul_add(n(-0.00041000000000000005), link_20_bias_3 * n(0.19726000000000002));
-    let link_20_bias_10 = link_20_bias_5
-        .mul_add(
-            n(-0.00041000000000000005),
-            link_20_bias_2 * n(-0.00006000000000000002),
-        );
-    let link_20_bias_11 = (link_20_bias_4 + link_20_bias_6)
-        .mul_add(n(0.004), link_20_bias_3);
+    let link_20_bias_10 = link_20_bias_5.mul_add(n(-0.00041000000000000005), link_20_bias_2 * n(-0.00006000000000000002));
+    let link_20_bias_11 = (link_20_bias_4 + link_20_bias_6).mul_add(n(0.004), link_20_bias_3);
     let link_20_bias_12 = (-link_20_bias_2).mul_add(n(0.004), link_20_bias_5);
     let link_20_bias_13 = link_20_bias_3.mul_add(n(0.004), link_20_bias_7);
     let link_20_bias_14 = (-v[58]).mul_add(rows_of_6[18][2], v[59] * rows_of_6[18][1]);
@@ -285,36 +205,12 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
     let link_20_bias_17 = rows_of_15[17][0] * n(-0.2);
     let link_20_bias_18 = rows_of_15[17][1] * n(-0.2);
     let link_20_bias_19 = rows_of_15[17][2] * n(-0.2);
-    let link_20_bias_20 = (-q[177])
-        .mul_add(
-            link_20_bias_19,
-            q[174].mul_add(link_20_bias_18, q[171] * link_20_bias_17),
-        );
-    let link_20_bias_21 = (-q[178])
-        .mul_add(
-            link_20_bias_19,
-            q[175].mul_add(link_20_bias_18, q[172] * link_20_bias_17),
-        );
-    let link_20_bias_22 = (-q[179])
-        .mul_add(
-            link_20_bias_19,
-            q[176].mul_add(link_20_bias_18, q[173] * link_20_bias_17),
-        );
+    let link_20_bias_20 = (-q[177]).mul_add(link_20_bias_19, q[174].mul_add(link_20_bias_18, q[171] * link_20_bias_17));
+    let link_20_bias_21 = (-q[178]).mul_add(link_20_bias_19, q[175].mul_add(link_20_bias_18, q[172] * link_20_bias_17));
+    let link_20_bias_22 = (-q[179]).mul_add(link_20_bias_19, q[176].mul_add(link_20_bias_18, q[173] * link_20_bias_17));
     rows_of_15[18] = [
-        link_20_bias_3,
-        link_20_bias_5,
-        link_20_bias_7,
-        link_20_bias_8,
-        link_20_bias_9,
-        link_20_bias_10,
-        link_20_bias_11,
-        link_20_bias_12,
-        link_20_bias_13,
-        link_20_bias_14,
-        link_20_bias_15,
-        link_20_bias_16,
-        link_20_bias_20,
-        link_20_bias_21,
+        link_20_bias_3, link_20_bias_5, link_20_bias_7, link_20_bias_8, link_20_bias_9, link_20_bias_10, link_20_bias_11,
+        link_20_bias_12, link_20_bias_13, link_20_bias_14, link_20_bias_15, link_20_bias_16, link_20_bias_20, link_20_bias_21,
         link_20_bias_22,
     ];
     // each of link_21, link_22, … link_31 (11 bodies):
@@ -343,20 +239,12 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
         let each_bias_27 = own_2[4] * own_2[5];
         let each_bias_28 = own_2[5] * own_2[5];
         let each_bias_29 = each_bias_23 + each_bias_26;
-        let each_bias_30 = (-each_bias_24)
-            .mul_add(n(-0.00041000000000000005), each_bias_27 * n(numbers[0]));
-        let each_bias_31 = (each_bias_23 - each_bias_28)
-            .mul_add(n(-0.00041000000000000005), each_bias_25 * n(numbers[1]));
-        let each_bias_32 = each_bias_27
-            .mul_add(
-                n(-0.00041000000000000005),
-                each_bias_24 * n(-0.00006000000000000002),
-            );
-        let each_bias_33 = (-each_bias_25)
-            .mul_add(n(numbers[2]), (each_bias_26 + each_bias_28) * n(0.004));
+        let each_bias_30 = (-each_bias_24).mul_add(n(-0.00041000000000000005), each_bias_27 * n(numbers[0]));
+        let each_bias_31 = (each_bias_23 - each_bias_28).mul_add(n(-0.00041000000000000005), each_bias_25 * n(numbers[1]));
+        let each_bias_32 = each_bias_27.mul_add(n(-0.00041000000000000005), each_bias_24 * n(-0.00006000000000000002));
+        let each_bias_33 = (-each_bias_25).mul_add(n(numbers[2]), (each_bias_26 + each_bias_28) * n(0.004));
         let each_bias_34 = each_bias_27.mul_add(n(numbers[2]), each_bias_24 * n(0.004));
-        let each_bias_35 = (-each_bias_29)
-            .mul_add(n(numbers[2]), each_bias_25 * n(0.004));
+        let each_bias_35 = (-each_bias_29).mul_add(n(numbers[2]), each_bias_25 * n(0.004));
         let each_bias_36 = (-v[3 * i + 61]).mul_add(own_2[2], v[3 * i + 62] * own_2[1]);
         let each_bias_37 = (-v[3 * i + 62]).mul_add(own_2[0], v[3 * i + 60] * own_2[2]);
         let each_bias_38 = (-v[3 * i + 60]).mul_add(own_2[1], v[3 * i + 61] * own_2[0]);
@@ -364,36 +252,14 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
         let each_bias_40 = parent_3[1] * n(-0.2);
         let each_bias_41 = parent_3[2] * n(-0.2);
         let each_bias_42 = (-q[9 * i + 186])
-            .mul_add(
-                each_bias_41,
-                q[9 * i + 183].mul_add(each_bias_40, q[9 * i + 180] * each_bias_39),
-            );
+            .mul_add(each_bias_41, q[9 * i + 183].mul_add(each_bias_40, q[9 * i + 180] * each_bias_39));
         let each_bias_43 = (-q[9 * i + 187])
-            .mul_add(
-                each_bias_41,
-                q[9 * i + 184].mul_add(each_bias_40, q[9 * i + 181] * each_bias_39),
-            );
+            .mul_add(each_bias_41, q[9 * i + 184].mul_add(each_bias_40, q[9 * i + 181] * each_bias_39));
         let each_bias_44 = (-q[9 * i + 188])
-            .mul_add(
-                each_bias_41,
-                q[9 * i + 185].mul_add(each_bias_40, q[9 * i + 182] * each_bias_39),
-            );
+            .mul_add(each_bias_41, q[9 * i + 185].mul_add(each_bias_40, q[9 * i + 182] * each_bias_39));
         rows_of_15[i + 19] = [
-            each_bias_25,
-            each_bias_27,
-            each_bias_29,
-            each_bias_30,
-            each_bias_31,
-            each_bias_32,
-            each_bias_33,
-            each_bias_34,
-            each_bias_35,
-            each_bias_36,
-            each_bias_37,
-            each_bias_38,
-            each_bias_42,
-            each_bias_43,
-            each_bias_44,
+            each_bias_25, each_bias_27, each_bias_29, each_bias_30, each_bias_31, each_bias_32, each_bias_33, each_bias_34,
+            each_bias_35, each_bias_36, each_bias_37, each_bias_38, each_bias_42, each_bias_43, each_bias_44,
         ];
     }
     // link_32: bias (18 additions, 36 multiplications)
@@ -409,141 +275,70 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
     let link_32_bias_10 = rows_of_15[29][0] * n(-0.2);
     let link_32_bias_11 = rows_of_15[29][1] * n(-0.2);
     let link_32_bias_12 = rows_of_15[29][2] * n(-0.2);
-    let link_32_bias_13 = (-q[285])
-        .mul_add(
-            link_32_bias_12,
-            q[282].mul_add(link_32_bias_11, q[279] * link_32_bias_10),
-        );
-    let link_32_bias_14 = (-q[286])
-        .mul_add(
-            link_32_bias_12,
-            q[283].mul_add(link_32_bias_11, q[280] * link_32_bias_10),
-        );
-    let link_32_bias_15 = (-q[287])
-        .mul_add(
-            link_32_bias_12,
-            q[284].mul_add(link_32_bias_11, q[281] * link_32_bias_10),
-        );
+    let link_32_bias_13 = (-q[285]).mul_add(link_32_bias_12, q[282].mul_add(link_32_bias_11, q[279] * link_32_bias_10));
+    let link_32_bias_14 = (-q[286]).mul_add(link_32_bias_12, q[283].mul_add(link_32_bias_11, q[280] * link_32_bias_10));
+    let link_32_bias_15 = (-q[287]).mul_add(link_32_bias_12, q[284].mul_add(link_32_bias_11, q[281] * link_32_bias_10));
     // link_32: articulated inertia (8 additions, 8 multiplications)
     let link_32_articulated_inertia = (-link_32_bias_2)
-        .mul_add(
-            n(-0.00041000000000000005),
-            link_32_bias_5.mul_add(n(-0.005200000000000001), -tau[93]),
-        );
+        .mul_add(n(-0.00041000000000000005), link_32_bias_5.mul_add(n(-0.005200000000000001), -tau[93]));
     let link_32_articulated_inertia_2 = (link_32_bias - link_32_bias_6)
-        .mul_add(
-            n(-0.00041000000000000005),
-            link_32_bias_3.mul_add(n(0.005260000000000001), -tau[94]),
-        );
-    let link_32_articulated_inertia_3 = (-link_32_articulated_inertia)
-        .mul_add(
-            n(0.07454545454545455),
-            link_32_bias_5
-                .mul_add(
-                    n(-0.00041000000000000005),
-                    link_32_bias_2.mul_add(n(-0.00006000000000000002), -tau[95]),
-                ),
-        );
-    let link_32_articulated_inertia_4 = link_32_articulated_inertia
-        * n(181.8181818181818);
-    let link_32_articulated_inertia_5 = link_32_articulated_inertia_2
-        * n(183.8235294117647);
-    let link_32_articulated_inertia_6 = link_32_articulated_inertia_3
-        * n(4774.720027780189);
-    let link_32_articulated_inertia_7 = (-link_32_articulated_inertia_3)
-        .mul_add(
-            n(4.8615331191943705),
-            (-link_32_articulated_inertia)
-                .mul_add(
-                    n(7.272727272727274),
-                    link_32_bias_5
-                        .mul_add(n(-0.04000000000000001), link_32_bias_2 * n(0.004)),
-                ),
-        );
+        .mul_add(n(-0.00041000000000000005), link_32_bias_3.mul_add(n(0.005260000000000001), -tau[94]));
+    let link_32_articulated_inertia_3 = (-link_32_articulated_inertia).mul_add(
+        n(0.07454545454545455),
+        link_32_bias_5.mul_add(n(-0.00041000000000000005), link_32_bias_2.mul_add(n(-0.00006000000000000002), -tau[95])),
+    );
+    let link_32_articulated_inertia_4 = link_32_articulated_inertia * n(181.8181818181818);
+    let link_32_articulated_inertia_5 = link_32_articulated_inertia_2 * n(183.8235294117647);
+    let link_32_articulated_inertia_6 = link_32_articulated_inertia_3 * n(4774.720027780189);
+    let link_32_articulated_inertia_7 = (-link_32_articulated_inertia_3).mul_add(
+        n(4.8615331191943705),
+        (-link_32_articulated_inertia)
+            .mul_add(n(7.272727272727274), link_32_bias_5.mul_add(n(-0.04000000000000001), link_32_bias_2 * n(0.004))),
+    );
     // link_32: seen by parent (37 additions, 67 multiplications)
-    let link_32_seen_by_parent = (-link_32_bias_15)
-        .mul_add(
-            n(-0.029411764705882356),
-            (-link_32_bias_13)
-                .mul_add(
-                    n(-0.29411764705882365),
-                    (-link_32_bias_3)
-                        .mul_add(
-                            n(-0.04000000000000001),
-                            link_32_articulated_inertia_2
-                                .mul_add(
-                                    n(-7.35294117647059),
-                                    (link_32_bias_4 + link_32_bias_6) * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_32_seen_by_parent_2 = link_32_bias_14
-        .mul_add(n(-0.29585901553954347), link_32_articulated_inertia_7);
-    let link_32_seen_by_parent_3 = (-link_32_articulated_inertia_2)
-        .mul_add(
-            n(-0.7352941176470588),
-            (-(link_32_bias + link_32_bias_4))
-                .mul_add(
-                    n(-0.04000000000000001),
-                    link_32_bias_15
-                        .mul_add(
-                            n(-0.0029411764705882353),
-                            link_32_bias_13
-                                .mul_add(
-                                    n(-0.029411764705882356),
-                                    link_32_bias_3 * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_32_seen_by_parent_4 = q[281]
-        .mul_add(n(-0.029411764705882356), q[279] * n(-0.29411764705882365));
-    let link_32_seen_by_parent_5 = q[284]
-        .mul_add(n(-0.029411764705882356), q[282] * n(-0.29411764705882365));
+    let link_32_seen_by_parent = (-link_32_bias_15).mul_add(
+        n(-0.029411764705882356),
+        (-link_32_bias_13).mul_add(
+            n(-0.29411764705882365),
+            (-link_32_bias_3).mul_add(
+                n(-0.04000000000000001),
+                link_32_articulated_inertia_2.mul_add(n(-7.35294117647059), (link_32_bias_4 + link_32_bias_6) * n(0.004)),
+            ),
+        ),
+    );
+    let link_32_seen_by_parent_2 = link_32_bias_14.mul_add(n(-0.29585901553954347), link_32_articulated_inertia_7);
+    let link_32_seen_by_parent_3 = (-link_32_articulated_inertia_2).mul_add(
+        n(-0.7352941176470588),
+        (-(link_32_bias + link_32_bias_4)).mul_add(
+            n(-0.04000000000000001),
+            link_32_bias_15.mul_add(
+                n(-0.0029411764705882353),
+                link_32_bias_13.mul_add(n(-0.029411764705882356), link_32_bias_3 * n(0.004)),
+            ),
+        ),
+    );
+    let link_32_seen_by_parent_4 = q[281].mul_add(n(-0.029411764705882356), q[279] * n(-0.29411764705882365));
+    let link_32_seen_by_parent_5 = q[284].mul_add(n(-0.029411764705882356), q[282] * n(-0.29411764705882365));
     let link_32_seen_by_parent_6 = q[280] * n(-0.29585901553954347);
     let link_32_seen_by_parent_7 = q[283] * n(-0.29585901553954347);
-    let link_32_seen_by_parent_8 = q[281]
-        .mul_add(n(-0.0029411764705882353), q[279] * n(-0.029411764705882356));
-    let link_32_seen_by_parent_9 = q[284]
-        .mul_add(n(-0.0029411764705882353), q[282] * n(-0.029411764705882356));
+    let link_32_seen_by_parent_8 = q[281].mul_add(n(-0.0029411764705882353), q[279] * n(-0.029411764705882356));
+    let link_32_seen_by_parent_9 = q[284].mul_add(n(-0.0029411764705882353), q[282] * n(-0.029411764705882356));
     let link_32_seen_by_parent_10 = q[281]
-        .mul_add(
-            link_32_seen_by_parent_8,
-            q[280].mul_add(link_32_seen_by_parent_6, q[279] * link_32_seen_by_parent_4),
-        );
+        .mul_add(link_32_seen_by_parent_8, q[280].mul_add(link_32_seen_by_parent_6, q[279] * link_32_seen_by_parent_4));
     let link_32_seen_by_parent_11 = q[284]
-        .mul_add(
-            link_32_seen_by_parent_8,
-            q[283].mul_add(link_32_seen_by_parent_6, q[282] * link_32_seen_by_parent_4),
-        );
+        .mul_add(link_32_seen_by_parent_8, q[283].mul_add(link_32_seen_by_parent_6, q[282] * link_32_seen_by_parent_4));
     let link_32_seen_by_parent_12 = q[287]
-        .mul_add(
-            link_32_seen_by_parent_8,
-            q[286].mul_add(link_32_seen_by_parent_6, q[285] * link_32_seen_by_parent_4),
-        );
+        .mul_add(link_32_seen_by_parent_8, q[286].mul_add(link_32_seen_by_parent_6, q[285] * link_32_seen_by_parent_4));
     let link_32_seen_by_parent_13 = q[284]
-        .mul_add(
-            link_32_seen_by_parent_9,
-            q[283].mul_add(link_32_seen_by_parent_7, q[282] * link_32_seen_by_parent_5),
-        );
+        .mul_add(link_32_seen_by_parent_9, q[283].mul_add(link_32_seen_by_parent_7, q[282] * link_32_seen_by_parent_5));
     let link_32_seen_by_parent_14 = q[287]
-        .mul_add(
-            link_32_seen_by_parent_9,
-            q[286].mul_add(link_32_seen_by_parent_7, q[285] * link_32_seen_by_parent_5),
-        );
-    let link_32_seen_by_parent_15 = q[286]
-        .mul_add(
-            q[286] * n(-0.29585901553954347),
-            q[285]
-                * (q[287]
-                    .mul_add(n(-0.029411764705882356), q[285] * n(-0.29411764705882365))),
-        );
+        .mul_add(link_32_seen_by_parent_9, q[286].mul_add(link_32_seen_by_parent_7, q[285] * link_32_seen_by_parent_5));
+    let link_32_seen_by_parent_15 = q[286].mul_add(
+        q[286] * n(-0.29585901553954347),
+        q[285] * (q[287].mul_add(n(-0.029411764705882356), q[285] * n(-0.29411764705882365))),
+    );
     let link_32_seen_by_parent_16 = q[287]
-        .mul_add(
-            q[287].mul_add(n(-0.0029411764705882353), q[285] * n(-0.029411764705882356)),
-            link_32_seen_by_parent_15,
-        );
+        .mul_add(q[287].mul_add(n(-0.0029411764705882353), q[285] * n(-0.029411764705882356)), link_32_seen_by_parent_15);
     let link_32_seen_by_parent_17 = link_32_seen_by_parent_11 * n(0.2);
     let link_32_seen_by_parent_18 = link_32_seen_by_parent_10 * n(-0.2);
     let link_32_seen_by_parent_19 = link_32_seen_by_parent_13 * n(0.2);
@@ -553,393 +348,200 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
     let link_32_seen_by_parent_23 = link_32_seen_by_parent_13 * n(0.04000000000000001);
     let link_32_seen_by_parent_24 = link_32_seen_by_parent_11 * n(-0.04000000000000001);
     let link_32_seen_by_parent_25 = link_32_seen_by_parent_10 * n(0.04000000000000001);
-    let link_32_seen_by_parent_26 = q[287]
-        .mul_add(tau[95], q[286].mul_add(tau[94], q[285] * tau[93]));
+    let link_32_seen_by_parent_26 = q[287].mul_add(tau[95], q[286].mul_add(tau[94], q[285] * tau[93]));
     let link_32_seen_by_parent_27 = (-q[281])
-        .mul_add(
-            link_32_seen_by_parent_3,
-            (-q[280]).mul_add(link_32_seen_by_parent_2, q[279] * link_32_seen_by_parent),
-        );
+        .mul_add(link_32_seen_by_parent_3, (-q[280]).mul_add(link_32_seen_by_parent_2, q[279] * link_32_seen_by_parent));
     let link_32_seen_by_parent_28 = (-q[284])
-        .mul_add(
-            link_32_seen_by_parent_3,
-            (-q[283]).mul_add(link_32_seen_by_parent_2, q[282] * link_32_seen_by_parent),
-        );
+        .mul_add(link_32_seen_by_parent_3, (-q[283]).mul_add(link_32_seen_by_parent_2, q[282] * link_32_seen_by_parent));
     let link_32_seen_by_parent_29 = link_32_seen_by_parent_28
-        .mul_add(
-            n(-0.2),
-            q[281].mul_add(tau[95], q[280].mul_add(tau[94], q[279] * tau[93])),
-        );
+        .mul_add(n(-0.2), q[281].mul_add(tau[95], q[280].mul_add(tau[94], q[279] * tau[93])));
     let link_32_seen_by_parent_30 = (-link_32_seen_by_parent_27)
-        .mul_add(
-            n(-0.2),
-            q[284].mul_add(tau[95], q[283].mul_add(tau[94], q[282] * tau[93])),
-        );
+        .mul_add(n(-0.2), q[284].mul_add(tau[95], q[283].mul_add(tau[94], q[282] * tau[93])));
     let link_32_seen_by_parent_31 = -link_32_seen_by_parent_27;
     let link_32_seen_by_parent_32 = -link_32_seen_by_parent_28;
     let link_32_seen_by_parent_33 = (-q[285])
-        .mul_add(
-            link_32_seen_by_parent,
-            q[287].mul_add(link_32_seen_by_parent_3, q[286] * link_32_seen_by_parent_2),
-        );
+        .mul_add(link_32_seen_by_parent, q[287].mul_add(link_32_seen_by_parent_3, q[286] * link_32_seen_by_parent_2));
     // link_31: carried (11 additions)
     let link_31_carried = link_32_seen_by_parent_19 + n(0.12000000000000002);
     // link_31: articulated inertia (43 additions, 58 multiplications, 3 divisions)
-    let link_31_articulated_inertia = rows_of_15[29][3] + link_32_seen_by_parent_29
-        - tau[90];
-    let link_31_inverse_inertia = n(1.0)
-        / (link_32_seen_by_parent_23 + n(0.021500000000000005));
-    let link_31_articulated_inertia_2 = link_32_seen_by_parent_24
-        * link_31_inverse_inertia;
-    let link_31_articulated_inertia_3 = link_31_inverse_inertia
-        * n(0.00041000000000000005);
-    let link_31_articulated_inertia_4 = link_32_seen_by_parent_17
-        * link_31_inverse_inertia;
+    let link_31_articulated_inertia = rows_of_15[29][3] + link_32_seen_by_parent_29 - tau[90];
+    let link_31_inverse_inertia = n(1.0) / (link_32_seen_by_parent_23 + n(0.021500000000000005));
+    let link_31_articulated_inertia_2 = link_32_seen_by_parent_24 * link_31_inverse_inertia;
+    let link_31_articulated_inertia_3 = link_31_inverse_inertia * n(0.00041000000000000005);
+    let link_31_articulated_inertia_4 = link_32_seen_by_parent_17 * link_31_inverse_inertia;
     let link_31_articulated_inertia_5 = link_31_carried * link_31_inverse_inertia;
-    let link_31_articulated_inertia_6 = link_32_seen_by_parent_21
-        * link_31_inverse_inertia;
+    let link_31_articulated_inertia_6 = link_32_seen_by_parent_21 * link_31_inverse_inertia;
     let link_31_articulated_inertia_7 = (-link_31_articulated_inertia)
-        .mul_add(
-            link_31_articulated_inertia_2,
-            rows_of_15[29][4] + link_32_seen_by_parent_30 - tau[91],
-        );
-    let link_31_articulated_inertia_8 = link_31_articulated_inertia_2
-        * n(0.00041000000000000005);
+        .mul_add(link_31_articulated_inertia_2, rows_of_15[29][4] + link_32_seen_by_parent_30 - tau[91]);
+    let link_31_articulated_inertia_8 = link_31_articulated_inertia_2 * n(0.00041000000000000005);
     let link_31_articulated_inertia_9 = (-link_32_seen_by_parent_17)
-        .mul_add(
-            link_31_articulated_inertia_2,
-            link_32_seen_by_parent_18 + n(-0.12000000000000002),
-        );
-    let link_31_articulated_inertia_10 = (-link_31_carried)
-        .mul_add(link_31_articulated_inertia_2, link_32_seen_by_parent_20);
+        .mul_add(link_31_articulated_inertia_2, link_32_seen_by_parent_18 + n(-0.12000000000000002));
+    let link_31_articulated_inertia_10 = (-link_31_carried).mul_add(link_31_articulated_inertia_2, link_32_seen_by_parent_20);
     let link_31_articulated_inertia_11 = (-link_32_seen_by_parent_21)
         .mul_add(link_31_articulated_inertia_2, link_32_seen_by_parent_22 + n(-0.004));
-    let link_31_articulated_inertia_12 = link_31_articulated_inertia
-        * link_31_inverse_inertia;
+    let link_31_articulated_inertia_12 = link_31_articulated_inertia * link_31_inverse_inertia;
     let link_31_inverse_inertia_2 = n(1.0)
         / ((-link_32_seen_by_parent_24)
-            .mul_add(
-                link_31_articulated_inertia_2,
-                link_32_seen_by_parent_25 + n(0.021440000000000004),
-            ));
-    let link_31_articulated_inertia_13 = link_31_articulated_inertia_8
-        * link_31_inverse_inertia_2;
-    let link_31_articulated_inertia_14 = link_31_articulated_inertia_9
-        * link_31_inverse_inertia_2;
-    let link_31_articulated_inertia_15 = link_31_articulated_inertia_10
-        * link_31_inverse_inertia_2;
-    let link_31_articulated_inertia_16 = link_31_articulated_inertia_11
-        * link_31_inverse_inertia_2;
+            .mul_add(link_31_articulated_inertia_2, link_32_seen_by_parent_25 + n(0.021440000000000004)));
+    let link_31_articulated_inertia_13 = link_31_articulated_inertia_8 * link_31_inverse_inertia_2;
+    let link_31_articulated_inertia_14 = link_31_articulated_inertia_9 * link_31_inverse_inertia_2;
+    let link_31_articulated_inertia_15 = link_31_articulated_inertia_10 * link_31_inverse_inertia_2;
+    let link_31_articulated_inertia_16 = link_31_articulated_inertia_11 * link_31_inverse_inertia_2;
     let link_31_articulated_inertia_17 = (-link_31_articulated_inertia_9)
-        .mul_add(
-            link_31_articulated_inertia_13,
-            link_32_seen_by_parent_17 * link_31_articulated_inertia_3,
-        );
+        .mul_add(link_31_articulated_inertia_13, link_32_seen_by_parent_17 * link_31_articulated_inertia_3);
     let link_31_articulated_inertia_18 = (-link_31_articulated_inertia_10)
-        .mul_add(
-            link_31_articulated_inertia_13,
-            link_31_carried.mul_add(link_31_articulated_inertia_3, -n(0.004)),
-        );
+        .mul_add(link_31_articulated_inertia_13, link_31_carried.mul_add(link_31_articulated_inertia_3, -n(0.004)));
     let link_31_articulated_inertia_19 = (-link_31_articulated_inertia_11)
-        .mul_add(
-            link_31_articulated_inertia_13,
-            link_32_seen_by_parent_21 * link_31_articulated_inertia_3,
-        );
-    let link_31_articulated_inertia_20 = link_31_articulated_inertia_7
-        * link_31_inverse_inertia_2;
-    let link_31_inverse_inertia_3 = n(1.0)
-        / (link_31_articulated_inertia_8
-            .mul_add(
-                link_31_articulated_inertia_13,
-                link_31_inverse_inertia
-                    .mul_add(n(0.00000016810000000000003), -n(0.00024)),
-            ));
-    let link_31_articulated_inertia_21 = link_31_articulated_inertia_17
-        * link_31_inverse_inertia_3;
-    let link_31_articulated_inertia_22 = link_31_articulated_inertia_18
-        * link_31_inverse_inertia_3;
-    let link_31_articulated_inertia_23 = link_31_articulated_inertia_19
-        * link_31_inverse_inertia_3;
-    let link_31_articulated_inertia_24 = (-link_31_articulated_inertia_9)
-        .mul_add(
-            link_31_articulated_inertia_14,
-            (-link_32_seen_by_parent_17)
-                .mul_add(
-                    link_31_articulated_inertia_4,
-                    link_31_articulated_inertia_17
-                        .mul_add(
-                            link_31_articulated_inertia_21,
-                            link_32_seen_by_parent_10,
-                        ),
-                ),
-        );
-    let link_31_articulated_inertia_25 = (-link_31_articulated_inertia_9)
-        .mul_add(
-            link_31_articulated_inertia_15,
-            (-link_32_seen_by_parent_17)
-                .mul_add(
-                    link_31_articulated_inertia_5,
-                    link_31_articulated_inertia_17
-                        .mul_add(
-                            link_31_articulated_inertia_22,
-                            link_32_seen_by_parent_11,
-                        ),
-                ),
-        );
-    let link_31_articulated_inertia_26 = (-link_31_articulated_inertia_9)
-        .mul_add(
-            link_31_articulated_inertia_16,
-            (-link_32_seen_by_parent_17)
-                .mul_add(
-                    link_31_articulated_inertia_6,
-                    link_31_articulated_inertia_17
-                        .mul_add(
-                            link_31_articulated_inertia_23,
-                            link_32_seen_by_parent_12,
-                        ),
-                ),
-        );
-    let link_31_articulated_inertia_27 = (-link_31_articulated_inertia_10)
-        .mul_add(
-            link_31_articulated_inertia_15,
-            (-link_31_carried)
-                .mul_add(
-                    link_31_articulated_inertia_5,
-                    link_31_articulated_inertia_18
-                        .mul_add(
-                            link_31_articulated_inertia_22,
-                            link_32_seen_by_parent_13,
-                        ),
-                ),
-        );
-    let link_31_articulated_inertia_28 = (-link_31_articulated_inertia_10)
-        .mul_add(
-            link_31_articulated_inertia_16,
-            (-link_31_carried)
-                .mul_add(
-                    link_31_articulated_inertia_6,
-                    link_31_articulated_inertia_18
-                        .mul_add(
-                            link_31_articulated_inertia_23,
-                            link_32_seen_by_parent_14,
-                        ),
-                ),
-        );
-    let link_31_articulated_inertia_29 = (-link_31_articulated_inertia_11)
-        .mul_add(
-            link_31_articulated_inertia_16,
-            (-link_32_seen_by_parent_21)
-                .mul_add(
-                    link_31_articulated_inertia_6,
-                    link_31_articulated_inertia_19
-                        .mul_add(
-                            link_31_articulated_inertia_23,
-                            link_32_seen_by_parent_16,
-                        ),
-                ),
-        );
-    let link_31_articulated_inertia_30 = ((-link_31_articulated_inertia)
-        .mul_add(
-            link_31_articulated_inertia_3,
-            link_31_articulated_inertia_7
-                .mul_add(
-                    link_31_articulated_inertia_13,
-                    rows_of_15[29][5] + link_32_seen_by_parent_26 - tau[92],
-                ),
-        )) * link_31_inverse_inertia_3;
-    let link_31_articulated_inertia_31 = link_31_articulated_inertia_17
-        .mul_add(
-            link_31_articulated_inertia_30,
-            link_31_articulated_inertia_9
-                .mul_add(
-                    link_31_articulated_inertia_20,
-                    link_32_seen_by_parent_17
-                        .mul_add(
-                            link_31_articulated_inertia_12,
-                            rows_of_15[29][6] - link_32_seen_by_parent_31,
-                        ),
-                ),
-        );
-    let link_31_articulated_inertia_32 = (-link_31_articulated_inertia_18)
-        .mul_add(
-            link_31_articulated_inertia_30,
-            (-link_31_articulated_inertia_10)
-                .mul_add(
-                    link_31_articulated_inertia_20,
-                    (-link_31_carried)
-                        .mul_add(
-                            link_31_articulated_inertia_12,
-                            rows_of_15[29][7] + link_32_seen_by_parent_32,
-                        ),
-                ),
-        );
-    let link_31_articulated_inertia_33 = (-link_31_articulated_inertia_19)
-        .mul_add(
-            link_31_articulated_inertia_30,
-            (-link_31_articulated_inertia_11)
-                .mul_add(
-                    link_31_articulated_inertia_20,
-                    (-link_32_seen_by_parent_21)
-                        .mul_add(
-                            link_31_articulated_inertia_12,
-                            rows_of_15[29][8] + link_32_seen_by_parent_33,
-                        ),
-                ),
-        );
+        .mul_add(link_31_articulated_inertia_13, link_32_seen_by_parent_21 * link_31_articulated_inertia_3);
+    let link_31_articulated_inertia_20 = link_31_articulated_inertia_7 * link_31_inverse_inertia_2;
+    let link_31_inverse_inertia_3 = n(1.0) / (link_31_articulated_inertia_8.mul_add(
+        link_31_articulated_inertia_13,
+        link_31_inverse_inertia.mul_add(n(0.00000016810000000000003), -n(0.00024)),
+    ));
+    let link_31_articulated_inertia_21 = link_31_articulated_inertia_17 * link_31_inverse_inertia_3;
+    let link_31_articulated_inertia_22 = link_31_articulated_inertia_18 * link_31_inverse_inertia_3;
+    let link_31_articulated_inertia_23 = link_31_articulated_inertia_19 * link_31_inverse_inertia_3;
+    let link_31_articulated_inertia_24 = (-link_31_articulated_inertia_9).mul_add(
+        link_31_articulated_inertia_14,
+        (-link_32_seen_by_parent_17).mul_add(
+            link_31_articulated_inertia_4,
+            link_31_articulated_inertia_17.mul_add(link_31_articulated_inertia_21, link_32_seen_by_parent_10),
+        ),
+    );
+    let link_31_articulated_inertia_25 = (-link_31_articulated_inertia_9).mul_add(
+        link_31_articulated_inertia_15,
+        (-link_32_seen_by_parent_17).mul_add(
+            link_31_articulated_inertia_5,
+            link_31_articulated_inertia_17.mul_add(link_31_articulated_inertia_22, link_32_seen_by_parent_11),
+        ),
+    );
+    let link_31_articulated_inertia_26 = (-link_31_articulated_inertia_9).mul_add(
+        link_31_articulated_inertia_16,
+        (-link_32_seen_by_parent_17).mul_add(
+            link_31_articulated_inertia_6,
+            link_31_articulated_inertia_17.mul_add(link_31_articulated_inertia_23, link_32_seen_by_parent_12),
+        ),
+    );
+    let link_31_articulated_inertia_27 = (-link_31_articulated_inertia_10).mul_add(
+        link_31_articulated_inertia_15,
+        (-link_31_carried).mul_add(
+            link_31_articulated_inertia_5,
+            link_31_articulated_inertia_18.mul_add(link_31_articulated_inertia_22, link_32_seen_by_parent_13),
+        ),
+    );
+    let link_31_articulated_inertia_28 = (-link_31_articulated_inertia_10).mul_add(
+        link_31_articulated_inertia_16,
+        (-link_31_carried).mul_add(
+            link_31_articulated_inertia_6,
+            link_31_articulated_inertia_18.mul_add(link_31_articulated_inertia_23, link_32_seen_by_parent_14),
+        ),
+    );
+    let link_31_articulated_inertia_29 = (-link_31_articulated_inertia_11).mul_add(
+        link_31_articulated_inertia_16,
+        (-link_32_seen_by_parent_21).mul_add(
+            link_31_articulated_inertia_6,
+            link_31_articulated_inertia_19.mul_add(link_31_articulated_inertia_23, link_32_seen_by_parent_16),
+        ),
+    );
+    let link_31_articulated_inertia_30 = ((-link_31_articulated_inertia).mul_add(
+        link_31_articulated_inertia_3,
+        link_31_articulated_inertia_7
+            .mul_add(link_31_articulated_inertia_13, rows_of_15[29][5] + link_32_seen_by_parent_26 - tau[92]),
+    )) * link_31_inverse_inertia_3;
+    let link_31_articulated_inertia_31 = link_31_articulated_inertia_17.mul_add(
+        link_31_articulated_inertia_30,
+        link_31_articulated_inertia_9.mul_add(
+            link_31_articulated_inertia_20,
+            link_32_seen_by_parent_17.mul_add(link_31_articulated_inertia_12, rows_of_15[29][6] - link_32_seen_by_parent_31),
+        ),
+    );
+    let link_31_articulated_inertia_32 = (-link_31_articulated_inertia_18).mul_add(
+        link_31_articulated_inertia_30,
+        (-link_31_articulated_inertia_10).mul_add(
+            link_31_articulated_inertia_20,
+            (-link_31_carried).mul_add(link_31_articulated_inertia_12, rows_of_15[29][7] + link_32_seen_by_parent_32),
+        ),
+    );
+    let link_31_articulated_inertia_33 = (-link_31_articulated_inertia_19).mul_add(
+        link_31_articulated_inertia_30,
+        (-link_31_articulated_inertia_11).mul_add(
+            link_31_articulated_inertia_20,
+            (-link_32_seen_by_parent_21).mul_add(link_31_articulated_inertia_12, rows_of_15[29][8] + link_32_seen_by_parent_33),
+        ),
+    );
     // link_31: seen by parent (53 additions, 83 multiplications)
-    let link_31_seen_by_parent = (-rows_of_15[29][14])
-        .mul_add(
-            link_31_articulated_inertia_26,
-            (-rows_of_15[29][13])
-                .mul_add(
-                    link_31_articulated_inertia_25,
-                    (-rows_of_15[29][12])
-                        .mul_add(
-                            link_31_articulated_inertia_24,
-                            link_31_articulated_inertia_31,
-                        ),
-                ),
-        );
-    let link_31_seen_by_parent_2 = rows_of_15[29][14]
-        .mul_add(
+    let link_31_seen_by_parent = (-rows_of_15[29][14]).mul_add(
+        link_31_articulated_inertia_26,
+        (-rows_of_15[29][13]).mul_add(
+            link_31_articulated_inertia_25,
+            (-rows_of_15[29][12]).mul_add(link_31_articulated_inertia_24, link_31_articulated_inertia_31),
+        ),
+    );
+    let link_31_seen_by_parent_2 = rows_of_15[29][14].mul_add(
+        link_31_articulated_inertia_28,
+        rows_of_15[29][13].mul_add(
+            link_31_articulated_inertia_27,
+            rows_of_15[29][12].mul_add(link_31_articulated_inertia_25, link_31_articulated_inertia_32),
+        ),
+    );
+    let link_31_seen_by_parent_3 = rows_of_15[29][14].mul_add(
+        link_31_articulated_inertia_29,
+        rows_of_15[29][13].mul_add(
             link_31_articulated_inertia_28,
-            rows_of_15[29][13]
-                .mul_add(
-                    link_31_articulated_inertia_27,
-                    rows_of_15[29][12]
-                        .mul_add(
-                            link_31_articulated_inertia_25,
-                            link_31_articulated_inertia_32,
-                        ),
-                ),
-        );
-    let link_31_seen_by_parent_3 = rows_of_15[29][14]
-        .mul_add(
-            link_31_articulated_inertia_29,
-            rows_of_15[29][13]
-                .mul_add(
-                    link_31_articulated_inertia_28,
-                    rows_of_15[29][12]
-                        .mul_add(
-                            link_31_articulated_inertia_26,
-                            link_31_articulated_inertia_33,
-                        ),
-                ),
-        );
-    let link_31_seen_by_parent_4 = q[272]
-        .mul_add(
-            link_31_articulated_inertia_26,
-            q[271]
-                .mul_add(
-                    link_31_articulated_inertia_25,
-                    q[270] * link_31_articulated_inertia_24,
-                ),
-        );
-    let link_31_seen_by_parent_5 = q[275]
-        .mul_add(
-            link_31_articulated_inertia_26,
-            q[274]
-                .mul_add(
-                    link_31_articulated_inertia_25,
-                    q[273] * link_31_articulated_inertia_24,
-                ),
-        );
-    let link_31_seen_by_parent_6 = q[272]
-        .mul_add(
-            link_31_articulated_inertia_28,
-            q[271]
-                .mul_add(
-                    link_31_articulated_inertia_27,
-                    q[270] * link_31_articulated_inertia_25,
-                ),
-        );
-    let link_31_seen_by_parent_7 = q[275]
-        .mul_add(
-            link_31_articulated_inertia_28,
-            q[274]
-                .mul_add(
-                    link_31_articulated_inertia_27,
-                    q[273] * link_31_articulated_inertia_25,
-                ),
-        );
-    let link_31_seen_by_parent_8 = q[272]
-        .mul_add(
-            link_31_articulated_inertia_29,
-            q[271]
-                .mul_add(
-                    link_31_articulated_inertia_28,
-                    q[270] * link_31_articulated_inertia_26,
-                ),
-        );
-    let link_31_seen_by_parent_9 = q[275]
-        .mul_add(
-            link_31_articulated_inertia_29,
-            q[274]
-                .mul_add(
-                    link_31_articulated_inertia_28,
-                    q[273] * link_31_articulated_inertia_26,
-                ),
-        );
+            rows_of_15[29][12].mul_add(link_31_articulated_inertia_26, link_31_articulated_inertia_33),
+        ),
+    );
+    let link_31_seen_by_parent_4 = q[272].mul_add(
+        link_31_articulated_inertia_26,
+        q[271].mul_add(link_31_articulated_inertia_25, q[270] * link_31_articulated_inertia_24),
+    );
+    let link_31_seen_by_parent_5 = q[275].mul_add(
+        link_31_articulated_inertia_26,
+        q[274].mul_add(link_31_articulated_inertia_25, q[273] * link_31_articulated_inertia_24),
+    );
+    let link_31_seen_by_parent_6 = q[272].mul_add(
+        link_31_articulated_inertia_28,
+        q[271].mul_add(link_31_articulated_inertia_27, q[270] * link_31_articulated_inertia_25),
+    );
+    let link_31_seen_by_parent_7 = q[275].mul_add(
+        link_31_articulated_inertia_28,
+        q[274].mul_add(link_31_articulated_inertia_27, q[273] * link_31_articulated_inertia_25),
+    );
+    let link_31_seen_by_parent_8 = q[272].mul_add(
+        link_31_articulated_inertia_29,
+        q[271].mul_add(link_31_articulated_inertia_28, q[270] * link_31_articulated_inertia_26),
+    );
+    let link_31_seen_by_parent_9 = q[275].mul_add(
+        link_31_articulated_inertia_29,
+        q[274].mul_add(link_31_articulated_inertia_28, q[273] * link_31_articulated_inertia_26),
+    );
     let link_31_seen_by_parent_10 = q[272]
-        .mul_add(
-            link_31_seen_by_parent_8,
-            q[271].mul_add(link_31_seen_by_parent_6, q[270] * link_31_seen_by_parent_4),
-        );
+        .mul_add(link_31_seen_by_parent_8, q[271].mul_add(link_31_seen_by_parent_6, q[270] * link_31_seen_by_parent_4));
     let link_31_seen_by_parent_11 = q[275]
-        .mul_add(
-            link_31_seen_by_parent_8,
-            q[274].mul_add(link_31_seen_by_parent_6, q[273] * link_31_seen_by_parent_4),
-        );
+        .mul_add(link_31_seen_by_parent_8, q[274].mul_add(link_31_seen_by_parent_6, q[273] * link_31_seen_by_parent_4));
     let link_31_seen_by_parent_12 = q[278]
-        .mul_add(
-            link_31_seen_by_parent_8,
-            q[277].mul_add(link_31_seen_by_parent_6, q[276] * link_31_seen_by_parent_4),
-        );
+        .mul_add(link_31_seen_by_parent_8, q[277].mul_add(link_31_seen_by_parent_6, q[276] * link_31_seen_by_parent_4));
     let link_31_seen_by_parent_13 = q[275]
-        .mul_add(
-            link_31_seen_by_parent_9,
-            q[274].mul_add(link_31_seen_by_parent_7, q[273] * link_31_seen_by_parent_5),
-        );
+        .mul_add(link_31_seen_by_parent_9, q[274].mul_add(link_31_seen_by_parent_7, q[273] * link_31_seen_by_parent_5));
     let link_31_seen_by_parent_14 = q[278]
-        .mul_add(
-            link_31_seen_by_parent_9,
-            q[277].mul_add(link_31_seen_by_parent_7, q[276] * link_31_seen_by_parent_5),
-        );
-    let link_31_seen_by_parent_15 = q[277]
-        .mul_add(
-            q[278]
-                .mul_add(
-                    link_31_articulated_inertia_28,
-                    q[277]
-                        .mul_add(
-                            link_31_articulated_inertia_27,
-                            q[276] * link_31_articulated_inertia_25,
-                        ),
-                ),
-            q[276]
-                * (q[278]
-                    .mul_add(
-                        link_31_articulated_inertia_26,
-                        q[277]
-                            .mul_add(
-                                link_31_articulated_inertia_25,
-                                q[276] * link_31_articulated_inertia_24,
-                            ),
-                    )),
-        );
-    let link_31_seen_by_parent_16 = q[278]
-        .mul_add(
-            q[278]
-                .mul_add(
-                    link_31_articulated_inertia_29,
-                    q[277]
-                        .mul_add(
-                            link_31_articulated_inertia_28,
-                            q[276] * link_31_articulated_inertia_26,
-                        ),
-                ),
-            link_31_seen_by_parent_15,
-        );
+        .mul_add(link_31_seen_by_parent_9, q[277].mul_add(link_31_seen_by_parent_7, q[276] * link_31_seen_by_parent_5));
+    let link_31_seen_by_parent_15 = q[277].mul_add(
+        q[278].mul_add(
+            link_31_articulated_inertia_28,
+            q[277].mul_add(link_31_articulated_inertia_27, q[276] * link_31_articulated_inertia_25),
+        ),
+        q[276] * (q[278].mul_add(
+            link_31_articulated_inertia_26,
+            q[277].mul_add(link_31_articulated_inertia_25, q[276] * link_31_articulated_inertia_24),
+        )),
+    );
+    let link_31_seen_by_parent_16 = q[278].mul_add(
+        q[278].mul_add(
+            link_31_articulated_inertia_29,
+            q[277].mul_add(link_31_articulated_inertia_28, q[276] * link_31_articulated_inertia_26),
+        ),
+        link_31_seen_by_parent_15,
+    );
     let link_31_seen_by_parent_17 = link_31_seen_by_parent_11 * n(0.2);
     let link_31_seen_by_parent_18 = link_31_seen_by_parent_10 * n(-0.2);
     let link_31_seen_by_parent_19 = link_31_seen_by_parent_13 * n(0.2);
@@ -949,100 +551,44 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
     let link_31_seen_by_parent_23 = link_31_seen_by_parent_13 * n(0.04000000000000001);
     let link_31_seen_by_parent_24 = link_31_seen_by_parent_11 * n(-0.04000000000000001);
     let link_31_seen_by_parent_25 = link_31_seen_by_parent_10 * n(0.04000000000000001);
-    let link_31_seen_by_parent_26 = q[278]
-        .mul_add(tau[92], q[277].mul_add(tau[91], q[276] * tau[90]));
+    let link_31_seen_by_parent_26 = q[278].mul_add(tau[92], q[277].mul_add(tau[91], q[276] * tau[90]));
     let link_31_seen_by_parent_27 = (-q[272])
-        .mul_add(
-            link_31_seen_by_parent_3,
-            (-q[271]).mul_add(link_31_seen_by_parent_2, q[270] * link_31_seen_by_parent),
-        );
+        .mul_add(link_31_seen_by_parent_3, (-q[271]).mul_add(link_31_seen_by_parent_2, q[270] * link_31_seen_by_parent));
     let link_31_seen_by_parent_28 = (-q[275])
-        .mul_add(
-            link_31_seen_by_parent_3,
-            (-q[274]).mul_add(link_31_seen_by_parent_2, q[273] * link_31_seen_by_parent),
-        );
+        .mul_add(link_31_seen_by_parent_3, (-q[274]).mul_add(link_31_seen_by_parent_2, q[273] * link_31_seen_by_parent));
     let link_31_seen_by_parent_29 = link_31_seen_by_parent_28
-        .mul_add(
-            n(-0.2),
-            q[272].mul_add(tau[92], q[271].mul_add(tau[91], q[270] * tau[90])),
-        );
+        .mul_add(n(-0.2), q[272].mul_add(tau[92], q[271].mul_add(tau[91], q[270] * tau[90])));
     let link_31_seen_by_parent_30 = (-link_31_seen_by_parent_27)
-        .mul_add(
-            n(-0.2),
-            q[275].mul_add(tau[92], q[274].mul_add(tau[91], q[273] * tau[90])),
-        );
+        .mul_add(n(-0.2), q[275].mul_add(tau[92], q[274].mul_add(tau[91], q[273] * tau[90])));
     let link_31_seen_by_parent_31 = -link_31_seen_by_parent_27;
     let link_31_seen_by_parent_32 = -link_31_seen_by_parent_28;
     let link_31_seen_by_parent_33 = (-q[276])
-        .mul_add(
-            link_31_seen_by_parent,
-            q[278].mul_add(link_31_seen_by_parent_3, q[277] * link_31_seen_by_parent_2),
-        );
+        .mul_add(link_31_seen_by_parent, q[278].mul_add(link_31_seen_by_parent_3, q[277] * link_31_seen_by_parent_2));
     rows_of_36[0] = [
-        link_31_articulated_inertia_2,
-        link_31_articulated_inertia_3,
-        link_31_articulated_inertia_4,
-        link_31_articulated_inertia_5,
-        link_31_articulated_inertia_6,
-        link_31_articulated_inertia_12,
-        link_31_articulated_inertia_13,
-        link_31_articulated_inertia_14,
-        link_31_articulated_inertia_15,
-        link_31_articulated_inertia_16,
-        link_31_articulated_inertia_20,
-        link_31_articulated_inertia_21,
-        link_31_articulated_inertia_22,
-        link_31_articulated_inertia_23,
-        link_31_articulated_inertia_30,
-        link_31_seen_by_parent_10,
-        link_31_seen_by_parent_11,
-        link_31_seen_by_parent_12,
-        link_31_seen_by_parent_13,
-        link_31_seen_by_parent_14,
-        link_31_seen_by_parent_16,
-        link_31_seen_by_parent_17,
-        link_31_seen_by_parent_18,
-        link_31_seen_by_parent_19,
-        link_31_seen_by_parent_20,
-        link_31_seen_by_parent_21,
-        link_31_seen_by_parent_22,
-        link_31_seen_by_parent_23,
-        link_31_seen_by_parent_24,
-        link_31_seen_by_parent_25,
-        link_31_seen_by_parent_26,
-        link_31_seen_by_parent_29,
-        link_31_seen_by_parent_30,
-        link_31_seen_by_parent_31,
-        link_31_seen_by_parent_32,
+        link_31_articulated_inertia_2, link_31_articulated_inertia_3, link_31_articulated_inertia_4,
+        link_31_articulated_inertia_5, link_31_articulated_inertia_6, link_31_articulated_inertia_12,
+        link_31_articulated_inertia_13, link_31_articulated_inertia_14, link_31_articulated_inertia_15,
+        link_31_articulated_inertia_16, link_31_articulated_inertia_20, link_31_articulated_inertia_21,
+        link_31_articulated_inertia_22, link_31_articulated_inertia_23, link_31_articulated_inertia_30,
+        link_31_seen_by_parent_10, link_31_seen_by_parent_11, link_31_seen_by_parent_12, link_31_seen_by_parent_13,
+        link_31_seen_by_parent_14, link_31_seen_by_parent_16, link_31_seen_by_parent_17, link_31_seen_by_parent_18,
+        link_31_seen_by_parent_19, link_31_seen_by_parent_20, link_31_seen_by_parent_21, link_31_seen_by_parent_22,
+        link_31_seen_by_parent_23, link_31_seen_by_parent_24, link_31_seen_by_parent_25, link_31_seen_by_parent_26,
+        link_31_seen_by_parent_29, link_31_seen_by_parent_30, link_31_seen_by_parent_31, link_31_seen_by_parent_32,
         link_31_seen_by_parent_33,
     ];
     // each of link_30, link_29, … link_21 (10 bodies):
     const LIKE_4_NUMBERS: [[f64; 4]; 10] = [
-        [
-            0.037500000000000006,
-            0.03744000000000001,
-            -0.20000000000000004,
-            0.20000000000000004,
-        ],
+        [0.037500000000000006, 0.03744000000000001, -0.20000000000000004, 0.20000000000000004],
         [0.05350000000000001, 0.053440000000000015, -0.28, 0.28],
-        [
-            0.06950000000000002,
-            0.06944000000000003,
-            -0.3600000000000001,
-            0.3600000000000001,
-        ],
+        [0.06950000000000002, 0.06944000000000003, -0.3600000000000001, 0.3600000000000001],
         [0.0855, 0.08544000000000002, -0.44000000000000006, 0.44000000000000006],
         [0.10150000000000002, 0.10144000000000003, -0.52, 0.52],
         [0.11750000000000001, 0.11744000000000002, -0.6, 0.6],
         [0.1335, 0.13344, -0.68, 0.68],
         [0.14950000000000002, 0.14944000000000002, -0.76, 0.76],
         [0.1655, 0.16544, -0.84, 0.84],
-        [
-            0.18150000000000002,
-            0.18144000000000002,
-            -0.9199999999999999,
-            0.9199999999999999,
-        ],
+        [0.18150000000000002, 0.18144000000000002, -0.9199999999999999, 0.9199999999999999],
     ];
     for i in 0..10 {
         let numbers = &LIKE_4_NUMBERS[i];
@@ -1054,337 +600,183 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
         let each_articulated_inertia = own_3[3] + child[31] - tau[87 - 3 * i];
         let each_inverse_inertia = n(1.0) / (child[27] + n(numbers[0]));
         let each_articulated_inertia_2 = child[28] * each_inverse_inertia;
-        let each_articulated_inertia_3 = each_inverse_inertia
-            * n(0.00041000000000000005);
+        let each_articulated_inertia_3 = each_inverse_inertia * n(0.00041000000000000005);
         let each_articulated_inertia_4 = child[21] * each_inverse_inertia;
         let each_articulated_inertia_5 = each_carried * each_inverse_inertia;
         let each_articulated_inertia_6 = child[25] * each_inverse_inertia;
         let each_articulated_inertia_7 = (-each_articulated_inertia)
             .mul_add(each_articulated_inertia_2, own_3[4] + child[32] - tau[88 - 3 * i]);
-        let each_articulated_inertia_8 = each_articulated_inertia_2
-            * n(0.00041000000000000005);
-        let each_articulated_inertia_9 = (-child[21])
-            .mul_add(each_articulated_inertia_2, child[22] + n(numbers[2]));
-        let each_articulated_inertia_10 = (-each_carried)
-            .mul_add(each_articulated_inertia_2, child[24]);
-        let each_articulated_inertia_11 = (-child[25])
-            .mul_add(each_articulated_inertia_2, child[26] + n(-0.004));
-        let each_articulated_inertia_12 = each_articulated_inertia
-            * each_inverse_inertia;
-        let each_inverse_inertia_2 = n(1.0)
-            / ((-child[28])
-                .mul_add(each_articulated_inertia_2, child[29] + n(numbers[1])));
-        let each_articulated_inertia_13 = each_articulated_inertia_8
-            * each_inverse_inertia_2;
-        let each_articulated_inertia_14 = each_articulated_inertia_9
-            * each_inverse_inertia_2;
-        let each_articulated_inertia_15 = each_articulated_inertia_10
-            * each_inverse_inertia_2;
-        let each_articulated_inertia_16 = each_articulated_inertia_11
-            * each_inverse_inertia_2;
+        let each_articulated_inertia_8 = each_articulated_inertia_2 * n(0.00041000000000000005);
+        let each_articulated_inertia_9 = (-child[21]).mul_add(each_articulated_inertia_2, child[22] + n(numbers[2]));
+        let each_articulated_inertia_10 = (-each_carried).mul_add(each_articulated_inertia_2, child[24]);
+        let each_articulated_inertia_11 = (-child[25]).mul_add(each_articulated_inertia_2, child[26] + n(-0.004));
+        let each_articulated_inertia_12 = each_articulated_inertia * each_inverse_inertia;
+        let each_inverse_inertia_2 = n(1.0) / ((-child[28]).mul_add(each_articulated_inertia_2, child[29] + n(numbers[1])));
+        let each_articulated_inertia_13 = each_articulated_inertia_8 * each_inverse_inertia_2;
+        let each_articulated_inertia_14 = each_articulated_inertia_9 * each_inverse_inertia_2;
+        let each_articulated_inertia_15 = each_articulated_inertia_10 * each_inverse_inertia_2;
+        let each_articulated_inertia_16 = each_articulated_inertia_11 * each_inverse_inertia_2;
         let each_articulated_inertia_17 = (-each_articulated_inertia_9)
-            .mul_add(
-                each_articulated_inertia_13,
-                child[21] * each_articulated_inertia_3,
-            );
+            .mul_add(each_articulated_inertia_13, child[21] * each_articulated_inertia_3);
         let each_articulated_inertia_18 = (-each_articulated_inertia_10)
-            .mul_add(
-                each_articulated_inertia_13,
-                each_carried.mul_add(each_articulated_inertia_3, -n(0.004)),
-            );
+            .mul_add(each_articulated_inertia_13, each_carried.mul_add(each_articulated_inertia_3, -n(0.004)));
         let each_articulated_inertia_19 = (-each_articulated_inertia_11)
-            .mul_add(
-                each_articulated_inertia_13,
-                child[25] * each_articulated_inertia_3,
-            );
-        let each_articulated_inertia_20 = each_articulated_inertia_7
-            * each_inverse_inertia_2;
+            .mul_add(each_articulated_inertia_13, child[25] * each_articulated_inertia_3);
+        let each_articulated_inertia_20 = each_articulated_inertia_7 * each_inverse_inertia_2;
         let each_inverse_inertia_3 = n(1.0)
             / (each_articulated_inertia_8
-                .mul_add(
-                    each_articulated_inertia_13,
-                    each_inverse_inertia
-                        .mul_add(n(0.00000016810000000000003), -n(0.00024)),
-                ));
-        let each_articulated_inertia_21 = each_articulated_inertia_17
-            * each_inverse_inertia_3;
-        let each_articulated_inertia_22 = each_articulated_inertia_18
-            * each_inverse_inertia_3;
-        let each_articulated_inertia_23 = each_articulated_inertia_19
-            * each_inverse_inertia_3;
-        let each_articulated_inertia_24 = (-each_articulated_inertia_9)
-            .mul_add(
-                each_articulated_inertia_14,
-                (-child[21])
-                    .mul_add(
-                        each_articulated_inertia_4,
-                        each_articulated_inertia_17
-                            .mul_add(each_articulated_inertia_21, child[15]),
-                    ),
-            );
-        let each_articulated_inertia_25 = (-each_articulated_inertia_9)
-            .mul_add(
-                each_articulated_inertia_15,
-                (-child[21])
-                    .mul_add(
-                        each_articulated_inertia_5,
-                        each_articulated_inertia_17
-                            .mul_add(each_articulated_inertia_22, child[16]),
-                    ),
-            );
-        let each_articulated_inertia_26 = (-each_articulated_inertia_9)
-            .mul_add(
-                each_articulated_inertia_16,
-                (-child[21])
-                    .mul_add(
-                        each_articulated_inertia_6,
-                        each_articulated_inertia_17
-                            .mul_add(each_articulated_inertia_23, child[17]),
-                    ),
-            );
-        let each_articulated_inertia_27 = (-each_articulated_inertia_10)
-            .mul_add(
-                each_articulated_inertia_15,
-                (-each_carried)
-                    .mul_add(
-                        each_articulated_inertia_5,
-                        each_articulated_inertia_18
-                            .mul_add(each_articulated_inertia_22, child[18]),
-                    ),
-            );
-        let each_articulated_inertia_28 = (-each_articulated_inertia_10)
-            .mul_add(
-                each_articulated_inertia_16,
-                (-each_carried)
-                    .mul_add(
-                        each_articulated_inertia_6,
-                        each_articulated_inertia_18
-                            .mul_add(each_articulated_inertia_23, child[19]),
-                    ),
-            );
-        let each_articulated_inertia_29 = (-each_articulated_inertia_11)
-            .mul_add(
-                each_articulated_inertia_16,
-                (-child[25])
-                    .mul_add(
-                        each_articulated_inertia_6,
-                        each_articulated_inertia_19
-                            .mul_add(each_articulated_inertia_23, child[20]),
-                    ),
-            );
-        let each_articulated_inertia_30 = ((-each_articulated_inertia)
-            .mul_add(
-                each_articulated_inertia_3,
-                each_articulated_inertia_7
-                    .mul_add(
-                        each_articulated_inertia_13,
-                        own_3[5] + child[30] - tau[89 - 3 * i],
-                    ),
-            )) * each_inverse_inertia_3;
-        let each_articulated_inertia_31 = each_articulated_inertia_17
-            .mul_add(
-                each_articulated_inertia_30,
-                each_articulated_inertia_9
-                    .mul_add(
-                        each_articulated_inertia_20,
-                        child[21]
-                            .mul_add(each_articulated_inertia_12, own_3[6] - child[33]),
-                    ),
-            );
-        let each_articulated_inertia_32 = (-each_articulated_inertia_18)
-            .mul_add(
-                each_articulated_inertia_30,
-                (-each_articulated_inertia_10)
-                    .mul_add(
-                        each_articulated_inertia_20,
-                        (-each_carried)
-                            .mul_add(each_articulated_inertia_12, own_3[7] + child[34]),
-                    ),
-            );
-        let each_articulated_inertia_33 = (-each_articulated_inertia_19)
-            .mul_add(
-                each_articulated_inertia_30,
-                (-each_articulated_inertia_11)
-                    .mul_add(
-                        each_articulated_inertia_20,
-                        (-child[25])
-                            .mul_add(each_articulated_inertia_12, own_3[8] + child[35]),
-                    ),
-            );
+                .mul_add(each_articulated_inertia_13, each_inverse_inertia.mul_add(n(0.00000016810000000000003), -n(0.00024))));
+        let each_articulated_inertia_21 = each_articulated_inertia_17 * each_inverse_inertia_3;
+        let each_articulated_inertia_22 = each_articulated_inertia_18 * each_inverse_inertia_3;
+        let each_articulated_inertia_23 = each_articulated_inertia_19 * each_inverse_inertia_3;
+        let each_articulated_inertia_24 = (-each_articulated_inertia_9).mul_add(
+            each_articulated_inertia_14,
+            (-child[21]).mul_add(
+                each_articulated_inertia_4,
+                each_articulated_inertia_17.mul_add(each_articulated_inertia_21, child[15]),
+            ),
+        );
+        let each_articulated_inertia_25 = (-each_articulated_inertia_9).mul_add(
+            each_articulated_inertia_15,
+            (-child[21]).mul_add(
+                each_articulated_inertia_5,
+                each_articulated_inertia_17.mul_add(each_articulated_inertia_22, child[16]),
+            ),
+        );
+        let each_articulated_inertia_26 = (-each_articulated_inertia_9).mul_add(
+            each_articulated_inertia_16,
+            (-child[21]).mul_add(
+                each_articulated_inertia_6,
+                each_articulated_inertia_17.mul_add(each_articulated_inertia_23, child[17]),
+            ),
+        );
+        let each_articulated_inertia_27 = (-each_articulated_inertia_10).mul_add(
+            each_articulated_inertia_15,
+            (-each_carried).mul_add(
+                each_articulated_inertia_5,
+                each_articulated_inertia_18.mul_add(each_articulated_inertia_22, child[18]),
+            ),
+        );
+        let each_articulated_inertia_28 = (-each_articulated_inertia_10).mul_add(
+            each_articulated_inertia_16,
+            (-each_carried).mul_add(
+                each_articulated_inertia_6,
+                each_articulated_inertia_18.mul_add(each_articulated_inertia_23, child[19]),
+            ),
+        );
+        let each_articulated_inertia_29 = (-each_articulated_inertia_11).mul_add(
+            each_articulated_inertia_16,
+            (-child[25]).mul_add(
+                each_articulated_inertia_6,
+                each_articulated_inertia_19.mul_add(each_articulated_inertia_23, child[20]),
+            ),
+        );
+        let each_articulated_inertia_30 = ((-each_articulated_inertia).mul_add(
+            each_articulated_inertia_3,
+            each_articulated_inertia_7.mul_add(each_articulated_inertia_13, own_3[5] + child[30] - tau[89 - 3 * i]),
+        )) * each_inverse_inertia_3;
+        let each_articulated_inertia_31 = each_articulated_inertia_17.mul_add(
+            each_articulated_inertia_30,
+            each_articulated_inertia_9
+                .mul_add(each_articulated_inertia_20, child[21].mul_add(each_articulated_inertia_12, own_3[6] - child[33])),
+        );
+        let each_articulated_inertia_32 = (-each_articulated_inertia_18).mul_add(
+            each_articulated_inertia_30,
+            (-each_articulated_inertia_10).mul_add(
+                each_articulated_inertia_20,
+                (-each_carried).mul_add(each_articulated_inertia_12, own_3[7] + child[34]),
+            ),
+        );
+        let each_articulated_inertia_33 = (-each_articulated_inertia_19).mul_add(
+            each_articulated_inertia_30,
+            (-each_articulated_inertia_11).mul_add(
+                each_articulated_inertia_20,
+                (-child[25]).mul_add(each_articulated_inertia_12, own_3[8] + child[35]),
+            ),
+        );
         // each: seen by parent (53 additions, 83 multiplications)
-        let each_seen_by_parent = (-own_3[14])
-            .mul_add(
-                each_articulated_inertia_26,
-                (-own_3[13])
-                    .mul_add(
-                        each_articulated_inertia_25,
-                        (-own_3[12])
-                            .mul_add(
-                                each_articulated_inertia_24,
-                                each_articulated_inertia_31,
-                            ),
-                    ),
-            );
-        let each_seen_by_parent_2 = own_3[14]
-            .mul_add(
+        let each_seen_by_parent = (-own_3[14]).mul_add(
+            each_articulated_inertia_26,
+            (-own_3[13]).mul_add(
+                each_articulated_inertia_25,
+                (-own_3[12]).mul_add(each_articulated_inertia_24, each_articulated_inertia_31),
+            ),
+        );
+        let each_seen_by_parent_2 = own_3[14].mul_add(
+            each_articulated_inertia_28,
+            own_3[13].mul_add(
+                each_articulated_inertia_27,
+                own_3[12].mul_add(each_articulated_inertia_25, each_articulated_inertia_32),
+            ),
+        );
+        let each_seen_by_parent_3 = own_3[14].mul_add(
+            each_articulated_inertia_29,
+            own_3[13].mul_add(
                 each_articulated_inertia_28,
-                own_3[13]
-                    .mul_add(
-                        each_articulated_inertia_27,
-                        own_3[12]
-                            .mul_add(
-                                each_articulated_inertia_25,
-                                each_articulated_inertia_32,
-                            ),
-                    ),
-            );
-        let each_seen_by_parent_3 = own_3[14]
-            .mul_add(
-                each_articulated_inertia_29,
-                own_3[13]
-                    .mul_add(
-                        each_articulated_inertia_28,
-                        own_3[12]
-                            .mul_add(
-                                each_articulated_inertia_26,
-                                each_articulated_inertia_33,
-                            ),
-                    ),
-            );
-        let each_seen_by_parent_4 = q[263 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_26,
-                q[262 - 9 * i]
-                    .mul_add(
-                        each_articulated_inertia_25,
-                        q[261 - 9 * i] * each_articulated_inertia_24,
-                    ),
-            );
-        let each_seen_by_parent_5 = q[266 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_26,
-                q[265 - 9 * i]
-                    .mul_add(
-                        each_articulated_inertia_25,
-                        q[264 - 9 * i] * each_articulated_inertia_24,
-                    ),
-            );
-        let each_seen_by_parent_6 = q[263 - 9 * i]
-            .mul_add(
+                own_3[12].mul_add(each_articulated_inertia_26, each_articulated_inertia_33),
+            ),
+        );
+        let each_seen_by_parent_4 = q[263 - 9 * i].mul_add(
+            each_articulated_inertia_26,
+            q[262 - 9 * i].mul_add(each_articulated_inertia_25, q[261 - 9 * i] * each_articulated_inertia_24),
+        );
+        let each_seen_by_parent_5 = q[266 - 9 * i].mul_add(
+            each_articulated_inertia_26,
+            q[265 - 9 * i].mul_add(each_articulated_inertia_25, q[264 - 9 * i] * each_articulated_inertia_24),
+        );
+        let each_seen_by_parent_6 = q[263 - 9 * i].mul_add(
+            each_articulated_inertia_28,
+            q[262 - 9 * i].mul_add(each_articulated_inertia_27, q[261 - 9 * i] * each_articulated_inertia_25),
+        );
+        let each_seen_by_parent_7 = q[266 - 9 * i].mul_add(
+            each_articulated_inertia_28,
+            q[265 - 9 * i].mul_add(each_articulated_inertia_27, q[264 - 9 * i] * each_articulated_inertia_25),
+        );
+        let each_seen_by_parent_8 = q[263 - 9 * i].mul_add(
+            each_articulated_inertia_29,
+            q[262 - 9 * i].mul_add(each_articulated_inertia_28, q[261 - 9 * i] * each_articulated_inertia_26),
+        );
+        let each_seen_by_parent_9 = q[266 - 9 * i].mul_add(
+            each_articulated_inertia_29,
+            q[265 - 9 * i].mul_add(each_articulated_inertia_28, q[264 - 9 * i] * each_articulated_inertia_26),
+        );
+        let each_seen_by_parent_10 = q[263 - 9 * i].mul_add(
+            each_seen_by_parent_8,
+            q[262 - 9 * i].mul_add(each_seen_by_parent_6, q[261 - 9 * i] * each_seen_by_parent_4),
+        );
+        let each_seen_by_parent_11 = q[266 - 9 * i].mul_add(
+            each_seen_by_parent_8,
+            q[265 - 9 * i].mul_add(each_seen_by_parent_6, q[264 - 9 * i] * each_seen_by_parent_4),
+        );
+        let each_seen_by_parent_12 = q[269 - 9 * i].mul_add(
+            each_seen_by_parent_8,
+            q[268 - 9 * i].mul_add(each_seen_by_parent_6, q[267 - 9 * i] * each_seen_by_parent_4),
+        );
+        let each_seen_by_parent_13 = q[266 - 9 * i].mul_add(
+            each_seen_by_parent_9,
+            q[265 - 9 * i].mul_add(each_seen_by_parent_7, q[264 - 9 * i] * each_seen_by_parent_5),
+        );
+        let each_seen_by_parent_14 = q[269 - 9 * i].mul_add(
+            each_seen_by_parent_9,
+            q[268 - 9 * i].mul_add(each_seen_by_parent_7, q[267 - 9 * i] * each_seen_by_parent_5),
+        );
+        let each_seen_by_parent_15 = q[268 - 9 * i].mul_add(
+            q[269 - 9 * i].mul_add(
                 each_articulated_inertia_28,
-                q[262 - 9 * i]
-                    .mul_add(
-                        each_articulated_inertia_27,
-                        q[261 - 9 * i] * each_articulated_inertia_25,
-                    ),
-            );
-        let each_seen_by_parent_7 = q[266 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_28,
-                q[265 - 9 * i]
-                    .mul_add(
-                        each_articulated_inertia_27,
-                        q[264 - 9 * i] * each_articulated_inertia_25,
-                    ),
-            );
-        let each_seen_by_parent_8 = q[263 - 9 * i]
-            .mul_add(
+                q[268 - 9 * i].mul_add(each_articulated_inertia_27, q[267 - 9 * i] * each_articulated_inertia_25),
+            ),
+            q[267 - 9 * i] * (q[269 - 9 * i].mul_add(
+                each_articulated_inertia_26,
+                q[268 - 9 * i].mul_add(each_articulated_inertia_25, q[267 - 9 * i] * each_articulated_inertia_24),
+            )),
+        );
+        let each_seen_by_parent_16 = q[269 - 9 * i].mul_add(
+            q[269 - 9 * i].mul_add(
                 each_articulated_inertia_29,
-                q[262 - 9 * i]
-                    .mul_add(
-                        each_articulated_inertia_28,
-                        q[261 - 9 * i] * each_articulated_inertia_26,
-                    ),
-            );
-        let each_seen_by_parent_9 = q[266 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_29,
-                q[265 - 9 * i]
-                    .mul_add(
-                        each_articulated_inertia_28,
-                        q[264 - 9 * i] * each_articulated_inertia_26,
-                    ),
-            );
-        let each_seen_by_parent_10 = q[263 - 9 * i]
-            .mul_add(
-                each_seen_by_parent_8,
-                q[262 - 9 * i]
-                    .mul_add(
-                        each_seen_by_parent_6,
-                        q[261 - 9 * i] * each_seen_by_parent_4,
-                    ),
-            );
-        let each_seen_by_parent_11 = q[266 - 9 * i]
-            .mul_add(
-                each_seen_by_parent_8,
-                q[265 - 9 * i]
-                    .mul_add(
-                        each_seen_by_parent_6,
-                        q[264 - 9 * i] * each_seen_by_parent_4,
-                    ),
-            );
-        let each_seen_by_parent_12 = q[269 - 9 * i]
-            .mul_add(
-                each_seen_by_parent_8,
-                q[268 - 9 * i]
-                    .mul_add(
-                        each_seen_by_parent_6,
-                        q[267 - 9 * i] * each_seen_by_parent_4,
-                    ),
-            );
-        let each_seen_by_parent_13 = q[266 - 9 * i]
-            .mul_add(
-                each_seen_by_parent_9,
-                q[265 - 9 * i]
-                    .mul_add(
-                        each_seen_by_parent_7,
-                        q[264 - 9 * i] * each_seen_by_parent_5,
-                    ),
-            );
-        let each_seen_by_parent_14 = q[269 - 9 * i]
-            .mul_add(
-                each_seen_by_parent_9,
-                q[268 - 9 * i]
-                    .mul_add(
-                        each_seen_by_parent_7,
-                        q[267 - 9 * i] * each_seen_by_parent_5,
-                    ),
-            );
-        let each_seen_by_parent_15 = q[268 - 9 * i]
-            .mul_add(
-                q[269 - 9 * i]
-                    .mul_add(
-                        each_articulated_inertia_28,
-                        q[268 - 9 * i]
-                            .mul_add(
-                                each_articulated_inertia_27,
-                                q[267 - 9 * i] * each_articulated_inertia_25,
-                            ),
-                    ),
-                q[267 - 9 * i]
-                    * (q[269 - 9 * i]
-                        .mul_add(
-                            each_articulated_inertia_26,
-                            q[268 - 9 * i]
-                                .mul_add(
-                                    each_articulated_inertia_25,
-                                    q[267 - 9 * i] * each_articulated_inertia_24,
-                                ),
-                        )),
-            );
-        let each_seen_by_parent_16 = q[269 - 9 * i]
-            .mul_add(
-                q[269 - 9 * i]
-                    .mul_add(
-                        each_articulated_inertia_29,
-                        q[268 - 9 * i]
-                            .mul_add(
-                                each_articulated_inertia_28,
-                                q[267 - 9 * i] * each_articulated_inertia_26,
-                            ),
-                    ),
-                each_seen_by_parent_15,
-            );
+                q[268 - 9 * i].mul_add(each_articulated_inertia_28, q[267 - 9 * i] * each_articulated_inertia_26),
+            ),
+            each_seen_by_parent_15,
+        );
         let each_seen_by_parent_17 = each_seen_by_parent_11 * n(0.2);
         let each_seen_by_parent_18 = each_seen_by_parent_10 * n(-0.2);
         let each_seen_by_parent_19 = each_seen_by_parent_13 * n(0.2);
@@ -1395,90 +787,39 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
         let each_seen_by_parent_24 = each_seen_by_parent_11 * n(-0.04000000000000001);
         let each_seen_by_parent_25 = each_seen_by_parent_10 * n(0.04000000000000001);
         let each_seen_by_parent_26 = q[269 - 9 * i]
-            .mul_add(
-                tau[89 - 3 * i],
-                q[268 - 9 * i].mul_add(tau[88 - 3 * i], q[267 - 9 * i] * tau[87 - 3 * i]),
-            );
-        let each_seen_by_parent_27 = (-q[263 - 9 * i])
-            .mul_add(
-                each_seen_by_parent_3,
-                (-q[262 - 9 * i])
-                    .mul_add(each_seen_by_parent_2, q[261 - 9 * i] * each_seen_by_parent),
-            );
-        let each_seen_by_parent_28 = (-q[266 - 9 * i])
-            .mul_add(
-                each_seen_by_parent_3,
-                (-q[265 - 9 * i])
-                    .mul_add(each_seen_by_parent_2, q[264 - 9 * i] * each_seen_by_parent),
-            );
-        let each_seen_by_parent_29 = each_seen_by_parent_28
-            .mul_add(
-                n(-0.2),
-                q[263 - 9 * i]
-                    .mul_add(
-                        tau[89 - 3 * i],
-                        q[262 - 9 * i]
-                            .mul_add(tau[88 - 3 * i], q[261 - 9 * i] * tau[87 - 3 * i]),
-                    ),
-            );
-        let each_seen_by_parent_30 = (-each_seen_by_parent_27)
-            .mul_add(
-                n(-0.2),
-                q[266 - 9 * i]
-                    .mul_add(
-                        tau[89 - 3 * i],
-                        q[265 - 9 * i]
-                            .mul_add(tau[88 - 3 * i], q[264 - 9 * i] * tau[87 - 3 * i]),
-                    ),
-            );
+            .mul_add(tau[89 - 3 * i], q[268 - 9 * i].mul_add(tau[88 - 3 * i], q[267 - 9 * i] * tau[87 - 3 * i]));
+        let each_seen_by_parent_27 = (-q[263 - 9 * i]).mul_add(
+            each_seen_by_parent_3,
+            (-q[262 - 9 * i]).mul_add(each_seen_by_parent_2, q[261 - 9 * i] * each_seen_by_parent),
+        );
+        let each_seen_by_parent_28 = (-q[266 - 9 * i]).mul_add(
+            each_seen_by_parent_3,
+            (-q[265 - 9 * i]).mul_add(each_seen_by_parent_2, q[264 - 9 * i] * each_seen_by_parent),
+        );
+        let each_seen_by_parent_29 = each_seen_by_parent_28.mul_add(
+            n(-0.2),
+            q[263 - 9 * i].mul_add(tau[89 - 3 * i], q[262 - 9 * i].mul_add(tau[88 - 3 * i], q[261 - 9 * i] * tau[87 - 3 * i])),
+        );
+        let each_seen_by_parent_30 = (-each_seen_by_parent_27).mul_add(
+            n(-0.2),
+            q[266 - 9 * i].mul_add(tau[89 - 3 * i], q[265 - 9 * i].mul_add(tau[88 - 3 * i], q[264 - 9 * i] * tau[87 - 3 * i])),
+        );
         let each_seen_by_parent_31 = -each_seen_by_parent_27;
         let each_seen_by_parent_32 = -each_seen_by_parent_28;
-        let each_seen_by_parent_33 = (-q[267 - 9 * i])
-            .mul_add(
-                each_seen_by_parent,
-                q[269 - 9 * i]
-                    .mul_add(
-                        each_seen_by_parent_3,
-                        q[268 - 9 * i] * each_seen_by_parent_2,
-                    ),
-            );
+        let each_seen_by_parent_33 = (-q[267 - 9 * i]).mul_add(
+            each_seen_by_parent,
+            q[269 - 9 * i].mul_add(each_seen_by_parent_3, q[268 - 9 * i] * each_seen_by_parent_2),
+        );
         rows_of_36[i + 1] = [
-            each_articulated_inertia_2,
-            each_articulated_inertia_3,
-            each_articulated_inertia_4,
-            each_articulated_inertia_5,
-            each_articulated_inertia_6,
-            each_articulated_inertia_12,
-            each_articulated_inertia_13,
-            each_articulated_inertia_14,
-            each_articulated_inertia_15,
-            each_articulated_inertia_16,
-            each_articulated_inertia_20,
-            each_articulated_inertia_21,
-            each_articulated_inertia_22,
-            each_articulated_inertia_23,
-            each_articulated_inertia_30,
-            each_seen_by_parent_10,
-            each_seen_by_parent_11,
-            each_seen_by_parent_12,
-            each_seen_by_parent_13,
-            each_seen_by_parent_14,
-            each_seen_by_parent_16,
-            each_seen_by_parent_17,
-            each_seen_by_parent_18,
-            each_seen_by_parent_19,
-            each_seen_by_parent_20,
-            each_seen_by_parent_21,
-            each_seen_by_parent_22,
-            each_seen_by_parent_23,
-            each_seen_by_parent_24,
-            each_seen_by_parent_25,
-            each_seen_by_parent_26,
-            each_seen_by_parent_29,
-            each_seen_by_parent_30,
-            each_seen_by_parent_31,
-            each_seen_by_parent_32,
-            each_seen_by_parent_33,
+            each_articulated_inertia_2, each_articulated_inertia_3, each_articulated_inertia_4, each_articulated_inertia_5,
+            each_articulated_inertia_6, each_articulated_inertia_12, each_articulated_inertia_13, each_articulated_inertia_14,
+            each_articulated_inertia_15, each_articulated_inertia_16, each_articulated_inertia_20, each_articulated_inertia_21,
+            each_articulated_inertia_22, each_articulated_inertia_23, each_articulated_inertia_30, each_seen_by_parent_10,
+            each_seen_by_parent_11, each_seen_by_parent_12, each_seen_by_parent_13, each_seen_by_parent_14,
+            each_seen_by_parent_16, each_seen_by_parent_17, each_seen_by_parent_18, each_seen_by_parent_19,
+            each_seen_by_parent_20, each_seen_by_parent_21, each_seen_by_parent_22, each_seen_by_parent_23,
+            each_seen_by_parent_24, each_seen_by_parent_25, each_seen_by_parent_26, each_seen_by_parent_29,
+            each_seen_by_parent_30, each_seen_by_parent_31, each_seen_by_parent_32, each_seen_by_parent_33,
         ];
     }
     // link_20: carried (11 additions)
@@ -1487,332 +828,179 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
     let link_20_articulated_inertia = link_20_bias_8 + rows_of_36[10][31] - tau[57];
     let link_20_inverse_inertia = n(1.0) / (rows_of_36[10][27] + n(0.19750000000000004));
     let link_20_articulated_inertia_2 = rows_of_36[10][28] * link_20_inverse_inertia;
-    let link_20_articulated_inertia_3 = link_20_inverse_inertia
-        * n(0.00041000000000000005);
+    let link_20_articulated_inertia_3 = link_20_inverse_inertia * n(0.00041000000000000005);
     let link_20_articulated_inertia_4 = rows_of_36[10][21] * link_20_inverse_inertia;
     let link_20_articulated_inertia_5 = link_20_carried * link_20_inverse_inertia;
     let link_20_articulated_inertia_6 = rows_of_36[10][25] * link_20_inverse_inertia;
     let link_20_articulated_inertia_7 = (-link_20_articulated_inertia)
-        .mul_add(
-            link_20_articulated_inertia_2,
-            link_20_bias_9 + rows_of_36[10][32] - tau[58],
-        );
-    let link_20_articulated_inertia_8 = link_20_articulated_inertia_2
-        * n(0.00041000000000000005);
+        .mul_add(link_20_articulated_inertia_2, link_20_bias_9 + rows_of_36[10][32] - tau[58]);
+    let link_20_articulated_inertia_8 = link_20_articulated_inertia_2 * n(0.00041000000000000005);
     let link_20_articulated_inertia_9 = (-rows_of_36[10][21])
         .mul_add(link_20_articulated_inertia_2, rows_of_36[10][22] + n(-1.0));
-    let link_20_articulated_inertia_10 = (-link_20_carried)
-        .mul_add(link_20_articulated_inertia_2, rows_of_36[10][24]);
+    let link_20_articulated_inertia_10 = (-link_20_carried).mul_add(link_20_articulated_inertia_2, rows_of_36[10][24]);
     let link_20_articulated_inertia_11 = (-rows_of_36[10][25])
         .mul_add(link_20_articulated_inertia_2, rows_of_36[10][26] + n(-0.004));
-    let link_20_articulated_inertia_12 = link_20_articulated_inertia
-        * link_20_inverse_inertia;
+    let link_20_articulated_inertia_12 = link_20_articulated_inertia * link_20_inverse_inertia;
     let link_20_inverse_inertia_2 = n(1.0)
-        / ((-rows_of_36[10][28])
-            .mul_add(
-                link_20_articulated_inertia_2,
-                rows_of_36[10][29] + n(0.19744000000000003),
-            ));
-    let link_20_articulated_inertia_13 = link_20_articulated_inertia_8
-        * link_20_inverse_inertia_2;
-    let link_20_articulated_inertia_14 = link_20_articulated_inertia_9
-        * link_20_inverse_inertia_2;
-    let link_20_articulated_inertia_15 = link_20_articulated_inertia_10
-        * link_20_inverse_inertia_2;
-    let link_20_articulated_inertia_16 = link_20_articulated_inertia_11
-        * link_20_inverse_inertia_2;
+        / ((-rows_of_36[10][28]).mul_add(link_20_articulated_inertia_2, rows_of_36[10][29] + n(0.19744000000000003)));
+    let link_20_articulated_inertia_13 = link_20_articulated_inertia_8 * link_20_inverse_inertia_2;
+    let link_20_articulated_inertia_14 = link_20_articulated_inertia_9 * link_20_inverse_inertia_2;
+    let link_20_articulated_inertia_15 = link_20_articulated_inertia_10 * link_20_inverse_inertia_2;
+    let link_20_articulated_inertia_16 = link_20_articulated_inertia_11 * link_20_inverse_inertia_2;
     let link_20_articulated_inertia_17 = (-link_20_articulated_inertia_9)
-        .mul_add(
-            link_20_articulated_inertia_13,
-            rows_of_36[10][21] * link_20_articulated_inertia_3,
-        );
+        .mul_add(link_20_articulated_inertia_13, rows_of_36[10][21] * link_20_articulated_inertia_3);
     let link_20_articulated_inertia_18 = (-link_20_articulated_inertia_10)
-        .mul_add(
-            link_20_articulated_inertia_13,
-            link_20_carried.mul_add(link_20_articulated_inertia_3, -n(0.004)),
-        );
+        .mul_add(link_20_articulated_inertia_13, link_20_carried.mul_add(link_20_articulated_inertia_3, -n(0.004)));
     let link_20_articulated_inertia_19 = (-link_20_articulated_inertia_11)
-        .mul_add(
-            link_20_articulated_inertia_13,
-            rows_of_36[10][25] * link_20_articulated_inertia_3,
-        );
-    let link_20_articulated_inertia_20 = link_20_articulated_inertia_7
-        * link_20_inverse_inertia_2;
-    let link_20_inverse_inertia_3 = n(1.0)
-        / (link_20_articulated_inertia_8
-            .mul_add(
-                link_20_articulated_inertia_13,
-                link_20_inverse_inertia
-                    .mul_add(n(0.00000016810000000000003), -n(0.00024)),
-            ));
-    let link_20_articulated_inertia_21 = link_20_articulated_inertia_17
-        * link_20_inverse_inertia_3;
-    let link_20_articulated_inertia_22 = link_20_articulated_inertia_18
-        * link_20_inverse_inertia_3;
-    let link_20_articulated_inertia_23 = link_20_articulated_inertia_19
-        * link_20_inverse_inertia_3;
-    let link_20_articulated_inertia_24 = (-link_20_articulated_inertia_9)
-        .mul_add(
-            link_20_articulated_inertia_14,
-            (-rows_of_36[10][21])
-                .mul_add(
-                    link_20_articulated_inertia_4,
-                    link_20_articulated_inertia_17
-                        .mul_add(link_20_articulated_inertia_21, rows_of_36[10][15]),
-                ),
-        );
-    let link_20_articulated_inertia_25 = (-link_20_articulated_inertia_9)
-        .mul_add(
-            link_20_articulated_inertia_15,
-            (-rows_of_36[10][21])
-                .mul_add(
-                    link_20_articulated_inertia_5,
-                    link_20_articulated_inertia_17
-                        .mul_add(link_20_articulated_inertia_22, rows_of_36[10][16]),
-                ),
-        );
-    let link_20_articulated_inertia_26 = (-link_20_articulated_inertia_9)
-        .mul_add(
-            link_20_articulated_inertia_16,
-            (-rows_of_36[10][21])
-                .mul_add(
-                    link_20_articulated_inertia_6,
-                    link_20_articulated_inertia_17
-                        .mul_add(link_20_articulated_inertia_23, rows_of_36[10][17]),
-                ),
-        );
-    let link_20_articulated_inertia_27 = (-link_20_articulated_inertia_10)
-        .mul_add(
-            link_20_articulated_inertia_15,
-            (-link_20_carried)
-                .mul_add(
-                    link_20_articulated_inertia_5,
-                    link_20_articulated_inertia_18
-                        .mul_add(link_20_articulated_inertia_22, rows_of_36[10][18]),
-                ),
-        );
-    let link_20_articulated_inertia_28 = (-link_20_articulated_inertia_10)
-        .mul_add(
-            link_20_articulated_inertia_16,
-            (-link_20_carried)
-                .mul_add(
-                    link_20_articulated_inertia_6,
-                    link_20_articulated_inertia_18
-                        .mul_add(link_20_articulated_inertia_23, rows_of_36[10][19]),
-                ),
-        );
-    let link_20_articulated_inertia_29 = (-link_20_articulated_inertia_11)
-        .mul_add(
-            link_20_articulated_inertia_16,
-            (-rows_of_36[10][25])
-                .mul_add(
-                    link_20_articulated_inertia_6,
-                    link_20_articulated_inertia_19
-                        .mul_add(link_20_articulated_inertia_23, rows_of_36[10][20]),
-                ),
-        );
-    let link_20_articulated_inertia_30 = ((-link_20_articulated_inertia)
-        .mul_add(
-            link_20_articulated_inertia_3,
-            link_20_articulated_inertia_7
-                .mul_add(
-                    link_20_articulated_inertia_13,
-                    link_20_bias_10 + rows_of_36[10][30] - tau[59],
-                ),
-        )) * link_20_inverse_inertia_3;
-    let link_20_articulated_inertia_31 = link_20_articulated_inertia_17
-        .mul_add(
-            link_20_articulated_inertia_30,
-            link_20_articulated_inertia_9
-                .mul_add(
-                    link_20_articulated_inertia_20,
-                    rows_of_36[10][21]
-                        .mul_add(
-                            link_20_articulated_inertia_12,
-                            link_20_bias_11 - rows_of_36[10][33],
-                        ),
-                ),
-        );
-    let link_20_articulated_inertia_32 = link_20_articulated_inertia_18
-        .mul_add(
-            link_20_articulated_inertia_30,
-            link_20_articulated_inertia_10
-                .mul_add(
-                    link_20_articulated_inertia_20,
-                    link_20_carried
-                        .mul_add(
-                            link_20_articulated_inertia_12,
-                            link_20_bias_12 - rows_of_36[10][34],
-                        ),
-                ),
-        );
-    let link_20_articulated_inertia_33 = (-link_20_articulated_inertia_19)
-        .mul_add(
-            link_20_articulated_inertia_30,
-            (-link_20_articulated_inertia_11)
-                .mul_add(
-                    link_20_articulated_inertia_20,
-                    (-rows_of_36[10][25])
-                        .mul_add(
-                            link_20_articulated_inertia_12,
-                            link_20_bias_13 + rows_of_36[10][35],
-                        ),
-                ),
-        );
+        .mul_add(link_20_articulated_inertia_13, rows_of_36[10][25] * link_20_articulated_inertia_3);
+    let link_20_articulated_inertia_20 = link_20_articulated_inertia_7 * link_20_inverse_inertia_2;
+    let link_20_inverse_inertia_3 = n(1.0) / (link_20_articulated_inertia_8.mul_add(
+        link_20_articulated_inertia_13,
+        link_20_inverse_inertia.mul_add(n(0.00000016810000000000003), -n(0.00024)),
+    ));
+    let link_20_articulated_inertia_21 = link_20_articulated_inertia_17 * link_20_inverse_inertia_3;
+    let link_20_articulated_inertia_22 = link_20_articulated_inertia_18 * link_20_inverse_inertia_3;
+    let link_20_articulated_inertia_23 = link_20_articulated_inertia_19 * link_20_inverse_inertia_3;
+    let link_20_articulated_inertia_24 = (-link_20_articulated_inertia_9).mul_add(
+        link_20_articulated_inertia_14,
+        (-rows_of_36[10][21]).mul_add(
+            link_20_articulated_inertia_4,
+            link_20_articulated_inertia_17.mul_add(link_20_articulated_inertia_21, rows_of_36[10][15]),
+        ),
+    );
+    let link_20_articulated_inertia_25 = (-link_20_articulated_inertia_9).mul_add(
+        link_20_articulated_inertia_15,
+        (-rows_of_36[10][21]).mul_add(
+            link_20_articulated_inertia_5,
+            link_20_articulated_inertia_17.mul_add(link_20_articulated_inertia_22, rows_of_36[10][16]),
+        ),
+    );
+    let link_20_articulated_inertia_26 = (-link_20_articulated_inertia_9).mul_add(
+        link_20_articulated_inertia_16,
+        (-rows_of_36[10][21]).mul_add(
+            link_20_articulated_inertia_6,
+            link_20_articulated_inertia_17.mul_add(link_20_articulated_inertia_23, rows_of_36[10][17]),
+        ),
+    );
+    let link_20_articulated_inertia_27 = (-link_20_articulated_inertia_10).mul_add(
+        link_20_articulated_inertia_15,
+        (-link_20_carried).mul_add(
+            link_20_articulated_inertia_5,
+            link_20_articulated_inertia_18.mul_add(link_20_articulated_inertia_22, rows_of_36[10][18]),
+        ),
+    );
+    let link_20_articulated_inertia_28 = (-link_20_articulated_inertia_10).mul_add(
+        link_20_articulated_inertia_16,
+        (-link_20_carried).mul_add(
+            link_20_articulated_inertia_6,
+            link_20_articulated_inertia_18.mul_add(link_20_articulated_inertia_23, rows_of_36[10][19]),
+        ),
+    );
+    let link_20_articulated_inertia_29 = (-link_20_articulated_inertia_11).mul_add(
+        link_20_articulated_inertia_16,
+        (-rows_of_36[10][25]).mul_add(
+            link_20_articulated_inertia_6,
+            link_20_articulated_inertia_19.mul_add(link_20_articulated_inertia_23, rows_of_36[10][20]),
+        ),
+    );
+    let link_20_articulated_inertia_30 = ((-link_20_articulated_inertia).mul_add(
+        link_20_articulated_inertia_3,
+        link_20_articulated_inertia_7.mul_add(link_20_articulated_inertia_13, link_20_bias_10 + rows_of_36[10][30] - tau[59]),
+    )) * link_20_inverse_inertia_3;
+    let link_20_articulated_inertia_31 = link_20_articulated_inertia_17.mul_add(
+        link_20_articulated_inertia_30,
+        link_20_articulated_inertia_9.mul_add(
+            link_20_articulated_inertia_20,
+            rows_of_36[10][21].mul_add(link_20_articulated_inertia_12, link_20_bias_11 - rows_of_36[10][33]),
+        ),
+    );
+    let link_20_articulated_inertia_32 = link_20_articulated_inertia_18.mul_add(
+        link_20_articulated_inertia_30,
+        link_20_articulated_inertia_10.mul_add(
+            link_20_articulated_inertia_20,
+            link_20_carried.mul_add(link_20_articulated_inertia_12, link_20_bias_12 - rows_of_36[10][34]),
+        ),
+    );
+    let link_20_articulated_inertia_33 = (-link_20_articulated_inertia_19).mul_add(
+        link_20_articulated_inertia_30,
+        (-link_20_articulated_inertia_11).mul_add(
+            link_20_articulated_inertia_20,
+            (-rows_of_36[10][25]).mul_add(link_20_articulated_inertia_12, link_20_bias_13 + rows_of_36[10][35]),
+        ),
+    );
     // link_20: seen by parent (53 additions, 83 multiplications)
-    let link_20_seen_by_parent = (-link_20_bias_22)
-        .mul_add(
-            link_20_articulated_inertia_26,
-            (-link_20_bias_21)
-                .mul_add(
-                    link_20_articulated_inertia_25,
-                    (-link_20_bias_20)
-                        .mul_add(
-                            link_20_articulated_inertia_24,
-                            link_20_articulated_inertia_31,
-                        ),
-                ),
-        );
-    let link_20_seen_by_parent_2 = (-link_20_bias_22)
-        .mul_add(
+    let link_20_seen_by_parent = (-link_20_bias_22).mul_add(
+        link_20_articulated_inertia_26,
+        (-link_20_bias_21).mul_add(
+            link_20_articulated_inertia_25,
+            (-link_20_bias_20).mul_add(link_20_articulated_inertia_24, link_20_articulated_inertia_31),
+        ),
+    );
+    let link_20_seen_by_parent_2 = (-link_20_bias_22).mul_add(
+        link_20_articulated_inertia_28,
+        (-link_20_bias_21).mul_add(
+            link_20_articulated_inertia_27,
+            (-link_20_bias_20).mul_add(link_20_articulated_inertia_25, link_20_articulated_inertia_32),
+        ),
+    );
+    let link_20_seen_by_parent_3 = link_20_bias_22.mul_add(
+        link_20_articulated_inertia_29,
+        link_20_bias_21.mul_add(
             link_20_articulated_inertia_28,
-            (-link_20_bias_21)
-                .mul_add(
-                    link_20_articulated_inertia_27,
-                    (-link_20_bias_20)
-                        .mul_add(
-                            link_20_articulated_inertia_25,
-                            link_20_articulated_inertia_32,
-                        ),
-                ),
-        );
-    let link_20_seen_by_parent_3 = link_20_bias_22
-        .mul_add(
-            link_20_articulated_inertia_29,
-            link_20_bias_21
-                .mul_add(
-                    link_20_articulated_inertia_28,
-                    link_20_bias_20
-                        .mul_add(
-                            link_20_articulated_inertia_26,
-                            link_20_articulated_inertia_33,
-                        ),
-                ),
-        );
-    let link_20_seen_by_parent_4 = q[173]
-        .mul_add(
-            link_20_articulated_inertia_26,
-            q[172]
-                .mul_add(
-                    link_20_articulated_inertia_25,
-                    q[171] * link_20_articulated_inertia_24,
-                ),
-        );
-    let link_20_seen_by_parent_5 = q[176]
-        .mul_add(
-            link_20_articulated_inertia_26,
-            q[175]
-                .mul_add(
-                    link_20_articulated_inertia_25,
-                    q[174] * link_20_articulated_inertia_24,
-                ),
-        );
-    let link_20_seen_by_parent_6 = q[173]
-        .mul_add(
-            link_20_articulated_inertia_28,
-            q[172]
-                .mul_add(
-                    link_20_articulated_inertia_27,
-                    q[171] * link_20_articulated_inertia_25,
-                ),
-        );
-    let link_20_seen_by_parent_7 = q[176]
-        .mul_add(
-            link_20_articulated_inertia_28,
-            q[175]
-                .mul_add(
-                    link_20_articulated_inertia_27,
-                    q[174] * link_20_articulated_inertia_25,
-                ),
-        );
-    let link_20_seen_by_parent_8 = q[173]
-        .mul_add(
-            link_20_articulated_inertia_29,
-            q[172]
-                .mul_add(
-                    link_20_articulated_inertia_28,
-                    q[171] * link_20_articulated_inertia_26,
-                ),
-        );
-    let link_20_seen_by_parent_9 = q[176]
-        .mul_add(
-            link_20_articulated_inertia_29,
-            q[175]
-                .mul_add(
-                    link_20_articulated_inertia_28,
-                    q[174] * link_20_articulated_inertia_26,
-                ),
-        );
+            link_20_bias_20.mul_add(link_20_articulated_inertia_26, link_20_articulated_inertia_33),
+        ),
+    );
+    let link_20_seen_by_parent_4 = q[173].mul_add(
+        link_20_articulated_inertia_26,
+        q[172].mul_add(link_20_articulated_inertia_25, q[171] * link_20_articulated_inertia_24),
+    );
+    let link_20_seen_by_parent_5 = q[176].mul_add(
+        link_20_articulated_inertia_26,
+        q[175].mul_add(link_20_articulated_inertia_25, q[174] * link_20_articulated_inertia_24),
+    );
+    let link_20_seen_by_parent_6 = q[173].mul_add(
+        link_20_articulated_inertia_28,
+        q[172].mul_add(link_20_articulated_inertia_27, q[171] * link_20_articulated_inertia_25),
+    );
+    let link_20_seen_by_parent_7 = q[176].mul_add(
+        link_20_articulated_inertia_28,
+        q[175].mul_add(link_20_articulated_inertia_27, q[174] * link_20_articulated_inertia_25),
+    );
+    let link_20_seen_by_parent_8 = q[173].mul_add(
+        link_20_articulated_inertia_29,
+        q[172].mul_add(link_20_articulated_inertia_28, q[171] * link_20_articulated_inertia_26),
+    );
+    let link_20_seen_by_parent_9 = q[176].mul_add(
+        link_20_articulated_inertia_29,
+        q[175].mul_add(link_20_articulated_inertia_28, q[174] * link_20_articulated_inertia_26),
+    );
     let link_20_seen_by_parent_10 = q[173]
-        .mul_add(
-            link_20_seen_by_parent_8,
-            q[172].mul_add(link_20_seen_by_parent_6, q[171] * link_20_seen_by_parent_4),
-        );
+        .mul_add(link_20_seen_by_parent_8, q[172].mul_add(link_20_seen_by_parent_6, q[171] * link_20_seen_by_parent_4));
     let link_20_seen_by_parent_11 = q[176]
-        .mul_add(
-            link_20_seen_by_parent_8,
-            q[175].mul_add(link_20_seen_by_parent_6, q[174] * link_20_seen_by_parent_4),
-        );
+        .mul_add(link_20_seen_by_parent_8, q[175].mul_add(link_20_seen_by_parent_6, q[174] * link_20_seen_by_parent_4));
     let link_20_seen_by_parent_12 = q[179]
-        .mul_add(
-            link_20_seen_by_parent_8,
-            q[178].mul_add(link_20_seen_by_parent_6, q[177] * link_20_seen_by_parent_4),
-        );
+        .mul_add(link_20_seen_by_parent_8, q[178].mul_add(link_20_seen_by_parent_6, q[177] * link_20_seen_by_parent_4));
     let link_20_seen_by_parent_13 = q[176]
-        .mul_add(
-            link_20_seen_by_parent_9,
-            q[175].mul_add(link_20_seen_by_parent_7, q[174] * link_20_seen_by_parent_5),
-        );
+        .mul_add(link_20_seen_by_parent_9, q[175].mul_add(link_20_seen_by_parent_7, q[174] * link_20_seen_by_parent_5));
     let link_20_seen_by_parent_14 = q[179]
-        .mul_add(
-            link_20_seen_by_parent_9,
-            q[178].mul_add(link_20_seen_by_parent_7, q[177] * link_20_seen_by_parent_5),
-        );
-    let link_20_seen_by_parent_15 = q[178]
-        .mul_add(
-            q[179]
-                .mul_add(
-                    link_20_articulated_inertia_28,
-                    q[178]
-                        .mul_add(
-                            link_20_articulated_inertia_27,
-                            q[177] * link_20_articulated_inertia_25,
-                        ),
-                ),
-            q[177]
-                * (q[179]
-                    .mul_add(
-                        link_20_articulated_inertia_26,
-                        q[178]
-                            .mul_add(
-                                link_20_articulated_inertia_25,
-                                q[177] * link_20_articulated_inertia_24,
-                            ),
-                    )),
-        );
-    let link_20_seen_by_parent_16 = q[179]
-        .mul_add(
-            q[179]
-                .mul_add(
-                    link_20_articulated_inertia_29,
-                    q[178]
-                        .mul_add(
-                            link_20_articulated_inertia_28,
-                            q[177] * link_20_articulated_inertia_26,
-                        ),
-                ),
-            link_20_seen_by_parent_15,
-        );
+        .mul_add(link_20_seen_by_parent_9, q[178].mul_add(link_20_seen_by_parent_7, q[177] * link_20_seen_by_parent_5));
+    let link_20_seen_by_parent_15 = q[178].mul_add(
+        q[179].mul_add(
+            link_20_articulated_inertia_28,
+            q[178].mul_add(link_20_articulated_inertia_27, q[177] * link_20_articulated_inertia_25),
+        ),
+        q[177] * (q[179].mul_add(
+            link_20_articulated_inertia_26,
+            q[178].mul_add(link_20_articulated_inertia_25, q[177] * link_20_articulated_inertia_24),
+        )),
+    );
+    let link_20_seen_by_parent_16 = q[179].mul_add(
+        q[179].mul_add(
+            link_20_articulated_inertia_29,
+            q[178].mul_add(link_20_articulated_inertia_28, q[177] * link_20_articulated_inertia_26),
+        ),
+        link_20_seen_by_parent_15,
+    );
     let link_20_seen_by_parent_17 = link_20_seen_by_parent_11 * n(0.2);
     let link_20_seen_by_parent_18 = link_20_seen_by_parent_10 * n(-0.2);
     let link_20_seen_by_parent_19 = link_20_seen_by_parent_13 * n(0.2);
@@ -1822,154 +1010,48 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
     let link_20_seen_by_parent_23 = link_20_seen_by_parent_13 * n(0.04000000000000001);
     let link_20_seen_by_parent_24 = link_20_seen_by_parent_11 * n(-0.04000000000000001);
     let link_20_seen_by_parent_25 = link_20_seen_by_parent_10 * n(0.04000000000000001);
-    let link_20_seen_by_parent_26 = q[179]
-        .mul_add(tau[59], q[178].mul_add(tau[58], q[177] * tau[57]));
+    let link_20_seen_by_parent_26 = q[179].mul_add(tau[59], q[178].mul_add(tau[58], q[177] * tau[57]));
     let link_20_seen_by_parent_27 = (-q[173])
-        .mul_add(
-            link_20_seen_by_parent_3,
-            q[172].mul_add(link_20_seen_by_parent_2, q[171] * link_20_seen_by_parent),
-        );
+        .mul_add(link_20_seen_by_parent_3, q[172].mul_add(link_20_seen_by_parent_2, q[171] * link_20_seen_by_parent));
     let link_20_seen_by_parent_28 = (-q[176])
-        .mul_add(
-            link_20_seen_by_parent_3,
-            q[175].mul_add(link_20_seen_by_parent_2, q[174] * link_20_seen_by_parent),
-        );
+        .mul_add(link_20_seen_by_parent_3, q[175].mul_add(link_20_seen_by_parent_2, q[174] * link_20_seen_by_parent));
     let link_20_seen_by_parent_29 = link_20_seen_by_parent_28
-        .mul_add(
-            n(-0.2),
-            q[173].mul_add(tau[59], q[172].mul_add(tau[58], q[171] * tau[57])),
-        );
+        .mul_add(n(-0.2), q[173].mul_add(tau[59], q[172].mul_add(tau[58], q[171] * tau[57])));
     let link_20_seen_by_parent_30 = (-link_20_seen_by_parent_27)
-        .mul_add(
-            n(-0.2),
-            q[176].mul_add(tau[59], q[175].mul_add(tau[58], q[174] * tau[57])),
-        );
+        .mul_add(n(-0.2), q[176].mul_add(tau[59], q[175].mul_add(tau[58], q[174] * tau[57])));
     let link_20_seen_by_parent_31 = -link_20_seen_by_parent_27;
     let link_20_seen_by_parent_32 = -link_20_seen_by_parent_28;
     let link_20_seen_by_parent_33 = (-q[178])
-        .mul_add(
-            link_20_seen_by_parent_2,
-            (-q[177]).mul_add(link_20_seen_by_parent, q[179] * link_20_seen_by_parent_3),
-        );
+        .mul_add(link_20_seen_by_parent_2, (-q[177]).mul_add(link_20_seen_by_parent, q[179] * link_20_seen_by_parent_3));
     rows_of_36[11] = [
-        link_20_articulated_inertia_2,
-        link_20_articulated_inertia_3,
-        link_20_articulated_inertia_4,
-        link_20_articulated_inertia_5,
-        link_20_articulated_inertia_6,
-        link_20_articulated_inertia_12,
-        link_20_articulated_inertia_13,
-        link_20_articulated_inertia_14,
-        link_20_articulated_inertia_15,
-        link_20_articulated_inertia_16,
-        link_20_articulated_inertia_20,
-        link_20_articulated_inertia_21,
-        link_20_articulated_inertia_22,
-        link_20_articulated_inertia_23,
-        link_20_articulated_inertia_30,
-        link_20_seen_by_parent_10,
-        link_20_seen_by_parent_11,
-        link_20_seen_by_parent_12,
-        link_20_seen_by_parent_13,
-        link_20_seen_by_parent_14,
-        link_20_seen_by_parent_16,
-        link_20_seen_by_parent_17,
-        link_20_seen_by_parent_18,
-        link_20_seen_by_parent_19,
-        link_20_seen_by_parent_20,
-        link_20_seen_by_parent_21,
-        link_20_seen_by_parent_22,
-        link_20_seen_by_parent_23,
-        link_20_seen_by_parent_24,
-        link_20_seen_by_parent_25,
-        link_20_seen_by_parent_26,
-        link_20_seen_by_parent_29,
-        link_20_seen_by_parent_30,
-        link_20_seen_by_parent_31,
-        link_20_seen_by_parent_32,
+        link_20_articulated_inertia_2, link_20_articulated_inertia_3, link_20_articulated_inertia_4,
+        link_20_articulated_inertia_5, link_20_articulated_inertia_6, link_20_articulated_inertia_12,
+        link_20_articulated_inertia_13, link_20_articulated_inertia_14, link_20_articulated_inertia_15,
+        link_20_articulated_inertia_16, link_20_articulated_inertia_20, link_20_articulated_inertia_21,
+        link_20_articulated_inertia_22, link_20_articulated_inertia_23, link_20_articulated_inertia_30,
+        link_20_seen_by_parent_10, link_20_seen_by_parent_11, link_20_seen_by_parent_12, link_20_seen_by_parent_13,
+        link_20_seen_by_parent_14, link_20_seen_by_parent_16, link_20_seen_by_parent_17, link_20_seen_by_parent_18,
+        link_20_seen_by_parent_19, link_20_seen_by_parent_20, link_20_seen_by_parent_21, link_20_seen_by_parent_22,
+        link_20_seen_by_parent_23, link_20_seen_by_parent_24, link_20_seen_by_parent_25, link_20_seen_by_parent_26,
+        link_20_seen_by_parent_29, link_20_seen_by_parent_30, link_20_seen_by_parent_31, link_20_seen_by_parent_32,
         link_20_seen_by_parent_33,
     ];
     // each of link_19, link_18, … link_3 (17 bodies):
     const LIKE_5_NUMBERS: [[f64; 4]; 17] = [
         [0.21350000000000005, 0.21344000000000005, -1.08, 1.08],
-        [
-            0.22950000000000007,
-            0.22944000000000006,
-            -1.1600000000000001,
-            1.1600000000000001,
-        ],
-        [
-            0.24550000000000008,
-            0.24544000000000007,
-            -1.2400000000000002,
-            1.2400000000000002,
-        ],
-        [
-            0.2615000000000001,
-            0.2614400000000001,
-            -1.3200000000000003,
-            1.3200000000000003,
-        ],
-        [
-            0.27750000000000014,
-            0.27744000000000013,
-            -1.4000000000000004,
-            1.4000000000000004,
-        ],
-        [
-            0.29350000000000015,
-            0.29344000000000015,
-            -1.4800000000000004,
-            1.4800000000000004,
-        ],
-        [
-            0.30950000000000016,
-            0.30944000000000016,
-            -1.5600000000000005,
-            1.5600000000000005,
-        ],
-        [
-            0.3255000000000001,
-            0.3254400000000001,
-            -1.6400000000000006,
-            1.6400000000000006,
-        ],
-        [
-            0.34150000000000014,
-            0.34144000000000013,
-            -1.7200000000000006,
-            1.7200000000000006,
-        ],
-        [
-            0.35750000000000015,
-            0.35744000000000015,
-            -1.8000000000000007,
-            1.8000000000000007,
-        ],
-        [
-            0.37350000000000017,
-            0.37344000000000016,
-            -1.8800000000000008,
-            1.8800000000000008,
-        ],
-        [
-            0.38950000000000023,
-            0.38944000000000023,
-            -1.9600000000000009,
-            1.9600000000000009,
-        ],
-        [
-            0.40550000000000025,
-            0.40544000000000024,
-            -2.040000000000001,
-            2.040000000000001,
-        ],
-        [
-            0.42150000000000026,
-            0.42144000000000026,
-            -2.120000000000001,
-            2.120000000000001,
-        ],
+        [0.22950000000000007, 0.22944000000000006, -1.1600000000000001, 1.1600000000000001],
+        [0.24550000000000008, 0.24544000000000007, -1.2400000000000002, 1.2400000000000002],
+        [0.2615000000000001, 0.2614400000000001, -1.3200000000000003, 1.3200000000000003],
+        [0.27750000000000014, 0.27744000000000013, -1.4000000000000004, 1.4000000000000004],
+        [0.29350000000000015, 0.29344000000000015, -1.4800000000000004, 1.4800000000000004],
+        [0.30950000000000016, 0.30944000000000016, -1.5600000000000005, 1.5600000000000005],
+        [0.3255000000000001, 0.3254400000000001, -1.6400000000000006, 1.6400000000000006],
+        [0.34150000000000014, 0.34144000000000013, -1.7200000000000006, 1.7200000000000006],
+        [0.35750000000000015, 0.35744000000000015, -1.8000000000000007, 1.8000000000000007],
+        [0.37350000000000017, 0.37344000000000016, -1.8800000000000008, 1.8800000000000008],
+        [0.38950000000000023, 0.38944000000000023, -1.9600000000000009, 1.9600000000000009],
+        [0.40550000000000025, 0.40544000000000024, -2.040000000000001, 2.040000000000001],
+        [0.42150000000000026, 0.42144000000000026, -2.120000000000001, 2.120000000000001],
         [0.4375000000000003, 0.4374400000000003, -2.200000000000001, 2.200000000000001],
         [0.4535000000000003, 0.4534400000000003, -2.280000000000001, 2.280000000000001],
         [0.4695000000000003, 0.4694400000000003, -2.360000000000001, 2.360000000000001],
@@ -1984,340 +1066,187 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
         let each_articulated_inertia_34 = own_4[3] + child_2[31] - tau[54 - 3 * i];
         let each_inverse_inertia_4 = n(1.0) / (child_2[27] + n(numbers[0]));
         let each_articulated_inertia_35 = child_2[28] * each_inverse_inertia_4;
-        let each_articulated_inertia_36 = each_inverse_inertia_4
-            * n(0.00041000000000000005);
+        let each_articulated_inertia_36 = each_inverse_inertia_4 * n(0.00041000000000000005);
         let each_articulated_inertia_37 = child_2[21] * each_inverse_inertia_4;
         let each_articulated_inertia_38 = each_carried_2 * each_inverse_inertia_4;
         let each_articulated_inertia_39 = child_2[25] * each_inverse_inertia_4;
         let each_articulated_inertia_40 = (-each_articulated_inertia_34)
-            .mul_add(
-                each_articulated_inertia_35,
-                own_4[4] + child_2[32] - tau[55 - 3 * i],
-            );
-        let each_articulated_inertia_41 = each_articulated_inertia_35
-            * n(0.00041000000000000005);
-        let each_articulated_inertia_42 = (-child_2[21])
-            .mul_add(each_articulated_inertia_35, child_2[22] + n(numbers[2]));
-        let each_articulated_inertia_43 = (-each_carried_2)
-            .mul_add(each_articulated_inertia_35, child_2[24]);
-        let each_articulated_inertia_44 = (-child_2[25])
-            .mul_add(each_articulated_inertia_35, child_2[26] + n(-0.004));
-        let each_articulated_inertia_45 = each_articulated_inertia_34
-            * each_inverse_inertia_4;
+            .mul_add(each_articulated_inertia_35, own_4[4] + child_2[32] - tau[55 - 3 * i]);
+        let each_articulated_inertia_41 = each_articulated_inertia_35 * n(0.00041000000000000005);
+        let each_articulated_inertia_42 = (-child_2[21]).mul_add(each_articulated_inertia_35, child_2[22] + n(numbers[2]));
+        let each_articulated_inertia_43 = (-each_carried_2).mul_add(each_articulated_inertia_35, child_2[24]);
+        let each_articulated_inertia_44 = (-child_2[25]).mul_add(each_articulated_inertia_35, child_2[26] + n(-0.004));
+        let each_articulated_inertia_45 = each_articulated_inertia_34 * each_inverse_inertia_4;
         let each_inverse_inertia_5 = n(1.0)
-            / ((-child_2[28])
-                .mul_add(each_articulated_inertia_35, child_2[29] + n(numbers[1])));
-        let each_articulated_inertia_46 = each_articulated_inertia_41
-            * each_inverse_inertia_5;
-        let each_articulated_inertia_47 = each_articulated_inertia_42
-            * each_inverse_inertia_5;
-        let each_articulated_inertia_48 = each_articulated_inertia_43
-            * each_inverse_inertia_5;
-        let each_articulated_inertia_49 = each_articulated_inertia_44
-            * each_inverse_inertia_5;
+            / ((-child_2[28]).mul_add(each_articulated_inertia_35, child_2[29] + n(numbers[1])));
+        let each_articulated_inertia_46 = each_articulated_inertia_41 * each_inverse_inertia_5;
+        let each_articulated_inertia_47 = each_articulated_inertia_42 * each_inverse_inertia_5;
+        let each_articulated_inertia_48 = each_articulated_inertia_43 * each_inverse_inertia_5;
+        let each_articulated_inertia_49 = each_articulated_inertia_44 * each_inverse_inertia_5;
         let each_articulated_inertia_50 = (-each_articulated_inertia_42)
-            .mul_add(
-                each_articulated_inertia_46,
-                child_2[21] * each_articulated_inertia_36,
-            );
+            .mul_add(each_articulated_inertia_46, child_2[21] * each_articulated_inertia_36);
         let each_articulated_inertia_51 = (-each_articulated_inertia_43)
-            .mul_add(
-                each_articulated_inertia_46,
-                each_carried_2.mul_add(each_articulated_inertia_36, -n(0.004)),
-            );
+            .mul_add(each_articulated_inertia_46, each_carried_2.mul_add(each_articulated_inertia_36, -n(0.004)));
         let each_articulated_inertia_52 = (-each_articulated_inertia_44)
-            .mul_add(
-                each_articulated_inertia_46,
-                child_2[25] * each_articulated_inertia_36,
-            );
-        let each_articulated_inertia_53 = each_articulated_inertia_40
-            * each_inverse_inertia_5;
-        let each_inverse_inertia_6 = n(1.0)
-            / (each_articulated_inertia_41
-                .mul_add(
-                    each_articulated_inertia_46,
-                    each_inverse_inertia_4
-                        .mul_add(n(0.00000016810000000000003), -n(0.00024)),
-                ));
-        let each_articulated_inertia_54 = each_articulated_inertia_50
-            * each_inverse_inertia_6;
-        let each_articulated_inertia_55 = each_articulated_inertia_51
-            * each_inverse_inertia_6;
-        let each_articulated_inertia_56 = each_articulated_inertia_52
-            * each_inverse_inertia_6;
-        let each_articulated_inertia_57 = (-each_articulated_inertia_42)
-            .mul_add(
-                each_articulated_inertia_47,
-                (-child_2[21])
-                    .mul_add(
-                        each_articulated_inertia_37,
-                        each_articulated_inertia_50
-                            .mul_add(each_articulated_inertia_54, child_2[15]),
-                    ),
-            );
-        let each_articulated_inertia_58 = (-each_articulated_inertia_42)
-            .mul_add(
-                each_articulated_inertia_48,
-                (-child_2[21])
-                    .mul_add(
-                        each_articulated_inertia_38,
-                        each_articulated_inertia_50
-                            .mul_add(each_articulated_inertia_55, child_2[16]),
-                    ),
-            );
-        let each_articulated_inertia_59 = (-each_articulated_inertia_42)
-            .mul_add(
-                each_articulated_inertia_49,
-                (-child_2[21])
-                    .mul_add(
-                        each_articulated_inertia_39,
-                        each_articulated_inertia_50
-                            .mul_add(each_articulated_inertia_56, child_2[17]),
-                    ),
-            );
-        let each_articulated_inertia_60 = (-each_articulated_inertia_43)
-            .mul_add(
-                each_articulated_inertia_48,
-                (-each_carried_2)
-                    .mul_add(
-                        each_articulated_inertia_38,
-                        each_articulated_inertia_51
-                            .mul_add(each_articulated_inertia_55, child_2[18]),
-                    ),
-            );
-        let each_articulated_inertia_61 = (-each_articulated_inertia_43)
-            .mul_add(
-                each_articulated_inertia_49,
-                (-each_carried_2)
-                    .mul_add(
-                        each_articulated_inertia_39,
-                        each_articulated_inertia_51
-                            .mul_add(each_articulated_inertia_56, child_2[19]),
-                    ),
-            );
-        let each_articulated_inertia_62 = (-each_articulated_inertia_44)
-            .mul_add(
-                each_articulated_inertia_49,
-                (-child_2[25])
-                    .mul_add(
-                        each_articulated_inertia_39,
-                        each_articulated_inertia_52
-                            .mul_add(each_articulated_inertia_56, child_2[20]),
-                    ),
-            );
-        let each_articulated_inertia_63 = ((-each_articulated_inertia_34)
-            .mul_add(
-                each_articulated_inertia_36,
-                each_articulated_inertia_40
-                    .mul_add(
-                        each_articulated_inertia_46,
-                        own_4[5] + child_2[30] - tau[56 - 3 * i],
-                    ),
-            )) * each_inverse_inertia_6;
-        let each_articulated_inertia_64 = each_articulated_inertia_50
-            .mul_add(
-                each_articulated_inertia_63,
-                each_articulated_inertia_42
-                    .mul_add(
-                        each_articulated_inertia_53,
-                        child_2[21]
-                            .mul_add(each_articulated_inertia_45, own_4[6] - child_2[33]),
-                    ),
-            );
-        let each_articulated_inertia_65 = (-each_articulated_inertia_51)
-            .mul_add(
-                each_articulated_inertia_63,
-                (-each_articulated_inertia_43)
-                    .mul_add(
-                        each_articulated_inertia_53,
-                        (-each_carried_2)
-                            .mul_add(each_articulated_inertia_45, own_4[7] + child_2[34]),
-                    ),
-            );
-        let each_articulated_inertia_66 = (-each_articulated_inertia_52)
-            .mul_add(
-                each_articulated_inertia_63,
-                (-each_articulated_inertia_44)
-                    .mul_add(
-                        each_articulated_inertia_53,
-                        (-child_2[25])
-                            .mul_add(each_articulated_inertia_45, own_4[8] + child_2[35]),
-                    ),
-            );
+            .mul_add(each_articulated_inertia_46, child_2[25] * each_articulated_inertia_36);
+        let each_articulated_inertia_53 = each_articulated_inertia_40 * each_inverse_inertia_5;
+        let each_inverse_inertia_6 = n(1.0) / (each_articulated_inertia_41.mul_add(
+            each_articulated_inertia_46,
+            each_inverse_inertia_4.mul_add(n(0.00000016810000000000003), -n(0.00024)),
+        ));
+        let each_articulated_inertia_54 = each_articulated_inertia_50 * each_inverse_inertia_6;
+        let each_articulated_inertia_55 = each_articulated_inertia_51 * each_inverse_inertia_6;
+        let each_articulated_inertia_56 = each_articulated_inertia_52 * each_inverse_inertia_6;
+        let each_articulated_inertia_57 = (-each_articulated_inertia_42).mul_add(
+            each_articulated_inertia_47,
+            (-child_2[21]).mul_add(
+                each_articulated_inertia_37,
+                each_articulated_inertia_50.mul_add(each_articulated_inertia_54, child_2[15]),
+            ),
+        );
+        let each_articulated_inertia_58 = (-each_articulated_inertia_42).mul_add(
+            each_articulated_inertia_48,
+            (-child_2[21]).mul_add(
+                each_articulated_inertia_38,
+                each_articulated_inertia_50.mul_add(each_articulated_inertia_55, child_2[16]),
+            ),
+        );
+        let each_articulated_inertia_59 = (-each_articulated_inertia_42).mul_add(
+            each_articulated_inertia_49,
+            (-child_2[21]).mul_add(
+                each_articulated_inertia_39,
+                each_articulated_inertia_50.mul_add(each_articulated_inertia_56, child_2[17]),
+            ),
+        );
+        let each_articulated_inertia_60 = (-each_articulated_inertia_43).mul_add(
+            each_articulated_inertia_48,
+            (-each_carried_2).mul_add(
+                each_articulated_inertia_38,
+                each_articulated_inertia_51.mul_add(each_articulated_inertia_55, child_2[18]),
+            ),
+        );
+        let each_articulated_inertia_61 = (-each_articulated_inertia_43).mul_add(
+            each_articulated_inertia_49,
+            (-each_carried_2).mul_add(
+                each_articulated_inertia_39,
+                each_articulated_inertia_51.mul_add(each_articulated_inertia_56, child_2[19]),
+            ),
+        );
+        let each_articulated_inertia_62 = (-each_articulated_inertia_44).mul_add(
+            each_articulated_inertia_49,
+            (-child_2[25]).mul_add(
+                each_articulated_inertia_39,
+                each_articulated_inertia_52.mul_add(each_articulated_inertia_56, child_2[20]),
+            ),
+        );
+        let each_articulated_inertia_63 = ((-each_articulated_inertia_34).mul_add(
+            each_articulated_inertia_36,
+            each_articulated_inertia_40.mul_add(each_articulated_inertia_46, own_4[5] + child_2[30] - tau[56 - 3 * i]),
+        )) * each_inverse_inertia_6;
+        let each_articulated_inertia_64 = each_articulated_inertia_50.mul_add(
+            each_articulated_inertia_63,
+            each_articulated_inertia_42.mul_add(
+                each_articulated_inertia_53,
+                child_2[21].mul_add(each_articulated_inertia_45, own_4[6] - child_2[33]),
+            ),
+        );
+        let each_articulated_inertia_65 = (-each_articulated_inertia_51).mul_add(
+            each_articulated_inertia_63,
+            (-each_articulated_inertia_43).mul_add(
+                each_articulated_inertia_53,
+                (-each_carried_2).mul_add(each_articulated_inertia_45, own_4[7] + child_2[34]),
+            ),
+        );
+        let each_articulated_inertia_66 = (-each_articulated_inertia_52).mul_add(
+            each_articulated_inertia_63,
+            (-each_articulated_inertia_44).mul_add(
+                each_articulated_inertia_53,
+                (-child_2[25]).mul_add(each_articulated_inertia_45, own_4[8] + child_2[35]),
+            ),
+        );
         // each: seen by parent (53 additions, 83 multiplications)
-        let each_seen_by_parent_34 = (-own_4[14])
-            .mul_add(
-                each_articulated_inertia_59,
-                (-own_4[13])
-                    .mul_add(
-                        each_articulated_inertia_58,
-                        (-own_4[12])
-                            .mul_add(
-                                each_articulated_inertia_57,
-                                each_articulated_inertia_64,
-                            ),
-                    ),
-            );
-        let each_seen_by_parent_35 = own_4[14]
-            .mul_add(
+        let each_seen_by_parent_34 = (-own_4[14]).mul_add(
+            each_articulated_inertia_59,
+            (-own_4[13]).mul_add(
+                each_articulated_inertia_58,
+                (-own_4[12]).mul_add(each_articulated_inertia_57, each_articulated_inertia_64),
+            ),
+        );
+        let each_seen_by_parent_35 = own_4[14].mul_add(
+            each_articulated_inertia_61,
+            own_4[13].mul_add(
+                each_articulated_inertia_60,
+                own_4[12].mul_add(each_articulated_inertia_58, each_articulated_inertia_65),
+            ),
+        );
+        let each_seen_by_parent_36 = own_4[14].mul_add(
+            each_articulated_inertia_62,
+            own_4[13].mul_add(
                 each_articulated_inertia_61,
-                own_4[13]
-                    .mul_add(
-                        each_articulated_inertia_60,
-                        own_4[12]
-                            .mul_add(
-                                each_articulated_inertia_58,
-                                each_articulated_inertia_65,
-                            ),
-                    ),
-            );
-        let each_seen_by_parent_36 = own_4[14]
-            .mul_add(
-                each_articulated_inertia_62,
-                own_4[13]
-                    .mul_add(
-                        each_articulated_inertia_61,
-                        own_4[12]
-                            .mul_add(
-                                each_articulated_inertia_59,
-                                each_articulated_inertia_66,
-                            ),
-                    ),
-            );
-        let each_seen_by_parent_37 = q[164 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_59,
-                q[163 - 9 * i]
-                    .mul_add(
-                        each_articulated_inertia_58,
-                        q[162 - 9 * i] * each_articulated_inertia_57,
-                    ),
-            );
-        let each_seen_by_parent_38 = q[167 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_59,
-                q[166 - 9 * i]
-                    .mul_add(
-                        each_articulated_inertia_58,
-                        q[165 - 9 * i] * each_articulated_inertia_57,
-                    ),
-            );
-        let each_seen_by_parent_39 = q[164 - 9 * i]
-            .mul_add(
+                own_4[12].mul_add(each_articulated_inertia_59, each_articulated_inertia_66),
+            ),
+        );
+        let each_seen_by_parent_37 = q[164 - 9 * i].mul_add(
+            each_articulated_inertia_59,
+            q[163 - 9 * i].mul_add(each_articulated_inertia_58, q[162 - 9 * i] * each_articulated_inertia_57),
+        );
+        let each_seen_by_parent_38 = q[167 - 9 * i].mul_add(
+            each_articulated_inertia_59,
+            q[166 - 9 * i].mul_add(each_articulated_inertia_58, q[165 - 9 * i] * each_articulated_inertia_57),
+        );
+        let each_seen_by_parent_39 = q[164 - 9 * i].mul_add(
+            each_articulated_inertia_61,
+            q[163 - 9 * i].mul_add(each_articulated_inertia_60, q[162 - 9 * i] * each_articulated_inertia_58),
+        );
+        let each_seen_by_parent_40 = q[167 - 9 * i].mul_add(
+            each_articulated_inertia_61,
+            q[166 - 9 * i].mul_add(each_articulated_inertia_60, q[165 - 9 * i] * each_articulated_inertia_58),
+        );
+        let each_seen_by_parent_41 = q[164 - 9 * i].mul_add(
+            each_articulated_inertia_62,
+            q[163 - 9 * i].mul_add(each_articulated_inertia_61, q[162 - 9 * i] * each_articulated_inertia_59),
+        );
+        let each_seen_by_parent_42 = q[167 - 9 * i].mul_add(
+            each_articulated_inertia_62,
+            q[166 - 9 * i].mul_add(each_articulated_inertia_61, q[165 - 9 * i] * each_articulated_inertia_59),
+        );
+        let each_seen_by_parent_43 = q[164 - 9 * i].mul_add(
+            each_seen_by_parent_41,
+            q[163 - 9 * i].mul_add(each_seen_by_parent_39, q[162 - 9 * i] * each_seen_by_parent_37),
+        );
+        let each_seen_by_parent_44 = q[167 - 9 * i].mul_add(
+            each_seen_by_parent_41,
+            q[166 - 9 * i].mul_add(each_seen_by_parent_39, q[165 - 9 * i] * each_seen_by_parent_37),
+        );
+        let each_seen_by_parent_45 = q[170 - 9 * i].mul_add(
+            each_seen_by_parent_41,
+            q[169 - 9 * i].mul_add(each_seen_by_parent_39, q[168 - 9 * i] * each_seen_by_parent_37),
+        );
+        let each_seen_by_parent_46 = q[167 - 9 * i].mul_add(
+            each_seen_by_parent_42,
+            q[166 - 9 * i].mul_add(each_seen_by_parent_40, q[165 - 9 * i] * each_seen_by_parent_38),
+        );
+        let each_seen_by_parent_47 = q[170 - 9 * i].mul_add(
+            each_seen_by_parent_42,
+            q[169 - 9 * i].mul_add(each_seen_by_parent_40, q[168 - 9 * i] * each_seen_by_parent_38),
+        );
+        let each_seen_by_parent_48 = q[169 - 9 * i].mul_add(
+            q[170 - 9 * i].mul_add(
                 each_articulated_inertia_61,
-                q[163 - 9 * i]
-                    .mul_add(
-                        each_articulated_inertia_60,
-                        q[162 - 9 * i] * each_articulated_inertia_58,
-                    ),
-            );
-        let each_seen_by_parent_40 = q[167 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_61,
-                q[166 - 9 * i]
-                    .mul_add(
-                        each_articulated_inertia_60,
-                        q[165 - 9 * i] * each_articulated_inertia_58,
-                    ),
-            );
-        let each_seen_by_parent_41 = q[164 - 9 * i]
-            .mul_add(
+                q[169 - 9 * i].mul_add(each_articulated_inertia_60, q[168 - 9 * i] * each_articulated_inertia_58),
+            ),
+            q[168 - 9 * i] * (q[170 - 9 * i].mul_add(
+                each_articulated_inertia_59,
+                q[169 - 9 * i].mul_add(each_articulated_inertia_58, q[168 - 9 * i] * each_articulated_inertia_57),
+            )),
+        );
+        let each_seen_by_parent_49 = q[170 - 9 * i].mul_add(
+            q[170 - 9 * i].mul_add(
                 each_articulated_inertia_62,
-                q[163 - 9 * i]
-                    .mul_add(
-                        each_articulated_inertia_61,
-                        q[162 - 9 * i] * each_articulated_inertia_59,
-                    ),
-            );
-        let each_seen_by_parent_42 = q[167 - 9 * i]
-            .mul_add(
-                each_articulated_inertia_62,
-                q[166 - 9 * i]
-                    .mul_add(
-                        each_articulated_inertia_61,
-                        q[165 - 9 * i] * each_articulated_inertia_59,
-                    ),
-            );
-        let each_seen_by_parent_43 = q[164 - 9 * i]
-            .mul_add(
-                each_seen_by_parent_41,
-                q[163 - 9 * i]
-                    .mul_add(
-                        each_seen_by_parent_39,
-                        q[162 - 9 * i] * each_seen_by_parent_37,
-                    ),
-            );
-        let each_seen_by_parent_44 = q[167 - 9 * i]
-            .mul_add(
-                each_seen_by_parent_41,
-                q[166 - 9 * i]
-                    .mul_add(
-                        each_seen_by_parent_39,
-                        q[165 - 9 * i] * each_seen_by_parent_37,
-                    ),
-            );
-        let each_seen_by_parent_45 = q[170 - 9 * i]
-            .mul_add(
-                each_seen_by_parent_41,
-                q[169 - 9 * i]
-                    .mul_add(
-                        each_seen_by_parent_39,
-                        q[168 - 9 * i] * each_seen_by_parent_37,
-                    ),
-            );
-        let each_seen_by_parent_46 = q[167 - 9 * i]
-            .mul_add(
-                each_seen_by_parent_42,
-                q[166 - 9 * i]
-                    .mul_add(
-                        each_seen_by_parent_40,
-                        q[165 - 9 * i] * each_seen_by_parent_38,
-                    ),
-            );
-        let each_seen_by_parent_47 = q[170 - 9 * i]
-            .mul_add(
-                each_seen_by_parent_42,
-                q[169 - 9 * i]
-                    .mul_add(
-                        each_seen_by_parent_40,
-                        q[168 - 9 * i] * each_seen_by_parent_38,
-                    ),
-            );
-        let each_seen_by_parent_48 = q[169 - 9 * i]
-            .mul_add(
-                q[170 - 9 * i]
-                    .mul_add(
-                        each_articulated_inertia_61,
-                        q[169 - 9 * i]
-                            .mul_add(
-                                each_articulated_inertia_60,
-                                q[168 - 9 * i] * each_articulated_inertia_58,
-                            ),
-                    ),
-                q[168 - 9 * i]
-                    * (q[170 - 9 * i]
-                        .mul_add(
-                            each_articulated_inertia_59,
-                            q[169 - 9 * i]
-                                .mul_add(
-                                    each_articulated_inertia_58,
-                                    q[168 - 9 * i] * each_articulated_inertia_57,
-                                ),
-                        )),
-            );
-        let each_seen_by_parent_49 = q[170 - 9 * i]
-            .mul_add(
-                q[170 - 9 * i]
-                    .mul_add(
-                        each_articulated_inertia_62,
-                        q[169 - 9 * i]
-                            .mul_add(
-                                each_articulated_inertia_61,
-                                q[168 - 9 * i] * each_articulated_inertia_59,
-                            ),
-                    ),
-                each_seen_by_parent_48,
-            );
+                q[169 - 9 * i].mul_add(each_articulated_inertia_61, q[168 - 9 * i] * each_articulated_inertia_59),
+            ),
+            each_seen_by_parent_48,
+        );
         let each_seen_by_parent_50 = each_seen_by_parent_44 * n(0.2);
         let each_seen_by_parent_51 = each_seen_by_parent_43 * n(-0.2);
         let each_seen_by_parent_52 = each_seen_by_parent_46 * n(0.2);
@@ -2328,96 +1257,39 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
         let each_seen_by_parent_57 = each_seen_by_parent_44 * n(-0.04000000000000001);
         let each_seen_by_parent_58 = each_seen_by_parent_43 * n(0.04000000000000001);
         let each_seen_by_parent_59 = q[170 - 9 * i]
-            .mul_add(
-                tau[56 - 3 * i],
-                q[169 - 9 * i].mul_add(tau[55 - 3 * i], q[168 - 9 * i] * tau[54 - 3 * i]),
-            );
-        let each_seen_by_parent_60 = (-q[164 - 9 * i])
-            .mul_add(
-                each_seen_by_parent_36,
-                (-q[163 - 9 * i])
-                    .mul_add(
-                        each_seen_by_parent_35,
-                        q[162 - 9 * i] * each_seen_by_parent_34,
-                    ),
-            );
-        let each_seen_by_parent_61 = (-q[167 - 9 * i])
-            .mul_add(
-                each_seen_by_parent_36,
-                (-q[166 - 9 * i])
-                    .mul_add(
-                        each_seen_by_parent_35,
-                        q[165 - 9 * i] * each_seen_by_parent_34,
-                    ),
-            );
-        let each_seen_by_parent_62 = each_seen_by_parent_61
-            .mul_add(
-                n(-0.2),
-                q[164 - 9 * i]
-                    .mul_add(
-                        tau[56 - 3 * i],
-                        q[163 - 9 * i]
-                            .mul_add(tau[55 - 3 * i], q[162 - 9 * i] * tau[54 - 3 * i]),
-                    ),
-            );
-        let each_seen_by_parent_63 = (-each_seen_by_parent_60)
-            .mul_add(
-                n(-0.2),
-                q[167 - 9 * i]
-                    .mul_add(
-                        tau[56 - 3 * i],
-                        q[166 - 9 * i]
-                            .mul_add(tau[55 - 3 * i], q[165 - 9 * i] * tau[54 - 3 * i]),
-                    ),
-            );
+            .mul_add(tau[56 - 3 * i], q[169 - 9 * i].mul_add(tau[55 - 3 * i], q[168 - 9 * i] * tau[54 - 3 * i]));
+        let each_seen_by_parent_60 = (-q[164 - 9 * i]).mul_add(
+            each_seen_by_parent_36,
+            (-q[163 - 9 * i]).mul_add(each_seen_by_parent_35, q[162 - 9 * i] * each_seen_by_parent_34),
+        );
+        let each_seen_by_parent_61 = (-q[167 - 9 * i]).mul_add(
+            each_seen_by_parent_36,
+            (-q[166 - 9 * i]).mul_add(each_seen_by_parent_35, q[165 - 9 * i] * each_seen_by_parent_34),
+        );
+        let each_seen_by_parent_62 = each_seen_by_parent_61.mul_add(
+            n(-0.2),
+            q[164 - 9 * i].mul_add(tau[56 - 3 * i], q[163 - 9 * i].mul_add(tau[55 - 3 * i], q[162 - 9 * i] * tau[54 - 3 * i])),
+        );
+        let each_seen_by_parent_63 = (-each_seen_by_parent_60).mul_add(
+            n(-0.2),
+            q[167 - 9 * i].mul_add(tau[56 - 3 * i], q[166 - 9 * i].mul_add(tau[55 - 3 * i], q[165 - 9 * i] * tau[54 - 3 * i])),
+        );
         let each_seen_by_parent_64 = -each_seen_by_parent_60;
         let each_seen_by_parent_65 = -each_seen_by_parent_61;
-        let each_seen_by_parent_66 = (-q[168 - 9 * i])
-            .mul_add(
-                each_seen_by_parent_34,
-                q[170 - 9 * i]
-                    .mul_add(
-                        each_seen_by_parent_36,
-                        q[169 - 9 * i] * each_seen_by_parent_35,
-                    ),
-            );
+        let each_seen_by_parent_66 = (-q[168 - 9 * i]).mul_add(
+            each_seen_by_parent_34,
+            q[170 - 9 * i].mul_add(each_seen_by_parent_36, q[169 - 9 * i] * each_seen_by_parent_35),
+        );
         rows_of_36[i + 12] = [
-            each_articulated_inertia_35,
-            each_articulated_inertia_36,
-            each_articulated_inertia_37,
-            each_articulated_inertia_38,
-            each_articulated_inertia_39,
-            each_articulated_inertia_45,
-            each_articulated_inertia_46,
-            each_articulated_inertia_47,
-            each_articulated_inertia_48,
-            each_articulated_inertia_49,
-            each_articulated_inertia_53,
-            each_articulated_inertia_54,
-            each_articulated_inertia_55,
-            each_articulated_inertia_56,
-            each_articulated_inertia_63,
-            each_seen_by_parent_43,
-            each_seen_by_parent_44,
-            each_seen_by_parent_45,
-            each_seen_by_parent_46,
-            each_seen_by_parent_47,
-            each_seen_by_parent_49,
-            each_seen_by_parent_50,
-            each_seen_by_parent_51,
-            each_seen_by_parent_52,
-            each_seen_by_parent_53,
-            each_seen_by_parent_54,
-            each_seen_by_parent_55,
-            each_seen_by_parent_56,
-            each_seen_by_parent_57,
-            each_seen_by_parent_58,
-            each_seen_by_parent_59,
-            each_seen_by_parent_62,
-            each_seen_by_parent_63,
-            each_seen_by_parent_64,
-            each_seen_by_parent_65,
-            each_seen_by_parent_66,
+            each_articulated_inertia_35, each_articulated_inertia_36, each_articulated_inertia_37, each_articulated_inertia_38,
+            each_articulated_inertia_39, each_articulated_inertia_45, each_articulated_inertia_46, each_articulated_inertia_47,
+            each_articulated_inertia_48, each_articulated_inertia_49, each_articulated_inertia_53, each_articulated_inertia_54,
+            each_articulated_inertia_55, each_articulated_inertia_56, each_articulated_inertia_63, each_seen_by_parent_43,
+            each_seen_by_parent_44, each_seen_by_parent_45, each_seen_by_parent_46, each_seen_by_parent_47,
+            each_seen_by_parent_49, each_seen_by_parent_50, each_seen_by_parent_51, each_seen_by_parent_52,
+            each_seen_by_parent_53, each_seen_by_parent_54, each_seen_by_parent_55, each_seen_by_parent_56,
+            each_seen_by_parent_57, each_seen_by_parent_58, each_seen_by_parent_59, each_seen_by_parent_62,
+            each_seen_by_parent_63, each_seen_by_parent_64, each_seen_by_parent_65, each_seen_by_parent_66,
         ];
     }
     // link_2: carried (11 additions)
@@ -2426,560 +1298,307 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
     let link_2_articulated_inertia = link_2_bias_8 + rows_of_36[28][31] - tau[3];
     let link_2_inverse_inertia = n(1.0) / (rows_of_36[28][27] + n(0.4855000000000003));
     let link_2_articulated_inertia_2 = rows_of_36[28][28] * link_2_inverse_inertia;
-    let link_2_articulated_inertia_3 = link_2_inverse_inertia
-        * n(0.00041000000000000005);
+    let link_2_articulated_inertia_3 = link_2_inverse_inertia * n(0.00041000000000000005);
     let link_2_articulated_inertia_4 = rows_of_36[28][21] * link_2_inverse_inertia;
     let link_2_articulated_inertia_5 = link_2_carried * link_2_inverse_inertia;
     let link_2_articulated_inertia_6 = rows_of_36[28][25] * link_2_inverse_inertia;
     let link_2_articulated_inertia_7 = (-link_2_articulated_inertia)
-        .mul_add(
-            link_2_articulated_inertia_2,
-            link_2_bias_9 + rows_of_36[28][32] - tau[4],
-        );
-    let link_2_articulated_inertia_8 = link_2_articulated_inertia_2
-        * n(0.00041000000000000005);
+        .mul_add(link_2_articulated_inertia_2, link_2_bias_9 + rows_of_36[28][32] - tau[4]);
+    let link_2_articulated_inertia_8 = link_2_articulated_inertia_2 * n(0.00041000000000000005);
     let link_2_articulated_inertia_9 = (-rows_of_36[28][21])
-        .mul_add(
-            link_2_articulated_inertia_2,
-            rows_of_36[28][22] + n(-2.4400000000000013),
-        );
-    let link_2_articulated_inertia_10 = (-link_2_carried)
-        .mul_add(link_2_articulated_inertia_2, rows_of_36[28][24]);
+        .mul_add(link_2_articulated_inertia_2, rows_of_36[28][22] + n(-2.4400000000000013));
+    let link_2_articulated_inertia_10 = (-link_2_carried).mul_add(link_2_articulated_inertia_2, rows_of_36[28][24]);
     let link_2_articulated_inertia_11 = (-rows_of_36[28][25])
         .mul_add(link_2_articulated_inertia_2, rows_of_36[28][26] + n(-0.004));
-    let link_2_articulated_inertia_12 = link_2_articulated_inertia
-        * link_2_inverse_inertia;
+    let link_2_articulated_inertia_12 = link_2_articulated_inertia * link_2_inverse_inertia;
     let link_2_inverse_inertia_2 = n(1.0)
-        / ((-rows_of_36[28][28])
-            .mul_add(
-                link_2_articulated_inertia_2,
-                rows_of_36[28][29] + n(0.4854400000000003),
-            ));
-    let link_2_articulated_inertia_13 = link_2_articulated_inertia_8
-        * link_2_inverse_inertia_2;
-    let link_2_articulated_inertia_14 = link_2_articulated_inertia_9
-        * link_2_inverse_inertia_2;
-    let link_2_articulated_inertia_15 = link_2_articulated_inertia_10
-        * link_2_inverse_inertia_2;
-    let link_2_articulated_inertia_16 = link_2_articulated_inertia_11
-        * link_2_inverse_inertia_2;
+        / ((-rows_of_36[28][28]).mul_add(link_2_articulated_inertia_2, rows_of_36[28][29] + n(0.4854400000000003)));
+    let link_2_articulated_inertia_13 = link_2_articulated_inertia_8 * link_2_inverse_inertia_2;
+    let link_2_articulated_inertia_14 = link_2_articulated_inertia_9 * link_2_inverse_inertia_2;
+    let link_2_articulated_inertia_15 = link_2_articulated_inertia_10 * link_2_inverse_inertia_2;
+    let link_2_articulated_inertia_16 = link_2_articulated_inertia_11 * link_2_inverse_inertia_2;
     let link_2_articulated_inertia_17 = (-link_2_articulated_inertia_9)
-        .mul_add(
-            link_2_articulated_inertia_13,
-            rows_of_36[28][21] * link_2_articulated_inertia_3,
-        );
+        .mul_add(link_2_articulated_inertia_13, rows_of_36[28][21] * link_2_articulated_inertia_3);
     let link_2_articulated_inertia_18 = (-link_2_articulated_inertia_10)
-        .mul_add(
-            link_2_articulated_inertia_13,
-            link_2_carried.mul_add(link_2_articulated_inertia_3, -n(0.004)),
-        );
+        .mul_add(link_2_articulated_inertia_13, link_2_carried.mul_add(link_2_articulated_inertia_3, -n(0.004)));
     let link_2_articulated_inertia_19 = (-link_2_articulated_inertia_11)
-        .mul_add(
-            link_2_articulated_inertia_13,
-            rows_of_36[28][25] * link_2_articulated_inertia_3,
-        );
-    let link_2_articulated_inertia_20 = link_2_articulated_inertia_7
-        * link_2_inverse_inertia_2;
+        .mul_add(link_2_articulated_inertia_13, rows_of_36[28][25] * link_2_articulated_inertia_3);
+    let link_2_articulated_inertia_20 = link_2_articulated_inertia_7 * link_2_inverse_inertia_2;
     let link_2_inverse_inertia_3 = n(1.0)
         / (link_2_articulated_inertia_8
-            .mul_add(
-                link_2_articulated_inertia_13,
-                link_2_inverse_inertia.mul_add(n(0.00000016810000000000003), -n(0.00024)),
-            ));
-    let link_2_articulated_inertia_21 = link_2_articulated_inertia_17
-        * link_2_inverse_inertia_3;
-    let link_2_articulated_inertia_22 = link_2_articulated_inertia_18
-        * link_2_inverse_inertia_3;
-    let link_2_articulated_inertia_23 = link_2_articulated_inertia_19
-        * link_2_inverse_inertia_3;
-    let link_2_articulated_inertia_24 = (-link_2_articulated_inertia_9)
-        .mul_add(
-            link_2_articulated_inertia_14,
-            (-rows_of_36[28][21])
-                .mul_add(
-                    link_2_articulated_inertia_4,
-                    link_2_articulated_inertia_17
-                        .mul_add(link_2_articulated_inertia_21, rows_of_36[28][15]),
-                ),
-        );
-    let link_2_articulated_inertia_25 = (-link_2_articulated_inertia_9)
-        .mul_add(
-            link_2_articulated_inertia_15,
-            (-rows_of_36[28][21])
-                .mul_add(
-                    link_2_articulated_inertia_5,
-                    link_2_articulated_inertia_17
-                        .mul_add(link_2_articulated_inertia_22, rows_of_36[28][16]),
-                ),
-        );
-    let link_2_articulated_inertia_26 = (-link_2_articulated_inertia_9)
-        .mul_add(
-            link_2_articulated_inertia_16,
-            (-rows_of_36[28][21])
-                .mul_add(
-                    link_2_articulated_inertia_6,
-                    link_2_articulated_inertia_17
-                        .mul_add(link_2_articulated_inertia_23, rows_of_36[28][17]),
-                ),
-        );
-    let link_2_articulated_inertia_27 = (-link_2_articulated_inertia_10)
-        .mul_add(
-            link_2_articulated_inertia_15,
-            (-link_2_carried)
-                .mul_add(
-                    link_2_articulated_inertia_5,
-                    link_2_articulated_inertia_18
-                        .mul_add(link_2_articulated_inertia_22, rows_of_36[28][18]),
-                ),
-        );
-    let link_2_articulated_inertia_28 = (-link_2_articulated_inertia_10)
-        .mul_add(
-            link_2_articulated_inertia_16,
-            (-link_2_carried)
-                .mul_add(
-                    link_2_articulated_inertia_6,
-                    link_2_articulated_inertia_18
-                        .mul_add(link_2_articulated_inertia_23, rows_of_36[28][19]),
-                ),
-        );
-    let link_2_articulated_inertia_29 = (-link_2_articulated_inertia_11)
-        .mul_add(
-            link_2_articulated_inertia_16,
-            (-rows_of_36[28][25])
-                .mul_add(
-                    link_2_articulated_inertia_6,
-                    link_2_articulated_inertia_19
-                        .mul_add(link_2_articulated_inertia_23, rows_of_36[28][20]),
-                ),
-        );
-    let link_2_articulated_inertia_30 = ((-link_2_articulated_inertia)
-        .mul_add(
-            link_2_articulated_inertia_3,
-            link_2_articulated_inertia_7
-                .mul_add(
-                    link_2_articulated_inertia_13,
-                    link_2_bias_10 + rows_of_36[28][30] - tau[5],
-                ),
-        )) * link_2_inverse_inertia_3;
-    let link_2_articulated_inertia_31 = link_2_articulated_inertia_17
-        .mul_add(
-            link_2_articulated_inertia_30,
-            link_2_articulated_inertia_9
-                .mul_add(
-                    link_2_articulated_inertia_20,
-                    rows_of_36[28][21]
-                        .mul_add(
-                            link_2_articulated_inertia_12,
-                            link_2_bias_11 - rows_of_36[28][33],
-                        ),
-                ),
-        );
-    let link_2_articulated_inertia_32 = (-link_2_articulated_inertia_18)
-        .mul_add(
-            link_2_articulated_inertia_30,
-            (-link_2_articulated_inertia_10)
-                .mul_add(
-                    link_2_articulated_inertia_20,
-                    (-link_2_carried)
-                        .mul_add(
-                            link_2_articulated_inertia_12,
-                            link_2_bias_12 + rows_of_36[28][34],
-                        ),
-                ),
-        );
-    let link_2_articulated_inertia_33 = (-link_2_articulated_inertia_19)
-        .mul_add(
-            link_2_articulated_inertia_30,
-            (-link_2_articulated_inertia_11)
-                .mul_add(
-                    link_2_articulated_inertia_20,
-                    (-rows_of_36[28][25])
-                        .mul_add(
-                            link_2_articulated_inertia_12,
-                            link_2_bias_13 + rows_of_36[28][35],
-                        ),
-                ),
-        );
+            .mul_add(link_2_articulated_inertia_13, link_2_inverse_inertia.mul_add(n(0.00000016810000000000003), -n(0.00024))));
+    let link_2_articulated_inertia_21 = link_2_articulated_inertia_17 * link_2_inverse_inertia_3;
+    let link_2_articulated_inertia_22 = link_2_articulated_inertia_18 * link_2_inverse_inertia_3;
+    let link_2_articulated_inertia_23 = link_2_articulated_inertia_19 * link_2_inverse_inertia_3;
+    let link_2_articulated_inertia_24 = (-link_2_articulated_inertia_9).mul_add(
+        link_2_articulated_inertia_14,
+        (-rows_of_36[28][21]).mul_add(
+            link_2_articulated_inertia_4,
+            link_2_articulated_inertia_17.mul_add(link_2_articulated_inertia_21, rows_of_36[28][15]),
+        ),
+    );
+    let link_2_articulated_inertia_25 = (-link_2_articulated_inertia_9).mul_add(
+        link_2_articulated_inertia_15,
+        (-rows_of_36[28][21]).mul_add(
+            link_2_articulated_inertia_5,
+            link_2_articulated_inertia_17.mul_add(link_2_articulated_inertia_22, rows_of_36[28][16]),
+        ),
+    );
+    let link_2_articulated_inertia_26 = (-link_2_articulated_inertia_9).mul_add(
+        link_2_articulated_inertia_16,
+        (-rows_of_36[28][21]).mul_add(
+            link_2_articulated_inertia_6,
+            link_2_articulated_inertia_17.mul_add(link_2_articulated_inertia_23, rows_of_36[28][17]),
+        ),
+    );
+    let link_2_articulated_inertia_27 = (-link_2_articulated_inertia_10).mul_add(
+        link_2_articulated_inertia_15,
+        (-link_2_carried).mul_add(
+            link_2_articulated_inertia_5,
+            link_2_articulated_inertia_18.mul_add(link_2_articulated_inertia_22, rows_of_36[28][18]),
+        ),
+    );
+    let link_2_articulated_inertia_28 = (-link_2_articulated_inertia_10).mul_add(
+        link_2_articulated_inertia_16,
+        (-link_2_carried).mul_add(
+            link_2_articulated_inertia_6,
+            link_2_articulated_inertia_18.mul_add(link_2_articulated_inertia_23, rows_of_36[28][19]),
+        ),
+    );
+    let link_2_articulated_inertia_29 = (-link_2_articulated_inertia_11).mul_add(
+        link_2_articulated_inertia_16,
+        (-rows_of_36[28][25]).mul_add(
+            link_2_articulated_inertia_6,
+            link_2_articulated_inertia_19.mul_add(link_2_articulated_inertia_23, rows_of_36[28][20]),
+        ),
+    );
+    let link_2_articulated_inertia_30 = ((-link_2_articulated_inertia).mul_add(
+        link_2_articulated_inertia_3,
+        link_2_articulated_inertia_7.mul_add(link_2_articulated_inertia_13, link_2_bias_10 + rows_of_36[28][30] - tau[5]),
+    )) * link_2_inverse_inertia_3;
+    let link_2_articulated_inertia_31 = link_2_articulated_inertia_17.mul_add(
+        link_2_articulated_inertia_30,
+        link_2_articulated_inertia_9.mul_add(
+            link_2_articulated_inertia_20,
+            rows_of_36[28][21].mul_add(link_2_articulated_inertia_12, link_2_bias_11 - rows_of_36[28][33]),
+        ),
+    );
+    let link_2_articulated_inertia_32 = (-link_2_articulated_inertia_18).mul_add(
+        link_2_articulated_inertia_30,
+        (-link_2_articulated_inertia_10).mul_add(
+            link_2_articulated_inertia_20,
+            (-link_2_carried).mul_add(link_2_articulated_inertia_12, link_2_bias_12 + rows_of_36[28][34]),
+        ),
+    );
+    let link_2_articulated_inertia_33 = (-link_2_articulated_inertia_19).mul_add(
+        link_2_articulated_inertia_30,
+        (-link_2_articulated_inertia_11).mul_add(
+            link_2_articulated_inertia_20,
+            (-rows_of_36[28][25]).mul_add(link_2_articulated_inertia_12, link_2_bias_13 + rows_of_36[28][35]),
+        ),
+    );
     // link_2: seen by parent (43 additions, 68 multiplications)
-    let link_2_seen_by_parent = (-link_2_bias_22)
-        .mul_add(
-            link_2_articulated_inertia_26,
-            (-link_2_bias_21)
-                .mul_add(
-                    link_2_articulated_inertia_25,
-                    (-link_2_bias_20)
-                        .mul_add(
-                            link_2_articulated_inertia_24,
-                            link_2_articulated_inertia_31,
-                        ),
-                ),
-        );
-    let link_2_seen_by_parent_2 = link_2_bias_22
-        .mul_add(
+    let link_2_seen_by_parent = (-link_2_bias_22).mul_add(
+        link_2_articulated_inertia_26,
+        (-link_2_bias_21).mul_add(
+            link_2_articulated_inertia_25,
+            (-link_2_bias_20).mul_add(link_2_articulated_inertia_24, link_2_articulated_inertia_31),
+        ),
+    );
+    let link_2_seen_by_parent_2 = link_2_bias_22.mul_add(
+        link_2_articulated_inertia_28,
+        link_2_bias_21.mul_add(
+            link_2_articulated_inertia_27,
+            link_2_bias_20.mul_add(link_2_articulated_inertia_25, link_2_articulated_inertia_32),
+        ),
+    );
+    let link_2_seen_by_parent_3 = link_2_bias_22.mul_add(
+        link_2_articulated_inertia_29,
+        link_2_bias_21.mul_add(
             link_2_articulated_inertia_28,
-            link_2_bias_21
-                .mul_add(
-                    link_2_articulated_inertia_27,
-                    link_2_bias_20
-                        .mul_add(
-                            link_2_articulated_inertia_25,
-                            link_2_articulated_inertia_32,
-                        ),
-                ),
-        );
-    let link_2_seen_by_parent_3 = link_2_bias_22
-        .mul_add(
-            link_2_articulated_inertia_29,
-            link_2_bias_21
-                .mul_add(
-                    link_2_articulated_inertia_28,
-                    link_2_bias_20
-                        .mul_add(
-                            link_2_articulated_inertia_26,
-                            link_2_articulated_inertia_33,
-                        ),
-                ),
-        );
-    let link_2_seen_by_parent_4 = q[11]
-        .mul_add(
-            link_2_articulated_inertia_26,
-            q[10]
-                .mul_add(
-                    link_2_articulated_inertia_25,
-                    q[9] * link_2_articulated_inertia_24,
-                ),
-        );
-    let link_2_seen_by_parent_5 = q[14]
-        .mul_add(
-            link_2_articulated_inertia_26,
-            q[13]
-                .mul_add(
-                    link_2_articulated_inertia_25,
-                    q[12] * link_2_articulated_inertia_24,
-                ),
-        );
-    let link_2_seen_by_parent_6 = q[11]
-        .mul_add(
-            link_2_articulated_inertia_28,
-            q[10]
-                .mul_add(
-                    link_2_articulated_inertia_27,
-                    q[9] * link_2_articulated_inertia_25,
-                ),
-        );
-    let link_2_seen_by_parent_7 = q[14]
-        .mul_add(
-            link_2_articulated_inertia_28,
-            q[13]
-                .mul_add(
-                    link_2_articulated_inertia_27,
-                    q[12] * link_2_articulated_inertia_25,
-                ),
-        );
-    let link_2_seen_by_parent_8 = q[11]
-        .mul_add(
-            link_2_articulated_inertia_29,
-            q[10]
-                .mul_add(
-                    link_2_articulated_inertia_28,
-                    q[9] * link_2_articulated_inertia_26,
-                ),
-        );
-    let link_2_seen_by_parent_9 = q[14]
-        .mul_add(
-            link_2_articulated_inertia_29,
-            q[13]
-                .mul_add(
-                    link_2_articulated_inertia_28,
-                    q[12] * link_2_articulated_inertia_26,
-                ),
-        );
+            link_2_bias_20.mul_add(link_2_articulated_inertia_26, link_2_articulated_inertia_33),
+        ),
+    );
+    let link_2_seen_by_parent_4 = q[11].mul_add(
+        link_2_articulated_inertia_26,
+        q[10].mul_add(link_2_articulated_inertia_25, q[9] * link_2_articulated_inertia_24),
+    );
+    let link_2_seen_by_parent_5 = q[14].mul_add(
+        link_2_articulated_inertia_26,
+        q[13].mul_add(link_2_articulated_inertia_25, q[12] * link_2_articulated_inertia_24),
+    );
+    let link_2_seen_by_parent_6 = q[11].mul_add(
+        link_2_articulated_inertia_28,
+        q[10].mul_add(link_2_articulated_inertia_27, q[9] * link_2_articulated_inertia_25),
+    );
+    let link_2_seen_by_parent_7 = q[14].mul_add(
+        link_2_articulated_inertia_28,
+        q[13].mul_add(link_2_articulated_inertia_27, q[12] * link_2_articulated_inertia_25),
+    );
+    let link_2_seen_by_parent_8 = q[11].mul_add(
+        link_2_articulated_inertia_29,
+        q[10].mul_add(link_2_articulated_inertia_28, q[9] * link_2_articulated_inertia_26),
+    );
+    let link_2_seen_by_parent_9 = q[14].mul_add(
+        link_2_articulated_inertia_29,
+        q[13].mul_add(link_2_articulated_inertia_28, q[12] * link_2_articulated_inertia_26),
+    );
     let link_2_seen_by_parent_10 = q[11]
-        .mul_add(
-            link_2_seen_by_parent_8,
-            q[10].mul_add(link_2_seen_by_parent_6, q[9] * link_2_seen_by_parent_4),
-        );
+        .mul_add(link_2_seen_by_parent_8, q[10].mul_add(link_2_seen_by_parent_6, q[9] * link_2_seen_by_parent_4));
     let link_2_seen_by_parent_11 = q[14]
-        .mul_add(
-            link_2_seen_by_parent_8,
-            q[13].mul_add(link_2_seen_by_parent_6, q[12] * link_2_seen_by_parent_4),
-        );
+        .mul_add(link_2_seen_by_parent_8, q[13].mul_add(link_2_seen_by_parent_6, q[12] * link_2_seen_by_parent_4));
     let link_2_seen_by_parent_12 = q[14]
-        .mul_add(
-            link_2_seen_by_parent_9,
-            q[13].mul_add(link_2_seen_by_parent_7, q[12] * link_2_seen_by_parent_5),
-        );
+        .mul_add(link_2_seen_by_parent_9, q[13].mul_add(link_2_seen_by_parent_7, q[12] * link_2_seen_by_parent_5));
     let link_2_seen_by_parent_13 = link_2_seen_by_parent_11 * n(0.2);
     let link_2_seen_by_parent_14 = link_2_seen_by_parent_10 * n(-0.2);
     let link_2_seen_by_parent_15 = link_2_seen_by_parent_12 * n(0.2);
     let link_2_seen_by_parent_16 = link_2_seen_by_parent_11 * n(-0.2);
     let link_2_seen_by_parent_17 = (q[17]
-        .mul_add(
-            link_2_seen_by_parent_9,
-            q[16].mul_add(link_2_seen_by_parent_7, q[15] * link_2_seen_by_parent_5),
-        )) * n(0.2);
+        .mul_add(link_2_seen_by_parent_9, q[16].mul_add(link_2_seen_by_parent_7, q[15] * link_2_seen_by_parent_5))) * n(0.2);
     let link_2_seen_by_parent_18 = (q[17]
-        .mul_add(
-            link_2_seen_by_parent_8,
-            q[16].mul_add(link_2_seen_by_parent_6, q[15] * link_2_seen_by_parent_4),
-        )) * n(-0.2);
+        .mul_add(link_2_seen_by_parent_8, q[16].mul_add(link_2_seen_by_parent_6, q[15] * link_2_seen_by_parent_4))) * n(-0.2);
     let link_2_seen_by_parent_19 = link_2_seen_by_parent_12 * n(0.04000000000000001);
     let link_2_seen_by_parent_20 = link_2_seen_by_parent_11 * n(-0.04000000000000001);
     let link_2_seen_by_parent_21 = link_2_seen_by_parent_10 * n(0.04000000000000001);
-    let link_2_seen_by_parent_22 = q[17]
-        .mul_add(tau[5], q[16].mul_add(tau[4], q[15] * tau[3]));
+    let link_2_seen_by_parent_22 = q[17].mul_add(tau[5], q[16].mul_add(tau[4], q[15] * tau[3]));
     let link_2_seen_by_parent_23 = ((-q[14])
-        .mul_add(
-            link_2_seen_by_parent_3,
-            (-q[13]).mul_add(link_2_seen_by_parent_2, q[12] * link_2_seen_by_parent),
-        ))
+        .mul_add(link_2_seen_by_parent_3, (-q[13]).mul_add(link_2_seen_by_parent_2, q[12] * link_2_seen_by_parent)))
         .mul_add(n(-0.2), q[11].mul_add(tau[5], q[10].mul_add(tau[4], q[9] * tau[3])));
     let link_2_seen_by_parent_24 = (-((-q[11])
-        .mul_add(
-            link_2_seen_by_parent_3,
-            (-q[10]).mul_add(link_2_seen_by_parent_2, q[9] * link_2_seen_by_parent),
-        )))
+        .mul_add(link_2_seen_by_parent_3, (-q[10]).mul_add(link_2_seen_by_parent_2, q[9] * link_2_seen_by_parent))))
         .mul_add(n(-0.2), q[14].mul_add(tau[5], q[13].mul_add(tau[4], q[12] * tau[3])));
     // link_1: carried (8 additions)
     let link_1_carried = link_2_seen_by_parent_15 + n(2.5200000000000014);
     // link_1: articulated inertia (16 additions, 31 multiplications, 3 divisions)
     let link_1_articulated_inertia = link_1_bias_6 + link_2_seen_by_parent_23 - tau[0];
-    let link_1_inverse_inertia = n(1.0)
-        / (link_2_seen_by_parent_19 + n(0.5015000000000003));
+    let link_1_inverse_inertia = n(1.0) / (link_2_seen_by_parent_19 + n(0.5015000000000003));
     let link_1_articulated_inertia_2 = link_2_seen_by_parent_20 * link_1_inverse_inertia;
-    let link_1_articulated_inertia_3 = link_1_inverse_inertia
-        * n(0.00041000000000000005);
+    let link_1_articulated_inertia_3 = link_1_inverse_inertia * n(0.00041000000000000005);
     let link_1_articulated_inertia_4 = (-link_1_articulated_inertia)
-        .mul_add(
-            link_1_articulated_inertia_2,
-            link_1_bias_7 + link_2_seen_by_parent_24 - tau[1],
-        );
-    let link_1_articulated_inertia_5 = link_1_articulated_inertia_2
-        * n(0.00041000000000000005);
+        .mul_add(link_1_articulated_inertia_2, link_1_bias_7 + link_2_seen_by_parent_24 - tau[1]);
+    let link_1_articulated_inertia_5 = link_1_articulated_inertia_2 * n(0.00041000000000000005);
     let link_1_articulated_inertia_6 = (-link_2_seen_by_parent_13)
-        .mul_add(
-            link_1_articulated_inertia_2,
-            link_2_seen_by_parent_14 + n(-2.5200000000000014),
-        );
-    let link_1_articulated_inertia_7 = (-link_1_carried)
-        .mul_add(link_1_articulated_inertia_2, link_2_seen_by_parent_16);
+        .mul_add(link_1_articulated_inertia_2, link_2_seen_by_parent_14 + n(-2.5200000000000014));
+    let link_1_articulated_inertia_7 = (-link_1_carried).mul_add(link_1_articulated_inertia_2, link_2_seen_by_parent_16);
     let link_1_articulated_inertia_8 = (-link_2_seen_by_parent_17)
         .mul_add(link_1_articulated_inertia_2, link_2_seen_by_parent_18 + n(-0.004));
     let link_1_inverse_inertia_2 = n(1.0)
-        / ((-link_2_seen_by_parent_20)
-            .mul_add(
-                link_1_articulated_inertia_2,
-                link_2_seen_by_parent_21 + n(0.5014400000000003),
-            ));
-    let link_1_articulated_inertia_9 = link_1_articulated_inertia_5
-        * link_1_inverse_inertia_2;
+        / ((-link_2_seen_by_parent_20).mul_add(link_1_articulated_inertia_2, link_2_seen_by_parent_21 + n(0.5014400000000003)));
+    let link_1_articulated_inertia_9 = link_1_articulated_inertia_5 * link_1_inverse_inertia_2;
     let link_1_inverse_inertia_3 = n(1.0)
         / (link_1_articulated_inertia_5
-            .mul_add(
-                link_1_articulated_inertia_9,
-                link_1_inverse_inertia.mul_add(n(0.00000016810000000000003), -n(0.00024)),
-            ));
-    let link_1_articulated_inertia_10 = ((-link_1_articulated_inertia)
-        .mul_add(
-            link_1_articulated_inertia_3,
-            link_1_articulated_inertia_4
-                .mul_add(
-                    link_1_articulated_inertia_9,
-                    link_1_bias_8 + link_2_seen_by_parent_22 - tau[2],
-                ),
-        )) * link_1_inverse_inertia_3;
+            .mul_add(link_1_articulated_inertia_9, link_1_inverse_inertia.mul_add(n(0.00000016810000000000003), -n(0.00024))));
+    let link_1_articulated_inertia_10 = ((-link_1_articulated_inertia).mul_add(
+        link_1_articulated_inertia_3,
+        link_1_articulated_inertia_4.mul_add(link_1_articulated_inertia_9, link_1_bias_8 + link_2_seen_by_parent_22 - tau[2]),
+    )) * link_1_inverse_inertia_3;
     // link_1: acceleration (12 additions, 15 multiplications)
     let link_1_acceleration = q[6] * n(9.81);
     let link_1_acceleration_2 = q[7] * n(9.81);
     let link_1_acceleration_3 = q[8] * n(9.81);
-    let link_1_acceleration_4 = (((-link_1_articulated_inertia_7)
-        .mul_add(
+    let link_1_acceleration_4 = (((-link_1_articulated_inertia_7).mul_add(
+        link_1_articulated_inertia_9,
+        link_1_carried.mul_add(link_1_articulated_inertia_3, -n(0.004)),
+    )) * link_1_inverse_inertia_3).mul_add(
+        link_1_acceleration_2,
+        (((-link_1_articulated_inertia_6).mul_add(
             link_1_articulated_inertia_9,
-            link_1_carried.mul_add(link_1_articulated_inertia_3, -n(0.004)),
-        )) * link_1_inverse_inertia_3)
-        .mul_add(
+            link_2_seen_by_parent_13 * link_1_articulated_inertia_3,
+        )) * link_1_inverse_inertia_3) * link_1_acceleration,
+    );
+    let link_1_acceleration_5 = (-(((-link_1_articulated_inertia_8).mul_add(
+        link_1_articulated_inertia_9,
+        link_2_seen_by_parent_17 * link_1_articulated_inertia_3,
+    )) * link_1_inverse_inertia_3)).mul_add(link_1_acceleration_3, link_1_articulated_inertia_10 - link_1_acceleration_4);
+    let link_1_acceleration_6 = (link_1_articulated_inertia_8 * link_1_inverse_inertia_2).mul_add(
+        link_1_acceleration_3,
+        (link_1_articulated_inertia_7 * link_1_inverse_inertia_2).mul_add(
             link_1_acceleration_2,
-            (((-link_1_articulated_inertia_6)
-                .mul_add(
-                    link_1_articulated_inertia_9,
-                    link_2_seen_by_parent_13 * link_1_articulated_inertia_3,
-                )) * link_1_inverse_inertia_3) * link_1_acceleration,
-        );
-    let link_1_acceleration_5 = (-(((-link_1_articulated_inertia_8)
-        .mul_add(
-            link_1_articulated_inertia_9,
-            link_2_seen_by_parent_17 * link_1_articulated_inertia_3,
-        )) * link_1_inverse_inertia_3))
-        .mul_add(
-            link_1_acceleration_3,
-            link_1_articulated_inertia_10 - link_1_acceleration_4,
-        );
-    let link_1_acceleration_6 = (link_1_articulated_inertia_8 * link_1_inverse_inertia_2)
-        .mul_add(
-            link_1_acceleration_3,
-            (link_1_articulated_inertia_7 * link_1_inverse_inertia_2)
-                .mul_add(
-                    link_1_acceleration_2,
-                    (link_1_articulated_inertia_6 * link_1_inverse_inertia_2)
-                        * link_1_acceleration,
-                ),
-        );
+            (link_1_articulated_inertia_6 * link_1_inverse_inertia_2) * link_1_acceleration,
+        ),
+    );
     let link_1_acceleration_7 = (-link_1_articulated_inertia_4)
-        .mul_add(
-            link_1_inverse_inertia_2,
-            link_1_articulated_inertia_9
-                .mul_add(link_1_acceleration_5, -link_1_acceleration_6),
-        );
-    let link_1_acceleration_8 = (link_2_seen_by_parent_17 * link_1_inverse_inertia)
-        .mul_add(
-            link_1_acceleration_3,
-            (link_1_carried * link_1_inverse_inertia)
-                .mul_add(
-                    link_1_acceleration_2,
-                    (link_2_seen_by_parent_13 * link_1_inverse_inertia)
-                        * link_1_acceleration,
-                ),
-        );
-    let link_1_acceleration_9 = link_1_articulated_inertia
-        .mul_add(
-            link_1_inverse_inertia,
-            link_1_articulated_inertia_3
-                .mul_add(
-                    link_1_acceleration_5,
-                    link_1_articulated_inertia_2
-                        .mul_add(link_1_acceleration_7, link_1_acceleration_8),
-                ),
-        );
+        .mul_add(link_1_inverse_inertia_2, link_1_articulated_inertia_9.mul_add(link_1_acceleration_5, -link_1_acceleration_6));
+    let link_1_acceleration_8 = (link_2_seen_by_parent_17 * link_1_inverse_inertia).mul_add(
+        link_1_acceleration_3,
+        (link_1_carried * link_1_inverse_inertia)
+            .mul_add(link_1_acceleration_2, (link_2_seen_by_parent_13 * link_1_inverse_inertia) * link_1_acceleration),
+    );
+    let link_1_acceleration_9 = link_1_articulated_inertia.mul_add(
+        link_1_inverse_inertia,
+        link_1_articulated_inertia_3.mul_add(
+            link_1_acceleration_5,
+            link_1_articulated_inertia_2.mul_add(link_1_acceleration_7, link_1_acceleration_8),
+        ),
+    );
     let link_1_acceleration_10 = -link_1_acceleration_9;
     results[0] = -link_1_acceleration_9;
     results[1] = link_1_acceleration_7;
     results[2] = link_1_acceleration_5;
     // link_2: acceleration (38 additions, 35 multiplications)
-    let link_2_acceleration = link_1_acceleration_7
-        .mul_add(n(-0.2), link_1_acceleration);
-    let link_2_acceleration_2 = (-link_1_acceleration_10)
-        .mul_add(n(-0.2), link_1_acceleration_2);
-    let link_2_acceleration_3 = q[16]
-        .mul_add(
-            link_1_acceleration_5,
-            q[13]
-                .mul_add(
-                    link_1_acceleration_7,
-                    q[10].mul_add(link_1_acceleration_10, link_2_bias_15),
-                ),
-        );
-    let link_2_acceleration_4 = q[17]
-        .mul_add(
-            link_1_acceleration_5,
-            q[14]
-                .mul_add(
-                    link_1_acceleration_7,
-                    q[11].mul_add(link_1_acceleration_10, link_2_bias_16),
-                ),
-        );
-    let link_2_acceleration_5 = q[15]
-        .mul_add(
-            link_1_acceleration_3,
-            q[12]
-                .mul_add(
-                    link_2_acceleration_2,
-                    q[9].mul_add(link_2_acceleration, link_2_bias_20),
-                ),
-        );
-    let link_2_acceleration_6 = q[16]
-        .mul_add(
-            link_1_acceleration_3,
-            q[13]
-                .mul_add(
-                    link_2_acceleration_2,
-                    q[10].mul_add(link_2_acceleration, link_2_bias_21),
-                ),
-        );
-    let link_2_acceleration_7 = q[17]
-        .mul_add(
-            link_1_acceleration_3,
-            q[14]
-                .mul_add(
-                    link_2_acceleration_2,
-                    q[11].mul_add(link_2_acceleration, link_2_bias_22),
-                ),
-        );
-    let link_2_acceleration_8 = (-link_2_articulated_inertia_23)
-        .mul_add(
-            link_2_acceleration_7,
-            (-link_2_articulated_inertia_22)
-                .mul_add(
-                    link_2_acceleration_6,
-                    (-link_2_articulated_inertia_21)
-                        .mul_add(link_2_acceleration_5, link_2_articulated_inertia_30),
-                ),
-        );
+    let link_2_acceleration = link_1_acceleration_7.mul_add(n(-0.2), link_1_acceleration);
+    let link_2_acceleration_2 = (-link_1_acceleration_10).mul_add(n(-0.2), link_1_acceleration_2);
+    let link_2_acceleration_3 = q[16].mul_add(
+        link_1_acceleration_5,
+        q[13].mul_add(link_1_acceleration_7, q[10].mul_add(link_1_acceleration_10, link_2_bias_15)),
+    );
+    let link_2_acceleration_4 = q[17].mul_add(
+        link_1_acceleration_5,
+        q[14].mul_add(link_1_acceleration_7, q[11].mul_add(link_1_acceleration_10, link_2_bias_16)),
+    );
+    let link_2_acceleration_5 = q[15].mul_add(
+        link_1_acceleration_3,
+        q[12].mul_add(link_2_acceleration_2, q[9].mul_add(link_2_acceleration, link_2_bias_20)),
+    );
+    let link_2_acceleration_6 = q[16].mul_add(
+        link_1_acceleration_3,
+        q[13].mul_add(link_2_acceleration_2, q[10].mul_add(link_2_acceleration, link_2_bias_21)),
+    );
+    let link_2_acceleration_7 = q[17].mul_add(
+        link_1_acceleration_3,
+        q[14].mul_add(link_2_acceleration_2, q[11].mul_add(link_2_acceleration, link_2_bias_22)),
+    );
+    let link_2_acceleration_8 = (-link_2_articulated_inertia_23).mul_add(
+        link_2_acceleration_7,
+        (-link_2_articulated_inertia_22).mul_add(
+            link_2_acceleration_6,
+            (-link_2_articulated_inertia_21).mul_add(link_2_acceleration_5, link_2_articulated_inertia_30),
+        ),
+    );
     let link_2_acceleration_9 = link_2_acceleration_4 - link_2_acceleration_8;
-    let link_2_acceleration_10 = (-link_2_articulated_inertia_16)
-        .mul_add(
-            link_2_acceleration_7,
-            (-link_2_articulated_inertia_15)
-                .mul_add(
-                    link_2_acceleration_6,
-                    (-link_2_articulated_inertia_14)
-                        .mul_add(
-                            link_2_acceleration_5,
-                            link_2_articulated_inertia_13 * link_2_acceleration_4,
-                        ),
-                ),
-        );
+    let link_2_acceleration_10 = (-link_2_articulated_inertia_16).mul_add(
+        link_2_acceleration_7,
+        (-link_2_articulated_inertia_15).mul_add(
+            link_2_acceleration_6,
+            (-link_2_articulated_inertia_14)
+                .mul_add(link_2_acceleration_5, link_2_articulated_inertia_13 * link_2_acceleration_4),
+        ),
+    );
     let link_2_acceleration_11 = link_2_articulated_inertia_13
-        .mul_add(
-            link_2_acceleration_9,
-            link_2_articulated_inertia_20 - link_2_acceleration_10,
-        );
+        .mul_add(link_2_acceleration_9, link_2_articulated_inertia_20 - link_2_acceleration_10);
     let link_2_acceleration_12 = link_2_acceleration_3 + link_2_acceleration_11;
-    let link_2_acceleration_13 = link_2_articulated_inertia_6
-        .mul_add(
-            link_2_acceleration_7,
-            link_2_articulated_inertia_5
-                .mul_add(
-                    link_2_acceleration_6,
-                    link_2_articulated_inertia_4
-                        .mul_add(
-                            link_2_acceleration_5,
-                            link_2_articulated_inertia_3
-                                .mul_add(
-                                    link_2_acceleration_4,
-                                    link_2_articulated_inertia_2 * link_2_acceleration_3,
-                                ),
-                        ),
-                ),
-        );
-    let link_2_acceleration_14 = link_2_articulated_inertia_3
-        .mul_add(
-            link_2_acceleration_9,
-            link_2_articulated_inertia_2
-                .mul_add(
-                    link_2_acceleration_12,
-                    -link_2_articulated_inertia_12 - link_2_acceleration_13,
-                ),
-        );
-    let link_2_acceleration_15 = q[15]
-        .mul_add(
-            link_1_acceleration_5,
-            q[12]
-                .mul_add(
-                    link_1_acceleration_7,
-                    q[9]
-                        .mul_add(
-                            link_1_acceleration_10,
-                            link_2_bias_14 - link_2_acceleration_14,
-                        ),
-                ),
-        );
+    let link_2_acceleration_13 = link_2_articulated_inertia_6.mul_add(
+        link_2_acceleration_7,
+        link_2_articulated_inertia_5.mul_add(
+            link_2_acceleration_6,
+            link_2_articulated_inertia_4.mul_add(
+                link_2_acceleration_5,
+                link_2_articulated_inertia_3
+                    .mul_add(link_2_acceleration_4, link_2_articulated_inertia_2 * link_2_acceleration_3),
+            ),
+        ),
+    );
+    let link_2_acceleration_14 = link_2_articulated_inertia_3.mul_add(
+        link_2_acceleration_9,
+        link_2_articulated_inertia_2.mul_add(link_2_acceleration_12, -link_2_articulated_inertia_12 - link_2_acceleration_13),
+    );
+    let link_2_acceleration_15 = q[15].mul_add(
+        link_1_acceleration_5,
+        q[12].mul_add(link_1_acceleration_7, q[9].mul_add(link_1_acceleration_10, link_2_bias_14 - link_2_acceleration_14)),
+    );
     let link_2_acceleration_16 = -link_2_acceleration_11;
     rows_of_6[31] = [
-        link_2_acceleration_5,
-        link_2_acceleration_6,
-        link_2_acceleration_7,
-        link_2_acceleration_8,
-        link_2_acceleration_14,
+        link_2_acceleration_5, link_2_acceleration_6, link_2_acceleration_7, link_2_acceleration_8, link_2_acceleration_14,
         link_2_acceleration_16,
     ];
     results[3] = -link_2_acceleration_15;
@@ -2994,109 +1613,51 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
         let each_acceleration = parent_4[5].mul_add(n(-0.2), parent_4[0]);
         let each_acceleration_2 = (-parent_4[4]).mul_add(n(-0.2), parent_4[1]);
         let each_acceleration_3 = q[9 * i + 25]
-            .mul_add(
-                parent_4[3],
-                q[9 * i + 22]
-                    .mul_add(parent_4[5], q[9 * i + 19].mul_add(parent_4[4], own_5[10])),
-            );
+            .mul_add(parent_4[3], q[9 * i + 22].mul_add(parent_4[5], q[9 * i + 19].mul_add(parent_4[4], own_5[10])));
         let each_acceleration_4 = q[9 * i + 26]
-            .mul_add(
-                parent_4[3],
-                q[9 * i + 23]
-                    .mul_add(parent_4[5], q[9 * i + 20].mul_add(parent_4[4], own_5[11])),
-            );
-        let each_acceleration_5 = q[9 * i + 24]
-            .mul_add(
-                parent_4[2],
-                q[9 * i + 21]
-                    .mul_add(
-                        each_acceleration_2,
-                        q[9 * i + 18].mul_add(each_acceleration, own_5[12]),
-                    ),
-            );
-        let each_acceleration_6 = q[9 * i + 25]
-            .mul_add(
-                parent_4[2],
-                q[9 * i + 22]
-                    .mul_add(
-                        each_acceleration_2,
-                        q[9 * i + 19].mul_add(each_acceleration, own_5[13]),
-                    ),
-            );
-        let each_acceleration_7 = q[9 * i + 26]
-            .mul_add(
-                parent_4[2],
-                q[9 * i + 23]
-                    .mul_add(
-                        each_acceleration_2,
-                        q[9 * i + 20].mul_add(each_acceleration, own_5[14]),
-                    ),
-            );
-        let each_acceleration_8 = (-own_6[13])
-            .mul_add(
-                each_acceleration_7,
-                (-own_6[12])
-                    .mul_add(
-                        each_acceleration_6,
-                        (-own_6[11]).mul_add(each_acceleration_5, own_6[14]),
-                    ),
-            );
+            .mul_add(parent_4[3], q[9 * i + 23].mul_add(parent_4[5], q[9 * i + 20].mul_add(parent_4[4], own_5[11])));
+        let each_acceleration_5 = q[9 * i + 24].mul_add(
+            parent_4[2],
+            q[9 * i + 21].mul_add(each_acceleration_2, q[9 * i + 18].mul_add(each_acceleration, own_5[12])),
+        );
+        let each_acceleration_6 = q[9 * i + 25].mul_add(
+            parent_4[2],
+            q[9 * i + 22].mul_add(each_acceleration_2, q[9 * i + 19].mul_add(each_acceleration, own_5[13])),
+        );
+        let each_acceleration_7 = q[9 * i + 26].mul_add(
+            parent_4[2],
+            q[9 * i + 23].mul_add(each_acceleration_2, q[9 * i + 20].mul_add(each_acceleration, own_5[14])),
+        );
+        let each_acceleration_8 = (-own_6[13]).mul_add(
+            each_acceleration_7,
+            (-own_6[12]).mul_add(each_acceleration_6, (-own_6[11]).mul_add(each_acceleration_5, own_6[14])),
+        );
         let each_acceleration_9 = each_acceleration_4 - each_acceleration_8;
-        let each_acceleration_10 = (-own_6[9])
-            .mul_add(
-                each_acceleration_7,
-                (-own_6[8])
-                    .mul_add(
-                        each_acceleration_6,
-                        (-own_6[7])
-                            .mul_add(each_acceleration_5, own_6[6] * each_acceleration_4),
-                    ),
-            );
-        let each_acceleration_11 = own_6[6]
-            .mul_add(each_acceleration_9, own_6[10] - each_acceleration_10);
+        let each_acceleration_10 = (-own_6[9]).mul_add(
+            each_acceleration_7,
+            (-own_6[8]).mul_add(each_acceleration_6, (-own_6[7]).mul_add(each_acceleration_5, own_6[6] * each_acceleration_4)),
+        );
+        let each_acceleration_11 = own_6[6].mul_add(each_acceleration_9, own_6[10] - each_acceleration_10);
         let each_acceleration_12 = each_acceleration_3 + each_acceleration_11;
-        let each_acceleration_13 = own_6[4]
-            .mul_add(
-                each_acceleration_7,
-                own_6[3]
-                    .mul_add(
-                        each_acceleration_6,
-                        own_6[2]
-                            .mul_add(
-                                each_acceleration_5,
-                                own_6[1]
-                                    .mul_add(
-                                        each_acceleration_4,
-                                        own_6[0] * each_acceleration_3,
-                                    ),
-                            ),
-                    ),
-            );
+        let each_acceleration_13 = own_6[4].mul_add(
+            each_acceleration_7,
+            own_6[3].mul_add(
+                each_acceleration_6,
+                own_6[2].mul_add(each_acceleration_5, own_6[1].mul_add(each_acceleration_4, own_6[0] * each_acceleration_3)),
+            ),
+        );
         let each_acceleration_14 = own_6[1]
-            .mul_add(
-                each_acceleration_9,
-                own_6[0].mul_add(each_acceleration_12, -own_6[5] - each_acceleration_13),
-            );
-        let each_acceleration_15 = q[9 * i + 24]
-            .mul_add(
-                parent_4[3],
-                q[9 * i + 21]
-                    .mul_add(
-                        parent_4[5],
-                        q[9 * i + 18]
-                            .mul_add(parent_4[4], own_5[9] - each_acceleration_14),
-                    ),
-            );
+            .mul_add(each_acceleration_9, own_6[0].mul_add(each_acceleration_12, -own_6[5] - each_acceleration_13));
+        let each_acceleration_15 = q[9 * i + 24].mul_add(
+            parent_4[3],
+            q[9 * i + 21].mul_add(parent_4[5], q[9 * i + 18].mul_add(parent_4[4], own_5[9] - each_acceleration_14)),
+        );
         let each_acceleration_16 = -each_acceleration_11;
         results[3 * i + 6] = -each_acceleration_15;
         results[3 * i + 7] = -each_acceleration_12;
         results[3 * i + 8] = -each_acceleration_9;
         rows_of_6[i + 32] = [
-            each_acceleration_5,
-            each_acceleration_6,
-            each_acceleration_7,
-            each_acceleration_8,
-            each_acceleration_14,
+            each_acceleration_5, each_acceleration_6, each_acceleration_7, each_acceleration_8, each_acceleration_14,
             each_acceleration_16,
         ];
     }
@@ -3104,85 +1665,47 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
     let link_32_acceleration = rows_of_6[60][5].mul_add(n(-0.2), rows_of_6[60][0]);
     let link_32_acceleration_2 = (-rows_of_6[60][4]).mul_add(n(-0.2), rows_of_6[60][1]);
     let link_32_acceleration_3 = q[287]
-        .mul_add(
-            rows_of_6[60][3],
-            q[284]
-                .mul_add(
-                    rows_of_6[60][5],
-                    q[281].mul_add(rows_of_6[60][4], link_32_bias_9),
-                ),
-        );
-    let link_32_acceleration_4 = q[286]
-        .mul_add(
-            rows_of_6[60][2],
-            q[283]
-                .mul_add(
-                    link_32_acceleration_2,
-                    q[280].mul_add(link_32_acceleration, link_32_bias_14),
-                ),
-        );
+        .mul_add(rows_of_6[60][3], q[284].mul_add(rows_of_6[60][5], q[281].mul_add(rows_of_6[60][4], link_32_bias_9)));
+    let link_32_acceleration_4 = q[286].mul_add(
+        rows_of_6[60][2],
+        q[283].mul_add(link_32_acceleration_2, q[280].mul_add(link_32_acceleration, link_32_bias_14)),
+    );
     let link_32_acceleration_5 = link_32_acceleration_4
-        .mul_add(
-            n(4.8615331191943705),
-            link_32_acceleration_3 + link_32_articulated_inertia_6,
-        );
-    let link_32_acceleration_6 = (q[285]
-        .mul_add(
-            rows_of_6[60][2],
-            q[282]
-                .mul_add(
-                    link_32_acceleration_2,
-                    q[279].mul_add(link_32_acceleration, link_32_bias_13),
+        .mul_add(n(4.8615331191943705), link_32_acceleration_3 + link_32_articulated_inertia_6);
+    let link_32_acceleration_6 = (q[285].mul_add(
+        rows_of_6[60][2],
+        q[282].mul_add(link_32_acceleration_2, q[279].mul_add(link_32_acceleration, link_32_bias_13)),
+    )) * n(-7.35294117647059);
+    let link_32_acceleration_7 = (q[287].mul_add(
+        rows_of_6[60][2],
+        q[284].mul_add(link_32_acceleration_2, q[281].mul_add(link_32_acceleration, link_32_bias_15)),
+    )) * n(-0.7352941176470588);
+    let link_32_acceleration_8 = q[286].mul_add(
+        rows_of_6[60][3],
+        q[283].mul_add(
+            rows_of_6[60][5],
+            q[280].mul_add(
+                rows_of_6[60][4],
+                link_32_bias_8 + link_32_articulated_inertia_5 + link_32_acceleration_6 + link_32_acceleration_7,
+            ),
+        ),
+    );
+    let link_32_acceleration_9 = (-link_32_acceleration_5).mul_add(
+        n(0.07454545454545455),
+        link_32_acceleration_4.mul_add(
+            n(7.272727272727274),
+            link_32_acceleration_3.mul_add(
+                n(0.07454545454545455),
+                q[285].mul_add(
+                    rows_of_6[60][3],
+                    q[282].mul_add(
+                        rows_of_6[60][5],
+                        q[279].mul_add(rows_of_6[60][4], link_32_bias_7 + link_32_articulated_inertia_4),
+                    ),
                 ),
-        )) * n(-7.35294117647059);
-    let link_32_acceleration_7 = (q[287]
-        .mul_add(
-            rows_of_6[60][2],
-            q[284]
-                .mul_add(
-                    link_32_acceleration_2,
-                    q[281].mul_add(link_32_acceleration, link_32_bias_15),
-                ),
-        )) * n(-0.7352941176470588);
-    let link_32_acceleration_8 = q[286]
-        .mul_add(
-            rows_of_6[60][3],
-            q[283]
-                .mul_add(
-                    rows_of_6[60][5],
-                    q[280]
-                        .mul_add(
-                            rows_of_6[60][4],
-                            link_32_bias_8 + link_32_articulated_inertia_5
-                                + link_32_acceleration_6 + link_32_acceleration_7,
-                        ),
-                ),
-        );
-    let link_32_acceleration_9 = (-link_32_acceleration_5)
-        .mul_add(
-            n(0.07454545454545455),
-            link_32_acceleration_4
-                .mul_add(
-                    n(7.272727272727274),
-                    link_32_acceleration_3
-                        .mul_add(
-                            n(0.07454545454545455),
-                            q[285]
-                                .mul_add(
-                                    rows_of_6[60][3],
-                                    q[282]
-                                        .mul_add(
-                                            rows_of_6[60][5],
-                                            q[279]
-                                                .mul_add(
-                                                    rows_of_6[60][4],
-                                                    link_32_bias_7 + link_32_articulated_inertia_4,
-                                                ),
-                                        ),
-                                ),
-                        ),
-                ),
-        );
+            ),
+        ),
+    );
     results[93] = -link_32_acceleration_9;
     results[94] = -link_32_acceleration_8;
     results[95] = -link_32_acceleration_5;
@@ -3204,109 +1727,47 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_1_acceleration_5 = a[0] - link_1_acceleration_4;
     // link_1: force (11 additions, 13 multiplications)
     let link_1_force = (-((-v[2]).mul_add(v[2], link_1_acceleration)))
-        .mul_add(
-            n(0.00041000000000000005),
-            link_1_acceleration_3
-                .mul_add(n(0.5012600000000003), a[1] * n(0.5014400000000003)),
-        );
-    let link_1_force_2 = (-link_1_acceleration_4)
-        .mul_add(
-            n(0.5012000000000003),
-            q[7]
-                .mul_add(
-                    n(24.721200000000014),
-                    (a[2] + link_1_acceleration_2)
-                        .mul_add(n(0.00041000000000000005), a[0] * n(0.5015000000000003)),
-                ),
-        );
-    let link_1_force_3 = (-link_1_acceleration_2)
-        .mul_add(
-            n(0.00006000000000000002),
-            q[7]
-                .mul_add(
-                    n(0.039240000000000004),
-                    link_1_acceleration_5
-                        .mul_add(n(0.00041000000000000005), a[2] * n(0.00024)),
-                ),
-        );
+        .mul_add(n(0.00041000000000000005), link_1_acceleration_3.mul_add(n(0.5012600000000003), a[1] * n(0.5014400000000003)));
+    let link_1_force_2 = (-link_1_acceleration_4).mul_add(
+        n(0.5012000000000003),
+        q[7].mul_add(
+            n(24.721200000000014),
+            (a[2] + link_1_acceleration_2).mul_add(n(0.00041000000000000005), a[0] * n(0.5015000000000003)),
+        ),
+    );
+    let link_1_force_3 = (-link_1_acceleration_2).mul_add(
+        n(0.00006000000000000002),
+        q[7].mul_add(n(0.039240000000000004), link_1_acceleration_5.mul_add(n(0.00041000000000000005), a[2] * n(0.00024))),
+    );
     // link_2: angular velocity (9 additions, 9 multiplications)
     let link_2_angular_velocity = v[2].mul_add(q[15], v[1].mul_add(q[12], v[0] * q[9]));
-    let link_2_angular_velocity_2 = v[2]
-        .mul_add(q[16], v[1].mul_add(q[13], v[0] * q[10]));
-    let link_2_angular_velocity_3 = v[2]
-        .mul_add(q[17], v[1].mul_add(q[14], v[0] * q[11]));
+    let link_2_angular_velocity_2 = v[2].mul_add(q[16], v[1].mul_add(q[13], v[0] * q[10]));
+    let link_2_angular_velocity_3 = v[2].mul_add(q[17], v[1].mul_add(q[14], v[0] * q[11]));
     let link_2_rate_x = v[3] + link_2_angular_velocity;
     let link_2_rate_y = v[4] + link_2_angular_velocity_2;
     let link_2_rate_z = v[5] + link_2_angular_velocity_3;
     // link_2: acceleration (30 additions, 33 multiplications)
-    let link_2_acceleration = (-(a[1] + link_1_acceleration_3))
-        .mul_add(n(0.2), q[6] * n(9.81));
+    let link_2_acceleration = (-(a[1] + link_1_acceleration_3)).mul_add(n(0.2), q[6] * n(9.81));
     let link_2_acceleration_2 = link_1_acceleration_5.mul_add(n(0.2), q[7] * n(9.81));
-    let link_2_acceleration_3 = (v[1].mul_add(v[1], link_1_acceleration))
-        .mul_add(n(0.2), q[8] * n(9.81));
+    let link_2_acceleration_3 = (v[1].mul_add(v[1], link_1_acceleration)).mul_add(n(0.2), q[8] * n(9.81));
     let link_2_acceleration_4 = q[15]
-        .mul_add(
-            link_2_acceleration_3,
-            q[12].mul_add(link_2_acceleration_2, q[9] * link_2_acceleration),
-        );
+        .mul_add(link_2_acceleration_3, q[12].mul_add(link_2_acceleration_2, q[9] * link_2_acceleration));
     let link_2_acceleration_5 = q[16]
-        .mul_add(
-            link_2_acceleration_3,
-            q[13].mul_add(link_2_acceleration_2, q[10] * link_2_acceleration),
-        );
+        .mul_add(link_2_acceleration_3, q[13].mul_add(link_2_acceleration_2, q[10] * link_2_acceleration));
     let link_2_acceleration_6 = q[17]
-        .mul_add(
-            link_2_acceleration_3,
-            q[14].mul_add(link_2_acceleration_2, q[11] * link_2_acceleration),
-        );
-    let link_2_acceleration_7 = (-v[4])
-        .mul_add(
-            link_2_angular_velocity_3,
-            q[15]
-                .mul_add(
-                    a[2],
-                    q[12]
-                        .mul_add(
-                            a[1],
-                            q[9]
-                                .mul_add(
-                                    a[0],
-                                    v[5].mul_add(link_2_angular_velocity_2, a[3]),
-                                ),
-                        ),
-                ),
-        );
-    let link_2_acceleration_8 = (-v[5])
-        .mul_add(
-            link_2_angular_velocity,
-            q[16]
-                .mul_add(
-                    a[2],
-                    q[13]
-                        .mul_add(
-                            a[1],
-                            q[10]
-                                .mul_add(
-                                    a[0],
-                                    v[3].mul_add(link_2_angular_velocity_3, a[4]),
-                                ),
-                        ),
-                ),
-        );
-    let link_2_acceleration_9 = (-v[3])
-        .mul_add(
-            link_2_angular_velocity_2,
-            q[17]
-                .mul_add(
-                    a[2],
-                    q[14]
-                        .mul_add(
-                            a[1],
-                            q[11]
-                                .mul_add(a[0], v[4].mul_add(link_2_angular_velocity, a[5])),
-                        ),
-                ),
-        );
+        .mul_add(link_2_acceleration_3, q[14].mul_add(link_2_acceleration_2, q[11] * link_2_acceleration));
+    let link_2_acceleration_7 = (-v[4]).mul_add(
+        link_2_angular_velocity_3,
+        q[15].mul_add(a[2], q[12].mul_add(a[1], q[9].mul_add(a[0], v[5].mul_add(link_2_angular_velocity_2, a[3])))),
+    );
+    let link_2_acceleration_8 = (-v[5]).mul_add(
+        link_2_angular_velocity,
+        q[16].mul_add(a[2], q[13].mul_add(a[1], q[10].mul_add(a[0], v[3].mul_add(link_2_angular_velocity_3, a[4])))),
+    );
+    let link_2_acceleration_9 = (-v[3]).mul_add(
+        link_2_angular_velocity_2,
+        q[17].mul_add(a[2], q[14].mul_add(a[1], q[11].mul_add(a[0], v[4].mul_add(link_2_angular_velocity, a[5])))),
+    );
     let link_2_acceleration_10 = link_2_rate_x * link_2_rate_x;
     let link_2_acceleration_11 = link_2_rate_x * link_2_rate_y;
     let link_2_acceleration_12 = link_2_rate_x * link_2_rate_z;
@@ -3318,132 +1779,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_2_acceleration_18 = link_2_acceleration_7 - link_2_acceleration_14;
     let link_2_acceleration_19 = link_2_acceleration_10 + link_2_acceleration_13;
     // link_2: force (14 additions, 19 multiplications)
-    let link_2_force = (-link_2_acceleration_14)
-        .mul_add(
-            n(0.48520000000000035),
-            link_2_acceleration_5
-                .mul_add(
-                    n(2.4400000000000013),
-                    link_2_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_2_acceleration_7 * n(0.4855000000000003),
-                        ),
-                ),
-        );
-    let link_2_force_2 = (-link_2_acceleration_6)
-        .mul_add(
+    let link_2_force = (-link_2_acceleration_14).mul_add(
+        n(0.48520000000000035),
+        link_2_acceleration_5.mul_add(
+            n(2.4400000000000013),
+            link_2_acceleration_16.mul_add(n(0.00041000000000000005), link_2_acceleration_7 * n(0.4855000000000003)),
+        ),
+    );
+    let link_2_force_2 = (-link_2_acceleration_6).mul_add(
+        n(0.004),
+        (-link_2_acceleration_4).mul_add(
+            n(2.4400000000000013),
+            (-(link_2_acceleration_10 - link_2_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_2_acceleration_12.mul_add(n(0.48526000000000036), link_2_acceleration_8 * n(0.4854400000000003)),
+            ),
+        ),
+    );
+    let link_2_force_3 = (-link_2_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_2_acceleration_5.mul_add(
             n(0.004),
-            (-link_2_acceleration_4)
-                .mul_add(
-                    n(2.4400000000000013),
-                    (-(link_2_acceleration_10 - link_2_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_2_acceleration_12
-                                .mul_add(
-                                    n(0.48526000000000036),
-                                    link_2_acceleration_8 * n(0.4854400000000003),
-                                ),
-                        ),
-                ),
-        );
-    let link_2_force_3 = (-link_2_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_2_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_2_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_2_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_2_acceleration_18.mul_add(n(0.00041000000000000005), link_2_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_3: angular velocity (9 additions, 9 multiplications)
-    let link_3_angular_velocity = q[24]
-        .mul_add(link_2_rate_z, q[21].mul_add(link_2_rate_y, q[18] * link_2_rate_x));
-    let link_3_angular_velocity_2 = q[25]
-        .mul_add(link_2_rate_z, q[22].mul_add(link_2_rate_y, q[19] * link_2_rate_x));
-    let link_3_angular_velocity_3 = q[26]
-        .mul_add(link_2_rate_z, q[23].mul_add(link_2_rate_y, q[20] * link_2_rate_x));
+    let link_3_angular_velocity = q[24].mul_add(link_2_rate_z, q[21].mul_add(link_2_rate_y, q[18] * link_2_rate_x));
+    let link_3_angular_velocity_2 = q[25].mul_add(link_2_rate_z, q[22].mul_add(link_2_rate_y, q[19] * link_2_rate_x));
+    let link_3_angular_velocity_3 = q[26].mul_add(link_2_rate_z, q[23].mul_add(link_2_rate_y, q[20] * link_2_rate_x));
     let link_3_rate_x = v[6] + link_3_angular_velocity;
     let link_3_rate_y = v[7] + link_3_angular_velocity_2;
     let link_3_rate_z = v[8] + link_3_angular_velocity_3;
     // link_3: acceleration (30 additions, 33 multiplications)
-    let link_3_acceleration = (-link_2_acceleration_17)
-        .mul_add(n(0.2), link_2_acceleration_4);
-    let link_3_acceleration_2 = link_2_acceleration_18
-        .mul_add(n(0.2), link_2_acceleration_5);
-    let link_3_acceleration_3 = link_2_acceleration_19
-        .mul_add(n(0.2), link_2_acceleration_6);
+    let link_3_acceleration = (-link_2_acceleration_17).mul_add(n(0.2), link_2_acceleration_4);
+    let link_3_acceleration_2 = link_2_acceleration_18.mul_add(n(0.2), link_2_acceleration_5);
+    let link_3_acceleration_3 = link_2_acceleration_19.mul_add(n(0.2), link_2_acceleration_6);
     let link_3_acceleration_4 = q[24]
-        .mul_add(
-            link_3_acceleration_3,
-            q[21].mul_add(link_3_acceleration_2, q[18] * link_3_acceleration),
-        );
+        .mul_add(link_3_acceleration_3, q[21].mul_add(link_3_acceleration_2, q[18] * link_3_acceleration));
     let link_3_acceleration_5 = q[25]
-        .mul_add(
-            link_3_acceleration_3,
-            q[22].mul_add(link_3_acceleration_2, q[19] * link_3_acceleration),
-        );
+        .mul_add(link_3_acceleration_3, q[22].mul_add(link_3_acceleration_2, q[19] * link_3_acceleration));
     let link_3_acceleration_6 = q[26]
-        .mul_add(
-            link_3_acceleration_3,
-            q[23].mul_add(link_3_acceleration_2, q[20] * link_3_acceleration),
-        );
-    let link_3_acceleration_7 = (-v[7])
-        .mul_add(
-            link_3_angular_velocity_3,
-            q[24]
-                .mul_add(
-                    link_2_acceleration_9,
-                    q[21]
-                        .mul_add(
-                            link_2_acceleration_8,
-                            q[18]
-                                .mul_add(
-                                    link_2_acceleration_7,
-                                    v[8].mul_add(link_3_angular_velocity_2, a[6]),
-                                ),
-                        ),
-                ),
-        );
-    let link_3_acceleration_8 = (-v[8])
-        .mul_add(
-            link_3_angular_velocity,
-            q[25]
-                .mul_add(
-                    link_2_acceleration_9,
-                    q[22]
-                        .mul_add(
-                            link_2_acceleration_8,
-                            q[19]
-                                .mul_add(
-                                    link_2_acceleration_7,
-                                    v[6].mul_add(link_3_angular_velocity_3, a[7]),
-                                ),
-                        ),
-                ),
-        );
-    let link_3_acceleration_9 = (-v[6])
-        .mul_add(
-            link_3_angular_velocity_2,
-            q[26]
-                .mul_add(
-                    link_2_acceleration_9,
-                    q[23]
-                        .mul_add(
-                            link_2_acceleration_8,
-                            q[20]
-                                .mul_add(
-                                    link_2_acceleration_7,
-                                    v[7].mul_add(link_3_angular_velocity, a[8]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_3_acceleration_3, q[23].mul_add(link_3_acceleration_2, q[20] * link_3_acceleration));
+    let link_3_acceleration_7 = (-v[7]).mul_add(
+        link_3_angular_velocity_3,
+        q[24].mul_add(
+            link_2_acceleration_9,
+            q[21].mul_add(
+                link_2_acceleration_8,
+                q[18].mul_add(link_2_acceleration_7, v[8].mul_add(link_3_angular_velocity_2, a[6])),
+            ),
+        ),
+    );
+    let link_3_acceleration_8 = (-v[8]).mul_add(
+        link_3_angular_velocity,
+        q[25].mul_add(
+            link_2_acceleration_9,
+            q[22].mul_add(
+                link_2_acceleration_8,
+                q[19].mul_add(link_2_acceleration_7, v[6].mul_add(link_3_angular_velocity_3, a[7])),
+            ),
+        ),
+    );
+    let link_3_acceleration_9 = (-v[6]).mul_add(
+        link_3_angular_velocity_2,
+        q[26].mul_add(
+            link_2_acceleration_9,
+            q[23].mul_add(
+                link_2_acceleration_8,
+                q[20].mul_add(link_2_acceleration_7, v[7].mul_add(link_3_angular_velocity, a[8])),
+            ),
+        ),
+    );
     let link_3_acceleration_10 = link_3_rate_x * link_3_rate_x;
     let link_3_acceleration_11 = link_3_rate_x * link_3_rate_y;
     let link_3_acceleration_12 = link_3_rate_x * link_3_rate_z;
@@ -3455,132 +1861,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_3_acceleration_18 = link_3_acceleration_7 - link_3_acceleration_14;
     let link_3_acceleration_19 = link_3_acceleration_10 + link_3_acceleration_13;
     // link_3: force (14 additions, 19 multiplications)
-    let link_3_force = (-link_3_acceleration_14)
-        .mul_add(
-            n(0.46920000000000034),
-            link_3_acceleration_5
-                .mul_add(
-                    n(2.360000000000001),
-                    link_3_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_3_acceleration_7 * n(0.4695000000000003),
-                        ),
-                ),
-        );
-    let link_3_force_2 = (-link_3_acceleration_6)
-        .mul_add(
+    let link_3_force = (-link_3_acceleration_14).mul_add(
+        n(0.46920000000000034),
+        link_3_acceleration_5.mul_add(
+            n(2.360000000000001),
+            link_3_acceleration_16.mul_add(n(0.00041000000000000005), link_3_acceleration_7 * n(0.4695000000000003)),
+        ),
+    );
+    let link_3_force_2 = (-link_3_acceleration_6).mul_add(
+        n(0.004),
+        (-link_3_acceleration_4).mul_add(
+            n(2.360000000000001),
+            (-(link_3_acceleration_10 - link_3_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_3_acceleration_12.mul_add(n(0.46926000000000034), link_3_acceleration_8 * n(0.4694400000000003)),
+            ),
+        ),
+    );
+    let link_3_force_3 = (-link_3_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_3_acceleration_5.mul_add(
             n(0.004),
-            (-link_3_acceleration_4)
-                .mul_add(
-                    n(2.360000000000001),
-                    (-(link_3_acceleration_10 - link_3_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_3_acceleration_12
-                                .mul_add(
-                                    n(0.46926000000000034),
-                                    link_3_acceleration_8 * n(0.4694400000000003),
-                                ),
-                        ),
-                ),
-        );
-    let link_3_force_3 = (-link_3_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_3_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_3_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_3_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_3_acceleration_18.mul_add(n(0.00041000000000000005), link_3_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_4: angular velocity (9 additions, 9 multiplications)
-    let link_4_angular_velocity = q[33]
-        .mul_add(link_3_rate_z, q[30].mul_add(link_3_rate_y, q[27] * link_3_rate_x));
-    let link_4_angular_velocity_2 = q[34]
-        .mul_add(link_3_rate_z, q[31].mul_add(link_3_rate_y, q[28] * link_3_rate_x));
-    let link_4_angular_velocity_3 = q[35]
-        .mul_add(link_3_rate_z, q[32].mul_add(link_3_rate_y, q[29] * link_3_rate_x));
+    let link_4_angular_velocity = q[33].mul_add(link_3_rate_z, q[30].mul_add(link_3_rate_y, q[27] * link_3_rate_x));
+    let link_4_angular_velocity_2 = q[34].mul_add(link_3_rate_z, q[31].mul_add(link_3_rate_y, q[28] * link_3_rate_x));
+    let link_4_angular_velocity_3 = q[35].mul_add(link_3_rate_z, q[32].mul_add(link_3_rate_y, q[29] * link_3_rate_x));
     let link_4_rate_x = v[9] + link_4_angular_velocity;
     let link_4_rate_y = v[10] + link_4_angular_velocity_2;
     let link_4_rate_z = v[11] + link_4_angular_velocity_3;
     // link_4: acceleration (30 additions, 33 multiplications)
-    let link_4_acceleration = (-link_3_acceleration_17)
-        .mul_add(n(0.2), link_3_acceleration_4);
-    let link_4_acceleration_2 = link_3_acceleration_18
-        .mul_add(n(0.2), link_3_acceleration_5);
-    let link_4_acceleration_3 = link_3_acceleration_19
-        .mul_add(n(0.2), link_3_acceleration_6);
+    let link_4_acceleration = (-link_3_acceleration_17).mul_add(n(0.2), link_3_acceleration_4);
+    let link_4_acceleration_2 = link_3_acceleration_18.mul_add(n(0.2), link_3_acceleration_5);
+    let link_4_acceleration_3 = link_3_acceleration_19.mul_add(n(0.2), link_3_acceleration_6);
     let link_4_acceleration_4 = q[33]
-        .mul_add(
-            link_4_acceleration_3,
-            q[30].mul_add(link_4_acceleration_2, q[27] * link_4_acceleration),
-        );
+        .mul_add(link_4_acceleration_3, q[30].mul_add(link_4_acceleration_2, q[27] * link_4_acceleration));
     let link_4_acceleration_5 = q[34]
-        .mul_add(
-            link_4_acceleration_3,
-            q[31].mul_add(link_4_acceleration_2, q[28] * link_4_acceleration),
-        );
+        .mul_add(link_4_acceleration_3, q[31].mul_add(link_4_acceleration_2, q[28] * link_4_acceleration));
     let link_4_acceleration_6 = q[35]
-        .mul_add(
-            link_4_acceleration_3,
-            q[32].mul_add(link_4_acceleration_2, q[29] * link_4_acceleration),
-        );
-    let link_4_acceleration_7 = (-v[10])
-        .mul_add(
-            link_4_angular_velocity_3,
-            q[33]
-                .mul_add(
-                    link_3_acceleration_9,
-                    q[30]
-                        .mul_add(
-                            link_3_acceleration_8,
-                            q[27]
-                                .mul_add(
-                                    link_3_acceleration_7,
-                                    v[11].mul_add(link_4_angular_velocity_2, a[9]),
-                                ),
-                        ),
-                ),
-        );
-    let link_4_acceleration_8 = (-v[11])
-        .mul_add(
-            link_4_angular_velocity,
-            q[34]
-                .mul_add(
-                    link_3_acceleration_9,
-                    q[31]
-                        .mul_add(
-                            link_3_acceleration_8,
-                            q[28]
-                                .mul_add(
-                                    link_3_acceleration_7,
-                                    v[9].mul_add(link_4_angular_velocity_3, a[10]),
-                                ),
-                        ),
-                ),
-        );
-    let link_4_acceleration_9 = (-v[9])
-        .mul_add(
-            link_4_angular_velocity_2,
-            q[35]
-                .mul_add(
-                    link_3_acceleration_9,
-                    q[32]
-                        .mul_add(
-                            link_3_acceleration_8,
-                            q[29]
-                                .mul_add(
-                                    link_3_acceleration_7,
-                                    v[10].mul_add(link_4_angular_velocity, a[11]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_4_acceleration_3, q[32].mul_add(link_4_acceleration_2, q[29] * link_4_acceleration));
+    let link_4_acceleration_7 = (-v[10]).mul_add(
+        link_4_angular_velocity_3,
+        q[33].mul_add(
+            link_3_acceleration_9,
+            q[30].mul_add(
+                link_3_acceleration_8,
+                q[27].mul_add(link_3_acceleration_7, v[11].mul_add(link_4_angular_velocity_2, a[9])),
+            ),
+        ),
+    );
+    let link_4_acceleration_8 = (-v[11]).mul_add(
+        link_4_angular_velocity,
+        q[34].mul_add(
+            link_3_acceleration_9,
+            q[31].mul_add(
+                link_3_acceleration_8,
+                q[28].mul_add(link_3_acceleration_7, v[9].mul_add(link_4_angular_velocity_3, a[10])),
+            ),
+        ),
+    );
+    let link_4_acceleration_9 = (-v[9]).mul_add(
+        link_4_angular_velocity_2,
+        q[35].mul_add(
+            link_3_acceleration_9,
+            q[32].mul_add(
+                link_3_acceleration_8,
+                q[29].mul_add(link_3_acceleration_7, v[10].mul_add(link_4_angular_velocity, a[11])),
+            ),
+        ),
+    );
     let link_4_acceleration_10 = link_4_rate_x * link_4_rate_x;
     let link_4_acceleration_11 = link_4_rate_x * link_4_rate_y;
     let link_4_acceleration_12 = link_4_rate_x * link_4_rate_z;
@@ -3592,132 +1943,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_4_acceleration_18 = link_4_acceleration_7 - link_4_acceleration_14;
     let link_4_acceleration_19 = link_4_acceleration_10 + link_4_acceleration_13;
     // link_4: force (14 additions, 19 multiplications)
-    let link_4_force = (-link_4_acceleration_14)
-        .mul_add(
-            n(0.4532000000000003),
-            link_4_acceleration_5
-                .mul_add(
-                    n(2.280000000000001),
-                    link_4_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_4_acceleration_7 * n(0.4535000000000003),
-                        ),
-                ),
-        );
-    let link_4_force_2 = (-link_4_acceleration_6)
-        .mul_add(
+    let link_4_force = (-link_4_acceleration_14).mul_add(
+        n(0.4532000000000003),
+        link_4_acceleration_5.mul_add(
+            n(2.280000000000001),
+            link_4_acceleration_16.mul_add(n(0.00041000000000000005), link_4_acceleration_7 * n(0.4535000000000003)),
+        ),
+    );
+    let link_4_force_2 = (-link_4_acceleration_6).mul_add(
+        n(0.004),
+        (-link_4_acceleration_4).mul_add(
+            n(2.280000000000001),
+            (-(link_4_acceleration_10 - link_4_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_4_acceleration_12.mul_add(n(0.45326000000000033), link_4_acceleration_8 * n(0.4534400000000003)),
+            ),
+        ),
+    );
+    let link_4_force_3 = (-link_4_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_4_acceleration_5.mul_add(
             n(0.004),
-            (-link_4_acceleration_4)
-                .mul_add(
-                    n(2.280000000000001),
-                    (-(link_4_acceleration_10 - link_4_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_4_acceleration_12
-                                .mul_add(
-                                    n(0.45326000000000033),
-                                    link_4_acceleration_8 * n(0.4534400000000003),
-                                ),
-                        ),
-                ),
-        );
-    let link_4_force_3 = (-link_4_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_4_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_4_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_4_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_4_acceleration_18.mul_add(n(0.00041000000000000005), link_4_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_5: angular velocity (9 additions, 9 multiplications)
-    let link_5_angular_velocity = q[42]
-        .mul_add(link_4_rate_z, q[39].mul_add(link_4_rate_y, q[36] * link_4_rate_x));
-    let link_5_angular_velocity_2 = q[43]
-        .mul_add(link_4_rate_z, q[40].mul_add(link_4_rate_y, q[37] * link_4_rate_x));
-    let link_5_angular_velocity_3 = q[44]
-        .mul_add(link_4_rate_z, q[41].mul_add(link_4_rate_y, q[38] * link_4_rate_x));
+    let link_5_angular_velocity = q[42].mul_add(link_4_rate_z, q[39].mul_add(link_4_rate_y, q[36] * link_4_rate_x));
+    let link_5_angular_velocity_2 = q[43].mul_add(link_4_rate_z, q[40].mul_add(link_4_rate_y, q[37] * link_4_rate_x));
+    let link_5_angular_velocity_3 = q[44].mul_add(link_4_rate_z, q[41].mul_add(link_4_rate_y, q[38] * link_4_rate_x));
     let link_5_rate_x = v[12] + link_5_angular_velocity;
     let link_5_rate_y = v[13] + link_5_angular_velocity_2;
     let link_5_rate_z = v[14] + link_5_angular_velocity_3;
     // link_5: acceleration (30 additions, 33 multiplications)
-    let link_5_acceleration = (-link_4_acceleration_17)
-        .mul_add(n(0.2), link_4_acceleration_4);
-    let link_5_acceleration_2 = link_4_acceleration_18
-        .mul_add(n(0.2), link_4_acceleration_5);
-    let link_5_acceleration_3 = link_4_acceleration_19
-        .mul_add(n(0.2), link_4_acceleration_6);
+    let link_5_acceleration = (-link_4_acceleration_17).mul_add(n(0.2), link_4_acceleration_4);
+    let link_5_acceleration_2 = link_4_acceleration_18.mul_add(n(0.2), link_4_acceleration_5);
+    let link_5_acceleration_3 = link_4_acceleration_19.mul_add(n(0.2), link_4_acceleration_6);
     let link_5_acceleration_4 = q[42]
-        .mul_add(
-            link_5_acceleration_3,
-            q[39].mul_add(link_5_acceleration_2, q[36] * link_5_acceleration),
-        );
+        .mul_add(link_5_acceleration_3, q[39].mul_add(link_5_acceleration_2, q[36] * link_5_acceleration));
     let link_5_acceleration_5 = q[43]
-        .mul_add(
-            link_5_acceleration_3,
-            q[40].mul_add(link_5_acceleration_2, q[37] * link_5_acceleration),
-        );
+        .mul_add(link_5_acceleration_3, q[40].mul_add(link_5_acceleration_2, q[37] * link_5_acceleration));
     let link_5_acceleration_6 = q[44]
-        .mul_add(
-            link_5_acceleration_3,
-            q[41].mul_add(link_5_acceleration_2, q[38] * link_5_acceleration),
-        );
-    let link_5_acceleration_7 = (-v[13])
-        .mul_add(
-            link_5_angular_velocity_3,
-            q[42]
-                .mul_add(
-                    link_4_acceleration_9,
-                    q[39]
-                        .mul_add(
-                            link_4_acceleration_8,
-                            q[36]
-                                .mul_add(
-                                    link_4_acceleration_7,
-                                    v[14].mul_add(link_5_angular_velocity_2, a[12]),
-                                ),
-                        ),
-                ),
-        );
-    let link_5_acceleration_8 = (-v[14])
-        .mul_add(
-            link_5_angular_velocity,
-            q[43]
-                .mul_add(
-                    link_4_acceleration_9,
-                    q[40]
-                        .mul_add(
-                            link_4_acceleration_8,
-                            q[37]
-                                .mul_add(
-                                    link_4_acceleration_7,
-                                    v[12].mul_add(link_5_angular_velocity_3, a[13]),
-                                ),
-                        ),
-                ),
-        );
-    let link_5_acceleration_9 = (-v[12])
-        .mul_add(
-            link_5_angular_velocity_2,
-            q[44]
-                .mul_add(
-                    link_4_acceleration_9,
-                    q[41]
-                        .mul_add(
-                            link_4_acceleration_8,
-                            q[38]
-                                .mul_add(
-                                    link_4_acceleration_7,
-                                    v[13].mul_add(link_5_angular_velocity, a[14]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_5_acceleration_3, q[41].mul_add(link_5_acceleration_2, q[38] * link_5_acceleration));
+    let link_5_acceleration_7 = (-v[13]).mul_add(
+        link_5_angular_velocity_3,
+        q[42].mul_add(
+            link_4_acceleration_9,
+            q[39].mul_add(
+                link_4_acceleration_8,
+                q[36].mul_add(link_4_acceleration_7, v[14].mul_add(link_5_angular_velocity_2, a[12])),
+            ),
+        ),
+    );
+    let link_5_acceleration_8 = (-v[14]).mul_add(
+        link_5_angular_velocity,
+        q[43].mul_add(
+            link_4_acceleration_9,
+            q[40].mul_add(
+                link_4_acceleration_8,
+                q[37].mul_add(link_4_acceleration_7, v[12].mul_add(link_5_angular_velocity_3, a[13])),
+            ),
+        ),
+    );
+    let link_5_acceleration_9 = (-v[12]).mul_add(
+        link_5_angular_velocity_2,
+        q[44].mul_add(
+            link_4_acceleration_9,
+            q[41].mul_add(
+                link_4_acceleration_8,
+                q[38].mul_add(link_4_acceleration_7, v[13].mul_add(link_5_angular_velocity, a[14])),
+            ),
+        ),
+    );
     let link_5_acceleration_10 = link_5_rate_x * link_5_rate_x;
     let link_5_acceleration_11 = link_5_rate_x * link_5_rate_y;
     let link_5_acceleration_12 = link_5_rate_x * link_5_rate_z;
@@ -3729,132 +2025,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_5_acceleration_18 = link_5_acceleration_7 - link_5_acceleration_14;
     let link_5_acceleration_19 = link_5_acceleration_10 + link_5_acceleration_13;
     // link_5: force (14 additions, 19 multiplications)
-    let link_5_force = (-link_5_acceleration_14)
-        .mul_add(
-            n(0.4372000000000003),
-            link_5_acceleration_5
-                .mul_add(
-                    n(2.200000000000001),
-                    link_5_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_5_acceleration_7 * n(0.4375000000000003),
-                        ),
-                ),
-        );
-    let link_5_force_2 = (-link_5_acceleration_6)
-        .mul_add(
+    let link_5_force = (-link_5_acceleration_14).mul_add(
+        n(0.4372000000000003),
+        link_5_acceleration_5.mul_add(
+            n(2.200000000000001),
+            link_5_acceleration_16.mul_add(n(0.00041000000000000005), link_5_acceleration_7 * n(0.4375000000000003)),
+        ),
+    );
+    let link_5_force_2 = (-link_5_acceleration_6).mul_add(
+        n(0.004),
+        (-link_5_acceleration_4).mul_add(
+            n(2.200000000000001),
+            (-(link_5_acceleration_10 - link_5_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_5_acceleration_12.mul_add(n(0.4372600000000003), link_5_acceleration_8 * n(0.4374400000000003)),
+            ),
+        ),
+    );
+    let link_5_force_3 = (-link_5_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_5_acceleration_5.mul_add(
             n(0.004),
-            (-link_5_acceleration_4)
-                .mul_add(
-                    n(2.200000000000001),
-                    (-(link_5_acceleration_10 - link_5_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_5_acceleration_12
-                                .mul_add(
-                                    n(0.4372600000000003),
-                                    link_5_acceleration_8 * n(0.4374400000000003),
-                                ),
-                        ),
-                ),
-        );
-    let link_5_force_3 = (-link_5_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_5_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_5_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_5_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_5_acceleration_18.mul_add(n(0.00041000000000000005), link_5_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_6: angular velocity (9 additions, 9 multiplications)
-    let link_6_angular_velocity = q[51]
-        .mul_add(link_5_rate_z, q[48].mul_add(link_5_rate_y, q[45] * link_5_rate_x));
-    let link_6_angular_velocity_2 = q[52]
-        .mul_add(link_5_rate_z, q[49].mul_add(link_5_rate_y, q[46] * link_5_rate_x));
-    let link_6_angular_velocity_3 = q[53]
-        .mul_add(link_5_rate_z, q[50].mul_add(link_5_rate_y, q[47] * link_5_rate_x));
+    let link_6_angular_velocity = q[51].mul_add(link_5_rate_z, q[48].mul_add(link_5_rate_y, q[45] * link_5_rate_x));
+    let link_6_angular_velocity_2 = q[52].mul_add(link_5_rate_z, q[49].mul_add(link_5_rate_y, q[46] * link_5_rate_x));
+    let link_6_angular_velocity_3 = q[53].mul_add(link_5_rate_z, q[50].mul_add(link_5_rate_y, q[47] * link_5_rate_x));
     let link_6_rate_x = v[15] + link_6_angular_velocity;
     let link_6_rate_y = v[16] + link_6_angular_velocity_2;
     let link_6_rate_z = v[17] + link_6_angular_velocity_3;
     // link_6: acceleration (30 additions, 33 multiplications)
-    let link_6_acceleration = (-link_5_acceleration_17)
-        .mul_add(n(0.2), link_5_acceleration_4);
-    let link_6_acceleration_2 = link_5_acceleration_18
-        .mul_add(n(0.2), link_5_acceleration_5);
-    let link_6_acceleration_3 = link_5_acceleration_19
-        .mul_add(n(0.2), link_5_acceleration_6);
+    let link_6_acceleration = (-link_5_acceleration_17).mul_add(n(0.2), link_5_acceleration_4);
+    let link_6_acceleration_2 = link_5_acceleration_18.mul_add(n(0.2), link_5_acceleration_5);
+    let link_6_acceleration_3 = link_5_acceleration_19.mul_add(n(0.2), link_5_acceleration_6);
     let link_6_acceleration_4 = q[51]
-        .mul_add(
-            link_6_acceleration_3,
-            q[48].mul_add(link_6_acceleration_2, q[45] * link_6_acceleration),
-        );
+        .mul_add(link_6_acceleration_3, q[48].mul_add(link_6_acceleration_2, q[45] * link_6_acceleration));
     let link_6_acceleration_5 = q[52]
-        .mul_add(
-            link_6_acceleration_3,
-            q[49].mul_add(link_6_acceleration_2, q[46] * link_6_acceleration),
-        );
+        .mul_add(link_6_acceleration_3, q[49].mul_add(link_6_acceleration_2, q[46] * link_6_acceleration));
     let link_6_acceleration_6 = q[53]
-        .mul_add(
-            link_6_acceleration_3,
-            q[50].mul_add(link_6_acceleration_2, q[47] * link_6_acceleration),
-        );
-    let link_6_acceleration_7 = (-v[16])
-        .mul_add(
-            link_6_angular_velocity_3,
-            q[51]
-                .mul_add(
-                    link_5_acceleration_9,
-                    q[48]
-                        .mul_add(
-                            link_5_acceleration_8,
-                            q[45]
-                                .mul_add(
-                                    link_5_acceleration_7,
-                                    v[17].mul_add(link_6_angular_velocity_2, a[15]),
-                                ),
-                        ),
-                ),
-        );
-    let link_6_acceleration_8 = (-v[17])
-        .mul_add(
-            link_6_angular_velocity,
-            q[52]
-                .mul_add(
-                    link_5_acceleration_9,
-                    q[49]
-                        .mul_add(
-                            link_5_acceleration_8,
-                            q[46]
-                                .mul_add(
-                                    link_5_acceleration_7,
-                                    v[15].mul_add(link_6_angular_velocity_3, a[16]),
-                                ),
-                        ),
-                ),
-        );
-    let link_6_acceleration_9 = (-v[15])
-        .mul_add(
-            link_6_angular_velocity_2,
-            q[53]
-                .mul_add(
-                    link_5_acceleration_9,
-                    q[50]
-                        .mul_add(
-                            link_5_acceleration_8,
-                            q[47]
-                                .mul_add(
-                                    link_5_acceleration_7,
-                                    v[16].mul_add(link_6_angular_velocity, a[17]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_6_acceleration_3, q[50].mul_add(link_6_acceleration_2, q[47] * link_6_acceleration));
+    let link_6_acceleration_7 = (-v[16]).mul_add(
+        link_6_angular_velocity_3,
+        q[51].mul_add(
+            link_5_acceleration_9,
+            q[48].mul_add(
+                link_5_acceleration_8,
+                q[45].mul_add(link_5_acceleration_7, v[17].mul_add(link_6_angular_velocity_2, a[15])),
+            ),
+        ),
+    );
+    let link_6_acceleration_8 = (-v[17]).mul_add(
+        link_6_angular_velocity,
+        q[52].mul_add(
+            link_5_acceleration_9,
+            q[49].mul_add(
+                link_5_acceleration_8,
+                q[46].mul_add(link_5_acceleration_7, v[15].mul_add(link_6_angular_velocity_3, a[16])),
+            ),
+        ),
+    );
+    let link_6_acceleration_9 = (-v[15]).mul_add(
+        link_6_angular_velocity_2,
+        q[53].mul_add(
+            link_5_acceleration_9,
+            q[50].mul_add(
+                link_5_acceleration_8,
+                q[47].mul_add(link_5_acceleration_7, v[16].mul_add(link_6_angular_velocity, a[17])),
+            ),
+        ),
+    );
     let link_6_acceleration_10 = link_6_rate_x * link_6_rate_x;
     let link_6_acceleration_11 = link_6_rate_x * link_6_rate_y;
     let link_6_acceleration_12 = link_6_rate_x * link_6_rate_z;
@@ -3866,132 +2107,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_6_acceleration_18 = link_6_acceleration_7 - link_6_acceleration_14;
     let link_6_acceleration_19 = link_6_acceleration_10 + link_6_acceleration_13;
     // link_6: force (14 additions, 19 multiplications)
-    let link_6_force = (-link_6_acceleration_14)
-        .mul_add(
-            n(0.4212000000000003),
-            link_6_acceleration_5
-                .mul_add(
-                    n(2.120000000000001),
-                    link_6_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_6_acceleration_7 * n(0.42150000000000026),
-                        ),
-                ),
-        );
-    let link_6_force_2 = (-link_6_acceleration_6)
-        .mul_add(
+    let link_6_force = (-link_6_acceleration_14).mul_add(
+        n(0.4212000000000003),
+        link_6_acceleration_5.mul_add(
+            n(2.120000000000001),
+            link_6_acceleration_16.mul_add(n(0.00041000000000000005), link_6_acceleration_7 * n(0.42150000000000026)),
+        ),
+    );
+    let link_6_force_2 = (-link_6_acceleration_6).mul_add(
+        n(0.004),
+        (-link_6_acceleration_4).mul_add(
+            n(2.120000000000001),
+            (-(link_6_acceleration_10 - link_6_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_6_acceleration_12.mul_add(n(0.4212600000000003), link_6_acceleration_8 * n(0.42144000000000026)),
+            ),
+        ),
+    );
+    let link_6_force_3 = (-link_6_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_6_acceleration_5.mul_add(
             n(0.004),
-            (-link_6_acceleration_4)
-                .mul_add(
-                    n(2.120000000000001),
-                    (-(link_6_acceleration_10 - link_6_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_6_acceleration_12
-                                .mul_add(
-                                    n(0.4212600000000003),
-                                    link_6_acceleration_8 * n(0.42144000000000026),
-                                ),
-                        ),
-                ),
-        );
-    let link_6_force_3 = (-link_6_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_6_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_6_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_6_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_6_acceleration_18.mul_add(n(0.00041000000000000005), link_6_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_7: angular velocity (9 additions, 9 multiplications)
-    let link_7_angular_velocity = q[60]
-        .mul_add(link_6_rate_z, q[57].mul_add(link_6_rate_y, q[54] * link_6_rate_x));
-    let link_7_angular_velocity_2 = q[61]
-        .mul_add(link_6_rate_z, q[58].mul_add(link_6_rate_y, q[55] * link_6_rate_x));
-    let link_7_angular_velocity_3 = q[62]
-        .mul_add(link_6_rate_z, q[59].mul_add(link_6_rate_y, q[56] * link_6_rate_x));
+    let link_7_angular_velocity = q[60].mul_add(link_6_rate_z, q[57].mul_add(link_6_rate_y, q[54] * link_6_rate_x));
+    let link_7_angular_velocity_2 = q[61].mul_add(link_6_rate_z, q[58].mul_add(link_6_rate_y, q[55] * link_6_rate_x));
+    let link_7_angular_velocity_3 = q[62].mul_add(link_6_rate_z, q[59].mul_add(link_6_rate_y, q[56] * link_6_rate_x));
     let link_7_rate_x = v[18] + link_7_angular_velocity;
     let link_7_rate_y = v[19] + link_7_angular_velocity_2;
     let link_7_rate_z = v[20] + link_7_angular_velocity_3;
     // link_7: acceleration (30 additions, 33 multiplications)
-    let link_7_acceleration = (-link_6_acceleration_17)
-        .mul_add(n(0.2), link_6_acceleration_4);
-    let link_7_acceleration_2 = link_6_acceleration_18
-        .mul_add(n(0.2), link_6_acceleration_5);
-    let link_7_acceleration_3 = link_6_acceleration_19
-        .mul_add(n(0.2), link_6_acceleration_6);
+    let link_7_acceleration = (-link_6_acceleration_17).mul_add(n(0.2), link_6_acceleration_4);
+    let link_7_acceleration_2 = link_6_acceleration_18.mul_add(n(0.2), link_6_acceleration_5);
+    let link_7_acceleration_3 = link_6_acceleration_19.mul_add(n(0.2), link_6_acceleration_6);
     let link_7_acceleration_4 = q[60]
-        .mul_add(
-            link_7_acceleration_3,
-            q[57].mul_add(link_7_acceleration_2, q[54] * link_7_acceleration),
-        );
+        .mul_add(link_7_acceleration_3, q[57].mul_add(link_7_acceleration_2, q[54] * link_7_acceleration));
     let link_7_acceleration_5 = q[61]
-        .mul_add(
-            link_7_acceleration_3,
-            q[58].mul_add(link_7_acceleration_2, q[55] * link_7_acceleration),
-        );
+        .mul_add(link_7_acceleration_3, q[58].mul_add(link_7_acceleration_2, q[55] * link_7_acceleration));
     let link_7_acceleration_6 = q[62]
-        .mul_add(
-            link_7_acceleration_3,
-            q[59].mul_add(link_7_acceleration_2, q[56] * link_7_acceleration),
-        );
-    let link_7_acceleration_7 = (-v[19])
-        .mul_add(
-            link_7_angular_velocity_3,
-            q[60]
-                .mul_add(
-                    link_6_acceleration_9,
-                    q[57]
-                        .mul_add(
-                            link_6_acceleration_8,
-                            q[54]
-                                .mul_add(
-                                    link_6_acceleration_7,
-                                    v[20].mul_add(link_7_angular_velocity_2, a[18]),
-                                ),
-                        ),
-                ),
-        );
-    let link_7_acceleration_8 = (-v[20])
-        .mul_add(
-            link_7_angular_velocity,
-            q[61]
-                .mul_add(
-                    link_6_acceleration_9,
-                    q[58]
-                        .mul_add(
-                            link_6_acceleration_8,
-                            q[55]
-                                .mul_add(
-                                    link_6_acceleration_7,
-                                    v[18].mul_add(link_7_angular_velocity_3, a[19]),
-                                ),
-                        ),
-                ),
-        );
-    let link_7_acceleration_9 = (-v[18])
-        .mul_add(
-            link_7_angular_velocity_2,
-            q[62]
-                .mul_add(
-                    link_6_acceleration_9,
-                    q[59]
-                        .mul_add(
-                            link_6_acceleration_8,
-                            q[56]
-                                .mul_add(
-                                    link_6_acceleration_7,
-                                    v[19].mul_add(link_7_angular_velocity, a[20]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_7_acceleration_3, q[59].mul_add(link_7_acceleration_2, q[56] * link_7_acceleration));
+    let link_7_acceleration_7 = (-v[19]).mul_add(
+        link_7_angular_velocity_3,
+        q[60].mul_add(
+            link_6_acceleration_9,
+            q[57].mul_add(
+                link_6_acceleration_8,
+                q[54].mul_add(link_6_acceleration_7, v[20].mul_add(link_7_angular_velocity_2, a[18])),
+            ),
+        ),
+    );
+    let link_7_acceleration_8 = (-v[20]).mul_add(
+        link_7_angular_velocity,
+        q[61].mul_add(
+            link_6_acceleration_9,
+            q[58].mul_add(
+                link_6_acceleration_8,
+                q[55].mul_add(link_6_acceleration_7, v[18].mul_add(link_7_angular_velocity_3, a[19])),
+            ),
+        ),
+    );
+    let link_7_acceleration_9 = (-v[18]).mul_add(
+        link_7_angular_velocity_2,
+        q[62].mul_add(
+            link_6_acceleration_9,
+            q[59].mul_add(
+                link_6_acceleration_8,
+                q[56].mul_add(link_6_acceleration_7, v[19].mul_add(link_7_angular_velocity, a[20])),
+            ),
+        ),
+    );
     let link_7_acceleration_10 = link_7_rate_x * link_7_rate_x;
     let link_7_acceleration_11 = link_7_rate_x * link_7_rate_y;
     let link_7_acceleration_12 = link_7_rate_x * link_7_rate_z;
@@ -4003,132 +2189,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_7_acceleration_18 = link_7_acceleration_7 - link_7_acceleration_14;
     let link_7_acceleration_19 = link_7_acceleration_10 + link_7_acceleration_13;
     // link_7: force (14 additions, 19 multiplications)
-    let link_7_force = (-link_7_acceleration_14)
-        .mul_add(
-            n(0.4052000000000003),
-            link_7_acceleration_5
-                .mul_add(
-                    n(2.040000000000001),
-                    link_7_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_7_acceleration_7 * n(0.40550000000000025),
-                        ),
-                ),
-        );
-    let link_7_force_2 = (-link_7_acceleration_6)
-        .mul_add(
+    let link_7_force = (-link_7_acceleration_14).mul_add(
+        n(0.4052000000000003),
+        link_7_acceleration_5.mul_add(
+            n(2.040000000000001),
+            link_7_acceleration_16.mul_add(n(0.00041000000000000005), link_7_acceleration_7 * n(0.40550000000000025)),
+        ),
+    );
+    let link_7_force_2 = (-link_7_acceleration_6).mul_add(
+        n(0.004),
+        (-link_7_acceleration_4).mul_add(
+            n(2.040000000000001),
+            (-(link_7_acceleration_10 - link_7_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_7_acceleration_12.mul_add(n(0.4052600000000003), link_7_acceleration_8 * n(0.40544000000000024)),
+            ),
+        ),
+    );
+    let link_7_force_3 = (-link_7_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_7_acceleration_5.mul_add(
             n(0.004),
-            (-link_7_acceleration_4)
-                .mul_add(
-                    n(2.040000000000001),
-                    (-(link_7_acceleration_10 - link_7_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_7_acceleration_12
-                                .mul_add(
-                                    n(0.4052600000000003),
-                                    link_7_acceleration_8 * n(0.40544000000000024),
-                                ),
-                        ),
-                ),
-        );
-    let link_7_force_3 = (-link_7_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_7_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_7_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_7_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_7_acceleration_18.mul_add(n(0.00041000000000000005), link_7_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_8: angular velocity (9 additions, 9 multiplications)
-    let link_8_angular_velocity = q[69]
-        .mul_add(link_7_rate_z, q[66].mul_add(link_7_rate_y, q[63] * link_7_rate_x));
-    let link_8_angular_velocity_2 = q[70]
-        .mul_add(link_7_rate_z, q[67].mul_add(link_7_rate_y, q[64] * link_7_rate_x));
-    let link_8_angular_velocity_3 = q[71]
-        .mul_add(link_7_rate_z, q[68].mul_add(link_7_rate_y, q[65] * link_7_rate_x));
+    let link_8_angular_velocity = q[69].mul_add(link_7_rate_z, q[66].mul_add(link_7_rate_y, q[63] * link_7_rate_x));
+    let link_8_angular_velocity_2 = q[70].mul_add(link_7_rate_z, q[67].mul_add(link_7_rate_y, q[64] * link_7_rate_x));
+    let link_8_angular_velocity_3 = q[71].mul_add(link_7_rate_z, q[68].mul_add(link_7_rate_y, q[65] * link_7_rate_x));
     let link_8_rate_x = v[21] + link_8_angular_velocity;
     let link_8_rate_y = v[22] + link_8_angular_velocity_2;
     let link_8_rate_z = v[23] + link_8_angular_velocity_3;
     // link_8: acceleration (30 additions, 33 multiplications)
-    let link_8_acceleration = (-link_7_acceleration_17)
-        .mul_add(n(0.2), link_7_acceleration_4);
-    let link_8_acceleration_2 = link_7_acceleration_18
-        .mul_add(n(0.2), link_7_acceleration_5);
-    let link_8_acceleration_3 = link_7_acceleration_19
-        .mul_add(n(0.2), link_7_acceleration_6);
+    let link_8_acceleration = (-link_7_acceleration_17).mul_add(n(0.2), link_7_acceleration_4);
+    let link_8_acceleration_2 = link_7_acceleration_18.mul_add(n(0.2), link_7_acceleration_5);
+    let link_8_acceleration_3 = link_7_acceleration_19.mul_add(n(0.2), link_7_acceleration_6);
     let link_8_acceleration_4 = q[69]
-        .mul_add(
-            link_8_acceleration_3,
-            q[66].mul_add(link_8_acceleration_2, q[63] * link_8_acceleration),
-        );
+        .mul_add(link_8_acceleration_3, q[66].mul_add(link_8_acceleration_2, q[63] * link_8_acceleration));
     let link_8_acceleration_5 = q[70]
-        .mul_add(
-            link_8_acceleration_3,
-            q[67].mul_add(link_8_acceleration_2, q[64] * link_8_acceleration),
-        );
+        .mul_add(link_8_acceleration_3, q[67].mul_add(link_8_acceleration_2, q[64] * link_8_acceleration));
     let link_8_acceleration_6 = q[71]
-        .mul_add(
-            link_8_acceleration_3,
-            q[68].mul_add(link_8_acceleration_2, q[65] * link_8_acceleration),
-        );
-    let link_8_acceleration_7 = (-v[22])
-        .mul_add(
-            link_8_angular_velocity_3,
-            q[69]
-                .mul_add(
-                    link_7_acceleration_9,
-                    q[66]
-                        .mul_add(
-                            link_7_acceleration_8,
-                            q[63]
-                                .mul_add(
-                                    link_7_acceleration_7,
-                                    v[23].mul_add(link_8_angular_velocity_2, a[21]),
-                                ),
-                        ),
-                ),
-        );
-    let link_8_acceleration_8 = (-v[23])
-        .mul_add(
-            link_8_angular_velocity,
-            q[70]
-                .mul_add(
-                    link_7_acceleration_9,
-                    q[67]
-                        .mul_add(
-                            link_7_acceleration_8,
-                            q[64]
-                                .mul_add(
-                                    link_7_acceleration_7,
-                                    v[21].mul_add(link_8_angular_velocity_3, a[22]),
-                                ),
-                        ),
-                ),
-        );
-    let link_8_acceleration_9 = (-v[21])
-        .mul_add(
-            link_8_angular_velocity_2,
-            q[71]
-                .mul_add(
-                    link_7_acceleration_9,
-                    q[68]
-                        .mul_add(
-                            link_7_acceleration_8,
-                            q[65]
-                                .mul_add(
-                                    link_7_acceleration_7,
-                                    v[22].mul_add(link_8_angular_velocity, a[23]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_8_acceleration_3, q[68].mul_add(link_8_acceleration_2, q[65] * link_8_acceleration));
+    let link_8_acceleration_7 = (-v[22]).mul_add(
+        link_8_angular_velocity_3,
+        q[69].mul_add(
+            link_7_acceleration_9,
+            q[66].mul_add(
+                link_7_acceleration_8,
+                q[63].mul_add(link_7_acceleration_7, v[23].mul_add(link_8_angular_velocity_2, a[21])),
+            ),
+        ),
+    );
+    let link_8_acceleration_8 = (-v[23]).mul_add(
+        link_8_angular_velocity,
+        q[70].mul_add(
+            link_7_acceleration_9,
+            q[67].mul_add(
+                link_7_acceleration_8,
+                q[64].mul_add(link_7_acceleration_7, v[21].mul_add(link_8_angular_velocity_3, a[22])),
+            ),
+        ),
+    );
+    let link_8_acceleration_9 = (-v[21]).mul_add(
+        link_8_angular_velocity_2,
+        q[71].mul_add(
+            link_7_acceleration_9,
+            q[68].mul_add(
+                link_7_acceleration_8,
+                q[65].mul_add(link_7_acceleration_7, v[22].mul_add(link_8_angular_velocity, a[23])),
+            ),
+        ),
+    );
     let link_8_acceleration_10 = link_8_rate_x * link_8_rate_x;
     let link_8_acceleration_11 = link_8_rate_x * link_8_rate_y;
     let link_8_acceleration_12 = link_8_rate_x * link_8_rate_z;
@@ -4140,132 +2271,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_8_acceleration_18 = link_8_acceleration_7 - link_8_acceleration_14;
     let link_8_acceleration_19 = link_8_acceleration_10 + link_8_acceleration_13;
     // link_8: force (14 additions, 19 multiplications)
-    let link_8_force = (-link_8_acceleration_14)
-        .mul_add(
-            n(0.38920000000000027),
-            link_8_acceleration_5
-                .mul_add(
-                    n(1.9600000000000009),
-                    link_8_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_8_acceleration_7 * n(0.38950000000000023),
-                        ),
-                ),
-        );
-    let link_8_force_2 = (-link_8_acceleration_6)
-        .mul_add(
+    let link_8_force = (-link_8_acceleration_14).mul_add(
+        n(0.38920000000000027),
+        link_8_acceleration_5.mul_add(
+            n(1.9600000000000009),
+            link_8_acceleration_16.mul_add(n(0.00041000000000000005), link_8_acceleration_7 * n(0.38950000000000023)),
+        ),
+    );
+    let link_8_force_2 = (-link_8_acceleration_6).mul_add(
+        n(0.004),
+        (-link_8_acceleration_4).mul_add(
+            n(1.9600000000000009),
+            (-(link_8_acceleration_10 - link_8_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_8_acceleration_12.mul_add(n(0.3892600000000003), link_8_acceleration_8 * n(0.38944000000000023)),
+            ),
+        ),
+    );
+    let link_8_force_3 = (-link_8_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_8_acceleration_5.mul_add(
             n(0.004),
-            (-link_8_acceleration_4)
-                .mul_add(
-                    n(1.9600000000000009),
-                    (-(link_8_acceleration_10 - link_8_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_8_acceleration_12
-                                .mul_add(
-                                    n(0.3892600000000003),
-                                    link_8_acceleration_8 * n(0.38944000000000023),
-                                ),
-                        ),
-                ),
-        );
-    let link_8_force_3 = (-link_8_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_8_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_8_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_8_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_8_acceleration_18.mul_add(n(0.00041000000000000005), link_8_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_9: angular velocity (9 additions, 9 multiplications)
-    let link_9_angular_velocity = q[78]
-        .mul_add(link_8_rate_z, q[75].mul_add(link_8_rate_y, q[72] * link_8_rate_x));
-    let link_9_angular_velocity_2 = q[79]
-        .mul_add(link_8_rate_z, q[76].mul_add(link_8_rate_y, q[73] * link_8_rate_x));
-    let link_9_angular_velocity_3 = q[80]
-        .mul_add(link_8_rate_z, q[77].mul_add(link_8_rate_y, q[74] * link_8_rate_x));
+    let link_9_angular_velocity = q[78].mul_add(link_8_rate_z, q[75].mul_add(link_8_rate_y, q[72] * link_8_rate_x));
+    let link_9_angular_velocity_2 = q[79].mul_add(link_8_rate_z, q[76].mul_add(link_8_rate_y, q[73] * link_8_rate_x));
+    let link_9_angular_velocity_3 = q[80].mul_add(link_8_rate_z, q[77].mul_add(link_8_rate_y, q[74] * link_8_rate_x));
     let link_9_rate_x = v[24] + link_9_angular_velocity;
     let link_9_rate_y = v[25] + link_9_angular_velocity_2;
     let link_9_rate_z = v[26] + link_9_angular_velocity_3;
     // link_9: acceleration (30 additions, 33 multiplications)
-    let link_9_acceleration = (-link_8_acceleration_17)
-        .mul_add(n(0.2), link_8_acceleration_4);
-    let link_9_acceleration_2 = link_8_acceleration_18
-        .mul_add(n(0.2), link_8_acceleration_5);
-    let link_9_acceleration_3 = link_8_acceleration_19
-        .mul_add(n(0.2), link_8_acceleration_6);
+    let link_9_acceleration = (-link_8_acceleration_17).mul_add(n(0.2), link_8_acceleration_4);
+    let link_9_acceleration_2 = link_8_acceleration_18.mul_add(n(0.2), link_8_acceleration_5);
+    let link_9_acceleration_3 = link_8_acceleration_19.mul_add(n(0.2), link_8_acceleration_6);
     let link_9_acceleration_4 = q[78]
-        .mul_add(
-            link_9_acceleration_3,
-            q[75].mul_add(link_9_acceleration_2, q[72] * link_9_acceleration),
-        );
+        .mul_add(link_9_acceleration_3, q[75].mul_add(link_9_acceleration_2, q[72] * link_9_acceleration));
     let link_9_acceleration_5 = q[79]
-        .mul_add(
-            link_9_acceleration_3,
-            q[76].mul_add(link_9_acceleration_2, q[73] * link_9_acceleration),
-        );
+        .mul_add(link_9_acceleration_3, q[76].mul_add(link_9_acceleration_2, q[73] * link_9_acceleration));
     let link_9_acceleration_6 = q[80]
-        .mul_add(
-            link_9_acceleration_3,
-            q[77].mul_add(link_9_acceleration_2, q[74] * link_9_acceleration),
-        );
-    let link_9_acceleration_7 = (-v[25])
-        .mul_add(
-            link_9_angular_velocity_3,
-            q[78]
-                .mul_add(
-                    link_8_acceleration_9,
-                    q[75]
-                        .mul_add(
-                            link_8_acceleration_8,
-                            q[72]
-                                .mul_add(
-                                    link_8_acceleration_7,
-                                    v[26].mul_add(link_9_angular_velocity_2, a[24]),
-                                ),
-                        ),
-                ),
-        );
-    let link_9_acceleration_8 = (-v[26])
-        .mul_add(
-            link_9_angular_velocity,
-            q[79]
-                .mul_add(
-                    link_8_acceleration_9,
-                    q[76]
-                        .mul_add(
-                            link_8_acceleration_8,
-                            q[73]
-                                .mul_add(
-                                    link_8_acceleration_7,
-                                    v[24].mul_add(link_9_angular_velocity_3, a[25]),
-                                ),
-                        ),
-                ),
-        );
-    let link_9_acceleration_9 = (-v[24])
-        .mul_add(
-            link_9_angular_velocity_2,
-            q[80]
-                .mul_add(
-                    link_8_acceleration_9,
-                    q[77]
-                        .mul_add(
-                            link_8_acceleration_8,
-                            q[74]
-                                .mul_add(
-                                    link_8_acceleration_7,
-                                    v[25].mul_add(link_9_angular_velocity, a[26]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_9_acceleration_3, q[77].mul_add(link_9_acceleration_2, q[74] * link_9_acceleration));
+    let link_9_acceleration_7 = (-v[25]).mul_add(
+        link_9_angular_velocity_3,
+        q[78].mul_add(
+            link_8_acceleration_9,
+            q[75].mul_add(
+                link_8_acceleration_8,
+                q[72].mul_add(link_8_acceleration_7, v[26].mul_add(link_9_angular_velocity_2, a[24])),
+            ),
+        ),
+    );
+    let link_9_acceleration_8 = (-v[26]).mul_add(
+        link_9_angular_velocity,
+        q[79].mul_add(
+            link_8_acceleration_9,
+            q[76].mul_add(
+                link_8_acceleration_8,
+                q[73].mul_add(link_8_acceleration_7, v[24].mul_add(link_9_angular_velocity_3, a[25])),
+            ),
+        ),
+    );
+    let link_9_acceleration_9 = (-v[24]).mul_add(
+        link_9_angular_velocity_2,
+        q[80].mul_add(
+            link_8_acceleration_9,
+            q[77].mul_add(
+                link_8_acceleration_8,
+                q[74].mul_add(link_8_acceleration_7, v[25].mul_add(link_9_angular_velocity, a[26])),
+            ),
+        ),
+    );
     let link_9_acceleration_10 = link_9_rate_x * link_9_rate_x;
     let link_9_acceleration_11 = link_9_rate_x * link_9_rate_y;
     let link_9_acceleration_12 = link_9_rate_x * link_9_rate_z;
@@ -4277,132 +2353,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_9_acceleration_18 = link_9_acceleration_7 - link_9_acceleration_14;
     let link_9_acceleration_19 = link_9_acceleration_10 + link_9_acceleration_13;
     // link_9: force (14 additions, 19 multiplications)
-    let link_9_force = (-link_9_acceleration_14)
-        .mul_add(
-            n(0.3732000000000002),
-            link_9_acceleration_5
-                .mul_add(
-                    n(1.8800000000000008),
-                    link_9_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_9_acceleration_7 * n(0.37350000000000017),
-                        ),
-                ),
-        );
-    let link_9_force_2 = (-link_9_acceleration_6)
-        .mul_add(
+    let link_9_force = (-link_9_acceleration_14).mul_add(
+        n(0.3732000000000002),
+        link_9_acceleration_5.mul_add(
+            n(1.8800000000000008),
+            link_9_acceleration_16.mul_add(n(0.00041000000000000005), link_9_acceleration_7 * n(0.37350000000000017)),
+        ),
+    );
+    let link_9_force_2 = (-link_9_acceleration_6).mul_add(
+        n(0.004),
+        (-link_9_acceleration_4).mul_add(
+            n(1.8800000000000008),
+            (-(link_9_acceleration_10 - link_9_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_9_acceleration_12.mul_add(n(0.3732600000000002), link_9_acceleration_8 * n(0.37344000000000016)),
+            ),
+        ),
+    );
+    let link_9_force_3 = (-link_9_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_9_acceleration_5.mul_add(
             n(0.004),
-            (-link_9_acceleration_4)
-                .mul_add(
-                    n(1.8800000000000008),
-                    (-(link_9_acceleration_10 - link_9_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_9_acceleration_12
-                                .mul_add(
-                                    n(0.3732600000000002),
-                                    link_9_acceleration_8 * n(0.37344000000000016),
-                                ),
-                        ),
-                ),
-        );
-    let link_9_force_3 = (-link_9_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_9_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_9_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_9_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_9_acceleration_18.mul_add(n(0.00041000000000000005), link_9_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_10: angular velocity (9 additions, 9 multiplications)
-    let link_10_angular_velocity = q[87]
-        .mul_add(link_9_rate_z, q[84].mul_add(link_9_rate_y, q[81] * link_9_rate_x));
-    let link_10_angular_velocity_2 = q[88]
-        .mul_add(link_9_rate_z, q[85].mul_add(link_9_rate_y, q[82] * link_9_rate_x));
-    let link_10_angular_velocity_3 = q[89]
-        .mul_add(link_9_rate_z, q[86].mul_add(link_9_rate_y, q[83] * link_9_rate_x));
+    let link_10_angular_velocity = q[87].mul_add(link_9_rate_z, q[84].mul_add(link_9_rate_y, q[81] * link_9_rate_x));
+    let link_10_angular_velocity_2 = q[88].mul_add(link_9_rate_z, q[85].mul_add(link_9_rate_y, q[82] * link_9_rate_x));
+    let link_10_angular_velocity_3 = q[89].mul_add(link_9_rate_z, q[86].mul_add(link_9_rate_y, q[83] * link_9_rate_x));
     let link_10_rate_x = v[27] + link_10_angular_velocity;
     let link_10_rate_y = v[28] + link_10_angular_velocity_2;
     let link_10_rate_z = v[29] + link_10_angular_velocity_3;
     // link_10: acceleration (30 additions, 33 multiplications)
-    let link_10_acceleration = (-link_9_acceleration_17)
-        .mul_add(n(0.2), link_9_acceleration_4);
-    let link_10_acceleration_2 = link_9_acceleration_18
-        .mul_add(n(0.2), link_9_acceleration_5);
-    let link_10_acceleration_3 = link_9_acceleration_19
-        .mul_add(n(0.2), link_9_acceleration_6);
+    let link_10_acceleration = (-link_9_acceleration_17).mul_add(n(0.2), link_9_acceleration_4);
+    let link_10_acceleration_2 = link_9_acceleration_18.mul_add(n(0.2), link_9_acceleration_5);
+    let link_10_acceleration_3 = link_9_acceleration_19.mul_add(n(0.2), link_9_acceleration_6);
     let link_10_acceleration_4 = q[87]
-        .mul_add(
-            link_10_acceleration_3,
-            q[84].mul_add(link_10_acceleration_2, q[81] * link_10_acceleration),
-        );
+        .mul_add(link_10_acceleration_3, q[84].mul_add(link_10_acceleration_2, q[81] * link_10_acceleration));
     let link_10_acceleration_5 = q[88]
-        .mul_add(
-            link_10_acceleration_3,
-            q[85].mul_add(link_10_acceleration_2, q[82] * link_10_acceleration),
-        );
+        .mul_add(link_10_acceleration_3, q[85].mul_add(link_10_acceleration_2, q[82] * link_10_acceleration));
     let link_10_acceleration_6 = q[89]
-        .mul_add(
-            link_10_acceleration_3,
-            q[86].mul_add(link_10_acceleration_2, q[83] * link_10_acceleration),
-        );
-    let link_10_acceleration_7 = (-v[28])
-        .mul_add(
-            link_10_angular_velocity_3,
-            q[87]
-                .mul_add(
-                    link_9_acceleration_9,
-                    q[84]
-                        .mul_add(
-                            link_9_acceleration_8,
-                            q[81]
-                                .mul_add(
-                                    link_9_acceleration_7,
-                                    v[29].mul_add(link_10_angular_velocity_2, a[27]),
-                                ),
-                        ),
-                ),
-        );
-    let link_10_acceleration_8 = (-v[29])
-        .mul_add(
-            link_10_angular_velocity,
-            q[88]
-                .mul_add(
-                    link_9_acceleration_9,
-                    q[85]
-                        .mul_add(
-                            link_9_acceleration_8,
-                            q[82]
-                                .mul_add(
-                                    link_9_acceleration_7,
-                                    v[27].mul_add(link_10_angular_velocity_3, a[28]),
-                                ),
-                        ),
-                ),
-        );
-    let link_10_acceleration_9 = (-v[27])
-        .mul_add(
-            link_10_angular_velocity_2,
-            q[89]
-                .mul_add(
-                    link_9_acceleration_9,
-                    q[86]
-                        .mul_add(
-                            link_9_acceleration_8,
-                            q[83]
-                                .mul_add(
-                                    link_9_acceleration_7,
-                                    v[28].mul_add(link_10_angular_velocity, a[29]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_10_acceleration_3, q[86].mul_add(link_10_acceleration_2, q[83] * link_10_acceleration));
+    let link_10_acceleration_7 = (-v[28]).mul_add(
+        link_10_angular_velocity_3,
+        q[87].mul_add(
+            link_9_acceleration_9,
+            q[84].mul_add(
+                link_9_acceleration_8,
+                q[81].mul_add(link_9_acceleration_7, v[29].mul_add(link_10_angular_velocity_2, a[27])),
+            ),
+        ),
+    );
+    let link_10_acceleration_8 = (-v[29]).mul_add(
+        link_10_angular_velocity,
+        q[88].mul_add(
+            link_9_acceleration_9,
+            q[85].mul_add(
+                link_9_acceleration_8,
+                q[82].mul_add(link_9_acceleration_7, v[27].mul_add(link_10_angular_velocity_3, a[28])),
+            ),
+        ),
+    );
+    let link_10_acceleration_9 = (-v[27]).mul_add(
+        link_10_angular_velocity_2,
+        q[89].mul_add(
+            link_9_acceleration_9,
+            q[86].mul_add(
+                link_9_acceleration_8,
+                q[83].mul_add(link_9_acceleration_7, v[28].mul_add(link_10_angular_velocity, a[29])),
+            ),
+        ),
+    );
     let link_10_acceleration_10 = link_10_rate_x * link_10_rate_x;
     let link_10_acceleration_11 = link_10_rate_x * link_10_rate_y;
     let link_10_acceleration_12 = link_10_rate_x * link_10_rate_z;
@@ -4414,132 +2435,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_10_acceleration_18 = link_10_acceleration_7 - link_10_acceleration_14;
     let link_10_acceleration_19 = link_10_acceleration_10 + link_10_acceleration_13;
     // link_10: force (14 additions, 19 multiplications)
-    let link_10_force = (-link_10_acceleration_14)
-        .mul_add(
-            n(0.3572000000000002),
-            link_10_acceleration_5
-                .mul_add(
-                    n(1.8000000000000007),
-                    link_10_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_10_acceleration_7 * n(0.35750000000000015),
-                        ),
-                ),
-        );
-    let link_10_force_2 = (-link_10_acceleration_6)
-        .mul_add(
+    let link_10_force = (-link_10_acceleration_14).mul_add(
+        n(0.3572000000000002),
+        link_10_acceleration_5.mul_add(
+            n(1.8000000000000007),
+            link_10_acceleration_16.mul_add(n(0.00041000000000000005), link_10_acceleration_7 * n(0.35750000000000015)),
+        ),
+    );
+    let link_10_force_2 = (-link_10_acceleration_6).mul_add(
+        n(0.004),
+        (-link_10_acceleration_4).mul_add(
+            n(1.8000000000000007),
+            (-(link_10_acceleration_10 - link_10_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_10_acceleration_12.mul_add(n(0.3572600000000002), link_10_acceleration_8 * n(0.35744000000000015)),
+            ),
+        ),
+    );
+    let link_10_force_3 = (-link_10_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_10_acceleration_5.mul_add(
             n(0.004),
-            (-link_10_acceleration_4)
-                .mul_add(
-                    n(1.8000000000000007),
-                    (-(link_10_acceleration_10 - link_10_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_10_acceleration_12
-                                .mul_add(
-                                    n(0.3572600000000002),
-                                    link_10_acceleration_8 * n(0.35744000000000015),
-                                ),
-                        ),
-                ),
-        );
-    let link_10_force_3 = (-link_10_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_10_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_10_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_10_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_10_acceleration_18.mul_add(n(0.00041000000000000005), link_10_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_11: angular velocity (9 additions, 9 multiplications)
-    let link_11_angular_velocity = q[96]
-        .mul_add(link_10_rate_z, q[93].mul_add(link_10_rate_y, q[90] * link_10_rate_x));
-    let link_11_angular_velocity_2 = q[97]
-        .mul_add(link_10_rate_z, q[94].mul_add(link_10_rate_y, q[91] * link_10_rate_x));
-    let link_11_angular_velocity_3 = q[98]
-        .mul_add(link_10_rate_z, q[95].mul_add(link_10_rate_y, q[92] * link_10_rate_x));
+    let link_11_angular_velocity = q[96].mul_add(link_10_rate_z, q[93].mul_add(link_10_rate_y, q[90] * link_10_rate_x));
+    let link_11_angular_velocity_2 = q[97].mul_add(link_10_rate_z, q[94].mul_add(link_10_rate_y, q[91] * link_10_rate_x));
+    let link_11_angular_velocity_3 = q[98].mul_add(link_10_rate_z, q[95].mul_add(link_10_rate_y, q[92] * link_10_rate_x));
     let link_11_rate_x = v[30] + link_11_angular_velocity;
     let link_11_rate_y = v[31] + link_11_angular_velocity_2;
     let link_11_rate_z = v[32] + link_11_angular_velocity_3;
     // link_11: acceleration (30 additions, 33 multiplications)
-    let link_11_acceleration = (-link_10_acceleration_17)
-        .mul_add(n(0.2), link_10_acceleration_4);
-    let link_11_acceleration_2 = link_10_acceleration_18
-        .mul_add(n(0.2), link_10_acceleration_5);
-    let link_11_acceleration_3 = link_10_acceleration_19
-        .mul_add(n(0.2), link_10_acceleration_6);
+    let link_11_acceleration = (-link_10_acceleration_17).mul_add(n(0.2), link_10_acceleration_4);
+    let link_11_acceleration_2 = link_10_acceleration_18.mul_add(n(0.2), link_10_acceleration_5);
+    let link_11_acceleration_3 = link_10_acceleration_19.mul_add(n(0.2), link_10_acceleration_6);
     let link_11_acceleration_4 = q[96]
-        .mul_add(
-            link_11_acceleration_3,
-            q[93].mul_add(link_11_acceleration_2, q[90] * link_11_acceleration),
-        );
+        .mul_add(link_11_acceleration_3, q[93].mul_add(link_11_acceleration_2, q[90] * link_11_acceleration));
     let link_11_acceleration_5 = q[97]
-        .mul_add(
-            link_11_acceleration_3,
-            q[94].mul_add(link_11_acceleration_2, q[91] * link_11_acceleration),
-        );
+        .mul_add(link_11_acceleration_3, q[94].mul_add(link_11_acceleration_2, q[91] * link_11_acceleration));
     let link_11_acceleration_6 = q[98]
-        .mul_add(
-            link_11_acceleration_3,
-            q[95].mul_add(link_11_acceleration_2, q[92] * link_11_acceleration),
-        );
-    let link_11_acceleration_7 = (-v[31])
-        .mul_add(
-            link_11_angular_velocity_3,
-            q[96]
-                .mul_add(
-                    link_10_acceleration_9,
-                    q[93]
-                        .mul_add(
-                            link_10_acceleration_8,
-                            q[90]
-                                .mul_add(
-                                    link_10_acceleration_7,
-                                    v[32].mul_add(link_11_angular_velocity_2, a[30]),
-                                ),
-                        ),
-                ),
-        );
-    let link_11_acceleration_8 = (-v[32])
-        .mul_add(
-            link_11_angular_velocity,
-            q[97]
-                .mul_add(
-                    link_10_acceleration_9,
-                    q[94]
-                        .mul_add(
-                            link_10_acceleration_8,
-                            q[91]
-                                .mul_add(
-                                    link_10_acceleration_7,
-                                    v[30].mul_add(link_11_angular_velocity_3, a[31]),
-                                ),
-                        ),
-                ),
-        );
-    let link_11_acceleration_9 = (-v[30])
-        .mul_add(
-            link_11_angular_velocity_2,
-            q[98]
-                .mul_add(
-                    link_10_acceleration_9,
-                    q[95]
-                        .mul_add(
-                            link_10_acceleration_8,
-                            q[92]
-                                .mul_add(
-                                    link_10_acceleration_7,
-                                    v[31].mul_add(link_11_angular_velocity, a[32]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_11_acceleration_3, q[95].mul_add(link_11_acceleration_2, q[92] * link_11_acceleration));
+    let link_11_acceleration_7 = (-v[31]).mul_add(
+        link_11_angular_velocity_3,
+        q[96].mul_add(
+            link_10_acceleration_9,
+            q[93].mul_add(
+                link_10_acceleration_8,
+                q[90].mul_add(link_10_acceleration_7, v[32].mul_add(link_11_angular_velocity_2, a[30])),
+            ),
+        ),
+    );
+    let link_11_acceleration_8 = (-v[32]).mul_add(
+        link_11_angular_velocity,
+        q[97].mul_add(
+            link_10_acceleration_9,
+            q[94].mul_add(
+                link_10_acceleration_8,
+                q[91].mul_add(link_10_acceleration_7, v[30].mul_add(link_11_angular_velocity_3, a[31])),
+            ),
+        ),
+    );
+    let link_11_acceleration_9 = (-v[30]).mul_add(
+        link_11_angular_velocity_2,
+        q[98].mul_add(
+            link_10_acceleration_9,
+            q[95].mul_add(
+                link_10_acceleration_8,
+                q[92].mul_add(link_10_acceleration_7, v[31].mul_add(link_11_angular_velocity, a[32])),
+            ),
+        ),
+    );
     let link_11_acceleration_10 = link_11_rate_x * link_11_rate_x;
     let link_11_acceleration_11 = link_11_rate_x * link_11_rate_y;
     let link_11_acceleration_12 = link_11_rate_x * link_11_rate_z;
@@ -4551,138 +2517,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_11_acceleration_18 = link_11_acceleration_7 - link_11_acceleration_14;
     let link_11_acceleration_19 = link_11_acceleration_10 + link_11_acceleration_13;
     // link_11: force (14 additions, 19 multiplications)
-    let link_11_force = (-link_11_acceleration_14)
-        .mul_add(
-            n(0.34120000000000017),
-            link_11_acceleration_5
-                .mul_add(
-                    n(1.7200000000000006),
-                    link_11_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_11_acceleration_7 * n(0.34150000000000014),
-                        ),
-                ),
-        );
-    let link_11_force_2 = (-link_11_acceleration_6)
-        .mul_add(
+    let link_11_force = (-link_11_acceleration_14).mul_add(
+        n(0.34120000000000017),
+        link_11_acceleration_5.mul_add(
+            n(1.7200000000000006),
+            link_11_acceleration_16.mul_add(n(0.00041000000000000005), link_11_acceleration_7 * n(0.34150000000000014)),
+        ),
+    );
+    let link_11_force_2 = (-link_11_acceleration_6).mul_add(
+        n(0.004),
+        (-link_11_acceleration_4).mul_add(
+            n(1.7200000000000006),
+            (-(link_11_acceleration_10 - link_11_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_11_acceleration_12.mul_add(n(0.3412600000000002), link_11_acceleration_8 * n(0.34144000000000013)),
+            ),
+        ),
+    );
+    let link_11_force_3 = (-link_11_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_11_acceleration_5.mul_add(
             n(0.004),
-            (-link_11_acceleration_4)
-                .mul_add(
-                    n(1.7200000000000006),
-                    (-(link_11_acceleration_10 - link_11_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_11_acceleration_12
-                                .mul_add(
-                                    n(0.3412600000000002),
-                                    link_11_acceleration_8 * n(0.34144000000000013),
-                                ),
-                        ),
-                ),
-        );
-    let link_11_force_3 = (-link_11_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_11_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_11_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_11_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_11_acceleration_18.mul_add(n(0.00041000000000000005), link_11_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_12: angular velocity (9 additions, 9 multiplications)
-    let link_12_angular_velocity = q[105]
-        .mul_add(link_11_rate_z, q[102].mul_add(link_11_rate_y, q[99] * link_11_rate_x));
-    let link_12_angular_velocity_2 = q[106]
-        .mul_add(
-            link_11_rate_z,
-            q[103].mul_add(link_11_rate_y, q[100] * link_11_rate_x),
-        );
-    let link_12_angular_velocity_3 = q[107]
-        .mul_add(
-            link_11_rate_z,
-            q[104].mul_add(link_11_rate_y, q[101] * link_11_rate_x),
-        );
+    let link_12_angular_velocity = q[105].mul_add(link_11_rate_z, q[102].mul_add(link_11_rate_y, q[99] * link_11_rate_x));
+    let link_12_angular_velocity_2 = q[106].mul_add(link_11_rate_z, q[103].mul_add(link_11_rate_y, q[100] * link_11_rate_x));
+    let link_12_angular_velocity_3 = q[107].mul_add(link_11_rate_z, q[104].mul_add(link_11_rate_y, q[101] * link_11_rate_x));
     let link_12_rate_x = v[33] + link_12_angular_velocity;
     let link_12_rate_y = v[34] + link_12_angular_velocity_2;
     let link_12_rate_z = v[35] + link_12_angular_velocity_3;
     // link_12: acceleration (30 additions, 33 multiplications)
-    let link_12_acceleration = (-link_11_acceleration_17)
-        .mul_add(n(0.2), link_11_acceleration_4);
-    let link_12_acceleration_2 = link_11_acceleration_18
-        .mul_add(n(0.2), link_11_acceleration_5);
-    let link_12_acceleration_3 = link_11_acceleration_19
-        .mul_add(n(0.2), link_11_acceleration_6);
+    let link_12_acceleration = (-link_11_acceleration_17).mul_add(n(0.2), link_11_acceleration_4);
+    let link_12_acceleration_2 = link_11_acceleration_18.mul_add(n(0.2), link_11_acceleration_5);
+    let link_12_acceleration_3 = link_11_acceleration_19.mul_add(n(0.2), link_11_acceleration_6);
     let link_12_acceleration_4 = q[105]
-        .mul_add(
-            link_12_acceleration_3,
-            q[102].mul_add(link_12_acceleration_2, q[99] * link_12_acceleration),
-        );
+        .mul_add(link_12_acceleration_3, q[102].mul_add(link_12_acceleration_2, q[99] * link_12_acceleration));
     let link_12_acceleration_5 = q[106]
-        .mul_add(
-            link_12_acceleration_3,
-            q[103].mul_add(link_12_acceleration_2, q[100] * link_12_acceleration),
-        );
+        .mul_add(link_12_acceleration_3, q[103].mul_add(link_12_acceleration_2, q[100] * link_12_acceleration));
     let link_12_acceleration_6 = q[107]
-        .mul_add(
-            link_12_acceleration_3,
-            q[104].mul_add(link_12_acceleration_2, q[101] * link_12_acceleration),
-        );
-    let link_12_acceleration_7 = (-v[34])
-        .mul_add(
-            link_12_angular_velocity_3,
-            q[105]
-                .mul_add(
-                    link_11_acceleration_9,
-                    q[102]
-                        .mul_add(
-                            link_11_acceleration_8,
-                            q[99]
-                                .mul_add(
-                                    link_11_acceleration_7,
-                                    v[35].mul_add(link_12_angular_velocity_2, a[33]),
-                                ),
-                        ),
-                ),
-        );
-    let link_12_acceleration_8 = (-v[35])
-        .mul_add(
-            link_12_angular_velocity,
-            q[106]
-                .mul_add(
-                    link_11_acceleration_9,
-                    q[103]
-                        .mul_add(
-                            link_11_acceleration_8,
-                            q[100]
-                                .mul_add(
-                                    link_11_acceleration_7,
-                                    v[33].mul_add(link_12_angular_velocity_3, a[34]),
-                                ),
-                        ),
-                ),
-        );
-    let link_12_acceleration_9 = (-v[33])
-        .mul_add(
-            link_12_angular_velocity_2,
-            q[107]
-                .mul_add(
-                    link_11_acceleration_9,
-                    q[104]
-                        .mul_add(
-                            link_11_acceleration_8,
-                            q[101]
-                                .mul_add(
-                                    link_11_acceleration_7,
-                                    v[34].mul_add(link_12_angular_velocity, a[35]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_12_acceleration_3, q[104].mul_add(link_12_acceleration_2, q[101] * link_12_acceleration));
+    let link_12_acceleration_7 = (-v[34]).mul_add(
+        link_12_angular_velocity_3,
+        q[105].mul_add(
+            link_11_acceleration_9,
+            q[102].mul_add(
+                link_11_acceleration_8,
+                q[99].mul_add(link_11_acceleration_7, v[35].mul_add(link_12_angular_velocity_2, a[33])),
+            ),
+        ),
+    );
+    let link_12_acceleration_8 = (-v[35]).mul_add(
+        link_12_angular_velocity,
+        q[106].mul_add(
+            link_11_acceleration_9,
+            q[103].mul_add(
+                link_11_acceleration_8,
+                q[100].mul_add(link_11_acceleration_7, v[33].mul_add(link_12_angular_velocity_3, a[34])),
+            ),
+        ),
+    );
+    let link_12_acceleration_9 = (-v[33]).mul_add(
+        link_12_angular_velocity_2,
+        q[107].mul_add(
+            link_11_acceleration_9,
+            q[104].mul_add(
+                link_11_acceleration_8,
+                q[101].mul_add(link_11_acceleration_7, v[34].mul_add(link_12_angular_velocity, a[35])),
+            ),
+        ),
+    );
     let link_12_acceleration_10 = link_12_rate_x * link_12_rate_x;
     let link_12_acceleration_11 = link_12_rate_x * link_12_rate_y;
     let link_12_acceleration_12 = link_12_rate_x * link_12_rate_z;
@@ -4694,141 +2599,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_12_acceleration_18 = link_12_acceleration_7 - link_12_acceleration_14;
     let link_12_acceleration_19 = link_12_acceleration_10 + link_12_acceleration_13;
     // link_12: force (14 additions, 19 multiplications)
-    let link_12_force = (-link_12_acceleration_14)
-        .mul_add(
-            n(0.32520000000000016),
-            link_12_acceleration_5
-                .mul_add(
-                    n(1.6400000000000006),
-                    link_12_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_12_acceleration_7 * n(0.3255000000000001),
-                        ),
-                ),
-        );
-    let link_12_force_2 = (-link_12_acceleration_6)
-        .mul_add(
+    let link_12_force = (-link_12_acceleration_14).mul_add(
+        n(0.32520000000000016),
+        link_12_acceleration_5.mul_add(
+            n(1.6400000000000006),
+            link_12_acceleration_16.mul_add(n(0.00041000000000000005), link_12_acceleration_7 * n(0.3255000000000001)),
+        ),
+    );
+    let link_12_force_2 = (-link_12_acceleration_6).mul_add(
+        n(0.004),
+        (-link_12_acceleration_4).mul_add(
+            n(1.6400000000000006),
+            (-(link_12_acceleration_10 - link_12_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_12_acceleration_12.mul_add(n(0.32526000000000016), link_12_acceleration_8 * n(0.3254400000000001)),
+            ),
+        ),
+    );
+    let link_12_force_3 = (-link_12_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_12_acceleration_5.mul_add(
             n(0.004),
-            (-link_12_acceleration_4)
-                .mul_add(
-                    n(1.6400000000000006),
-                    (-(link_12_acceleration_10 - link_12_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_12_acceleration_12
-                                .mul_add(
-                                    n(0.32526000000000016),
-                                    link_12_acceleration_8 * n(0.3254400000000001),
-                                ),
-                        ),
-                ),
-        );
-    let link_12_force_3 = (-link_12_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_12_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_12_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_12_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_12_acceleration_18.mul_add(n(0.00041000000000000005), link_12_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_13: angular velocity (9 additions, 9 multiplications)
-    let link_13_angular_velocity = q[114]
-        .mul_add(
-            link_12_rate_z,
-            q[111].mul_add(link_12_rate_y, q[108] * link_12_rate_x),
-        );
-    let link_13_angular_velocity_2 = q[115]
-        .mul_add(
-            link_12_rate_z,
-            q[112].mul_add(link_12_rate_y, q[109] * link_12_rate_x),
-        );
-    let link_13_angular_velocity_3 = q[116]
-        .mul_add(
-            link_12_rate_z,
-            q[113].mul_add(link_12_rate_y, q[110] * link_12_rate_x),
-        );
+    let link_13_angular_velocity = q[114].mul_add(link_12_rate_z, q[111].mul_add(link_12_rate_y, q[108] * link_12_rate_x));
+    let link_13_angular_velocity_2 = q[115].mul_add(link_12_rate_z, q[112].mul_add(link_12_rate_y, q[109] * link_12_rate_x));
+    let link_13_angular_velocity_3 = q[116].mul_add(link_12_rate_z, q[113].mul_add(link_12_rate_y, q[110] * link_12_rate_x));
     let link_13_rate_x = v[36] + link_13_angular_velocity;
     let link_13_rate_y = v[37] + link_13_angular_velocity_2;
     let link_13_rate_z = v[38] + link_13_angular_velocity_3;
     // link_13: acceleration (30 additions, 33 multiplications)
-    let link_13_acceleration = (-link_12_acceleration_17)
-        .mul_add(n(0.2), link_12_acceleration_4);
-    let link_13_acceleration_2 = link_12_acceleration_18
-        .mul_add(n(0.2), link_12_acceleration_5);
-    let link_13_acceleration_3 = link_12_acceleration_19
-        .mul_add(n(0.2), link_12_acceleration_6);
+    let link_13_acceleration = (-link_12_acceleration_17).mul_add(n(0.2), link_12_acceleration_4);
+    let link_13_acceleration_2 = link_12_acceleration_18.mul_add(n(0.2), link_12_acceleration_5);
+    let link_13_acceleration_3 = link_12_acceleration_19.mul_add(n(0.2), link_12_acceleration_6);
     let link_13_acceleration_4 = q[114]
-        .mul_add(
-            link_13_acceleration_3,
-            q[111].mul_add(link_13_acceleration_2, q[108] * link_13_acceleration),
-        );
+        .mul_add(link_13_acceleration_3, q[111].mul_add(link_13_acceleration_2, q[108] * link_13_acceleration));
     let link_13_acceleration_5 = q[115]
-        .mul_add(
-            link_13_acceleration_3,
-            q[112].mul_add(link_13_acceleration_2, q[109] * link_13_acceleration),
-        );
+        .mul_add(link_13_acceleration_3, q[112].mul_add(link_13_acceleration_2, q[109] * link_13_acceleration));
     let link_13_acceleration_6 = q[116]
-        .mul_add(
-            link_13_acceleration_3,
-            q[113].mul_add(link_13_acceleration_2, q[110] * link_13_acceleration),
-        );
-    let link_13_acceleration_7 = (-v[37])
-        .mul_add(
-            link_13_angular_velocity_3,
-            q[114]
-                .mul_add(
-                    link_12_acceleration_9,
-                    q[111]
-                        .mul_add(
-                            link_12_acceleration_8,
-                            q[108]
-                                .mul_add(
-                                    link_12_acceleration_7,
-                                    v[38].mul_add(link_13_angular_velocity_2, a[36]),
-                                ),
-                        ),
-                ),
-        );
-    let link_13_acceleration_8 = (-v[38])
-        .mul_add(
-            link_13_angular_velocity,
-            q[115]
-                .mul_add(
-                    link_12_acceleration_9,
-                    q[112]
-                        .mul_add(
-                            link_12_acceleration_8,
-                            q[109]
-                                .mul_add(
-                                    link_12_acceleration_7,
-                                    v[36].mul_add(link_13_angular_velocity_3, a[37]),
-                                ),
-                        ),
-                ),
-        );
-    let link_13_acceleration_9 = (-v[36])
-        .mul_add(
-            link_13_angular_velocity_2,
-            q[116]
-                .mul_add(
-                    link_12_acceleration_9,
-                    q[113]
-                        .mul_add(
-                            link_12_acceleration_8,
-                            q[110]
-                                .mul_add(
-                                    link_12_acceleration_7,
-                                    v[37].mul_add(link_13_angular_velocity, a[38]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_13_acceleration_3, q[113].mul_add(link_13_acceleration_2, q[110] * link_13_acceleration));
+    let link_13_acceleration_7 = (-v[37]).mul_add(
+        link_13_angular_velocity_3,
+        q[114].mul_add(
+            link_12_acceleration_9,
+            q[111].mul_add(
+                link_12_acceleration_8,
+                q[108].mul_add(link_12_acceleration_7, v[38].mul_add(link_13_angular_velocity_2, a[36])),
+            ),
+        ),
+    );
+    let link_13_acceleration_8 = (-v[38]).mul_add(
+        link_13_angular_velocity,
+        q[115].mul_add(
+            link_12_acceleration_9,
+            q[112].mul_add(
+                link_12_acceleration_8,
+                q[109].mul_add(link_12_acceleration_7, v[36].mul_add(link_13_angular_velocity_3, a[37])),
+            ),
+        ),
+    );
+    let link_13_acceleration_9 = (-v[36]).mul_add(
+        link_13_angular_velocity_2,
+        q[116].mul_add(
+            link_12_acceleration_9,
+            q[113].mul_add(
+                link_12_acceleration_8,
+                q[110].mul_add(link_12_acceleration_7, v[37].mul_add(link_13_angular_velocity, a[38])),
+            ),
+        ),
+    );
     let link_13_acceleration_10 = link_13_rate_x * link_13_rate_x;
     let link_13_acceleration_11 = link_13_rate_x * link_13_rate_y;
     let link_13_acceleration_12 = link_13_rate_x * link_13_rate_z;
@@ -4840,141 +2681,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_13_acceleration_18 = link_13_acceleration_7 - link_13_acceleration_14;
     let link_13_acceleration_19 = link_13_acceleration_10 + link_13_acceleration_13;
     // link_13: force (14 additions, 19 multiplications)
-    let link_13_force = (-link_13_acceleration_14)
-        .mul_add(
-            n(0.3092000000000002),
-            link_13_acceleration_5
-                .mul_add(
-                    n(1.5600000000000005),
-                    link_13_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_13_acceleration_7 * n(0.30950000000000016),
-                        ),
-                ),
-        );
-    let link_13_force_2 = (-link_13_acceleration_6)
-        .mul_add(
+    let link_13_force = (-link_13_acceleration_14).mul_add(
+        n(0.3092000000000002),
+        link_13_acceleration_5.mul_add(
+            n(1.5600000000000005),
+            link_13_acceleration_16.mul_add(n(0.00041000000000000005), link_13_acceleration_7 * n(0.30950000000000016)),
+        ),
+    );
+    let link_13_force_2 = (-link_13_acceleration_6).mul_add(
+        n(0.004),
+        (-link_13_acceleration_4).mul_add(
+            n(1.5600000000000005),
+            (-(link_13_acceleration_10 - link_13_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_13_acceleration_12.mul_add(n(0.3092600000000002), link_13_acceleration_8 * n(0.30944000000000016)),
+            ),
+        ),
+    );
+    let link_13_force_3 = (-link_13_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_13_acceleration_5.mul_add(
             n(0.004),
-            (-link_13_acceleration_4)
-                .mul_add(
-                    n(1.5600000000000005),
-                    (-(link_13_acceleration_10 - link_13_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_13_acceleration_12
-                                .mul_add(
-                                    n(0.3092600000000002),
-                                    link_13_acceleration_8 * n(0.30944000000000016),
-                                ),
-                        ),
-                ),
-        );
-    let link_13_force_3 = (-link_13_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_13_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_13_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_13_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_13_acceleration_18.mul_add(n(0.00041000000000000005), link_13_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_14: angular velocity (9 additions, 9 multiplications)
-    let link_14_angular_velocity = q[123]
-        .mul_add(
-            link_13_rate_z,
-            q[120].mul_add(link_13_rate_y, q[117] * link_13_rate_x),
-        );
-    let link_14_angular_velocity_2 = q[124]
-        .mul_add(
-            link_13_rate_z,
-            q[121].mul_add(link_13_rate_y, q[118] * link_13_rate_x),
-        );
-    let link_14_angular_velocity_3 = q[125]
-        .mul_add(
-            link_13_rate_z,
-            q[122].mul_add(link_13_rate_y, q[119] * link_13_rate_x),
-        );
+    let link_14_angular_velocity = q[123].mul_add(link_13_rate_z, q[120].mul_add(link_13_rate_y, q[117] * link_13_rate_x));
+    let link_14_angular_velocity_2 = q[124].mul_add(link_13_rate_z, q[121].mul_add(link_13_rate_y, q[118] * link_13_rate_x));
+    let link_14_angular_velocity_3 = q[125].mul_add(link_13_rate_z, q[122].mul_add(link_13_rate_y, q[119] * link_13_rate_x));
     let link_14_rate_x = v[39] + link_14_angular_velocity;
     let link_14_rate_y = v[40] + link_14_angular_velocity_2;
     let link_14_rate_z = v[41] + link_14_angular_velocity_3;
     // link_14: acceleration (30 additions, 33 multiplications)
-    let link_14_acceleration = (-link_13_acceleration_17)
-        .mul_add(n(0.2), link_13_acceleration_4);
-    let link_14_acceleration_2 = link_13_acceleration_18
-        .mul_add(n(0.2), link_13_acceleration_5);
-    let link_14_acceleration_3 = link_13_acceleration_19
-        .mul_add(n(0.2), link_13_acceleration_6);
+    let link_14_acceleration = (-link_13_acceleration_17).mul_add(n(0.2), link_13_acceleration_4);
+    let link_14_acceleration_2 = link_13_acceleration_18.mul_add(n(0.2), link_13_acceleration_5);
+    let link_14_acceleration_3 = link_13_acceleration_19.mul_add(n(0.2), link_13_acceleration_6);
     let link_14_acceleration_4 = q[123]
-        .mul_add(
-            link_14_acceleration_3,
-            q[120].mul_add(link_14_acceleration_2, q[117] * link_14_acceleration),
-        );
+        .mul_add(link_14_acceleration_3, q[120].mul_add(link_14_acceleration_2, q[117] * link_14_acceleration));
     let link_14_acceleration_5 = q[124]
-        .mul_add(
-            link_14_acceleration_3,
-            q[121].mul_add(link_14_acceleration_2, q[118] * link_14_acceleration),
-        );
+        .mul_add(link_14_acceleration_3, q[121].mul_add(link_14_acceleration_2, q[118] * link_14_acceleration));
     let link_14_acceleration_6 = q[125]
-        .mul_add(
-            link_14_acceleration_3,
-            q[122].mul_add(link_14_acceleration_2, q[119] * link_14_acceleration),
-        );
-    let link_14_acceleration_7 = (-v[40])
-        .mul_add(
-            link_14_angular_velocity_3,
-            q[123]
-                .mul_add(
-                    link_13_acceleration_9,
-                    q[120]
-                        .mul_add(
-                            link_13_acceleration_8,
-                            q[117]
-                                .mul_add(
-                                    link_13_acceleration_7,
-                                    v[41].mul_add(link_14_angular_velocity_2, a[39]),
-                                ),
-                        ),
-                ),
-        );
-    let link_14_acceleration_8 = (-v[41])
-        .mul_add(
-            link_14_angular_velocity,
-            q[124]
-                .mul_add(
-                    link_13_acceleration_9,
-                    q[121]
-                        .mul_add(
-                            link_13_acceleration_8,
-                            q[118]
-                                .mul_add(
-                                    link_13_acceleration_7,
-                                    v[39].mul_add(link_14_angular_velocity_3, a[40]),
-                                ),
-                        ),
-                ),
-        );
-    let link_14_acceleration_9 = (-v[39])
-        .mul_add(
-            link_14_angular_velocity_2,
-            q[125]
-                .mul_add(
-                    link_13_acceleration_9,
-                    q[122]
-                        .mul_add(
-                            link_13_acceleration_8,
-                            q[119]
-                                .mul_add(
-                                    link_13_acceleration_7,
-                                    v[40].mul_add(link_14_angular_velocity, a[41]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_14_acceleration_3, q[122].mul_add(link_14_acceleration_2, q[119] * link_14_acceleration));
+    let link_14_acceleration_7 = (-v[40]).mul_add(
+        link_14_angular_velocity_3,
+        q[123].mul_add(
+            link_13_acceleration_9,
+            q[120].mul_add(
+                link_13_acceleration_8,
+                q[117].mul_add(link_13_acceleration_7, v[41].mul_add(link_14_angular_velocity_2, a[39])),
+            ),
+        ),
+    );
+    let link_14_acceleration_8 = (-v[41]).mul_add(
+        link_14_angular_velocity,
+        q[124].mul_add(
+            link_13_acceleration_9,
+            q[121].mul_add(
+                link_13_acceleration_8,
+                q[118].mul_add(link_13_acceleration_7, v[39].mul_add(link_14_angular_velocity_3, a[40])),
+            ),
+        ),
+    );
+    let link_14_acceleration_9 = (-v[39]).mul_add(
+        link_14_angular_velocity_2,
+        q[125].mul_add(
+            link_13_acceleration_9,
+            q[122].mul_add(
+                link_13_acceleration_8,
+                q[119].mul_add(link_13_acceleration_7, v[40].mul_add(link_14_angular_velocity, a[41])),
+            ),
+        ),
+    );
     let link_14_acceleration_10 = link_14_rate_x * link_14_rate_x;
     let link_14_acceleration_11 = link_14_rate_x * link_14_rate_y;
     let link_14_acceleration_12 = link_14_rate_x * link_14_rate_z;
@@ -4986,141 +2763,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_14_acceleration_18 = link_14_acceleration_7 - link_14_acceleration_14;
     let link_14_acceleration_19 = link_14_acceleration_10 + link_14_acceleration_13;
     // link_14: force (14 additions, 19 multiplications)
-    let link_14_force = (-link_14_acceleration_14)
-        .mul_add(
-            n(0.2932000000000002),
-            link_14_acceleration_5
-                .mul_add(
-                    n(1.4800000000000004),
-                    link_14_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_14_acceleration_7 * n(0.29350000000000015),
-                        ),
-                ),
-        );
-    let link_14_force_2 = (-link_14_acceleration_6)
-        .mul_add(
+    let link_14_force = (-link_14_acceleration_14).mul_add(
+        n(0.2932000000000002),
+        link_14_acceleration_5.mul_add(
+            n(1.4800000000000004),
+            link_14_acceleration_16.mul_add(n(0.00041000000000000005), link_14_acceleration_7 * n(0.29350000000000015)),
+        ),
+    );
+    let link_14_force_2 = (-link_14_acceleration_6).mul_add(
+        n(0.004),
+        (-link_14_acceleration_4).mul_add(
+            n(1.4800000000000004),
+            (-(link_14_acceleration_10 - link_14_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_14_acceleration_12.mul_add(n(0.2932600000000002), link_14_acceleration_8 * n(0.29344000000000015)),
+            ),
+        ),
+    );
+    let link_14_force_3 = (-link_14_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_14_acceleration_5.mul_add(
             n(0.004),
-            (-link_14_acceleration_4)
-                .mul_add(
-                    n(1.4800000000000004),
-                    (-(link_14_acceleration_10 - link_14_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_14_acceleration_12
-                                .mul_add(
-                                    n(0.2932600000000002),
-                                    link_14_acceleration_8 * n(0.29344000000000015),
-                                ),
-                        ),
-                ),
-        );
-    let link_14_force_3 = (-link_14_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_14_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_14_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_14_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_14_acceleration_18.mul_add(n(0.00041000000000000005), link_14_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_15: angular velocity (9 additions, 9 multiplications)
-    let link_15_angular_velocity = q[132]
-        .mul_add(
-            link_14_rate_z,
-            q[129].mul_add(link_14_rate_y, q[126] * link_14_rate_x),
-        );
-    let link_15_angular_velocity_2 = q[133]
-        .mul_add(
-            link_14_rate_z,
-            q[130].mul_add(link_14_rate_y, q[127] * link_14_rate_x),
-        );
-    let link_15_angular_velocity_3 = q[134]
-        .mul_add(
-            link_14_rate_z,
-            q[131].mul_add(link_14_rate_y, q[128] * link_14_rate_x),
-        );
+    let link_15_angular_velocity = q[132].mul_add(link_14_rate_z, q[129].mul_add(link_14_rate_y, q[126] * link_14_rate_x));
+    let link_15_angular_velocity_2 = q[133].mul_add(link_14_rate_z, q[130].mul_add(link_14_rate_y, q[127] * link_14_rate_x));
+    let link_15_angular_velocity_3 = q[134].mul_add(link_14_rate_z, q[131].mul_add(link_14_rate_y, q[128] * link_14_rate_x));
     let link_15_rate_x = v[42] + link_15_angular_velocity;
     let link_15_rate_y = v[43] + link_15_angular_velocity_2;
     let link_15_rate_z = v[44] + link_15_angular_velocity_3;
     // link_15: acceleration (30 additions, 33 multiplications)
-    let link_15_acceleration = (-link_14_acceleration_17)
-        .mul_add(n(0.2), link_14_acceleration_4);
-    let link_15_acceleration_2 = link_14_acceleration_18
-        .mul_add(n(0.2), link_14_acceleration_5);
-    let link_15_acceleration_3 = link_14_acceleration_19
-        .mul_add(n(0.2), link_14_acceleration_6);
+    let link_15_acceleration = (-link_14_acceleration_17).mul_add(n(0.2), link_14_acceleration_4);
+    let link_15_acceleration_2 = link_14_acceleration_18.mul_add(n(0.2), link_14_acceleration_5);
+    let link_15_acceleration_3 = link_14_acceleration_19.mul_add(n(0.2), link_14_acceleration_6);
     let link_15_acceleration_4 = q[132]
-        .mul_add(
-            link_15_acceleration_3,
-            q[129].mul_add(link_15_acceleration_2, q[126] * link_15_acceleration),
-        );
+        .mul_add(link_15_acceleration_3, q[129].mul_add(link_15_acceleration_2, q[126] * link_15_acceleration));
     let link_15_acceleration_5 = q[133]
-        .mul_add(
-            link_15_acceleration_3,
-            q[130].mul_add(link_15_acceleration_2, q[127] * link_15_acceleration),
-        );
+        .mul_add(link_15_acceleration_3, q[130].mul_add(link_15_acceleration_2, q[127] * link_15_acceleration));
     let link_15_acceleration_6 = q[134]
-        .mul_add(
-            link_15_acceleration_3,
-            q[131].mul_add(link_15_acceleration_2, q[128] * link_15_acceleration),
-        );
-    let link_15_acceleration_7 = (-v[43])
-        .mul_add(
-            link_15_angular_velocity_3,
-            q[132]
-                .mul_add(
-                    link_14_acceleration_9,
-                    q[129]
-                        .mul_add(
-                            link_14_acceleration_8,
-                            q[126]
-                                .mul_add(
-                                    link_14_acceleration_7,
-                                    v[44].mul_add(link_15_angular_velocity_2, a[42]),
-                                ),
-                        ),
-                ),
-        );
-    let link_15_acceleration_8 = (-v[44])
-        .mul_add(
-            link_15_angular_velocity,
-            q[133]
-                .mul_add(
-                    link_14_acceleration_9,
-                    q[130]
-                        .mul_add(
-                            link_14_acceleration_8,
-                            q[127]
-                                .mul_add(
-                                    link_14_acceleration_7,
-                                    v[42].mul_add(link_15_angular_velocity_3, a[43]),
-                                ),
-                        ),
-                ),
-        );
-    let link_15_acceleration_9 = (-v[42])
-        .mul_add(
-            link_15_angular_velocity_2,
-            q[134]
-                .mul_add(
-                    link_14_acceleration_9,
-                    q[131]
-                        .mul_add(
-                            link_14_acceleration_8,
-                            q[128]
-                                .mul_add(
-                                    link_14_acceleration_7,
-                                    v[43].mul_add(link_15_angular_velocity, a[44]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_15_acceleration_3, q[131].mul_add(link_15_acceleration_2, q[128] * link_15_acceleration));
+    let link_15_acceleration_7 = (-v[43]).mul_add(
+        link_15_angular_velocity_3,
+        q[132].mul_add(
+            link_14_acceleration_9,
+            q[129].mul_add(
+                link_14_acceleration_8,
+                q[126].mul_add(link_14_acceleration_7, v[44].mul_add(link_15_angular_velocity_2, a[42])),
+            ),
+        ),
+    );
+    let link_15_acceleration_8 = (-v[44]).mul_add(
+        link_15_angular_velocity,
+        q[133].mul_add(
+            link_14_acceleration_9,
+            q[130].mul_add(
+                link_14_acceleration_8,
+                q[127].mul_add(link_14_acceleration_7, v[42].mul_add(link_15_angular_velocity_3, a[43])),
+            ),
+        ),
+    );
+    let link_15_acceleration_9 = (-v[42]).mul_add(
+        link_15_angular_velocity_2,
+        q[134].mul_add(
+            link_14_acceleration_9,
+            q[131].mul_add(
+                link_14_acceleration_8,
+                q[128].mul_add(link_14_acceleration_7, v[43].mul_add(link_15_angular_velocity, a[44])),
+            ),
+        ),
+    );
     let link_15_acceleration_10 = link_15_rate_x * link_15_rate_x;
     let link_15_acceleration_11 = link_15_rate_x * link_15_rate_y;
     let link_15_acceleration_12 = link_15_rate_x * link_15_rate_z;
@@ -5132,141 +2845,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_15_acceleration_18 = link_15_acceleration_7 - link_15_acceleration_14;
     let link_15_acceleration_19 = link_15_acceleration_10 + link_15_acceleration_13;
     // link_15: force (14 additions, 19 multiplications)
-    let link_15_force = (-link_15_acceleration_14)
-        .mul_add(
-            n(0.27720000000000017),
-            link_15_acceleration_5
-                .mul_add(
-                    n(1.4000000000000004),
-                    link_15_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_15_acceleration_7 * n(0.27750000000000014),
-                        ),
-                ),
-        );
-    let link_15_force_2 = (-link_15_acceleration_6)
-        .mul_add(
+    let link_15_force = (-link_15_acceleration_14).mul_add(
+        n(0.27720000000000017),
+        link_15_acceleration_5.mul_add(
+            n(1.4000000000000004),
+            link_15_acceleration_16.mul_add(n(0.00041000000000000005), link_15_acceleration_7 * n(0.27750000000000014)),
+        ),
+    );
+    let link_15_force_2 = (-link_15_acceleration_6).mul_add(
+        n(0.004),
+        (-link_15_acceleration_4).mul_add(
+            n(1.4000000000000004),
+            (-(link_15_acceleration_10 - link_15_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_15_acceleration_12.mul_add(n(0.2772600000000002), link_15_acceleration_8 * n(0.27744000000000013)),
+            ),
+        ),
+    );
+    let link_15_force_3 = (-link_15_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_15_acceleration_5.mul_add(
             n(0.004),
-            (-link_15_acceleration_4)
-                .mul_add(
-                    n(1.4000000000000004),
-                    (-(link_15_acceleration_10 - link_15_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_15_acceleration_12
-                                .mul_add(
-                                    n(0.2772600000000002),
-                                    link_15_acceleration_8 * n(0.27744000000000013),
-                                ),
-                        ),
-                ),
-        );
-    let link_15_force_3 = (-link_15_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_15_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_15_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_15_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_15_acceleration_18.mul_add(n(0.00041000000000000005), link_15_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_16: angular velocity (9 additions, 9 multiplications)
-    let link_16_angular_velocity = q[141]
-        .mul_add(
-            link_15_rate_z,
-            q[138].mul_add(link_15_rate_y, q[135] * link_15_rate_x),
-        );
-    let link_16_angular_velocity_2 = q[142]
-        .mul_add(
-            link_15_rate_z,
-            q[139].mul_add(link_15_rate_y, q[136] * link_15_rate_x),
-        );
-    let link_16_angular_velocity_3 = q[143]
-        .mul_add(
-            link_15_rate_z,
-            q[140].mul_add(link_15_rate_y, q[137] * link_15_rate_x),
-        );
+    let link_16_angular_velocity = q[141].mul_add(link_15_rate_z, q[138].mul_add(link_15_rate_y, q[135] * link_15_rate_x));
+    let link_16_angular_velocity_2 = q[142].mul_add(link_15_rate_z, q[139].mul_add(link_15_rate_y, q[136] * link_15_rate_x));
+    let link_16_angular_velocity_3 = q[143].mul_add(link_15_rate_z, q[140].mul_add(link_15_rate_y, q[137] * link_15_rate_x));
     let link_16_rate_x = v[45] + link_16_angular_velocity;
     let link_16_rate_y = v[46] + link_16_angular_velocity_2;
     let link_16_rate_z = v[47] + link_16_angular_velocity_3;
     // link_16: acceleration (30 additions, 33 multiplications)
-    let link_16_acceleration = (-link_15_acceleration_17)
-        .mul_add(n(0.2), link_15_acceleration_4);
-    let link_16_acceleration_2 = link_15_acceleration_18
-        .mul_add(n(0.2), link_15_acceleration_5);
-    let link_16_acceleration_3 = link_15_acceleration_19
-        .mul_add(n(0.2), link_15_acceleration_6);
+    let link_16_acceleration = (-link_15_acceleration_17).mul_add(n(0.2), link_15_acceleration_4);
+    let link_16_acceleration_2 = link_15_acceleration_18.mul_add(n(0.2), link_15_acceleration_5);
+    let link_16_acceleration_3 = link_15_acceleration_19.mul_add(n(0.2), link_15_acceleration_6);
     let link_16_acceleration_4 = q[141]
-        .mul_add(
-            link_16_acceleration_3,
-            q[138].mul_add(link_16_acceleration_2, q[135] * link_16_acceleration),
-        );
+        .mul_add(link_16_acceleration_3, q[138].mul_add(link_16_acceleration_2, q[135] * link_16_acceleration));
     let link_16_acceleration_5 = q[142]
-        .mul_add(
-            link_16_acceleration_3,
-            q[139].mul_add(link_16_acceleration_2, q[136] * link_16_acceleration),
-        );
+        .mul_add(link_16_acceleration_3, q[139].mul_add(link_16_acceleration_2, q[136] * link_16_acceleration));
     let link_16_acceleration_6 = q[143]
-        .mul_add(
-            link_16_acceleration_3,
-            q[140].mul_add(link_16_acceleration_2, q[137] * link_16_acceleration),
-        );
-    let link_16_acceleration_7 = (-v[46])
-        .mul_add(
-            link_16_angular_velocity_3,
-            q[141]
-                .mul_add(
-                    link_15_acceleration_9,
-                    q[138]
-                        .mul_add(
-                            link_15_acceleration_8,
-                            q[135]
-                                .mul_add(
-                                    link_15_acceleration_7,
-                                    v[47].mul_add(link_16_angular_velocity_2, a[45]),
-                                ),
-                        ),
-                ),
-        );
-    let link_16_acceleration_8 = (-v[47])
-        .mul_add(
-            link_16_angular_velocity,
-            q[142]
-                .mul_add(
-                    link_15_acceleration_9,
-                    q[139]
-                        .mul_add(
-                            link_15_acceleration_8,
-                            q[136]
-                                .mul_add(
-                                    link_15_acceleration_7,
-                                    v[45].mul_add(link_16_angular_velocity_3, a[46]),
-                                ),
-                        ),
-                ),
-        );
-    let link_16_acceleration_9 = (-v[45])
-        .mul_add(
-            link_16_angular_velocity_2,
-            q[143]
-                .mul_add(
-                    link_15_acceleration_9,
-                    q[140]
-                        .mul_add(
-                            link_15_acceleration_8,
-                            q[137]
-                                .mul_add(
-                                    link_15_acceleration_7,
-                                    v[46].mul_add(link_16_angular_velocity, a[47]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_16_acceleration_3, q[140].mul_add(link_16_acceleration_2, q[137] * link_16_acceleration));
+    let link_16_acceleration_7 = (-v[46]).mul_add(
+        link_16_angular_velocity_3,
+        q[141].mul_add(
+            link_15_acceleration_9,
+            q[138].mul_add(
+                link_15_acceleration_8,
+                q[135].mul_add(link_15_acceleration_7, v[47].mul_add(link_16_angular_velocity_2, a[45])),
+            ),
+        ),
+    );
+    let link_16_acceleration_8 = (-v[47]).mul_add(
+        link_16_angular_velocity,
+        q[142].mul_add(
+            link_15_acceleration_9,
+            q[139].mul_add(
+                link_15_acceleration_8,
+                q[136].mul_add(link_15_acceleration_7, v[45].mul_add(link_16_angular_velocity_3, a[46])),
+            ),
+        ),
+    );
+    let link_16_acceleration_9 = (-v[45]).mul_add(
+        link_16_angular_velocity_2,
+        q[143].mul_add(
+            link_15_acceleration_9,
+            q[140].mul_add(
+                link_15_acceleration_8,
+                q[137].mul_add(link_15_acceleration_7, v[46].mul_add(link_16_angular_velocity, a[47])),
+            ),
+        ),
+    );
     let link_16_acceleration_10 = link_16_rate_x * link_16_rate_x;
     let link_16_acceleration_11 = link_16_rate_x * link_16_rate_y;
     let link_16_acceleration_12 = link_16_rate_x * link_16_rate_z;
@@ -5278,141 +2927,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_16_acceleration_18 = link_16_acceleration_7 - link_16_acceleration_14;
     let link_16_acceleration_19 = link_16_acceleration_10 + link_16_acceleration_13;
     // link_16: force (14 additions, 19 multiplications)
-    let link_16_force = (-link_16_acceleration_14)
-        .mul_add(
-            n(0.26120000000000015),
-            link_16_acceleration_5
-                .mul_add(
-                    n(1.3200000000000003),
-                    link_16_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_16_acceleration_7 * n(0.2615000000000001),
-                        ),
-                ),
-        );
-    let link_16_force_2 = (-link_16_acceleration_6)
-        .mul_add(
+    let link_16_force = (-link_16_acceleration_14).mul_add(
+        n(0.26120000000000015),
+        link_16_acceleration_5.mul_add(
+            n(1.3200000000000003),
+            link_16_acceleration_16.mul_add(n(0.00041000000000000005), link_16_acceleration_7 * n(0.2615000000000001)),
+        ),
+    );
+    let link_16_force_2 = (-link_16_acceleration_6).mul_add(
+        n(0.004),
+        (-link_16_acceleration_4).mul_add(
+            n(1.3200000000000003),
+            (-(link_16_acceleration_10 - link_16_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_16_acceleration_12.mul_add(n(0.26126000000000016), link_16_acceleration_8 * n(0.2614400000000001)),
+            ),
+        ),
+    );
+    let link_16_force_3 = (-link_16_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_16_acceleration_5.mul_add(
             n(0.004),
-            (-link_16_acceleration_4)
-                .mul_add(
-                    n(1.3200000000000003),
-                    (-(link_16_acceleration_10 - link_16_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_16_acceleration_12
-                                .mul_add(
-                                    n(0.26126000000000016),
-                                    link_16_acceleration_8 * n(0.2614400000000001),
-                                ),
-                        ),
-                ),
-        );
-    let link_16_force_3 = (-link_16_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_16_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_16_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_16_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_16_acceleration_18.mul_add(n(0.00041000000000000005), link_16_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_17: angular velocity (9 additions, 9 multiplications)
-    let link_17_angular_velocity = q[150]
-        .mul_add(
-            link_16_rate_z,
-            q[147].mul_add(link_16_rate_y, q[144] * link_16_rate_x),
-        );
-    let link_17_angular_velocity_2 = q[151]
-        .mul_add(
-            link_16_rate_z,
-            q[148].mul_add(link_16_rate_y, q[145] * link_16_rate_x),
-        );
-    let link_17_angular_velocity_3 = q[152]
-        .mul_add(
-            link_16_rate_z,
-            q[149].mul_add(link_16_rate_y, q[146] * link_16_rate_x),
-        );
+    let link_17_angular_velocity = q[150].mul_add(link_16_rate_z, q[147].mul_add(link_16_rate_y, q[144] * link_16_rate_x));
+    let link_17_angular_velocity_2 = q[151].mul_add(link_16_rate_z, q[148].mul_add(link_16_rate_y, q[145] * link_16_rate_x));
+    let link_17_angular_velocity_3 = q[152].mul_add(link_16_rate_z, q[149].mul_add(link_16_rate_y, q[146] * link_16_rate_x));
     let link_17_rate_x = v[48] + link_17_angular_velocity;
     let link_17_rate_y = v[49] + link_17_angular_velocity_2;
     let link_17_rate_z = v[50] + link_17_angular_velocity_3;
     // link_17: acceleration (30 additions, 33 multiplications)
-    let link_17_acceleration = (-link_16_acceleration_17)
-        .mul_add(n(0.2), link_16_acceleration_4);
-    let link_17_acceleration_2 = link_16_acceleration_18
-        .mul_add(n(0.2), link_16_acceleration_5);
-    let link_17_acceleration_3 = link_16_acceleration_19
-        .mul_add(n(0.2), link_16_acceleration_6);
+    let link_17_acceleration = (-link_16_acceleration_17).mul_add(n(0.2), link_16_acceleration_4);
+    let link_17_acceleration_2 = link_16_acceleration_18.mul_add(n(0.2), link_16_acceleration_5);
+    let link_17_acceleration_3 = link_16_acceleration_19.mul_add(n(0.2), link_16_acceleration_6);
     let link_17_acceleration_4 = q[150]
-        .mul_add(
-            link_17_acceleration_3,
-            q[147].mul_add(link_17_acceleration_2, q[144] * link_17_acceleration),
-        );
+        .mul_add(link_17_acceleration_3, q[147].mul_add(link_17_acceleration_2, q[144] * link_17_acceleration));
     let link_17_acceleration_5 = q[151]
-        .mul_add(
-            link_17_acceleration_3,
-            q[148].mul_add(link_17_acceleration_2, q[145] * link_17_acceleration),
-        );
+        .mul_add(link_17_acceleration_3, q[148].mul_add(link_17_acceleration_2, q[145] * link_17_acceleration));
     let link_17_acceleration_6 = q[152]
-        .mul_add(
-            link_17_acceleration_3,
-            q[149].mul_add(link_17_acceleration_2, q[146] * link_17_acceleration),
-        );
-    let link_17_acceleration_7 = (-v[49])
-        .mul_add(
-            link_17_angular_velocity_3,
-            q[150]
-                .mul_add(
-                    link_16_acceleration_9,
-                    q[147]
-                        .mul_add(
-                            link_16_acceleration_8,
-                            q[144]
-                                .mul_add(
-                                    link_16_acceleration_7,
-                                    v[50].mul_add(link_17_angular_velocity_2, a[48]),
-                                ),
-                        ),
-                ),
-        );
-    let link_17_acceleration_8 = (-v[50])
-        .mul_add(
-            link_17_angular_velocity,
-            q[151]
-                .mul_add(
-                    link_16_acceleration_9,
-                    q[148]
-                        .mul_add(
-                            link_16_acceleration_8,
-                            q[145]
-                                .mul_add(
-                                    link_16_acceleration_7,
-                                    v[48].mul_add(link_17_angular_velocity_3, a[49]),
-                                ),
-                        ),
-                ),
-        );
-    let link_17_acceleration_9 = (-v[48])
-        .mul_add(
-            link_17_angular_velocity_2,
-            q[152]
-                .mul_add(
-                    link_16_acceleration_9,
-                    q[149]
-                        .mul_add(
-                            link_16_acceleration_8,
-                            q[146]
-                                .mul_add(
-                                    link_16_acceleration_7,
-                                    v[49].mul_add(link_17_angular_velocity, a[50]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_17_acceleration_3, q[149].mul_add(link_17_acceleration_2, q[146] * link_17_acceleration));
+    let link_17_acceleration_7 = (-v[49]).mul_add(
+        link_17_angular_velocity_3,
+        q[150].mul_add(
+            link_16_acceleration_9,
+            q[147].mul_add(
+                link_16_acceleration_8,
+                q[144].mul_add(link_16_acceleration_7, v[50].mul_add(link_17_angular_velocity_2, a[48])),
+            ),
+        ),
+    );
+    let link_17_acceleration_8 = (-v[50]).mul_add(
+        link_17_angular_velocity,
+        q[151].mul_add(
+            link_16_acceleration_9,
+            q[148].mul_add(
+                link_16_acceleration_8,
+                q[145].mul_add(link_16_acceleration_7, v[48].mul_add(link_17_angular_velocity_3, a[49])),
+            ),
+        ),
+    );
+    let link_17_acceleration_9 = (-v[48]).mul_add(
+        link_17_angular_velocity_2,
+        q[152].mul_add(
+            link_16_acceleration_9,
+            q[149].mul_add(
+                link_16_acceleration_8,
+                q[146].mul_add(link_16_acceleration_7, v[49].mul_add(link_17_angular_velocity, a[50])),
+            ),
+        ),
+    );
     let link_17_acceleration_10 = link_17_rate_x * link_17_rate_x;
     let link_17_acceleration_11 = link_17_rate_x * link_17_rate_y;
     let link_17_acceleration_12 = link_17_rate_x * link_17_rate_z;
@@ -5424,141 +3009,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_17_acceleration_18 = link_17_acceleration_7 - link_17_acceleration_14;
     let link_17_acceleration_19 = link_17_acceleration_10 + link_17_acceleration_13;
     // link_17: force (14 additions, 19 multiplications)
-    let link_17_force = (-link_17_acceleration_14)
-        .mul_add(
-            n(0.24520000000000006),
-            link_17_acceleration_5
-                .mul_add(
-                    n(1.2400000000000002),
-                    link_17_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_17_acceleration_7 * n(0.24550000000000008),
-                        ),
-                ),
-        );
-    let link_17_force_2 = (-link_17_acceleration_6)
-        .mul_add(
+    let link_17_force = (-link_17_acceleration_14).mul_add(
+        n(0.24520000000000006),
+        link_17_acceleration_5.mul_add(
+            n(1.2400000000000002),
+            link_17_acceleration_16.mul_add(n(0.00041000000000000005), link_17_acceleration_7 * n(0.24550000000000008)),
+        ),
+    );
+    let link_17_force_2 = (-link_17_acceleration_6).mul_add(
+        n(0.004),
+        (-link_17_acceleration_4).mul_add(
+            n(1.2400000000000002),
+            (-(link_17_acceleration_10 - link_17_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_17_acceleration_12.mul_add(n(0.24526000000000006), link_17_acceleration_8 * n(0.24544000000000007)),
+            ),
+        ),
+    );
+    let link_17_force_3 = (-link_17_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_17_acceleration_5.mul_add(
             n(0.004),
-            (-link_17_acceleration_4)
-                .mul_add(
-                    n(1.2400000000000002),
-                    (-(link_17_acceleration_10 - link_17_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_17_acceleration_12
-                                .mul_add(
-                                    n(0.24526000000000006),
-                                    link_17_acceleration_8 * n(0.24544000000000007),
-                                ),
-                        ),
-                ),
-        );
-    let link_17_force_3 = (-link_17_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_17_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_17_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_17_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_17_acceleration_18.mul_add(n(0.00041000000000000005), link_17_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_18: angular velocity (9 additions, 9 multiplications)
-    let link_18_angular_velocity = q[159]
-        .mul_add(
-            link_17_rate_z,
-            q[156].mul_add(link_17_rate_y, q[153] * link_17_rate_x),
-        );
-    let link_18_angular_velocity_2 = q[160]
-        .mul_add(
-            link_17_rate_z,
-            q[157].mul_add(link_17_rate_y, q[154] * link_17_rate_x),
-        );
-    let link_18_angular_velocity_3 = q[161]
-        .mul_add(
-            link_17_rate_z,
-            q[158].mul_add(link_17_rate_y, q[155] * link_17_rate_x),
-        );
+    let link_18_angular_velocity = q[159].mul_add(link_17_rate_z, q[156].mul_add(link_17_rate_y, q[153] * link_17_rate_x));
+    let link_18_angular_velocity_2 = q[160].mul_add(link_17_rate_z, q[157].mul_add(link_17_rate_y, q[154] * link_17_rate_x));
+    let link_18_angular_velocity_3 = q[161].mul_add(link_17_rate_z, q[158].mul_add(link_17_rate_y, q[155] * link_17_rate_x));
     let link_18_rate_x = v[51] + link_18_angular_velocity;
     let link_18_rate_y = v[52] + link_18_angular_velocity_2;
     let link_18_rate_z = v[53] + link_18_angular_velocity_3;
     // link_18: acceleration (30 additions, 33 multiplications)
-    let link_18_acceleration = (-link_17_acceleration_17)
-        .mul_add(n(0.2), link_17_acceleration_4);
-    let link_18_acceleration_2 = link_17_acceleration_18
-        .mul_add(n(0.2), link_17_acceleration_5);
-    let link_18_acceleration_3 = link_17_acceleration_19
-        .mul_add(n(0.2), link_17_acceleration_6);
+    let link_18_acceleration = (-link_17_acceleration_17).mul_add(n(0.2), link_17_acceleration_4);
+    let link_18_acceleration_2 = link_17_acceleration_18.mul_add(n(0.2), link_17_acceleration_5);
+    let link_18_acceleration_3 = link_17_acceleration_19.mul_add(n(0.2), link_17_acceleration_6);
     let link_18_acceleration_4 = q[159]
-        .mul_add(
-            link_18_acceleration_3,
-            q[156].mul_add(link_18_acceleration_2, q[153] * link_18_acceleration),
-        );
+        .mul_add(link_18_acceleration_3, q[156].mul_add(link_18_acceleration_2, q[153] * link_18_acceleration));
     let link_18_acceleration_5 = q[160]
-        .mul_add(
-            link_18_acceleration_3,
-            q[157].mul_add(link_18_acceleration_2, q[154] * link_18_acceleration),
-        );
+        .mul_add(link_18_acceleration_3, q[157].mul_add(link_18_acceleration_2, q[154] * link_18_acceleration));
     let link_18_acceleration_6 = q[161]
-        .mul_add(
-            link_18_acceleration_3,
-            q[158].mul_add(link_18_acceleration_2, q[155] * link_18_acceleration),
-        );
-    let link_18_acceleration_7 = (-v[52])
-        .mul_add(
-            link_18_angular_velocity_3,
-            q[159]
-                .mul_add(
-                    link_17_acceleration_9,
-                    q[156]
-                        .mul_add(
-                            link_17_acceleration_8,
-                            q[153]
-                                .mul_add(
-                                    link_17_acceleration_7,
-                                    v[53].mul_add(link_18_angular_velocity_2, a[51]),
-                                ),
-                        ),
-                ),
-        );
-    let link_18_acceleration_8 = (-v[53])
-        .mul_add(
-            link_18_angular_velocity,
-            q[160]
-                .mul_add(
-                    link_17_acceleration_9,
-                    q[157]
-                        .mul_add(
-                            link_17_acceleration_8,
-                            q[154]
-                                .mul_add(
-                                    link_17_acceleration_7,
-                                    v[51].mul_add(link_18_angular_velocity_3, a[52]),
-                                ),
-                        ),
-                ),
-        );
-    let link_18_acceleration_9 = (-v[51])
-        .mul_add(
-            link_18_angular_velocity_2,
-            q[161]
-                .mul_add(
-                    link_17_acceleration_9,
-                    q[158]
-                        .mul_add(
-                            link_17_acceleration_8,
-                            q[155]
-                                .mul_add(
-                                    link_17_acceleration_7,
-                                    v[52].mul_add(link_18_angular_velocity, a[53]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_18_acceleration_3, q[158].mul_add(link_18_acceleration_2, q[155] * link_18_acceleration));
+    let link_18_acceleration_7 = (-v[52]).mul_add(
+        link_18_angular_velocity_3,
+        q[159].mul_add(
+            link_17_acceleration_9,
+            q[156].mul_add(
+                link_17_acceleration_8,
+                q[153].mul_add(link_17_acceleration_7, v[53].mul_add(link_18_angular_velocity_2, a[51])),
+            ),
+        ),
+    );
+    let link_18_acceleration_8 = (-v[53]).mul_add(
+        link_18_angular_velocity,
+        q[160].mul_add(
+            link_17_acceleration_9,
+            q[157].mul_add(
+                link_17_acceleration_8,
+                q[154].mul_add(link_17_acceleration_7, v[51].mul_add(link_18_angular_velocity_3, a[52])),
+            ),
+        ),
+    );
+    let link_18_acceleration_9 = (-v[51]).mul_add(
+        link_18_angular_velocity_2,
+        q[161].mul_add(
+            link_17_acceleration_9,
+            q[158].mul_add(
+                link_17_acceleration_8,
+                q[155].mul_add(link_17_acceleration_7, v[52].mul_add(link_18_angular_velocity, a[53])),
+            ),
+        ),
+    );
     let link_18_acceleration_10 = link_18_rate_x * link_18_rate_x;
     let link_18_acceleration_11 = link_18_rate_x * link_18_rate_y;
     let link_18_acceleration_12 = link_18_rate_x * link_18_rate_z;
@@ -5570,141 +3091,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_18_acceleration_18 = link_18_acceleration_7 - link_18_acceleration_14;
     let link_18_acceleration_19 = link_18_acceleration_10 + link_18_acceleration_13;
     // link_18: force (14 additions, 19 multiplications)
-    let link_18_force = (-link_18_acceleration_14)
-        .mul_add(
-            n(0.22920000000000004),
-            link_18_acceleration_5
-                .mul_add(
-                    n(1.1600000000000001),
-                    link_18_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_18_acceleration_7 * n(0.22950000000000007),
-                        ),
-                ),
-        );
-    let link_18_force_2 = (-link_18_acceleration_6)
-        .mul_add(
+    let link_18_force = (-link_18_acceleration_14).mul_add(
+        n(0.22920000000000004),
+        link_18_acceleration_5.mul_add(
+            n(1.1600000000000001),
+            link_18_acceleration_16.mul_add(n(0.00041000000000000005), link_18_acceleration_7 * n(0.22950000000000007)),
+        ),
+    );
+    let link_18_force_2 = (-link_18_acceleration_6).mul_add(
+        n(0.004),
+        (-link_18_acceleration_4).mul_add(
+            n(1.1600000000000001),
+            (-(link_18_acceleration_10 - link_18_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_18_acceleration_12.mul_add(n(0.22926000000000005), link_18_acceleration_8 * n(0.22944000000000006)),
+            ),
+        ),
+    );
+    let link_18_force_3 = (-link_18_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_18_acceleration_5.mul_add(
             n(0.004),
-            (-link_18_acceleration_4)
-                .mul_add(
-                    n(1.1600000000000001),
-                    (-(link_18_acceleration_10 - link_18_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_18_acceleration_12
-                                .mul_add(
-                                    n(0.22926000000000005),
-                                    link_18_acceleration_8 * n(0.22944000000000006),
-                                ),
-                        ),
-                ),
-        );
-    let link_18_force_3 = (-link_18_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_18_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_18_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_18_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_18_acceleration_18.mul_add(n(0.00041000000000000005), link_18_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_19: angular velocity (9 additions, 9 multiplications)
-    let link_19_angular_velocity = q[168]
-        .mul_add(
-            link_18_rate_z,
-            q[165].mul_add(link_18_rate_y, q[162] * link_18_rate_x),
-        );
-    let link_19_angular_velocity_2 = q[169]
-        .mul_add(
-            link_18_rate_z,
-            q[166].mul_add(link_18_rate_y, q[163] * link_18_rate_x),
-        );
-    let link_19_angular_velocity_3 = q[170]
-        .mul_add(
-            link_18_rate_z,
-            q[167].mul_add(link_18_rate_y, q[164] * link_18_rate_x),
-        );
+    let link_19_angular_velocity = q[168].mul_add(link_18_rate_z, q[165].mul_add(link_18_rate_y, q[162] * link_18_rate_x));
+    let link_19_angular_velocity_2 = q[169].mul_add(link_18_rate_z, q[166].mul_add(link_18_rate_y, q[163] * link_18_rate_x));
+    let link_19_angular_velocity_3 = q[170].mul_add(link_18_rate_z, q[167].mul_add(link_18_rate_y, q[164] * link_18_rate_x));
     let link_19_rate_x = v[54] + link_19_angular_velocity;
     let link_19_rate_y = v[55] + link_19_angular_velocity_2;
     let link_19_rate_z = v[56] + link_19_angular_velocity_3;
     // link_19: acceleration (30 additions, 33 multiplications)
-    let link_19_acceleration = (-link_18_acceleration_17)
-        .mul_add(n(0.2), link_18_acceleration_4);
-    let link_19_acceleration_2 = link_18_acceleration_18
-        .mul_add(n(0.2), link_18_acceleration_5);
-    let link_19_acceleration_3 = link_18_acceleration_19
-        .mul_add(n(0.2), link_18_acceleration_6);
+    let link_19_acceleration = (-link_18_acceleration_17).mul_add(n(0.2), link_18_acceleration_4);
+    let link_19_acceleration_2 = link_18_acceleration_18.mul_add(n(0.2), link_18_acceleration_5);
+    let link_19_acceleration_3 = link_18_acceleration_19.mul_add(n(0.2), link_18_acceleration_6);
     let link_19_acceleration_4 = q[168]
-        .mul_add(
-            link_19_acceleration_3,
-            q[165].mul_add(link_19_acceleration_2, q[162] * link_19_acceleration),
-        );
+        .mul_add(link_19_acceleration_3, q[165].mul_add(link_19_acceleration_2, q[162] * link_19_acceleration));
     let link_19_acceleration_5 = q[169]
-        .mul_add(
-            link_19_acceleration_3,
-            q[166].mul_add(link_19_acceleration_2, q[163] * link_19_acceleration),
-        );
+        .mul_add(link_19_acceleration_3, q[166].mul_add(link_19_acceleration_2, q[163] * link_19_acceleration));
     let link_19_acceleration_6 = q[170]
-        .mul_add(
-            link_19_acceleration_3,
-            q[167].mul_add(link_19_acceleration_2, q[164] * link_19_acceleration),
-        );
-    let link_19_acceleration_7 = (-v[55])
-        .mul_add(
-            link_19_angular_velocity_3,
-            q[168]
-                .mul_add(
-                    link_18_acceleration_9,
-                    q[165]
-                        .mul_add(
-                            link_18_acceleration_8,
-                            q[162]
-                                .mul_add(
-                                    link_18_acceleration_7,
-                                    v[56].mul_add(link_19_angular_velocity_2, a[54]),
-                                ),
-                        ),
-                ),
-        );
-    let link_19_acceleration_8 = (-v[56])
-        .mul_add(
-            link_19_angular_velocity,
-            q[169]
-                .mul_add(
-                    link_18_acceleration_9,
-                    q[166]
-                        .mul_add(
-                            link_18_acceleration_8,
-                            q[163]
-                                .mul_add(
-                                    link_18_acceleration_7,
-                                    v[54].mul_add(link_19_angular_velocity_3, a[55]),
-                                ),
-                        ),
-                ),
-        );
-    let link_19_acceleration_9 = (-v[54])
-        .mul_add(
-            link_19_angular_velocity_2,
-            q[170]
-                .mul_add(
-                    link_18_acceleration_9,
-                    q[167]
-                        .mul_add(
-                            link_18_acceleration_8,
-                            q[164]
-                                .mul_add(
-                                    link_18_acceleration_7,
-                                    v[55].mul_add(link_19_angular_velocity, a[56]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_19_acceleration_3, q[167].mul_add(link_19_acceleration_2, q[164] * link_19_acceleration));
+    let link_19_acceleration_7 = (-v[55]).mul_add(
+        link_19_angular_velocity_3,
+        q[168].mul_add(
+            link_18_acceleration_9,
+            q[165].mul_add(
+                link_18_acceleration_8,
+                q[162].mul_add(link_18_acceleration_7, v[56].mul_add(link_19_angular_velocity_2, a[54])),
+            ),
+        ),
+    );
+    let link_19_acceleration_8 = (-v[56]).mul_add(
+        link_19_angular_velocity,
+        q[169].mul_add(
+            link_18_acceleration_9,
+            q[166].mul_add(
+                link_18_acceleration_8,
+                q[163].mul_add(link_18_acceleration_7, v[54].mul_add(link_19_angular_velocity_3, a[55])),
+            ),
+        ),
+    );
+    let link_19_acceleration_9 = (-v[54]).mul_add(
+        link_19_angular_velocity_2,
+        q[170].mul_add(
+            link_18_acceleration_9,
+            q[167].mul_add(
+                link_18_acceleration_8,
+                q[164].mul_add(link_18_acceleration_7, v[55].mul_add(link_19_angular_velocity, a[56])),
+            ),
+        ),
+    );
     let link_19_acceleration_10 = link_19_rate_x * link_19_rate_x;
     let link_19_acceleration_11 = link_19_rate_x * link_19_rate_y;
     let link_19_acceleration_12 = link_19_rate_x * link_19_rate_z;
@@ -5716,141 +3173,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_19_acceleration_18 = link_19_acceleration_7 - link_19_acceleration_14;
     let link_19_acceleration_19 = link_19_acceleration_10 + link_19_acceleration_13;
     // link_19: force (14 additions, 19 multiplications)
-    let link_19_force = (-link_19_acceleration_14)
-        .mul_add(
-            n(0.21320000000000003),
-            link_19_acceleration_5
-                .mul_add(
-                    n(1.08),
-                    link_19_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_19_acceleration_7 * n(0.21350000000000005),
-                        ),
-                ),
-        );
-    let link_19_force_2 = (-link_19_acceleration_6)
-        .mul_add(
+    let link_19_force = (-link_19_acceleration_14).mul_add(
+        n(0.21320000000000003),
+        link_19_acceleration_5.mul_add(
+            n(1.08),
+            link_19_acceleration_16.mul_add(n(0.00041000000000000005), link_19_acceleration_7 * n(0.21350000000000005)),
+        ),
+    );
+    let link_19_force_2 = (-link_19_acceleration_6).mul_add(
+        n(0.004),
+        (-link_19_acceleration_4).mul_add(
+            n(1.08),
+            (-(link_19_acceleration_10 - link_19_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_19_acceleration_12.mul_add(n(0.21326000000000003), link_19_acceleration_8 * n(0.21344000000000005)),
+            ),
+        ),
+    );
+    let link_19_force_3 = (-link_19_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_19_acceleration_5.mul_add(
             n(0.004),
-            (-link_19_acceleration_4)
-                .mul_add(
-                    n(1.08),
-                    (-(link_19_acceleration_10 - link_19_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_19_acceleration_12
-                                .mul_add(
-                                    n(0.21326000000000003),
-                                    link_19_acceleration_8 * n(0.21344000000000005),
-                                ),
-                        ),
-                ),
-        );
-    let link_19_force_3 = (-link_19_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_19_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_19_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_19_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_19_acceleration_18.mul_add(n(0.00041000000000000005), link_19_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_20: angular velocity (9 additions, 9 multiplications)
-    let link_20_angular_velocity = q[177]
-        .mul_add(
-            link_19_rate_z,
-            q[174].mul_add(link_19_rate_y, q[171] * link_19_rate_x),
-        );
-    let link_20_angular_velocity_2 = q[178]
-        .mul_add(
-            link_19_rate_z,
-            q[175].mul_add(link_19_rate_y, q[172] * link_19_rate_x),
-        );
-    let link_20_angular_velocity_3 = q[179]
-        .mul_add(
-            link_19_rate_z,
-            q[176].mul_add(link_19_rate_y, q[173] * link_19_rate_x),
-        );
+    let link_20_angular_velocity = q[177].mul_add(link_19_rate_z, q[174].mul_add(link_19_rate_y, q[171] * link_19_rate_x));
+    let link_20_angular_velocity_2 = q[178].mul_add(link_19_rate_z, q[175].mul_add(link_19_rate_y, q[172] * link_19_rate_x));
+    let link_20_angular_velocity_3 = q[179].mul_add(link_19_rate_z, q[176].mul_add(link_19_rate_y, q[173] * link_19_rate_x));
     let link_20_rate_x = v[57] + link_20_angular_velocity;
     let link_20_rate_y = v[58] + link_20_angular_velocity_2;
     let link_20_rate_z = v[59] + link_20_angular_velocity_3;
     // link_20: acceleration (30 additions, 33 multiplications)
-    let link_20_acceleration = (-link_19_acceleration_17)
-        .mul_add(n(0.2), link_19_acceleration_4);
-    let link_20_acceleration_2 = link_19_acceleration_18
-        .mul_add(n(0.2), link_19_acceleration_5);
-    let link_20_acceleration_3 = link_19_acceleration_19
-        .mul_add(n(0.2), link_19_acceleration_6);
+    let link_20_acceleration = (-link_19_acceleration_17).mul_add(n(0.2), link_19_acceleration_4);
+    let link_20_acceleration_2 = link_19_acceleration_18.mul_add(n(0.2), link_19_acceleration_5);
+    let link_20_acceleration_3 = link_19_acceleration_19.mul_add(n(0.2), link_19_acceleration_6);
     let link_20_acceleration_4 = q[177]
-        .mul_add(
-            link_20_acceleration_3,
-            q[174].mul_add(link_20_acceleration_2, q[171] * link_20_acceleration),
-        );
+        .mul_add(link_20_acceleration_3, q[174].mul_add(link_20_acceleration_2, q[171] * link_20_acceleration));
     let link_20_acceleration_5 = q[178]
-        .mul_add(
-            link_20_acceleration_3,
-            q[175].mul_add(link_20_acceleration_2, q[172] * link_20_acceleration),
-        );
+        .mul_add(link_20_acceleration_3, q[175].mul_add(link_20_acceleration_2, q[172] * link_20_acceleration));
     let link_20_acceleration_6 = q[179]
-        .mul_add(
-            link_20_acceleration_3,
-            q[176].mul_add(link_20_acceleration_2, q[173] * link_20_acceleration),
-        );
-    let link_20_acceleration_7 = (-v[58])
-        .mul_add(
-            link_20_angular_velocity_3,
-            q[177]
-                .mul_add(
-                    link_19_acceleration_9,
-                    q[174]
-                        .mul_add(
-                            link_19_acceleration_8,
-                            q[171]
-                                .mul_add(
-                                    link_19_acceleration_7,
-                                    v[59].mul_add(link_20_angular_velocity_2, a[57]),
-                                ),
-                        ),
-                ),
-        );
-    let link_20_acceleration_8 = (-v[59])
-        .mul_add(
-            link_20_angular_velocity,
-            q[178]
-                .mul_add(
-                    link_19_acceleration_9,
-                    q[175]
-                        .mul_add(
-                            link_19_acceleration_8,
-                            q[172]
-                                .mul_add(
-                                    link_19_acceleration_7,
-                                    v[57].mul_add(link_20_angular_velocity_3, a[58]),
-                                ),
-                        ),
-                ),
-        );
-    let link_20_acceleration_9 = (-v[57])
-        .mul_add(
-            link_20_angular_velocity_2,
-            q[179]
-                .mul_add(
-                    link_19_acceleration_9,
-                    q[176]
-                        .mul_add(
-                            link_19_acceleration_8,
-                            q[173]
-                                .mul_add(
-                                    link_19_acceleration_7,
-                                    v[58].mul_add(link_20_angular_velocity, a[59]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_20_acceleration_3, q[176].mul_add(link_20_acceleration_2, q[173] * link_20_acceleration));
+    let link_20_acceleration_7 = (-v[58]).mul_add(
+        link_20_angular_velocity_3,
+        q[177].mul_add(
+            link_19_acceleration_9,
+            q[174].mul_add(
+                link_19_acceleration_8,
+                q[171].mul_add(link_19_acceleration_7, v[59].mul_add(link_20_angular_velocity_2, a[57])),
+            ),
+        ),
+    );
+    let link_20_acceleration_8 = (-v[59]).mul_add(
+        link_20_angular_velocity,
+        q[178].mul_add(
+            link_19_acceleration_9,
+            q[175].mul_add(
+                link_19_acceleration_8,
+                q[172].mul_add(link_19_acceleration_7, v[57].mul_add(link_20_angular_velocity_3, a[58])),
+            ),
+        ),
+    );
+    let link_20_acceleration_9 = (-v[57]).mul_add(
+        link_20_angular_velocity_2,
+        q[179].mul_add(
+            link_19_acceleration_9,
+            q[176].mul_add(
+                link_19_acceleration_8,
+                q[173].mul_add(link_19_acceleration_7, v[58].mul_add(link_20_angular_velocity, a[59])),
+            ),
+        ),
+    );
     let link_20_acceleration_10 = link_20_rate_x * link_20_rate_x;
     let link_20_acceleration_11 = link_20_rate_x * link_20_rate_y;
     let link_20_acceleration_12 = link_20_rate_x * link_20_rate_z;
@@ -5862,125 +3255,70 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_20_acceleration_18 = link_20_acceleration_7 - link_20_acceleration_14;
     let link_20_acceleration_19 = link_20_acceleration_10 + link_20_acceleration_13;
     // link_20: force (14 additions, 14 multiplications)
-    let link_20_force = (-link_20_acceleration_6)
-        .mul_add(
+    let link_20_force = (-link_20_acceleration_6).mul_add(
+        n(0.004),
+        (-(link_20_acceleration_10 - link_20_acceleration_15)).mul_add(
+            n(0.00041000000000000005),
+            link_20_acceleration_12.mul_add(
+                n(0.19726000000000002),
+                link_20_acceleration_8.mul_add(n(0.19744000000000003), -link_20_acceleration_4),
+            ),
+        ),
+    );
+    let link_20_force_2 = (-link_20_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_20_acceleration_5.mul_add(
             n(0.004),
-            (-(link_20_acceleration_10 - link_20_acceleration_15))
-                .mul_add(
-                    n(0.00041000000000000005),
-                    link_20_acceleration_12
-                        .mul_add(
-                            n(0.19726000000000002),
-                            link_20_acceleration_8
-                                .mul_add(n(0.19744000000000003), -link_20_acceleration_4),
-                        ),
-                ),
-        );
-    let link_20_force_2 = (-link_20_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_20_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_20_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_20_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_20_acceleration_18.mul_add(n(0.00041000000000000005), link_20_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_21: angular velocity (9 additions, 9 multiplications)
-    let link_21_angular_velocity = q[186]
-        .mul_add(
-            link_20_rate_z,
-            q[183].mul_add(link_20_rate_y, q[180] * link_20_rate_x),
-        );
-    let link_21_angular_velocity_2 = q[187]
-        .mul_add(
-            link_20_rate_z,
-            q[184].mul_add(link_20_rate_y, q[181] * link_20_rate_x),
-        );
-    let link_21_angular_velocity_3 = q[188]
-        .mul_add(
-            link_20_rate_z,
-            q[185].mul_add(link_20_rate_y, q[182] * link_20_rate_x),
-        );
+    let link_21_angular_velocity = q[186].mul_add(link_20_rate_z, q[183].mul_add(link_20_rate_y, q[180] * link_20_rate_x));
+    let link_21_angular_velocity_2 = q[187].mul_add(link_20_rate_z, q[184].mul_add(link_20_rate_y, q[181] * link_20_rate_x));
+    let link_21_angular_velocity_3 = q[188].mul_add(link_20_rate_z, q[185].mul_add(link_20_rate_y, q[182] * link_20_rate_x));
     let link_21_rate_x = v[60] + link_21_angular_velocity;
     let link_21_rate_y = v[61] + link_21_angular_velocity_2;
     let link_21_rate_z = v[62] + link_21_angular_velocity_3;
     // link_21: acceleration (30 additions, 33 multiplications)
-    let link_21_acceleration = (-link_20_acceleration_17)
-        .mul_add(n(0.2), link_20_acceleration_4);
-    let link_21_acceleration_2 = link_20_acceleration_18
-        .mul_add(n(0.2), link_20_acceleration_5);
-    let link_21_acceleration_3 = link_20_acceleration_19
-        .mul_add(n(0.2), link_20_acceleration_6);
+    let link_21_acceleration = (-link_20_acceleration_17).mul_add(n(0.2), link_20_acceleration_4);
+    let link_21_acceleration_2 = link_20_acceleration_18.mul_add(n(0.2), link_20_acceleration_5);
+    let link_21_acceleration_3 = link_20_acceleration_19.mul_add(n(0.2), link_20_acceleration_6);
     let link_21_acceleration_4 = q[186]
-        .mul_add(
-            link_21_acceleration_3,
-            q[183].mul_add(link_21_acceleration_2, q[180] * link_21_acceleration),
-        );
+        .mul_add(link_21_acceleration_3, q[183].mul_add(link_21_acceleration_2, q[180] * link_21_acceleration));
     let link_21_acceleration_5 = q[187]
-        .mul_add(
-            link_21_acceleration_3,
-            q[184].mul_add(link_21_acceleration_2, q[181] * link_21_acceleration),
-        );
+        .mul_add(link_21_acceleration_3, q[184].mul_add(link_21_acceleration_2, q[181] * link_21_acceleration));
     let link_21_acceleration_6 = q[188]
-        .mul_add(
-            link_21_acceleration_3,
-            q[185].mul_add(link_21_acceleration_2, q[182] * link_21_acceleration),
-        );
-    let link_21_acceleration_7 = (-v[61])
-        .mul_add(
-            link_21_angular_velocity_3,
-            q[186]
-                .mul_add(
-                    link_20_acceleration_9,
-                    q[183]
-                        .mul_add(
-                            link_20_acceleration_8,
-                            q[180]
-                                .mul_add(
-                                    link_20_acceleration_7,
-                                    v[62].mul_add(link_21_angular_velocity_2, a[60]),
-                                ),
-                        ),
-                ),
-        );
-    let link_21_acceleration_8 = (-v[62])
-        .mul_add(
-            link_21_angular_velocity,
-            q[187]
-                .mul_add(
-                    link_20_acceleration_9,
-                    q[184]
-                        .mul_add(
-                            link_20_acceleration_8,
-                            q[181]
-                                .mul_add(
-                                    link_20_acceleration_7,
-                                    v[60].mul_add(link_21_angular_velocity_3, a[61]),
-                                ),
-                        ),
-                ),
-        );
-    let link_21_acceleration_9 = (-v[60])
-        .mul_add(
-            link_21_angular_velocity_2,
-            q[188]
-                .mul_add(
-                    link_20_acceleration_9,
-                    q[185]
-                        .mul_add(
-                            link_20_acceleration_8,
-                            q[182]
-                                .mul_add(
-                                    link_20_acceleration_7,
-                                    v[61].mul_add(link_21_angular_velocity, a[62]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_21_acceleration_3, q[185].mul_add(link_21_acceleration_2, q[182] * link_21_acceleration));
+    let link_21_acceleration_7 = (-v[61]).mul_add(
+        link_21_angular_velocity_3,
+        q[186].mul_add(
+            link_20_acceleration_9,
+            q[183].mul_add(
+                link_20_acceleration_8,
+                q[180].mul_add(link_20_acceleration_7, v[62].mul_add(link_21_angular_velocity_2, a[60])),
+            ),
+        ),
+    );
+    let link_21_acceleration_8 = (-v[62]).mul_add(
+        link_21_angular_velocity,
+        q[187].mul_add(
+            link_20_acceleration_9,
+            q[184].mul_add(
+                link_20_acceleration_8,
+                q[181].mul_add(link_20_acceleration_7, v[60].mul_add(link_21_angular_velocity_3, a[61])),
+            ),
+        ),
+    );
+    let link_21_acceleration_9 = (-v[60]).mul_add(
+        link_21_angular_velocity_2,
+        q[188].mul_add(
+            link_20_acceleration_9,
+            q[185].mul_add(
+                link_20_acceleration_8,
+                q[182].mul_add(link_20_acceleration_7, v[61].mul_add(link_21_angular_velocity, a[62])),
+            ),
+        ),
+    );
     let link_21_acceleration_10 = link_21_rate_x * link_21_rate_x;
     let link_21_acceleration_11 = link_21_rate_x * link_21_rate_y;
     let link_21_acceleration_12 = link_21_rate_x * link_21_rate_z;
@@ -5992,141 +3330,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_21_acceleration_18 = link_21_acceleration_7 - link_21_acceleration_14;
     let link_21_acceleration_19 = link_21_acceleration_10 + link_21_acceleration_13;
     // link_21: force (14 additions, 19 multiplications)
-    let link_21_force = (-link_21_acceleration_14)
-        .mul_add(
-            n(0.1812),
-            link_21_acceleration_5
-                .mul_add(
-                    n(0.9199999999999999),
-                    link_21_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_21_acceleration_7 * n(0.18150000000000002),
-                        ),
-                ),
-        );
-    let link_21_force_2 = (-link_21_acceleration_6)
-        .mul_add(
+    let link_21_force = (-link_21_acceleration_14).mul_add(
+        n(0.1812),
+        link_21_acceleration_5.mul_add(
+            n(0.9199999999999999),
+            link_21_acceleration_16.mul_add(n(0.00041000000000000005), link_21_acceleration_7 * n(0.18150000000000002)),
+        ),
+    );
+    let link_21_force_2 = (-link_21_acceleration_6).mul_add(
+        n(0.004),
+        (-link_21_acceleration_4).mul_add(
+            n(0.9199999999999999),
+            (-(link_21_acceleration_10 - link_21_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_21_acceleration_12.mul_add(n(0.18126), link_21_acceleration_8 * n(0.18144000000000002)),
+            ),
+        ),
+    );
+    let link_21_force_3 = (-link_21_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_21_acceleration_5.mul_add(
             n(0.004),
-            (-link_21_acceleration_4)
-                .mul_add(
-                    n(0.9199999999999999),
-                    (-(link_21_acceleration_10 - link_21_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_21_acceleration_12
-                                .mul_add(
-                                    n(0.18126),
-                                    link_21_acceleration_8 * n(0.18144000000000002),
-                                ),
-                        ),
-                ),
-        );
-    let link_21_force_3 = (-link_21_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_21_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_21_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_21_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_21_acceleration_18.mul_add(n(0.00041000000000000005), link_21_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_22: angular velocity (9 additions, 9 multiplications)
-    let link_22_angular_velocity = q[195]
-        .mul_add(
-            link_21_rate_z,
-            q[192].mul_add(link_21_rate_y, q[189] * link_21_rate_x),
-        );
-    let link_22_angular_velocity_2 = q[196]
-        .mul_add(
-            link_21_rate_z,
-            q[193].mul_add(link_21_rate_y, q[190] * link_21_rate_x),
-        );
-    let link_22_angular_velocity_3 = q[197]
-        .mul_add(
-            link_21_rate_z,
-            q[194].mul_add(link_21_rate_y, q[191] * link_21_rate_x),
-        );
+    let link_22_angular_velocity = q[195].mul_add(link_21_rate_z, q[192].mul_add(link_21_rate_y, q[189] * link_21_rate_x));
+    let link_22_angular_velocity_2 = q[196].mul_add(link_21_rate_z, q[193].mul_add(link_21_rate_y, q[190] * link_21_rate_x));
+    let link_22_angular_velocity_3 = q[197].mul_add(link_21_rate_z, q[194].mul_add(link_21_rate_y, q[191] * link_21_rate_x));
     let link_22_rate_x = v[63] + link_22_angular_velocity;
     let link_22_rate_y = v[64] + link_22_angular_velocity_2;
     let link_22_rate_z = v[65] + link_22_angular_velocity_3;
     // link_22: acceleration (30 additions, 33 multiplications)
-    let link_22_acceleration = (-link_21_acceleration_17)
-        .mul_add(n(0.2), link_21_acceleration_4);
-    let link_22_acceleration_2 = link_21_acceleration_18
-        .mul_add(n(0.2), link_21_acceleration_5);
-    let link_22_acceleration_3 = link_21_acceleration_19
-        .mul_add(n(0.2), link_21_acceleration_6);
+    let link_22_acceleration = (-link_21_acceleration_17).mul_add(n(0.2), link_21_acceleration_4);
+    let link_22_acceleration_2 = link_21_acceleration_18.mul_add(n(0.2), link_21_acceleration_5);
+    let link_22_acceleration_3 = link_21_acceleration_19.mul_add(n(0.2), link_21_acceleration_6);
     let link_22_acceleration_4 = q[195]
-        .mul_add(
-            link_22_acceleration_3,
-            q[192].mul_add(link_22_acceleration_2, q[189] * link_22_acceleration),
-        );
+        .mul_add(link_22_acceleration_3, q[192].mul_add(link_22_acceleration_2, q[189] * link_22_acceleration));
     let link_22_acceleration_5 = q[196]
-        .mul_add(
-            link_22_acceleration_3,
-            q[193].mul_add(link_22_acceleration_2, q[190] * link_22_acceleration),
-        );
+        .mul_add(link_22_acceleration_3, q[193].mul_add(link_22_acceleration_2, q[190] * link_22_acceleration));
     let link_22_acceleration_6 = q[197]
-        .mul_add(
-            link_22_acceleration_3,
-            q[194].mul_add(link_22_acceleration_2, q[191] * link_22_acceleration),
-        );
-    let link_22_acceleration_7 = (-v[64])
-        .mul_add(
-            link_22_angular_velocity_3,
-            q[195]
-                .mul_add(
-                    link_21_acceleration_9,
-                    q[192]
-                        .mul_add(
-                            link_21_acceleration_8,
-                            q[189]
-                                .mul_add(
-                                    link_21_acceleration_7,
-                                    v[65].mul_add(link_22_angular_velocity_2, a[63]),
-                                ),
-                        ),
-                ),
-        );
-    let link_22_acceleration_8 = (-v[65])
-        .mul_add(
-            link_22_angular_velocity,
-            q[196]
-                .mul_add(
-                    link_21_acceleration_9,
-                    q[193]
-                        .mul_add(
-                            link_21_acceleration_8,
-                            q[190]
-                                .mul_add(
-                                    link_21_acceleration_7,
-                                    v[63].mul_add(link_22_angular_velocity_3, a[64]),
-                                ),
-                        ),
-                ),
-        );
-    let link_22_acceleration_9 = (-v[63])
-        .mul_add(
-            link_22_angular_velocity_2,
-            q[197]
-                .mul_add(
-                    link_21_acceleration_9,
-                    q[194]
-                        .mul_add(
-                            link_21_acceleration_8,
-                            q[191]
-                                .mul_add(
-                                    link_21_acceleration_7,
-                                    v[64].mul_add(link_22_angular_velocity, a[65]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_22_acceleration_3, q[194].mul_add(link_22_acceleration_2, q[191] * link_22_acceleration));
+    let link_22_acceleration_7 = (-v[64]).mul_add(
+        link_22_angular_velocity_3,
+        q[195].mul_add(
+            link_21_acceleration_9,
+            q[192].mul_add(
+                link_21_acceleration_8,
+                q[189].mul_add(link_21_acceleration_7, v[65].mul_add(link_22_angular_velocity_2, a[63])),
+            ),
+        ),
+    );
+    let link_22_acceleration_8 = (-v[65]).mul_add(
+        link_22_angular_velocity,
+        q[196].mul_add(
+            link_21_acceleration_9,
+            q[193].mul_add(
+                link_21_acceleration_8,
+                q[190].mul_add(link_21_acceleration_7, v[63].mul_add(link_22_angular_velocity_3, a[64])),
+            ),
+        ),
+    );
+    let link_22_acceleration_9 = (-v[63]).mul_add(
+        link_22_angular_velocity_2,
+        q[197].mul_add(
+            link_21_acceleration_9,
+            q[194].mul_add(
+                link_21_acceleration_8,
+                q[191].mul_add(link_21_acceleration_7, v[64].mul_add(link_22_angular_velocity, a[65])),
+            ),
+        ),
+    );
     let link_22_acceleration_10 = link_22_rate_x * link_22_rate_x;
     let link_22_acceleration_11 = link_22_rate_x * link_22_rate_y;
     let link_22_acceleration_12 = link_22_rate_x * link_22_rate_z;
@@ -6138,138 +3412,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_22_acceleration_18 = link_22_acceleration_7 - link_22_acceleration_14;
     let link_22_acceleration_19 = link_22_acceleration_10 + link_22_acceleration_13;
     // link_22: force (14 additions, 19 multiplications)
-    let link_22_force = (-link_22_acceleration_14)
-        .mul_add(
-            n(0.16519999999999999),
-            link_22_acceleration_5
-                .mul_add(
-                    n(0.84),
-                    link_22_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_22_acceleration_7 * n(0.1655),
-                        ),
-                ),
-        );
-    let link_22_force_2 = (-link_22_acceleration_6)
-        .mul_add(
+    let link_22_force = (-link_22_acceleration_14).mul_add(
+        n(0.16519999999999999),
+        link_22_acceleration_5.mul_add(
+            n(0.84),
+            link_22_acceleration_16.mul_add(n(0.00041000000000000005), link_22_acceleration_7 * n(0.1655)),
+        ),
+    );
+    let link_22_force_2 = (-link_22_acceleration_6).mul_add(
+        n(0.004),
+        (-link_22_acceleration_4).mul_add(
+            n(0.84),
+            (-(link_22_acceleration_10 - link_22_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_22_acceleration_12.mul_add(n(0.16526), link_22_acceleration_8 * n(0.16544)),
+            ),
+        ),
+    );
+    let link_22_force_3 = (-link_22_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_22_acceleration_5.mul_add(
             n(0.004),
-            (-link_22_acceleration_4)
-                .mul_add(
-                    n(0.84),
-                    (-(link_22_acceleration_10 - link_22_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_22_acceleration_12
-                                .mul_add(n(0.16526), link_22_acceleration_8 * n(0.16544)),
-                        ),
-                ),
-        );
-    let link_22_force_3 = (-link_22_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_22_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_22_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_22_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_22_acceleration_18.mul_add(n(0.00041000000000000005), link_22_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_23: angular velocity (9 additions, 9 multiplications)
-    let link_23_angular_velocity = q[204]
-        .mul_add(
-            link_22_rate_z,
-            q[201].mul_add(link_22_rate_y, q[198] * link_22_rate_x),
-        );
-    let link_23_angular_velocity_2 = q[205]
-        .mul_add(
-            link_22_rate_z,
-            q[202].mul_add(link_22_rate_y, q[199] * link_22_rate_x),
-        );
-    let link_23_angular_velocity_3 = q[206]
-        .mul_add(
-            link_22_rate_z,
-            q[203].mul_add(link_22_rate_y, q[200] * link_22_rate_x),
-        );
+    let link_23_angular_velocity = q[204].mul_add(link_22_rate_z, q[201].mul_add(link_22_rate_y, q[198] * link_22_rate_x));
+    let link_23_angular_velocity_2 = q[205].mul_add(link_22_rate_z, q[202].mul_add(link_22_rate_y, q[199] * link_22_rate_x));
+    let link_23_angular_velocity_3 = q[206].mul_add(link_22_rate_z, q[203].mul_add(link_22_rate_y, q[200] * link_22_rate_x));
     let link_23_rate_x = v[66] + link_23_angular_velocity;
     let link_23_rate_y = v[67] + link_23_angular_velocity_2;
     let link_23_rate_z = v[68] + link_23_angular_velocity_3;
     // link_23: acceleration (30 additions, 33 multiplications)
-    let link_23_acceleration = (-link_22_acceleration_17)
-        .mul_add(n(0.2), link_22_acceleration_4);
-    let link_23_acceleration_2 = link_22_acceleration_18
-        .mul_add(n(0.2), link_22_acceleration_5);
-    let link_23_acceleration_3 = link_22_acceleration_19
-        .mul_add(n(0.2), link_22_acceleration_6);
+    let link_23_acceleration = (-link_22_acceleration_17).mul_add(n(0.2), link_22_acceleration_4);
+    let link_23_acceleration_2 = link_22_acceleration_18.mul_add(n(0.2), link_22_acceleration_5);
+    let link_23_acceleration_3 = link_22_acceleration_19.mul_add(n(0.2), link_22_acceleration_6);
     let link_23_acceleration_4 = q[204]
-        .mul_add(
-            link_23_acceleration_3,
-            q[201].mul_add(link_23_acceleration_2, q[198] * link_23_acceleration),
-        );
+        .mul_add(link_23_acceleration_3, q[201].mul_add(link_23_acceleration_2, q[198] * link_23_acceleration));
     let link_23_acceleration_5 = q[205]
-        .mul_add(
-            link_23_acceleration_3,
-            q[202].mul_add(link_23_acceleration_2, q[199] * link_23_acceleration),
-        );
+        .mul_add(link_23_acceleration_3, q[202].mul_add(link_23_acceleration_2, q[199] * link_23_acceleration));
     let link_23_acceleration_6 = q[206]
-        .mul_add(
-            link_23_acceleration_3,
-            q[203].mul_add(link_23_acceleration_2, q[200] * link_23_acceleration),
-        );
-    let link_23_acceleration_7 = (-v[67])
-        .mul_add(
-            link_23_angular_velocity_3,
-            q[204]
-                .mul_add(
-                    link_22_acceleration_9,
-                    q[201]
-                        .mul_add(
-                            link_22_acceleration_8,
-                            q[198]
-                                .mul_add(
-                                    link_22_acceleration_7,
-                                    v[68].mul_add(link_23_angular_velocity_2, a[66]),
-                                ),
-                        ),
-                ),
-        );
-    let link_23_acceleration_8 = (-v[68])
-        .mul_add(
-            link_23_angular_velocity,
-            q[205]
-                .mul_add(
-                    link_22_acceleration_9,
-                    q[202]
-                        .mul_add(
-                            link_22_acceleration_8,
-                            q[199]
-                                .mul_add(
-                                    link_22_acceleration_7,
-                                    v[66].mul_add(link_23_angular_velocity_3, a[67]),
-                                ),
-                        ),
-                ),
-        );
-    let link_23_acceleration_9 = (-v[66])
-        .mul_add(
-            link_23_angular_velocity_2,
-            q[206]
-                .mul_add(
-                    link_22_acceleration_9,
-                    q[203]
-                        .mul_add(
-                            link_22_acceleration_8,
-                            q[200]
-                                .mul_add(
-                                    link_22_acceleration_7,
-                                    v[67].mul_add(link_23_angular_velocity, a[68]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_23_acceleration_3, q[203].mul_add(link_23_acceleration_2, q[200] * link_23_acceleration));
+    let link_23_acceleration_7 = (-v[67]).mul_add(
+        link_23_angular_velocity_3,
+        q[204].mul_add(
+            link_22_acceleration_9,
+            q[201].mul_add(
+                link_22_acceleration_8,
+                q[198].mul_add(link_22_acceleration_7, v[68].mul_add(link_23_angular_velocity_2, a[66])),
+            ),
+        ),
+    );
+    let link_23_acceleration_8 = (-v[68]).mul_add(
+        link_23_angular_velocity,
+        q[205].mul_add(
+            link_22_acceleration_9,
+            q[202].mul_add(
+                link_22_acceleration_8,
+                q[199].mul_add(link_22_acceleration_7, v[66].mul_add(link_23_angular_velocity_3, a[67])),
+            ),
+        ),
+    );
+    let link_23_acceleration_9 = (-v[66]).mul_add(
+        link_23_angular_velocity_2,
+        q[206].mul_add(
+            link_22_acceleration_9,
+            q[203].mul_add(
+                link_22_acceleration_8,
+                q[200].mul_add(link_22_acceleration_7, v[67].mul_add(link_23_angular_velocity, a[68])),
+            ),
+        ),
+    );
     let link_23_acceleration_10 = link_23_rate_x * link_23_rate_x;
     let link_23_acceleration_11 = link_23_rate_x * link_23_rate_y;
     let link_23_acceleration_12 = link_23_rate_x * link_23_rate_z;
@@ -6281,141 +3494,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_23_acceleration_18 = link_23_acceleration_7 - link_23_acceleration_14;
     let link_23_acceleration_19 = link_23_acceleration_10 + link_23_acceleration_13;
     // link_23: force (14 additions, 19 multiplications)
-    let link_23_force = (-link_23_acceleration_14)
-        .mul_add(
-            n(0.1492),
-            link_23_acceleration_5
-                .mul_add(
-                    n(0.76),
-                    link_23_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_23_acceleration_7 * n(0.14950000000000002),
-                        ),
-                ),
-        );
-    let link_23_force_2 = (-link_23_acceleration_6)
-        .mul_add(
+    let link_23_force = (-link_23_acceleration_14).mul_add(
+        n(0.1492),
+        link_23_acceleration_5.mul_add(
+            n(0.76),
+            link_23_acceleration_16.mul_add(n(0.00041000000000000005), link_23_acceleration_7 * n(0.14950000000000002)),
+        ),
+    );
+    let link_23_force_2 = (-link_23_acceleration_6).mul_add(
+        n(0.004),
+        (-link_23_acceleration_4).mul_add(
+            n(0.76),
+            (-(link_23_acceleration_10 - link_23_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_23_acceleration_12.mul_add(n(0.14926), link_23_acceleration_8 * n(0.14944000000000002)),
+            ),
+        ),
+    );
+    let link_23_force_3 = (-link_23_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_23_acceleration_5.mul_add(
             n(0.004),
-            (-link_23_acceleration_4)
-                .mul_add(
-                    n(0.76),
-                    (-(link_23_acceleration_10 - link_23_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_23_acceleration_12
-                                .mul_add(
-                                    n(0.14926),
-                                    link_23_acceleration_8 * n(0.14944000000000002),
-                                ),
-                        ),
-                ),
-        );
-    let link_23_force_3 = (-link_23_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_23_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_23_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_23_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_23_acceleration_18.mul_add(n(0.00041000000000000005), link_23_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_24: angular velocity (9 additions, 9 multiplications)
-    let link_24_angular_velocity = q[213]
-        .mul_add(
-            link_23_rate_z,
-            q[210].mul_add(link_23_rate_y, q[207] * link_23_rate_x),
-        );
-    let link_24_angular_velocity_2 = q[214]
-        .mul_add(
-            link_23_rate_z,
-            q[211].mul_add(link_23_rate_y, q[208] * link_23_rate_x),
-        );
-    let link_24_angular_velocity_3 = q[215]
-        .mul_add(
-            link_23_rate_z,
-            q[212].mul_add(link_23_rate_y, q[209] * link_23_rate_x),
-        );
+    let link_24_angular_velocity = q[213].mul_add(link_23_rate_z, q[210].mul_add(link_23_rate_y, q[207] * link_23_rate_x));
+    let link_24_angular_velocity_2 = q[214].mul_add(link_23_rate_z, q[211].mul_add(link_23_rate_y, q[208] * link_23_rate_x));
+    let link_24_angular_velocity_3 = q[215].mul_add(link_23_rate_z, q[212].mul_add(link_23_rate_y, q[209] * link_23_rate_x));
     let link_24_rate_x = v[69] + link_24_angular_velocity;
     let link_24_rate_y = v[70] + link_24_angular_velocity_2;
     let link_24_rate_z = v[71] + link_24_angular_velocity_3;
     // link_24: acceleration (30 additions, 33 multiplications)
-    let link_24_acceleration = (-link_23_acceleration_17)
-        .mul_add(n(0.2), link_23_acceleration_4);
-    let link_24_acceleration_2 = link_23_acceleration_18
-        .mul_add(n(0.2), link_23_acceleration_5);
-    let link_24_acceleration_3 = link_23_acceleration_19
-        .mul_add(n(0.2), link_23_acceleration_6);
+    let link_24_acceleration = (-link_23_acceleration_17).mul_add(n(0.2), link_23_acceleration_4);
+    let link_24_acceleration_2 = link_23_acceleration_18.mul_add(n(0.2), link_23_acceleration_5);
+    let link_24_acceleration_3 = link_23_acceleration_19.mul_add(n(0.2), link_23_acceleration_6);
     let link_24_acceleration_4 = q[213]
-        .mul_add(
-            link_24_acceleration_3,
-            q[210].mul_add(link_24_acceleration_2, q[207] * link_24_acceleration),
-        );
+        .mul_add(link_24_acceleration_3, q[210].mul_add(link_24_acceleration_2, q[207] * link_24_acceleration));
     let link_24_acceleration_5 = q[214]
-        .mul_add(
-            link_24_acceleration_3,
-            q[211].mul_add(link_24_acceleration_2, q[208] * link_24_acceleration),
-        );
+        .mul_add(link_24_acceleration_3, q[211].mul_add(link_24_acceleration_2, q[208] * link_24_acceleration));
     let link_24_acceleration_6 = q[215]
-        .mul_add(
-            link_24_acceleration_3,
-            q[212].mul_add(link_24_acceleration_2, q[209] * link_24_acceleration),
-        );
-    let link_24_acceleration_7 = (-v[70])
-        .mul_add(
-            link_24_angular_velocity_3,
-            q[213]
-                .mul_add(
-                    link_23_acceleration_9,
-                    q[210]
-                        .mul_add(
-                            link_23_acceleration_8,
-                            q[207]
-                                .mul_add(
-                                    link_23_acceleration_7,
-                                    v[71].mul_add(link_24_angular_velocity_2, a[69]),
-                                ),
-                        ),
-                ),
-        );
-    let link_24_acceleration_8 = (-v[71])
-        .mul_add(
-            link_24_angular_velocity,
-            q[214]
-                .mul_add(
-                    link_23_acceleration_9,
-                    q[211]
-                        .mul_add(
-                            link_23_acceleration_8,
-                            q[208]
-                                .mul_add(
-                                    link_23_acceleration_7,
-                                    v[69].mul_add(link_24_angular_velocity_3, a[70]),
-                                ),
-                        ),
-                ),
-        );
-    let link_24_acceleration_9 = (-v[69])
-        .mul_add(
-            link_24_angular_velocity_2,
-            q[215]
-                .mul_add(
-                    link_23_acceleration_9,
-                    q[212]
-                        .mul_add(
-                            link_23_acceleration_8,
-                            q[209]
-                                .mul_add(
-                                    link_23_acceleration_7,
-                                    v[70].mul_add(link_24_angular_velocity, a[71]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_24_acceleration_3, q[212].mul_add(link_24_acceleration_2, q[209] * link_24_acceleration));
+    let link_24_acceleration_7 = (-v[70]).mul_add(
+        link_24_angular_velocity_3,
+        q[213].mul_add(
+            link_23_acceleration_9,
+            q[210].mul_add(
+                link_23_acceleration_8,
+                q[207].mul_add(link_23_acceleration_7, v[71].mul_add(link_24_angular_velocity_2, a[69])),
+            ),
+        ),
+    );
+    let link_24_acceleration_8 = (-v[71]).mul_add(
+        link_24_angular_velocity,
+        q[214].mul_add(
+            link_23_acceleration_9,
+            q[211].mul_add(
+                link_23_acceleration_8,
+                q[208].mul_add(link_23_acceleration_7, v[69].mul_add(link_24_angular_velocity_3, a[70])),
+            ),
+        ),
+    );
+    let link_24_acceleration_9 = (-v[69]).mul_add(
+        link_24_angular_velocity_2,
+        q[215].mul_add(
+            link_23_acceleration_9,
+            q[212].mul_add(
+                link_23_acceleration_8,
+                q[209].mul_add(link_23_acceleration_7, v[70].mul_add(link_24_angular_velocity, a[71])),
+            ),
+        ),
+    );
     let link_24_acceleration_10 = link_24_rate_x * link_24_rate_x;
     let link_24_acceleration_11 = link_24_rate_x * link_24_rate_y;
     let link_24_acceleration_12 = link_24_rate_x * link_24_rate_z;
@@ -6427,138 +3576,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_24_acceleration_18 = link_24_acceleration_7 - link_24_acceleration_14;
     let link_24_acceleration_19 = link_24_acceleration_10 + link_24_acceleration_13;
     // link_24: force (14 additions, 19 multiplications)
-    let link_24_force = (-link_24_acceleration_14)
-        .mul_add(
-            n(0.13319999999999999),
-            link_24_acceleration_5
-                .mul_add(
-                    n(0.68),
-                    link_24_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_24_acceleration_7 * n(0.1335),
-                        ),
-                ),
-        );
-    let link_24_force_2 = (-link_24_acceleration_6)
-        .mul_add(
+    let link_24_force = (-link_24_acceleration_14).mul_add(
+        n(0.13319999999999999),
+        link_24_acceleration_5.mul_add(
+            n(0.68),
+            link_24_acceleration_16.mul_add(n(0.00041000000000000005), link_24_acceleration_7 * n(0.1335)),
+        ),
+    );
+    let link_24_force_2 = (-link_24_acceleration_6).mul_add(
+        n(0.004),
+        (-link_24_acceleration_4).mul_add(
+            n(0.68),
+            (-(link_24_acceleration_10 - link_24_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_24_acceleration_12.mul_add(n(0.13326), link_24_acceleration_8 * n(0.13344)),
+            ),
+        ),
+    );
+    let link_24_force_3 = (-link_24_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_24_acceleration_5.mul_add(
             n(0.004),
-            (-link_24_acceleration_4)
-                .mul_add(
-                    n(0.68),
-                    (-(link_24_acceleration_10 - link_24_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_24_acceleration_12
-                                .mul_add(n(0.13326), link_24_acceleration_8 * n(0.13344)),
-                        ),
-                ),
-        );
-    let link_24_force_3 = (-link_24_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_24_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_24_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_24_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_24_acceleration_18.mul_add(n(0.00041000000000000005), link_24_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_25: angular velocity (9 additions, 9 multiplications)
-    let link_25_angular_velocity = q[222]
-        .mul_add(
-            link_24_rate_z,
-            q[219].mul_add(link_24_rate_y, q[216] * link_24_rate_x),
-        );
-    let link_25_angular_velocity_2 = q[223]
-        .mul_add(
-            link_24_rate_z,
-            q[220].mul_add(link_24_rate_y, q[217] * link_24_rate_x),
-        );
-    let link_25_angular_velocity_3 = q[224]
-        .mul_add(
-            link_24_rate_z,
-            q[221].mul_add(link_24_rate_y, q[218] * link_24_rate_x),
-        );
+    let link_25_angular_velocity = q[222].mul_add(link_24_rate_z, q[219].mul_add(link_24_rate_y, q[216] * link_24_rate_x));
+    let link_25_angular_velocity_2 = q[223].mul_add(link_24_rate_z, q[220].mul_add(link_24_rate_y, q[217] * link_24_rate_x));
+    let link_25_angular_velocity_3 = q[224].mul_add(link_24_rate_z, q[221].mul_add(link_24_rate_y, q[218] * link_24_rate_x));
     let link_25_rate_x = v[72] + link_25_angular_velocity;
     let link_25_rate_y = v[73] + link_25_angular_velocity_2;
     let link_25_rate_z = v[74] + link_25_angular_velocity_3;
     // link_25: acceleration (30 additions, 33 multiplications)
-    let link_25_acceleration = (-link_24_acceleration_17)
-        .mul_add(n(0.2), link_24_acceleration_4);
-    let link_25_acceleration_2 = link_24_acceleration_18
-        .mul_add(n(0.2), link_24_acceleration_5);
-    let link_25_acceleration_3 = link_24_acceleration_19
-        .mul_add(n(0.2), link_24_acceleration_6);
+    let link_25_acceleration = (-link_24_acceleration_17).mul_add(n(0.2), link_24_acceleration_4);
+    let link_25_acceleration_2 = link_24_acceleration_18.mul_add(n(0.2), link_24_acceleration_5);
+    let link_25_acceleration_3 = link_24_acceleration_19.mul_add(n(0.2), link_24_acceleration_6);
     let link_25_acceleration_4 = q[222]
-        .mul_add(
-            link_25_acceleration_3,
-            q[219].mul_add(link_25_acceleration_2, q[216] * link_25_acceleration),
-        );
+        .mul_add(link_25_acceleration_3, q[219].mul_add(link_25_acceleration_2, q[216] * link_25_acceleration));
     let link_25_acceleration_5 = q[223]
-        .mul_add(
-            link_25_acceleration_3,
-            q[220].mul_add(link_25_acceleration_2, q[217] * link_25_acceleration),
-        );
+        .mul_add(link_25_acceleration_3, q[220].mul_add(link_25_acceleration_2, q[217] * link_25_acceleration));
     let link_25_acceleration_6 = q[224]
-        .mul_add(
-            link_25_acceleration_3,
-            q[221].mul_add(link_25_acceleration_2, q[218] * link_25_acceleration),
-        );
-    let link_25_acceleration_7 = (-v[73])
-        .mul_add(
-            link_25_angular_velocity_3,
-            q[222]
-                .mul_add(
-                    link_24_acceleration_9,
-                    q[219]
-                        .mul_add(
-                            link_24_acceleration_8,
-                            q[216]
-                                .mul_add(
-                                    link_24_acceleration_7,
-                                    v[74].mul_add(link_25_angular_velocity_2, a[72]),
-                                ),
-                        ),
-                ),
-        );
-    let link_25_acceleration_8 = (-v[74])
-        .mul_add(
-            link_25_angular_velocity,
-            q[223]
-                .mul_add(
-                    link_24_acceleration_9,
-                    q[220]
-                        .mul_add(
-                            link_24_acceleration_8,
-                            q[217]
-                                .mul_add(
-                                    link_24_acceleration_7,
-                                    v[72].mul_add(link_25_angular_velocity_3, a[73]),
-                                ),
-                        ),
-                ),
-        );
-    let link_25_acceleration_9 = (-v[72])
-        .mul_add(
-            link_25_angular_velocity_2,
-            q[224]
-                .mul_add(
-                    link_24_acceleration_9,
-                    q[221]
-                        .mul_add(
-                            link_24_acceleration_8,
-                            q[218]
-                                .mul_add(
-                                    link_24_acceleration_7,
-                                    v[73].mul_add(link_25_angular_velocity, a[74]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_25_acceleration_3, q[221].mul_add(link_25_acceleration_2, q[218] * link_25_acceleration));
+    let link_25_acceleration_7 = (-v[73]).mul_add(
+        link_25_angular_velocity_3,
+        q[222].mul_add(
+            link_24_acceleration_9,
+            q[219].mul_add(
+                link_24_acceleration_8,
+                q[216].mul_add(link_24_acceleration_7, v[74].mul_add(link_25_angular_velocity_2, a[72])),
+            ),
+        ),
+    );
+    let link_25_acceleration_8 = (-v[74]).mul_add(
+        link_25_angular_velocity,
+        q[223].mul_add(
+            link_24_acceleration_9,
+            q[220].mul_add(
+                link_24_acceleration_8,
+                q[217].mul_add(link_24_acceleration_7, v[72].mul_add(link_25_angular_velocity_3, a[73])),
+            ),
+        ),
+    );
+    let link_25_acceleration_9 = (-v[72]).mul_add(
+        link_25_angular_velocity_2,
+        q[224].mul_add(
+            link_24_acceleration_9,
+            q[221].mul_add(
+                link_24_acceleration_8,
+                q[218].mul_add(link_24_acceleration_7, v[73].mul_add(link_25_angular_velocity, a[74])),
+            ),
+        ),
+    );
     let link_25_acceleration_10 = link_25_rate_x * link_25_rate_x;
     let link_25_acceleration_11 = link_25_rate_x * link_25_rate_y;
     let link_25_acceleration_12 = link_25_rate_x * link_25_rate_z;
@@ -6570,141 +3658,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_25_acceleration_18 = link_25_acceleration_7 - link_25_acceleration_14;
     let link_25_acceleration_19 = link_25_acceleration_10 + link_25_acceleration_13;
     // link_25: force (14 additions, 19 multiplications)
-    let link_25_force = (-link_25_acceleration_14)
-        .mul_add(
-            n(0.11720000000000001),
-            link_25_acceleration_5
-                .mul_add(
-                    n(0.6),
-                    link_25_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_25_acceleration_7 * n(0.11750000000000001),
-                        ),
-                ),
-        );
-    let link_25_force_2 = (-link_25_acceleration_6)
-        .mul_add(
+    let link_25_force = (-link_25_acceleration_14).mul_add(
+        n(0.11720000000000001),
+        link_25_acceleration_5.mul_add(
+            n(0.6),
+            link_25_acceleration_16.mul_add(n(0.00041000000000000005), link_25_acceleration_7 * n(0.11750000000000001)),
+        ),
+    );
+    let link_25_force_2 = (-link_25_acceleration_6).mul_add(
+        n(0.004),
+        (-link_25_acceleration_4).mul_add(
+            n(0.6),
+            (-(link_25_acceleration_10 - link_25_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_25_acceleration_12.mul_add(n(0.11726), link_25_acceleration_8 * n(0.11744000000000002)),
+            ),
+        ),
+    );
+    let link_25_force_3 = (-link_25_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_25_acceleration_5.mul_add(
             n(0.004),
-            (-link_25_acceleration_4)
-                .mul_add(
-                    n(0.6),
-                    (-(link_25_acceleration_10 - link_25_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_25_acceleration_12
-                                .mul_add(
-                                    n(0.11726),
-                                    link_25_acceleration_8 * n(0.11744000000000002),
-                                ),
-                        ),
-                ),
-        );
-    let link_25_force_3 = (-link_25_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_25_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_25_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_25_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_25_acceleration_18.mul_add(n(0.00041000000000000005), link_25_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_26: angular velocity (9 additions, 9 multiplications)
-    let link_26_angular_velocity = q[231]
-        .mul_add(
-            link_25_rate_z,
-            q[228].mul_add(link_25_rate_y, q[225] * link_25_rate_x),
-        );
-    let link_26_angular_velocity_2 = q[232]
-        .mul_add(
-            link_25_rate_z,
-            q[229].mul_add(link_25_rate_y, q[226] * link_25_rate_x),
-        );
-    let link_26_angular_velocity_3 = q[233]
-        .mul_add(
-            link_25_rate_z,
-            q[230].mul_add(link_25_rate_y, q[227] * link_25_rate_x),
-        );
+    let link_26_angular_velocity = q[231].mul_add(link_25_rate_z, q[228].mul_add(link_25_rate_y, q[225] * link_25_rate_x));
+    let link_26_angular_velocity_2 = q[232].mul_add(link_25_rate_z, q[229].mul_add(link_25_rate_y, q[226] * link_25_rate_x));
+    let link_26_angular_velocity_3 = q[233].mul_add(link_25_rate_z, q[230].mul_add(link_25_rate_y, q[227] * link_25_rate_x));
     let link_26_rate_x = v[75] + link_26_angular_velocity;
     let link_26_rate_y = v[76] + link_26_angular_velocity_2;
     let link_26_rate_z = v[77] + link_26_angular_velocity_3;
     // link_26: acceleration (30 additions, 33 multiplications)
-    let link_26_acceleration = (-link_25_acceleration_17)
-        .mul_add(n(0.2), link_25_acceleration_4);
-    let link_26_acceleration_2 = link_25_acceleration_18
-        .mul_add(n(0.2), link_25_acceleration_5);
-    let link_26_acceleration_3 = link_25_acceleration_19
-        .mul_add(n(0.2), link_25_acceleration_6);
+    let link_26_acceleration = (-link_25_acceleration_17).mul_add(n(0.2), link_25_acceleration_4);
+    let link_26_acceleration_2 = link_25_acceleration_18.mul_add(n(0.2), link_25_acceleration_5);
+    let link_26_acceleration_3 = link_25_acceleration_19.mul_add(n(0.2), link_25_acceleration_6);
     let link_26_acceleration_4 = q[231]
-        .mul_add(
-            link_26_acceleration_3,
-            q[228].mul_add(link_26_acceleration_2, q[225] * link_26_acceleration),
-        );
+        .mul_add(link_26_acceleration_3, q[228].mul_add(link_26_acceleration_2, q[225] * link_26_acceleration));
     let link_26_acceleration_5 = q[232]
-        .mul_add(
-            link_26_acceleration_3,
-            q[229].mul_add(link_26_acceleration_2, q[226] * link_26_acceleration),
-        );
+        .mul_add(link_26_acceleration_3, q[229].mul_add(link_26_acceleration_2, q[226] * link_26_acceleration));
     let link_26_acceleration_6 = q[233]
-        .mul_add(
-            link_26_acceleration_3,
-            q[230].mul_add(link_26_acceleration_2, q[227] * link_26_acceleration),
-        );
-    let link_26_acceleration_7 = (-v[76])
-        .mul_add(
-            link_26_angular_velocity_3,
-            q[231]
-                .mul_add(
-                    link_25_acceleration_9,
-                    q[228]
-                        .mul_add(
-                            link_25_acceleration_8,
-                            q[225]
-                                .mul_add(
-                                    link_25_acceleration_7,
-                                    v[77].mul_add(link_26_angular_velocity_2, a[75]),
-                                ),
-                        ),
-                ),
-        );
-    let link_26_acceleration_8 = (-v[77])
-        .mul_add(
-            link_26_angular_velocity,
-            q[232]
-                .mul_add(
-                    link_25_acceleration_9,
-                    q[229]
-                        .mul_add(
-                            link_25_acceleration_8,
-                            q[226]
-                                .mul_add(
-                                    link_25_acceleration_7,
-                                    v[75].mul_add(link_26_angular_velocity_3, a[76]),
-                                ),
-                        ),
-                ),
-        );
-    let link_26_acceleration_9 = (-v[75])
-        .mul_add(
-            link_26_angular_velocity_2,
-            q[233]
-                .mul_add(
-                    link_25_acceleration_9,
-                    q[230]
-                        .mul_add(
-                            link_25_acceleration_8,
-                            q[227]
-                                .mul_add(
-                                    link_25_acceleration_7,
-                                    v[76].mul_add(link_26_angular_velocity, a[77]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_26_acceleration_3, q[230].mul_add(link_26_acceleration_2, q[227] * link_26_acceleration));
+    let link_26_acceleration_7 = (-v[76]).mul_add(
+        link_26_angular_velocity_3,
+        q[231].mul_add(
+            link_25_acceleration_9,
+            q[228].mul_add(
+                link_25_acceleration_8,
+                q[225].mul_add(link_25_acceleration_7, v[77].mul_add(link_26_angular_velocity_2, a[75])),
+            ),
+        ),
+    );
+    let link_26_acceleration_8 = (-v[77]).mul_add(
+        link_26_angular_velocity,
+        q[232].mul_add(
+            link_25_acceleration_9,
+            q[229].mul_add(
+                link_25_acceleration_8,
+                q[226].mul_add(link_25_acceleration_7, v[75].mul_add(link_26_angular_velocity_3, a[76])),
+            ),
+        ),
+    );
+    let link_26_acceleration_9 = (-v[75]).mul_add(
+        link_26_angular_velocity_2,
+        q[233].mul_add(
+            link_25_acceleration_9,
+            q[230].mul_add(
+                link_25_acceleration_8,
+                q[227].mul_add(link_25_acceleration_7, v[76].mul_add(link_26_angular_velocity, a[77])),
+            ),
+        ),
+    );
     let link_26_acceleration_10 = link_26_rate_x * link_26_rate_x;
     let link_26_acceleration_11 = link_26_rate_x * link_26_rate_y;
     let link_26_acceleration_12 = link_26_rate_x * link_26_rate_z;
@@ -6716,141 +3740,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_26_acceleration_18 = link_26_acceleration_7 - link_26_acceleration_14;
     let link_26_acceleration_19 = link_26_acceleration_10 + link_26_acceleration_13;
     // link_26: force (14 additions, 19 multiplications)
-    let link_26_force = (-link_26_acceleration_14)
-        .mul_add(
-            n(0.10120000000000003),
-            link_26_acceleration_5
-                .mul_add(
-                    n(0.52),
-                    link_26_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_26_acceleration_7 * n(0.10150000000000002),
-                        ),
-                ),
-        );
-    let link_26_force_2 = (-link_26_acceleration_6)
-        .mul_add(
+    let link_26_force = (-link_26_acceleration_14).mul_add(
+        n(0.10120000000000003),
+        link_26_acceleration_5.mul_add(
+            n(0.52),
+            link_26_acceleration_16.mul_add(n(0.00041000000000000005), link_26_acceleration_7 * n(0.10150000000000002)),
+        ),
+    );
+    let link_26_force_2 = (-link_26_acceleration_6).mul_add(
+        n(0.004),
+        (-link_26_acceleration_4).mul_add(
+            n(0.52),
+            (-(link_26_acceleration_10 - link_26_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_26_acceleration_12.mul_add(n(0.10126000000000002), link_26_acceleration_8 * n(0.10144000000000003)),
+            ),
+        ),
+    );
+    let link_26_force_3 = (-link_26_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_26_acceleration_5.mul_add(
             n(0.004),
-            (-link_26_acceleration_4)
-                .mul_add(
-                    n(0.52),
-                    (-(link_26_acceleration_10 - link_26_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_26_acceleration_12
-                                .mul_add(
-                                    n(0.10126000000000002),
-                                    link_26_acceleration_8 * n(0.10144000000000003),
-                                ),
-                        ),
-                ),
-        );
-    let link_26_force_3 = (-link_26_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_26_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_26_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_26_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_26_acceleration_18.mul_add(n(0.00041000000000000005), link_26_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_27: angular velocity (9 additions, 9 multiplications)
-    let link_27_angular_velocity = q[240]
-        .mul_add(
-            link_26_rate_z,
-            q[237].mul_add(link_26_rate_y, q[234] * link_26_rate_x),
-        );
-    let link_27_angular_velocity_2 = q[241]
-        .mul_add(
-            link_26_rate_z,
-            q[238].mul_add(link_26_rate_y, q[235] * link_26_rate_x),
-        );
-    let link_27_angular_velocity_3 = q[242]
-        .mul_add(
-            link_26_rate_z,
-            q[239].mul_add(link_26_rate_y, q[236] * link_26_rate_x),
-        );
+    let link_27_angular_velocity = q[240].mul_add(link_26_rate_z, q[237].mul_add(link_26_rate_y, q[234] * link_26_rate_x));
+    let link_27_angular_velocity_2 = q[241].mul_add(link_26_rate_z, q[238].mul_add(link_26_rate_y, q[235] * link_26_rate_x));
+    let link_27_angular_velocity_3 = q[242].mul_add(link_26_rate_z, q[239].mul_add(link_26_rate_y, q[236] * link_26_rate_x));
     let link_27_rate_x = v[78] + link_27_angular_velocity;
     let link_27_rate_y = v[79] + link_27_angular_velocity_2;
     let link_27_rate_z = v[80] + link_27_angular_velocity_3;
     // link_27: acceleration (30 additions, 33 multiplications)
-    let link_27_acceleration = (-link_26_acceleration_17)
-        .mul_add(n(0.2), link_26_acceleration_4);
-    let link_27_acceleration_2 = link_26_acceleration_18
-        .mul_add(n(0.2), link_26_acceleration_5);
-    let link_27_acceleration_3 = link_26_acceleration_19
-        .mul_add(n(0.2), link_26_acceleration_6);
+    let link_27_acceleration = (-link_26_acceleration_17).mul_add(n(0.2), link_26_acceleration_4);
+    let link_27_acceleration_2 = link_26_acceleration_18.mul_add(n(0.2), link_26_acceleration_5);
+    let link_27_acceleration_3 = link_26_acceleration_19.mul_add(n(0.2), link_26_acceleration_6);
     let link_27_acceleration_4 = q[240]
-        .mul_add(
-            link_27_acceleration_3,
-            q[237].mul_add(link_27_acceleration_2, q[234] * link_27_acceleration),
-        );
+        .mul_add(link_27_acceleration_3, q[237].mul_add(link_27_acceleration_2, q[234] * link_27_acceleration));
     let link_27_acceleration_5 = q[241]
-        .mul_add(
-            link_27_acceleration_3,
-            q[238].mul_add(link_27_acceleration_2, q[235] * link_27_acceleration),
-        );
+        .mul_add(link_27_acceleration_3, q[238].mul_add(link_27_acceleration_2, q[235] * link_27_acceleration));
     let link_27_acceleration_6 = q[242]
-        .mul_add(
-            link_27_acceleration_3,
-            q[239].mul_add(link_27_acceleration_2, q[236] * link_27_acceleration),
-        );
-    let link_27_acceleration_7 = (-v[79])
-        .mul_add(
-            link_27_angular_velocity_3,
-            q[240]
-                .mul_add(
-                    link_26_acceleration_9,
-                    q[237]
-                        .mul_add(
-                            link_26_acceleration_8,
-                            q[234]
-                                .mul_add(
-                                    link_26_acceleration_7,
-                                    v[80].mul_add(link_27_angular_velocity_2, a[78]),
-                                ),
-                        ),
-                ),
-        );
-    let link_27_acceleration_8 = (-v[80])
-        .mul_add(
-            link_27_angular_velocity,
-            q[241]
-                .mul_add(
-                    link_26_acceleration_9,
-                    q[238]
-                        .mul_add(
-                            link_26_acceleration_8,
-                            q[235]
-                                .mul_add(
-                                    link_26_acceleration_7,
-                                    v[78].mul_add(link_27_angular_velocity_3, a[79]),
-                                ),
-                        ),
-                ),
-        );
-    let link_27_acceleration_9 = (-v[78])
-        .mul_add(
-            link_27_angular_velocity_2,
-            q[242]
-                .mul_add(
-                    link_26_acceleration_9,
-                    q[239]
-                        .mul_add(
-                            link_26_acceleration_8,
-                            q[236]
-                                .mul_add(
-                                    link_26_acceleration_7,
-                                    v[79].mul_add(link_27_angular_velocity, a[80]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_27_acceleration_3, q[239].mul_add(link_27_acceleration_2, q[236] * link_27_acceleration));
+    let link_27_acceleration_7 = (-v[79]).mul_add(
+        link_27_angular_velocity_3,
+        q[240].mul_add(
+            link_26_acceleration_9,
+            q[237].mul_add(
+                link_26_acceleration_8,
+                q[234].mul_add(link_26_acceleration_7, v[80].mul_add(link_27_angular_velocity_2, a[78])),
+            ),
+        ),
+    );
+    let link_27_acceleration_8 = (-v[80]).mul_add(
+        link_27_angular_velocity,
+        q[241].mul_add(
+            link_26_acceleration_9,
+            q[238].mul_add(
+                link_26_acceleration_8,
+                q[235].mul_add(link_26_acceleration_7, v[78].mul_add(link_27_angular_velocity_3, a[79])),
+            ),
+        ),
+    );
+    let link_27_acceleration_9 = (-v[78]).mul_add(
+        link_27_angular_velocity_2,
+        q[242].mul_add(
+            link_26_acceleration_9,
+            q[239].mul_add(
+                link_26_acceleration_8,
+                q[236].mul_add(link_26_acceleration_7, v[79].mul_add(link_27_angular_velocity, a[80])),
+            ),
+        ),
+    );
     let link_27_acceleration_10 = link_27_rate_x * link_27_rate_x;
     let link_27_acceleration_11 = link_27_rate_x * link_27_rate_y;
     let link_27_acceleration_12 = link_27_rate_x * link_27_rate_z;
@@ -6862,141 +3822,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_27_acceleration_18 = link_27_acceleration_7 - link_27_acceleration_14;
     let link_27_acceleration_19 = link_27_acceleration_10 + link_27_acceleration_13;
     // link_27: force (14 additions, 19 multiplications)
-    let link_27_force = (-link_27_acceleration_14)
-        .mul_add(
-            n(0.08520000000000001),
-            link_27_acceleration_5
-                .mul_add(
-                    n(0.44000000000000006),
-                    link_27_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_27_acceleration_7 * n(0.0855),
-                        ),
-                ),
-        );
-    let link_27_force_2 = (-link_27_acceleration_6)
-        .mul_add(
+    let link_27_force = (-link_27_acceleration_14).mul_add(
+        n(0.08520000000000001),
+        link_27_acceleration_5.mul_add(
+            n(0.44000000000000006),
+            link_27_acceleration_16.mul_add(n(0.00041000000000000005), link_27_acceleration_7 * n(0.0855)),
+        ),
+    );
+    let link_27_force_2 = (-link_27_acceleration_6).mul_add(
+        n(0.004),
+        (-link_27_acceleration_4).mul_add(
+            n(0.44000000000000006),
+            (-(link_27_acceleration_10 - link_27_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_27_acceleration_12.mul_add(n(0.08526), link_27_acceleration_8 * n(0.08544000000000002)),
+            ),
+        ),
+    );
+    let link_27_force_3 = (-link_27_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_27_acceleration_5.mul_add(
             n(0.004),
-            (-link_27_acceleration_4)
-                .mul_add(
-                    n(0.44000000000000006),
-                    (-(link_27_acceleration_10 - link_27_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_27_acceleration_12
-                                .mul_add(
-                                    n(0.08526),
-                                    link_27_acceleration_8 * n(0.08544000000000002),
-                                ),
-                        ),
-                ),
-        );
-    let link_27_force_3 = (-link_27_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_27_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_27_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_27_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_27_acceleration_18.mul_add(n(0.00041000000000000005), link_27_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_28: angular velocity (9 additions, 9 multiplications)
-    let link_28_angular_velocity = q[249]
-        .mul_add(
-            link_27_rate_z,
-            q[246].mul_add(link_27_rate_y, q[243] * link_27_rate_x),
-        );
-    let link_28_angular_velocity_2 = q[250]
-        .mul_add(
-            link_27_rate_z,
-            q[247].mul_add(link_27_rate_y, q[244] * link_27_rate_x),
-        );
-    let link_28_angular_velocity_3 = q[251]
-        .mul_add(
-            link_27_rate_z,
-            q[248].mul_add(link_27_rate_y, q[245] * link_27_rate_x),
-        );
+    let link_28_angular_velocity = q[249].mul_add(link_27_rate_z, q[246].mul_add(link_27_rate_y, q[243] * link_27_rate_x));
+    let link_28_angular_velocity_2 = q[250].mul_add(link_27_rate_z, q[247].mul_add(link_27_rate_y, q[244] * link_27_rate_x));
+    let link_28_angular_velocity_3 = q[251].mul_add(link_27_rate_z, q[248].mul_add(link_27_rate_y, q[245] * link_27_rate_x));
     let link_28_rate_x = v[81] + link_28_angular_velocity;
     let link_28_rate_y = v[82] + link_28_angular_velocity_2;
     let link_28_rate_z = v[83] + link_28_angular_velocity_3;
     // link_28: acceleration (30 additions, 33 multiplications)
-    let link_28_acceleration = (-link_27_acceleration_17)
-        .mul_add(n(0.2), link_27_acceleration_4);
-    let link_28_acceleration_2 = link_27_acceleration_18
-        .mul_add(n(0.2), link_27_acceleration_5);
-    let link_28_acceleration_3 = link_27_acceleration_19
-        .mul_add(n(0.2), link_27_acceleration_6);
+    let link_28_acceleration = (-link_27_acceleration_17).mul_add(n(0.2), link_27_acceleration_4);
+    let link_28_acceleration_2 = link_27_acceleration_18.mul_add(n(0.2), link_27_acceleration_5);
+    let link_28_acceleration_3 = link_27_acceleration_19.mul_add(n(0.2), link_27_acceleration_6);
     let link_28_acceleration_4 = q[249]
-        .mul_add(
-            link_28_acceleration_3,
-            q[246].mul_add(link_28_acceleration_2, q[243] * link_28_acceleration),
-        );
+        .mul_add(link_28_acceleration_3, q[246].mul_add(link_28_acceleration_2, q[243] * link_28_acceleration));
     let link_28_acceleration_5 = q[250]
-        .mul_add(
-            link_28_acceleration_3,
-            q[247].mul_add(link_28_acceleration_2, q[244] * link_28_acceleration),
-        );
+        .mul_add(link_28_acceleration_3, q[247].mul_add(link_28_acceleration_2, q[244] * link_28_acceleration));
     let link_28_acceleration_6 = q[251]
-        .mul_add(
-            link_28_acceleration_3,
-            q[248].mul_add(link_28_acceleration_2, q[245] * link_28_acceleration),
-        );
-    let link_28_acceleration_7 = (-v[82])
-        .mul_add(
-            link_28_angular_velocity_3,
-            q[249]
-                .mul_add(
-                    link_27_acceleration_9,
-                    q[246]
-                        .mul_add(
-                            link_27_acceleration_8,
-                            q[243]
-                                .mul_add(
-                                    link_27_acceleration_7,
-                                    v[83].mul_add(link_28_angular_velocity_2, a[81]),
-                                ),
-                        ),
-                ),
-        );
-    let link_28_acceleration_8 = (-v[83])
-        .mul_add(
-            link_28_angular_velocity,
-            q[250]
-                .mul_add(
-                    link_27_acceleration_9,
-                    q[247]
-                        .mul_add(
-                            link_27_acceleration_8,
-                            q[244]
-                                .mul_add(
-                                    link_27_acceleration_7,
-                                    v[81].mul_add(link_28_angular_velocity_3, a[82]),
-                                ),
-                        ),
-                ),
-        );
-    let link_28_acceleration_9 = (-v[81])
-        .mul_add(
-            link_28_angular_velocity_2,
-            q[251]
-                .mul_add(
-                    link_27_acceleration_9,
-                    q[248]
-                        .mul_add(
-                            link_27_acceleration_8,
-                            q[245]
-                                .mul_add(
-                                    link_27_acceleration_7,
-                                    v[82].mul_add(link_28_angular_velocity, a[83]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_28_acceleration_3, q[248].mul_add(link_28_acceleration_2, q[245] * link_28_acceleration));
+    let link_28_acceleration_7 = (-v[82]).mul_add(
+        link_28_angular_velocity_3,
+        q[249].mul_add(
+            link_27_acceleration_9,
+            q[246].mul_add(
+                link_27_acceleration_8,
+                q[243].mul_add(link_27_acceleration_7, v[83].mul_add(link_28_angular_velocity_2, a[81])),
+            ),
+        ),
+    );
+    let link_28_acceleration_8 = (-v[83]).mul_add(
+        link_28_angular_velocity,
+        q[250].mul_add(
+            link_27_acceleration_9,
+            q[247].mul_add(
+                link_27_acceleration_8,
+                q[244].mul_add(link_27_acceleration_7, v[81].mul_add(link_28_angular_velocity_3, a[82])),
+            ),
+        ),
+    );
+    let link_28_acceleration_9 = (-v[81]).mul_add(
+        link_28_angular_velocity_2,
+        q[251].mul_add(
+            link_27_acceleration_9,
+            q[248].mul_add(
+                link_27_acceleration_8,
+                q[245].mul_add(link_27_acceleration_7, v[82].mul_add(link_28_angular_velocity, a[83])),
+            ),
+        ),
+    );
     let link_28_acceleration_10 = link_28_rate_x * link_28_rate_x;
     let link_28_acceleration_11 = link_28_rate_x * link_28_rate_y;
     let link_28_acceleration_12 = link_28_rate_x * link_28_rate_z;
@@ -7008,141 +3904,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_28_acceleration_18 = link_28_acceleration_7 - link_28_acceleration_14;
     let link_28_acceleration_19 = link_28_acceleration_10 + link_28_acceleration_13;
     // link_28: force (14 additions, 19 multiplications)
-    let link_28_force = (-link_28_acceleration_14)
-        .mul_add(
-            n(0.06920000000000003),
-            link_28_acceleration_5
-                .mul_add(
-                    n(0.3600000000000001),
-                    link_28_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_28_acceleration_7 * n(0.06950000000000002),
-                        ),
-                ),
-        );
-    let link_28_force_2 = (-link_28_acceleration_6)
-        .mul_add(
+    let link_28_force = (-link_28_acceleration_14).mul_add(
+        n(0.06920000000000003),
+        link_28_acceleration_5.mul_add(
+            n(0.3600000000000001),
+            link_28_acceleration_16.mul_add(n(0.00041000000000000005), link_28_acceleration_7 * n(0.06950000000000002)),
+        ),
+    );
+    let link_28_force_2 = (-link_28_acceleration_6).mul_add(
+        n(0.004),
+        (-link_28_acceleration_4).mul_add(
+            n(0.3600000000000001),
+            (-(link_28_acceleration_10 - link_28_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_28_acceleration_12.mul_add(n(0.06926000000000002), link_28_acceleration_8 * n(0.06944000000000003)),
+            ),
+        ),
+    );
+    let link_28_force_3 = (-link_28_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_28_acceleration_5.mul_add(
             n(0.004),
-            (-link_28_acceleration_4)
-                .mul_add(
-                    n(0.3600000000000001),
-                    (-(link_28_acceleration_10 - link_28_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_28_acceleration_12
-                                .mul_add(
-                                    n(0.06926000000000002),
-                                    link_28_acceleration_8 * n(0.06944000000000003),
-                                ),
-                        ),
-                ),
-        );
-    let link_28_force_3 = (-link_28_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_28_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_28_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_28_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_28_acceleration_18.mul_add(n(0.00041000000000000005), link_28_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_29: angular velocity (9 additions, 9 multiplications)
-    let link_29_angular_velocity = q[258]
-        .mul_add(
-            link_28_rate_z,
-            q[255].mul_add(link_28_rate_y, q[252] * link_28_rate_x),
-        );
-    let link_29_angular_velocity_2 = q[259]
-        .mul_add(
-            link_28_rate_z,
-            q[256].mul_add(link_28_rate_y, q[253] * link_28_rate_x),
-        );
-    let link_29_angular_velocity_3 = q[260]
-        .mul_add(
-            link_28_rate_z,
-            q[257].mul_add(link_28_rate_y, q[254] * link_28_rate_x),
-        );
+    let link_29_angular_velocity = q[258].mul_add(link_28_rate_z, q[255].mul_add(link_28_rate_y, q[252] * link_28_rate_x));
+    let link_29_angular_velocity_2 = q[259].mul_add(link_28_rate_z, q[256].mul_add(link_28_rate_y, q[253] * link_28_rate_x));
+    let link_29_angular_velocity_3 = q[260].mul_add(link_28_rate_z, q[257].mul_add(link_28_rate_y, q[254] * link_28_rate_x));
     let link_29_rate_x = v[84] + link_29_angular_velocity;
     let link_29_rate_y = v[85] + link_29_angular_velocity_2;
     let link_29_rate_z = v[86] + link_29_angular_velocity_3;
     // link_29: acceleration (30 additions, 33 multiplications)
-    let link_29_acceleration = (-link_28_acceleration_17)
-        .mul_add(n(0.2), link_28_acceleration_4);
-    let link_29_acceleration_2 = link_28_acceleration_18
-        .mul_add(n(0.2), link_28_acceleration_5);
-    let link_29_acceleration_3 = link_28_acceleration_19
-        .mul_add(n(0.2), link_28_acceleration_6);
+    let link_29_acceleration = (-link_28_acceleration_17).mul_add(n(0.2), link_28_acceleration_4);
+    let link_29_acceleration_2 = link_28_acceleration_18.mul_add(n(0.2), link_28_acceleration_5);
+    let link_29_acceleration_3 = link_28_acceleration_19.mul_add(n(0.2), link_28_acceleration_6);
     let link_29_acceleration_4 = q[258]
-        .mul_add(
-            link_29_acceleration_3,
-            q[255].mul_add(link_29_acceleration_2, q[252] * link_29_acceleration),
-        );
+        .mul_add(link_29_acceleration_3, q[255].mul_add(link_29_acceleration_2, q[252] * link_29_acceleration));
     let link_29_acceleration_5 = q[259]
-        .mul_add(
-            link_29_acceleration_3,
-            q[256].mul_add(link_29_acceleration_2, q[253] * link_29_acceleration),
-        );
+        .mul_add(link_29_acceleration_3, q[256].mul_add(link_29_acceleration_2, q[253] * link_29_acceleration));
     let link_29_acceleration_6 = q[260]
-        .mul_add(
-            link_29_acceleration_3,
-            q[257].mul_add(link_29_acceleration_2, q[254] * link_29_acceleration),
-        );
-    let link_29_acceleration_7 = (-v[85])
-        .mul_add(
-            link_29_angular_velocity_3,
-            q[258]
-                .mul_add(
-                    link_28_acceleration_9,
-                    q[255]
-                        .mul_add(
-                            link_28_acceleration_8,
-                            q[252]
-                                .mul_add(
-                                    link_28_acceleration_7,
-                                    v[86].mul_add(link_29_angular_velocity_2, a[84]),
-                                ),
-                        ),
-                ),
-        );
-    let link_29_acceleration_8 = (-v[86])
-        .mul_add(
-            link_29_angular_velocity,
-            q[259]
-                .mul_add(
-                    link_28_acceleration_9,
-                    q[256]
-                        .mul_add(
-                            link_28_acceleration_8,
-                            q[253]
-                                .mul_add(
-                                    link_28_acceleration_7,
-                                    v[84].mul_add(link_29_angular_velocity_3, a[85]),
-                                ),
-                        ),
-                ),
-        );
-    let link_29_acceleration_9 = (-v[84])
-        .mul_add(
-            link_29_angular_velocity_2,
-            q[260]
-                .mul_add(
-                    link_28_acceleration_9,
-                    q[257]
-                        .mul_add(
-                            link_28_acceleration_8,
-                            q[254]
-                                .mul_add(
-                                    link_28_acceleration_7,
-                                    v[85].mul_add(link_29_angular_velocity, a[86]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_29_acceleration_3, q[257].mul_add(link_29_acceleration_2, q[254] * link_29_acceleration));
+    let link_29_acceleration_7 = (-v[85]).mul_add(
+        link_29_angular_velocity_3,
+        q[258].mul_add(
+            link_28_acceleration_9,
+            q[255].mul_add(
+                link_28_acceleration_8,
+                q[252].mul_add(link_28_acceleration_7, v[86].mul_add(link_29_angular_velocity_2, a[84])),
+            ),
+        ),
+    );
+    let link_29_acceleration_8 = (-v[86]).mul_add(
+        link_29_angular_velocity,
+        q[259].mul_add(
+            link_28_acceleration_9,
+            q[256].mul_add(
+                link_28_acceleration_8,
+                q[253].mul_add(link_28_acceleration_7, v[84].mul_add(link_29_angular_velocity_3, a[85])),
+            ),
+        ),
+    );
+    let link_29_acceleration_9 = (-v[84]).mul_add(
+        link_29_angular_velocity_2,
+        q[260].mul_add(
+            link_28_acceleration_9,
+            q[257].mul_add(
+                link_28_acceleration_8,
+                q[254].mul_add(link_28_acceleration_7, v[85].mul_add(link_29_angular_velocity, a[86])),
+            ),
+        ),
+    );
     let link_29_acceleration_10 = link_29_rate_x * link_29_rate_x;
     let link_29_acceleration_11 = link_29_rate_x * link_29_rate_y;
     let link_29_acceleration_12 = link_29_rate_x * link_29_rate_z;
@@ -7154,141 +3986,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_29_acceleration_18 = link_29_acceleration_7 - link_29_acceleration_14;
     let link_29_acceleration_19 = link_29_acceleration_10 + link_29_acceleration_13;
     // link_29: force (14 additions, 19 multiplications)
-    let link_29_force = (-link_29_acceleration_14)
-        .mul_add(
-            n(0.05320000000000002),
-            link_29_acceleration_5
-                .mul_add(
-                    n(0.28),
-                    link_29_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_29_acceleration_7 * n(0.05350000000000001),
-                        ),
-                ),
-        );
-    let link_29_force_2 = (-link_29_acceleration_6)
-        .mul_add(
+    let link_29_force = (-link_29_acceleration_14).mul_add(
+        n(0.05320000000000002),
+        link_29_acceleration_5.mul_add(
+            n(0.28),
+            link_29_acceleration_16.mul_add(n(0.00041000000000000005), link_29_acceleration_7 * n(0.05350000000000001)),
+        ),
+    );
+    let link_29_force_2 = (-link_29_acceleration_6).mul_add(
+        n(0.004),
+        (-link_29_acceleration_4).mul_add(
+            n(0.28),
+            (-(link_29_acceleration_10 - link_29_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_29_acceleration_12.mul_add(n(0.053260000000000016), link_29_acceleration_8 * n(0.053440000000000015)),
+            ),
+        ),
+    );
+    let link_29_force_3 = (-link_29_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_29_acceleration_5.mul_add(
             n(0.004),
-            (-link_29_acceleration_4)
-                .mul_add(
-                    n(0.28),
-                    (-(link_29_acceleration_10 - link_29_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_29_acceleration_12
-                                .mul_add(
-                                    n(0.053260000000000016),
-                                    link_29_acceleration_8 * n(0.053440000000000015),
-                                ),
-                        ),
-                ),
-        );
-    let link_29_force_3 = (-link_29_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_29_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_29_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_29_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_29_acceleration_18.mul_add(n(0.00041000000000000005), link_29_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_30: angular velocity (9 additions, 9 multiplications)
-    let link_30_angular_velocity = q[267]
-        .mul_add(
-            link_29_rate_z,
-            q[264].mul_add(link_29_rate_y, q[261] * link_29_rate_x),
-        );
-    let link_30_angular_velocity_2 = q[268]
-        .mul_add(
-            link_29_rate_z,
-            q[265].mul_add(link_29_rate_y, q[262] * link_29_rate_x),
-        );
-    let link_30_angular_velocity_3 = q[269]
-        .mul_add(
-            link_29_rate_z,
-            q[266].mul_add(link_29_rate_y, q[263] * link_29_rate_x),
-        );
+    let link_30_angular_velocity = q[267].mul_add(link_29_rate_z, q[264].mul_add(link_29_rate_y, q[261] * link_29_rate_x));
+    let link_30_angular_velocity_2 = q[268].mul_add(link_29_rate_z, q[265].mul_add(link_29_rate_y, q[262] * link_29_rate_x));
+    let link_30_angular_velocity_3 = q[269].mul_add(link_29_rate_z, q[266].mul_add(link_29_rate_y, q[263] * link_29_rate_x));
     let link_30_rate_x = v[87] + link_30_angular_velocity;
     let link_30_rate_y = v[88] + link_30_angular_velocity_2;
     let link_30_rate_z = v[89] + link_30_angular_velocity_3;
     // link_30: acceleration (30 additions, 33 multiplications)
-    let link_30_acceleration = (-link_29_acceleration_17)
-        .mul_add(n(0.2), link_29_acceleration_4);
-    let link_30_acceleration_2 = link_29_acceleration_18
-        .mul_add(n(0.2), link_29_acceleration_5);
-    let link_30_acceleration_3 = link_29_acceleration_19
-        .mul_add(n(0.2), link_29_acceleration_6);
+    let link_30_acceleration = (-link_29_acceleration_17).mul_add(n(0.2), link_29_acceleration_4);
+    let link_30_acceleration_2 = link_29_acceleration_18.mul_add(n(0.2), link_29_acceleration_5);
+    let link_30_acceleration_3 = link_29_acceleration_19.mul_add(n(0.2), link_29_acceleration_6);
     let link_30_acceleration_4 = q[267]
-        .mul_add(
-            link_30_acceleration_3,
-            q[264].mul_add(link_30_acceleration_2, q[261] * link_30_acceleration),
-        );
+        .mul_add(link_30_acceleration_3, q[264].mul_add(link_30_acceleration_2, q[261] * link_30_acceleration));
     let link_30_acceleration_5 = q[268]
-        .mul_add(
-            link_30_acceleration_3,
-            q[265].mul_add(link_30_acceleration_2, q[262] * link_30_acceleration),
-        );
+        .mul_add(link_30_acceleration_3, q[265].mul_add(link_30_acceleration_2, q[262] * link_30_acceleration));
     let link_30_acceleration_6 = q[269]
-        .mul_add(
-            link_30_acceleration_3,
-            q[266].mul_add(link_30_acceleration_2, q[263] * link_30_acceleration),
-        );
-    let link_30_acceleration_7 = (-v[88])
-        .mul_add(
-            link_30_angular_velocity_3,
-            q[267]
-                .mul_add(
-                    link_29_acceleration_9,
-                    q[264]
-                        .mul_add(
-                            link_29_acceleration_8,
-                            q[261]
-                                .mul_add(
-                                    link_29_acceleration_7,
-                                    v[89].mul_add(link_30_angular_velocity_2, a[87]),
-                                ),
-                        ),
-                ),
-        );
-    let link_30_acceleration_8 = (-v[89])
-        .mul_add(
-            link_30_angular_velocity,
-            q[268]
-                .mul_add(
-                    link_29_acceleration_9,
-                    q[265]
-                        .mul_add(
-                            link_29_acceleration_8,
-                            q[262]
-                                .mul_add(
-                                    link_29_acceleration_7,
-                                    v[87].mul_add(link_30_angular_velocity_3, a[88]),
-                                ),
-                        ),
-                ),
-        );
-    let link_30_acceleration_9 = (-v[87])
-        .mul_add(
-            link_30_angular_velocity_2,
-            q[269]
-                .mul_add(
-                    link_29_acceleration_9,
-                    q[266]
-                        .mul_add(
-                            link_29_acceleration_8,
-                            q[263]
-                                .mul_add(
-                                    link_29_acceleration_7,
-                                    v[88].mul_add(link_30_angular_velocity, a[89]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_30_acceleration_3, q[266].mul_add(link_30_acceleration_2, q[263] * link_30_acceleration));
+    let link_30_acceleration_7 = (-v[88]).mul_add(
+        link_30_angular_velocity_3,
+        q[267].mul_add(
+            link_29_acceleration_9,
+            q[264].mul_add(
+                link_29_acceleration_8,
+                q[261].mul_add(link_29_acceleration_7, v[89].mul_add(link_30_angular_velocity_2, a[87])),
+            ),
+        ),
+    );
+    let link_30_acceleration_8 = (-v[89]).mul_add(
+        link_30_angular_velocity,
+        q[268].mul_add(
+            link_29_acceleration_9,
+            q[265].mul_add(
+                link_29_acceleration_8,
+                q[262].mul_add(link_29_acceleration_7, v[87].mul_add(link_30_angular_velocity_3, a[88])),
+            ),
+        ),
+    );
+    let link_30_acceleration_9 = (-v[87]).mul_add(
+        link_30_angular_velocity_2,
+        q[269].mul_add(
+            link_29_acceleration_9,
+            q[266].mul_add(
+                link_29_acceleration_8,
+                q[263].mul_add(link_29_acceleration_7, v[88].mul_add(link_30_angular_velocity, a[89])),
+            ),
+        ),
+    );
     let link_30_acceleration_10 = link_30_rate_x * link_30_rate_x;
     let link_30_acceleration_11 = link_30_rate_x * link_30_rate_y;
     let link_30_acceleration_12 = link_30_rate_x * link_30_rate_z;
@@ -7300,141 +4068,77 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_30_acceleration_18 = link_30_acceleration_7 - link_30_acceleration_14;
     let link_30_acceleration_19 = link_30_acceleration_10 + link_30_acceleration_13;
     // link_30: force (14 additions, 19 multiplications)
-    let link_30_force = (-link_30_acceleration_14)
-        .mul_add(
-            n(0.03720000000000001),
-            link_30_acceleration_5
-                .mul_add(
-                    n(0.20000000000000004),
-                    link_30_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_30_acceleration_7 * n(0.037500000000000006),
-                        ),
-                ),
-        );
-    let link_30_force_2 = (-link_30_acceleration_6)
-        .mul_add(
+    let link_30_force = (-link_30_acceleration_14).mul_add(
+        n(0.03720000000000001),
+        link_30_acceleration_5.mul_add(
+            n(0.20000000000000004),
+            link_30_acceleration_16.mul_add(n(0.00041000000000000005), link_30_acceleration_7 * n(0.037500000000000006)),
+        ),
+    );
+    let link_30_force_2 = (-link_30_acceleration_6).mul_add(
+        n(0.004),
+        (-link_30_acceleration_4).mul_add(
+            n(0.20000000000000004),
+            (-(link_30_acceleration_10 - link_30_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_30_acceleration_12.mul_add(n(0.03726000000000001), link_30_acceleration_8 * n(0.03744000000000001)),
+            ),
+        ),
+    );
+    let link_30_force_3 = (-link_30_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_30_acceleration_5.mul_add(
             n(0.004),
-            (-link_30_acceleration_4)
-                .mul_add(
-                    n(0.20000000000000004),
-                    (-(link_30_acceleration_10 - link_30_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_30_acceleration_12
-                                .mul_add(
-                                    n(0.03726000000000001),
-                                    link_30_acceleration_8 * n(0.03744000000000001),
-                                ),
-                        ),
-                ),
-        );
-    let link_30_force_3 = (-link_30_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_30_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_30_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_30_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_30_acceleration_18.mul_add(n(0.00041000000000000005), link_30_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_31: angular velocity (9 additions, 9 multiplications)
-    let link_31_angular_velocity = q[276]
-        .mul_add(
-            link_30_rate_z,
-            q[273].mul_add(link_30_rate_y, q[270] * link_30_rate_x),
-        );
-    let link_31_angular_velocity_2 = q[277]
-        .mul_add(
-            link_30_rate_z,
-            q[274].mul_add(link_30_rate_y, q[271] * link_30_rate_x),
-        );
-    let link_31_angular_velocity_3 = q[278]
-        .mul_add(
-            link_30_rate_z,
-            q[275].mul_add(link_30_rate_y, q[272] * link_30_rate_x),
-        );
+    let link_31_angular_velocity = q[276].mul_add(link_30_rate_z, q[273].mul_add(link_30_rate_y, q[270] * link_30_rate_x));
+    let link_31_angular_velocity_2 = q[277].mul_add(link_30_rate_z, q[274].mul_add(link_30_rate_y, q[271] * link_30_rate_x));
+    let link_31_angular_velocity_3 = q[278].mul_add(link_30_rate_z, q[275].mul_add(link_30_rate_y, q[272] * link_30_rate_x));
     let link_31_rate_x = v[90] + link_31_angular_velocity;
     let link_31_rate_y = v[91] + link_31_angular_velocity_2;
     let link_31_rate_z = v[92] + link_31_angular_velocity_3;
     // link_31: acceleration (30 additions, 33 multiplications)
-    let link_31_acceleration = (-link_30_acceleration_17)
-        .mul_add(n(0.2), link_30_acceleration_4);
-    let link_31_acceleration_2 = link_30_acceleration_18
-        .mul_add(n(0.2), link_30_acceleration_5);
-    let link_31_acceleration_3 = link_30_acceleration_19
-        .mul_add(n(0.2), link_30_acceleration_6);
+    let link_31_acceleration = (-link_30_acceleration_17).mul_add(n(0.2), link_30_acceleration_4);
+    let link_31_acceleration_2 = link_30_acceleration_18.mul_add(n(0.2), link_30_acceleration_5);
+    let link_31_acceleration_3 = link_30_acceleration_19.mul_add(n(0.2), link_30_acceleration_6);
     let link_31_acceleration_4 = q[276]
-        .mul_add(
-            link_31_acceleration_3,
-            q[273].mul_add(link_31_acceleration_2, q[270] * link_31_acceleration),
-        );
+        .mul_add(link_31_acceleration_3, q[273].mul_add(link_31_acceleration_2, q[270] * link_31_acceleration));
     let link_31_acceleration_5 = q[277]
-        .mul_add(
-            link_31_acceleration_3,
-            q[274].mul_add(link_31_acceleration_2, q[271] * link_31_acceleration),
-        );
+        .mul_add(link_31_acceleration_3, q[274].mul_add(link_31_acceleration_2, q[271] * link_31_acceleration));
     let link_31_acceleration_6 = q[278]
-        .mul_add(
-            link_31_acceleration_3,
-            q[275].mul_add(link_31_acceleration_2, q[272] * link_31_acceleration),
-        );
-    let link_31_acceleration_7 = (-v[91])
-        .mul_add(
-            link_31_angular_velocity_3,
-            q[276]
-                .mul_add(
-                    link_30_acceleration_9,
-                    q[273]
-                        .mul_add(
-                            link_30_acceleration_8,
-                            q[270]
-                                .mul_add(
-                                    link_30_acceleration_7,
-                                    v[92].mul_add(link_31_angular_velocity_2, a[90]),
-                                ),
-                        ),
-                ),
-        );
-    let link_31_acceleration_8 = (-v[92])
-        .mul_add(
-            link_31_angular_velocity,
-            q[277]
-                .mul_add(
-                    link_30_acceleration_9,
-                    q[274]
-                        .mul_add(
-                            link_30_acceleration_8,
-                            q[271]
-                                .mul_add(
-                                    link_30_acceleration_7,
-                                    v[90].mul_add(link_31_angular_velocity_3, a[91]),
-                                ),
-                        ),
-                ),
-        );
-    let link_31_acceleration_9 = (-v[90])
-        .mul_add(
-            link_31_angular_velocity_2,
-            q[278]
-                .mul_add(
-                    link_30_acceleration_9,
-                    q[275]
-                        .mul_add(
-                            link_30_acceleration_8,
-                            q[272]
-                                .mul_add(
-                                    link_30_acceleration_7,
-                                    v[91].mul_add(link_31_angular_velocity, a[92]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_31_acceleration_3, q[275].mul_add(link_31_acceleration_2, q[272] * link_31_acceleration));
+    let link_31_acceleration_7 = (-v[91]).mul_add(
+        link_31_angular_velocity_3,
+        q[276].mul_add(
+            link_30_acceleration_9,
+            q[273].mul_add(
+                link_30_acceleration_8,
+                q[270].mul_add(link_30_acceleration_7, v[92].mul_add(link_31_angular_velocity_2, a[90])),
+            ),
+        ),
+    );
+    let link_31_acceleration_8 = (-v[92]).mul_add(
+        link_31_angular_velocity,
+        q[277].mul_add(
+            link_30_acceleration_9,
+            q[274].mul_add(
+                link_30_acceleration_8,
+                q[271].mul_add(link_30_acceleration_7, v[90].mul_add(link_31_angular_velocity_3, a[91])),
+            ),
+        ),
+    );
+    let link_31_acceleration_9 = (-v[90]).mul_add(
+        link_31_angular_velocity_2,
+        q[278].mul_add(
+            link_30_acceleration_9,
+            q[275].mul_add(
+                link_30_acceleration_8,
+                q[272].mul_add(link_30_acceleration_7, v[91].mul_add(link_31_angular_velocity, a[92])),
+            ),
+        ),
+    );
     let link_31_acceleration_10 = link_31_rate_x * link_31_rate_x;
     let link_31_acceleration_11 = link_31_rate_x * link_31_rate_y;
     let link_31_acceleration_12 = link_31_rate_x * link_31_rate_z;
@@ -7446,131 +4150,73 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_31_acceleration_18 = link_31_acceleration_7 - link_31_acceleration_14;
     let link_31_acceleration_19 = link_31_acceleration_10 + link_31_acceleration_13;
     // link_31: force (14 additions, 19 multiplications)
-    let link_31_force = (-link_31_acceleration_14)
-        .mul_add(
-            n(0.021200000000000004),
-            link_31_acceleration_5
-                .mul_add(
-                    n(0.12000000000000002),
-                    link_31_acceleration_16
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_31_acceleration_7 * n(0.021500000000000005),
-                        ),
-                ),
-        );
-    let link_31_force_2 = (-link_31_acceleration_6)
-        .mul_add(
+    let link_31_force = (-link_31_acceleration_14).mul_add(
+        n(0.021200000000000004),
+        link_31_acceleration_5.mul_add(
+            n(0.12000000000000002),
+            link_31_acceleration_16.mul_add(n(0.00041000000000000005), link_31_acceleration_7 * n(0.021500000000000005)),
+        ),
+    );
+    let link_31_force_2 = (-link_31_acceleration_6).mul_add(
+        n(0.004),
+        (-link_31_acceleration_4).mul_add(
+            n(0.12000000000000002),
+            (-(link_31_acceleration_10 - link_31_acceleration_15)).mul_add(
+                n(0.00041000000000000005),
+                link_31_acceleration_12.mul_add(n(0.021260000000000005), link_31_acceleration_8 * n(0.021440000000000004)),
+            ),
+        ),
+    );
+    let link_31_force_3 = (-link_31_acceleration_11).mul_add(
+        n(0.00006000000000000002),
+        link_31_acceleration_5.mul_add(
             n(0.004),
-            (-link_31_acceleration_4)
-                .mul_add(
-                    n(0.12000000000000002),
-                    (-(link_31_acceleration_10 - link_31_acceleration_15))
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_31_acceleration_12
-                                .mul_add(
-                                    n(0.021260000000000005),
-                                    link_31_acceleration_8 * n(0.021440000000000004),
-                                ),
-                        ),
-                ),
-        );
-    let link_31_force_3 = (-link_31_acceleration_11)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_31_acceleration_5
-                .mul_add(
-                    n(0.004),
-                    link_31_acceleration_18
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_31_acceleration_9 * n(0.00024),
-                        ),
-                ),
-        );
+            link_31_acceleration_18.mul_add(n(0.00041000000000000005), link_31_acceleration_9 * n(0.00024)),
+        ),
+    );
     // link_32: angular velocity (9 additions, 9 multiplications)
-    let link_32_angular_velocity = q[285]
-        .mul_add(
-            link_31_rate_z,
-            q[282].mul_add(link_31_rate_y, q[279] * link_31_rate_x),
-        );
-    let link_32_angular_velocity_2 = q[286]
-        .mul_add(
-            link_31_rate_z,
-            q[283].mul_add(link_31_rate_y, q[280] * link_31_rate_x),
-        );
-    let link_32_angular_velocity_3 = q[287]
-        .mul_add(
-            link_31_rate_z,
-            q[284].mul_add(link_31_rate_y, q[281] * link_31_rate_x),
-        );
+    let link_32_angular_velocity = q[285].mul_add(link_31_rate_z, q[282].mul_add(link_31_rate_y, q[279] * link_31_rate_x));
+    let link_32_angular_velocity_2 = q[286].mul_add(link_31_rate_z, q[283].mul_add(link_31_rate_y, q[280] * link_31_rate_x));
+    let link_32_angular_velocity_3 = q[287].mul_add(link_31_rate_z, q[284].mul_add(link_31_rate_y, q[281] * link_31_rate_x));
     let link_32_rate_x = v[93] + link_32_angular_velocity;
     let link_32_rate_y = v[94] + link_32_angular_velocity_2;
     let link_32_rate_z = v[95] + link_32_angular_velocity_3;
     // link_32: acceleration (30 additions, 33 multiplications)
-    let link_32_acceleration = (-link_31_acceleration_17)
-        .mul_add(n(0.2), link_31_acceleration_4);
-    let link_32_acceleration_2 = link_31_acceleration_18
-        .mul_add(n(0.2), link_31_acceleration_5);
-    let link_32_acceleration_3 = link_31_acceleration_19
-        .mul_add(n(0.2), link_31_acceleration_6);
+    let link_32_acceleration = (-link_31_acceleration_17).mul_add(n(0.2), link_31_acceleration_4);
+    let link_32_acceleration_2 = link_31_acceleration_18.mul_add(n(0.2), link_31_acceleration_5);
+    let link_32_acceleration_3 = link_31_acceleration_19.mul_add(n(0.2), link_31_acceleration_6);
     let link_32_acceleration_4 = q[286]
-        .mul_add(
-            link_32_acceleration_3,
-            q[283].mul_add(link_32_acceleration_2, q[280] * link_32_acceleration),
-        );
-    let link_32_acceleration_5 = (-v[94])
-        .mul_add(
-            link_32_angular_velocity_3,
-            q[285]
-                .mul_add(
-                    link_31_acceleration_9,
-                    q[282]
-                        .mul_add(
-                            link_31_acceleration_8,
-                            q[279]
-                                .mul_add(
-                                    link_31_acceleration_7,
-                                    v[95].mul_add(link_32_angular_velocity_2, a[93]),
-                                ),
-                        ),
-                ),
-        );
-    let link_32_acceleration_6 = (-v[95])
-        .mul_add(
-            link_32_angular_velocity,
-            q[286]
-                .mul_add(
-                    link_31_acceleration_9,
-                    q[283]
-                        .mul_add(
-                            link_31_acceleration_8,
-                            q[280]
-                                .mul_add(
-                                    link_31_acceleration_7,
-                                    v[93].mul_add(link_32_angular_velocity_3, a[94]),
-                                ),
-                        ),
-                ),
-        );
-    let link_32_acceleration_7 = (-v[93])
-        .mul_add(
-            link_32_angular_velocity_2,
-            q[287]
-                .mul_add(
-                    link_31_acceleration_9,
-                    q[284]
-                        .mul_add(
-                            link_31_acceleration_8,
-                            q[281]
-                                .mul_add(
-                                    link_31_acceleration_7,
-                                    v[94].mul_add(link_32_angular_velocity, a[95]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(link_32_acceleration_3, q[283].mul_add(link_32_acceleration_2, q[280] * link_32_acceleration));
+    let link_32_acceleration_5 = (-v[94]).mul_add(
+        link_32_angular_velocity_3,
+        q[285].mul_add(
+            link_31_acceleration_9,
+            q[282].mul_add(
+                link_31_acceleration_8,
+                q[279].mul_add(link_31_acceleration_7, v[95].mul_add(link_32_angular_velocity_2, a[93])),
+            ),
+        ),
+    );
+    let link_32_acceleration_6 = (-v[95]).mul_add(
+        link_32_angular_velocity,
+        q[286].mul_add(
+            link_31_acceleration_9,
+            q[283].mul_add(
+                link_31_acceleration_8,
+                q[280].mul_add(link_31_acceleration_7, v[93].mul_add(link_32_angular_velocity_3, a[94])),
+            ),
+        ),
+    );
+    let link_32_acceleration_7 = (-v[93]).mul_add(
+        link_32_angular_velocity_2,
+        q[287].mul_add(
+            link_31_acceleration_9,
+            q[284].mul_add(
+                link_31_acceleration_8,
+                q[281].mul_add(link_31_acceleration_7, v[94].mul_add(link_32_angular_velocity, a[95])),
+            ),
+        ),
+    );
     let link_32_acceleration_8 = link_32_rate_x * link_32_rate_x;
     let link_32_acceleration_9 = link_32_rate_x * link_32_rate_y;
     let link_32_acceleration_10 = link_32_rate_x * link_32_rate_z;
@@ -7581,2210 +4227,839 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_32_acceleration_15 = link_32_acceleration_5 - link_32_acceleration_12;
     // link_32: force (14 additions, 19 multiplications)
     let link_32_force = (q[287]
-        .mul_add(
-            link_32_acceleration_3,
-            q[284].mul_add(link_32_acceleration_2, q[281] * link_32_acceleration),
-        ))
+        .mul_add(link_32_acceleration_3, q[284].mul_add(link_32_acceleration_2, q[281] * link_32_acceleration)))
         .mul_add(
             n(0.004),
-            (q[285]
-                .mul_add(
-                    link_32_acceleration_3,
-                    q[282].mul_add(link_32_acceleration_2, q[279] * link_32_acceleration),
-                )) * n(0.04000000000000001),
+            (q[285].mul_add(
+                link_32_acceleration_3,
+                q[282].mul_add(link_32_acceleration_2, q[279] * link_32_acceleration),
+            )) * n(0.04000000000000001),
         );
-    let link_32_force_2 = (-link_32_acceleration_12)
-        .mul_add(
-            n(0.005200000000000001),
-            link_32_acceleration_4
-                .mul_add(
-                    n(0.04000000000000001),
-                    link_32_acceleration_14
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_32_acceleration_5 * n(0.0055000000000000005),
-                        ),
-                ),
-        );
-    let link_32_force_3 = (-(link_32_acceleration_8 - link_32_acceleration_13))
-        .mul_add(
-            n(0.00041000000000000005),
-            link_32_acceleration_10
-                .mul_add(
-                    n(0.005260000000000001),
-                    link_32_acceleration_6.mul_add(n(0.00544), -link_32_force),
-                ),
-        );
-    let link_32_force_4 = (-link_32_acceleration_9)
-        .mul_add(
-            n(0.00006000000000000002),
-            link_32_acceleration_4
-                .mul_add(
-                    n(0.004),
-                    link_32_acceleration_15
-                        .mul_add(
-                            n(0.00041000000000000005),
-                            link_32_acceleration_7 * n(0.00024),
-                        ),
-                ),
-        );
+    let link_32_force_2 = (-link_32_acceleration_12).mul_add(
+        n(0.005200000000000001),
+        link_32_acceleration_4.mul_add(
+            n(0.04000000000000001),
+            link_32_acceleration_14.mul_add(n(0.00041000000000000005), link_32_acceleration_5 * n(0.0055000000000000005)),
+        ),
+    );
+    let link_32_force_3 = (-(link_32_acceleration_8 - link_32_acceleration_13)).mul_add(
+        n(0.00041000000000000005),
+        link_32_acceleration_10.mul_add(n(0.005260000000000001), link_32_acceleration_6.mul_add(n(0.00544), -link_32_force)),
+    );
+    let link_32_force_4 = (-link_32_acceleration_9).mul_add(
+        n(0.00006000000000000002),
+        link_32_acceleration_4.mul_add(
+            n(0.004),
+            link_32_acceleration_15.mul_add(n(0.00041000000000000005), link_32_acceleration_7 * n(0.00024)),
+        ),
+    );
     let link_32_force_5 = (link_32_acceleration_6 + link_32_acceleration_10)
-        .mul_add(
-            n(0.04000000000000001),
-            (link_32_acceleration_11 + link_32_acceleration_13) * n(0.004),
-        );
-    let link_32_force_6 = link_32_acceleration_15
-        .mul_add(n(0.04000000000000001), link_32_acceleration_14 * n(0.004));
+        .mul_add(n(0.04000000000000001), (link_32_acceleration_11 + link_32_acceleration_13) * n(0.004));
+    let link_32_force_6 = link_32_acceleration_15.mul_add(n(0.04000000000000001), link_32_acceleration_14 * n(0.004));
     let link_32_force_7 = (-(link_32_acceleration_8 + link_32_acceleration_11))
-        .mul_add(
-            n(0.04000000000000001),
-            (link_32_acceleration_6 - link_32_acceleration_10) * n(0.004),
-        );
+        .mul_add(n(0.04000000000000001), (link_32_acceleration_6 - link_32_acceleration_10) * n(0.004));
     // link_32: effort (14 additions, 20 multiplications)
-    let link_32_effort = (-q[280])
-        .mul_add(
-            link_32_force_6,
-            q[281].mul_add(link_32_force_7, q[279] * link_32_force_5),
-        );
-    let link_32_effort_2 = (-q[283])
-        .mul_add(
-            link_32_force_6,
-            q[284].mul_add(link_32_force_7, q[282] * link_32_force_5),
-        );
+    let link_32_effort = (-q[280]).mul_add(link_32_force_6, q[281].mul_add(link_32_force_7, q[279] * link_32_force_5));
+    let link_32_effort_2 = (-q[283]).mul_add(link_32_force_6, q[284].mul_add(link_32_force_7, q[282] * link_32_force_5));
     let link_32_effort_3 = (-link_32_effort_2)
-        .mul_add(
-            n(0.2),
-            q[281]
-                .mul_add(
-                    link_32_force_4,
-                    q[280].mul_add(link_32_force_3, q[279] * link_32_force_2),
-                ),
-        );
+        .mul_add(n(0.2), q[281].mul_add(link_32_force_4, q[280].mul_add(link_32_force_3, q[279] * link_32_force_2)));
     let link_32_effort_4 = link_32_effort
-        .mul_add(
-            n(0.2),
-            q[284]
-                .mul_add(
-                    link_32_force_4,
-                    q[283].mul_add(link_32_force_3, q[282] * link_32_force_2),
-                ),
-        );
+        .mul_add(n(0.2), q[284].mul_add(link_32_force_4, q[283].mul_add(link_32_force_3, q[282] * link_32_force_2)));
     // link_31: effort (20 additions, 20 multiplications)
     let link_31_effort = link_31_force + link_32_effort_3;
     let link_31_effort_2 = link_31_force_2 + link_32_effort_4;
     let link_31_effort_3 = q[287]
-        .mul_add(
-            link_32_force_4,
-            q[286]
-                .mul_add(
-                    link_32_force_3,
-                    q[285].mul_add(link_32_force_2, link_31_force_3),
-                ),
-        );
+        .mul_add(link_32_force_4, q[286].mul_add(link_32_force_3, q[285].mul_add(link_32_force_2, link_31_force_3)));
     let link_31_effort_4 = link_31_acceleration_17
-        .mul_add(
-            n(0.12000000000000002),
-            (link_31_acceleration_13 + link_31_acceleration_15)
-                .mul_add(n(0.004), link_32_effort),
-        );
+        .mul_add(n(0.12000000000000002), (link_31_acceleration_13 + link_31_acceleration_15).mul_add(n(0.004), link_32_effort));
     let link_31_effort_5 = link_31_acceleration_18
-        .mul_add(
+        .mul_add(n(0.12000000000000002), link_31_acceleration_16.mul_add(n(0.004), -link_32_effort_2));
+    let link_31_effort_6 = (-q[286]).mul_add(
+        link_32_force_6,
+        (-link_31_acceleration_19).mul_add(
             n(0.12000000000000002),
-            link_31_acceleration_16.mul_add(n(0.004), -link_32_effort_2),
-        );
-    let link_31_effort_6 = (-q[286])
-        .mul_add(
-            link_32_force_6,
-            (-link_31_acceleration_19)
-                .mul_add(
-                    n(0.12000000000000002),
-                    q[287]
-                        .mul_add(
-                            link_32_force_7,
-                            q[285]
-                                .mul_add(
-                                    link_32_force_5,
-                                    (link_31_acceleration_8 - link_31_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_31_effort_7 = (-q[271])
-        .mul_add(
-            link_31_effort_5,
-            q[272].mul_add(link_31_effort_6, q[270] * link_31_effort_4),
-        );
-    let link_31_effort_8 = (-q[274])
-        .mul_add(
-            link_31_effort_5,
-            q[275].mul_add(link_31_effort_6, q[273] * link_31_effort_4),
-        );
+            q[287].mul_add(
+                link_32_force_7,
+                q[285].mul_add(link_32_force_5, (link_31_acceleration_8 - link_31_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_31_effort_7 = (-q[271]).mul_add(link_31_effort_5, q[272].mul_add(link_31_effort_6, q[270] * link_31_effort_4));
+    let link_31_effort_8 = (-q[274]).mul_add(link_31_effort_5, q[275].mul_add(link_31_effort_6, q[273] * link_31_effort_4));
     let link_31_effort_9 = (-link_31_effort_8)
-        .mul_add(
-            n(0.2),
-            q[272]
-                .mul_add(
-                    link_31_effort_3,
-                    q[271].mul_add(link_31_effort_2, q[270] * link_31_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[272].mul_add(link_31_effort_3, q[271].mul_add(link_31_effort_2, q[270] * link_31_effort)));
     let link_31_effort_10 = link_31_effort_7
-        .mul_add(
-            n(0.2),
-            q[275]
-                .mul_add(
-                    link_31_effort_3,
-                    q[274].mul_add(link_31_effort_2, q[273] * link_31_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[275].mul_add(link_31_effort_3, q[274].mul_add(link_31_effort_2, q[273] * link_31_effort)));
     // link_30: effort (20 additions, 20 multiplications)
     let link_30_effort = link_30_force + link_31_effort_9;
     let link_30_effort_2 = link_30_force_2 + link_31_effort_10;
     let link_30_effort_3 = q[278]
-        .mul_add(
-            link_31_effort_3,
-            q[277]
-                .mul_add(
-                    link_31_effort_2,
-                    q[276].mul_add(link_31_effort, link_30_force_3),
-                ),
-        );
-    let link_30_effort_4 = link_30_acceleration_17
-        .mul_add(
-            n(0.20000000000000004),
-            (link_30_acceleration_13 + link_30_acceleration_15)
-                .mul_add(n(0.004), link_31_effort_7),
-        );
+        .mul_add(link_31_effort_3, q[277].mul_add(link_31_effort_2, q[276].mul_add(link_31_effort, link_30_force_3)));
+    let link_30_effort_4 = link_30_acceleration_17.mul_add(
+        n(0.20000000000000004),
+        (link_30_acceleration_13 + link_30_acceleration_15).mul_add(n(0.004), link_31_effort_7),
+    );
     let link_30_effort_5 = link_30_acceleration_18
-        .mul_add(
+        .mul_add(n(0.20000000000000004), link_30_acceleration_16.mul_add(n(0.004), -link_31_effort_8));
+    let link_30_effort_6 = (-q[277]).mul_add(
+        link_31_effort_5,
+        (-link_30_acceleration_19).mul_add(
             n(0.20000000000000004),
-            link_30_acceleration_16.mul_add(n(0.004), -link_31_effort_8),
-        );
-    let link_30_effort_6 = (-q[277])
-        .mul_add(
-            link_31_effort_5,
-            (-link_30_acceleration_19)
-                .mul_add(
-                    n(0.20000000000000004),
-                    q[278]
-                        .mul_add(
-                            link_31_effort_6,
-                            q[276]
-                                .mul_add(
-                                    link_31_effort_4,
-                                    (link_30_acceleration_8 - link_30_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_30_effort_7 = (-q[262])
-        .mul_add(
-            link_30_effort_5,
-            q[263].mul_add(link_30_effort_6, q[261] * link_30_effort_4),
-        );
-    let link_30_effort_8 = (-q[265])
-        .mul_add(
-            link_30_effort_5,
-            q[266].mul_add(link_30_effort_6, q[264] * link_30_effort_4),
-        );
+            q[278].mul_add(
+                link_31_effort_6,
+                q[276].mul_add(link_31_effort_4, (link_30_acceleration_8 - link_30_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_30_effort_7 = (-q[262]).mul_add(link_30_effort_5, q[263].mul_add(link_30_effort_6, q[261] * link_30_effort_4));
+    let link_30_effort_8 = (-q[265]).mul_add(link_30_effort_5, q[266].mul_add(link_30_effort_6, q[264] * link_30_effort_4));
     let link_30_effort_9 = (-link_30_effort_8)
-        .mul_add(
-            n(0.2),
-            q[263]
-                .mul_add(
-                    link_30_effort_3,
-                    q[262].mul_add(link_30_effort_2, q[261] * link_30_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[263].mul_add(link_30_effort_3, q[262].mul_add(link_30_effort_2, q[261] * link_30_effort)));
     let link_30_effort_10 = link_30_effort_7
-        .mul_add(
-            n(0.2),
-            q[266]
-                .mul_add(
-                    link_30_effort_3,
-                    q[265].mul_add(link_30_effort_2, q[264] * link_30_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[266].mul_add(link_30_effort_3, q[265].mul_add(link_30_effort_2, q[264] * link_30_effort)));
     // link_29: effort (20 additions, 20 multiplications)
     let link_29_effort = link_29_force + link_30_effort_9;
     let link_29_effort_2 = link_29_force_2 + link_30_effort_10;
     let link_29_effort_3 = q[269]
-        .mul_add(
-            link_30_effort_3,
-            q[268]
-                .mul_add(
-                    link_30_effort_2,
-                    q[267].mul_add(link_30_effort, link_29_force_3),
-                ),
-        );
+        .mul_add(link_30_effort_3, q[268].mul_add(link_30_effort_2, q[267].mul_add(link_30_effort, link_29_force_3)));
     let link_29_effort_4 = link_29_acceleration_17
-        .mul_add(
-            n(0.28),
-            (link_29_acceleration_13 + link_29_acceleration_15)
-                .mul_add(n(0.004), link_30_effort_7),
-        );
+        .mul_add(n(0.28), (link_29_acceleration_13 + link_29_acceleration_15).mul_add(n(0.004), link_30_effort_7));
     let link_29_effort_5 = link_29_acceleration_18
         .mul_add(n(0.28), link_29_acceleration_16.mul_add(n(0.004), -link_30_effort_8));
-    let link_29_effort_6 = (-q[268])
-        .mul_add(
-            link_30_effort_5,
-            (-link_29_acceleration_19)
-                .mul_add(
-                    n(0.28),
-                    q[269]
-                        .mul_add(
-                            link_30_effort_6,
-                            q[267]
-                                .mul_add(
-                                    link_30_effort_4,
-                                    (link_29_acceleration_8 - link_29_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_29_effort_7 = (-q[253])
-        .mul_add(
-            link_29_effort_5,
-            q[254].mul_add(link_29_effort_6, q[252] * link_29_effort_4),
-        );
-    let link_29_effort_8 = (-q[256])
-        .mul_add(
-            link_29_effort_5,
-            q[257].mul_add(link_29_effort_6, q[255] * link_29_effort_4),
-        );
+    let link_29_effort_6 = (-q[268]).mul_add(
+        link_30_effort_5,
+        (-link_29_acceleration_19).mul_add(
+            n(0.28),
+            q[269].mul_add(
+                link_30_effort_6,
+                q[267].mul_add(link_30_effort_4, (link_29_acceleration_8 - link_29_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_29_effort_7 = (-q[253]).mul_add(link_29_effort_5, q[254].mul_add(link_29_effort_6, q[252] * link_29_effort_4));
+    let link_29_effort_8 = (-q[256]).mul_add(link_29_effort_5, q[257].mul_add(link_29_effort_6, q[255] * link_29_effort_4));
     let link_29_effort_9 = (-link_29_effort_8)
-        .mul_add(
-            n(0.2),
-            q[254]
-                .mul_add(
-                    link_29_effort_3,
-                    q[253].mul_add(link_29_effort_2, q[252] * link_29_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[254].mul_add(link_29_effort_3, q[253].mul_add(link_29_effort_2, q[252] * link_29_effort)));
     let link_29_effort_10 = link_29_effort_7
-        .mul_add(
-            n(0.2),
-            q[257]
-                .mul_add(
-                    link_29_effort_3,
-                    q[256].mul_add(link_29_effort_2, q[255] * link_29_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[257].mul_add(link_29_effort_3, q[256].mul_add(link_29_effort_2, q[255] * link_29_effort)));
     // link_28: effort (20 additions, 20 multiplications)
     let link_28_effort = link_28_force + link_29_effort_9;
     let link_28_effort_2 = link_28_force_2 + link_29_effort_10;
     let link_28_effort_3 = q[260]
-        .mul_add(
-            link_29_effort_3,
-            q[259]
-                .mul_add(
-                    link_29_effort_2,
-                    q[258].mul_add(link_29_effort, link_28_force_3),
-                ),
-        );
-    let link_28_effort_4 = link_28_acceleration_17
-        .mul_add(
-            n(0.3600000000000001),
-            (link_28_acceleration_13 + link_28_acceleration_15)
-                .mul_add(n(0.004), link_29_effort_7),
-        );
+        .mul_add(link_29_effort_3, q[259].mul_add(link_29_effort_2, q[258].mul_add(link_29_effort, link_28_force_3)));
+    let link_28_effort_4 = link_28_acceleration_17.mul_add(
+        n(0.3600000000000001),
+        (link_28_acceleration_13 + link_28_acceleration_15).mul_add(n(0.004), link_29_effort_7),
+    );
     let link_28_effort_5 = link_28_acceleration_18
-        .mul_add(
+        .mul_add(n(0.3600000000000001), link_28_acceleration_16.mul_add(n(0.004), -link_29_effort_8));
+    let link_28_effort_6 = (-q[259]).mul_add(
+        link_29_effort_5,
+        (-link_28_acceleration_19).mul_add(
             n(0.3600000000000001),
-            link_28_acceleration_16.mul_add(n(0.004), -link_29_effort_8),
-        );
-    let link_28_effort_6 = (-q[259])
-        .mul_add(
-            link_29_effort_5,
-            (-link_28_acceleration_19)
-                .mul_add(
-                    n(0.3600000000000001),
-                    q[260]
-                        .mul_add(
-                            link_29_effort_6,
-                            q[258]
-                                .mul_add(
-                                    link_29_effort_4,
-                                    (link_28_acceleration_8 - link_28_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_28_effort_7 = (-q[244])
-        .mul_add(
-            link_28_effort_5,
-            q[245].mul_add(link_28_effort_6, q[243] * link_28_effort_4),
-        );
-    let link_28_effort_8 = (-q[247])
-        .mul_add(
-            link_28_effort_5,
-            q[248].mul_add(link_28_effort_6, q[246] * link_28_effort_4),
-        );
+            q[260].mul_add(
+                link_29_effort_6,
+                q[258].mul_add(link_29_effort_4, (link_28_acceleration_8 - link_28_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_28_effort_7 = (-q[244]).mul_add(link_28_effort_5, q[245].mul_add(link_28_effort_6, q[243] * link_28_effort_4));
+    let link_28_effort_8 = (-q[247]).mul_add(link_28_effort_5, q[248].mul_add(link_28_effort_6, q[246] * link_28_effort_4));
     let link_28_effort_9 = (-link_28_effort_8)
-        .mul_add(
-            n(0.2),
-            q[245]
-                .mul_add(
-                    link_28_effort_3,
-                    q[244].mul_add(link_28_effort_2, q[243] * link_28_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[245].mul_add(link_28_effort_3, q[244].mul_add(link_28_effort_2, q[243] * link_28_effort)));
     let link_28_effort_10 = link_28_effort_7
-        .mul_add(
-            n(0.2),
-            q[248]
-                .mul_add(
-                    link_28_effort_3,
-                    q[247].mul_add(link_28_effort_2, q[246] * link_28_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[248].mul_add(link_28_effort_3, q[247].mul_add(link_28_effort_2, q[246] * link_28_effort)));
     // link_27: effort (20 additions, 20 multiplications)
     let link_27_effort = link_27_force + link_28_effort_9;
     let link_27_effort_2 = link_27_force_2 + link_28_effort_10;
     let link_27_effort_3 = q[251]
-        .mul_add(
-            link_28_effort_3,
-            q[250]
-                .mul_add(
-                    link_28_effort_2,
-                    q[249].mul_add(link_28_effort, link_27_force_3),
-                ),
-        );
-    let link_27_effort_4 = link_27_acceleration_17
-        .mul_add(
-            n(0.44000000000000006),
-            (link_27_acceleration_13 + link_27_acceleration_15)
-                .mul_add(n(0.004), link_28_effort_7),
-        );
+        .mul_add(link_28_effort_3, q[250].mul_add(link_28_effort_2, q[249].mul_add(link_28_effort, link_27_force_3)));
+    let link_27_effort_4 = link_27_acceleration_17.mul_add(
+        n(0.44000000000000006),
+        (link_27_acceleration_13 + link_27_acceleration_15).mul_add(n(0.004), link_28_effort_7),
+    );
     let link_27_effort_5 = link_27_acceleration_18
-        .mul_add(
+        .mul_add(n(0.44000000000000006), link_27_acceleration_16.mul_add(n(0.004), -link_28_effort_8));
+    let link_27_effort_6 = (-q[250]).mul_add(
+        link_28_effort_5,
+        (-link_27_acceleration_19).mul_add(
             n(0.44000000000000006),
-            link_27_acceleration_16.mul_add(n(0.004), -link_28_effort_8),
-        );
-    let link_27_effort_6 = (-q[250])
-        .mul_add(
-            link_28_effort_5,
-            (-link_27_acceleration_19)
-                .mul_add(
-                    n(0.44000000000000006),
-                    q[251]
-                        .mul_add(
-                            link_28_effort_6,
-                            q[249]
-                                .mul_add(
-                                    link_28_effort_4,
-                                    (link_27_acceleration_8 - link_27_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_27_effort_7 = (-q[235])
-        .mul_add(
-            link_27_effort_5,
-            q[236].mul_add(link_27_effort_6, q[234] * link_27_effort_4),
-        );
-    let link_27_effort_8 = (-q[238])
-        .mul_add(
-            link_27_effort_5,
-            q[239].mul_add(link_27_effort_6, q[237] * link_27_effort_4),
-        );
+            q[251].mul_add(
+                link_28_effort_6,
+                q[249].mul_add(link_28_effort_4, (link_27_acceleration_8 - link_27_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_27_effort_7 = (-q[235]).mul_add(link_27_effort_5, q[236].mul_add(link_27_effort_6, q[234] * link_27_effort_4));
+    let link_27_effort_8 = (-q[238]).mul_add(link_27_effort_5, q[239].mul_add(link_27_effort_6, q[237] * link_27_effort_4));
     let link_27_effort_9 = (-link_27_effort_8)
-        .mul_add(
-            n(0.2),
-            q[236]
-                .mul_add(
-                    link_27_effort_3,
-                    q[235].mul_add(link_27_effort_2, q[234] * link_27_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[236].mul_add(link_27_effort_3, q[235].mul_add(link_27_effort_2, q[234] * link_27_effort)));
     let link_27_effort_10 = link_27_effort_7
-        .mul_add(
-            n(0.2),
-            q[239]
-                .mul_add(
-                    link_27_effort_3,
-                    q[238].mul_add(link_27_effort_2, q[237] * link_27_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[239].mul_add(link_27_effort_3, q[238].mul_add(link_27_effort_2, q[237] * link_27_effort)));
     // link_26: effort (20 additions, 20 multiplications)
     let link_26_effort = link_26_force + link_27_effort_9;
     let link_26_effort_2 = link_26_force_2 + link_27_effort_10;
     let link_26_effort_3 = q[242]
-        .mul_add(
-            link_27_effort_3,
-            q[241]
-                .mul_add(
-                    link_27_effort_2,
-                    q[240].mul_add(link_27_effort, link_26_force_3),
-                ),
-        );
+        .mul_add(link_27_effort_3, q[241].mul_add(link_27_effort_2, q[240].mul_add(link_27_effort, link_26_force_3)));
     let link_26_effort_4 = link_26_acceleration_17
-        .mul_add(
-            n(0.52),
-            (link_26_acceleration_13 + link_26_acceleration_15)
-                .mul_add(n(0.004), link_27_effort_7),
-        );
+        .mul_add(n(0.52), (link_26_acceleration_13 + link_26_acceleration_15).mul_add(n(0.004), link_27_effort_7));
     let link_26_effort_5 = link_26_acceleration_18
         .mul_add(n(0.52), link_26_acceleration_16.mul_add(n(0.004), -link_27_effort_8));
-    let link_26_effort_6 = (-q[241])
-        .mul_add(
-            link_27_effort_5,
-            (-link_26_acceleration_19)
-                .mul_add(
-                    n(0.52),
-                    q[242]
-                        .mul_add(
-                            link_27_effort_6,
-                            q[240]
-                                .mul_add(
-                                    link_27_effort_4,
-                                    (link_26_acceleration_8 - link_26_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_26_effort_7 = (-q[226])
-        .mul_add(
-            link_26_effort_5,
-            q[227].mul_add(link_26_effort_6, q[225] * link_26_effort_4),
-        );
-    let link_26_effort_8 = (-q[229])
-        .mul_add(
-            link_26_effort_5,
-            q[230].mul_add(link_26_effort_6, q[228] * link_26_effort_4),
-        );
+    let link_26_effort_6 = (-q[241]).mul_add(
+        link_27_effort_5,
+        (-link_26_acceleration_19).mul_add(
+            n(0.52),
+            q[242].mul_add(
+                link_27_effort_6,
+                q[240].mul_add(link_27_effort_4, (link_26_acceleration_8 - link_26_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_26_effort_7 = (-q[226]).mul_add(link_26_effort_5, q[227].mul_add(link_26_effort_6, q[225] * link_26_effort_4));
+    let link_26_effort_8 = (-q[229]).mul_add(link_26_effort_5, q[230].mul_add(link_26_effort_6, q[228] * link_26_effort_4));
     let link_26_effort_9 = (-link_26_effort_8)
-        .mul_add(
-            n(0.2),
-            q[227]
-                .mul_add(
-                    link_26_effort_3,
-                    q[226].mul_add(link_26_effort_2, q[225] * link_26_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[227].mul_add(link_26_effort_3, q[226].mul_add(link_26_effort_2, q[225] * link_26_effort)));
     let link_26_effort_10 = link_26_effort_7
-        .mul_add(
-            n(0.2),
-            q[230]
-                .mul_add(
-                    link_26_effort_3,
-                    q[229].mul_add(link_26_effort_2, q[228] * link_26_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[230].mul_add(link_26_effort_3, q[229].mul_add(link_26_effort_2, q[228] * link_26_effort)));
     // link_25: effort (20 additions, 20 multiplications)
     let link_25_effort = link_25_force + link_26_effort_9;
     let link_25_effort_2 = link_25_force_2 + link_26_effort_10;
     let link_25_effort_3 = q[233]
-        .mul_add(
-            link_26_effort_3,
-            q[232]
-                .mul_add(
-                    link_26_effort_2,
-                    q[231].mul_add(link_26_effort, link_25_force_3),
-                ),
-        );
+        .mul_add(link_26_effort_3, q[232].mul_add(link_26_effort_2, q[231].mul_add(link_26_effort, link_25_force_3)));
     let link_25_effort_4 = link_25_acceleration_17
-        .mul_add(
-            n(0.6),
-            (link_25_acceleration_13 + link_25_acceleration_15)
-                .mul_add(n(0.004), link_26_effort_7),
-        );
+        .mul_add(n(0.6), (link_25_acceleration_13 + link_25_acceleration_15).mul_add(n(0.004), link_26_effort_7));
     let link_25_effort_5 = link_25_acceleration_18
         .mul_add(n(0.6), link_25_acceleration_16.mul_add(n(0.004), -link_26_effort_8));
-    let link_25_effort_6 = (-q[232])
-        .mul_add(
-            link_26_effort_5,
-            (-link_25_acceleration_19)
-                .mul_add(
-                    n(0.6),
-                    q[233]
-                        .mul_add(
-                            link_26_effort_6,
-                            q[231]
-                                .mul_add(
-                                    link_26_effort_4,
-                                    (link_25_acceleration_8 - link_25_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_25_effort_7 = (-q[217])
-        .mul_add(
-            link_25_effort_5,
-            q[218].mul_add(link_25_effort_6, q[216] * link_25_effort_4),
-        );
-    let link_25_effort_8 = (-q[220])
-        .mul_add(
-            link_25_effort_5,
-            q[221].mul_add(link_25_effort_6, q[219] * link_25_effort_4),
-        );
+    let link_25_effort_6 = (-q[232]).mul_add(
+        link_26_effort_5,
+        (-link_25_acceleration_19).mul_add(
+            n(0.6),
+            q[233].mul_add(
+                link_26_effort_6,
+                q[231].mul_add(link_26_effort_4, (link_25_acceleration_8 - link_25_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_25_effort_7 = (-q[217]).mul_add(link_25_effort_5, q[218].mul_add(link_25_effort_6, q[216] * link_25_effort_4));
+    let link_25_effort_8 = (-q[220]).mul_add(link_25_effort_5, q[221].mul_add(link_25_effort_6, q[219] * link_25_effort_4));
     let link_25_effort_9 = (-link_25_effort_8)
-        .mul_add(
-            n(0.2),
-            q[218]
-                .mul_add(
-                    link_25_effort_3,
-                    q[217].mul_add(link_25_effort_2, q[216] * link_25_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[218].mul_add(link_25_effort_3, q[217].mul_add(link_25_effort_2, q[216] * link_25_effort)));
     let link_25_effort_10 = link_25_effort_7
-        .mul_add(
-            n(0.2),
-            q[221]
-                .mul_add(
-                    link_25_effort_3,
-                    q[220].mul_add(link_25_effort_2, q[219] * link_25_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[221].mul_add(link_25_effort_3, q[220].mul_add(link_25_effort_2, q[219] * link_25_effort)));
     // link_24: effort (20 additions, 20 multiplications)
     let link_24_effort = link_24_force + link_25_effort_9;
     let link_24_effort_2 = link_24_force_2 + link_25_effort_10;
     let link_24_effort_3 = q[224]
-        .mul_add(
-            link_25_effort_3,
-            q[223]
-                .mul_add(
-                    link_25_effort_2,
-                    q[222].mul_add(link_25_effort, link_24_force_3),
-                ),
-        );
+        .mul_add(link_25_effort_3, q[223].mul_add(link_25_effort_2, q[222].mul_add(link_25_effort, link_24_force_3)));
     let link_24_effort_4 = link_24_acceleration_17
-        .mul_add(
-            n(0.68),
-            (link_24_acceleration_13 + link_24_acceleration_15)
-                .mul_add(n(0.004), link_25_effort_7),
-        );
+        .mul_add(n(0.68), (link_24_acceleration_13 + link_24_acceleration_15).mul_add(n(0.004), link_25_effort_7));
     let link_24_effort_5 = link_24_acceleration_18
         .mul_add(n(0.68), link_24_acceleration_16.mul_add(n(0.004), -link_25_effort_8));
-    let link_24_effort_6 = (-q[223])
-        .mul_add(
-            link_25_effort_5,
-            (-link_24_acceleration_19)
-                .mul_add(
-                    n(0.68),
-                    q[224]
-                        .mul_add(
-                            link_25_effort_6,
-                            q[222]
-                                .mul_add(
-                                    link_25_effort_4,
-                                    (link_24_acceleration_8 - link_24_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_24_effort_7 = (-q[208])
-        .mul_add(
-            link_24_effort_5,
-            q[209].mul_add(link_24_effort_6, q[207] * link_24_effort_4),
-        );
-    let link_24_effort_8 = (-q[211])
-        .mul_add(
-            link_24_effort_5,
-            q[212].mul_add(link_24_effort_6, q[210] * link_24_effort_4),
-        );
+    let link_24_effort_6 = (-q[223]).mul_add(
+        link_25_effort_5,
+        (-link_24_acceleration_19).mul_add(
+            n(0.68),
+            q[224].mul_add(
+                link_25_effort_6,
+                q[222].mul_add(link_25_effort_4, (link_24_acceleration_8 - link_24_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_24_effort_7 = (-q[208]).mul_add(link_24_effort_5, q[209].mul_add(link_24_effort_6, q[207] * link_24_effort_4));
+    let link_24_effort_8 = (-q[211]).mul_add(link_24_effort_5, q[212].mul_add(link_24_effort_6, q[210] * link_24_effort_4));
     let link_24_effort_9 = (-link_24_effort_8)
-        .mul_add(
-            n(0.2),
-            q[209]
-                .mul_add(
-                    link_24_effort_3,
-                    q[208].mul_add(link_24_effort_2, q[207] * link_24_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[209].mul_add(link_24_effort_3, q[208].mul_add(link_24_effort_2, q[207] * link_24_effort)));
     let link_24_effort_10 = link_24_effort_7
-        .mul_add(
-            n(0.2),
-            q[212]
-                .mul_add(
-                    link_24_effort_3,
-                    q[211].mul_add(link_24_effort_2, q[210] * link_24_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[212].mul_add(link_24_effort_3, q[211].mul_add(link_24_effort_2, q[210] * link_24_effort)));
     // link_23: effort (20 additions, 20 multiplications)
     let link_23_effort = link_23_force + link_24_effort_9;
     let link_23_effort_2 = link_23_force_2 + link_24_effort_10;
     let link_23_effort_3 = q[215]
-        .mul_add(
-            link_24_effort_3,
-            q[214]
-                .mul_add(
-                    link_24_effort_2,
-                    q[213].mul_add(link_24_effort, link_23_force_3),
-                ),
-        );
+        .mul_add(link_24_effort_3, q[214].mul_add(link_24_effort_2, q[213].mul_add(link_24_effort, link_23_force_3)));
     let link_23_effort_4 = link_23_acceleration_17
-        .mul_add(
-            n(0.76),
-            (link_23_acceleration_13 + link_23_acceleration_15)
-                .mul_add(n(0.004), link_24_effort_7),
-        );
+        .mul_add(n(0.76), (link_23_acceleration_13 + link_23_acceleration_15).mul_add(n(0.004), link_24_effort_7));
     let link_23_effort_5 = link_23_acceleration_18
         .mul_add(n(0.76), link_23_acceleration_16.mul_add(n(0.004), -link_24_effort_8));
-    let link_23_effort_6 = (-q[214])
-        .mul_add(
-            link_24_effort_5,
-            (-link_23_acceleration_19)
-                .mul_add(
-                    n(0.76),
-                    q[215]
-                        .mul_add(
-                            link_24_effort_6,
-                            q[213]
-                                .mul_add(
-                                    link_24_effort_4,
-                                    (link_23_acceleration_8 - link_23_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_23_effort_7 = (-q[199])
-        .mul_add(
-            link_23_effort_5,
-            q[200].mul_add(link_23_effort_6, q[198] * link_23_effort_4),
-        );
-    let link_23_effort_8 = (-q[202])
-        .mul_add(
-            link_23_effort_5,
-            q[203].mul_add(link_23_effort_6, q[201] * link_23_effort_4),
-        );
+    let link_23_effort_6 = (-q[214]).mul_add(
+        link_24_effort_5,
+        (-link_23_acceleration_19).mul_add(
+            n(0.76),
+            q[215].mul_add(
+                link_24_effort_6,
+                q[213].mul_add(link_24_effort_4, (link_23_acceleration_8 - link_23_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_23_effort_7 = (-q[199]).mul_add(link_23_effort_5, q[200].mul_add(link_23_effort_6, q[198] * link_23_effort_4));
+    let link_23_effort_8 = (-q[202]).mul_add(link_23_effort_5, q[203].mul_add(link_23_effort_6, q[201] * link_23_effort_4));
     let link_23_effort_9 = (-link_23_effort_8)
-        .mul_add(
-            n(0.2),
-            q[200]
-                .mul_add(
-                    link_23_effort_3,
-                    q[199].mul_add(link_23_effort_2, q[198] * link_23_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[200].mul_add(link_23_effort_3, q[199].mul_add(link_23_effort_2, q[198] * link_23_effort)));
     let link_23_effort_10 = link_23_effort_7
-        .mul_add(
-            n(0.2),
-            q[203]
-                .mul_add(
-                    link_23_effort_3,
-                    q[202].mul_add(link_23_effort_2, q[201] * link_23_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[203].mul_add(link_23_effort_3, q[202].mul_add(link_23_effort_2, q[201] * link_23_effort)));
     // link_22: effort (20 additions, 20 multiplications)
     let link_22_effort = link_22_force + link_23_effort_9;
     let link_22_effort_2 = link_22_force_2 + link_23_effort_10;
     let link_22_effort_3 = q[206]
-        .mul_add(
-            link_23_effort_3,
-            q[205]
-                .mul_add(
-                    link_23_effort_2,
-                    q[204].mul_add(link_23_effort, link_22_force_3),
-                ),
-        );
+        .mul_add(link_23_effort_3, q[205].mul_add(link_23_effort_2, q[204].mul_add(link_23_effort, link_22_force_3)));
     let link_22_effort_4 = link_22_acceleration_17
-        .mul_add(
-            n(0.84),
-            (link_22_acceleration_13 + link_22_acceleration_15)
-                .mul_add(n(0.004), link_23_effort_7),
-        );
+        .mul_add(n(0.84), (link_22_acceleration_13 + link_22_acceleration_15).mul_add(n(0.004), link_23_effort_7));
     let link_22_effort_5 = link_22_acceleration_18
         .mul_add(n(0.84), link_22_acceleration_16.mul_add(n(0.004), -link_23_effort_8));
-    let link_22_effort_6 = (-q[205])
-        .mul_add(
-            link_23_effort_5,
-            (-link_22_acceleration_19)
-                .mul_add(
-                    n(0.84),
-                    q[206]
-                        .mul_add(
-                            link_23_effort_6,
-                            q[204]
-                                .mul_add(
-                                    link_23_effort_4,
-                                    (link_22_acceleration_8 - link_22_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_22_effort_7 = (-q[190])
-        .mul_add(
-            link_22_effort_5,
-            q[191].mul_add(link_22_effort_6, q[189] * link_22_effort_4),
-        );
-    let link_22_effort_8 = (-q[193])
-        .mul_add(
-            link_22_effort_5,
-            q[194].mul_add(link_22_effort_6, q[192] * link_22_effort_4),
-        );
+    let link_22_effort_6 = (-q[205]).mul_add(
+        link_23_effort_5,
+        (-link_22_acceleration_19).mul_add(
+            n(0.84),
+            q[206].mul_add(
+                link_23_effort_6,
+                q[204].mul_add(link_23_effort_4, (link_22_acceleration_8 - link_22_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_22_effort_7 = (-q[190]).mul_add(link_22_effort_5, q[191].mul_add(link_22_effort_6, q[189] * link_22_effort_4));
+    let link_22_effort_8 = (-q[193]).mul_add(link_22_effort_5, q[194].mul_add(link_22_effort_6, q[192] * link_22_effort_4));
     let link_22_effort_9 = (-link_22_effort_8)
-        .mul_add(
-            n(0.2),
-            q[191]
-                .mul_add(
-                    link_22_effort_3,
-                    q[190].mul_add(link_22_effort_2, q[189] * link_22_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[191].mul_add(link_22_effort_3, q[190].mul_add(link_22_effort_2, q[189] * link_22_effort)));
     let link_22_effort_10 = link_22_effort_7
-        .mul_add(
-            n(0.2),
-            q[194]
-                .mul_add(
-                    link_22_effort_3,
-                    q[193].mul_add(link_22_effort_2, q[192] * link_22_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[194].mul_add(link_22_effort_3, q[193].mul_add(link_22_effort_2, q[192] * link_22_effort)));
     // link_21: effort (20 additions, 20 multiplications)
     let link_21_effort = link_21_force + link_22_effort_9;
     let link_21_effort_2 = link_21_force_2 + link_22_effort_10;
     let link_21_effort_3 = q[197]
-        .mul_add(
-            link_22_effort_3,
-            q[196]
-                .mul_add(
-                    link_22_effort_2,
-                    q[195].mul_add(link_22_effort, link_21_force_3),
-                ),
-        );
-    let link_21_effort_4 = link_21_acceleration_17
-        .mul_add(
-            n(0.9199999999999999),
-            (link_21_acceleration_13 + link_21_acceleration_15)
-                .mul_add(n(0.004), link_22_effort_7),
-        );
+        .mul_add(link_22_effort_3, q[196].mul_add(link_22_effort_2, q[195].mul_add(link_22_effort, link_21_force_3)));
+    let link_21_effort_4 = link_21_acceleration_17.mul_add(
+        n(0.9199999999999999),
+        (link_21_acceleration_13 + link_21_acceleration_15).mul_add(n(0.004), link_22_effort_7),
+    );
     let link_21_effort_5 = link_21_acceleration_18
-        .mul_add(
+        .mul_add(n(0.9199999999999999), link_21_acceleration_16.mul_add(n(0.004), -link_22_effort_8));
+    let link_21_effort_6 = (-q[196]).mul_add(
+        link_22_effort_5,
+        (-link_21_acceleration_19).mul_add(
             n(0.9199999999999999),
-            link_21_acceleration_16.mul_add(n(0.004), -link_22_effort_8),
-        );
-    let link_21_effort_6 = (-q[196])
-        .mul_add(
-            link_22_effort_5,
-            (-link_21_acceleration_19)
-                .mul_add(
-                    n(0.9199999999999999),
-                    q[197]
-                        .mul_add(
-                            link_22_effort_6,
-                            q[195]
-                                .mul_add(
-                                    link_22_effort_4,
-                                    (link_21_acceleration_8 - link_21_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_21_effort_7 = (-q[181])
-        .mul_add(
-            link_21_effort_5,
-            q[182].mul_add(link_21_effort_6, q[180] * link_21_effort_4),
-        );
-    let link_21_effort_8 = (-q[184])
-        .mul_add(
-            link_21_effort_5,
-            q[185].mul_add(link_21_effort_6, q[183] * link_21_effort_4),
-        );
+            q[197].mul_add(
+                link_22_effort_6,
+                q[195].mul_add(link_22_effort_4, (link_21_acceleration_8 - link_21_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_21_effort_7 = (-q[181]).mul_add(link_21_effort_5, q[182].mul_add(link_21_effort_6, q[180] * link_21_effort_4));
+    let link_21_effort_8 = (-q[184]).mul_add(link_21_effort_5, q[185].mul_add(link_21_effort_6, q[183] * link_21_effort_4));
     let link_21_effort_9 = (-link_21_effort_8)
-        .mul_add(
-            n(0.2),
-            q[182]
-                .mul_add(
-                    link_21_effort_3,
-                    q[181].mul_add(link_21_effort_2, q[180] * link_21_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[182].mul_add(link_21_effort_3, q[181].mul_add(link_21_effort_2, q[180] * link_21_effort)));
     let link_21_effort_10 = link_21_effort_7
-        .mul_add(
-            n(0.2),
-            q[185]
-                .mul_add(
-                    link_21_effort_3,
-                    q[184].mul_add(link_21_effort_2, q[183] * link_21_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[185].mul_add(link_21_effort_3, q[184].mul_add(link_21_effort_2, q[183] * link_21_effort)));
     // link_20: effort (20 additions, 20 multiplications)
-    let link_20_effort = (-link_20_acceleration_14)
-        .mul_add(
-            n(0.19720000000000001),
-            link_20_acceleration_16
-                .mul_add(
-                    n(0.00041000000000000005),
-                    link_20_acceleration_7
-                        .mul_add(
-                            n(0.19750000000000004),
-                            link_20_acceleration_5 + link_21_effort_9,
-                        ),
-                ),
-        );
+    let link_20_effort = (-link_20_acceleration_14).mul_add(
+        n(0.19720000000000001),
+        link_20_acceleration_16.mul_add(
+            n(0.00041000000000000005),
+            link_20_acceleration_7.mul_add(n(0.19750000000000004), link_20_acceleration_5 + link_21_effort_9),
+        ),
+    );
     let link_20_effort_2 = link_20_force + link_21_effort_10;
     let link_20_effort_3 = q[188]
-        .mul_add(
-            link_21_effort_3,
-            q[187]
-                .mul_add(
-                    link_21_effort_2,
-                    q[186].mul_add(link_21_effort, link_20_force_2),
-                ),
-        );
+        .mul_add(link_21_effort_3, q[187].mul_add(link_21_effort_2, q[186].mul_add(link_21_effort, link_20_force_2)));
     let link_20_effort_4 = (link_20_acceleration_13 + link_20_acceleration_15)
         .mul_add(n(0.004), link_20_acceleration_17 + link_21_effort_7);
-    let link_20_effort_5 = link_20_acceleration_16
-        .mul_add(n(0.004), link_20_acceleration_18 - link_21_effort_8);
-    let link_20_effort_6 = (-q[188])
-        .mul_add(
-            link_21_effort_6,
-            (-q[186])
-                .mul_add(
-                    link_21_effort_4,
-                    (-(link_20_acceleration_8 - link_20_acceleration_12))
-                        .mul_add(
-                            n(0.004),
-                            q[187].mul_add(link_21_effort_5, link_20_acceleration_19),
-                        ),
-                ),
-        );
-    let link_20_effort_7 = (-q[173])
-        .mul_add(
-            link_20_effort_6,
-            (-q[172]).mul_add(link_20_effort_5, q[171] * link_20_effort_4),
-        );
-    let link_20_effort_8 = (-q[176])
-        .mul_add(
-            link_20_effort_6,
-            (-q[175]).mul_add(link_20_effort_5, q[174] * link_20_effort_4),
-        );
+    let link_20_effort_5 = link_20_acceleration_16.mul_add(n(0.004), link_20_acceleration_18 - link_21_effort_8);
+    let link_20_effort_6 = (-q[188]).mul_add(
+        link_21_effort_6,
+        (-q[186]).mul_add(
+            link_21_effort_4,
+            (-(link_20_acceleration_8 - link_20_acceleration_12))
+                .mul_add(n(0.004), q[187].mul_add(link_21_effort_5, link_20_acceleration_19)),
+        ),
+    );
+    let link_20_effort_7 = (-q[173]).mul_add(link_20_effort_6, (-q[172]).mul_add(link_20_effort_5, q[171] * link_20_effort_4));
+    let link_20_effort_8 = (-q[176]).mul_add(link_20_effort_6, (-q[175]).mul_add(link_20_effort_5, q[174] * link_20_effort_4));
     let link_20_effort_9 = (-link_20_effort_8)
-        .mul_add(
-            n(0.2),
-            q[173]
-                .mul_add(
-                    link_20_effort_3,
-                    q[172].mul_add(link_20_effort_2, q[171] * link_20_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[173].mul_add(link_20_effort_3, q[172].mul_add(link_20_effort_2, q[171] * link_20_effort)));
     let link_20_effort_10 = link_20_effort_7
-        .mul_add(
-            n(0.2),
-            q[176]
-                .mul_add(
-                    link_20_effort_3,
-                    q[175].mul_add(link_20_effort_2, q[174] * link_20_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[176].mul_add(link_20_effort_3, q[175].mul_add(link_20_effort_2, q[174] * link_20_effort)));
     // link_19: effort (20 additions, 20 multiplications)
     let link_19_effort = link_19_force + link_20_effort_9;
     let link_19_effort_2 = link_19_force_2 + link_20_effort_10;
     let link_19_effort_3 = q[179]
-        .mul_add(
-            link_20_effort_3,
-            q[178]
-                .mul_add(
-                    link_20_effort_2,
-                    q[177].mul_add(link_20_effort, link_19_force_3),
-                ),
-        );
+        .mul_add(link_20_effort_3, q[178].mul_add(link_20_effort_2, q[177].mul_add(link_20_effort, link_19_force_3)));
     let link_19_effort_4 = link_19_acceleration_17
-        .mul_add(
-            n(1.08),
-            (link_19_acceleration_13 + link_19_acceleration_15)
-                .mul_add(n(0.004), link_20_effort_7),
-        );
+        .mul_add(n(1.08), (link_19_acceleration_13 + link_19_acceleration_15).mul_add(n(0.004), link_20_effort_7));
     let link_19_effort_5 = link_19_acceleration_18
         .mul_add(n(1.08), link_19_acceleration_16.mul_add(n(0.004), -link_20_effort_8));
-    let link_19_effort_6 = (-q[179])
-        .mul_add(
-            link_20_effort_6,
-            (-q[178])
-                .mul_add(
-                    link_20_effort_5,
-                    (-link_19_acceleration_19)
-                        .mul_add(
-                            n(1.08),
-                            q[177]
-                                .mul_add(
-                                    link_20_effort_4,
-                                    (link_19_acceleration_8 - link_19_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_19_effort_7 = (-q[163])
-        .mul_add(
-            link_19_effort_5,
-            q[164].mul_add(link_19_effort_6, q[162] * link_19_effort_4),
-        );
-    let link_19_effort_8 = (-q[166])
-        .mul_add(
-            link_19_effort_5,
-            q[167].mul_add(link_19_effort_6, q[165] * link_19_effort_4),
-        );
+    let link_19_effort_6 = (-q[179]).mul_add(
+        link_20_effort_6,
+        (-q[178]).mul_add(
+            link_20_effort_5,
+            (-link_19_acceleration_19).mul_add(
+                n(1.08),
+                q[177].mul_add(link_20_effort_4, (link_19_acceleration_8 - link_19_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_19_effort_7 = (-q[163]).mul_add(link_19_effort_5, q[164].mul_add(link_19_effort_6, q[162] * link_19_effort_4));
+    let link_19_effort_8 = (-q[166]).mul_add(link_19_effort_5, q[167].mul_add(link_19_effort_6, q[165] * link_19_effort_4));
     let link_19_effort_9 = (-link_19_effort_8)
-        .mul_add(
-            n(0.2),
-            q[164]
-                .mul_add(
-                    link_19_effort_3,
-                    q[163].mul_add(link_19_effort_2, q[162] * link_19_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[164].mul_add(link_19_effort_3, q[163].mul_add(link_19_effort_2, q[162] * link_19_effort)));
     let link_19_effort_10 = link_19_effort_7
-        .mul_add(
-            n(0.2),
-            q[167]
-                .mul_add(
-                    link_19_effort_3,
-                    q[166].mul_add(link_19_effort_2, q[165] * link_19_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[167].mul_add(link_19_effort_3, q[166].mul_add(link_19_effort_2, q[165] * link_19_effort)));
     // link_18: effort (20 additions, 20 multiplications)
     let link_18_effort = link_18_force + link_19_effort_9;
     let link_18_effort_2 = link_18_force_2 + link_19_effort_10;
     let link_18_effort_3 = q[170]
-        .mul_add(
-            link_19_effort_3,
-            q[169]
-                .mul_add(
-                    link_19_effort_2,
-                    q[168].mul_add(link_19_effort, link_18_force_3),
-                ),
-        );
-    let link_18_effort_4 = link_18_acceleration_17
-        .mul_add(
-            n(1.1600000000000001),
-            (link_18_acceleration_13 + link_18_acceleration_15)
-                .mul_add(n(0.004), link_19_effort_7),
-        );
+        .mul_add(link_19_effort_3, q[169].mul_add(link_19_effort_2, q[168].mul_add(link_19_effort, link_18_force_3)));
+    let link_18_effort_4 = link_18_acceleration_17.mul_add(
+        n(1.1600000000000001),
+        (link_18_acceleration_13 + link_18_acceleration_15).mul_add(n(0.004), link_19_effort_7),
+    );
     let link_18_effort_5 = link_18_acceleration_18
-        .mul_add(
+        .mul_add(n(1.1600000000000001), link_18_acceleration_16.mul_add(n(0.004), -link_19_effort_8));
+    let link_18_effort_6 = (-q[169]).mul_add(
+        link_19_effort_5,
+        (-link_18_acceleration_19).mul_add(
             n(1.1600000000000001),
-            link_18_acceleration_16.mul_add(n(0.004), -link_19_effort_8),
-        );
-    let link_18_effort_6 = (-q[169])
-        .mul_add(
-            link_19_effort_5,
-            (-link_18_acceleration_19)
-                .mul_add(
-                    n(1.1600000000000001),
-                    q[170]
-                        .mul_add(
-                            link_19_effort_6,
-                            q[168]
-                                .mul_add(
-                                    link_19_effort_4,
-                                    (link_18_acceleration_8 - link_18_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_18_effort_7 = (-q[154])
-        .mul_add(
-            link_18_effort_5,
-            q[155].mul_add(link_18_effort_6, q[153] * link_18_effort_4),
-        );
-    let link_18_effort_8 = (-q[157])
-        .mul_add(
-            link_18_effort_5,
-            q[158].mul_add(link_18_effort_6, q[156] * link_18_effort_4),
-        );
+            q[170].mul_add(
+                link_19_effort_6,
+                q[168].mul_add(link_19_effort_4, (link_18_acceleration_8 - link_18_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_18_effort_7 = (-q[154]).mul_add(link_18_effort_5, q[155].mul_add(link_18_effort_6, q[153] * link_18_effort_4));
+    let link_18_effort_8 = (-q[157]).mul_add(link_18_effort_5, q[158].mul_add(link_18_effort_6, q[156] * link_18_effort_4));
     let link_18_effort_9 = (-link_18_effort_8)
-        .mul_add(
-            n(0.2),
-            q[155]
-                .mul_add(
-                    link_18_effort_3,
-                    q[154].mul_add(link_18_effort_2, q[153] * link_18_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[155].mul_add(link_18_effort_3, q[154].mul_add(link_18_effort_2, q[153] * link_18_effort)));
     let link_18_effort_10 = link_18_effort_7
-        .mul_add(
-            n(0.2),
-            q[158]
-                .mul_add(
-                    link_18_effort_3,
-                    q[157].mul_add(link_18_effort_2, q[156] * link_18_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[158].mul_add(link_18_effort_3, q[157].mul_add(link_18_effort_2, q[156] * link_18_effort)));
     // link_17: effort (20 additions, 20 multiplications)
     let link_17_effort = link_17_force + link_18_effort_9;
     let link_17_effort_2 = link_17_force_2 + link_18_effort_10;
     let link_17_effort_3 = q[161]
-        .mul_add(
-            link_18_effort_3,
-            q[160]
-                .mul_add(
-                    link_18_effort_2,
-                    q[159].mul_add(link_18_effort, link_17_force_3),
-                ),
-        );
-    let link_17_effort_4 = link_17_acceleration_17
-        .mul_add(
-            n(1.2400000000000002),
-            (link_17_acceleration_13 + link_17_acceleration_15)
-                .mul_add(n(0.004), link_18_effort_7),
-        );
+        .mul_add(link_18_effort_3, q[160].mul_add(link_18_effort_2, q[159].mul_add(link_18_effort, link_17_force_3)));
+    let link_17_effort_4 = link_17_acceleration_17.mul_add(
+        n(1.2400000000000002),
+        (link_17_acceleration_13 + link_17_acceleration_15).mul_add(n(0.004), link_18_effort_7),
+    );
     let link_17_effort_5 = link_17_acceleration_18
-        .mul_add(
+        .mul_add(n(1.2400000000000002), link_17_acceleration_16.mul_add(n(0.004), -link_18_effort_8));
+    let link_17_effort_6 = (-q[160]).mul_add(
+        link_18_effort_5,
+        (-link_17_acceleration_19).mul_add(
             n(1.2400000000000002),
-            link_17_acceleration_16.mul_add(n(0.004), -link_18_effort_8),
-        );
-    let link_17_effort_6 = (-q[160])
-        .mul_add(
-            link_18_effort_5,
-            (-link_17_acceleration_19)
-                .mul_add(
-                    n(1.2400000000000002),
-                    q[161]
-                        .mul_add(
-                            link_18_effort_6,
-                            q[159]
-                                .mul_add(
-                                    link_18_effort_4,
-                                    (link_17_acceleration_8 - link_17_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_17_effort_7 = (-q[145])
-        .mul_add(
-            link_17_effort_5,
-            q[146].mul_add(link_17_effort_6, q[144] * link_17_effort_4),
-        );
-    let link_17_effort_8 = (-q[148])
-        .mul_add(
-            link_17_effort_5,
-            q[149].mul_add(link_17_effort_6, q[147] * link_17_effort_4),
-        );
+            q[161].mul_add(
+                link_18_effort_6,
+                q[159].mul_add(link_18_effort_4, (link_17_acceleration_8 - link_17_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_17_effort_7 = (-q[145]).mul_add(link_17_effort_5, q[146].mul_add(link_17_effort_6, q[144] * link_17_effort_4));
+    let link_17_effort_8 = (-q[148]).mul_add(link_17_effort_5, q[149].mul_add(link_17_effort_6, q[147] * link_17_effort_4));
     let link_17_effort_9 = (-link_17_effort_8)
-        .mul_add(
-            n(0.2),
-            q[146]
-                .mul_add(
-                    link_17_effort_3,
-                    q[145].mul_add(link_17_effort_2, q[144] * link_17_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[146].mul_add(link_17_effort_3, q[145].mul_add(link_17_effort_2, q[144] * link_17_effort)));
     let link_17_effort_10 = link_17_effort_7
-        .mul_add(
-            n(0.2),
-            q[149]
-                .mul_add(
-                    link_17_effort_3,
-                    q[148].mul_add(link_17_effort_2, q[147] * link_17_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[149].mul_add(link_17_effort_3, q[148].mul_add(link_17_effort_2, q[147] * link_17_effort)));
     // link_16: effort (20 additions, 20 multiplications)
     let link_16_effort = link_16_force + link_17_effort_9;
     let link_16_effort_2 = link_16_force_2 + link_17_effort_10;
     let link_16_effort_3 = q[152]
-        .mul_add(
-            link_17_effort_3,
-            q[151]
-                .mul_add(
-                    link_17_effort_2,
-                    q[150].mul_add(link_17_effort, link_16_force_3),
-                ),
-        );
-    let link_16_effort_4 = link_16_acceleration_17
-        .mul_add(
-            n(1.3200000000000003),
-            (link_16_acceleration_13 + link_16_acceleration_15)
-                .mul_add(n(0.004), link_17_effort_7),
-        );
+        .mul_add(link_17_effort_3, q[151].mul_add(link_17_effort_2, q[150].mul_add(link_17_effort, link_16_force_3)));
+    let link_16_effort_4 = link_16_acceleration_17.mul_add(
+        n(1.3200000000000003),
+        (link_16_acceleration_13 + link_16_acceleration_15).mul_add(n(0.004), link_17_effort_7),
+    );
     let link_16_effort_5 = link_16_acceleration_18
-        .mul_add(
+        .mul_add(n(1.3200000000000003), link_16_acceleration_16.mul_add(n(0.004), -link_17_effort_8));
+    let link_16_effort_6 = (-q[151]).mul_add(
+        link_17_effort_5,
+        (-link_16_acceleration_19).mul_add(
             n(1.3200000000000003),
-            link_16_acceleration_16.mul_add(n(0.004), -link_17_effort_8),
-        );
-    let link_16_effort_6 = (-q[151])
-        .mul_add(
-            link_17_effort_5,
-            (-link_16_acceleration_19)
-                .mul_add(
-                    n(1.3200000000000003),
-                    q[152]
-                        .mul_add(
-                            link_17_effort_6,
-                            q[150]
-                                .mul_add(
-                                    link_17_effort_4,
-                                    (link_16_acceleration_8 - link_16_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_16_effort_7 = (-q[136])
-        .mul_add(
-            link_16_effort_5,
-            q[137].mul_add(link_16_effort_6, q[135] * link_16_effort_4),
-        );
-    let link_16_effort_8 = (-q[139])
-        .mul_add(
-            link_16_effort_5,
-            q[140].mul_add(link_16_effort_6, q[138] * link_16_effort_4),
-        );
+            q[152].mul_add(
+                link_17_effort_6,
+                q[150].mul_add(link_17_effort_4, (link_16_acceleration_8 - link_16_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_16_effort_7 = (-q[136]).mul_add(link_16_effort_5, q[137].mul_add(link_16_effort_6, q[135] * link_16_effort_4));
+    let link_16_effort_8 = (-q[139]).mul_add(link_16_effort_5, q[140].mul_add(link_16_effort_6, q[138] * link_16_effort_4));
     let link_16_effort_9 = (-link_16_effort_8)
-        .mul_add(
-            n(0.2),
-            q[137]
-                .mul_add(
-                    link_16_effort_3,
-                    q[136].mul_add(link_16_effort_2, q[135] * link_16_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[137].mul_add(link_16_effort_3, q[136].mul_add(link_16_effort_2, q[135] * link_16_effort)));
     let link_16_effort_10 = link_16_effort_7
-        .mul_add(
-            n(0.2),
-            q[140]
-                .mul_add(
-                    link_16_effort_3,
-                    q[139].mul_add(link_16_effort_2, q[138] * link_16_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[140].mul_add(link_16_effort_3, q[139].mul_add(link_16_effort_2, q[138] * link_16_effort)));
     // link_15: effort (20 additions, 20 multiplications)
     let link_15_effort = link_15_force + link_16_effort_9;
     let link_15_effort_2 = link_15_force_2 + link_16_effort_10;
     let link_15_effort_3 = q[143]
-        .mul_add(
-            link_16_effort_3,
-            q[142]
-                .mul_add(
-                    link_16_effort_2,
-                    q[141].mul_add(link_16_effort, link_15_force_3),
-                ),
-        );
-    let link_15_effort_4 = link_15_acceleration_17
-        .mul_add(
-            n(1.4000000000000004),
-            (link_15_acceleration_13 + link_15_acceleration_15)
-                .mul_add(n(0.004), link_16_effort_7),
-        );
+        .mul_add(link_16_effort_3, q[142].mul_add(link_16_effort_2, q[141].mul_add(link_16_effort, link_15_force_3)));
+    let link_15_effort_4 = link_15_acceleration_17.mul_add(
+        n(1.4000000000000004),
+        (link_15_acceleration_13 + link_15_acceleration_15).mul_add(n(0.004), link_16_effort_7),
+    );
     let link_15_effort_5 = link_15_acceleration_18
-        .mul_add(
+        .mul_add(n(1.4000000000000004), link_15_acceleration_16.mul_add(n(0.004), -link_16_effort_8));
+    let link_15_effort_6 = (-q[142]).mul_add(
+        link_16_effort_5,
+        (-link_15_acceleration_19).mul_add(
             n(1.4000000000000004),
-            link_15_acceleration_16.mul_add(n(0.004), -link_16_effort_8),
-        );
-    let link_15_effort_6 = (-q[142])
-        .mul_add(
-            link_16_effort_5,
-            (-link_15_acceleration_19)
-                .mul_add(
-                    n(1.4000000000000004),
-                    q[143]
-                        .mul_add(
-                            link_16_effort_6,
-                            q[141]
-                                .mul_add(
-                                    link_16_effort_4,
-                                    (link_15_acceleration_8 - link_15_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_15_effort_7 = (-q[127])
-        .mul_add(
-            link_15_effort_5,
-            q[128].mul_add(link_15_effort_6, q[126] * link_15_effort_4),
-        );
-    let link_15_effort_8 = (-q[130])
-        .mul_add(
-            link_15_effort_5,
-            q[131].mul_add(link_15_effort_6, q[129] * link_15_effort_4),
-        );
+            q[143].mul_add(
+                link_16_effort_6,
+                q[141].mul_add(link_16_effort_4, (link_15_acceleration_8 - link_15_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_15_effort_7 = (-q[127]).mul_add(link_15_effort_5, q[128].mul_add(link_15_effort_6, q[126] * link_15_effort_4));
+    let link_15_effort_8 = (-q[130]).mul_add(link_15_effort_5, q[131].mul_add(link_15_effort_6, q[129] * link_15_effort_4));
     let link_15_effort_9 = (-link_15_effort_8)
-        .mul_add(
-            n(0.2),
-            q[128]
-                .mul_add(
-                    link_15_effort_3,
-                    q[127].mul_add(link_15_effort_2, q[126] * link_15_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[128].mul_add(link_15_effort_3, q[127].mul_add(link_15_effort_2, q[126] * link_15_effort)));
     let link_15_effort_10 = link_15_effort_7
-        .mul_add(
-            n(0.2),
-            q[131]
-                .mul_add(
-                    link_15_effort_3,
-                    q[130].mul_add(link_15_effort_2, q[129] * link_15_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[131].mul_add(link_15_effort_3, q[130].mul_add(link_15_effort_2, q[129] * link_15_effort)));
     // link_14: effort (20 additions, 20 multiplications)
     let link_14_effort = link_14_force + link_15_effort_9;
     let link_14_effort_2 = link_14_force_2 + link_15_effort_10;
     let link_14_effort_3 = q[134]
-        .mul_add(
-            link_15_effort_3,
-            q[133]
-                .mul_add(
-                    link_15_effort_2,
-                    q[132].mul_add(link_15_effort, link_14_force_3),
-                ),
-        );
-    let link_14_effort_4 = link_14_acceleration_17
-        .mul_add(
-            n(1.4800000000000004),
-            (link_14_acceleration_13 + link_14_acceleration_15)
-                .mul_add(n(0.004), link_15_effort_7),
-        );
+        .mul_add(link_15_effort_3, q[133].mul_add(link_15_effort_2, q[132].mul_add(link_15_effort, link_14_force_3)));
+    let link_14_effort_4 = link_14_acceleration_17.mul_add(
+        n(1.4800000000000004),
+        (link_14_acceleration_13 + link_14_acceleration_15).mul_add(n(0.004), link_15_effort_7),
+    );
     let link_14_effort_5 = link_14_acceleration_18
-        .mul_add(
+        .mul_add(n(1.4800000000000004), link_14_acceleration_16.mul_add(n(0.004), -link_15_effort_8));
+    let link_14_effort_6 = (-q[133]).mul_add(
+        link_15_effort_5,
+        (-link_14_acceleration_19).mul_add(
             n(1.4800000000000004),
-            link_14_acceleration_16.mul_add(n(0.004), -link_15_effort_8),
-        );
-    let link_14_effort_6 = (-q[133])
-        .mul_add(
-            link_15_effort_5,
-            (-link_14_acceleration_19)
-                .mul_add(
-                    n(1.4800000000000004),
-                    q[134]
-                        .mul_add(
-                            link_15_effort_6,
-                            q[132]
-                                .mul_add(
-                                    link_15_effort_4,
-                                    (link_14_acceleration_8 - link_14_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_14_effort_7 = (-q[118])
-        .mul_add(
-            link_14_effort_5,
-            q[119].mul_add(link_14_effort_6, q[117] * link_14_effort_4),
-        );
-    let link_14_effort_8 = (-q[121])
-        .mul_add(
-            link_14_effort_5,
-            q[122].mul_add(link_14_effort_6, q[120] * link_14_effort_4),
-        );
+            q[134].mul_add(
+                link_15_effort_6,
+                q[132].mul_add(link_15_effort_4, (link_14_acceleration_8 - link_14_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_14_effort_7 = (-q[118]).mul_add(link_14_effort_5, q[119].mul_add(link_14_effort_6, q[117] * link_14_effort_4));
+    let link_14_effort_8 = (-q[121]).mul_add(link_14_effort_5, q[122].mul_add(link_14_effort_6, q[120] * link_14_effort_4));
     let link_14_effort_9 = (-link_14_effort_8)
-        .mul_add(
-            n(0.2),
-            q[119]
-                .mul_add(
-                    link_14_effort_3,
-                    q[118].mul_add(link_14_effort_2, q[117] * link_14_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[119].mul_add(link_14_effort_3, q[118].mul_add(link_14_effort_2, q[117] * link_14_effort)));
     let link_14_effort_10 = link_14_effort_7
-        .mul_add(
-            n(0.2),
-            q[122]
-                .mul_add(
-                    link_14_effort_3,
-                    q[121].mul_add(link_14_effort_2, q[120] * link_14_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[122].mul_add(link_14_effort_3, q[121].mul_add(link_14_effort_2, q[120] * link_14_effort)));
     // link_13: effort (20 additions, 20 multiplications)
     let link_13_effort = link_13_force + link_14_effort_9;
     let link_13_effort_2 = link_13_force_2 + link_14_effort_10;
     let link_13_effort_3 = q[125]
-        .mul_add(
-            link_14_effort_3,
-            q[124]
-                .mul_add(
-                    link_14_effort_2,
-                    q[123].mul_add(link_14_effort, link_13_force_3),
-                ),
-        );
-    let link_13_effort_4 = link_13_acceleration_17
-        .mul_add(
-            n(1.5600000000000005),
-            (link_13_acceleration_13 + link_13_acceleration_15)
-                .mul_add(n(0.004), link_14_effort_7),
-        );
+        .mul_add(link_14_effort_3, q[124].mul_add(link_14_effort_2, q[123].mul_add(link_14_effort, link_13_force_3)));
+    let link_13_effort_4 = link_13_acceleration_17.mul_add(
+        n(1.5600000000000005),
+        (link_13_acceleration_13 + link_13_acceleration_15).mul_add(n(0.004), link_14_effort_7),
+    );
     let link_13_effort_5 = link_13_acceleration_18
-        .mul_add(
+        .mul_add(n(1.5600000000000005), link_13_acceleration_16.mul_add(n(0.004), -link_14_effort_8));
+    let link_13_effort_6 = (-q[124]).mul_add(
+        link_14_effort_5,
+        (-link_13_acceleration_19).mul_add(
             n(1.5600000000000005),
-            link_13_acceleration_16.mul_add(n(0.004), -link_14_effort_8),
-        );
-    let link_13_effort_6 = (-q[124])
-        .mul_add(
-            link_14_effort_5,
-            (-link_13_acceleration_19)
-                .mul_add(
-                    n(1.5600000000000005),
-                    q[125]
-                        .mul_add(
-                            link_14_effort_6,
-                            q[123]
-                                .mul_add(
-                                    link_14_effort_4,
-                                    (link_13_acceleration_8 - link_13_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_13_effort_7 = (-q[109])
-        .mul_add(
-            link_13_effort_5,
-            q[110].mul_add(link_13_effort_6, q[108] * link_13_effort_4),
-        );
-    let link_13_effort_8 = (-q[112])
-        .mul_add(
-            link_13_effort_5,
-            q[113].mul_add(link_13_effort_6, q[111] * link_13_effort_4),
-        );
+            q[125].mul_add(
+                link_14_effort_6,
+                q[123].mul_add(link_14_effort_4, (link_13_acceleration_8 - link_13_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_13_effort_7 = (-q[109]).mul_add(link_13_effort_5, q[110].mul_add(link_13_effort_6, q[108] * link_13_effort_4));
+    let link_13_effort_8 = (-q[112]).mul_add(link_13_effort_5, q[113].mul_add(link_13_effort_6, q[111] * link_13_effort_4));
     let link_13_effort_9 = (-link_13_effort_8)
-        .mul_add(
-            n(0.2),
-            q[110]
-                .mul_add(
-                    link_13_effort_3,
-                    q[109].mul_add(link_13_effort_2, q[108] * link_13_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[110].mul_add(link_13_effort_3, q[109].mul_add(link_13_effort_2, q[108] * link_13_effort)));
     let link_13_effort_10 = link_13_effort_7
-        .mul_add(
-            n(0.2),
-            q[113]
-                .mul_add(
-                    link_13_effort_3,
-                    q[112].mul_add(link_13_effort_2, q[111] * link_13_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[113].mul_add(link_13_effort_3, q[112].mul_add(link_13_effort_2, q[111] * link_13_effort)));
     // link_12: effort (20 additions, 20 multiplications)
     let link_12_effort = link_12_force + link_13_effort_9;
     let link_12_effort_2 = link_12_force_2 + link_13_effort_10;
     let link_12_effort_3 = q[116]
-        .mul_add(
-            link_13_effort_3,
-            q[115]
-                .mul_add(
-                    link_13_effort_2,
-                    q[114].mul_add(link_13_effort, link_12_force_3),
-                ),
-        );
-    let link_12_effort_4 = link_12_acceleration_17
-        .mul_add(
-            n(1.6400000000000006),
-            (link_12_acceleration_13 + link_12_acceleration_15)
-                .mul_add(n(0.004), link_13_effort_7),
-        );
+        .mul_add(link_13_effort_3, q[115].mul_add(link_13_effort_2, q[114].mul_add(link_13_effort, link_12_force_3)));
+    let link_12_effort_4 = link_12_acceleration_17.mul_add(
+        n(1.6400000000000006),
+        (link_12_acceleration_13 + link_12_acceleration_15).mul_add(n(0.004), link_13_effort_7),
+    );
     let link_12_effort_5 = link_12_acceleration_18
-        .mul_add(
+        .mul_add(n(1.6400000000000006), link_12_acceleration_16.mul_add(n(0.004), -link_13_effort_8));
+    let link_12_effort_6 = (-q[115]).mul_add(
+        link_13_effort_5,
+        (-link_12_acceleration_19).mul_add(
             n(1.6400000000000006),
-            link_12_acceleration_16.mul_add(n(0.004), -link_13_effort_8),
-        );
-    let link_12_effort_6 = (-q[115])
-        .mul_add(
-            link_13_effort_5,
-            (-link_12_acceleration_19)
-                .mul_add(
-                    n(1.6400000000000006),
-                    q[116]
-                        .mul_add(
-                            link_13_effort_6,
-                            q[114]
-                                .mul_add(
-                                    link_13_effort_4,
-                                    (link_12_acceleration_8 - link_12_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_12_effort_7 = (-q[100])
-        .mul_add(
-            link_12_effort_5,
-            q[101].mul_add(link_12_effort_6, q[99] * link_12_effort_4),
-        );
-    let link_12_effort_8 = (-q[103])
-        .mul_add(
-            link_12_effort_5,
-            q[104].mul_add(link_12_effort_6, q[102] * link_12_effort_4),
-        );
+            q[116].mul_add(
+                link_13_effort_6,
+                q[114].mul_add(link_13_effort_4, (link_12_acceleration_8 - link_12_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_12_effort_7 = (-q[100]).mul_add(link_12_effort_5, q[101].mul_add(link_12_effort_6, q[99] * link_12_effort_4));
+    let link_12_effort_8 = (-q[103]).mul_add(link_12_effort_5, q[104].mul_add(link_12_effort_6, q[102] * link_12_effort_4));
     let link_12_effort_9 = (-link_12_effort_8)
-        .mul_add(
-            n(0.2),
-            q[101]
-                .mul_add(
-                    link_12_effort_3,
-                    q[100].mul_add(link_12_effort_2, q[99] * link_12_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[101].mul_add(link_12_effort_3, q[100].mul_add(link_12_effort_2, q[99] * link_12_effort)));
     let link_12_effort_10 = link_12_effort_7
-        .mul_add(
-            n(0.2),
-            q[104]
-                .mul_add(
-                    link_12_effort_3,
-                    q[103].mul_add(link_12_effort_2, q[102] * link_12_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[104].mul_add(link_12_effort_3, q[103].mul_add(link_12_effort_2, q[102] * link_12_effort)));
     // link_11: effort (20 additions, 20 multiplications)
     let link_11_effort = link_11_force + link_12_effort_9;
     let link_11_effort_2 = link_11_force_2 + link_12_effort_10;
     let link_11_effort_3 = q[107]
-        .mul_add(
-            link_12_effort_3,
-            q[106]
-                .mul_add(
-                    link_12_effort_2,
-                    q[105].mul_add(link_12_effort, link_11_force_3),
-                ),
-        );
-    let link_11_effort_4 = link_11_acceleration_17
-        .mul_add(
-            n(1.7200000000000006),
-            (link_11_acceleration_13 + link_11_acceleration_15)
-                .mul_add(n(0.004), link_12_effort_7),
-        );
+        .mul_add(link_12_effort_3, q[106].mul_add(link_12_effort_2, q[105].mul_add(link_12_effort, link_11_force_3)));
+    let link_11_effort_4 = link_11_acceleration_17.mul_add(
+        n(1.7200000000000006),
+        (link_11_acceleration_13 + link_11_acceleration_15).mul_add(n(0.004), link_12_effort_7),
+    );
     let link_11_effort_5 = link_11_acceleration_18
-        .mul_add(
+        .mul_add(n(1.7200000000000006), link_11_acceleration_16.mul_add(n(0.004), -link_12_effort_8));
+    let link_11_effort_6 = (-q[106]).mul_add(
+        link_12_effort_5,
+        (-link_11_acceleration_19).mul_add(
             n(1.7200000000000006),
-            link_11_acceleration_16.mul_add(n(0.004), -link_12_effort_8),
-        );
-    let link_11_effort_6 = (-q[106])
-        .mul_add(
-            link_12_effort_5,
-            (-link_11_acceleration_19)
-                .mul_add(
-                    n(1.7200000000000006),
-                    q[107]
-                        .mul_add(
-                            link_12_effort_6,
-                            q[105]
-                                .mul_add(
-                                    link_12_effort_4,
-                                    (link_11_acceleration_8 - link_11_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_11_effort_7 = (-q[91])
-        .mul_add(
-            link_11_effort_5,
-            q[92].mul_add(link_11_effort_6, q[90] * link_11_effort_4),
-        );
-    let link_11_effort_8 = (-q[94])
-        .mul_add(
-            link_11_effort_5,
-            q[95].mul_add(link_11_effort_6, q[93] * link_11_effort_4),
-        );
+            q[107].mul_add(
+                link_12_effort_6,
+                q[105].mul_add(link_12_effort_4, (link_11_acceleration_8 - link_11_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_11_effort_7 = (-q[91]).mul_add(link_11_effort_5, q[92].mul_add(link_11_effort_6, q[90] * link_11_effort_4));
+    let link_11_effort_8 = (-q[94]).mul_add(link_11_effort_5, q[95].mul_add(link_11_effort_6, q[93] * link_11_effort_4));
     let link_11_effort_9 = (-link_11_effort_8)
-        .mul_add(
-            n(0.2),
-            q[92]
-                .mul_add(
-                    link_11_effort_3,
-                    q[91].mul_add(link_11_effort_2, q[90] * link_11_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[92].mul_add(link_11_effort_3, q[91].mul_add(link_11_effort_2, q[90] * link_11_effort)));
     let link_11_effort_10 = link_11_effort_7
-        .mul_add(
-            n(0.2),
-            q[95]
-                .mul_add(
-                    link_11_effort_3,
-                    q[94].mul_add(link_11_effort_2, q[93] * link_11_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[95].mul_add(link_11_effort_3, q[94].mul_add(link_11_effort_2, q[93] * link_11_effort)));
     // link_10: effort (20 additions, 20 multiplications)
     let link_10_effort = link_10_force + link_11_effort_9;
     let link_10_effort_2 = link_10_force_2 + link_11_effort_10;
     let link_10_effort_3 = q[98]
-        .mul_add(
-            link_11_effort_3,
-            q[97]
-                .mul_add(
-                    link_11_effort_2,
-                    q[96].mul_add(link_11_effort, link_10_force_3),
-                ),
-        );
-    let link_10_effort_4 = link_10_acceleration_17
-        .mul_add(
-            n(1.8000000000000007),
-            (link_10_acceleration_13 + link_10_acceleration_15)
-                .mul_add(n(0.004), link_11_effort_7),
-        );
+        .mul_add(link_11_effort_3, q[97].mul_add(link_11_effort_2, q[96].mul_add(link_11_effort, link_10_force_3)));
+    let link_10_effort_4 = link_10_acceleration_17.mul_add(
+        n(1.8000000000000007),
+        (link_10_acceleration_13 + link_10_acceleration_15).mul_add(n(0.004), link_11_effort_7),
+    );
     let link_10_effort_5 = link_10_acceleration_18
-        .mul_add(
+        .mul_add(n(1.8000000000000007), link_10_acceleration_16.mul_add(n(0.004), -link_11_effort_8));
+    let link_10_effort_6 = (-q[97]).mul_add(
+        link_11_effort_5,
+        (-link_10_acceleration_19).mul_add(
             n(1.8000000000000007),
-            link_10_acceleration_16.mul_add(n(0.004), -link_11_effort_8),
-        );
-    let link_10_effort_6 = (-q[97])
-        .mul_add(
-            link_11_effort_5,
-            (-link_10_acceleration_19)
-                .mul_add(
-                    n(1.8000000000000007),
-                    q[98]
-                        .mul_add(
-                            link_11_effort_6,
-                            q[96]
-                                .mul_add(
-                                    link_11_effort_4,
-                                    (link_10_acceleration_8 - link_10_acceleration_12)
-                                        * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_10_effort_7 = (-q[82])
-        .mul_add(
-            link_10_effort_5,
-            q[83].mul_add(link_10_effort_6, q[81] * link_10_effort_4),
-        );
-    let link_10_effort_8 = (-q[85])
-        .mul_add(
-            link_10_effort_5,
-            q[86].mul_add(link_10_effort_6, q[84] * link_10_effort_4),
-        );
+            q[98].mul_add(
+                link_11_effort_6,
+                q[96].mul_add(link_11_effort_4, (link_10_acceleration_8 - link_10_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_10_effort_7 = (-q[82]).mul_add(link_10_effort_5, q[83].mul_add(link_10_effort_6, q[81] * link_10_effort_4));
+    let link_10_effort_8 = (-q[85]).mul_add(link_10_effort_5, q[86].mul_add(link_10_effort_6, q[84] * link_10_effort_4));
     let link_10_effort_9 = (-link_10_effort_8)
-        .mul_add(
-            n(0.2),
-            q[83]
-                .mul_add(
-                    link_10_effort_3,
-                    q[82].mul_add(link_10_effort_2, q[81] * link_10_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[83].mul_add(link_10_effort_3, q[82].mul_add(link_10_effort_2, q[81] * link_10_effort)));
     let link_10_effort_10 = link_10_effort_7
-        .mul_add(
-            n(0.2),
-            q[86]
-                .mul_add(
-                    link_10_effort_3,
-                    q[85].mul_add(link_10_effort_2, q[84] * link_10_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[86].mul_add(link_10_effort_3, q[85].mul_add(link_10_effort_2, q[84] * link_10_effort)));
     // link_9: effort (20 additions, 20 multiplications)
     let link_9_effort = link_9_force + link_10_effort_9;
     let link_9_effort_2 = link_9_force_2 + link_10_effort_10;
     let link_9_effort_3 = q[89]
-        .mul_add(
-            link_10_effort_3,
-            q[88]
-                .mul_add(link_10_effort_2, q[87].mul_add(link_10_effort, link_9_force_3)),
-        );
+        .mul_add(link_10_effort_3, q[88].mul_add(link_10_effort_2, q[87].mul_add(link_10_effort, link_9_force_3)));
     let link_9_effort_4 = link_9_acceleration_17
-        .mul_add(
-            n(1.8800000000000008),
-            (link_9_acceleration_13 + link_9_acceleration_15)
-                .mul_add(n(0.004), link_10_effort_7),
-        );
+        .mul_add(n(1.8800000000000008), (link_9_acceleration_13 + link_9_acceleration_15).mul_add(n(0.004), link_10_effort_7));
     let link_9_effort_5 = link_9_acceleration_18
-        .mul_add(
+        .mul_add(n(1.8800000000000008), link_9_acceleration_16.mul_add(n(0.004), -link_10_effort_8));
+    let link_9_effort_6 = (-q[88]).mul_add(
+        link_10_effort_5,
+        (-link_9_acceleration_19).mul_add(
             n(1.8800000000000008),
-            link_9_acceleration_16.mul_add(n(0.004), -link_10_effort_8),
-        );
-    let link_9_effort_6 = (-q[88])
-        .mul_add(
-            link_10_effort_5,
-            (-link_9_acceleration_19)
-                .mul_add(
-                    n(1.8800000000000008),
-                    q[89]
-                        .mul_add(
-                            link_10_effort_6,
-                            q[87]
-                                .mul_add(
-                                    link_10_effort_4,
-                                    (link_9_acceleration_8 - link_9_acceleration_12) * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_9_effort_7 = (-q[73])
-        .mul_add(
-            link_9_effort_5,
-            q[74].mul_add(link_9_effort_6, q[72] * link_9_effort_4),
-        );
-    let link_9_effort_8 = (-q[76])
-        .mul_add(
-            link_9_effort_5,
-            q[77].mul_add(link_9_effort_6, q[75] * link_9_effort_4),
-        );
+            q[89].mul_add(
+                link_10_effort_6,
+                q[87].mul_add(link_10_effort_4, (link_9_acceleration_8 - link_9_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_9_effort_7 = (-q[73]).mul_add(link_9_effort_5, q[74].mul_add(link_9_effort_6, q[72] * link_9_effort_4));
+    let link_9_effort_8 = (-q[76]).mul_add(link_9_effort_5, q[77].mul_add(link_9_effort_6, q[75] * link_9_effort_4));
     let link_9_effort_9 = (-link_9_effort_8)
-        .mul_add(
-            n(0.2),
-            q[74]
-                .mul_add(
-                    link_9_effort_3,
-                    q[73].mul_add(link_9_effort_2, q[72] * link_9_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[74].mul_add(link_9_effort_3, q[73].mul_add(link_9_effort_2, q[72] * link_9_effort)));
     let link_9_effort_10 = link_9_effort_7
-        .mul_add(
-            n(0.2),
-            q[77]
-                .mul_add(
-                    link_9_effort_3,
-                    q[76].mul_add(link_9_effort_2, q[75] * link_9_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[77].mul_add(link_9_effort_3, q[76].mul_add(link_9_effort_2, q[75] * link_9_effort)));
     // link_8: effort (20 additions, 20 multiplications)
     let link_8_effort = link_8_force + link_9_effort_9;
     let link_8_effort_2 = link_8_force_2 + link_9_effort_10;
     let link_8_effort_3 = q[80]
-        .mul_add(
-            link_9_effort_3,
-            q[79].mul_add(link_9_effort_2, q[78].mul_add(link_9_effort, link_8_force_3)),
-        );
+        .mul_add(link_9_effort_3, q[79].mul_add(link_9_effort_2, q[78].mul_add(link_9_effort, link_8_force_3)));
     let link_8_effort_4 = link_8_acceleration_17
-        .mul_add(
-            n(1.9600000000000009),
-            (link_8_acceleration_13 + link_8_acceleration_15)
-                .mul_add(n(0.004), link_9_effort_7),
-        );
+        .mul_add(n(1.9600000000000009), (link_8_acceleration_13 + link_8_acceleration_15).mul_add(n(0.004), link_9_effort_7));
     let link_8_effort_5 = link_8_acceleration_18
-        .mul_add(
+        .mul_add(n(1.9600000000000009), link_8_acceleration_16.mul_add(n(0.004), -link_9_effort_8));
+    let link_8_effort_6 = (-q[79]).mul_add(
+        link_9_effort_5,
+        (-link_8_acceleration_19).mul_add(
             n(1.9600000000000009),
-            link_8_acceleration_16.mul_add(n(0.004), -link_9_effort_8),
-        );
-    let link_8_effort_6 = (-q[79])
-        .mul_add(
-            link_9_effort_5,
-            (-link_8_acceleration_19)
-                .mul_add(
-                    n(1.9600000000000009),
-                    q[80]
-                        .mul_add(
-                            link_9_effort_6,
-                            q[78]
-                                .mul_add(
-                                    link_9_effort_4,
-                                    (link_8_acceleration_8 - link_8_acceleration_12) * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_8_effort_7 = (-q[64])
-        .mul_add(
-            link_8_effort_5,
-            q[65].mul_add(link_8_effort_6, q[63] * link_8_effort_4),
-        );
-    let link_8_effort_8 = (-q[67])
-        .mul_add(
-            link_8_effort_5,
-            q[68].mul_add(link_8_effort_6, q[66] * link_8_effort_4),
-        );
+            q[80].mul_add(
+                link_9_effort_6,
+                q[78].mul_add(link_9_effort_4, (link_8_acceleration_8 - link_8_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_8_effort_7 = (-q[64]).mul_add(link_8_effort_5, q[65].mul_add(link_8_effort_6, q[63] * link_8_effort_4));
+    let link_8_effort_8 = (-q[67]).mul_add(link_8_effort_5, q[68].mul_add(link_8_effort_6, q[66] * link_8_effort_4));
     let link_8_effort_9 = (-link_8_effort_8)
-        .mul_add(
-            n(0.2),
-            q[65]
-                .mul_add(
-                    link_8_effort_3,
-                    q[64].mul_add(link_8_effort_2, q[63] * link_8_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[65].mul_add(link_8_effort_3, q[64].mul_add(link_8_effort_2, q[63] * link_8_effort)));
     let link_8_effort_10 = link_8_effort_7
-        .mul_add(
-            n(0.2),
-            q[68]
-                .mul_add(
-                    link_8_effort_3,
-                    q[67].mul_add(link_8_effort_2, q[66] * link_8_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[68].mul_add(link_8_effort_3, q[67].mul_add(link_8_effort_2, q[66] * link_8_effort)));
     // link_7: effort (20 additions, 20 multiplications)
     let link_7_effort = link_7_force + link_8_effort_9;
     let link_7_effort_2 = link_7_force_2 + link_8_effort_10;
     let link_7_effort_3 = q[71]
-        .mul_add(
-            link_8_effort_3,
-            q[70].mul_add(link_8_effort_2, q[69].mul_add(link_8_effort, link_7_force_3)),
-        );
+        .mul_add(link_8_effort_3, q[70].mul_add(link_8_effort_2, q[69].mul_add(link_8_effort, link_7_force_3)));
     let link_7_effort_4 = link_7_acceleration_17
-        .mul_add(
-            n(2.040000000000001),
-            (link_7_acceleration_13 + link_7_acceleration_15)
-                .mul_add(n(0.004), link_8_effort_7),
-        );
+        .mul_add(n(2.040000000000001), (link_7_acceleration_13 + link_7_acceleration_15).mul_add(n(0.004), link_8_effort_7));
     let link_7_effort_5 = link_7_acceleration_18
-        .mul_add(
+        .mul_add(n(2.040000000000001), link_7_acceleration_16.mul_add(n(0.004), -link_8_effort_8));
+    let link_7_effort_6 = (-q[70]).mul_add(
+        link_8_effort_5,
+        (-link_7_acceleration_19).mul_add(
             n(2.040000000000001),
-            link_7_acceleration_16.mul_add(n(0.004), -link_8_effort_8),
-        );
-    let link_7_effort_6 = (-q[70])
-        .mul_add(
-            link_8_effort_5,
-            (-link_7_acceleration_19)
-                .mul_add(
-                    n(2.040000000000001),
-                    q[71]
-                        .mul_add(
-                            link_8_effort_6,
-                            q[69]
-                                .mul_add(
-                                    link_8_effort_4,
-                                    (link_7_acceleration_8 - link_7_acceleration_12) * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_7_effort_7 = (-q[55])
-        .mul_add(
-            link_7_effort_5,
-            q[56].mul_add(link_7_effort_6, q[54] * link_7_effort_4),
-        );
-    let link_7_effort_8 = (-q[58])
-        .mul_add(
-            link_7_effort_5,
-            q[59].mul_add(link_7_effort_6, q[57] * link_7_effort_4),
-        );
+            q[71].mul_add(
+                link_8_effort_6,
+                q[69].mul_add(link_8_effort_4, (link_7_acceleration_8 - link_7_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_7_effort_7 = (-q[55]).mul_add(link_7_effort_5, q[56].mul_add(link_7_effort_6, q[54] * link_7_effort_4));
+    let link_7_effort_8 = (-q[58]).mul_add(link_7_effort_5, q[59].mul_add(link_7_effort_6, q[57] * link_7_effort_4));
     let link_7_effort_9 = (-link_7_effort_8)
-        .mul_add(
-            n(0.2),
-            q[56]
-                .mul_add(
-                    link_7_effort_3,
-                    q[55].mul_add(link_7_effort_2, q[54] * link_7_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[56].mul_add(link_7_effort_3, q[55].mul_add(link_7_effort_2, q[54] * link_7_effort)));
     let link_7_effort_10 = link_7_effort_7
-        .mul_add(
-            n(0.2),
-            q[59]
-                .mul_add(
-                    link_7_effort_3,
-                    q[58].mul_add(link_7_effort_2, q[57] * link_7_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[59].mul_add(link_7_effort_3, q[58].mul_add(link_7_effort_2, q[57] * link_7_effort)));
     // link_6: effort (20 additions, 20 multiplications)
     let link_6_effort = link_6_force + link_7_effort_9;
     let link_6_effort_2 = link_6_force_2 + link_7_effort_10;
     let link_6_effort_3 = q[62]
-        .mul_add(
-            link_7_effort_3,
-            q[61].mul_add(link_7_effort_2, q[60].mul_add(link_7_effort, link_6_force_3)),
-        );
+        .mul_add(link_7_effort_3, q[61].mul_add(link_7_effort_2, q[60].mul_add(link_7_effort, link_6_force_3)));
     let link_6_effort_4 = link_6_acceleration_17
-        .mul_add(
-            n(2.120000000000001),
-            (link_6_acceleration_13 + link_6_acceleration_15)
-                .mul_add(n(0.004), link_7_effort_7),
-        );
+        .mul_add(n(2.120000000000001), (link_6_acceleration_13 + link_6_acceleration_15).mul_add(n(0.004), link_7_effort_7));
     let link_6_effort_5 = link_6_acceleration_18
-        .mul_add(
+        .mul_add(n(2.120000000000001), link_6_acceleration_16.mul_add(n(0.004), -link_7_effort_8));
+    let link_6_effort_6 = (-q[61]).mul_add(
+        link_7_effort_5,
+        (-link_6_acceleration_19).mul_add(
             n(2.120000000000001),
-            link_6_acceleration_16.mul_add(n(0.004), -link_7_effort_8),
-        );
-    let link_6_effort_6 = (-q[61])
-        .mul_add(
-            link_7_effort_5,
-            (-link_6_acceleration_19)
-                .mul_add(
-                    n(2.120000000000001),
-                    q[62]
-                        .mul_add(
-                            link_7_effort_6,
-                            q[60]
-                                .mul_add(
-                                    link_7_effort_4,
-                                    (link_6_acceleration_8 - link_6_acceleration_12) * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_6_effort_7 = (-q[46])
-        .mul_add(
-            link_6_effort_5,
-            q[47].mul_add(link_6_effort_6, q[45] * link_6_effort_4),
-        );
-    let link_6_effort_8 = (-q[49])
-        .mul_add(
-            link_6_effort_5,
-            q[50].mul_add(link_6_effort_6, q[48] * link_6_effort_4),
-        );
+            q[62].mul_add(
+                link_7_effort_6,
+                q[60].mul_add(link_7_effort_4, (link_6_acceleration_8 - link_6_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_6_effort_7 = (-q[46]).mul_add(link_6_effort_5, q[47].mul_add(link_6_effort_6, q[45] * link_6_effort_4));
+    let link_6_effort_8 = (-q[49]).mul_add(link_6_effort_5, q[50].mul_add(link_6_effort_6, q[48] * link_6_effort_4));
     let link_6_effort_9 = (-link_6_effort_8)
-        .mul_add(
-            n(0.2),
-            q[47]
-                .mul_add(
-                    link_6_effort_3,
-                    q[46].mul_add(link_6_effort_2, q[45] * link_6_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[47].mul_add(link_6_effort_3, q[46].mul_add(link_6_effort_2, q[45] * link_6_effort)));
     let link_6_effort_10 = link_6_effort_7
-        .mul_add(
-            n(0.2),
-            q[50]
-                .mul_add(
-                    link_6_effort_3,
-                    q[49].mul_add(link_6_effort_2, q[48] * link_6_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[50].mul_add(link_6_effort_3, q[49].mul_add(link_6_effort_2, q[48] * link_6_effort)));
     // link_5: effort (20 additions, 20 multiplications)
     let link_5_effort = link_5_force + link_6_effort_9;
     let link_5_effort_2 = link_5_force_2 + link_6_effort_10;
     let link_5_effort_3 = q[53]
-        .mul_add(
-            link_6_effort_3,
-            q[52].mul_add(link_6_effort_2, q[51].mul_add(link_6_effort, link_5_force_3)),
-        );
+        .mul_add(link_6_effort_3, q[52].mul_add(link_6_effort_2, q[51].mul_add(link_6_effort, link_5_force_3)));
     let link_5_effort_4 = link_5_acceleration_17
-        .mul_add(
-            n(2.200000000000001),
-            (link_5_acceleration_13 + link_5_acceleration_15)
-                .mul_add(n(0.004), link_6_effort_7),
-        );
+        .mul_add(n(2.200000000000001), (link_5_acceleration_13 + link_5_acceleration_15).mul_add(n(0.004), link_6_effort_7));
     let link_5_effort_5 = link_5_acceleration_18
-        .mul_add(
+        .mul_add(n(2.200000000000001), link_5_acceleration_16.mul_add(n(0.004), -link_6_effort_8));
+    let link_5_effort_6 = (-q[52]).mul_add(
+        link_6_effort_5,
+        (-link_5_acceleration_19).mul_add(
             n(2.200000000000001),
-            link_5_acceleration_16.mul_add(n(0.004), -link_6_effort_8),
-        );
-    let link_5_effort_6 = (-q[52])
-        .mul_add(
-            link_6_effort_5,
-            (-link_5_acceleration_19)
-                .mul_add(
-                    n(2.200000000000001),
-                    q[53]
-                        .mul_add(
-                            link_6_effort_6,
-                            q[51]
-                                .mul_add(
-                                    link_6_effort_4,
-                                    (link_5_acceleration_8 - link_5_acceleration_12) * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_5_effort_7 = (-q[37])
-        .mul_add(
-            link_5_effort_5,
-            q[38].mul_add(link_5_effort_6, q[36] * link_5_effort_4),
-        );
-    let link_5_effort_8 = (-q[40])
-        .mul_add(
-            link_5_effort_5,
-            q[41].mul_add(link_5_effort_6, q[39] * link_5_effort_4),
-        );
+            q[53].mul_add(
+                link_6_effort_6,
+                q[51].mul_add(link_6_effort_4, (link_5_acceleration_8 - link_5_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_5_effort_7 = (-q[37]).mul_add(link_5_effort_5, q[38].mul_add(link_5_effort_6, q[36] * link_5_effort_4));
+    let link_5_effort_8 = (-q[40]).mul_add(link_5_effort_5, q[41].mul_add(link_5_effort_6, q[39] * link_5_effort_4));
     let link_5_effort_9 = (-link_5_effort_8)
-        .mul_add(
-            n(0.2),
-            q[38]
-                .mul_add(
-                    link_5_effort_3,
-                    q[37].mul_add(link_5_effort_2, q[36] * link_5_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[38].mul_add(link_5_effort_3, q[37].mul_add(link_5_effort_2, q[36] * link_5_effort)));
     let link_5_effort_10 = link_5_effort_7
-        .mul_add(
-            n(0.2),
-            q[41]
-                .mul_add(
-                    link_5_effort_3,
-                    q[40].mul_add(link_5_effort_2, q[39] * link_5_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[41].mul_add(link_5_effort_3, q[40].mul_add(link_5_effort_2, q[39] * link_5_effort)));
     // link_4: effort (20 additions, 20 multiplications)
     let link_4_effort = link_4_force + link_5_effort_9;
     let link_4_effort_2 = link_4_force_2 + link_5_effort_10;
     let link_4_effort_3 = q[44]
-        .mul_add(
-            link_5_effort_3,
-            q[43].mul_add(link_5_effort_2, q[42].mul_add(link_5_effort, link_4_force_3)),
-        );
+        .mul_add(link_5_effort_3, q[43].mul_add(link_5_effort_2, q[42].mul_add(link_5_effort, link_4_force_3)));
     let link_4_effort_4 = link_4_acceleration_17
-        .mul_add(
-            n(2.280000000000001),
-            (link_4_acceleration_13 + link_4_acceleration_15)
-                .mul_add(n(0.004), link_5_effort_7),
-        );
+        .mul_add(n(2.280000000000001), (link_4_acceleration_13 + link_4_acceleration_15).mul_add(n(0.004), link_5_effort_7));
     let link_4_effort_5 = link_4_acceleration_18
-        .mul_add(
+        .mul_add(n(2.280000000000001), link_4_acceleration_16.mul_add(n(0.004), -link_5_effort_8));
+    let link_4_effort_6 = (-q[43]).mul_add(
+        link_5_effort_5,
+        (-link_4_acceleration_19).mul_add(
             n(2.280000000000001),
-            link_4_acceleration_16.mul_add(n(0.004), -link_5_effort_8),
-        );
-    let link_4_effort_6 = (-q[43])
-        .mul_add(
-            link_5_effort_5,
-            (-link_4_acceleration_19)
-                .mul_add(
-                    n(2.280000000000001),
-                    q[44]
-                        .mul_add(
-                            link_5_effort_6,
-                            q[42]
-                                .mul_add(
-                                    link_5_effort_4,
-                                    (link_4_acceleration_8 - link_4_acceleration_12) * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_4_effort_7 = (-q[28])
-        .mul_add(
-            link_4_effort_5,
-            q[29].mul_add(link_4_effort_6, q[27] * link_4_effort_4),
-        );
-    let link_4_effort_8 = (-q[31])
-        .mul_add(
-            link_4_effort_5,
-            q[32].mul_add(link_4_effort_6, q[30] * link_4_effort_4),
-        );
+            q[44].mul_add(
+                link_5_effort_6,
+                q[42].mul_add(link_5_effort_4, (link_4_acceleration_8 - link_4_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_4_effort_7 = (-q[28]).mul_add(link_4_effort_5, q[29].mul_add(link_4_effort_6, q[27] * link_4_effort_4));
+    let link_4_effort_8 = (-q[31]).mul_add(link_4_effort_5, q[32].mul_add(link_4_effort_6, q[30] * link_4_effort_4));
     let link_4_effort_9 = (-link_4_effort_8)
-        .mul_add(
-            n(0.2),
-            q[29]
-                .mul_add(
-                    link_4_effort_3,
-                    q[28].mul_add(link_4_effort_2, q[27] * link_4_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[29].mul_add(link_4_effort_3, q[28].mul_add(link_4_effort_2, q[27] * link_4_effort)));
     let link_4_effort_10 = link_4_effort_7
-        .mul_add(
-            n(0.2),
-            q[32]
-                .mul_add(
-                    link_4_effort_3,
-                    q[31].mul_add(link_4_effort_2, q[30] * link_4_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[32].mul_add(link_4_effort_3, q[31].mul_add(link_4_effort_2, q[30] * link_4_effort)));
     // link_3: effort (20 additions, 20 multiplications)
     let link_3_effort = link_3_force + link_4_effort_9;
     let link_3_effort_2 = link_3_force_2 + link_4_effort_10;
     let link_3_effort_3 = q[35]
-        .mul_add(
-            link_4_effort_3,
-            q[34].mul_add(link_4_effort_2, q[33].mul_add(link_4_effort, link_3_force_3)),
-        );
+        .mul_add(link_4_effort_3, q[34].mul_add(link_4_effort_2, q[33].mul_add(link_4_effort, link_3_force_3)));
     let link_3_effort_4 = link_3_acceleration_17
-        .mul_add(
-            n(2.360000000000001),
-            (link_3_acceleration_13 + link_3_acceleration_15)
-                .mul_add(n(0.004), link_4_effort_7),
-        );
+        .mul_add(n(2.360000000000001), (link_3_acceleration_13 + link_3_acceleration_15).mul_add(n(0.004), link_4_effort_7));
     let link_3_effort_5 = link_3_acceleration_18
-        .mul_add(
+        .mul_add(n(2.360000000000001), link_3_acceleration_16.mul_add(n(0.004), -link_4_effort_8));
+    let link_3_effort_6 = (-q[34]).mul_add(
+        link_4_effort_5,
+        (-link_3_acceleration_19).mul_add(
             n(2.360000000000001),
-            link_3_acceleration_16.mul_add(n(0.004), -link_4_effort_8),
-        );
-    let link_3_effort_6 = (-q[34])
-        .mul_add(
-            link_4_effort_5,
-            (-link_3_acceleration_19)
-                .mul_add(
-                    n(2.360000000000001),
-                    q[35]
-                        .mul_add(
-                            link_4_effort_6,
-                            q[33]
-                                .mul_add(
-                                    link_4_effort_4,
-                                    (link_3_acceleration_8 - link_3_acceleration_12) * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_3_effort_7 = (-q[19])
-        .mul_add(
-            link_3_effort_5,
-            q[20].mul_add(link_3_effort_6, q[18] * link_3_effort_4),
-        );
-    let link_3_effort_8 = (-q[22])
-        .mul_add(
-            link_3_effort_5,
-            q[23].mul_add(link_3_effort_6, q[21] * link_3_effort_4),
-        );
+            q[35].mul_add(
+                link_4_effort_6,
+                q[33].mul_add(link_4_effort_4, (link_3_acceleration_8 - link_3_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_3_effort_7 = (-q[19]).mul_add(link_3_effort_5, q[20].mul_add(link_3_effort_6, q[18] * link_3_effort_4));
+    let link_3_effort_8 = (-q[22]).mul_add(link_3_effort_5, q[23].mul_add(link_3_effort_6, q[21] * link_3_effort_4));
     let link_3_effort_9 = (-link_3_effort_8)
-        .mul_add(
-            n(0.2),
-            q[20]
-                .mul_add(
-                    link_3_effort_3,
-                    q[19].mul_add(link_3_effort_2, q[18] * link_3_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[20].mul_add(link_3_effort_3, q[19].mul_add(link_3_effort_2, q[18] * link_3_effort)));
     let link_3_effort_10 = link_3_effort_7
-        .mul_add(
-            n(0.2),
-            q[23]
-                .mul_add(
-                    link_3_effort_3,
-                    q[22].mul_add(link_3_effort_2, q[21] * link_3_effort),
-                ),
-        );
+        .mul_add(n(0.2), q[23].mul_add(link_3_effort_3, q[22].mul_add(link_3_effort_2, q[21] * link_3_effort)));
     // link_2: effort (18 additions, 17 multiplications)
     let link_2_effort = link_2_force + link_3_effort_9;
     let link_2_effort_2 = link_2_force_2 + link_3_effort_10;
     let link_2_effort_3 = q[26]
-        .mul_add(
-            link_3_effort_3,
-            q[25].mul_add(link_3_effort_2, q[24].mul_add(link_3_effort, link_2_force_3)),
-        );
+        .mul_add(link_3_effort_3, q[25].mul_add(link_3_effort_2, q[24].mul_add(link_3_effort, link_2_force_3)));
     let link_2_effort_4 = link_2_acceleration_17
-        .mul_add(
-            n(2.4400000000000013),
-            (link_2_acceleration_13 + link_2_acceleration_15)
-                .mul_add(n(0.004), link_3_effort_7),
-        );
+        .mul_add(n(2.4400000000000013), (link_2_acceleration_13 + link_2_acceleration_15).mul_add(n(0.004), link_3_effort_7));
     let link_2_effort_5 = link_2_acceleration_18
-        .mul_add(
+        .mul_add(n(2.4400000000000013), link_2_acceleration_16.mul_add(n(0.004), -link_3_effort_8));
+    let link_2_effort_6 = (-q[25]).mul_add(
+        link_3_effort_5,
+        (-link_2_acceleration_19).mul_add(
             n(2.4400000000000013),
-            link_2_acceleration_16.mul_add(n(0.004), -link_3_effort_8),
-        );
-    let link_2_effort_6 = (-q[25])
-        .mul_add(
-            link_3_effort_5,
-            (-link_2_acceleration_19)
-                .mul_add(
-                    n(2.4400000000000013),
-                    q[26]
-                        .mul_add(
-                            link_3_effort_6,
-                            q[24]
-                                .mul_add(
-                                    link_3_effort_4,
-                                    (link_2_acceleration_8 - link_2_acceleration_12) * n(0.004),
-                                ),
-                        ),
-                ),
-        );
-    let link_2_effort_7 = (-((-q[13])
-        .mul_add(
-            link_2_effort_5,
-            q[14].mul_add(link_2_effort_6, q[12] * link_2_effort_4),
-        )))
-        .mul_add(
-            n(0.2),
-            q[11]
-                .mul_add(
-                    link_2_effort_3,
-                    q[10].mul_add(link_2_effort_2, q[9] * link_2_effort),
-                ),
-        );
-    let link_2_effort_8 = ((-q[10])
-        .mul_add(
-            link_2_effort_5,
-            q[11].mul_add(link_2_effort_6, q[9] * link_2_effort_4),
-        ))
-        .mul_add(
-            n(0.2),
-            q[14]
-                .mul_add(
-                    link_2_effort_3,
-                    q[13].mul_add(link_2_effort_2, q[12] * link_2_effort),
-                ),
-        );
+            q[26].mul_add(
+                link_3_effort_6,
+                q[24].mul_add(link_3_effort_4, (link_2_acceleration_8 - link_2_acceleration_12) * n(0.004)),
+            ),
+        ),
+    );
+    let link_2_effort_7 = (-((-q[13]).mul_add(link_2_effort_5, q[14].mul_add(link_2_effort_6, q[12] * link_2_effort_4))))
+        .mul_add(n(0.2), q[11].mul_add(link_2_effort_3, q[10].mul_add(link_2_effort_2, q[9] * link_2_effort)));
+    let link_2_effort_8 = ((-q[10]).mul_add(link_2_effort_5, q[11].mul_add(link_2_effort_6, q[9] * link_2_effort_4)))
+        .mul_add(n(0.2), q[14].mul_add(link_2_effort_3, q[13].mul_add(link_2_effort_2, q[12] * link_2_effort)));
     [
         link_1_force_2 + link_2_effort_7,
-        (-q[8])
-            .mul_add(
-                n(0.039240000000000004),
-                (-q[6]).mul_add(n(24.721200000000014), link_1_force + link_2_effort_8),
-            ),
-        q[17]
-            .mul_add(
-                link_2_effort_3,
-                q[16]
-                    .mul_add(
-                        link_2_effort_2,
-                        q[15].mul_add(link_2_effort, link_1_force_3),
-                    ),
-            ),
-        link_2_effort,
-        link_2_effort_2,
-        link_2_effort_3,
-        link_3_effort,
-        link_3_effort_2,
-        link_3_effort_3,
-        link_4_effort,
-        link_4_effort_2,
-        link_4_effort_3,
-        link_5_effort,
-        link_5_effort_2,
-        link_5_effort_3,
-        link_6_effort,
-        link_6_effort_2,
-        link_6_effort_3,
-        link_7_effort,
-        link_7_effort_2,
-        link_7_effort_3,
-        link_8_effort,
-        link_8_effort_2,
-        link_8_effort_3,
-        link_9_effort,
-        link_9_effort_2,
-        link_9_effort_3,
-        link_10_effort,
-        link_10_effort_2,
-        link_10_effort_3,
-        link_11_effort,
-        link_11_effort_2,
-        link_11_effort_3,
-        link_12_effort,
-        link_12_effort_2,
-        link_12_effort_3,
-        link_13_effort,
-        link_13_effort_2,
-        link_13_effort_3,
-        link_14_effort,
-        link_14_effort_2,
-        link_14_effort_3,
-        link_15_effort,
-        link_15_effort_2,
-        link_15_effort_3,
-        link_16_effort,
-        link_16_effort_2,
-        link_16_effort_3,
-        link_17_effort,
-        link_17_effort_2,
-        link_17_effort_3,
-        link_18_effort,
-        link_18_effort_2,
-        link_18_effort_3,
-        link_19_effort,
-        link_19_effort_2,
-        link_19_effort_3,
-        link_20_effort,
-        link_20_effort_2,
-        link_20_effort_3,
-        link_21_effort,
-        link_21_effort_2,
-        link_21_effort_3,
-        link_22_effort,
-        link_22_effort_2,
-        link_22_effort_3,
-        link_23_effort,
-        link_23_effort_2,
-        link_23_effort_3,
-        link_24_effort,
-        link_24_effort_2,
-        link_24_effort_3,
-        link_25_effort,
-        link_25_effort_2,
-        link_25_effort_3,
-        link_26_effort,
-        link_26_effort_2,
-        link_26_effort_3,
-        link_27_effort,
-        link_27_effort_2,
-        link_27_effort_3,
-        link_28_effort,
-        link_28_effort_2,
-        link_28_effort_3,
-        link_29_effort,
-        link_29_effort_2,
-        link_29_effort_3,
-        link_30_effort,
-        link_30_effort_2,
-        link_30_effort_3,
-        link_31_effort,
-        link_31_effort_2,
-        link_31_effort_3,
-        link_32_force_2,
-        link_32_force_3,
-        link_32_force_4,
+        (-q[8]).mul_add(n(0.039240000000000004), (-q[6]).mul_add(n(24.721200000000014), link_1_force + link_2_effort_8)),
+        q[17].mul_add(link_2_effort_3, q[16].mul_add(link_2_effort_2, q[15].mul_add(link_2_effort, link_1_force_3))),
+        link_2_effort, link_2_effort_2, link_2_effort_3, link_3_effort, link_3_effort_2, link_3_effort_3, link_4_effort,
+        link_4_effort_2, link_4_effort_3, link_5_effort, link_5_effort_2, link_5_effort_3, link_6_effort, link_6_effort_2,
+        link_6_effort_3, link_7_effort, link_7_effort_2, link_7_effort_3, link_8_effort, link_8_effort_2, link_8_effort_3,
+        link_9_effort, link_9_effort_2, link_9_effort_3, link_10_effort, link_10_effort_2, link_10_effort_3, link_11_effort,
+        link_11_effort_2, link_11_effort_3, link_12_effort, link_12_effort_2, link_12_effort_3, link_13_effort,
+        link_13_effort_2, link_13_effort_3, link_14_effort, link_14_effort_2, link_14_effort_3, link_15_effort,
+        link_15_effort_2, link_15_effort_3, link_16_effort, link_16_effort_2, link_16_effort_3, link_17_effort,
+        link_17_effort_2, link_17_effort_3, link_18_effort, link_18_effort_2, link_18_effort_3, link_19_effort,
+        link_19_effort_2, link_19_effort_3, link_20_effort, link_20_effort_2, link_20_effort_3, link_21_effort,
+        link_21_effort_2, link_21_effort_3, link_22_effort, link_22_effort_2, link_22_effort_3, link_23_effort,
+        link_23_effort_2, link_23_effort_3, link_24_effort, link_24_effort_2, link_24_effort_3, link_25_effort,
+        link_25_effort_2, link_25_effort_3, link_26_effort, link_26_effort_2, link_26_effort_3, link_27_effort,
+        link_27_effort_2, link_27_effort_3, link_28_effort, link_28_effort_2, link_28_effort_3, link_29_effort,
+        link_29_effort_2, link_29_effort_3, link_30_effort, link_30_effort_2, link_30_effort_3, link_31_effort,
+        link_31_effort_2, link_31_effort_3, link_32_force_2, link_32_force_3, link_32_force_4,
     ]
 }

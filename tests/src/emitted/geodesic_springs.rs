@@ -90,19 +90,13 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_joint_25 = lower_joint_24 + lower_joint_24;
     let lower_joint_26 = lower_joint + lower_joint_7;
     let lower_joint_27 = lower_joint_26 + lower_joint_26 - n(1.0);
-    let lower_joint_28 = (-v[4])
-        .mul_add(lower_joint_13, v[5].mul_add(lower_joint_15, v[3] * lower_joint_11));
-    let lower_joint_29 = (-v[5])
-        .mul_add(lower_joint_21, v[4].mul_add(lower_joint_19, v[3] * lower_joint_17));
-    let lower_joint_30 = (-v[5])
-        .mul_add(lower_joint_27, (-v[4]).mul_add(lower_joint_25, v[3] * lower_joint_23));
+    let lower_joint_28 = (-v[4]).mul_add(lower_joint_13, v[5].mul_add(lower_joint_15, v[3] * lower_joint_11));
+    let lower_joint_29 = (-v[5]).mul_add(lower_joint_21, v[4].mul_add(lower_joint_19, v[3] * lower_joint_17));
+    let lower_joint_30 = (-v[5]).mul_add(lower_joint_27, (-v[4]).mul_add(lower_joint_25, v[3] * lower_joint_23));
     // lower: angular velocity (9 additions, 9 multiplications)
-    let lower_angular_velocity = (-v[1])
-        .mul_add(lower_joint_13, v[2].mul_add(lower_joint_15, v[0] * lower_joint_11));
-    let lower_angular_velocity_2 = (-v[2])
-        .mul_add(lower_joint_21, v[1].mul_add(lower_joint_19, v[0] * lower_joint_17));
-    let lower_angular_velocity_3 = (-v[2])
-        .mul_add(lower_joint_27, (-v[1]).mul_add(lower_joint_25, v[0] * lower_joint_23));
+    let lower_angular_velocity = (-v[1]).mul_add(lower_joint_13, v[2].mul_add(lower_joint_15, v[0] * lower_joint_11));
+    let lower_angular_velocity_2 = (-v[2]).mul_add(lower_joint_21, v[1].mul_add(lower_joint_19, v[0] * lower_joint_17));
+    let lower_angular_velocity_3 = (-v[2]).mul_add(lower_joint_27, (-v[1]).mul_add(lower_joint_25, v[0] * lower_joint_23));
     let lower_rate_x = lower_joint_28 + lower_angular_velocity;
     let lower_rate_y = lower_joint_29 + lower_angular_velocity_2;
     let lower_rate_z = lower_joint_30 + lower_angular_velocity_3;
@@ -112,86 +106,48 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let upper_acceleration_3 = v[0] * v[2];
     let upper_acceleration_4 = v[1] * v[2];
     // upper: force (8 additions, 10 multiplications)
-    let upper_force = (-q[8])
-        .mul_add(
-            n(1.9620000000000002),
-            (-q[6])
-                .mul_add(
-                    n(11.772),
-                    (-((-v[2]).mul_add(v[2], upper_acceleration)))
-                        .mul_add(n(0.06), upper_acceleration_3 * n(0.5499999999999999)),
-                ),
-        );
+    let upper_force = (-q[8]).mul_add(
+        n(1.9620000000000002),
+        (-q[6]).mul_add(
+            n(11.772),
+            (-((-v[2]).mul_add(v[2], upper_acceleration))).mul_add(n(0.06), upper_acceleration_3 * n(0.5499999999999999)),
+        ),
+    );
     // lower: acceleration (13 additions, 19 multiplications)
-    let lower_acceleration = (-lower_joint_29)
-        .mul_add(lower_angular_velocity_3, lower_joint_30 * lower_angular_velocity_2);
-    let lower_acceleration_2 = (-lower_joint_30)
-        .mul_add(lower_angular_velocity, lower_joint_28 * lower_angular_velocity_3);
+    let lower_acceleration = (-lower_joint_29).mul_add(lower_angular_velocity_3, lower_joint_30 * lower_angular_velocity_2);
+    let lower_acceleration_2 = (-lower_joint_30).mul_add(lower_angular_velocity, lower_joint_28 * lower_angular_velocity_3);
     let lower_acceleration_3 = (-upper_acceleration_3).mul_add(n(0.6), q[6] * n(9.81));
     let lower_acceleration_4 = (-upper_acceleration_4).mul_add(n(0.6), q[7] * n(9.81));
-    let lower_acceleration_5 = (v[1].mul_add(v[1], upper_acceleration))
-        .mul_add(n(0.6), q[8] * n(9.81));
+    let lower_acceleration_5 = (v[1].mul_add(v[1], upper_acceleration)).mul_add(n(0.6), q[8] * n(9.81));
     let lower_acceleration_6 = lower_rate_x * lower_rate_z;
     let lower_acceleration_7 = lower_rate_y * lower_rate_z;
     // lower: force (4 additions, 10 multiplications)
-    let lower_force = ((-lower_joint_28)
-        .mul_add(lower_angular_velocity_2, lower_joint_29 * lower_angular_velocity))
-        * n(0.01);
-    let lower_force_2 = (-lower_acceleration_7)
-        .mul_add(
-            n(0.0725),
-            ((-lower_joint_21)
-                .mul_add(
-                    lower_acceleration_5,
-                    lower_joint_19
-                        .mul_add(
-                            lower_acceleration_4,
-                            lower_joint_17 * lower_acceleration_3,
-                        ),
-                ))
-                .mul_add(n(0.25), lower_acceleration * n(0.0825)),
-        );
+    let lower_force = ((-lower_joint_28).mul_add(lower_angular_velocity_2, lower_joint_29 * lower_angular_velocity)) * n(0.01);
+    let lower_force_2 = (-lower_acceleration_7).mul_add(
+        n(0.0725),
+        ((-lower_joint_21).mul_add(
+            lower_acceleration_5,
+            lower_joint_19.mul_add(lower_acceleration_4, lower_joint_17 * lower_acceleration_3),
+        )).mul_add(n(0.25), lower_acceleration * n(0.0825)),
+    );
     let lower_force_3 = (-((-lower_joint_13)
-        .mul_add(
-            lower_acceleration_4,
-            lower_joint_15
-                .mul_add(lower_acceleration_5, lower_joint_11 * lower_acceleration_3),
-        )))
-        .mul_add(
-            n(0.25),
-            lower_acceleration_6.mul_add(n(0.0725), lower_acceleration_2 * n(0.0825)),
-        );
+        .mul_add(lower_acceleration_4, lower_joint_15.mul_add(lower_acceleration_5, lower_joint_11 * lower_acceleration_3))))
+        .mul_add(n(0.25), lower_acceleration_6.mul_add(n(0.0725), lower_acceleration_2 * n(0.0825)));
     let lower_force_4 = (lower_acceleration_2 + lower_acceleration_6) * n(0.25);
     let lower_force_5 = (lower_acceleration - lower_acceleration_7) * n(0.25);
-    let lower_force_6 = (lower_rate_y.mul_add(lower_rate_y, lower_rate_x * lower_rate_x))
-        * n(0.25);
+    let lower_force_6 = (lower_rate_y.mul_add(lower_rate_y, lower_rate_x * lower_rate_x)) * n(0.25);
     // lower: effort (12 additions, 17 multiplications)
     let lower_effort = lower_joint_23
-        .mul_add(
-            lower_force,
-            lower_joint_17.mul_add(lower_force_3, lower_joint_11 * lower_force_2),
-        );
+        .mul_add(lower_force, lower_joint_17.mul_add(lower_force_3, lower_joint_11 * lower_force_2));
     let lower_effort_2 = (-lower_joint_19)
-        .mul_add(
-            lower_force_3,
-            lower_joint_25.mul_add(lower_force, lower_joint_13 * lower_force_2),
-        );
+        .mul_add(lower_force_3, lower_joint_25.mul_add(lower_force, lower_joint_13 * lower_force_2));
     let lower_effort_3 = (-lower_joint_27)
-        .mul_add(
-            lower_force,
-            (-lower_joint_21).mul_add(lower_force_3, lower_joint_15 * lower_force_2),
-        );
+        .mul_add(lower_force, (-lower_joint_21).mul_add(lower_force_3, lower_joint_15 * lower_force_2));
     let lower_effort_4 = ((-lower_joint_25)
-        .mul_add(
-            lower_force_6,
-            lower_joint_19.mul_add(lower_force_5, lower_joint_13 * lower_force_4),
-        ))
+        .mul_add(lower_force_6, lower_joint_19.mul_add(lower_force_5, lower_joint_13 * lower_force_4)))
         .mul_add(n(0.6), lower_effort);
     let lower_effort_5 = (-((-lower_joint_23)
-        .mul_add(
-            lower_force_6,
-            (-lower_joint_17).mul_add(lower_force_5, lower_joint_11 * lower_force_4),
-        )))
+        .mul_add(lower_force_6, (-lower_joint_17).mul_add(lower_force_5, lower_joint_11 * lower_force_4))))
         .mul_add(n(0.6), lower_effort_2);
     // lower: composite inertia (45 additions, 90 multiplications)
     let lower_composite_inertia = lower_joint_11 * n(0.0825);
@@ -199,229 +155,114 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_composite_inertia_3 = lower_joint_22 * n(0.02);
     let lower_composite_inertia_4 = lower_joint_16 * n(0.5);
     let lower_composite_inertia_5 = lower_joint_11 * n(0.25);
-    let lower_composite_inertia_6 = lower_joint_23
-        .mul_add(
-            lower_composite_inertia_3,
-            lower_joint_17
-                .mul_add(
-                    lower_composite_inertia_2,
-                    lower_joint_11 * lower_composite_inertia,
-                ),
-        );
-    let lower_composite_inertia_7 = (-lower_joint_19)
-        .mul_add(
-            lower_composite_inertia_2,
-            lower_joint_25
-                .mul_add(
-                    lower_composite_inertia_3,
-                    lower_joint_13 * lower_composite_inertia,
-                ),
-        );
-    let lower_composite_inertia_8 = (-lower_joint_27)
-        .mul_add(
-            lower_composite_inertia_3,
-            (-lower_joint_21)
-                .mul_add(
-                    lower_composite_inertia_2,
-                    lower_joint_15 * lower_composite_inertia,
-                ),
-        );
+    let lower_composite_inertia_6 = lower_joint_23.mul_add(
+        lower_composite_inertia_3,
+        lower_joint_17.mul_add(lower_composite_inertia_2, lower_joint_11 * lower_composite_inertia),
+    );
+    let lower_composite_inertia_7 = (-lower_joint_19).mul_add(
+        lower_composite_inertia_2,
+        lower_joint_25.mul_add(lower_composite_inertia_3, lower_joint_13 * lower_composite_inertia),
+    );
+    let lower_composite_inertia_8 = (-lower_joint_27).mul_add(
+        lower_composite_inertia_3,
+        (-lower_joint_21).mul_add(lower_composite_inertia_2, lower_joint_15 * lower_composite_inertia),
+    );
     let lower_composite_inertia_9 = lower_joint_12 * n(0.165);
     let lower_composite_inertia_10 = lower_joint_19 * n(0.0825);
     let lower_composite_inertia_11 = lower_joint_24 * n(0.02);
     let lower_composite_inertia_12 = lower_joint_19 * n(0.25);
     let lower_composite_inertia_13 = lower_joint_12 * n(0.5);
-    let lower_composite_inertia_14 = lower_joint_25
-        .mul_add(
-            lower_composite_inertia_11,
-            lower_joint_19
-                .mul_add(
-                    lower_composite_inertia_10,
-                    lower_joint_13 * lower_composite_inertia_9,
-                ),
-        );
-    let lower_composite_inertia_15 = (-lower_joint_27)
-        .mul_add(
-            lower_composite_inertia_11,
-            lower_joint_21
-                .mul_add(
-                    lower_composite_inertia_10,
-                    lower_joint_15 * lower_composite_inertia_9,
-                ),
-        );
+    let lower_composite_inertia_14 = lower_joint_25.mul_add(
+        lower_composite_inertia_11,
+        lower_joint_19.mul_add(lower_composite_inertia_10, lower_joint_13 * lower_composite_inertia_9),
+    );
+    let lower_composite_inertia_15 = (-lower_joint_27).mul_add(
+        lower_composite_inertia_11,
+        lower_joint_21.mul_add(lower_composite_inertia_10, lower_joint_15 * lower_composite_inertia_9),
+    );
     let lower_composite_inertia_16 = (-((-lower_joint_19)
-        .mul_add(
-            lower_composite_inertia_13,
-            lower_joint_13 * lower_composite_inertia_12,
-        )))
+        .mul_add(lower_composite_inertia_13, lower_joint_13 * lower_composite_inertia_12)))
         .mul_add(
             n(0.6),
-            (-lower_joint_17)
-                .mul_add(
-                    lower_composite_inertia_10,
-                    lower_joint_23
-                        .mul_add(
-                            lower_composite_inertia_11,
-                            lower_joint_11 * lower_composite_inertia_9,
-                        ),
-                ),
+            (-lower_joint_17).mul_add(
+                lower_composite_inertia_10,
+                lower_joint_23.mul_add(lower_composite_inertia_11, lower_joint_11 * lower_composite_inertia_9),
+            ),
         );
     let lower_composite_inertia_17 = lower_joint_14 * n(0.165);
     let lower_composite_inertia_18 = lower_joint_20 * n(0.165);
     let lower_composite_inertia_19 = lower_joint_27 * n(0.01);
     let lower_composite_inertia_20 = lower_joint_20 * n(0.5);
     let lower_composite_inertia_21 = lower_joint_14 * n(0.5);
-    let lower_composite_inertia_22 = lower_joint_27
-        .mul_add(
-            lower_composite_inertia_19,
-            lower_joint_21
-                .mul_add(
-                    lower_composite_inertia_18,
-                    lower_joint_15 * lower_composite_inertia_17,
-                ),
-        );
+    let lower_composite_inertia_22 = lower_joint_27.mul_add(
+        lower_composite_inertia_19,
+        lower_joint_21.mul_add(lower_composite_inertia_18, lower_joint_15 * lower_composite_inertia_17),
+    );
     let lower_composite_inertia_23 = (-((-lower_joint_19)
-        .mul_add(
-            lower_composite_inertia_21,
-            lower_joint_13 * lower_composite_inertia_20,
-        )))
+        .mul_add(lower_composite_inertia_21, lower_joint_13 * lower_composite_inertia_20)))
         .mul_add(
             n(0.6),
-            (-lower_joint_23)
-                .mul_add(
-                    lower_composite_inertia_19,
-                    (-lower_joint_17)
-                        .mul_add(
-                            lower_composite_inertia_18,
-                            lower_joint_11 * lower_composite_inertia_17,
-                        ),
-                ),
+            (-lower_joint_23).mul_add(
+                lower_composite_inertia_19,
+                (-lower_joint_17).mul_add(lower_composite_inertia_18, lower_joint_11 * lower_composite_inertia_17),
+            ),
         );
-    let lower_composite_inertia_24 = (-lower_joint_25)
-        .mul_add(
-            lower_composite_inertia_19,
-            (lower_joint_17
-                .mul_add(
-                    lower_composite_inertia_21,
-                    lower_joint_11 * lower_composite_inertia_20,
-                ))
-                .mul_add(
-                    n(0.6),
-                    lower_joint_19
-                        .mul_add(
-                            lower_composite_inertia_18,
-                            lower_joint_13 * lower_composite_inertia_17,
-                        ),
-                ),
-        );
+    let lower_composite_inertia_24 = (-lower_joint_25).mul_add(
+        lower_composite_inertia_19,
+        (lower_joint_17.mul_add(lower_composite_inertia_21, lower_joint_11 * lower_composite_inertia_20)).mul_add(
+            n(0.6),
+            lower_joint_19.mul_add(lower_composite_inertia_18, lower_joint_13 * lower_composite_inertia_17),
+        ),
+    );
     let lower_composite_inertia_25 = lower_joint_11 * n(0.005);
     let lower_composite_inertia_26 = lower_joint_12 * n(0.01);
     let lower_composite_inertia_27 = lower_joint_16 * n(0.01);
     let lower_composite_inertia_28 = lower_joint_19 * n(0.005);
     let lower_composite_inertia_29 = lower_joint_22 * n(0.155);
     let lower_composite_inertia_30 = lower_joint_24 * n(0.155);
-    let lower_composite_inertia_31 = lower_joint_27
-        .mul_add(
-            lower_joint_27 * n(0.0775),
-            lower_joint_21
-                .mul_add(
-                    lower_joint_20 * n(0.01),
-                    lower_joint_15 * (lower_joint_14 * n(0.01)),
-                ),
-        );
-    let lower_composite_inertia_32 = (-lower_joint_27)
-        .mul_add(
-            lower_composite_inertia_29,
-            (-lower_joint_21)
-                .mul_add(
-                    lower_composite_inertia_27,
-                    lower_joint_22
-                        .mul_add(n(0.3), lower_joint_15 * lower_composite_inertia_25),
-                ),
-        );
-    let lower_composite_inertia_33 = (-lower_joint_27)
-        .mul_add(
-            lower_composite_inertia_30,
-            lower_joint_24
-                .mul_add(
-                    n(0.3),
-                    lower_joint_21
-                        .mul_add(
-                            lower_composite_inertia_28,
-                            lower_joint_15 * lower_composite_inertia_26,
-                        ),
-                ),
-        );
+    let lower_composite_inertia_31 = lower_joint_27.mul_add(
+        lower_joint_27 * n(0.0775),
+        lower_joint_21.mul_add(lower_joint_20 * n(0.01), lower_joint_15 * (lower_joint_14 * n(0.01))),
+    );
+    let lower_composite_inertia_32 = (-lower_joint_27).mul_add(
+        lower_composite_inertia_29,
+        (-lower_joint_21).mul_add(
+            lower_composite_inertia_27,
+            lower_joint_22.mul_add(n(0.3), lower_joint_15 * lower_composite_inertia_25),
+        ),
+    );
+    let lower_composite_inertia_33 = (-lower_joint_27).mul_add(
+        lower_composite_inertia_30,
+        lower_joint_24.mul_add(
+            n(0.3),
+            lower_joint_21.mul_add(lower_composite_inertia_28, lower_joint_15 * lower_composite_inertia_26),
+        ),
+    );
     // upper: composite inertia (7 additions)
-    let upper_composite_inertia = lower_joint_23
-        .mul_add(
-            lower_composite_inertia_29,
-            lower_joint_17
-                .mul_add(
-                    lower_composite_inertia_27,
-                    lower_joint_11.mul_add(lower_composite_inertia_25, n(0.035)),
-                ),
-        );
-    let upper_composite_inertia_2 = lower_joint_25
-        .mul_add(
-            lower_composite_inertia_30,
-            lower_joint_19
-                .mul_add(
-                    lower_composite_inertia_28,
-                    lower_joint_13
-                        .mul_add(lower_composite_inertia_26, n(0.005000000000000003)),
-                ),
-        );
-    let upper_composite_inertia_3 = (-lower_joint_27)
-        .mul_add(n(0.3), lower_composite_inertia_31 + n(0.585));
+    let upper_composite_inertia = lower_joint_23.mul_add(
+        lower_composite_inertia_29,
+        lower_joint_17.mul_add(lower_composite_inertia_27, lower_joint_11.mul_add(lower_composite_inertia_25, n(0.035))),
+    );
+    let upper_composite_inertia_2 = lower_joint_25.mul_add(
+        lower_composite_inertia_30,
+        lower_joint_19.mul_add(
+            lower_composite_inertia_28,
+            lower_joint_13.mul_add(lower_composite_inertia_26, n(0.005000000000000003)),
+        ),
+    );
+    let upper_composite_inertia_3 = (-lower_joint_27).mul_add(n(0.3), lower_composite_inertia_31 + n(0.585));
     // upper: spring (37 additions, 54 multiplications, 2 function calls)
     let upper_spring = T::rotation_vector(
         &::hamel::nalgebra::Matrix3::new(
-            (-q[6])
-                .mul_add(
-                    n(0.09916874752156282),
-                    q[3].mul_add(n(0.009958402715808244), q[0] * n(0.9950207986420959)),
-                ),
-            (-q[7])
-                .mul_add(
-                    n(0.09916874752156282),
-                    q[4].mul_add(n(0.009958402715808244), q[1] * n(0.9950207986420959)),
-                ),
-            (-q[8])
-                .mul_add(
-                    n(0.09916874752156282),
-                    q[5].mul_add(n(0.009958402715808244), q[2] * n(0.9950207986420959)),
-                ),
-            q[6]
-                .mul_add(
-                    n(0.19833749504312564),
-                    q[3].mul_add(n(0.9800831945683836), q[0] * n(0.009958402715808244)),
-                ),
-            q[7]
-                .mul_add(
-                    n(0.19833749504312564),
-                    q[4].mul_add(n(0.9800831945683836), q[1] * n(0.009958402715808244)),
-                ),
-            q[8]
-                .mul_add(
-                    n(0.19833749504312564),
-                    q[5].mul_add(n(0.9800831945683836), q[2] * n(0.009958402715808244)),
-                ),
-            (-q[3])
-                .mul_add(
-                    n(0.19833749504312564),
-                    q[6].mul_add(n(0.9751039932104794), q[0] * n(0.09916874752156282)),
-                ),
-            (-q[4])
-                .mul_add(
-                    n(0.19833749504312564),
-                    q[7].mul_add(n(0.9751039932104794), q[1] * n(0.09916874752156282)),
-                ),
-            (-q[5])
-                .mul_add(
-                    n(0.19833749504312564),
-                    q[8].mul_add(n(0.9751039932104794), q[2] * n(0.09916874752156282)),
-                ),
+            (-q[6]).mul_add(n(0.09916874752156282), q[3].mul_add(n(0.009958402715808244), q[0] * n(0.9950207986420959))),
+            (-q[7]).mul_add(n(0.09916874752156282), q[4].mul_add(n(0.009958402715808244), q[1] * n(0.9950207986420959))),
+            (-q[8]).mul_add(n(0.09916874752156282), q[5].mul_add(n(0.009958402715808244), q[2] * n(0.9950207986420959))),
+            q[6].mul_add(n(0.19833749504312564), q[3].mul_add(n(0.9800831945683836), q[0] * n(0.009958402715808244))),
+            q[7].mul_add(n(0.19833749504312564), q[4].mul_add(n(0.9800831945683836), q[1] * n(0.009958402715808244))),
+            q[8].mul_add(n(0.19833749504312564), q[5].mul_add(n(0.9800831945683836), q[2] * n(0.009958402715808244))),
+            (-q[3]).mul_add(n(0.19833749504312564), q[6].mul_add(n(0.9751039932104794), q[0] * n(0.09916874752156282))),
+            (-q[4]).mul_add(n(0.19833749504312564), q[7].mul_add(n(0.9751039932104794), q[1] * n(0.09916874752156282))),
+            (-q[5]).mul_add(n(0.19833749504312564), q[8].mul_add(n(0.9751039932104794), q[2] * n(0.09916874752156282))),
         ),
     );
     let upper_spring_2 = upper_spring[0] * n(30.0);
@@ -436,53 +277,35 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let upper_spring_11 = upper_spring_9 * (upper_spring[0] * upper_spring[1]);
     let upper_spring_12 = upper_spring[1] * n(0.5);
     let upper_spring_13 = upper_spring_9 * (upper_spring[0] * upper_spring[2]);
-    let upper_spring_14 = (-upper_spring_3)
-        .mul_add(
-            upper_spring_10 + upper_spring_11,
-            upper_spring_2
-                * (upper_spring_9.mul_add(upper_spring_6 + upper_spring_8, -n(1.0))),
-        );
+    let upper_spring_14 = (-upper_spring_3).mul_add(
+        upper_spring_10 + upper_spring_11,
+        upper_spring_2 * (upper_spring_9.mul_add(upper_spring_6 + upper_spring_8, -n(1.0))),
+    );
     let upper_spring_15 = upper_spring[0] * n(0.5);
     let upper_spring_16 = upper_spring_9 * (upper_spring[1] * upper_spring[2]);
-    let upper_spring_17 = upper_spring_3
-        .mul_add(
-            upper_spring_9.mul_add(upper_spring_5 + upper_spring_8, -n(1.0)),
-            upper_spring_2 * (upper_spring_10 - upper_spring_11),
-        );
-    let upper_spring_18 = (-upper_spring_4)
-        .mul_add(
-            upper_spring_7.mul_add(upper_spring_9, -n(1.0)),
-            (-upper_spring_3)
-                .mul_add(
-                    upper_spring_15 - upper_spring_16,
-                    upper_spring_2 * (upper_spring_12 + upper_spring_13),
-                ),
-        );
+    let upper_spring_17 = upper_spring_3.mul_add(
+        upper_spring_9.mul_add(upper_spring_5 + upper_spring_8, -n(1.0)),
+        upper_spring_2 * (upper_spring_10 - upper_spring_11),
+    );
+    let upper_spring_18 = (-upper_spring_4).mul_add(
+        upper_spring_7.mul_add(upper_spring_9, -n(1.0)),
+        (-upper_spring_3).mul_add(upper_spring_15 - upper_spring_16, upper_spring_2 * (upper_spring_12 + upper_spring_13)),
+    );
     // upper: effort (6 additions)
-    let upper_effort = (-q[7])
-        .mul_add(
-            n(11.772),
-            (-upper_acceleration_2)
-                .mul_add(
-                    n(0.06),
-                    upper_spring_4
-                        .mul_add(
-                            upper_spring_12 - upper_spring_13,
-                            upper_acceleration_4
-                                .mul_add(n(0.58), upper_spring_14 + tau[0] - lower_effort_4),
-                        ),
-                ),
-        );
-    let upper_effort_2 = (-upper_acceleration_4)
-        .mul_add(
+    let upper_effort = (-q[7]).mul_add(
+        n(11.772),
+        (-upper_acceleration_2).mul_add(
             n(0.06),
-            q[7]
-                .mul_add(
-                    n(1.9620000000000002),
-                    upper_acceleration_2
-                        .mul_add(n(0.03), lower_effort_3 + upper_spring_18 - tau[2]),
-                ),
-        );
+            upper_spring_4.mul_add(
+                upper_spring_12 - upper_spring_13,
+                upper_acceleration_4.mul_add(n(0.58), upper_spring_14 + tau[0] - lower_effort_4),
+            ),
+        ),
+    );
+    let upper_effort_2 = (-upper_acceleration_4).mul_add(
+        n(0.06),
+        q[7].mul_add(n(1.9620000000000002), upper_acceleration_2.mul_add(n(0.03), lower_effort_3 + upper_spring_18 - tau[2])),
+    );
     // lower: spring (50 additions, 70 multiplications, 2 function calls)
     let lower_spring = T::quaternion_vector([q[9], q[10], q[11], q[12]]);
     let lower_spring_2 = lower_spring[0] * n(15.0);
@@ -493,197 +316,107 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_spring_7 = lower_spring_6 + lower_spring_6 - n(1.0);
     let lower_spring_8 = lower_joint + lower_spring_5;
     let lower_spring_9 = lower_spring_8 + lower_spring_8 - n(1.0);
-    let lower_spring_10 = lower_joint_17
-        .mul_add(lower_spring[2], lower_joint_23 * lower_spring[1]);
-    let lower_spring_11 = (-lower_joint_23)
-        .mul_add(lower_spring[0], lower_spring[2] * lower_spring_7);
-    let lower_spring_12 = lower_spring[1]
-        .mul_add(lower_spring_7, lower_joint_17 * lower_spring[0]);
+    let lower_spring_10 = lower_joint_17.mul_add(lower_spring[2], lower_joint_23 * lower_spring[1]);
+    let lower_spring_11 = (-lower_joint_23).mul_add(lower_spring[0], lower_spring[2] * lower_spring_7);
+    let lower_spring_12 = lower_spring[1].mul_add(lower_spring_7, lower_joint_17 * lower_spring[0]);
     let lower_spring_13 = (lower_spring[2]
-        .mul_add(
-            lower_spring[2],
-            lower_spring[1].mul_add(lower_spring[1], lower_spring[0] * lower_spring[0]),
-        ))
+        .mul_add(lower_spring[2], lower_spring[1].mul_add(lower_spring[1], lower_spring[0] * lower_spring[0])))
         .dexp_inverse(0);
-    let lower_spring_14 = (-lower_spring_13)
-        .mul_add(
-            lower_spring[2].mul_add(lower_spring_11, lower_spring[1] * lower_spring_12),
-            lower_spring_10.mul_add(n(0.5), lower_spring_7),
-        );
-    let lower_spring_15 = (-lower_spring_13)
-        .mul_add(
-            lower_spring[0].mul_add(lower_spring_12, lower_spring[2] * lower_spring_10),
-            (-lower_spring_11).mul_add(n(0.5), lower_joint_17),
-        );
-    let lower_spring_16 = (-lower_spring_12)
-        .mul_add(
-            n(0.5),
-            lower_spring_13
-                .mul_add(
-                    (-lower_spring[1])
-                        .mul_add(lower_spring_10, lower_spring[0] * lower_spring_11),
-                    lower_joint_23,
-                ),
-        );
-    let lower_spring_17 = lower_spring[2]
-        .mul_add(lower_spring_9, lower_joint_25 * lower_spring[1]);
-    let lower_spring_18 = lower_joint_25
-        .mul_add(lower_spring[0], lower_joint_13 * lower_spring[2]);
-    let lower_spring_19 = (-lower_joint_13)
-        .mul_add(lower_spring[1], lower_spring[0] * lower_spring_9);
-    let lower_spring_20 = (-lower_spring_17)
-        .mul_add(
-            n(0.5),
-            lower_spring_13
-                .mul_add(
-                    (-lower_spring[2])
-                        .mul_add(lower_spring_18, lower_spring[1] * lower_spring_19),
-                    lower_joint_13,
-                ),
-        );
-    let lower_spring_21 = (-lower_spring_13)
-        .mul_add(
-            lower_spring[0].mul_add(lower_spring_19, lower_spring[2] * lower_spring_17),
-            lower_spring_18.mul_add(n(0.5), lower_spring_9),
-        );
-    let lower_spring_22 = (-lower_spring_13)
-        .mul_add(
-            lower_spring[1].mul_add(lower_spring_17, lower_spring[0] * lower_spring_18),
-            (-lower_spring_19).mul_add(n(0.5), lower_joint_25),
-        );
-    let lower_spring_23 = lower_joint_21
-        .mul_add(lower_spring[2], lower_joint_27 * lower_spring[1]);
-    let lower_spring_24 = (-lower_joint_27)
-        .mul_add(lower_spring[0], lower_joint_15 * lower_spring[2]);
-    let lower_spring_25 = lower_joint_15
-        .mul_add(lower_spring[1], lower_joint_21 * lower_spring[0]);
-    let lower_spring_26 = (-lower_spring_13)
-        .mul_add(
-            lower_spring[2].mul_add(lower_spring_24, lower_spring[1] * lower_spring_25),
-            lower_spring_23.mul_add(n(0.5), lower_joint_15),
-        );
-    let lower_spring_27 = (-lower_spring_13)
-        .mul_add(
-            lower_spring[0].mul_add(lower_spring_25, lower_spring[2] * lower_spring_23),
-            (-lower_spring_24).mul_add(n(0.5), lower_joint_21),
-        );
-    let lower_spring_28 = (-lower_spring_25)
-        .mul_add(
-            n(0.5),
-            lower_spring_13
-                .mul_add(
-                    (-lower_spring[1])
-                        .mul_add(lower_spring_23, lower_spring[0] * lower_spring_24),
-                    lower_joint_27,
-                ),
-        );
+    let lower_spring_14 = (-lower_spring_13).mul_add(
+        lower_spring[2].mul_add(lower_spring_11, lower_spring[1] * lower_spring_12),
+        lower_spring_10.mul_add(n(0.5), lower_spring_7),
+    );
+    let lower_spring_15 = (-lower_spring_13).mul_add(
+        lower_spring[0].mul_add(lower_spring_12, lower_spring[2] * lower_spring_10),
+        (-lower_spring_11).mul_add(n(0.5), lower_joint_17),
+    );
+    let lower_spring_16 = (-lower_spring_12).mul_add(
+        n(0.5),
+        lower_spring_13.mul_add((-lower_spring[1]).mul_add(lower_spring_10, lower_spring[0] * lower_spring_11), lower_joint_23),
+    );
+    let lower_spring_17 = lower_spring[2].mul_add(lower_spring_9, lower_joint_25 * lower_spring[1]);
+    let lower_spring_18 = lower_joint_25.mul_add(lower_spring[0], lower_joint_13 * lower_spring[2]);
+    let lower_spring_19 = (-lower_joint_13).mul_add(lower_spring[1], lower_spring[0] * lower_spring_9);
+    let lower_spring_20 = (-lower_spring_17).mul_add(
+        n(0.5),
+        lower_spring_13.mul_add((-lower_spring[2]).mul_add(lower_spring_18, lower_spring[1] * lower_spring_19), lower_joint_13),
+    );
+    let lower_spring_21 = (-lower_spring_13).mul_add(
+        lower_spring[0].mul_add(lower_spring_19, lower_spring[2] * lower_spring_17),
+        lower_spring_18.mul_add(n(0.5), lower_spring_9),
+    );
+    let lower_spring_22 = (-lower_spring_13).mul_add(
+        lower_spring[1].mul_add(lower_spring_17, lower_spring[0] * lower_spring_18),
+        (-lower_spring_19).mul_add(n(0.5), lower_joint_25),
+    );
+    let lower_spring_23 = lower_joint_21.mul_add(lower_spring[2], lower_joint_27 * lower_spring[1]);
+    let lower_spring_24 = (-lower_joint_27).mul_add(lower_spring[0], lower_joint_15 * lower_spring[2]);
+    let lower_spring_25 = lower_joint_15.mul_add(lower_spring[1], lower_joint_21 * lower_spring[0]);
+    let lower_spring_26 = (-lower_spring_13).mul_add(
+        lower_spring[2].mul_add(lower_spring_24, lower_spring[1] * lower_spring_25),
+        lower_spring_23.mul_add(n(0.5), lower_joint_15),
+    );
+    let lower_spring_27 = (-lower_spring_13).mul_add(
+        lower_spring[0].mul_add(lower_spring_25, lower_spring[2] * lower_spring_23),
+        (-lower_spring_24).mul_add(n(0.5), lower_joint_21),
+    );
+    let lower_spring_28 = (-lower_spring_25).mul_add(
+        n(0.5),
+        lower_spring_13.mul_add((-lower_spring[1]).mul_add(lower_spring_23, lower_spring[0] * lower_spring_24), lower_joint_27),
+    );
     // lower: effort (9 additions, 3 multiplications)
-    let lower_effort_6 = (-lower_spring_3)
-        .mul_add(
-            lower_spring_15,
-            v[3]
-                .mul_add(
-                    n(0.1),
-                    lower_spring_4
-                        .mul_add(
-                            lower_spring_16,
-                            lower_spring_2.mul_add(lower_spring_14, -tau[3]),
-                        ),
-                ),
-        );
-    let lower_effort_7 = (-lower_spring_4)
-        .mul_add(
-            lower_spring_22,
-            v[4]
-                .mul_add(
-                    n(0.1),
-                    lower_spring_3
-                        .mul_add(
-                            lower_spring_21,
-                            lower_spring_2.mul_add(lower_spring_20, -tau[4]),
-                        ),
-                ),
-        );
-    let lower_effort_8 = (-v[5])
-        .mul_add(
-            n(0.1),
-            (-lower_spring_3)
-                .mul_add(
-                    lower_spring_27,
-                    lower_spring_4
-                        .mul_add(
-                            lower_spring_28,
-                            lower_spring_2.mul_add(lower_spring_26, tau[5]),
-                        ),
-                ),
-        );
+    let lower_effort_6 = (-lower_spring_3).mul_add(
+        lower_spring_15,
+        v[3].mul_add(n(0.1), lower_spring_4.mul_add(lower_spring_16, lower_spring_2.mul_add(lower_spring_14, -tau[3]))),
+    );
+    let lower_effort_7 = (-lower_spring_4).mul_add(
+        lower_spring_22,
+        v[4].mul_add(n(0.1), lower_spring_3.mul_add(lower_spring_21, lower_spring_2.mul_add(lower_spring_20, -tau[4]))),
+    );
+    let lower_effort_8 = (-v[5]).mul_add(
+        n(0.1),
+        (-lower_spring_3).mul_add(
+            lower_spring_27,
+            lower_spring_4.mul_add(lower_spring_28, lower_spring_2.mul_add(lower_spring_26, tau[5])),
+        ),
+    );
     let lower_effort_9 = lower_effort_3 - lower_effort_8;
     // lower: factor (31 additions, 43 multiplications, 3 divisions)
     let lower_factor = n(1.0) / lower_composite_inertia_22;
     let lower_factor_2 = lower_composite_inertia_15 * lower_factor;
-    let lower_factor_3 = (-lower_composite_inertia_8)
-        .mul_add(lower_factor_2, lower_composite_inertia_7);
-    let lower_factor_4 = (-lower_composite_inertia_22)
-        .mul_add(lower_factor_2, lower_composite_inertia_15);
-    let lower_factor_5 = (-lower_composite_inertia_24)
-        .mul_add(
-            lower_factor_2,
-            (lower_joint_17
-                .mul_add(
-                    lower_composite_inertia_13,
-                    lower_joint_11 * lower_composite_inertia_12,
-                ))
-                .mul_add(n(0.6), lower_composite_inertia_14),
-        );
-    let lower_factor_6 = (-lower_composite_inertia_23)
-        .mul_add(lower_factor_2, lower_composite_inertia_16);
+    let lower_factor_3 = (-lower_composite_inertia_8).mul_add(lower_factor_2, lower_composite_inertia_7);
+    let lower_factor_4 = (-lower_composite_inertia_22).mul_add(lower_factor_2, lower_composite_inertia_15);
+    let lower_factor_5 = (-lower_composite_inertia_24).mul_add(
+        lower_factor_2,
+        (lower_joint_17.mul_add(lower_composite_inertia_13, lower_joint_11 * lower_composite_inertia_12))
+            .mul_add(n(0.6), lower_composite_inertia_14),
+    );
+    let lower_factor_6 = (-lower_composite_inertia_23).mul_add(lower_factor_2, lower_composite_inertia_16);
     let lower_factor_7 = lower_composite_inertia_8 * lower_factor;
-    let lower_factor_8 = (-lower_composite_inertia_24)
-        .mul_add(
-            lower_factor_7,
-            (-((-lower_joint_17)
-                .mul_add(
-                    lower_composite_inertia_5,
-                    lower_joint_11 * lower_composite_inertia_4,
-                )))
-                .mul_add(n(0.6), lower_composite_inertia_7),
-        );
-    let lower_factor_9 = (-lower_composite_inertia_23)
-        .mul_add(
-            lower_factor_7,
-            (lower_joint_19
-                .mul_add(
-                    lower_composite_inertia_5,
-                    lower_joint_13 * lower_composite_inertia_4,
-                ))
-                .mul_add(n(0.6), lower_composite_inertia_6),
-        );
+    let lower_factor_8 = (-lower_composite_inertia_24).mul_add(
+        lower_factor_7,
+        (-((-lower_joint_17).mul_add(lower_composite_inertia_5, lower_joint_11 * lower_composite_inertia_4)))
+            .mul_add(n(0.6), lower_composite_inertia_7),
+    );
+    let lower_factor_9 = (-lower_composite_inertia_23).mul_add(
+        lower_factor_7,
+        (lower_joint_19.mul_add(lower_composite_inertia_5, lower_joint_13 * lower_composite_inertia_4))
+            .mul_add(n(0.6), lower_composite_inertia_6),
+    );
     let lower_factor_10 = lower_composite_inertia_22 * lower_factor;
     let lower_factor_11 = lower_composite_inertia_24 * lower_factor;
-    let lower_factor_12 = (-lower_joint_19)
-        .mul_add(
-            lower_composite_inertia_27,
-            lower_composite_inertia_23
-                .mul_add(
-                    lower_factor_11,
-                    lower_joint_25
-                        .mul_add(
-                            lower_composite_inertia_29,
-                            lower_joint_13 * lower_composite_inertia_25,
-                        ),
-                ),
-        );
+    let lower_factor_12 = (-lower_joint_19).mul_add(
+        lower_composite_inertia_27,
+        lower_composite_inertia_23.mul_add(
+            lower_factor_11,
+            lower_joint_25.mul_add(lower_composite_inertia_29, lower_joint_13 * lower_composite_inertia_25),
+        ),
+    );
     let lower_factor_13 = lower_composite_inertia_23 * lower_factor;
-    let lower_factor_14 = n(1.0)
-        / ((-lower_composite_inertia_15)
-            .mul_add(lower_factor_2, lower_composite_inertia_14));
+    let lower_factor_14 = n(1.0) / ((-lower_composite_inertia_15).mul_add(lower_factor_2, lower_composite_inertia_14));
     let lower_factor_15 = lower_factor_3 * lower_factor_14;
     let lower_factor_16 = (-lower_factor_4)
-        .mul_add(
-            lower_factor_15,
-            (-lower_composite_inertia_22)
-                .mul_add(lower_factor_7, lower_composite_inertia_8),
-        );
+        .mul_add(lower_factor_15, (-lower_composite_inertia_22).mul_add(lower_factor_7, lower_composite_inertia_8));
     let lower_factor_17 = (-lower_factor_5).mul_add(lower_factor_15, lower_factor_8);
     let lower_factor_18 = (-lower_factor_6).mul_add(lower_factor_15, lower_factor_9);
     let lower_factor_19 = lower_factor_4 * lower_factor_14;
@@ -691,197 +424,106 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_factor_21 = lower_factor_6 * lower_factor_14;
     let lower_factor_22 = n(1.0)
         / ((-lower_factor_3)
-            .mul_add(
-                lower_factor_15,
-                (-lower_composite_inertia_8)
-                    .mul_add(lower_factor_7, lower_composite_inertia_6),
-            ));
+            .mul_add(lower_factor_15, (-lower_composite_inertia_8).mul_add(lower_factor_7, lower_composite_inertia_6)));
     let lower_factor_23 = lower_factor_16 * lower_factor_22;
-    let lower_factor_24 = (-lower_factor_16)
-        .mul_add(
-            lower_factor_23,
-            (-lower_factor_4)
-                .mul_add(
-                    lower_factor_19,
-                    (-lower_composite_inertia_22)
-                        .mul_add(
-                            lower_factor_10,
-                            upper_composite_inertia + upper_composite_inertia_2,
-                        ),
-                ),
-        );
-    let lower_factor_25 = lower_factor_17
-        .mul_add(
-            lower_factor_23,
-            lower_factor_5
-                .mul_add(
-                    lower_factor_19,
-                    lower_composite_inertia_24
-                        .mul_add(lower_factor_10, lower_composite_inertia_33),
-                ),
-        );
-    let lower_factor_26 = lower_factor_18
-        .mul_add(
-            lower_factor_23,
-            lower_factor_6
-                .mul_add(
-                    lower_factor_19,
-                    lower_composite_inertia_23
-                        .mul_add(lower_factor_10, lower_composite_inertia_32 - n(0.06)),
-                ),
-        );
+    let lower_factor_24 = (-lower_factor_16).mul_add(
+        lower_factor_23,
+        (-lower_factor_4).mul_add(
+            lower_factor_19,
+            (-lower_composite_inertia_22).mul_add(lower_factor_10, upper_composite_inertia + upper_composite_inertia_2),
+        ),
+    );
+    let lower_factor_25 = lower_factor_17.mul_add(
+        lower_factor_23,
+        lower_factor_5
+            .mul_add(lower_factor_19, lower_composite_inertia_24.mul_add(lower_factor_10, lower_composite_inertia_33)),
+    );
+    let lower_factor_26 = lower_factor_18.mul_add(
+        lower_factor_23,
+        lower_factor_6.mul_add(
+            lower_factor_19,
+            lower_composite_inertia_23.mul_add(lower_factor_10, lower_composite_inertia_32 - n(0.06)),
+        ),
+    );
     let lower_factor_27 = lower_factor_17 * lower_factor_22;
-    let lower_factor_28 = (-lower_factor_17)
-        .mul_add(
-            lower_factor_27,
-            (-lower_factor_5)
-                .mul_add(
-                    lower_factor_20,
-                    (-lower_composite_inertia_24)
-                        .mul_add(
-                            lower_factor_11,
-                            upper_composite_inertia + upper_composite_inertia_3,
-                        ),
-                ),
-        );
+    let lower_factor_28 = (-lower_factor_17).mul_add(
+        lower_factor_27,
+        (-lower_factor_5).mul_add(
+            lower_factor_20,
+            (-lower_composite_inertia_24).mul_add(lower_factor_11, upper_composite_inertia + upper_composite_inertia_3),
+        ),
+    );
     let lower_factor_29 = lower_factor_18 * lower_factor_22;
-    let lower_factor_30 = (-lower_factor_18)
-        .mul_add(
-            lower_factor_29,
-            (-lower_factor_6)
-                .mul_add(
-                    lower_factor_21,
-                    (-lower_composite_inertia_23)
-                        .mul_add(
-                            lower_factor_13,
-                            upper_composite_inertia_2 + upper_composite_inertia_3,
-                        ),
-                ),
-        );
+    let lower_factor_30 = (-lower_factor_18).mul_add(
+        lower_factor_29,
+        (-lower_factor_6).mul_add(
+            lower_factor_21,
+            (-lower_composite_inertia_23).mul_add(lower_factor_13, upper_composite_inertia_2 + upper_composite_inertia_3),
+        ),
+    );
     // lower: load (12 additions, 12 multiplications)
-    let lower_load = (-lower_effort_9)
-        .mul_add(lower_factor_2, lower_effort_2 - lower_effort_7);
-    let lower_load_2 = lower_effort_9
-        .mul_add(
-            lower_factor_11,
-            upper_spring_4
-                .mul_add(
-                    upper_spring_15 + upper_spring_16,
-                    upper_force - lower_effort_5 - upper_spring_17 - tau[1],
-                ),
-        );
+    let lower_load = (-lower_effort_9).mul_add(lower_factor_2, lower_effort_2 - lower_effort_7);
+    let lower_load_2 = lower_effort_9.mul_add(
+        lower_factor_11,
+        upper_spring_4.mul_add(upper_spring_15 + upper_spring_16, upper_force - lower_effort_5 - upper_spring_17 - tau[1]),
+    );
     let lower_load_3 = (-lower_factor_15)
-        .mul_add(
-            lower_load,
-            (-lower_effort_9).mul_add(lower_factor_7, lower_effort + lower_effort_6),
-        );
-    let lower_load_4 = (-lower_factor_23)
-        .mul_add(
-            lower_load_3,
-            (-lower_factor_19)
-                .mul_add(
-                    lower_load,
-                    (-lower_effort_9).mul_add(lower_factor_10, upper_effort_2),
-                ),
-        );
+        .mul_add(lower_load, (-lower_effort_9).mul_add(lower_factor_7, lower_effort + lower_effort_6));
+    let lower_load_4 = (-lower_factor_23).mul_add(
+        lower_load_3,
+        (-lower_factor_19).mul_add(lower_load, (-lower_effort_9).mul_add(lower_factor_10, upper_effort_2)),
+    );
     // upper: factor (4 additions, 7 multiplications, 3 divisions)
     let upper_factor = n(1.0) / lower_factor_24;
     let upper_factor_2 = lower_factor_25 * upper_factor;
-    let upper_factor_3 = lower_factor_26
-        .mul_add(
-            upper_factor_2,
-            lower_factor_18
-                .mul_add(
-                    lower_factor_27,
-                    lower_factor_6.mul_add(lower_factor_20, lower_factor_12),
-                ),
-        );
+    let upper_factor_3 = lower_factor_26.mul_add(
+        upper_factor_2,
+        lower_factor_18.mul_add(lower_factor_27, lower_factor_6.mul_add(lower_factor_20, lower_factor_12)),
+    );
     let upper_factor_4 = lower_factor_26 * upper_factor;
-    let upper_factor_5 = n(1.0)
-        / ((-lower_factor_25).mul_add(upper_factor_2, lower_factor_28));
+    let upper_factor_5 = n(1.0) / ((-lower_factor_25).mul_add(upper_factor_2, lower_factor_28));
     let upper_factor_6 = upper_factor_3 * upper_factor_5;
     // upper: load (3 additions, 3 multiplications)
     let upper_load = (-upper_factor_2)
-        .mul_add(
-            lower_load_4,
-            lower_factor_27
-                .mul_add(lower_load_3, lower_factor_20.mul_add(lower_load, lower_load_2)),
-        );
-    let upper_load_2 = (-upper_factor_4)
-        .mul_add(
-            lower_load_4,
-            lower_factor_29
-                .mul_add(
-                    lower_load_3,
-                    lower_factor_21
-                        .mul_add(
-                            lower_load,
-                            lower_effort_9.mul_add(lower_factor_13, upper_effort),
-                        ),
-                ),
-        );
+        .mul_add(lower_load_4, lower_factor_27.mul_add(lower_load_3, lower_factor_20.mul_add(lower_load, lower_load_2)));
+    let upper_load_2 = (-upper_factor_4).mul_add(
+        lower_load_4,
+        lower_factor_29.mul_add(
+            lower_load_3,
+            lower_factor_21.mul_add(lower_load, lower_effort_9.mul_add(lower_factor_13, upper_effort)),
+        ),
+    );
     // upper: response (3 additions, 6 multiplications)
-    let upper_acceleration_5 = (n(1.0)
-        / ((-upper_factor_3)
-            .mul_add(
-                upper_factor_6,
-                (-lower_factor_26).mul_add(upper_factor_4, lower_factor_30),
-            ))) * (upper_factor_6.mul_add(upper_load, upper_load_2));
-    let upper_acceleration_6 = upper_factor_5
-        * (upper_factor_3.mul_add(upper_acceleration_5, upper_load));
+    let upper_acceleration_5 = (n(1.0) / ((-upper_factor_3).mul_add(
+        upper_factor_6,
+        (-lower_factor_26).mul_add(upper_factor_4, lower_factor_30),
+    ))) * (upper_factor_6.mul_add(upper_load, upper_load_2));
+    let upper_acceleration_6 = upper_factor_5 * (upper_factor_3.mul_add(upper_acceleration_5, upper_load));
     let upper_acceleration_7 = upper_factor
-        * ((-lower_factor_26)
-            .mul_add(
-                upper_acceleration_5,
-                (-lower_factor_25).mul_add(upper_acceleration_6, lower_load_4),
-            ));
+        * ((-lower_factor_26).mul_add(upper_acceleration_5, (-lower_factor_25).mul_add(upper_acceleration_6, lower_load_4)));
     // lower: response (12 additions, 15 multiplications)
-    let lower_acceleration_8 = lower_factor_22
-        * ((-lower_factor_16)
-            .mul_add(
-                upper_acceleration_7,
-                lower_factor_18
-                    .mul_add(
-                        upper_acceleration_5,
-                        lower_factor_17.mul_add(upper_acceleration_6, lower_load_3),
-                    ),
-            ));
-    let lower_response = (-lower_factor_6)
-        .mul_add(
-            upper_acceleration_5,
-            (-lower_factor_5)
-                .mul_add(
-                    upper_acceleration_6,
-                    lower_factor_4
-                        .mul_add(
-                            upper_acceleration_7,
-                            lower_factor_3 * lower_acceleration_8,
-                        ),
-                ),
-        );
-    let lower_acceleration_9 = lower_factor_14 * (lower_load - lower_response);
-    let lower_response_2 = (-lower_composite_inertia_24)
-        .mul_add(
-            upper_acceleration_6,
-            lower_composite_inertia_22
-                .mul_add(
-                    upper_acceleration_7,
-                    lower_composite_inertia_8
-                        .mul_add(
-                            lower_acceleration_8,
-                            lower_composite_inertia_15 * lower_acceleration_9,
-                        ),
-                ),
-        );
-    [
+    let lower_acceleration_8 = lower_factor_22 * ((-lower_factor_16).mul_add(
+        upper_acceleration_7,
+        lower_factor_18.mul_add(upper_acceleration_5, lower_factor_17.mul_add(upper_acceleration_6, lower_load_3)),
+    ));
+    let lower_response = (-lower_factor_6).mul_add(
         upper_acceleration_5,
-        -upper_acceleration_6,
-        -upper_acceleration_7,
-        -lower_acceleration_8,
-        lower_acceleration_9,
-        -(lower_factor
-            * (lower_composite_inertia_23
-                .mul_add(upper_acceleration_5, lower_effort_9 - lower_response_2))),
+        (-lower_factor_5).mul_add(
+            upper_acceleration_6,
+            lower_factor_4.mul_add(upper_acceleration_7, lower_factor_3 * lower_acceleration_8),
+        ),
+    );
+    let lower_acceleration_9 = lower_factor_14 * (lower_load - lower_response);
+    let lower_response_2 = (-lower_composite_inertia_24).mul_add(
+        upper_acceleration_6,
+        lower_composite_inertia_22.mul_add(
+            upper_acceleration_7,
+            lower_composite_inertia_8.mul_add(lower_acceleration_8, lower_composite_inertia_15 * lower_acceleration_9),
+        ),
+    );
+    [
+        upper_acceleration_5, -upper_acceleration_6, -upper_acceleration_7, -lower_acceleration_8, lower_acceleration_9,
+        -(lower_factor * (lower_composite_inertia_23.mul_add(upper_acceleration_5, lower_effort_9 - lower_response_2))),
     ]
 }
 
@@ -926,247 +568,138 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_composite_inertia_3 = lower_joint_22 * n(0.02);
     let lower_composite_inertia_4 = lower_joint_16 * n(0.5);
     let lower_composite_inertia_5 = lower_joint_11 * n(0.25);
-    let lower_composite_inertia_6 = lower_joint_23
-        .mul_add(
-            lower_composite_inertia_3,
-            lower_joint_17
-                .mul_add(
-                    lower_composite_inertia_2,
-                    lower_joint_11 * lower_composite_inertia,
-                ),
-        );
-    let lower_composite_inertia_7 = (-lower_joint_19)
-        .mul_add(
-            lower_composite_inertia_2,
-            lower_joint_25
-                .mul_add(
-                    lower_composite_inertia_3,
-                    lower_joint_13 * lower_composite_inertia,
-                ),
-        );
-    let lower_composite_inertia_8 = (-lower_joint_27)
-        .mul_add(
-            lower_composite_inertia_3,
-            (-lower_joint_21)
-                .mul_add(
-                    lower_composite_inertia_2,
-                    lower_joint_15 * lower_composite_inertia,
-                ),
-        );
+    let lower_composite_inertia_6 = lower_joint_23.mul_add(
+        lower_composite_inertia_3,
+        lower_joint_17.mul_add(lower_composite_inertia_2, lower_joint_11 * lower_composite_inertia),
+    );
+    let lower_composite_inertia_7 = (-lower_joint_19).mul_add(
+        lower_composite_inertia_2,
+        lower_joint_25.mul_add(lower_composite_inertia_3, lower_joint_13 * lower_composite_inertia),
+    );
+    let lower_composite_inertia_8 = (-lower_joint_27).mul_add(
+        lower_composite_inertia_3,
+        (-lower_joint_21).mul_add(lower_composite_inertia_2, lower_joint_15 * lower_composite_inertia),
+    );
     let lower_composite_inertia_9 = lower_joint_12 * n(0.165);
     let lower_composite_inertia_10 = lower_joint_19 * n(0.0825);
     let lower_composite_inertia_11 = lower_joint_24 * n(0.02);
     let lower_composite_inertia_12 = lower_joint_19 * n(0.25);
     let lower_composite_inertia_13 = lower_joint_12 * n(0.5);
-    let lower_composite_inertia_14 = lower_joint_25
-        .mul_add(
-            lower_composite_inertia_11,
-            lower_joint_19
-                .mul_add(
-                    lower_composite_inertia_10,
-                    lower_joint_13 * lower_composite_inertia_9,
-                ),
-        );
-    let lower_composite_inertia_15 = (-lower_joint_27)
-        .mul_add(
-            lower_composite_inertia_11,
-            lower_joint_21
-                .mul_add(
-                    lower_composite_inertia_10,
-                    lower_joint_15 * lower_composite_inertia_9,
-                ),
-        );
+    let lower_composite_inertia_14 = lower_joint_25.mul_add(
+        lower_composite_inertia_11,
+        lower_joint_19.mul_add(lower_composite_inertia_10, lower_joint_13 * lower_composite_inertia_9),
+    );
+    let lower_composite_inertia_15 = (-lower_joint_27).mul_add(
+        lower_composite_inertia_11,
+        lower_joint_21.mul_add(lower_composite_inertia_10, lower_joint_15 * lower_composite_inertia_9),
+    );
     let lower_composite_inertia_16 = (-((-lower_joint_19)
-        .mul_add(
-            lower_composite_inertia_13,
-            lower_joint_13 * lower_composite_inertia_12,
-        )))
+        .mul_add(lower_composite_inertia_13, lower_joint_13 * lower_composite_inertia_12)))
         .mul_add(
             n(0.6),
-            (-lower_joint_17)
-                .mul_add(
-                    lower_composite_inertia_10,
-                    lower_joint_23
-                        .mul_add(
-                            lower_composite_inertia_11,
-                            lower_joint_11 * lower_composite_inertia_9,
-                        ),
-                ),
+            (-lower_joint_17).mul_add(
+                lower_composite_inertia_10,
+                lower_joint_23.mul_add(lower_composite_inertia_11, lower_joint_11 * lower_composite_inertia_9),
+            ),
         );
     let lower_composite_inertia_17 = lower_joint_14 * n(0.165);
     let lower_composite_inertia_18 = lower_joint_20 * n(0.165);
     let lower_composite_inertia_19 = lower_joint_27 * n(0.01);
     let lower_composite_inertia_20 = lower_joint_20 * n(0.5);
     let lower_composite_inertia_21 = lower_joint_14 * n(0.5);
-    let lower_composite_inertia_22 = lower_joint_27
-        .mul_add(
-            lower_composite_inertia_19,
-            lower_joint_21
-                .mul_add(
-                    lower_composite_inertia_18,
-                    lower_joint_15 * lower_composite_inertia_17,
-                ),
-        );
+    let lower_composite_inertia_22 = lower_joint_27.mul_add(
+        lower_composite_inertia_19,
+        lower_joint_21.mul_add(lower_composite_inertia_18, lower_joint_15 * lower_composite_inertia_17),
+    );
     let lower_composite_inertia_23 = (-((-lower_joint_19)
-        .mul_add(
-            lower_composite_inertia_21,
-            lower_joint_13 * lower_composite_inertia_20,
-        )))
+        .mul_add(lower_composite_inertia_21, lower_joint_13 * lower_composite_inertia_20)))
         .mul_add(
             n(0.6),
-            (-lower_joint_23)
-                .mul_add(
-                    lower_composite_inertia_19,
-                    (-lower_joint_17)
-                        .mul_add(
-                            lower_composite_inertia_18,
-                            lower_joint_11 * lower_composite_inertia_17,
-                        ),
-                ),
+            (-lower_joint_23).mul_add(
+                lower_composite_inertia_19,
+                (-lower_joint_17).mul_add(lower_composite_inertia_18, lower_joint_11 * lower_composite_inertia_17),
+            ),
         );
-    let lower_composite_inertia_24 = (-lower_joint_25)
-        .mul_add(
-            lower_composite_inertia_19,
-            (lower_joint_17
-                .mul_add(
-                    lower_composite_inertia_21,
-                    lower_joint_11 * lower_composite_inertia_20,
-                ))
-                .mul_add(
-                    n(0.6),
-                    lower_joint_19
-                        .mul_add(
-                            lower_composite_inertia_18,
-                            lower_joint_13 * lower_composite_inertia_17,
-                        ),
-                ),
-        );
+    let lower_composite_inertia_24 = (-lower_joint_25).mul_add(
+        lower_composite_inertia_19,
+        (lower_joint_17.mul_add(lower_composite_inertia_21, lower_joint_11 * lower_composite_inertia_20)).mul_add(
+            n(0.6),
+            lower_joint_19.mul_add(lower_composite_inertia_18, lower_joint_13 * lower_composite_inertia_17),
+        ),
+    );
     let lower_composite_inertia_25 = lower_joint_11 * n(0.005);
     let lower_composite_inertia_26 = lower_joint_12 * n(0.01);
     let lower_composite_inertia_27 = lower_joint_16 * n(0.01);
     let lower_composite_inertia_28 = lower_joint_19 * n(0.005);
     let lower_composite_inertia_29 = lower_joint_22 * n(0.155);
     let lower_composite_inertia_30 = lower_joint_24 * n(0.155);
-    let lower_composite_inertia_31 = lower_joint_27
-        .mul_add(
-            lower_joint_27 * n(0.0775),
-            lower_joint_21
-                .mul_add(
-                    lower_joint_20 * n(0.01),
-                    lower_joint_15 * (lower_joint_14 * n(0.01)),
-                ),
-        );
-    let lower_composite_inertia_32 = (-lower_joint_27)
-        .mul_add(
-            lower_composite_inertia_29,
-            (-lower_joint_21)
-                .mul_add(
-                    lower_composite_inertia_27,
-                    lower_joint_22
-                        .mul_add(n(0.3), lower_joint_15 * lower_composite_inertia_25),
-                ),
-        );
-    let lower_composite_inertia_33 = (-lower_joint_27)
-        .mul_add(
-            lower_composite_inertia_30,
-            lower_joint_24
-                .mul_add(
-                    n(0.3),
-                    lower_joint_21
-                        .mul_add(
-                            lower_composite_inertia_28,
-                            lower_joint_15 * lower_composite_inertia_26,
-                        ),
-                ),
-        );
+    let lower_composite_inertia_31 = lower_joint_27.mul_add(
+        lower_joint_27 * n(0.0775),
+        lower_joint_21.mul_add(lower_joint_20 * n(0.01), lower_joint_15 * (lower_joint_14 * n(0.01))),
+    );
+    let lower_composite_inertia_32 = (-lower_joint_27).mul_add(
+        lower_composite_inertia_29,
+        (-lower_joint_21).mul_add(
+            lower_composite_inertia_27,
+            lower_joint_22.mul_add(n(0.3), lower_joint_15 * lower_composite_inertia_25),
+        ),
+    );
+    let lower_composite_inertia_33 = (-lower_joint_27).mul_add(
+        lower_composite_inertia_30,
+        lower_joint_24.mul_add(
+            n(0.3),
+            lower_joint_21.mul_add(lower_composite_inertia_28, lower_joint_15 * lower_composite_inertia_26),
+        ),
+    );
     // upper: composite inertia (7 additions)
-    let upper_composite_inertia = lower_joint_23
-        .mul_add(
-            lower_composite_inertia_29,
-            lower_joint_17
-                .mul_add(
-                    lower_composite_inertia_27,
-                    lower_joint_11.mul_add(lower_composite_inertia_25, n(0.035)),
-                ),
-        );
-    let upper_composite_inertia_2 = lower_joint_25
-        .mul_add(
-            lower_composite_inertia_30,
-            lower_joint_19
-                .mul_add(
-                    lower_composite_inertia_28,
-                    lower_joint_13
-                        .mul_add(lower_composite_inertia_26, n(0.005000000000000003)),
-                ),
-        );
-    let upper_composite_inertia_3 = (-lower_joint_27)
-        .mul_add(n(0.3), lower_composite_inertia_31 + n(0.585));
+    let upper_composite_inertia = lower_joint_23.mul_add(
+        lower_composite_inertia_29,
+        lower_joint_17.mul_add(lower_composite_inertia_27, lower_joint_11.mul_add(lower_composite_inertia_25, n(0.035))),
+    );
+    let upper_composite_inertia_2 = lower_joint_25.mul_add(
+        lower_composite_inertia_30,
+        lower_joint_19.mul_add(
+            lower_composite_inertia_28,
+            lower_joint_13.mul_add(lower_composite_inertia_26, n(0.005000000000000003)),
+        ),
+    );
+    let upper_composite_inertia_3 = (-lower_joint_27).mul_add(n(0.3), lower_composite_inertia_31 + n(0.585));
     // lower: factor (31 additions, 43 multiplications, 3 divisions)
     let lower_factor = n(1.0) / lower_composite_inertia_22;
     let lower_factor_2 = lower_composite_inertia_15 * lower_factor;
-    let lower_factor_3 = (-lower_composite_inertia_8)
-        .mul_add(lower_factor_2, lower_composite_inertia_7);
-    let lower_factor_4 = (-lower_composite_inertia_22)
-        .mul_add(lower_factor_2, lower_composite_inertia_15);
-    let lower_factor_5 = (-lower_composite_inertia_24)
-        .mul_add(
-            lower_factor_2,
-            (lower_joint_17
-                .mul_add(
-                    lower_composite_inertia_13,
-                    lower_joint_11 * lower_composite_inertia_12,
-                ))
-                .mul_add(n(0.6), lower_composite_inertia_14),
-        );
-    let lower_factor_6 = (-lower_composite_inertia_23)
-        .mul_add(lower_factor_2, lower_composite_inertia_16);
+    let lower_factor_3 = (-lower_composite_inertia_8).mul_add(lower_factor_2, lower_composite_inertia_7);
+    let lower_factor_4 = (-lower_composite_inertia_22).mul_add(lower_factor_2, lower_composite_inertia_15);
+    let lower_factor_5 = (-lower_composite_inertia_24).mul_add(
+        lower_factor_2,
+        (lower_joint_17.mul_add(lower_composite_inertia_13, lower_joint_11 * lower_composite_inertia_12))
+            .mul_add(n(0.6), lower_composite_inertia_14),
+    );
+    let lower_factor_6 = (-lower_composite_inertia_23).mul_add(lower_factor_2, lower_composite_inertia_16);
     let lower_factor_7 = lower_composite_inertia_8 * lower_factor;
-    let lower_factor_8 = (-lower_composite_inertia_24)
-        .mul_add(
-            lower_factor_7,
-            (-((-lower_joint_17)
-                .mul_add(
-                    lower_composite_inertia_5,
-                    lower_joint_11 * lower_composite_inertia_4,
-                )))
-                .mul_add(n(0.6), lower_composite_inertia_7),
-        );
-    let lower_factor_9 = (-lower_composite_inertia_23)
-        .mul_add(
-            lower_factor_7,
-            (lower_joint_19
-                .mul_add(
-                    lower_composite_inertia_5,
-                    lower_joint_13 * lower_composite_inertia_4,
-                ))
-                .mul_add(n(0.6), lower_composite_inertia_6),
-        );
+    let lower_factor_8 = (-lower_composite_inertia_24).mul_add(
+        lower_factor_7,
+        (-((-lower_joint_17).mul_add(lower_composite_inertia_5, lower_joint_11 * lower_composite_inertia_4)))
+            .mul_add(n(0.6), lower_composite_inertia_7),
+    );
+    let lower_factor_9 = (-lower_composite_inertia_23).mul_add(
+        lower_factor_7,
+        (lower_joint_19.mul_add(lower_composite_inertia_5, lower_joint_13 * lower_composite_inertia_4))
+            .mul_add(n(0.6), lower_composite_inertia_6),
+    );
     let lower_factor_10 = lower_composite_inertia_22 * lower_factor;
     let lower_factor_11 = lower_composite_inertia_24 * lower_factor;
-    let lower_factor_12 = (-lower_joint_19)
-        .mul_add(
-            lower_composite_inertia_27,
-            lower_composite_inertia_23
-                .mul_add(
-                    lower_factor_11,
-                    lower_joint_25
-                        .mul_add(
-                            lower_composite_inertia_29,
-                            lower_joint_13 * lower_composite_inertia_25,
-                        ),
-                ),
-        );
+    let lower_factor_12 = (-lower_joint_19).mul_add(
+        lower_composite_inertia_27,
+        lower_composite_inertia_23.mul_add(
+            lower_factor_11,
+            lower_joint_25.mul_add(lower_composite_inertia_29, lower_joint_13 * lower_composite_inertia_25),
+        ),
+    );
     let lower_factor_13 = lower_composite_inertia_23 * lower_factor;
-    let lower_factor_14 = n(1.0)
-        / ((-lower_composite_inertia_15)
-            .mul_add(lower_factor_2, lower_composite_inertia_14));
+    let lower_factor_14 = n(1.0) / ((-lower_composite_inertia_15).mul_add(lower_factor_2, lower_composite_inertia_14));
     let lower_factor_15 = lower_factor_3 * lower_factor_14;
     let lower_factor_16 = (-lower_factor_4)
-        .mul_add(
-            lower_factor_15,
-            (-lower_composite_inertia_22)
-                .mul_add(lower_factor_7, lower_composite_inertia_8),
-        );
+        .mul_add(lower_factor_15, (-lower_composite_inertia_22).mul_add(lower_factor_7, lower_composite_inertia_8));
     let lower_factor_17 = (-lower_factor_5).mul_add(lower_factor_15, lower_factor_8);
     let lower_factor_18 = (-lower_factor_6).mul_add(lower_factor_15, lower_factor_9);
     let lower_factor_19 = lower_factor_4 * lower_factor_14;
@@ -1174,252 +707,143 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_factor_21 = lower_factor_6 * lower_factor_14;
     let lower_factor_22 = n(1.0)
         / ((-lower_factor_3)
-            .mul_add(
-                lower_factor_15,
-                (-lower_composite_inertia_8)
-                    .mul_add(lower_factor_7, lower_composite_inertia_6),
-            ));
+            .mul_add(lower_factor_15, (-lower_composite_inertia_8).mul_add(lower_factor_7, lower_composite_inertia_6)));
     let lower_factor_23 = lower_factor_16 * lower_factor_22;
-    let lower_factor_24 = (-lower_factor_16)
-        .mul_add(
-            lower_factor_23,
-            (-lower_factor_4)
-                .mul_add(
-                    lower_factor_19,
-                    (-lower_composite_inertia_22)
-                        .mul_add(
-                            lower_factor_10,
-                            upper_composite_inertia + upper_composite_inertia_2,
-                        ),
-                ),
-        );
-    let lower_factor_25 = lower_factor_17
-        .mul_add(
-            lower_factor_23,
-            lower_factor_5
-                .mul_add(
-                    lower_factor_19,
-                    lower_composite_inertia_24
-                        .mul_add(lower_factor_10, lower_composite_inertia_33),
-                ),
-        );
-    let lower_factor_26 = lower_factor_18
-        .mul_add(
-            lower_factor_23,
-            lower_factor_6
-                .mul_add(
-                    lower_factor_19,
-                    lower_composite_inertia_23
-                        .mul_add(lower_factor_10, lower_composite_inertia_32 - n(0.06)),
-                ),
-        );
+    let lower_factor_24 = (-lower_factor_16).mul_add(
+        lower_factor_23,
+        (-lower_factor_4).mul_add(
+            lower_factor_19,
+            (-lower_composite_inertia_22).mul_add(lower_factor_10, upper_composite_inertia + upper_composite_inertia_2),
+        ),
+    );
+    let lower_factor_25 = lower_factor_17.mul_add(
+        lower_factor_23,
+        lower_factor_5
+            .mul_add(lower_factor_19, lower_composite_inertia_24.mul_add(lower_factor_10, lower_composite_inertia_33)),
+    );
+    let lower_factor_26 = lower_factor_18.mul_add(
+        lower_factor_23,
+        lower_factor_6.mul_add(
+            lower_factor_19,
+            lower_composite_inertia_23.mul_add(lower_factor_10, lower_composite_inertia_32 - n(0.06)),
+        ),
+    );
     let lower_factor_27 = lower_factor_17 * lower_factor_22;
-    let lower_factor_28 = (-lower_factor_17)
-        .mul_add(
-            lower_factor_27,
-            (-lower_factor_5)
-                .mul_add(
-                    lower_factor_20,
-                    (-lower_composite_inertia_24)
-                        .mul_add(
-                            lower_factor_11,
-                            upper_composite_inertia + upper_composite_inertia_3,
-                        ),
-                ),
-        );
+    let lower_factor_28 = (-lower_factor_17).mul_add(
+        lower_factor_27,
+        (-lower_factor_5).mul_add(
+            lower_factor_20,
+            (-lower_composite_inertia_24).mul_add(lower_factor_11, upper_composite_inertia + upper_composite_inertia_3),
+        ),
+    );
     let lower_factor_29 = lower_factor_18 * lower_factor_22;
-    let lower_factor_30 = (-lower_factor_18)
-        .mul_add(
-            lower_factor_29,
-            (-lower_factor_6)
-                .mul_add(
-                    lower_factor_21,
-                    (-lower_composite_inertia_23)
-                        .mul_add(
-                            lower_factor_13,
-                            upper_composite_inertia_2 + upper_composite_inertia_3,
-                        ),
-                ),
-        );
+    let lower_factor_30 = (-lower_factor_18).mul_add(
+        lower_factor_29,
+        (-lower_factor_6).mul_add(
+            lower_factor_21,
+            (-lower_composite_inertia_23).mul_add(lower_factor_13, upper_composite_inertia_2 + upper_composite_inertia_3),
+        ),
+    );
     // lower: load (12 additions, 12 multiplications)
     let lower_load = p[5].mul_add(lower_factor_2, p[4]);
-    let lower_load_2 = (-p[5])
-        .mul_add(lower_factor_7, lower_factor_15.mul_add(lower_load, p[3]));
+    let lower_load_2 = (-p[5]).mul_add(lower_factor_7, lower_factor_15.mul_add(lower_load, p[3]));
     let lower_load_3 = (-lower_factor_23)
-        .mul_add(
-            lower_load_2,
-            (-p[5]).mul_add(lower_factor_10, lower_factor_19.mul_add(lower_load, p[2])),
-        );
+        .mul_add(lower_load_2, (-p[5]).mul_add(lower_factor_10, lower_factor_19.mul_add(lower_load, p[2])));
     // upper: factor (4 additions, 7 multiplications, 3 divisions)
     let upper_factor = n(1.0) / lower_factor_24;
     let upper_factor_2 = lower_factor_25 * upper_factor;
-    let upper_factor_3 = lower_factor_26
-        .mul_add(
-            upper_factor_2,
-            lower_factor_18
-                .mul_add(
-                    lower_factor_27,
-                    lower_factor_6.mul_add(lower_factor_20, lower_factor_12),
-                ),
-        );
+    let upper_factor_3 = lower_factor_26.mul_add(
+        upper_factor_2,
+        lower_factor_18.mul_add(lower_factor_27, lower_factor_6.mul_add(lower_factor_20, lower_factor_12)),
+    );
     let upper_factor_4 = lower_factor_26 * upper_factor;
-    let upper_factor_5 = n(1.0)
-        / ((-lower_factor_25).mul_add(upper_factor_2, lower_factor_28));
+    let upper_factor_5 = n(1.0) / ((-lower_factor_25).mul_add(upper_factor_2, lower_factor_28));
     let upper_factor_6 = upper_factor_3 * upper_factor_5;
     // upper: load (3 additions, 3 multiplications)
-    let upper_load = (-upper_factor_2)
-        .mul_add(
-            lower_load_3,
-            (-lower_factor_20)
-                .mul_add(
-                    lower_load,
-                    lower_factor_27
-                        .mul_add(lower_load_2, p[5].mul_add(lower_factor_11, p[1])),
-                ),
-        );
-    let upper_load_2 = (-lower_factor_29)
-        .mul_add(
-            lower_load_2,
-            (-p[5])
-                .mul_add(
-                    lower_factor_13,
-                    upper_factor_4
-                        .mul_add(lower_load_3, lower_factor_21.mul_add(lower_load, p[0])),
-                ),
-        );
+    let upper_load = (-upper_factor_2).mul_add(
+        lower_load_3,
+        (-lower_factor_20).mul_add(lower_load, lower_factor_27.mul_add(lower_load_2, p[5].mul_add(lower_factor_11, p[1]))),
+    );
+    let upper_load_2 = (-lower_factor_29).mul_add(
+        lower_load_2,
+        (-p[5]).mul_add(lower_factor_13, upper_factor_4.mul_add(lower_load_3, lower_factor_21.mul_add(lower_load, p[0]))),
+    );
     // upper: response (3 additions, 6 multiplications)
-    let upper_speed = (n(1.0)
-        / ((-upper_factor_3)
-            .mul_add(
-                upper_factor_6,
-                (-lower_factor_26).mul_add(upper_factor_4, lower_factor_30),
-            ))) * ((-upper_factor_6).mul_add(upper_load, upper_load_2));
-    let upper_speed_2 = upper_factor_5
-        * ((-upper_factor_3).mul_add(upper_speed, upper_load));
+    let upper_speed = (n(1.0) / ((-upper_factor_3).mul_add(
+        upper_factor_6,
+        (-lower_factor_26).mul_add(upper_factor_4, lower_factor_30),
+    ))) * ((-upper_factor_6).mul_add(upper_load, upper_load_2));
+    let upper_speed_2 = upper_factor_5 * ((-upper_factor_3).mul_add(upper_speed, upper_load));
     let upper_speed_3 = upper_factor
-        * ((-lower_factor_25)
-            .mul_add(upper_speed_2, lower_factor_26.mul_add(upper_speed, lower_load_3)));
+        * ((-lower_factor_25).mul_add(upper_speed_2, lower_factor_26.mul_add(upper_speed, lower_load_3)));
     // upper: weight (1 addition, 7 multiplications)
     let upper_weight = q[6] * n(9.81);
     let upper_weight_2 = q[7] * n(9.81);
     let upper_weight_3 = q[8] * n(9.81);
     // lower: response (12 additions, 15 multiplications)
-    let lower_speed = lower_factor_22
-        * ((-lower_factor_18)
-            .mul_add(
-                upper_speed,
-                (-lower_factor_16)
-                    .mul_add(
-                        upper_speed_3,
-                        lower_factor_17.mul_add(upper_speed_2, lower_load_2),
-                    ),
-            ));
-    let lower_response = (-lower_factor_5)
-        .mul_add(
-            upper_speed_2,
-            lower_factor_6
-                .mul_add(
-                    upper_speed,
-                    lower_factor_4.mul_add(upper_speed_3, lower_factor_3 * lower_speed),
-                ),
-        );
+    let lower_speed = lower_factor_22 * ((-lower_factor_18).mul_add(
+        upper_speed,
+        (-lower_factor_16).mul_add(upper_speed_3, lower_factor_17.mul_add(upper_speed_2, lower_load_2)),
+    ));
+    let lower_response = (-lower_factor_5).mul_add(
+        upper_speed_2,
+        lower_factor_6.mul_add(upper_speed, lower_factor_4.mul_add(upper_speed_3, lower_factor_3 * lower_speed)),
+    );
     let lower_speed_2 = lower_factor_14 * (lower_load + lower_response);
-    let lower_response_2 = (-lower_composite_inertia_22)
-        .mul_add(
-            upper_speed_3,
-            (-lower_composite_inertia_8)
-                .mul_add(
-                    lower_speed,
-                    lower_composite_inertia_24
-                        .mul_add(
-                            upper_speed_2,
-                            lower_composite_inertia_15 * lower_speed_2,
-                        ),
-                ),
-        );
-    let lower_speed_3 = lower_factor
-        * ((-lower_composite_inertia_23).mul_add(upper_speed, p[5] + lower_response_2));
+    let lower_response_2 = (-lower_composite_inertia_22).mul_add(
+        upper_speed_3,
+        (-lower_composite_inertia_8).mul_add(
+            lower_speed,
+            lower_composite_inertia_24.mul_add(upper_speed_2, lower_composite_inertia_15 * lower_speed_2),
+        ),
+    );
+    let lower_speed_3 = lower_factor * ((-lower_composite_inertia_23).mul_add(upper_speed, p[5] + lower_response_2));
     // lower: momentum (14 additions, 24 multiplications)
     let lower_momentum = upper_speed_2 * n(0.6);
     let lower_momentum_2 = upper_speed * n(0.6);
-    let lower_momentum_3 = lower_joint_13
-        .mul_add(lower_momentum_2, lower_joint_11 * lower_momentum);
-    let lower_momentum_4 = (-lower_joint_19)
-        .mul_add(lower_momentum_2, lower_joint_17 * lower_momentum);
-    let lower_momentum_5 = lower_joint_25
-        .mul_add(lower_momentum_2, lower_joint_23 * lower_momentum);
-    let lower_momentum_6 = (-lower_joint_13)
-        .mul_add(
+    let lower_momentum_3 = lower_joint_13.mul_add(lower_momentum_2, lower_joint_11 * lower_momentum);
+    let lower_momentum_4 = (-lower_joint_19).mul_add(lower_momentum_2, lower_joint_17 * lower_momentum);
+    let lower_momentum_5 = lower_joint_25.mul_add(lower_momentum_2, lower_joint_23 * lower_momentum);
+    let lower_momentum_6 = (-lower_joint_13).mul_add(
+        upper_speed_2,
+        (-lower_joint_13).mul_add(
+            lower_speed_2,
+            lower_joint_15.mul_add(
+                upper_speed_3,
+                lower_joint_11.mul_add(upper_speed, lower_joint_15.mul_add(lower_speed_3, lower_joint_11 * lower_speed)),
+            ),
+        ),
+    );
+    let lower_momentum_7 = (-lower_joint_21).mul_add(
+        upper_speed_3,
+        (-lower_joint_21).mul_add(
+            lower_speed_3,
+            lower_joint_19.mul_add(
+                upper_speed_2,
+                lower_joint_17.mul_add(upper_speed, lower_joint_19.mul_add(lower_speed_2, lower_joint_17 * lower_speed)),
+            ),
+        ),
+    );
+    let lower_momentum_8 = (-lower_joint_27).mul_add(
+        upper_speed_3,
+        (-lower_joint_25).mul_add(
             upper_speed_2,
-            (-lower_joint_13)
-                .mul_add(
-                    lower_speed_2,
-                    lower_joint_15
-                        .mul_add(
-                            upper_speed_3,
-                            lower_joint_11
-                                .mul_add(
-                                    upper_speed,
-                                    lower_joint_15
-                                        .mul_add(lower_speed_3, lower_joint_11 * lower_speed),
-                                ),
-                        ),
-                ),
-        );
-    let lower_momentum_7 = (-lower_joint_21)
-        .mul_add(
-            upper_speed_3,
-            (-lower_joint_21)
-                .mul_add(
-                    lower_speed_3,
-                    lower_joint_19
-                        .mul_add(
-                            upper_speed_2,
-                            lower_joint_17
-                                .mul_add(
-                                    upper_speed,
-                                    lower_joint_19
-                                        .mul_add(lower_speed_2, lower_joint_17 * lower_speed),
-                                ),
-                        ),
-                ),
-        );
-    let lower_momentum_8 = (-lower_joint_27)
-        .mul_add(
-            upper_speed_3,
-            (-lower_joint_25)
-                .mul_add(
-                    upper_speed_2,
-                    (-lower_joint_27)
-                        .mul_add(
-                            lower_speed_3,
-                            (-lower_joint_25)
-                                .mul_add(
-                                    lower_speed_2,
-                                    lower_joint_23
-                                        .mul_add(upper_speed, lower_joint_23 * lower_speed),
-                                ),
-                        ),
-                ),
-        );
+            (-lower_joint_27).mul_add(
+                lower_speed_3,
+                (-lower_joint_25).mul_add(lower_speed_2, lower_joint_23.mul_add(upper_speed, lower_joint_23 * lower_speed)),
+            ),
+        ),
+    );
     let lower_momentum_9 = lower_momentum_8 * n(0.01);
-    let lower_momentum_10 = (-lower_momentum_4)
-        .mul_add(n(0.25), lower_momentum_6 * n(0.0825));
-    let lower_momentum_11 = lower_momentum_3
-        .mul_add(n(0.25), lower_momentum_7 * n(0.0825));
+    let lower_momentum_10 = (-lower_momentum_4).mul_add(n(0.25), lower_momentum_6 * n(0.0825));
+    let lower_momentum_11 = lower_momentum_3.mul_add(n(0.25), lower_momentum_7 * n(0.0825));
     let lower_momentum_12 = lower_momentum_7 * n(0.25);
     let lower_momentum_13 = lower_momentum_6 * n(0.25);
     // lower: weight (4 additions, 8 multiplications)
     let lower_weight = ((-lower_joint_21)
-        .mul_add(
-            upper_weight_3,
-            lower_joint_19.mul_add(upper_weight_2, lower_joint_17 * upper_weight),
-        )) * n(0.25);
+        .mul_add(upper_weight_3, lower_joint_19.mul_add(upper_weight_2, lower_joint_17 * upper_weight))) * n(0.25);
     let lower_weight_2 = ((-lower_joint_13)
-        .mul_add(
-            upper_weight_2,
-            lower_joint_15.mul_add(upper_weight_3, lower_joint_11 * upper_weight),
-        )) * n(0.25);
+        .mul_add(upper_weight_2, lower_joint_15.mul_add(upper_weight_3, lower_joint_11 * upper_weight))) * n(0.25);
     // lower: spring (50 additions, 70 multiplications, 2 function calls)
     let lower_spring = T::quaternion_vector([q[9], q[10], q[11], q[12]]);
     let lower_spring_2 = lower_spring[0] * n(15.0);
@@ -1430,334 +854,161 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_spring_7 = lower_spring_6 + lower_spring_6 - n(1.0);
     let lower_spring_8 = lower_joint + lower_spring_5;
     let lower_spring_9 = lower_spring_8 + lower_spring_8 - n(1.0);
-    let lower_spring_10 = lower_joint_17
-        .mul_add(lower_spring[2], lower_joint_23 * lower_spring[1]);
-    let lower_spring_11 = (-lower_joint_23)
-        .mul_add(lower_spring[0], lower_spring[2] * lower_spring_7);
-    let lower_spring_12 = lower_spring[1]
-        .mul_add(lower_spring_7, lower_joint_17 * lower_spring[0]);
+    let lower_spring_10 = lower_joint_17.mul_add(lower_spring[2], lower_joint_23 * lower_spring[1]);
+    let lower_spring_11 = (-lower_joint_23).mul_add(lower_spring[0], lower_spring[2] * lower_spring_7);
+    let lower_spring_12 = lower_spring[1].mul_add(lower_spring_7, lower_joint_17 * lower_spring[0]);
     let lower_spring_13 = (lower_spring[2]
-        .mul_add(
-            lower_spring[2],
-            lower_spring[1].mul_add(lower_spring[1], lower_spring[0] * lower_spring[0]),
-        ))
+        .mul_add(lower_spring[2], lower_spring[1].mul_add(lower_spring[1], lower_spring[0] * lower_spring[0])))
         .dexp_inverse(0);
-    let lower_spring_14 = (-lower_spring_13)
-        .mul_add(
-            lower_spring[2].mul_add(lower_spring_11, lower_spring[1] * lower_spring_12),
-            lower_spring_10.mul_add(n(0.5), lower_spring_7),
-        );
-    let lower_spring_15 = (-lower_spring_13)
-        .mul_add(
-            lower_spring[0].mul_add(lower_spring_12, lower_spring[2] * lower_spring_10),
-            (-lower_spring_11).mul_add(n(0.5), lower_joint_17),
-        );
-    let lower_spring_16 = (-lower_spring_12)
-        .mul_add(
-            n(0.5),
-            lower_spring_13
-                .mul_add(
-                    (-lower_spring[1])
-                        .mul_add(lower_spring_10, lower_spring[0] * lower_spring_11),
-                    lower_joint_23,
-                ),
-        );
-    let lower_spring_17 = lower_spring[2]
-        .mul_add(lower_spring_9, lower_joint_25 * lower_spring[1]);
-    let lower_spring_18 = lower_joint_25
-        .mul_add(lower_spring[0], lower_joint_13 * lower_spring[2]);
-    let lower_spring_19 = (-lower_joint_13)
-        .mul_add(lower_spring[1], lower_spring[0] * lower_spring_9);
-    let lower_spring_20 = (-lower_spring_17)
-        .mul_add(
-            n(0.5),
-            lower_spring_13
-                .mul_add(
-                    (-lower_spring[2])
-                        .mul_add(lower_spring_18, lower_spring[1] * lower_spring_19),
-                    lower_joint_13,
-                ),
-        );
-    let lower_spring_21 = (-lower_spring_13)
-        .mul_add(
-            lower_spring[0].mul_add(lower_spring_19, lower_spring[2] * lower_spring_17),
-            lower_spring_18.mul_add(n(0.5), lower_spring_9),
-        );
-    let lower_spring_22 = (-lower_spring_13)
-        .mul_add(
-            lower_spring[1].mul_add(lower_spring_17, lower_spring[0] * lower_spring_18),
-            (-lower_spring_19).mul_add(n(0.5), lower_joint_25),
-        );
-    let lower_spring_23 = lower_joint_21
-        .mul_add(lower_spring[2], lower_joint_27 * lower_spring[1]);
-    let lower_spring_24 = (-lower_joint_27)
-        .mul_add(lower_spring[0], lower_joint_15 * lower_spring[2]);
-    let lower_spring_25 = lower_joint_15
-        .mul_add(lower_spring[1], lower_joint_21 * lower_spring[0]);
-    let lower_spring_26 = (-lower_spring_13)
-        .mul_add(
-            lower_spring[2].mul_add(lower_spring_24, lower_spring[1] * lower_spring_25),
-            lower_spring_23.mul_add(n(0.5), lower_joint_15),
-        );
-    let lower_spring_27 = (-lower_spring_13)
-        .mul_add(
-            lower_spring[0].mul_add(lower_spring_25, lower_spring[2] * lower_spring_23),
-            (-lower_spring_24).mul_add(n(0.5), lower_joint_21),
-        );
-    let lower_spring_28 = (-lower_spring_25)
-        .mul_add(
-            n(0.5),
-            lower_spring_13
-                .mul_add(
-                    (-lower_spring[1])
-                        .mul_add(lower_spring_23, lower_spring[0] * lower_spring_24),
-                    lower_joint_27,
-                ),
-        );
+    let lower_spring_14 = (-lower_spring_13).mul_add(
+        lower_spring[2].mul_add(lower_spring_11, lower_spring[1] * lower_spring_12),
+        lower_spring_10.mul_add(n(0.5), lower_spring_7),
+    );
+    let lower_spring_15 = (-lower_spring_13).mul_add(
+        lower_spring[0].mul_add(lower_spring_12, lower_spring[2] * lower_spring_10),
+        (-lower_spring_11).mul_add(n(0.5), lower_joint_17),
+    );
+    let lower_spring_16 = (-lower_spring_12).mul_add(
+        n(0.5),
+        lower_spring_13.mul_add((-lower_spring[1]).mul_add(lower_spring_10, lower_spring[0] * lower_spring_11), lower_joint_23),
+    );
+    let lower_spring_17 = lower_spring[2].mul_add(lower_spring_9, lower_joint_25 * lower_spring[1]);
+    let lower_spring_18 = lower_joint_25.mul_add(lower_spring[0], lower_joint_13 * lower_spring[2]);
+    let lower_spring_19 = (-lower_joint_13).mul_add(lower_spring[1], lower_spring[0] * lower_spring_9);
+    let lower_spring_20 = (-lower_spring_17).mul_add(
+        n(0.5),
+        lower_spring_13.mul_add((-lower_spring[2]).mul_add(lower_spring_18, lower_spring[1] * lower_spring_19), lower_joint_13),
+    );
+    let lower_spring_21 = (-lower_spring_13).mul_add(
+        lower_spring[0].mul_add(lower_spring_19, lower_spring[2] * lower_spring_17),
+        lower_spring_18.mul_add(n(0.5), lower_spring_9),
+    );
+    let lower_spring_22 = (-lower_spring_13).mul_add(
+        lower_spring[1].mul_add(lower_spring_17, lower_spring[0] * lower_spring_18),
+        (-lower_spring_19).mul_add(n(0.5), lower_joint_25),
+    );
+    let lower_spring_23 = lower_joint_21.mul_add(lower_spring[2], lower_joint_27 * lower_spring[1]);
+    let lower_spring_24 = (-lower_joint_27).mul_add(lower_spring[0], lower_joint_15 * lower_spring[2]);
+    let lower_spring_25 = lower_joint_15.mul_add(lower_spring[1], lower_joint_21 * lower_spring[0]);
+    let lower_spring_26 = (-lower_spring_13).mul_add(
+        lower_spring[2].mul_add(lower_spring_24, lower_spring[1] * lower_spring_25),
+        lower_spring_23.mul_add(n(0.5), lower_joint_15),
+    );
+    let lower_spring_27 = (-lower_spring_13).mul_add(
+        lower_spring[0].mul_add(lower_spring_25, lower_spring[2] * lower_spring_23),
+        (-lower_spring_24).mul_add(n(0.5), lower_joint_21),
+    );
+    let lower_spring_28 = (-lower_spring_25).mul_add(
+        n(0.5),
+        lower_spring_13.mul_add((-lower_spring[1]).mul_add(lower_spring_23, lower_spring[0] * lower_spring_24), lower_joint_27),
+    );
     // lower: effort (6 additions, 3 multiplications)
-    let lower_effort = (-lower_spring_3)
-        .mul_add(
-            lower_spring_15,
-            lower_speed
-                .mul_add(
-                    n(0.1),
-                    lower_spring_4
-                        .mul_add(
-                            lower_spring_16,
-                            lower_spring_2.mul_add(lower_spring_14, -tau[3]),
-                        ),
-                ),
-        );
-    let lower_effort_2 = (-lower_spring_4)
-        .mul_add(
-            lower_spring_22,
-            lower_speed_2
-                .mul_add(
-                    n(0.1),
-                    lower_spring_3
-                        .mul_add(
-                            lower_spring_21,
-                            lower_spring_2.mul_add(lower_spring_20, -tau[4]),
-                        ),
-                ),
-        );
-    let lower_effort_3 = (-lower_speed_3)
-        .mul_add(
-            n(0.1),
-            (-lower_spring_3)
-                .mul_add(
-                    lower_spring_27,
-                    lower_spring_4
-                        .mul_add(
-                            lower_spring_28,
-                            lower_spring_2.mul_add(lower_spring_26, tau[5]),
-                        ),
-                ),
-        );
+    let lower_effort = (-lower_spring_3).mul_add(
+        lower_spring_15,
+        lower_speed.mul_add(n(0.1), lower_spring_4.mul_add(lower_spring_16, lower_spring_2.mul_add(lower_spring_14, -tau[3]))),
+    );
+    let lower_effort_2 = (-lower_spring_4).mul_add(
+        lower_spring_22,
+        lower_speed_2
+            .mul_add(n(0.1), lower_spring_3.mul_add(lower_spring_21, lower_spring_2.mul_add(lower_spring_20, -tau[4]))),
+    );
+    let lower_effort_3 = (-lower_speed_3).mul_add(
+        n(0.1),
+        (-lower_spring_3).mul_add(
+            lower_spring_27,
+            lower_spring_4.mul_add(lower_spring_28, lower_spring_2.mul_add(lower_spring_26, tau[5])),
+        ),
+    );
     // lower: momentum rate (58 additions, 61 multiplications)
-    let lower_momentum_rate = (-lower_momentum_4)
-        .mul_add(
-            lower_momentum_12,
-            (-lower_momentum_3)
-                .mul_add(
-                    lower_momentum_13,
-                    (-lower_momentum_7)
-                        .mul_add(lower_momentum_10, lower_momentum_6 * lower_momentum_11),
-                ),
-        );
-    let lower_momentum_rate_2 = (-lower_momentum_8)
-        .mul_add(
-            lower_momentum_11,
-            lower_momentum_5
-                .mul_add(
-                    lower_momentum_13,
-                    lower_momentum_7.mul_add(lower_momentum_9, lower_weight),
-                ),
-        );
-    let lower_momentum_rate_3 = (-lower_momentum_5)
-        .mul_add(
-            lower_momentum_12,
-            (-lower_momentum_8)
-                .mul_add(
-                    lower_momentum_10,
-                    lower_momentum_6.mul_add(lower_momentum_9, lower_weight_2),
-                ),
-        );
-    let lower_momentum_rate_4 = q[10]
-        .mul_add(lower_momentum_9, q[9] * lower_momentum_11);
-    let lower_momentum_rate_5 = (-q[11])
-        .mul_add(lower_momentum_9, q[9] * lower_momentum_10);
-    let lower_momentum_rate_6 = q[11]
-        .mul_add(lower_momentum_11, q[10] * lower_momentum_10);
-    let lower_momentum_rate_7 = (-q[11])
-        .mul_add(
-            lower_momentum_rate_5,
-            q[12].mul_add(lower_momentum_rate_6, q[10] * lower_momentum_rate_4),
-        );
-    let lower_momentum_rate_8 = lower_momentum_9 - lower_momentum_rate_7
-        - lower_momentum_rate_7;
-    let lower_momentum_rate_9 = q[11]
-        .mul_add(
-            lower_momentum_rate_6,
-            q[12].mul_add(lower_momentum_rate_5, q[9] * lower_momentum_rate_4),
-        );
-    let lower_momentum_rate_10 = lower_momentum_11 - lower_momentum_rate_9
-        - lower_momentum_rate_9;
-    let lower_momentum_rate_11 = (-q[12])
-        .mul_add(
-            lower_momentum_rate_4,
-            q[10].mul_add(lower_momentum_rate_6, q[9] * lower_momentum_rate_5),
-        );
-    let lower_momentum_rate_12 = lower_momentum_10 - lower_momentum_rate_11
-        - lower_momentum_rate_11;
-    let lower_momentum_rate_13 = (-lower_joint_23)
-        .mul_add(
-            lower_momentum_rate,
-            (-lower_joint_11)
-                .mul_add(
-                    lower_momentum_rate_2,
-                    (-lower_speed_3)
-                        .mul_add(
-                            lower_momentum_rate_10,
-                            lower_joint_17
-                                .mul_add(
-                                    lower_momentum_rate_3,
-                                    lower_speed_2.mul_add(lower_momentum_rate_8, -lower_effort),
-                                ),
-                        ),
-                ),
-        );
-    let lower_momentum_rate_14 = (-lower_joint_25)
-        .mul_add(
-            lower_momentum_rate,
-            (-lower_joint_19)
-                .mul_add(
-                    lower_momentum_rate_3,
-                    (-lower_joint_13)
-                        .mul_add(
-                            lower_momentum_rate_2,
-                            (-lower_speed_3)
-                                .mul_add(
-                                    lower_momentum_rate_12,
-                                    lower_speed.mul_add(lower_momentum_rate_8, lower_effort_2),
-                                ),
-                        ),
-                ),
-        );
-    let lower_momentum_rate_15 = (-lower_joint_27)
-        .mul_add(
-            lower_momentum_rate,
-            (-lower_speed)
-                .mul_add(
-                    lower_momentum_rate_10,
-                    lower_joint_21
-                        .mul_add(
-                            lower_momentum_rate_3,
-                            lower_joint_15
-                                .mul_add(
-                                    lower_momentum_rate_2,
-                                    lower_speed_2
-                                        .mul_add(lower_momentum_rate_12, -lower_effort_3),
-                                ),
-                        ),
-                ),
-        );
-    let lower_momentum_rate_16 = (lower_joint_19
-        .mul_add(lower_momentum_13, lower_joint_13 * lower_momentum_12))
-        .mul_add(
-            n(0.6),
-            lower_joint_23
-                .mul_add(
-                    lower_momentum_9,
-                    lower_joint_17
-                        .mul_add(lower_momentum_11, lower_joint_11 * lower_momentum_10),
-                ),
-        );
-    let lower_momentum_rate_17 = (-((-lower_joint_17)
-        .mul_add(lower_momentum_13, lower_joint_11 * lower_momentum_12)))
-        .mul_add(
-            n(0.6),
-            (-lower_joint_19)
-                .mul_add(
-                    lower_momentum_11,
-                    lower_joint_25
-                        .mul_add(lower_momentum_9, lower_joint_13 * lower_momentum_10),
-                ),
-        );
-    let lower_momentum_rate_18 = upper_speed_3
-        .mul_add(n(0.06), upper_speed.mul_add(n(0.59), lower_momentum_rate_16));
+    let lower_momentum_rate = (-lower_momentum_4).mul_add(
+        lower_momentum_12,
+        (-lower_momentum_3).mul_add(
+            lower_momentum_13,
+            (-lower_momentum_7).mul_add(lower_momentum_10, lower_momentum_6 * lower_momentum_11),
+        ),
+    );
+    let lower_momentum_rate_2 = (-lower_momentum_8).mul_add(
+        lower_momentum_11,
+        lower_momentum_5.mul_add(lower_momentum_13, lower_momentum_7.mul_add(lower_momentum_9, lower_weight)),
+    );
+    let lower_momentum_rate_3 = (-lower_momentum_5).mul_add(
+        lower_momentum_12,
+        (-lower_momentum_8).mul_add(lower_momentum_10, lower_momentum_6.mul_add(lower_momentum_9, lower_weight_2)),
+    );
+    let lower_momentum_rate_4 = (-q[11]).mul_add(lower_momentum_10, q[10] * lower_momentum_11);
+    let lower_momentum_rate_5 = q[12].mul_add(lower_momentum_10, q[10] * lower_momentum_9);
+    let lower_momentum_rate_6 = q[12].mul_add(lower_momentum_11, q[11] * lower_momentum_9);
+    let lower_momentum_rate_7 = q[11]
+        .mul_add(lower_momentum_rate_6, q[10].mul_add(lower_momentum_rate_5, q[9] * lower_momentum_rate_4));
+    let lower_momentum_rate_8 = lower_momentum_9 - lower_momentum_rate_7 - lower_momentum_rate_7;
+    let lower_momentum_rate_9 = (-q[12])
+        .mul_add(lower_momentum_rate_6, (-q[10]).mul_add(lower_momentum_rate_4, q[9] * lower_momentum_rate_5));
+    let lower_momentum_rate_10 = lower_momentum_11 + lower_momentum_rate_9 + lower_momentum_rate_9;
+    let lower_momentum_rate_11 = (-q[9])
+        .mul_add(lower_momentum_rate_6, (-q[12]).mul_add(lower_momentum_rate_5, q[11] * lower_momentum_rate_4));
+    let lower_momentum_rate_12 = lower_momentum_10 + lower_momentum_rate_11 + lower_momentum_rate_11;
+    let lower_momentum_rate_13 = (-lower_joint_23).mul_add(
+        lower_momentum_rate,
+        (-lower_joint_11).mul_add(
+            lower_momentum_rate_2,
+            lower_joint_17.mul_add(
+                lower_momentum_rate_3,
+                lower_speed_3.mul_add(lower_momentum_rate_10, lower_speed_2.mul_add(lower_momentum_rate_8, -lower_effort)),
+            ),
+        ),
+    );
+    let lower_momentum_rate_14 = (-lower_joint_25).mul_add(
+        lower_momentum_rate,
+        (-lower_joint_19).mul_add(
+            lower_momentum_rate_3,
+            (-lower_joint_13).mul_add(
+                lower_momentum_rate_2,
+                lower_speed.mul_add(lower_momentum_rate_8, lower_speed_3.mul_add(lower_momentum_rate_12, lower_effort_2)),
+            ),
+        ),
+    );
+    let lower_momentum_rate_15 = (-lower_joint_27).mul_add(
+        lower_momentum_rate,
+        (-lower_speed_2).mul_add(
+            lower_momentum_rate_12,
+            lower_joint_21.mul_add(
+                lower_momentum_rate_3,
+                lower_joint_15.mul_add(lower_momentum_rate_2, lower_speed.mul_add(lower_momentum_rate_10, -lower_effort_3)),
+            ),
+        ),
+    );
+    let lower_momentum_rate_16 = (lower_joint_19.mul_add(lower_momentum_13, lower_joint_13 * lower_momentum_12)).mul_add(
+        n(0.6),
+        lower_joint_23.mul_add(lower_momentum_9, lower_joint_17.mul_add(lower_momentum_11, lower_joint_11 * lower_momentum_10)),
+    );
+    let lower_momentum_rate_17 = (-((-lower_joint_17).mul_add(lower_momentum_13, lower_joint_11 * lower_momentum_12))).mul_add(
+        n(0.6),
+        (-lower_joint_19)
+            .mul_add(lower_momentum_11, lower_joint_25.mul_add(lower_momentum_9, lower_joint_13 * lower_momentum_10)),
+    );
+    let lower_momentum_rate_18 = upper_speed_3.mul_add(n(0.06), upper_speed.mul_add(n(0.59), lower_momentum_rate_16));
     let lower_momentum_rate_19 = upper_speed_2.mul_add(n(0.62), -lower_momentum_rate_17);
-    let lower_momentum_rate_20 = (-lower_joint_27)
-        .mul_add(
-            lower_momentum_9,
-            (-lower_joint_21)
-                .mul_add(
-                    lower_momentum_11,
-                    lower_joint_15
-                        .mul_add(
-                            lower_momentum_10,
-                            upper_speed_3
-                                .mul_add(n(0.04000000000000001), upper_speed * n(0.06)),
-                        ),
-                ),
-        );
+    let lower_momentum_rate_20 = (-lower_joint_27).mul_add(
+        lower_momentum_9,
+        (-lower_joint_21).mul_add(
+            lower_momentum_11,
+            lower_joint_15.mul_add(lower_momentum_10, upper_speed_3.mul_add(n(0.04000000000000001), upper_speed * n(0.06))),
+        ),
+    );
     let lower_momentum_rate_21 = lower_joint_19
-        .mul_add(
-            lower_weight_2,
-            lower_joint_13
-                .mul_add(
-                    lower_weight,
-                    q[8].mul_add(n(1.9620000000000002), q[6] * n(11.772)),
-                ),
-        );
+        .mul_add(lower_weight_2, lower_joint_13.mul_add(lower_weight, q[8].mul_add(n(1.9620000000000002), q[6] * n(11.772))));
     // upper: spring (37 additions, 54 multiplications, 2 function calls)
     let upper_spring = T::rotation_vector(
         &::hamel::nalgebra::Matrix3::new(
-            (-q[6])
-                .mul_add(
-                    n(0.09916874752156282),
-                    q[3].mul_add(n(0.009958402715808244), q[0] * n(0.9950207986420959)),
-                ),
-            (-q[7])
-                .mul_add(
-                    n(0.09916874752156282),
-                    q[4].mul_add(n(0.009958402715808244), q[1] * n(0.9950207986420959)),
-                ),
-            (-q[8])
-                .mul_add(
-                    n(0.09916874752156282),
-                    q[5].mul_add(n(0.009958402715808244), q[2] * n(0.9950207986420959)),
-                ),
-            q[6]
-                .mul_add(
-                    n(0.19833749504312564),
-                    q[3].mul_add(n(0.9800831945683836), q[0] * n(0.009958402715808244)),
-                ),
-            q[7]
-                .mul_add(
-                    n(0.19833749504312564),
-                    q[4].mul_add(n(0.9800831945683836), q[1] * n(0.009958402715808244)),
-                ),
-            q[8]
-                .mul_add(
-                    n(0.19833749504312564),
-                    q[5].mul_add(n(0.9800831945683836), q[2] * n(0.009958402715808244)),
-                ),
-            (-q[3])
-                .mul_add(
-                    n(0.19833749504312564),
-                    q[6].mul_add(n(0.9751039932104794), q[0] * n(0.09916874752156282)),
-                ),
-            (-q[4])
-                .mul_add(
-                    n(0.19833749504312564),
-                    q[7].mul_add(n(0.9751039932104794), q[1] * n(0.09916874752156282)),
-                ),
-            (-q[5])
-                .mul_add(
-                    n(0.19833749504312564),
-                    q[8].mul_add(n(0.9751039932104794), q[2] * n(0.09916874752156282)),
-                ),
+            (-q[6]).mul_add(n(0.09916874752156282), q[3].mul_add(n(0.009958402715808244), q[0] * n(0.9950207986420959))),
+            (-q[7]).mul_add(n(0.09916874752156282), q[4].mul_add(n(0.009958402715808244), q[1] * n(0.9950207986420959))),
+            (-q[8]).mul_add(n(0.09916874752156282), q[5].mul_add(n(0.009958402715808244), q[2] * n(0.9950207986420959))),
+            q[6].mul_add(n(0.19833749504312564), q[3].mul_add(n(0.9800831945683836), q[0] * n(0.009958402715808244))),
+            q[7].mul_add(n(0.19833749504312564), q[4].mul_add(n(0.9800831945683836), q[1] * n(0.009958402715808244))),
+            q[8].mul_add(n(0.19833749504312564), q[5].mul_add(n(0.9800831945683836), q[2] * n(0.009958402715808244))),
+            (-q[3]).mul_add(n(0.19833749504312564), q[6].mul_add(n(0.9751039932104794), q[0] * n(0.09916874752156282))),
+            (-q[4]).mul_add(n(0.19833749504312564), q[7].mul_add(n(0.9751039932104794), q[1] * n(0.09916874752156282))),
+            (-q[5]).mul_add(n(0.19833749504312564), q[8].mul_add(n(0.9751039932104794), q[2] * n(0.09916874752156282))),
         ),
     );
     let upper_spring_2 = upper_spring[0] * n(30.0);
@@ -1772,89 +1023,49 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let upper_spring_11 = upper_spring_9 * (upper_spring[0] * upper_spring[1]);
     let upper_spring_12 = upper_spring[1] * n(0.5);
     let upper_spring_13 = upper_spring_9 * (upper_spring[0] * upper_spring[2]);
-    let upper_spring_14 = (-upper_spring_3)
-        .mul_add(
-            upper_spring_10 + upper_spring_11,
-            upper_spring_2
-                * (upper_spring_9.mul_add(upper_spring_6 + upper_spring_8, -n(1.0))),
-        );
+    let upper_spring_14 = (-upper_spring_3).mul_add(
+        upper_spring_10 + upper_spring_11,
+        upper_spring_2 * (upper_spring_9.mul_add(upper_spring_6 + upper_spring_8, -n(1.0))),
+    );
     let upper_spring_15 = upper_spring[0] * n(0.5);
     let upper_spring_16 = upper_spring_9 * (upper_spring[1] * upper_spring[2]);
-    let upper_spring_17 = upper_spring_3
-        .mul_add(
-            upper_spring_9.mul_add(upper_spring_5 + upper_spring_8, -n(1.0)),
-            upper_spring_2 * (upper_spring_10 - upper_spring_11),
-        );
-    let upper_spring_18 = (-upper_spring_4)
-        .mul_add(
-            upper_spring_7.mul_add(upper_spring_9, -n(1.0)),
-            (-upper_spring_3)
-                .mul_add(
-                    upper_spring_15 - upper_spring_16,
-                    upper_spring_2 * (upper_spring_12 + upper_spring_13),
-                ),
-        );
+    let upper_spring_17 = upper_spring_3.mul_add(
+        upper_spring_9.mul_add(upper_spring_5 + upper_spring_8, -n(1.0)),
+        upper_spring_2 * (upper_spring_10 - upper_spring_11),
+    );
+    let upper_spring_18 = (-upper_spring_4).mul_add(
+        upper_spring_7.mul_add(upper_spring_9, -n(1.0)),
+        (-upper_spring_3).mul_add(upper_spring_15 - upper_spring_16, upper_spring_2 * (upper_spring_12 + upper_spring_13)),
+    );
     // upper: momentum rate (9 additions, 6 multiplications)
-    let upper_momentum_rate = (-upper_speed_3)
-        .mul_add(
+    let upper_momentum_rate = (-upper_speed_3).mul_add(
+        lower_momentum_rate_19,
+        (-lower_joint_17).mul_add(
+            lower_weight_2,
+            upper_speed_2.mul_add(lower_momentum_rate_20, lower_joint_11.mul_add(lower_weight, q[7] * n(11.772))),
+        ),
+    );
+    let upper_momentum_rate_2 = (-upper_speed_2).mul_add(
+        lower_momentum_rate_18,
+        upper_speed.mul_add(
             lower_momentum_rate_19,
-            (-lower_joint_17)
-                .mul_add(
-                    lower_weight_2,
-                    upper_speed_2
-                        .mul_add(
-                            lower_momentum_rate_20,
-                            lower_joint_11.mul_add(lower_weight, q[7] * n(11.772)),
-                        ),
-                ),
-        );
-    let upper_momentum_rate_2 = (-upper_speed_2)
-        .mul_add(
-            lower_momentum_rate_18,
-            upper_speed
-                .mul_add(
-                    lower_momentum_rate_19,
-                    lower_joint_21
-                        .mul_add(
-                            lower_weight_2,
-                            lower_joint_15
-                                .mul_add(lower_weight, q[7] * n(1.9620000000000002)),
-                        ),
-                ),
-        );
-    let upper_momentum_rate_3 = (-upper_speed_3)
-        .mul_add(
-            lower_momentum_rate_18,
-            (-upper_spring_4)
-                .mul_add(
-                    upper_spring_15 + upper_spring_16,
-                    upper_speed
-                        .mul_add(
-                            lower_momentum_rate_20,
-                            upper_spring_17 + tau[1] + lower_momentum_rate_21,
-                        ),
-                ),
-        );
+            lower_joint_21.mul_add(lower_weight_2, lower_joint_15.mul_add(lower_weight, q[7] * n(1.9620000000000002))),
+        ),
+    );
+    let upper_momentum_rate_3 = (-upper_speed_3).mul_add(
+        lower_momentum_rate_18,
+        (-upper_spring_4).mul_add(
+            upper_spring_15 + upper_spring_16,
+            upper_speed.mul_add(lower_momentum_rate_20, upper_spring_17 + tau[1] + lower_momentum_rate_21),
+        ),
+    );
     [
+        [upper_speed, upper_speed_2, upper_speed_3, lower_speed, lower_speed_2, lower_speed_3],
         [
-            upper_speed,
-            upper_speed_2,
-            upper_speed_3,
-            lower_speed,
-            lower_speed_2,
-            lower_speed_3,
-        ],
-        [
-            upper_spring_4
-                .mul_add(
-                    upper_spring_12 - upper_spring_13,
-                    upper_spring_14 + tau[0] - upper_momentum_rate,
-                ),
+            upper_spring_4.mul_add(upper_spring_12 - upper_spring_13, upper_spring_14 + tau[0] - upper_momentum_rate),
             upper_momentum_rate_3,
             tau[2] - upper_spring_18 - upper_momentum_rate_2,
-            lower_momentum_rate_13,
-            -lower_momentum_rate_14,
-            -lower_momentum_rate_15,
+            lower_momentum_rate_13, -lower_momentum_rate_14, -lower_momentum_rate_15,
         ],
     ]
 }
@@ -1900,247 +1111,138 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     let lower_composite_inertia_3 = lower_joint_22 * n(0.02);
     let lower_composite_inertia_4 = lower_joint_16 * n(0.5);
     let lower_composite_inertia_5 = lower_joint_11 * n(0.25);
-    let lower_composite_inertia_6 = lower_joint_23
-        .mul_add(
-            lower_composite_inertia_3,
-            lower_joint_17
-                .mul_add(
-                    lower_composite_inertia_2,
-                    lower_joint_11 * lower_composite_inertia,
-                ),
-        );
-    let lower_composite_inertia_7 = (-lower_joint_19)
-        .mul_add(
-            lower_composite_inertia_2,
-            lower_joint_25
-                .mul_add(
-                    lower_composite_inertia_3,
-                    lower_joint_13 * lower_composite_inertia,
-                ),
-        );
-    let lower_composite_inertia_8 = (-lower_joint_27)
-        .mul_add(
-            lower_composite_inertia_3,
-            (-lower_joint_21)
-                .mul_add(
-                    lower_composite_inertia_2,
-                    lower_joint_15 * lower_composite_inertia,
-                ),
-        );
+    let lower_composite_inertia_6 = lower_joint_23.mul_add(
+        lower_composite_inertia_3,
+        lower_joint_17.mul_add(lower_composite_inertia_2, lower_joint_11 * lower_composite_inertia),
+    );
+    let lower_composite_inertia_7 = (-lower_joint_19).mul_add(
+        lower_composite_inertia_2,
+        lower_joint_25.mul_add(lower_composite_inertia_3, lower_joint_13 * lower_composite_inertia),
+    );
+    let lower_composite_inertia_8 = (-lower_joint_27).mul_add(
+        lower_composite_inertia_3,
+        (-lower_joint_21).mul_add(lower_composite_inertia_2, lower_joint_15 * lower_composite_inertia),
+    );
     let lower_composite_inertia_9 = lower_joint_12 * n(0.165);
     let lower_composite_inertia_10 = lower_joint_19 * n(0.0825);
     let lower_composite_inertia_11 = lower_joint_24 * n(0.02);
     let lower_composite_inertia_12 = lower_joint_19 * n(0.25);
     let lower_composite_inertia_13 = lower_joint_12 * n(0.5);
-    let lower_composite_inertia_14 = lower_joint_25
-        .mul_add(
-            lower_composite_inertia_11,
-            lower_joint_19
-                .mul_add(
-                    lower_composite_inertia_10,
-                    lower_joint_13 * lower_composite_inertia_9,
-                ),
-        );
-    let lower_composite_inertia_15 = (-lower_joint_27)
-        .mul_add(
-            lower_composite_inertia_11,
-            lower_joint_21
-                .mul_add(
-                    lower_composite_inertia_10,
-                    lower_joint_15 * lower_composite_inertia_9,
-                ),
-        );
+    let lower_composite_inertia_14 = lower_joint_25.mul_add(
+        lower_composite_inertia_11,
+        lower_joint_19.mul_add(lower_composite_inertia_10, lower_joint_13 * lower_composite_inertia_9),
+    );
+    let lower_composite_inertia_15 = (-lower_joint_27).mul_add(
+        lower_composite_inertia_11,
+        lower_joint_21.mul_add(lower_composite_inertia_10, lower_joint_15 * lower_composite_inertia_9),
+    );
     let lower_composite_inertia_16 = (-((-lower_joint_19)
-        .mul_add(
-            lower_composite_inertia_13,
-            lower_joint_13 * lower_composite_inertia_12,
-        )))
+        .mul_add(lower_composite_inertia_13, lower_joint_13 * lower_composite_inertia_12)))
         .mul_add(
             n(0.6),
-            (-lower_joint_17)
-                .mul_add(
-                    lower_composite_inertia_10,
-                    lower_joint_23
-                        .mul_add(
-                            lower_composite_inertia_11,
-                            lower_joint_11 * lower_composite_inertia_9,
-                        ),
-                ),
+            (-lower_joint_17).mul_add(
+                lower_composite_inertia_10,
+                lower_joint_23.mul_add(lower_composite_inertia_11, lower_joint_11 * lower_composite_inertia_9),
+            ),
         );
     let lower_composite_inertia_17 = lower_joint_14 * n(0.165);
     let lower_composite_inertia_18 = lower_joint_20 * n(0.165);
     let lower_composite_inertia_19 = lower_joint_27 * n(0.01);
     let lower_composite_inertia_20 = lower_joint_20 * n(0.5);
     let lower_composite_inertia_21 = lower_joint_14 * n(0.5);
-    let lower_composite_inertia_22 = lower_joint_27
-        .mul_add(
-            lower_composite_inertia_19,
-            lower_joint_21
-                .mul_add(
-                    lower_composite_inertia_18,
-                    lower_joint_15 * lower_composite_inertia_17,
-                ),
-        );
+    let lower_composite_inertia_22 = lower_joint_27.mul_add(
+        lower_composite_inertia_19,
+        lower_joint_21.mul_add(lower_composite_inertia_18, lower_joint_15 * lower_composite_inertia_17),
+    );
     let lower_composite_inertia_23 = (-((-lower_joint_19)
-        .mul_add(
-            lower_composite_inertia_21,
-            lower_joint_13 * lower_composite_inertia_20,
-        )))
+        .mul_add(lower_composite_inertia_21, lower_joint_13 * lower_composite_inertia_20)))
         .mul_add(
             n(0.6),
-            (-lower_joint_23)
-                .mul_add(
-                    lower_composite_inertia_19,
-                    (-lower_joint_17)
-                        .mul_add(
-                            lower_composite_inertia_18,
-                            lower_joint_11 * lower_composite_inertia_17,
-                        ),
-                ),
+            (-lower_joint_23).mul_add(
+                lower_composite_inertia_19,
+                (-lower_joint_17).mul_add(lower_composite_inertia_18, lower_joint_11 * lower_composite_inertia_17),
+            ),
         );
-    let lower_composite_inertia_24 = (-lower_joint_25)
-        .mul_add(
-            lower_composite_inertia_19,
-            (lower_joint_17
-                .mul_add(
-                    lower_composite_inertia_21,
-                    lower_joint_11 * lower_composite_inertia_20,
-                ))
-                .mul_add(
-                    n(0.6),
-                    lower_joint_19
-                        .mul_add(
-                            lower_composite_inertia_18,
-                            lower_joint_13 * lower_composite_inertia_17,
-                        ),
-                ),
-        );
+    let lower_composite_inertia_24 = (-lower_joint_25).mul_add(
+        lower_composite_inertia_19,
+        (lower_joint_17.mul_add(lower_composite_inertia_21, lower_joint_11 * lower_composite_inertia_20)).mul_add(
+            n(0.6),
+            lower_joint_19.mul_add(lower_composite_inertia_18, lower_joint_13 * lower_composite_inertia_17),
+        ),
+    );
     let lower_composite_inertia_25 = lower_joint_11 * n(0.005);
     let lower_composite_inertia_26 = lower_joint_12 * n(0.01);
     let lower_composite_inertia_27 = lower_joint_16 * n(0.01);
     let lower_composite_inertia_28 = lower_joint_19 * n(0.005);
     let lower_composite_inertia_29 = lower_joint_22 * n(0.155);
     let lower_composite_inertia_30 = lower_joint_24 * n(0.155);
-    let lower_composite_inertia_31 = lower_joint_27
-        .mul_add(
-            lower_joint_27 * n(0.0775),
-            lower_joint_21
-                .mul_add(
-                    lower_joint_20 * n(0.01),
-                    lower_joint_15 * (lower_joint_14 * n(0.01)),
-                ),
-        );
-    let lower_composite_inertia_32 = (-lower_joint_27)
-        .mul_add(
-            lower_composite_inertia_29,
-            (-lower_joint_21)
-                .mul_add(
-                    lower_composite_inertia_27,
-                    lower_joint_22
-                        .mul_add(n(0.3), lower_joint_15 * lower_composite_inertia_25),
-                ),
-        );
-    let lower_composite_inertia_33 = (-lower_joint_27)
-        .mul_add(
-            lower_composite_inertia_30,
-            lower_joint_24
-                .mul_add(
-                    n(0.3),
-                    lower_joint_21
-                        .mul_add(
-                            lower_composite_inertia_28,
-                            lower_joint_15 * lower_composite_inertia_26,
-                        ),
-                ),
-        );
+    let lower_composite_inertia_31 = lower_joint_27.mul_add(
+        lower_joint_27 * n(0.0775),
+        lower_joint_21.mul_add(lower_joint_20 * n(0.01), lower_joint_15 * (lower_joint_14 * n(0.01))),
+    );
+    let lower_composite_inertia_32 = (-lower_joint_27).mul_add(
+        lower_composite_inertia_29,
+        (-lower_joint_21).mul_add(
+            lower_composite_inertia_27,
+            lower_joint_22.mul_add(n(0.3), lower_joint_15 * lower_composite_inertia_25),
+        ),
+    );
+    let lower_composite_inertia_33 = (-lower_joint_27).mul_add(
+        lower_composite_inertia_30,
+        lower_joint_24.mul_add(
+            n(0.3),
+            lower_joint_21.mul_add(lower_composite_inertia_28, lower_joint_15 * lower_composite_inertia_26),
+        ),
+    );
     // upper: composite inertia (9 additions)
-    let upper_composite_inertia = lower_joint_23
-        .mul_add(
-            lower_composite_inertia_29,
-            lower_joint_17
-                .mul_add(
-                    lower_composite_inertia_27,
-                    lower_joint_11.mul_add(lower_composite_inertia_25, n(0.035)),
-                ),
-        );
-    let upper_composite_inertia_2 = lower_joint_25
-        .mul_add(
-            lower_composite_inertia_30,
-            lower_joint_19
-                .mul_add(
-                    lower_composite_inertia_28,
-                    lower_joint_13
-                        .mul_add(lower_composite_inertia_26, n(0.005000000000000003)),
-                ),
-        );
-    let upper_composite_inertia_3 = (-lower_joint_27)
-        .mul_add(n(0.3), lower_composite_inertia_31 + n(0.585));
+    let upper_composite_inertia = lower_joint_23.mul_add(
+        lower_composite_inertia_29,
+        lower_joint_17.mul_add(lower_composite_inertia_27, lower_joint_11.mul_add(lower_composite_inertia_25, n(0.035))),
+    );
+    let upper_composite_inertia_2 = lower_joint_25.mul_add(
+        lower_composite_inertia_30,
+        lower_joint_19.mul_add(
+            lower_composite_inertia_28,
+            lower_joint_13.mul_add(lower_composite_inertia_26, n(0.005000000000000003)),
+        ),
+    );
+    let upper_composite_inertia_3 = (-lower_joint_27).mul_add(n(0.3), lower_composite_inertia_31 + n(0.585));
     // lower: factor (31 additions, 43 multiplications, 3 divisions)
     let lower_factor = n(1.0) / lower_composite_inertia_22;
     let lower_factor_2 = lower_composite_inertia_15 * lower_factor;
-    let lower_factor_3 = (-lower_composite_inertia_8)
-        .mul_add(lower_factor_2, lower_composite_inertia_7);
-    let lower_factor_4 = (-lower_composite_inertia_22)
-        .mul_add(lower_factor_2, lower_composite_inertia_15);
-    let lower_factor_5 = (-lower_composite_inertia_24)
-        .mul_add(
-            lower_factor_2,
-            (lower_joint_17
-                .mul_add(
-                    lower_composite_inertia_13,
-                    lower_joint_11 * lower_composite_inertia_12,
-                ))
-                .mul_add(n(0.6), lower_composite_inertia_14),
-        );
-    let lower_factor_6 = (-lower_composite_inertia_23)
-        .mul_add(lower_factor_2, lower_composite_inertia_16);
+    let lower_factor_3 = (-lower_composite_inertia_8).mul_add(lower_factor_2, lower_composite_inertia_7);
+    let lower_factor_4 = (-lower_composite_inertia_22).mul_add(lower_factor_2, lower_composite_inertia_15);
+    let lower_factor_5 = (-lower_composite_inertia_24).mul_add(
+        lower_factor_2,
+        (lower_joint_17.mul_add(lower_composite_inertia_13, lower_joint_11 * lower_composite_inertia_12))
+            .mul_add(n(0.6), lower_composite_inertia_14),
+    );
+    let lower_factor_6 = (-lower_composite_inertia_23).mul_add(lower_factor_2, lower_composite_inertia_16);
     let lower_factor_7 = lower_composite_inertia_8 * lower_factor;
-    let lower_factor_8 = (-lower_composite_inertia_24)
-        .mul_add(
-            lower_factor_7,
-            (-((-lower_joint_17)
-                .mul_add(
-                    lower_composite_inertia_5,
-                    lower_joint_11 * lower_composite_inertia_4,
-                )))
-                .mul_add(n(0.6), lower_composite_inertia_7),
-        );
-    let lower_factor_9 = (-lower_composite_inertia_23)
-        .mul_add(
-            lower_factor_7,
-            (lower_joint_19
-                .mul_add(
-                    lower_composite_inertia_5,
-                    lower_joint_13 * lower_composite_inertia_4,
-                ))
-                .mul_add(n(0.6), lower_composite_inertia_6),
-        );
+    let lower_factor_8 = (-lower_composite_inertia_24).mul_add(
+        lower_factor_7,
+        (-((-lower_joint_17).mul_add(lower_composite_inertia_5, lower_joint_11 * lower_composite_inertia_4)))
+            .mul_add(n(0.6), lower_composite_inertia_7),
+    );
+    let lower_factor_9 = (-lower_composite_inertia_23).mul_add(
+        lower_factor_7,
+        (lower_joint_19.mul_add(lower_composite_inertia_5, lower_joint_13 * lower_composite_inertia_4))
+            .mul_add(n(0.6), lower_composite_inertia_6),
+    );
     let lower_factor_10 = lower_composite_inertia_22 * lower_factor;
     let lower_factor_11 = lower_composite_inertia_24 * lower_factor;
-    let lower_factor_12 = (-lower_joint_19)
-        .mul_add(
-            lower_composite_inertia_27,
-            lower_composite_inertia_23
-                .mul_add(
-                    lower_factor_11,
-                    lower_joint_25
-                        .mul_add(
-                            lower_composite_inertia_29,
-                            lower_joint_13 * lower_composite_inertia_25,
-                        ),
-                ),
-        );
+    let lower_factor_12 = (-lower_joint_19).mul_add(
+        lower_composite_inertia_27,
+        lower_composite_inertia_23.mul_add(
+            lower_factor_11,
+            lower_joint_25.mul_add(lower_composite_inertia_29, lower_joint_13 * lower_composite_inertia_25),
+        ),
+    );
     let lower_factor_13 = lower_composite_inertia_23 * lower_factor;
-    let lower_factor_14 = n(1.0)
-        / ((-lower_composite_inertia_15)
-            .mul_add(lower_factor_2, lower_composite_inertia_14));
+    let lower_factor_14 = n(1.0) / ((-lower_composite_inertia_15).mul_add(lower_factor_2, lower_composite_inertia_14));
     let lower_factor_15 = lower_factor_3 * lower_factor_14;
     let lower_factor_16 = (-lower_factor_4)
-        .mul_add(
-            lower_factor_15,
-            (-lower_composite_inertia_22)
-                .mul_add(lower_factor_7, lower_composite_inertia_8),
-        );
+        .mul_add(lower_factor_15, (-lower_composite_inertia_22).mul_add(lower_factor_7, lower_composite_inertia_8));
     let lower_factor_17 = (-lower_factor_5).mul_add(lower_factor_15, lower_factor_8);
     let lower_factor_18 = (-lower_factor_6).mul_add(lower_factor_15, lower_factor_9);
     let lower_factor_19 = lower_factor_4 * lower_factor_14;
@@ -2148,265 +1250,128 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     let lower_factor_21 = lower_factor_6 * lower_factor_14;
     let lower_factor_22 = n(1.0)
         / ((-lower_factor_3)
-            .mul_add(
-                lower_factor_15,
-                (-lower_composite_inertia_8)
-                    .mul_add(lower_factor_7, lower_composite_inertia_6),
-            ));
+            .mul_add(lower_factor_15, (-lower_composite_inertia_8).mul_add(lower_factor_7, lower_composite_inertia_6)));
     let lower_factor_23 = lower_factor_16 * lower_factor_22;
-    let lower_factor_24 = (-lower_factor_16)
-        .mul_add(
-            lower_factor_23,
-            (-lower_factor_4)
-                .mul_add(
-                    lower_factor_19,
-                    (-lower_composite_inertia_22)
-                        .mul_add(
-                            lower_factor_10,
-                            upper_composite_inertia + upper_composite_inertia_2,
-                        ),
-                ),
-        );
-    let lower_factor_25 = lower_factor_17
-        .mul_add(
-            lower_factor_23,
-            lower_factor_5
-                .mul_add(
-                    lower_factor_19,
-                    lower_composite_inertia_24
-                        .mul_add(lower_factor_10, lower_composite_inertia_33),
-                ),
-        );
-    let lower_factor_26 = lower_factor_18
-        .mul_add(
-            lower_factor_23,
-            lower_factor_6
-                .mul_add(
-                    lower_factor_19,
-                    lower_composite_inertia_23
-                        .mul_add(lower_factor_10, lower_composite_inertia_32 - n(0.06)),
-                ),
-        );
+    let lower_factor_24 = (-lower_factor_16).mul_add(
+        lower_factor_23,
+        (-lower_factor_4).mul_add(
+            lower_factor_19,
+            (-lower_composite_inertia_22).mul_add(lower_factor_10, upper_composite_inertia + upper_composite_inertia_2),
+        ),
+    );
+    let lower_factor_25 = lower_factor_17.mul_add(
+        lower_factor_23,
+        lower_factor_5
+            .mul_add(lower_factor_19, lower_composite_inertia_24.mul_add(lower_factor_10, lower_composite_inertia_33)),
+    );
+    let lower_factor_26 = lower_factor_18.mul_add(
+        lower_factor_23,
+        lower_factor_6.mul_add(
+            lower_factor_19,
+            lower_composite_inertia_23.mul_add(lower_factor_10, lower_composite_inertia_32 - n(0.06)),
+        ),
+    );
     let lower_factor_27 = lower_factor_17 * lower_factor_22;
-    let lower_factor_28 = (-lower_factor_17)
-        .mul_add(
-            lower_factor_27,
-            (-lower_factor_5)
-                .mul_add(
-                    lower_factor_20,
-                    (-lower_composite_inertia_24)
-                        .mul_add(
-                            lower_factor_11,
-                            upper_composite_inertia + upper_composite_inertia_3,
-                        ),
-                ),
-        );
+    let lower_factor_28 = (-lower_factor_17).mul_add(
+        lower_factor_27,
+        (-lower_factor_5).mul_add(
+            lower_factor_20,
+            (-lower_composite_inertia_24).mul_add(lower_factor_11, upper_composite_inertia + upper_composite_inertia_3),
+        ),
+    );
     let lower_factor_29 = lower_factor_18 * lower_factor_22;
-    let lower_factor_30 = (-lower_factor_18)
-        .mul_add(
-            lower_factor_29,
-            (-lower_factor_6)
-                .mul_add(
-                    lower_factor_21,
-                    (-lower_composite_inertia_23)
-                        .mul_add(
-                            lower_factor_13,
-                            upper_composite_inertia_2 + upper_composite_inertia_3,
-                        ),
-                ),
-        );
+    let lower_factor_30 = (-lower_factor_18).mul_add(
+        lower_factor_29,
+        (-lower_factor_6).mul_add(
+            lower_factor_21,
+            (-lower_composite_inertia_23).mul_add(lower_factor_13, upper_composite_inertia_2 + upper_composite_inertia_3),
+        ),
+    );
     // lower: load (12 additions, 12 multiplications)
     let lower_load = p[5].mul_add(lower_factor_2, p[4]);
-    let lower_load_2 = (-p[5])
-        .mul_add(lower_factor_7, lower_factor_15.mul_add(lower_load, p[3]));
+    let lower_load_2 = (-p[5]).mul_add(lower_factor_7, lower_factor_15.mul_add(lower_load, p[3]));
     let lower_load_3 = (-lower_factor_23)
-        .mul_add(
-            lower_load_2,
-            (-p[5]).mul_add(lower_factor_10, lower_factor_19.mul_add(lower_load, p[2])),
-        );
+        .mul_add(lower_load_2, (-p[5]).mul_add(lower_factor_10, lower_factor_19.mul_add(lower_load, p[2])));
     // upper: factor (4 additions, 7 multiplications, 3 divisions)
     let upper_factor = n(1.0) / lower_factor_24;
     let upper_factor_2 = lower_factor_25 * upper_factor;
-    let upper_factor_3 = lower_factor_26
-        .mul_add(
-            upper_factor_2,
-            lower_factor_18
-                .mul_add(
-                    lower_factor_27,
-                    lower_factor_6.mul_add(lower_factor_20, lower_factor_12),
-                ),
-        );
+    let upper_factor_3 = lower_factor_26.mul_add(
+        upper_factor_2,
+        lower_factor_18.mul_add(lower_factor_27, lower_factor_6.mul_add(lower_factor_20, lower_factor_12)),
+    );
     let upper_factor_4 = lower_factor_26 * upper_factor;
-    let upper_factor_5 = n(1.0)
-        / ((-lower_factor_25).mul_add(upper_factor_2, lower_factor_28));
+    let upper_factor_5 = n(1.0) / ((-lower_factor_25).mul_add(upper_factor_2, lower_factor_28));
     let upper_factor_6 = upper_factor_3 * upper_factor_5;
     // upper: load (3 additions, 3 multiplications)
-    let upper_load = (-upper_factor_2)
-        .mul_add(
-            lower_load_3,
-            (-lower_factor_20)
-                .mul_add(
-                    lower_load,
-                    lower_factor_27
-                        .mul_add(lower_load_2, p[5].mul_add(lower_factor_11, p[1])),
-                ),
-        );
-    let upper_load_2 = (-lower_factor_29)
-        .mul_add(
-            lower_load_2,
-            (-p[5])
-                .mul_add(
-                    lower_factor_13,
-                    upper_factor_4
-                        .mul_add(lower_load_3, lower_factor_21.mul_add(lower_load, p[0])),
-                ),
-        );
+    let upper_load = (-upper_factor_2).mul_add(
+        lower_load_3,
+        (-lower_factor_20).mul_add(lower_load, lower_factor_27.mul_add(lower_load_2, p[5].mul_add(lower_factor_11, p[1]))),
+    );
+    let upper_load_2 = (-lower_factor_29).mul_add(
+        lower_load_2,
+        (-p[5]).mul_add(lower_factor_13, upper_factor_4.mul_add(lower_load_3, lower_factor_21.mul_add(lower_load, p[0]))),
+    );
     // upper: response (3 additions, 6 multiplications)
-    let upper_speed = (n(1.0)
-        / ((-upper_factor_3)
-            .mul_add(
-                upper_factor_6,
-                (-lower_factor_26).mul_add(upper_factor_4, lower_factor_30),
-            ))) * ((-upper_factor_6).mul_add(upper_load, upper_load_2));
-    let upper_speed_2 = upper_factor_5
-        * ((-upper_factor_3).mul_add(upper_speed, upper_load));
+    let upper_speed = (n(1.0) / ((-upper_factor_3).mul_add(
+        upper_factor_6,
+        (-lower_factor_26).mul_add(upper_factor_4, lower_factor_30),
+    ))) * ((-upper_factor_6).mul_add(upper_load, upper_load_2));
+    let upper_speed_2 = upper_factor_5 * ((-upper_factor_3).mul_add(upper_speed, upper_load));
     let upper_speed_3 = upper_factor
-        * ((-lower_factor_25)
-            .mul_add(upper_speed_2, lower_factor_26.mul_add(upper_speed, lower_load_3)));
+        * ((-lower_factor_25).mul_add(upper_speed_2, lower_factor_26.mul_add(upper_speed, lower_load_3)));
     // upper: spring (20 additions, 34 multiplications, 1 function call)
     let upper_spring = T::rotation_vector(
         &::hamel::nalgebra::Matrix3::new(
-            (-q[6])
-                .mul_add(
-                    n(0.09916874752156282),
-                    q[3].mul_add(n(0.009958402715808244), q[0] * n(0.9950207986420959)),
-                ),
-            (-q[7])
-                .mul_add(
-                    n(0.09916874752156282),
-                    q[4].mul_add(n(0.009958402715808244), q[1] * n(0.9950207986420959)),
-                ),
-            (-q[8])
-                .mul_add(
-                    n(0.09916874752156282),
-                    q[5].mul_add(n(0.009958402715808244), q[2] * n(0.9950207986420959)),
-                ),
-            q[6]
-                .mul_add(
-                    n(0.19833749504312564),
-                    q[3].mul_add(n(0.9800831945683836), q[0] * n(0.009958402715808244)),
-                ),
-            q[7]
-                .mul_add(
-                    n(0.19833749504312564),
-                    q[4].mul_add(n(0.9800831945683836), q[1] * n(0.009958402715808244)),
-                ),
-            q[8]
-                .mul_add(
-                    n(0.19833749504312564),
-                    q[5].mul_add(n(0.9800831945683836), q[2] * n(0.009958402715808244)),
-                ),
-            (-q[3])
-                .mul_add(
-                    n(0.19833749504312564),
-                    q[6].mul_add(n(0.9751039932104794), q[0] * n(0.09916874752156282)),
-                ),
-            (-q[4])
-                .mul_add(
-                    n(0.19833749504312564),
-                    q[7].mul_add(n(0.9751039932104794), q[1] * n(0.09916874752156282)),
-                ),
-            (-q[5])
-                .mul_add(
-                    n(0.19833749504312564),
-                    q[8].mul_add(n(0.9751039932104794), q[2] * n(0.09916874752156282)),
-                ),
+            (-q[6]).mul_add(n(0.09916874752156282), q[3].mul_add(n(0.009958402715808244), q[0] * n(0.9950207986420959))),
+            (-q[7]).mul_add(n(0.09916874752156282), q[4].mul_add(n(0.009958402715808244), q[1] * n(0.9950207986420959))),
+            (-q[8]).mul_add(n(0.09916874752156282), q[5].mul_add(n(0.009958402715808244), q[2] * n(0.9950207986420959))),
+            q[6].mul_add(n(0.19833749504312564), q[3].mul_add(n(0.9800831945683836), q[0] * n(0.009958402715808244))),
+            q[7].mul_add(n(0.19833749504312564), q[4].mul_add(n(0.9800831945683836), q[1] * n(0.009958402715808244))),
+            q[8].mul_add(n(0.19833749504312564), q[5].mul_add(n(0.9800831945683836), q[2] * n(0.009958402715808244))),
+            (-q[3]).mul_add(n(0.19833749504312564), q[6].mul_add(n(0.9751039932104794), q[0] * n(0.09916874752156282))),
+            (-q[4]).mul_add(n(0.19833749504312564), q[7].mul_add(n(0.9751039932104794), q[1] * n(0.09916874752156282))),
+            (-q[5]).mul_add(n(0.19833749504312564), q[8].mul_add(n(0.9751039932104794), q[2] * n(0.09916874752156282))),
         ),
     );
-    let upper_spring_2 = upper_spring[2]
-        .mul_add(
-            upper_spring[2] * n(10.0),
-            upper_spring[1]
-                .mul_add(
-                    upper_spring[1] * n(20.0),
-                    upper_spring[0] * (upper_spring[0] * n(30.0)),
-                ),
-        );
+    let upper_spring_2 = upper_spring[2].mul_add(
+        upper_spring[2] * n(10.0),
+        upper_spring[1].mul_add(upper_spring[1] * n(20.0), upper_spring[0] * (upper_spring[0] * n(30.0))),
+    );
     // lower: response (17 additions, 22 multiplications)
-    let lower_speed = lower_factor_22
-        * ((-lower_factor_18)
-            .mul_add(
-                upper_speed,
-                (-lower_factor_16)
-                    .mul_add(
-                        upper_speed_3,
-                        lower_factor_17.mul_add(upper_speed_2, lower_load_2),
-                    ),
-            ));
-    let lower_response = (-lower_factor_5)
-        .mul_add(
-            upper_speed_2,
-            lower_factor_6
-                .mul_add(
-                    upper_speed,
-                    lower_factor_4.mul_add(upper_speed_3, lower_factor_3 * lower_speed),
-                ),
-        );
+    let lower_speed = lower_factor_22 * ((-lower_factor_18).mul_add(
+        upper_speed,
+        (-lower_factor_16).mul_add(upper_speed_3, lower_factor_17.mul_add(upper_speed_2, lower_load_2)),
+    ));
+    let lower_response = (-lower_factor_5).mul_add(
+        upper_speed_2,
+        lower_factor_6.mul_add(upper_speed, lower_factor_4.mul_add(upper_speed_3, lower_factor_3 * lower_speed)),
+    );
     let lower_speed_2 = lower_factor_14 * (lower_load + lower_response);
-    let lower_response_2 = (-lower_composite_inertia_22)
-        .mul_add(
-            upper_speed_3,
-            (-lower_composite_inertia_8)
-                .mul_add(
-                    lower_speed,
-                    lower_composite_inertia_24
-                        .mul_add(
-                            upper_speed_2,
-                            lower_composite_inertia_15 * lower_speed_2,
-                        ),
-                ),
-        );
-    let lower_response_3 = p[3]
-        .mul_add(
+    let lower_response_2 = (-lower_composite_inertia_22).mul_add(
+        upper_speed_3,
+        (-lower_composite_inertia_8).mul_add(
             lower_speed,
-            p[2].mul_add(upper_speed_3, p[1].mul_add(upper_speed_2, p[0] * upper_speed)),
-        );
-    let lower_response_4 = p[5]
-        .mul_add(
-            lower_factor
-                * ((-lower_composite_inertia_23)
-                    .mul_add(upper_speed, p[5] + lower_response_2)),
-            p[4].mul_add(lower_speed_2, lower_response_3),
-        );
+            lower_composite_inertia_24.mul_add(upper_speed_2, lower_composite_inertia_15 * lower_speed_2),
+        ),
+    );
+    let lower_response_3 = p[3]
+        .mul_add(lower_speed, p[2].mul_add(upper_speed_3, p[1].mul_add(upper_speed_2, p[0] * upper_speed)));
+    let lower_response_4 = p[5].mul_add(
+        lower_factor * ((-lower_composite_inertia_23).mul_add(upper_speed, p[5] + lower_response_2)),
+        p[4].mul_add(lower_speed_2, lower_response_3),
+    );
     // lower: spring (3 additions, 7 multiplications, 1 function call)
     let lower_spring = T::quaternion_vector([q[9], q[10], q[11], q[12]]);
-    let lower_spring_2 = lower_spring[2]
-        .mul_add(
-            lower_spring[2] * n(15.0),
-            lower_spring[1]
-                .mul_add(
-                    lower_spring[1] * n(15.0),
-                    lower_spring[0] * (lower_spring[0] * n(15.0)),
-                ),
-        );
+    let lower_spring_2 = lower_spring[2].mul_add(
+        lower_spring[2] * n(15.0),
+        lower_spring[1].mul_add(lower_spring[1] * n(15.0), lower_spring[0] * (lower_spring[0] * n(15.0))),
+    );
     // upper: first moment (4 additions, 4 multiplications)
-    let upper_first_moment = (-q[8])
-        .mul_add(
-            lower_joint_27.mul_add(n(0.25), -n(1.2)),
-            (-q[7])
-                .mul_add(
-                    lower_joint_24 * n(0.5),
-                    q[6] * (lower_joint_22.mul_add(n(0.5), -n(0.2))),
-                ),
-        );
+    let upper_first_moment = (-q[8]).mul_add(
+        lower_joint_27.mul_add(n(0.25), -n(1.2)),
+        (-q[7]).mul_add(lower_joint_24 * n(0.5), q[6] * (lower_joint_22.mul_add(n(0.5), -n(0.2)))),
+    );
     let upper_first_moment_2 = (-upper_first_moment)
-        .mul_add(
-            n(9.81),
-            lower_spring_2
-                .mul_add(
-                    n(0.5),
-                    upper_spring_2.mul_add(n(0.5), lower_response_4 * n(0.5)),
-                ),
-        );
+        .mul_add(n(9.81), lower_spring_2.mul_add(n(0.5), upper_spring_2.mul_add(n(0.5), lower_response_4 * n(0.5))));
     [upper_first_moment_2]
 }

@@ -62,13 +62,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 1], v: &[T; 1], tau: &[T; 1]) -> [T; 
     let (sines, cosines) = T::sin_cos_all(&[q[0]]);
     let [bob_sin] = sines;
     let [bob_cos] = cosines;
-    [
-        bob_cos
-            .mul_add(
-                n(2.7633802816901407),
-                bob_sin.mul_add(n(22.107042253521126), tau[0] * n(4.694835680751173)),
-            ),
-    ]
+    [bob_cos.mul_add(n(2.7633802816901407), bob_sin.mul_add(n(22.107042253521126), tau[0] * n(4.694835680751173)))]
 }
 
 /// Efforts τ̄ = S̄ᵀτ that the accelerations take at Q and v̄, (24), (34).
@@ -82,11 +76,5 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 1], v: &[T; 1], a: &[T; 1]) -> [T; 1]
     let (sines, cosines) = T::sin_cos_all(&[q[0]]);
     let [bob_sin] = sines;
     let [bob_cos] = cosines;
-    [
-        (-bob_sin)
-            .mul_add(
-                n(4.7088),
-                (-bob_cos).mul_add(n(0.5886), a[0] * n(0.21300000000000002)),
-            ),
-    ]
+    [(-bob_sin).mul_add(n(4.7088), (-bob_cos).mul_add(n(0.5886), a[0] * n(0.21300000000000002)))]
 }

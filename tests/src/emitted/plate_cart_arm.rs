@@ -46,10 +46,7 @@ pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations
             u.first_chunk(),
             results.get_mut(..126),
         ) {
-            results
-                .copy_from_slice(
-                    forward_dynamics_derivatives::<f64>(q, v, u).as_flattened(),
-                );
+            results.copy_from_slice(forward_dynamics_derivatives::<f64>(q, v, u).as_flattened());
         }
     }),
     inverse_dynamics_derivatives: Some(|q, v, u, results| {
@@ -59,35 +56,20 @@ pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations
             u.first_chunk(),
             results.get_mut(..78),
         ) {
-            results
-                .copy_from_slice(
-                    inverse_dynamics_derivatives::<f64>(q, v, u).as_flattened(),
-                );
+            results.copy_from_slice(inverse_dynamics_derivatives::<f64>(q, v, u).as_flattened());
         }
     }),
     in_lanes: ::hamel::compiled::InLanes {
-        forward_dynamics: Some(
-            ::hamel::compiled::many_states::<ForwardDynamics, 16, 6, 7>,
-        ),
-        inverse_dynamics: Some(
-            ::hamel::compiled::many_states::<InverseDynamics, 16, 6, 6>,
-        ),
+        forward_dynamics: Some(::hamel::compiled::many_states::<ForwardDynamics, 16, 6, 7>),
+        inverse_dynamics: Some(::hamel::compiled::many_states::<InverseDynamics, 16, 6, 6>),
     },
     momenta: Some(|q, v, out| {
-        if let (Some(q), Some(v), Some(out)) = (
-            q.first_chunk(),
-            v.first_chunk(),
-            out.first_chunk_mut(),
-        ) {
+        if let (Some(q), Some(v), Some(out)) = (q.first_chunk(), v.first_chunk(), out.first_chunk_mut()) {
             *out = momenta::<f64>(q, v);
         }
     }),
     speeds_from_momenta: Some(|q, v, out| {
-        if let (Some(q), Some(v), Some(out)) = (
-            q.first_chunk(),
-            v.first_chunk(),
-            out.first_chunk_mut(),
-        ) {
+        if let (Some(q), Some(v), Some(out)) = (q.first_chunk(), v.first_chunk(), out.first_chunk_mut()) {
             *out = speeds_from_momenta::<f64>(q, v);
         }
     }),
@@ -155,828 +137,435 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [T;
     let cart_acceleration = v[0] * v[2];
     let cart_acceleration_2 = q[3] * plate_acceleration;
     let cart_acceleration_3 = q[6] * plate_acceleration;
-    let cart_acceleration_4 = q[4]
-        .mul_add(cart_acceleration_3, q[1] * cart_acceleration_2);
+    let cart_acceleration_4 = q[4].mul_add(cart_acceleration_3, q[1] * cart_acceleration_2);
     let cart_acceleration_5 = cart_rate_z * cart_rate_z;
-    let cart_acceleration_6 = (-q[5])
-        .mul_add(
-            cart_acceleration_3,
-            (-q[2])
-                .mul_add(
-                    cart_acceleration_2,
-                    v[1].mul_add(v[2], cart_acceleration + cart_acceleration),
-                ),
-        );
+    let cart_acceleration_6 = (-q[5]).mul_add(
+        cart_acceleration_3,
+        (-q[2]).mul_add(cart_acceleration_2, v[1].mul_add(v[2], cart_acceleration + cart_acceleration)),
+    );
     // end_effector: acceleration (20 additions, 23 multiplications)
     let end_effector_acceleration = (-end_effector_joint_2)
-        .mul_add(
-            end_effector_angular_velocity_3,
-            end_effector_joint_3 * end_effector_angular_velocity_2,
-        );
+        .mul_add(end_effector_angular_velocity_3, end_effector_joint_3 * end_effector_angular_velocity_2);
     let end_effector_acceleration_2 = (-end_effector_joint_3)
-        .mul_add(
-            end_effector_angular_velocity,
-            end_effector_joint * end_effector_angular_velocity_3,
-        );
+        .mul_add(end_effector_angular_velocity, end_effector_joint * end_effector_angular_velocity_3);
     let end_effector_acceleration_3 = (-end_effector_joint)
-        .mul_add(
-            end_effector_angular_velocity_2,
-            end_effector_joint_2 * end_effector_angular_velocity,
-        );
-    let end_effector_acceleration_4 = cart_acceleration_5
-        .mul_add(n(0.15), cart_acceleration_4);
-    let end_effector_acceleration_5 = cart_acceleration_5
-        .mul_add(n(0.02), cart_acceleration_6);
+        .mul_add(end_effector_angular_velocity_2, end_effector_joint_2 * end_effector_angular_velocity);
+    let end_effector_acceleration_4 = cart_acceleration_5.mul_add(n(0.15), cart_acceleration_4);
+    let end_effector_acceleration_5 = cart_acceleration_5.mul_add(n(0.02), cart_acceleration_6);
     let end_effector_acceleration_6 = (-q[13])
-        .mul_add(
-            n(9.81),
-            (-q[10])
-                .mul_add(end_effector_acceleration_5, q[7] * end_effector_acceleration_4),
-        );
+        .mul_add(n(9.81), (-q[10]).mul_add(end_effector_acceleration_5, q[7] * end_effector_acceleration_4));
     let end_effector_acceleration_7 = (-q[14])
-        .mul_add(
-            n(9.81),
-            (-q[11])
-                .mul_add(end_effector_acceleration_5, q[8] * end_effector_acceleration_4),
-        );
+        .mul_add(n(9.81), (-q[11]).mul_add(end_effector_acceleration_5, q[8] * end_effector_acceleration_4));
     let end_effector_acceleration_8 = (-q[15])
-        .mul_add(
-            n(9.81),
-            (-q[12])
-                .mul_add(end_effector_acceleration_5, q[9] * end_effector_acceleration_4),
-        );
+        .mul_add(n(9.81), (-q[12]).mul_add(end_effector_acceleration_5, q[9] * end_effector_acceleration_4));
     let end_effector_acceleration_9 = end_effector_rate_x * end_effector_rate_x;
     let end_effector_acceleration_10 = end_effector_rate_x * end_effector_rate_y;
     let end_effector_acceleration_11 = end_effector_rate_x * end_effector_rate_z;
     let end_effector_acceleration_12 = end_effector_rate_y * end_effector_rate_y;
     let end_effector_acceleration_13 = end_effector_rate_y * end_effector_rate_z;
     let end_effector_acceleration_14 = end_effector_rate_z * end_effector_rate_z;
-    let end_effector_acceleration_15 = end_effector_acceleration_3
-        + end_effector_acceleration_10;
-    let end_effector_acceleration_16 = end_effector_acceleration_2
-        - end_effector_acceleration_11;
-    let end_effector_acceleration_17 = end_effector_acceleration_3
-        - end_effector_acceleration_10;
-    let end_effector_acceleration_18 = end_effector_acceleration
-        + end_effector_acceleration_13;
-    let end_effector_acceleration_19 = end_effector_acceleration_2
-        + end_effector_acceleration_11;
-    let end_effector_acceleration_20 = end_effector_acceleration
-        - end_effector_acceleration_13;
+    let end_effector_acceleration_15 = end_effector_acceleration_3 + end_effector_acceleration_10;
+    let end_effector_acceleration_16 = end_effector_acceleration_2 - end_effector_acceleration_11;
+    let end_effector_acceleration_17 = end_effector_acceleration_3 - end_effector_acceleration_10;
+    let end_effector_acceleration_18 = end_effector_acceleration + end_effector_acceleration_13;
+    let end_effector_acceleration_19 = end_effector_acceleration_2 + end_effector_acceleration_11;
+    let end_effector_acceleration_20 = end_effector_acceleration - end_effector_acceleration_13;
     // end_effector: force (27 additions, 30 multiplications)
-    let end_effector_force = (-end_effector_acceleration_13)
-        .mul_add(
-            n(0.15511999999999998),
-            (end_effector_acceleration_12 - end_effector_acceleration_14)
-                .mul_add(
-                    n(0.042300000000000004),
-                    end_effector_acceleration_16
-                        .mul_add(n(0.0078), end_effector_acceleration * n(0.19388)),
-                ),
-        );
-    let end_effector_force_2 = (end_effector_acceleration_9
-        - end_effector_acceleration_14)
-        .mul_add(
-            n(0.027499999999999997),
-            end_effector_acceleration_17
-                .mul_add(
-                    n(0.042300000000000004),
-                    end_effector_acceleration_11
-                        .mul_add(
-                            n(0.16674999999999998),
-                            end_effector_acceleration_2 * n(0.18225),
-                        ),
-                ),
-        );
-    let end_effector_force_3 = (-end_effector_acceleration_20)
-        .mul_add(
-            n(0.027499999999999997),
-            (-end_effector_acceleration_10)
-                .mul_add(
-                    n(0.01163),
-                    (end_effector_acceleration_9 - end_effector_acceleration_12)
-                        .mul_add(n(0.0078), end_effector_acceleration_3 * n(0.02713)),
-                ),
-        );
-    let end_effector_force_4 = (-end_effector_acceleration_15)
-        .mul_add(
-            n(0.027499999999999997),
-            end_effector_acceleration_7
-                .mul_add(
-                    n(0.51),
-                    end_effector_acceleration_8.mul_add(n(0.136), end_effector_force),
-                ),
-        );
-    let end_effector_force_5 = (-end_effector_acceleration_6)
-        .mul_add(
-            n(0.51),
-            end_effector_acceleration_8
-                .mul_add(
-                    n(0.085),
-                    end_effector_acceleration_18.mul_add(n(0.0078), end_effector_force_2),
-                ),
-        );
-    let end_effector_force_6 = (-end_effector_acceleration_6)
-        .mul_add(
-            n(0.136),
-            (-end_effector_acceleration_7)
-                .mul_add(
-                    n(0.085),
-                    end_effector_acceleration_19
-                        .mul_add(n(0.042300000000000004), end_effector_force_3),
-                ),
-        );
-    let end_effector_force_7 = (-end_effector_acceleration_19)
-        .mul_add(
-            n(0.51),
-            (-end_effector_acceleration_17)
-                .mul_add(
-                    n(0.136),
-                    (end_effector_acceleration_12 + end_effector_acceleration_14)
-                        * n(0.085),
-                ),
-        );
-    let end_effector_force_8 = (-end_effector_acceleration_20)
-        .mul_add(
-            n(0.51),
-            (end_effector_acceleration_9 + end_effector_acceleration_14)
-                .mul_add(n(0.136), end_effector_acceleration_15 * n(0.085)),
-        );
-    let end_effector_force_9 = (end_effector_acceleration_9
-        + end_effector_acceleration_12)
-        .mul_add(
-            n(0.51),
-            end_effector_acceleration_18
-                .mul_add(n(0.136), end_effector_acceleration_16 * n(0.085)),
-        );
+    let end_effector_force = (-end_effector_acceleration_13).mul_add(
+        n(0.15511999999999998),
+        (end_effector_acceleration_12 - end_effector_acceleration_14).mul_add(
+            n(0.042300000000000004),
+            end_effector_acceleration_16.mul_add(n(0.0078), end_effector_acceleration * n(0.19388)),
+        ),
+    );
+    let end_effector_force_2 = (end_effector_acceleration_9 - end_effector_acceleration_14).mul_add(
+        n(0.027499999999999997),
+        end_effector_acceleration_17.mul_add(
+            n(0.042300000000000004),
+            end_effector_acceleration_11.mul_add(n(0.16674999999999998), end_effector_acceleration_2 * n(0.18225)),
+        ),
+    );
+    let end_effector_force_3 = (-end_effector_acceleration_20).mul_add(
+        n(0.027499999999999997),
+        (-end_effector_acceleration_10).mul_add(
+            n(0.01163),
+            (end_effector_acceleration_9 - end_effector_acceleration_12)
+                .mul_add(n(0.0078), end_effector_acceleration_3 * n(0.02713)),
+        ),
+    );
+    let end_effector_force_4 = (-end_effector_acceleration_15).mul_add(
+        n(0.027499999999999997),
+        end_effector_acceleration_7.mul_add(n(0.51), end_effector_acceleration_8.mul_add(n(0.136), end_effector_force)),
+    );
+    let end_effector_force_5 = (-end_effector_acceleration_6).mul_add(
+        n(0.51),
+        end_effector_acceleration_8.mul_add(n(0.085), end_effector_acceleration_18.mul_add(n(0.0078), end_effector_force_2)),
+    );
+    let end_effector_force_6 = (-end_effector_acceleration_6).mul_add(
+        n(0.136),
+        (-end_effector_acceleration_7)
+            .mul_add(n(0.085), end_effector_acceleration_19.mul_add(n(0.042300000000000004), end_effector_force_3)),
+    );
+    let end_effector_force_7 = (-end_effector_acceleration_19).mul_add(
+        n(0.51),
+        (-end_effector_acceleration_17)
+            .mul_add(n(0.136), (end_effector_acceleration_12 + end_effector_acceleration_14) * n(0.085)),
+    );
+    let end_effector_force_8 = (-end_effector_acceleration_20).mul_add(
+        n(0.51),
+        (end_effector_acceleration_9 + end_effector_acceleration_14).mul_add(n(0.136), end_effector_acceleration_15 * n(0.085)),
+    );
+    let end_effector_force_9 = (end_effector_acceleration_9 + end_effector_acceleration_12)
+        .mul_add(n(0.51), end_effector_acceleration_18.mul_add(n(0.136), end_effector_acceleration_16 * n(0.085)));
     // end_effector: effort (12 additions, 17 multiplications)
     let end_effector_effort = q[15]
-        .mul_add(
-            end_effector_force_6,
-            q[14].mul_add(end_effector_force_5, q[13] * end_effector_force_4),
-        );
+        .mul_add(end_effector_force_6, q[14].mul_add(end_effector_force_5, q[13] * end_effector_force_4));
     let end_effector_effort_2 = (-q[8])
-        .mul_add(
-            end_effector_force_8,
-            q[9].mul_add(end_effector_force_9, q[7] * end_effector_force_7),
-        );
+        .mul_add(end_effector_force_8, q[9].mul_add(end_effector_force_9, q[7] * end_effector_force_7));
     let end_effector_effort_3 = (-q[11])
-        .mul_add(
-            end_effector_force_8,
-            q[12].mul_add(end_effector_force_9, q[10] * end_effector_force_7),
-        );
+        .mul_add(end_effector_force_8, q[12].mul_add(end_effector_force_9, q[10] * end_effector_force_7));
     // end_effector: composite inertia (93 additions, 130 multiplications)
     let end_effector_composite_inertia = q[8] * n(0.0078);
     let end_effector_composite_inertia_2 = q[9] * n(0.027499999999999997);
     let end_effector_composite_inertia_3 = q[7]
-        .mul_add(
-            n(0.19388),
-            end_effector_composite_inertia - end_effector_composite_inertia_2,
-        );
+        .mul_add(n(0.19388), end_effector_composite_inertia - end_effector_composite_inertia_2);
     let end_effector_composite_inertia_4 = q[7] * n(0.0078);
     let end_effector_composite_inertia_5 = q[9] * n(0.042300000000000004);
     let end_effector_composite_inertia_6 = q[8]
-        .mul_add(
-            n(0.18225),
-            end_effector_composite_inertia_4 + end_effector_composite_inertia_5,
-        );
-    let end_effector_composite_inertia_7 = (-q[8])
-        .mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997));
-    let end_effector_composite_inertia_8 = (-q[9])
-        .mul_add(n(0.02713), end_effector_composite_inertia_7);
+        .mul_add(n(0.18225), end_effector_composite_inertia_4 + end_effector_composite_inertia_5);
+    let end_effector_composite_inertia_7 = (-q[8]).mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997));
+    let end_effector_composite_inertia_8 = (-q[9]).mul_add(n(0.02713), end_effector_composite_inertia_7);
     let end_effector_composite_inertia_9 = q[9].mul_add(n(0.136), q[8] * n(0.51));
     let end_effector_composite_inertia_10 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
     let end_effector_composite_inertia_11 = q[8].mul_add(n(0.085), q[7] * n(0.136));
-    let end_effector_composite_inertia_12 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_8,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_6,
-                    q[13] * end_effector_composite_inertia_3,
-                ),
-        );
-    let end_effector_composite_inertia_13 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_11,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_10,
-                    q[7] * end_effector_composite_inertia_9,
-                ),
-        );
-    let end_effector_composite_inertia_14 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_11,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_10,
-                    q[10] * end_effector_composite_inertia_9,
-                ),
-        );
+    let end_effector_composite_inertia_12 = (-q[15]).mul_add(
+        end_effector_composite_inertia_8,
+        q[14].mul_add(end_effector_composite_inertia_6, q[13] * end_effector_composite_inertia_3),
+    );
+    let end_effector_composite_inertia_13 = (-q[9]).mul_add(
+        end_effector_composite_inertia_11,
+        q[8].mul_add(end_effector_composite_inertia_10, q[7] * end_effector_composite_inertia_9),
+    );
+    let end_effector_composite_inertia_14 = (-q[12]).mul_add(
+        end_effector_composite_inertia_11,
+        q[11].mul_add(end_effector_composite_inertia_10, q[10] * end_effector_composite_inertia_9),
+    );
     let end_effector_composite_inertia_15 = end_effector_composite_inertia_13
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_14
-                .mul_add(n(0.15), end_effector_composite_inertia_12),
-        );
-    let end_effector_composite_inertia_16 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_14,
-                    q[1] * end_effector_composite_inertia_13,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_14,
-                        q[4] * end_effector_composite_inertia_13,
-                    )),
-        );
+        .mul_add(n(0.02), end_effector_composite_inertia_14.mul_add(n(0.15), end_effector_composite_inertia_12));
+    let end_effector_composite_inertia_16 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_composite_inertia_14, q[1] * end_effector_composite_inertia_13),
+        q[3] * (q[5].mul_add(end_effector_composite_inertia_14, q[4] * end_effector_composite_inertia_13)),
+    );
     let end_effector_composite_inertia_17 = q[11] * n(0.0078);
     let end_effector_composite_inertia_18 = q[12] * n(0.027499999999999997);
     let end_effector_composite_inertia_19 = q[10]
-        .mul_add(
-            n(0.19388),
-            end_effector_composite_inertia_17 - end_effector_composite_inertia_18,
-        );
+        .mul_add(n(0.19388), end_effector_composite_inertia_17 - end_effector_composite_inertia_18);
     let end_effector_composite_inertia_20 = q[10] * n(0.0078);
     let end_effector_composite_inertia_21 = q[12] * n(0.042300000000000004);
     let end_effector_composite_inertia_22 = q[11]
-        .mul_add(
-            n(0.18225),
-            end_effector_composite_inertia_20 + end_effector_composite_inertia_21,
-        );
-    let end_effector_composite_inertia_23 = (-q[11])
-        .mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997));
-    let end_effector_composite_inertia_24 = (-q[12])
-        .mul_add(n(0.02713), end_effector_composite_inertia_23);
+        .mul_add(n(0.18225), end_effector_composite_inertia_20 + end_effector_composite_inertia_21);
+    let end_effector_composite_inertia_23 = (-q[11]).mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997));
+    let end_effector_composite_inertia_24 = (-q[12]).mul_add(n(0.02713), end_effector_composite_inertia_23);
     let end_effector_composite_inertia_25 = q[12].mul_add(n(0.136), q[11] * n(0.51));
     let end_effector_composite_inertia_26 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
     let end_effector_composite_inertia_27 = q[11].mul_add(n(0.085), q[10] * n(0.136));
-    let end_effector_composite_inertia_28 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_24,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_22,
-                    q[13] * end_effector_composite_inertia_19,
-                ),
-        );
-    let end_effector_composite_inertia_29 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_27,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_26,
-                    q[7] * end_effector_composite_inertia_25,
-                ),
-        );
-    let end_effector_composite_inertia_30 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_27,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_26,
-                    q[10] * end_effector_composite_inertia_25,
-                ),
-        );
+    let end_effector_composite_inertia_28 = (-q[15]).mul_add(
+        end_effector_composite_inertia_24,
+        q[14].mul_add(end_effector_composite_inertia_22, q[13] * end_effector_composite_inertia_19),
+    );
+    let end_effector_composite_inertia_29 = (-q[9]).mul_add(
+        end_effector_composite_inertia_27,
+        q[8].mul_add(end_effector_composite_inertia_26, q[7] * end_effector_composite_inertia_25),
+    );
+    let end_effector_composite_inertia_30 = (-q[12]).mul_add(
+        end_effector_composite_inertia_27,
+        q[11].mul_add(end_effector_composite_inertia_26, q[10] * end_effector_composite_inertia_25),
+    );
     let end_effector_composite_inertia_31 = end_effector_composite_inertia_29
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_30
-                .mul_add(n(0.15), end_effector_composite_inertia_28),
-        );
-    let end_effector_composite_inertia_32 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_30,
-                    q[1] * end_effector_composite_inertia_29,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_30,
-                        q[4] * end_effector_composite_inertia_29,
-                    )),
-        );
+        .mul_add(n(0.02), end_effector_composite_inertia_30.mul_add(n(0.15), end_effector_composite_inertia_28));
+    let end_effector_composite_inertia_32 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_composite_inertia_30, q[1] * end_effector_composite_inertia_29),
+        q[3] * (q[5].mul_add(end_effector_composite_inertia_30, q[4] * end_effector_composite_inertia_29)),
+    );
     let end_effector_composite_inertia_33 = q[15].mul_add(n(0.136), q[14] * n(0.51));
     let end_effector_composite_inertia_34 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
     let end_effector_composite_inertia_35 = q[14].mul_add(n(0.085), q[13] * n(0.136));
-    let end_effector_composite_inertia_36 = q[14]
-        .mul_add(
-            q[15]
-                .mul_add(
-                    n(0.042300000000000004),
-                    q[14].mul_add(n(0.18225), q[13] * n(0.0078)),
-                ),
-            q[13]
-                * ((-q[15])
-                    .mul_add(
-                        n(0.027499999999999997),
-                        q[14].mul_add(n(0.0078), q[13] * n(0.19388)),
-                    )),
-        );
-    let end_effector_composite_inertia_37 = (-q[15])
-        .mul_add(
-            (-q[15])
-                .mul_add(
-                    n(0.02713),
-                    (-q[14])
-                        .mul_add(
-                            n(0.042300000000000004),
-                            q[13] * n(0.027499999999999997),
-                        ),
-                ),
-            end_effector_composite_inertia_36,
-        );
-    let end_effector_composite_inertia_38 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_35,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_34,
-                    q[7] * end_effector_composite_inertia_33,
-                ),
-        );
-    let end_effector_composite_inertia_39 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_35,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_34,
-                    q[10] * end_effector_composite_inertia_33,
-                ),
-        );
+    let end_effector_composite_inertia_36 = q[14].mul_add(
+        q[15].mul_add(n(0.042300000000000004), q[14].mul_add(n(0.18225), q[13] * n(0.0078))),
+        q[13] * ((-q[15]).mul_add(n(0.027499999999999997), q[14].mul_add(n(0.0078), q[13] * n(0.19388)))),
+    );
+    let end_effector_composite_inertia_37 = (-q[15]).mul_add(
+        (-q[15]).mul_add(n(0.02713), (-q[14]).mul_add(n(0.042300000000000004), q[13] * n(0.027499999999999997))),
+        end_effector_composite_inertia_36,
+    );
+    let end_effector_composite_inertia_38 = (-q[9]).mul_add(
+        end_effector_composite_inertia_35,
+        q[8].mul_add(end_effector_composite_inertia_34, q[7] * end_effector_composite_inertia_33),
+    );
+    let end_effector_composite_inertia_39 = (-q[12]).mul_add(
+        end_effector_composite_inertia_35,
+        q[11].mul_add(end_effector_composite_inertia_34, q[10] * end_effector_composite_inertia_33),
+    );
     let end_effector_composite_inertia_40 = end_effector_composite_inertia_38
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_39
-                .mul_add(n(0.15), end_effector_composite_inertia_37),
-        );
-    let end_effector_composite_inertia_41 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_39,
-                    q[1] * end_effector_composite_inertia_38,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_39,
-                        q[4] * end_effector_composite_inertia_38,
-                    )),
-        );
-    let end_effector_composite_inertia_42 = end_effector_composite_inertia_40
-        + end_effector_composite_inertia_41;
-    let end_effector_composite_inertia_43 = (-q[8])
-        .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
-    let end_effector_composite_inertia_44 = (-q[11])
-        .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
+        .mul_add(n(0.02), end_effector_composite_inertia_39.mul_add(n(0.15), end_effector_composite_inertia_37));
+    let end_effector_composite_inertia_41 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_composite_inertia_39, q[1] * end_effector_composite_inertia_38),
+        q[3] * (q[5].mul_add(end_effector_composite_inertia_39, q[4] * end_effector_composite_inertia_38)),
+    );
+    let end_effector_composite_inertia_42 = end_effector_composite_inertia_40 + end_effector_composite_inertia_41;
+    let end_effector_composite_inertia_43 = (-q[8]).mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
+    let end_effector_composite_inertia_44 = (-q[11]).mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
     let end_effector_composite_inertia_45 = q[7]
-        .mul_add(
-            n(0.007750000000000002),
-            end_effector_composite_inertia_2 - end_effector_composite_inertia,
-        );
+        .mul_add(n(0.007750000000000002), end_effector_composite_inertia_2 - end_effector_composite_inertia);
     let end_effector_composite_inertia_46 = (-q[8])
-        .mul_add(
-            n(0.01938),
-            end_effector_composite_inertia_5 + end_effector_composite_inertia_4,
-        );
-    let end_effector_composite_inertia_47 = q[9]
-        .mul_add(n(0.1745), end_effector_composite_inertia_7);
-    let end_effector_composite_inertia_48 = (-q[11])
-        .mul_add(
-            (-q[11])
-                .mul_add(
-                    n(0.01938),
-                    end_effector_composite_inertia_21 + end_effector_composite_inertia_20,
-                ),
-            q[10]
-                * (q[10]
-                    .mul_add(
-                        n(0.007750000000000002),
-                        end_effector_composite_inertia_18
-                            - end_effector_composite_inertia_17,
-                    )),
-        );
-    let end_effector_composite_inertia_49 = (-q[8])
-        .mul_add(
+        .mul_add(n(0.01938), end_effector_composite_inertia_5 + end_effector_composite_inertia_4);
+    let end_effector_composite_inertia_47 = q[9].mul_add(n(0.1745), end_effector_composite_inertia_7);
+    let end_effector_composite_inertia_48 = (-q[11]).mul_add(
+        (-q[11]).mul_add(n(0.01938), end_effector_composite_inertia_21 + end_effector_composite_inertia_20),
+        q[10] * (q[10].mul_add(n(0.007750000000000002), end_effector_composite_inertia_18 - end_effector_composite_inertia_17)),
+    );
+    let end_effector_composite_inertia_49 = (-q[8]).mul_add(
+        end_effector_composite_inertia_46,
+        end_effector_composite_inertia_43
+            .mul_add(n(0.3), q[9].mul_add(end_effector_composite_inertia_47, q[7] * end_effector_composite_inertia_45)),
+    );
+    let end_effector_composite_inertia_50 = (-end_effector_composite_inertia_43).mul_add(
+        n(0.02),
+        (-q[11]).mul_add(
             end_effector_composite_inertia_46,
-            end_effector_composite_inertia_43
-                .mul_add(
-                    n(0.3),
-                    q[9]
-                        .mul_add(
-                            end_effector_composite_inertia_47,
-                            q[7] * end_effector_composite_inertia_45,
-                        ),
-                ),
-        );
-    let end_effector_composite_inertia_50 = (-end_effector_composite_inertia_43)
-        .mul_add(
-            n(0.02),
-            (-q[11])
-                .mul_add(
-                    end_effector_composite_inertia_46,
-                    end_effector_composite_inertia_44
-                        .mul_add(
-                            n(0.15),
-                            q[12]
-                                .mul_add(
-                                    end_effector_composite_inertia_47,
-                                    q[10] * end_effector_composite_inertia_45,
-                                ),
-                        ),
-                ),
-        );
+            end_effector_composite_inertia_44.mul_add(
+                n(0.15),
+                q[12].mul_add(end_effector_composite_inertia_47, q[10] * end_effector_composite_inertia_45),
+            ),
+        ),
+    );
     // cart: effort (7 additions, 6 multiplications)
-    let cart_effort = (-end_effector_effort_2)
-        .mul_add(
-            n(0.02),
-            (-end_effector_effort_3)
-                .mul_add(
-                    n(0.15),
-                    cart_acceleration_4
-                        .mul_add(
-                            n(0.046),
-                            cart_acceleration_6.mul_add(n(0.495), end_effector_effort),
-                        ),
-                ),
-        );
-    let cart_effort_2 = cart_acceleration_5
-        .mul_add(n(0.495), cart_acceleration_4.mul_add(n(5.7), end_effector_effort_2));
-    let cart_effort_3 = (-cart_acceleration_5)
-        .mul_add(n(0.046), cart_acceleration_6.mul_add(n(5.7), -end_effector_effort_3));
-    let cart_effort_4 = (-q[6])
-        .mul_add(
-            (-q[2]).mul_add(cart_effort_3, q[1] * cart_effort_2),
-            q[3] * ((-q[5]).mul_add(cart_effort_3, q[4] * cart_effort_2)),
-        );
+    let cart_effort = (-end_effector_effort_2).mul_add(
+        n(0.02),
+        (-end_effector_effort_3).mul_add(
+            n(0.15),
+            cart_acceleration_4.mul_add(n(0.046), cart_acceleration_6.mul_add(n(0.495), end_effector_effort)),
+        ),
+    );
+    let cart_effort_2 = cart_acceleration_5.mul_add(n(0.495), cart_acceleration_4.mul_add(n(5.7), end_effector_effort_2));
+    let cart_effort_3 = (-cart_acceleration_5).mul_add(n(0.046), cart_acceleration_6.mul_add(n(5.7), -end_effector_effort_3));
+    let cart_effort_4 = (-q[6]).mul_add(
+        (-q[2]).mul_add(cart_effort_3, q[1] * cart_effort_2),
+        q[3] * ((-q[5]).mul_add(cart_effort_3, q[4] * cart_effort_2)),
+    );
     // cart: composite inertia (26 additions, 30 multiplications)
     let cart_composite_inertia = end_effector_composite_inertia_43 + n(0.495);
     let cart_composite_inertia_2 = end_effector_composite_inertia_44 + n(0.046);
-    let cart_composite_inertia_3 = end_effector_composite_inertia_49
-        + n(0.12764999999999999);
-    let cart_composite_inertia_4 = end_effector_composite_inertia_50
-        - n(0.002300000000000001);
-    let cart_composite_inertia_5 = (-end_effector_composite_inertia_44)
-        .mul_add(
-            n(0.04),
-            q[12]
-                .mul_add(
-                    q[12].mul_add(n(0.1745), end_effector_composite_inertia_23),
-                    end_effector_composite_inertia_48 + n(0.03728),
-                ),
-        );
+    let cart_composite_inertia_3 = end_effector_composite_inertia_49 + n(0.12764999999999999);
+    let cart_composite_inertia_4 = end_effector_composite_inertia_50 - n(0.002300000000000001);
+    let cart_composite_inertia_5 = (-end_effector_composite_inertia_44).mul_add(
+        n(0.04),
+        q[12].mul_add(
+            q[12].mul_add(n(0.1745), end_effector_composite_inertia_23),
+            end_effector_composite_inertia_48 + n(0.03728),
+        ),
+    );
     let cart_composite_inertia_6 = cart_composite_inertia_3 + cart_composite_inertia_5;
-    let cart_composite_inertia_7 = (-q[6])
-        .mul_add(
-            (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
-            q[3]
-                * ((-q[5])
-                    .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
-        );
-    let cart_composite_inertia_8 = q[2]
-        .mul_add(
-            q[2].mul_add(cart_composite_inertia_5, q[1] * cart_composite_inertia_4),
-            q[1]
-                * (q[2]
-                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_3)),
-        );
-    let cart_composite_inertia_9 = q[5]
-        .mul_add(
-            q[5].mul_add(cart_composite_inertia_5, q[4] * cart_composite_inertia_4),
-            q[4]
-                * (q[5]
-                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_3)),
-        );
+    let cart_composite_inertia_7 = (-q[6]).mul_add(
+        (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
+        q[3] * ((-q[5]).mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
+    );
+    let cart_composite_inertia_8 = q[2].mul_add(
+        q[2].mul_add(cart_composite_inertia_5, q[1] * cart_composite_inertia_4),
+        q[1] * (q[2].mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_3)),
+    );
+    let cart_composite_inertia_9 = q[5].mul_add(
+        q[5].mul_add(cart_composite_inertia_5, q[4] * cart_composite_inertia_4),
+        q[4] * (q[5].mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_3)),
+    );
     let cart_composite_inertia_10 = (q[3]
-        .mul_add(
-            n(2.85),
-            q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
-        )) * (q[3] + q[3]);
+        .mul_add(n(2.85), q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia))) * (q[3] + q[3]);
     let cart_composite_inertia_11 = (q[6]
-        .mul_add(
-            n(2.85),
-            q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
-        )) * (q[6] + q[6]);
+        .mul_add(n(2.85), q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia))) * (q[6] + q[6]);
     // end_effector: effort (3 additions)
     let end_effector_effort_4 = end_effector_effort - tau[6];
     // end_effector: factor (31 additions, 43 multiplications, 3 divisions)
     let end_effector_factor = n(1.0) / end_effector_composite_inertia_37;
     let end_effector_factor_2 = end_effector_composite_inertia_28 * end_effector_factor;
-    let end_effector_factor_3 = (-end_effector_composite_inertia_28)
-        .mul_add(
-            end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_24,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_22,
-                            q[10] * end_effector_composite_inertia_19,
-                        ),
-                ),
-        );
-    let end_effector_factor_4 = (-end_effector_composite_inertia_12)
-        .mul_add(
-            end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_8,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_6,
-                            q[10] * end_effector_composite_inertia_3,
-                        ),
-                ),
-        );
+    let end_effector_factor_3 = (-end_effector_composite_inertia_28).mul_add(
+        end_effector_factor_2,
+        (-q[12]).mul_add(
+            end_effector_composite_inertia_24,
+            q[11].mul_add(end_effector_composite_inertia_22, q[10] * end_effector_composite_inertia_19),
+        ),
+    );
+    let end_effector_factor_4 = (-end_effector_composite_inertia_12).mul_add(
+        end_effector_factor_2,
+        (-q[12]).mul_add(
+            end_effector_composite_inertia_8,
+            q[11].mul_add(end_effector_composite_inertia_6, q[10] * end_effector_composite_inertia_3),
+        ),
+    );
     let end_effector_factor_5 = (-end_effector_composite_inertia_38)
         .mul_add(end_effector_factor_2, end_effector_composite_inertia_29);
     let end_effector_factor_6 = (-end_effector_composite_inertia_40)
         .mul_add(end_effector_factor_2, end_effector_composite_inertia_31);
     let end_effector_factor_7 = (-end_effector_composite_inertia_42)
-        .mul_add(
-            end_effector_factor_2,
-            end_effector_composite_inertia_31 + end_effector_composite_inertia_32,
-        );
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_31 + end_effector_composite_inertia_32);
     let end_effector_factor_8 = end_effector_composite_inertia_12 * end_effector_factor;
-    let end_effector_factor_9 = (-end_effector_composite_inertia_12)
-        .mul_add(
-            end_effector_factor_8,
-            (-q[9])
-                .mul_add(
-                    end_effector_composite_inertia_8,
-                    q[8]
-                        .mul_add(
-                            end_effector_composite_inertia_6,
-                            q[7] * end_effector_composite_inertia_3,
-                        ),
-                ),
-        );
+    let end_effector_factor_9 = (-end_effector_composite_inertia_12).mul_add(
+        end_effector_factor_8,
+        (-q[9]).mul_add(
+            end_effector_composite_inertia_8,
+            q[8].mul_add(end_effector_composite_inertia_6, q[7] * end_effector_composite_inertia_3),
+        ),
+    );
     let end_effector_factor_10 = end_effector_composite_inertia_38 * end_effector_factor;
-    let end_effector_factor_11 = (-q[3])
-        .mul_add(
-            q[4] * n(5.7),
-            end_effector_composite_inertia_42
-                .mul_add(
-                    end_effector_factor_10,
-                    q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2),
-                ),
-        );
+    let end_effector_factor_11 = (-q[3]).mul_add(
+        q[4] * n(5.7),
+        end_effector_composite_inertia_42
+            .mul_add(end_effector_factor_10, q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2)),
+    );
     let end_effector_factor_12 = end_effector_composite_inertia_40 * end_effector_factor;
     let end_effector_factor_13 = end_effector_composite_inertia_42 * end_effector_factor;
-    let end_effector_factor_14 = (-end_effector_composite_inertia_42)
-        .mul_add(
-            end_effector_factor_13,
-            cart_composite_inertia_8 + cart_composite_inertia_10 + n(1.1700000000000002)
-                + cart_composite_inertia_9 + cart_composite_inertia_11
-                + n(0.8799999999999999),
-        );
+    let end_effector_factor_14 = (-end_effector_composite_inertia_42).mul_add(
+        end_effector_factor_13,
+        cart_composite_inertia_8 + cart_composite_inertia_10 + n(1.1700000000000002)
+            + cart_composite_inertia_9 + cart_composite_inertia_11
+            + n(0.8799999999999999),
+    );
     let end_effector_factor_15 = n(1.0) / end_effector_factor_3;
     let end_effector_factor_16 = end_effector_factor_4 * end_effector_factor_15;
-    let end_effector_factor_17 = (-end_effector_factor_5)
-        .mul_add(
-            end_effector_factor_16,
-            (-end_effector_composite_inertia_38)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_13),
-        );
-    let end_effector_factor_18 = (-end_effector_factor_6)
-        .mul_add(
-            end_effector_factor_16,
-            (-end_effector_composite_inertia_40)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_15),
-        );
-    let end_effector_factor_19 = (-end_effector_factor_7)
-        .mul_add(
-            end_effector_factor_16,
-            (-end_effector_composite_inertia_42)
-                .mul_add(
-                    end_effector_factor_8,
-                    end_effector_composite_inertia_15 + end_effector_composite_inertia_16,
-                ),
-        );
+    let end_effector_factor_17 = (-end_effector_factor_5).mul_add(
+        end_effector_factor_16,
+        (-end_effector_composite_inertia_38).mul_add(end_effector_factor_8, end_effector_composite_inertia_13),
+    );
+    let end_effector_factor_18 = (-end_effector_factor_6).mul_add(
+        end_effector_factor_16,
+        (-end_effector_composite_inertia_40).mul_add(end_effector_factor_8, end_effector_composite_inertia_15),
+    );
+    let end_effector_factor_19 = (-end_effector_factor_7).mul_add(
+        end_effector_factor_16,
+        (-end_effector_composite_inertia_42)
+            .mul_add(end_effector_factor_8, end_effector_composite_inertia_15 + end_effector_composite_inertia_16),
+    );
     let end_effector_factor_20 = end_effector_factor_5 * end_effector_factor_15;
     let end_effector_factor_21 = end_effector_factor_6 * end_effector_factor_15;
     let end_effector_factor_22 = end_effector_factor_7 * end_effector_factor_15;
-    let end_effector_factor_23 = n(1.0)
-        / ((-end_effector_factor_4)
-            .mul_add(end_effector_factor_16, end_effector_factor_9));
+    let end_effector_factor_23 = n(1.0) / ((-end_effector_factor_4).mul_add(end_effector_factor_16, end_effector_factor_9));
     let end_effector_factor_24 = end_effector_factor_17 * end_effector_factor_23;
-    let end_effector_factor_25 = end_effector_factor_18
-        .mul_add(
-            end_effector_factor_24,
-            end_effector_factor_6
-                .mul_add(
-                    end_effector_factor_20,
-                    end_effector_composite_inertia_40
-                        .mul_add(end_effector_factor_10, cart_composite_inertia_2),
-                ),
-        );
+    let end_effector_factor_25 = end_effector_factor_18.mul_add(
+        end_effector_factor_24,
+        end_effector_factor_6.mul_add(
+            end_effector_factor_20,
+            end_effector_composite_inertia_40.mul_add(end_effector_factor_10, cart_composite_inertia_2),
+        ),
+    );
     let end_effector_factor_26 = end_effector_factor_19
-        .mul_add(
-            end_effector_factor_24,
-            end_effector_factor_7.mul_add(end_effector_factor_20, end_effector_factor_11),
-        );
+        .mul_add(end_effector_factor_24, end_effector_factor_7.mul_add(end_effector_factor_20, end_effector_factor_11));
     let end_effector_factor_27 = end_effector_factor_18 * end_effector_factor_23;
-    let end_effector_factor_28 = (-end_effector_factor_19)
-        .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_7)
-                .mul_add(
-                    end_effector_factor_21,
-                    (-end_effector_composite_inertia_42)
-                        .mul_add(
-                            end_effector_factor_12,
-                            cart_composite_inertia_6 - cart_composite_inertia_7,
-                        ),
-                ),
-        );
+    let end_effector_factor_28 = (-end_effector_factor_19).mul_add(
+        end_effector_factor_27,
+        (-end_effector_factor_7).mul_add(
+            end_effector_factor_21,
+            (-end_effector_composite_inertia_42)
+                .mul_add(end_effector_factor_12, cart_composite_inertia_6 - cart_composite_inertia_7),
+        ),
+    );
     let end_effector_factor_29 = end_effector_factor_19 * end_effector_factor_23;
     // end_effector: load (12 additions, 12 multiplications)
-    let end_effector_load = (-end_effector_effort_4)
-        .mul_add(
-            end_effector_factor_2,
-            q[12]
-                .mul_add(
-                    end_effector_force_6,
-                    q[11]
-                        .mul_add(
-                            end_effector_force_5,
-                            q[10].mul_add(end_effector_force_4, -tau[5]),
-                        ),
-                ),
-        );
-    let end_effector_load_2 = (-end_effector_effort_4)
-        .mul_add(
-            end_effector_factor_8,
-            q[9]
-                .mul_add(
-                    end_effector_force_6,
-                    q[8]
-                        .mul_add(
-                            end_effector_force_5,
-                            q[7].mul_add(end_effector_force_4, -tau[4]),
-                        ),
-                ),
-        );
-    let end_effector_load_3 = (-end_effector_factor_16)
-        .mul_add(end_effector_load, end_effector_load_2);
-    let end_effector_load_4 = end_effector_factor_24
-        .mul_add(
-            end_effector_load_3,
-            end_effector_factor_20
-                .mul_add(
-                    end_effector_load,
-                    end_effector_effort_4
-                        .mul_add(end_effector_factor_10, cart_effort_2 + tau[2]),
-                ),
-        );
-    let end_effector_load_5 = (-end_effector_factor_27)
-        .mul_add(
-            end_effector_load_3,
-            (-end_effector_factor_21)
-                .mul_add(
-                    end_effector_load,
-                    (-end_effector_effort_4)
-                        .mul_add(end_effector_factor_12, cart_effort - tau[1]),
-                ),
-        );
-    let end_effector_load_6 = (-end_effector_factor_29)
-        .mul_add(
-            end_effector_load_3,
-            (-end_effector_factor_22)
-                .mul_add(
-                    end_effector_load,
-                    (-end_effector_effort_4)
-                        .mul_add(
-                            end_effector_factor_13,
-                            cart_effort - cart_effort_4 - tau[0],
-                        ),
-                ),
-        );
+    let end_effector_load = (-end_effector_effort_4).mul_add(
+        end_effector_factor_2,
+        q[12].mul_add(end_effector_force_6, q[11].mul_add(end_effector_force_5, q[10].mul_add(end_effector_force_4, -tau[5]))),
+    );
+    let end_effector_load_2 = (-end_effector_effort_4).mul_add(
+        end_effector_factor_8,
+        q[9].mul_add(end_effector_force_6, q[8].mul_add(end_effector_force_5, q[7].mul_add(end_effector_force_4, -tau[4]))),
+    );
+    let end_effector_load_3 = (-end_effector_factor_16).mul_add(end_effector_load, end_effector_load_2);
+    let end_effector_load_4 = end_effector_factor_24.mul_add(
+        end_effector_load_3,
+        end_effector_factor_20
+            .mul_add(end_effector_load, end_effector_effort_4.mul_add(end_effector_factor_10, cart_effort_2 + tau[2])),
+    );
+    let end_effector_load_5 = (-end_effector_factor_27).mul_add(
+        end_effector_load_3,
+        (-end_effector_factor_21)
+            .mul_add(end_effector_load, (-end_effector_effort_4).mul_add(end_effector_factor_12, cart_effort - tau[1])),
+    );
+    let end_effector_load_6 = (-end_effector_factor_29).mul_add(
+        end_effector_load_3,
+        (-end_effector_factor_22).mul_add(
+            end_effector_load,
+            (-end_effector_effort_4).mul_add(end_effector_factor_13, cart_effort - cart_effort_4 - tau[0]),
+        ),
+    );
     // cart: factor (4 additions, 7 multiplications, 2 divisions)
-    let cart_factor = n(1.0)
-        / (end_effector_factor_17
-            .mul_add(
-                end_effector_factor_24,
-                end_effector_factor_5
-                    .mul_add(
-                        end_effector_factor_20,
-                        end_effector_composite_inertia_38
-                            .mul_add(end_effector_factor_10, -n(5.7)),
-                    ),
-            ));
+    let cart_factor = n(1.0) / (end_effector_factor_17.mul_add(
+        end_effector_factor_24,
+        end_effector_factor_5.mul_add(
+            end_effector_factor_20,
+            end_effector_composite_inertia_38.mul_add(end_effector_factor_10, -n(5.7)),
+        ),
+    ));
     let cart_factor_2 = end_effector_factor_25 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_18)
-        .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_6)
-                .mul_add(
-                    end_effector_factor_21,
-                    (-end_effector_composite_inertia_40)
-                        .mul_add(
-                            end_effector_factor_12,
-                            end_effector_factor_25
-                                .mul_add(cart_factor_2, cart_composite_inertia_6),
-                        ),
-                ),
-        );
-    let cart_factor_4 = end_effector_factor_26
-        .mul_add(cart_factor_2, end_effector_factor_28);
+    let cart_factor_3 = (-end_effector_factor_18).mul_add(
+        end_effector_factor_27,
+        (-end_effector_factor_6).mul_add(
+            end_effector_factor_21,
+            (-end_effector_composite_inertia_40).mul_add(
+                end_effector_factor_12,
+                end_effector_factor_25.mul_add(cart_factor_2, cart_composite_inertia_6),
+            ),
+        ),
+    );
+    let cart_factor_4 = end_effector_factor_26.mul_add(cart_factor_2, end_effector_factor_28);
     let cart_factor_5 = end_effector_factor_26 * cart_factor;
     let cart_factor_6 = n(1.0) / cart_factor_3;
     let cart_factor_7 = cart_factor_4 * cart_factor_6;
-    let cart_factor_8 = (-cart_factor_4)
-        .mul_add(
-            cart_factor_7,
-            (-end_effector_factor_19)
-                .mul_add(
-                    end_effector_factor_29,
-                    (-end_effector_factor_7)
-                        .mul_add(
-                            end_effector_factor_22,
-                            end_effector_factor_26
-                                .mul_add(cart_factor_5, end_effector_factor_14),
-                        ),
-                ),
-        );
+    let cart_factor_8 = (-cart_factor_4).mul_add(
+        cart_factor_7,
+        (-end_effector_factor_19).mul_add(
+            end_effector_factor_29,
+            (-end_effector_factor_7)
+                .mul_add(end_effector_factor_22, end_effector_factor_26.mul_add(cart_factor_5, end_effector_factor_14)),
+        ),
+    );
     // cart: load (3 additions, 3 multiplications)
     let cart_load = cart_factor_2.mul_add(end_effector_load_4, end_effector_load_5);
     // plate: response (1 multiplication)
     let plate_acceleration_2 = (n(1.0) / cart_factor_8)
-        * ((-cart_factor_7)
-            .mul_add(
-                cart_load,
-                cart_factor_5.mul_add(end_effector_load_4, end_effector_load_6),
-            ));
+        * ((-cart_factor_7).mul_add(cart_load, cart_factor_5.mul_add(end_effector_load_4, end_effector_load_6)));
     // cart: response (3 additions, 5 multiplications)
-    let cart_acceleration_7 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_acceleration_2, cart_load));
+    let cart_acceleration_7 = cart_factor_6 * ((-cart_factor_4).mul_add(plate_acceleration_2, cart_load));
     let cart_acceleration_8 = cart_factor
         * ((-end_effector_factor_26)
-            .mul_add(
-                plate_acceleration_2,
-                (-end_effector_factor_25)
-                    .mul_add(cart_acceleration_7, end_effector_load_4),
-            ));
+            .mul_add(plate_acceleration_2, (-end_effector_factor_25).mul_add(cart_acceleration_7, end_effector_load_4)));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_acceleration_21 = end_effector_factor_23
-        * ((-end_effector_factor_19)
-            .mul_add(
-                plate_acceleration_2,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        cart_acceleration_7,
-                        (-end_effector_factor_17)
-                            .mul_add(cart_acceleration_8, end_effector_load_3),
-                    ),
-            ));
-    let end_effector_response = end_effector_factor_7
-        .mul_add(
-            plate_acceleration_2,
-            end_effector_factor_6
-                .mul_add(
-                    cart_acceleration_7,
-                    end_effector_factor_5
-                        .mul_add(
-                            cart_acceleration_8,
-                            end_effector_factor_4 * end_effector_acceleration_21,
-                        ),
-                ),
-        );
-    let end_effector_acceleration_22 = end_effector_factor_15
-        * (end_effector_load - end_effector_response);
-    let end_effector_response_2 = end_effector_composite_inertia_40
-        .mul_add(
+    let end_effector_acceleration_21 = end_effector_factor_23 * ((-end_effector_factor_19).mul_add(
+        plate_acceleration_2,
+        (-end_effector_factor_18)
+            .mul_add(cart_acceleration_7, (-end_effector_factor_17).mul_add(cart_acceleration_8, end_effector_load_3)),
+    ));
+    let end_effector_response = end_effector_factor_7.mul_add(
+        plate_acceleration_2,
+        end_effector_factor_6.mul_add(
             cart_acceleration_7,
-            end_effector_composite_inertia_38
-                .mul_add(
-                    cart_acceleration_8,
-                    end_effector_composite_inertia_12
-                        .mul_add(
-                            end_effector_acceleration_21,
-                            end_effector_composite_inertia_28
-                                * end_effector_acceleration_22,
-                        ),
-                ),
-        );
+            end_effector_factor_5.mul_add(cart_acceleration_8, end_effector_factor_4 * end_effector_acceleration_21),
+        ),
+    );
+    let end_effector_acceleration_22 = end_effector_factor_15 * (end_effector_load - end_effector_response);
+    let end_effector_response_2 = end_effector_composite_inertia_40.mul_add(
+        cart_acceleration_7,
+        end_effector_composite_inertia_38.mul_add(
+            cart_acceleration_8,
+            end_effector_composite_inertia_12.mul_add(
+                end_effector_acceleration_21,
+                end_effector_composite_inertia_28 * end_effector_acceleration_22,
+            ),
+        ),
+    );
     [
-        -plate_acceleration_2,
-        -cart_acceleration_7,
-        -cart_acceleration_8,
-        -end_effector_acceleration_21,
+        -plate_acceleration_2, -cart_acceleration_7, -cart_acceleration_8, -end_effector_acceleration_21,
         -end_effector_acceleration_22,
         -(end_effector_factor
             * ((-end_effector_composite_inertia_42)
-                .mul_add(
-                    plate_acceleration_2,
-                    end_effector_effort_4 - end_effector_response_2,
-                ))),
+                .mul_add(plate_acceleration_2, end_effector_effort_4 - end_effector_response_2))),
     ]
 }
 
@@ -998,17 +587,11 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [T; 6
     let cart_acceleration_3 = (-q[6]).mul_add(plate_acceleration, q[3] * a[0]);
     let cart_acceleration_4 = a[0] + a[1];
     let cart_acceleration_5 = cart_rate_z * cart_rate_z;
-    let cart_acceleration_6 = (-q[1])
-        .mul_add(cart_acceleration_2, q[4].mul_add(cart_acceleration_3, a[2]));
-    let cart_acceleration_7 = (-q[2])
-        .mul_add(
-            cart_acceleration_2,
-            q[5]
-                .mul_add(
-                    cart_acceleration_3,
-                    v[1].mul_add(v[2], cart_acceleration + cart_acceleration),
-                ),
-        );
+    let cart_acceleration_6 = (-q[1]).mul_add(cart_acceleration_2, q[4].mul_add(cart_acceleration_3, a[2]));
+    let cart_acceleration_7 = (-q[2]).mul_add(
+        cart_acceleration_2,
+        q[5].mul_add(cart_acceleration_3, v[1].mul_add(v[2], cart_acceleration + cart_acceleration)),
+    );
     // end_effector: joint (6 additions, 9 multiplications)
     let end_effector_joint = v[5].mul_add(q[13], v[4].mul_add(q[10], v[3] * q[7]));
     let end_effector_joint_2 = v[5].mul_add(q[14], v[4].mul_add(q[11], v[3] * q[8]));
@@ -1026,253 +609,118 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [T; 6
     let end_effector_acceleration_2 = cart_acceleration_5
         .mul_add(n(0.02), cart_acceleration_4.mul_add(n(0.15), cart_acceleration_7));
     let end_effector_acceleration_3 = q[13]
-        .mul_add(
-            n(9.81),
-            q[10].mul_add(end_effector_acceleration_2, q[7] * end_effector_acceleration),
-        );
+        .mul_add(n(9.81), q[10].mul_add(end_effector_acceleration_2, q[7] * end_effector_acceleration));
     let end_effector_acceleration_4 = q[14]
-        .mul_add(
-            n(9.81),
-            q[11].mul_add(end_effector_acceleration_2, q[8] * end_effector_acceleration),
-        );
+        .mul_add(n(9.81), q[11].mul_add(end_effector_acceleration_2, q[8] * end_effector_acceleration));
     let end_effector_acceleration_5 = q[15]
-        .mul_add(
-            n(9.81),
-            q[12].mul_add(end_effector_acceleration_2, q[9] * end_effector_acceleration),
-        );
-    let end_effector_acceleration_6 = (-end_effector_joint_2)
-        .mul_add(
-            end_effector_angular_velocity_3,
-            q[13]
-                .mul_add(
-                    a[5],
-                    q[10]
-                        .mul_add(
-                            a[4],
-                            q[7]
-                                .mul_add(
-                                    a[3],
-                                    end_effector_joint_3 * end_effector_angular_velocity_2,
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_acceleration_7 = (-end_effector_joint_3)
-        .mul_add(
-            end_effector_angular_velocity,
-            q[14]
-                .mul_add(
-                    a[5],
-                    q[11]
-                        .mul_add(
-                            a[4],
-                            q[8]
-                                .mul_add(
-                                    a[3],
-                                    end_effector_joint * end_effector_angular_velocity_3,
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_acceleration_8 = (-end_effector_joint)
-        .mul_add(
-            end_effector_angular_velocity_2,
-            q[15]
-                .mul_add(
-                    a[5],
-                    q[12]
-                        .mul_add(
-                            a[4],
-                            q[9]
-                                .mul_add(
-                                    a[3],
-                                    end_effector_joint_2 * end_effector_angular_velocity,
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_acceleration_9 = q[13]
-        .mul_add(cart_acceleration_4, end_effector_acceleration_6);
-    let end_effector_acceleration_10 = q[14]
-        .mul_add(cart_acceleration_4, end_effector_acceleration_7);
-    let end_effector_acceleration_11 = q[15]
-        .mul_add(cart_acceleration_4, end_effector_acceleration_8);
+        .mul_add(n(9.81), q[12].mul_add(end_effector_acceleration_2, q[9] * end_effector_acceleration));
+    let end_effector_acceleration_6 = (-end_effector_joint_2).mul_add(
+        end_effector_angular_velocity_3,
+        q[13].mul_add(a[5], q[10].mul_add(a[4], q[7].mul_add(a[3], end_effector_joint_3 * end_effector_angular_velocity_2))),
+    );
+    let end_effector_acceleration_7 = (-end_effector_joint_3).mul_add(
+        end_effector_angular_velocity,
+        q[14].mul_add(a[5], q[11].mul_add(a[4], q[8].mul_add(a[3], end_effector_joint * end_effector_angular_velocity_3))),
+    );
+    let end_effector_acceleration_8 = (-end_effector_joint).mul_add(
+        end_effector_angular_velocity_2,
+        q[15].mul_add(a[5], q[12].mul_add(a[4], q[9].mul_add(a[3], end_effector_joint_2 * end_effector_angular_velocity))),
+    );
+    let end_effector_acceleration_9 = q[13].mul_add(cart_acceleration_4, end_effector_acceleration_6);
+    let end_effector_acceleration_10 = q[14].mul_add(cart_acceleration_4, end_effector_acceleration_7);
+    let end_effector_acceleration_11 = q[15].mul_add(cart_acceleration_4, end_effector_acceleration_8);
     let end_effector_acceleration_12 = end_effector_rate_x * end_effector_rate_x;
     let end_effector_acceleration_13 = end_effector_rate_x * end_effector_rate_y;
     let end_effector_acceleration_14 = end_effector_rate_x * end_effector_rate_z;
     let end_effector_acceleration_15 = end_effector_rate_y * end_effector_rate_y;
     let end_effector_acceleration_16 = end_effector_rate_y * end_effector_rate_z;
     let end_effector_acceleration_17 = end_effector_rate_z * end_effector_rate_z;
-    let end_effector_acceleration_18 = end_effector_acceleration_11
-        + end_effector_acceleration_13;
-    let end_effector_acceleration_19 = end_effector_acceleration_10
-        - end_effector_acceleration_14;
-    let end_effector_acceleration_20 = end_effector_acceleration_11
-        - end_effector_acceleration_13;
-    let end_effector_acceleration_21 = end_effector_acceleration_9
-        + end_effector_acceleration_16;
-    let end_effector_acceleration_22 = end_effector_acceleration_10
-        + end_effector_acceleration_14;
-    let end_effector_acceleration_23 = end_effector_acceleration_9
-        - end_effector_acceleration_16;
+    let end_effector_acceleration_18 = end_effector_acceleration_11 + end_effector_acceleration_13;
+    let end_effector_acceleration_19 = end_effector_acceleration_10 - end_effector_acceleration_14;
+    let end_effector_acceleration_20 = end_effector_acceleration_11 - end_effector_acceleration_13;
+    let end_effector_acceleration_21 = end_effector_acceleration_9 + end_effector_acceleration_16;
+    let end_effector_acceleration_22 = end_effector_acceleration_10 + end_effector_acceleration_14;
+    let end_effector_acceleration_23 = end_effector_acceleration_9 - end_effector_acceleration_16;
     // end_effector: force (27 additions, 30 multiplications)
-    let end_effector_force = (-end_effector_acceleration_16)
-        .mul_add(
-            n(0.15511999999999998),
-            (end_effector_acceleration_15 - end_effector_acceleration_17)
-                .mul_add(
-                    n(0.042300000000000004),
-                    end_effector_acceleration_19
-                        .mul_add(n(0.0078), end_effector_acceleration_9 * n(0.19388)),
-                ),
-        );
-    let end_effector_force_2 = (end_effector_acceleration_12
-        - end_effector_acceleration_17)
-        .mul_add(
-            n(0.027499999999999997),
-            end_effector_acceleration_20
-                .mul_add(
-                    n(0.042300000000000004),
-                    end_effector_acceleration_14
-                        .mul_add(
-                            n(0.16674999999999998),
-                            end_effector_acceleration_10 * n(0.18225),
-                        ),
-                ),
-        );
-    let end_effector_force_3 = (-end_effector_acceleration_23)
-        .mul_add(
-            n(0.027499999999999997),
-            (-end_effector_acceleration_13)
-                .mul_add(
-                    n(0.01163),
-                    (end_effector_acceleration_12 - end_effector_acceleration_15)
-                        .mul_add(n(0.0078), end_effector_acceleration_11 * n(0.02713)),
-                ),
-        );
-    let end_effector_force_4 = (-end_effector_acceleration_4)
-        .mul_add(
-            n(0.51),
-            (-end_effector_acceleration_5)
-                .mul_add(
-                    n(0.136),
-                    (-end_effector_acceleration_18)
-                        .mul_add(n(0.027499999999999997), end_effector_force),
-                ),
-        );
-    let end_effector_force_5 = (-end_effector_acceleration_5)
-        .mul_add(
-            n(0.085),
-            end_effector_acceleration_3
-                .mul_add(
-                    n(0.51),
-                    end_effector_acceleration_21.mul_add(n(0.0078), end_effector_force_2),
-                ),
-        );
-    let end_effector_force_6 = end_effector_acceleration_3
-        .mul_add(
-            n(0.136),
-            end_effector_acceleration_4
-                .mul_add(
-                    n(0.085),
-                    end_effector_acceleration_22
-                        .mul_add(n(0.042300000000000004), end_effector_force_3),
-                ),
-        );
-    let end_effector_force_7 = (-end_effector_acceleration_22)
-        .mul_add(
-            n(0.51),
-            (-end_effector_acceleration_20)
-                .mul_add(
-                    n(0.136),
-                    (end_effector_acceleration_15 + end_effector_acceleration_17)
-                        * n(0.085),
-                ),
-        );
-    let end_effector_force_8 = (-end_effector_acceleration_23)
-        .mul_add(
-            n(0.51),
-            (end_effector_acceleration_12 + end_effector_acceleration_17)
-                .mul_add(n(0.136), end_effector_acceleration_18 * n(0.085)),
-        );
-    let end_effector_force_9 = (end_effector_acceleration_12
-        + end_effector_acceleration_15)
-        .mul_add(
-            n(0.51),
-            end_effector_acceleration_21
-                .mul_add(n(0.136), end_effector_acceleration_19 * n(0.085)),
-        );
+    let end_effector_force = (-end_effector_acceleration_16).mul_add(
+        n(0.15511999999999998),
+        (end_effector_acceleration_15 - end_effector_acceleration_17).mul_add(
+            n(0.042300000000000004),
+            end_effector_acceleration_19.mul_add(n(0.0078), end_effector_acceleration_9 * n(0.19388)),
+        ),
+    );
+    let end_effector_force_2 = (end_effector_acceleration_12 - end_effector_acceleration_17).mul_add(
+        n(0.027499999999999997),
+        end_effector_acceleration_20.mul_add(
+            n(0.042300000000000004),
+            end_effector_acceleration_14.mul_add(n(0.16674999999999998), end_effector_acceleration_10 * n(0.18225)),
+        ),
+    );
+    let end_effector_force_3 = (-end_effector_acceleration_23).mul_add(
+        n(0.027499999999999997),
+        (-end_effector_acceleration_13).mul_add(
+            n(0.01163),
+            (end_effector_acceleration_12 - end_effector_acceleration_15)
+                .mul_add(n(0.0078), end_effector_acceleration_11 * n(0.02713)),
+        ),
+    );
+    let end_effector_force_4 = (-end_effector_acceleration_4).mul_add(
+        n(0.51),
+        (-end_effector_acceleration_5)
+            .mul_add(n(0.136), (-end_effector_acceleration_18).mul_add(n(0.027499999999999997), end_effector_force)),
+    );
+    let end_effector_force_5 = (-end_effector_acceleration_5).mul_add(
+        n(0.085),
+        end_effector_acceleration_3.mul_add(n(0.51), end_effector_acceleration_21.mul_add(n(0.0078), end_effector_force_2)),
+    );
+    let end_effector_force_6 = end_effector_acceleration_3.mul_add(
+        n(0.136),
+        end_effector_acceleration_4
+            .mul_add(n(0.085), end_effector_acceleration_22.mul_add(n(0.042300000000000004), end_effector_force_3)),
+    );
+    let end_effector_force_7 = (-end_effector_acceleration_22).mul_add(
+        n(0.51),
+        (-end_effector_acceleration_20)
+            .mul_add(n(0.136), (end_effector_acceleration_15 + end_effector_acceleration_17) * n(0.085)),
+    );
+    let end_effector_force_8 = (-end_effector_acceleration_23).mul_add(
+        n(0.51),
+        (end_effector_acceleration_12 + end_effector_acceleration_17)
+            .mul_add(n(0.136), end_effector_acceleration_18 * n(0.085)),
+    );
+    let end_effector_force_9 = (end_effector_acceleration_12 + end_effector_acceleration_15)
+        .mul_add(n(0.51), end_effector_acceleration_21.mul_add(n(0.136), end_effector_acceleration_19 * n(0.085)));
     // end_effector: effort (12 additions, 17 multiplications)
     let end_effector_effort = q[15]
-        .mul_add(
-            end_effector_force_6,
-            q[14].mul_add(end_effector_force_5, q[13] * end_effector_force_4),
-        );
+        .mul_add(end_effector_force_6, q[14].mul_add(end_effector_force_5, q[13] * end_effector_force_4));
     let end_effector_effort_2 = (-q[8])
-        .mul_add(
-            end_effector_force_8,
-            q[9].mul_add(end_effector_force_9, q[7] * end_effector_force_7),
-        );
+        .mul_add(end_effector_force_8, q[9].mul_add(end_effector_force_9, q[7] * end_effector_force_7));
     let end_effector_effort_3 = (-q[11])
-        .mul_add(
-            end_effector_force_8,
-            q[12].mul_add(end_effector_force_9, q[10] * end_effector_force_7),
-        );
+        .mul_add(end_effector_force_8, q[12].mul_add(end_effector_force_9, q[10] * end_effector_force_7));
     // cart: effort (7 additions, 6 multiplications)
-    let cart_effort = (-end_effector_effort_2)
-        .mul_add(
-            n(0.02),
-            (-end_effector_effort_3)
-                .mul_add(
-                    n(0.15),
-                    (-cart_acceleration_6)
-                        .mul_add(
-                            n(0.046),
-                            cart_acceleration_7
-                                .mul_add(
-                                    n(0.495),
-                                    cart_acceleration_4.mul_add(n(0.16493), end_effector_effort),
-                                ),
-                        ),
-                ),
-        );
-    let cart_effort_2 = (-cart_acceleration_4)
-        .mul_add(
-            n(0.046),
-            (-cart_acceleration_5)
-                .mul_add(
-                    n(0.495),
-                    cart_acceleration_6.mul_add(n(5.7), -end_effector_effort_2),
-                ),
-        );
+    let cart_effort = (-end_effector_effort_2).mul_add(
+        n(0.02),
+        (-end_effector_effort_3).mul_add(
+            n(0.15),
+            (-cart_acceleration_6).mul_add(
+                n(0.046),
+                cart_acceleration_7.mul_add(n(0.495), cart_acceleration_4.mul_add(n(0.16493), end_effector_effort)),
+            ),
+        ),
+    );
+    let cart_effort_2 = (-cart_acceleration_4).mul_add(
+        n(0.046),
+        (-cart_acceleration_5).mul_add(n(0.495), cart_acceleration_6.mul_add(n(5.7), -end_effector_effort_2)),
+    );
     let cart_effort_3 = (-cart_acceleration_5)
-        .mul_add(
-            n(0.046),
-            cart_acceleration_4
-                .mul_add(
-                    n(0.495),
-                    cart_acceleration_7.mul_add(n(5.7), -end_effector_effort_3),
-                ),
-        );
+        .mul_add(n(0.046), cart_acceleration_4.mul_add(n(0.495), cart_acceleration_7.mul_add(n(5.7), -end_effector_effort_3)));
     let cart_effort_4 = (-q[6])
-        .mul_add(
-            q[2].mul_add(cart_effort_3, q[1] * cart_effort_2),
-            q[3] * (q[5].mul_add(cart_effort_3, q[4] * cart_effort_2)),
-        );
+        .mul_add(q[2].mul_add(cart_effort_3, q[1] * cart_effort_2), q[3] * (q[5].mul_add(cart_effort_3, q[4] * cart_effort_2)));
     [
         a[0].mul_add(n(2.05), cart_effort + cart_effort_4),
-        cart_effort,
-        cart_effort_2,
-        q[9]
-            .mul_add(
-                end_effector_force_6,
-                q[8].mul_add(end_effector_force_5, q[7] * end_effector_force_4),
-            ),
-        q[12]
-            .mul_add(
-                end_effector_force_6,
-                q[11].mul_add(end_effector_force_5, q[10] * end_effector_force_4),
-            ),
+        cart_effort, cart_effort_2,
+        q[9].mul_add(end_effector_force_6, q[8].mul_add(end_effector_force_5, q[7] * end_effector_force_4)),
+        q[12].mul_add(end_effector_force_6, q[11].mul_add(end_effector_force_5, q[10] * end_effector_force_4)),
         end_effector_effort,
     ]
 }
@@ -1288,400 +736,191 @@ pub fn mass_matrix<T: Scalar>(q: &[T; 16]) -> [[T; 6]; 6] {
     let end_effector_composite_inertia = q[8] * n(0.0078);
     let end_effector_composite_inertia_2 = q[9] * n(0.027499999999999997);
     let end_effector_composite_inertia_3 = q[7]
-        .mul_add(
-            n(0.19388),
-            end_effector_composite_inertia - end_effector_composite_inertia_2,
-        );
+        .mul_add(n(0.19388), end_effector_composite_inertia - end_effector_composite_inertia_2);
     let end_effector_composite_inertia_4 = q[7] * n(0.0078);
     let end_effector_composite_inertia_5 = q[9] * n(0.042300000000000004);
     let end_effector_composite_inertia_6 = q[8]
-        .mul_add(
-            n(0.18225),
-            end_effector_composite_inertia_4 + end_effector_composite_inertia_5,
-        );
-    let end_effector_composite_inertia_7 = (-q[8])
-        .mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997));
-    let end_effector_composite_inertia_8 = (-q[9])
-        .mul_add(n(0.02713), end_effector_composite_inertia_7);
+        .mul_add(n(0.18225), end_effector_composite_inertia_4 + end_effector_composite_inertia_5);
+    let end_effector_composite_inertia_7 = (-q[8]).mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997));
+    let end_effector_composite_inertia_8 = (-q[9]).mul_add(n(0.02713), end_effector_composite_inertia_7);
     let end_effector_composite_inertia_9 = q[9].mul_add(n(0.136), q[8] * n(0.51));
     let end_effector_composite_inertia_10 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
     let end_effector_composite_inertia_11 = q[8].mul_add(n(0.085), q[7] * n(0.136));
-    let end_effector_composite_inertia_12 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_8,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_6,
-                    q[10] * end_effector_composite_inertia_3,
-                ),
-        );
-    let end_effector_composite_inertia_13 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_8,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_6,
-                    q[13] * end_effector_composite_inertia_3,
-                ),
-        );
-    let end_effector_composite_inertia_14 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_11,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_10,
-                    q[7] * end_effector_composite_inertia_9,
-                ),
-        );
-    let end_effector_composite_inertia_15 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_11,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_10,
-                    q[10] * end_effector_composite_inertia_9,
-                ),
-        );
+    let end_effector_composite_inertia_12 = (-q[12]).mul_add(
+        end_effector_composite_inertia_8,
+        q[11].mul_add(end_effector_composite_inertia_6, q[10] * end_effector_composite_inertia_3),
+    );
+    let end_effector_composite_inertia_13 = (-q[15]).mul_add(
+        end_effector_composite_inertia_8,
+        q[14].mul_add(end_effector_composite_inertia_6, q[13] * end_effector_composite_inertia_3),
+    );
+    let end_effector_composite_inertia_14 = (-q[9]).mul_add(
+        end_effector_composite_inertia_11,
+        q[8].mul_add(end_effector_composite_inertia_10, q[7] * end_effector_composite_inertia_9),
+    );
+    let end_effector_composite_inertia_15 = (-q[12]).mul_add(
+        end_effector_composite_inertia_11,
+        q[11].mul_add(end_effector_composite_inertia_10, q[10] * end_effector_composite_inertia_9),
+    );
     let end_effector_composite_inertia_16 = end_effector_composite_inertia_14
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_15
-                .mul_add(n(0.15), end_effector_composite_inertia_13),
-        );
-    let end_effector_composite_inertia_17 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_15,
-                    q[1] * end_effector_composite_inertia_14,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_15,
-                        q[4] * end_effector_composite_inertia_14,
-                    )),
-        );
-    let end_effector_composite_inertia_18 = end_effector_composite_inertia_16
-        + end_effector_composite_inertia_17;
+        .mul_add(n(0.02), end_effector_composite_inertia_15.mul_add(n(0.15), end_effector_composite_inertia_13));
+    let end_effector_composite_inertia_17 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_composite_inertia_15, q[1] * end_effector_composite_inertia_14),
+        q[3] * (q[5].mul_add(end_effector_composite_inertia_15, q[4] * end_effector_composite_inertia_14)),
+    );
+    let end_effector_composite_inertia_18 = end_effector_composite_inertia_16 + end_effector_composite_inertia_17;
     let end_effector_composite_inertia_19 = q[11] * n(0.0078);
     let end_effector_composite_inertia_20 = q[12] * n(0.027499999999999997);
     let end_effector_composite_inertia_21 = q[10]
-        .mul_add(
-            n(0.19388),
-            end_effector_composite_inertia_19 - end_effector_composite_inertia_20,
-        );
+        .mul_add(n(0.19388), end_effector_composite_inertia_19 - end_effector_composite_inertia_20);
     let end_effector_composite_inertia_22 = q[10] * n(0.0078);
     let end_effector_composite_inertia_23 = q[12] * n(0.042300000000000004);
     let end_effector_composite_inertia_24 = q[11]
-        .mul_add(
-            n(0.18225),
-            end_effector_composite_inertia_22 + end_effector_composite_inertia_23,
-        );
-    let end_effector_composite_inertia_25 = (-q[11])
-        .mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997));
-    let end_effector_composite_inertia_26 = (-q[12])
-        .mul_add(n(0.02713), end_effector_composite_inertia_25);
+        .mul_add(n(0.18225), end_effector_composite_inertia_22 + end_effector_composite_inertia_23);
+    let end_effector_composite_inertia_25 = (-q[11]).mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997));
+    let end_effector_composite_inertia_26 = (-q[12]).mul_add(n(0.02713), end_effector_composite_inertia_25);
     let end_effector_composite_inertia_27 = q[12].mul_add(n(0.136), q[11] * n(0.51));
     let end_effector_composite_inertia_28 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
     let end_effector_composite_inertia_29 = q[11].mul_add(n(0.085), q[10] * n(0.136));
-    let end_effector_composite_inertia_30 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_26,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_24,
-                    q[13] * end_effector_composite_inertia_21,
-                ),
-        );
-    let end_effector_composite_inertia_31 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_29,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_28,
-                    q[7] * end_effector_composite_inertia_27,
-                ),
-        );
-    let end_effector_composite_inertia_32 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_29,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_28,
-                    q[10] * end_effector_composite_inertia_27,
-                ),
-        );
+    let end_effector_composite_inertia_30 = (-q[15]).mul_add(
+        end_effector_composite_inertia_26,
+        q[14].mul_add(end_effector_composite_inertia_24, q[13] * end_effector_composite_inertia_21),
+    );
+    let end_effector_composite_inertia_31 = (-q[9]).mul_add(
+        end_effector_composite_inertia_29,
+        q[8].mul_add(end_effector_composite_inertia_28, q[7] * end_effector_composite_inertia_27),
+    );
+    let end_effector_composite_inertia_32 = (-q[12]).mul_add(
+        end_effector_composite_inertia_29,
+        q[11].mul_add(end_effector_composite_inertia_28, q[10] * end_effector_composite_inertia_27),
+    );
     let end_effector_composite_inertia_33 = end_effector_composite_inertia_31
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_32
-                .mul_add(n(0.15), end_effector_composite_inertia_30),
-        );
-    let end_effector_composite_inertia_34 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_32,
-                    q[1] * end_effector_composite_inertia_31,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_32,
-                        q[4] * end_effector_composite_inertia_31,
-                    )),
-        );
-    let end_effector_composite_inertia_35 = end_effector_composite_inertia_33
-        + end_effector_composite_inertia_34;
+        .mul_add(n(0.02), end_effector_composite_inertia_32.mul_add(n(0.15), end_effector_composite_inertia_30));
+    let end_effector_composite_inertia_34 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_composite_inertia_32, q[1] * end_effector_composite_inertia_31),
+        q[3] * (q[5].mul_add(end_effector_composite_inertia_32, q[4] * end_effector_composite_inertia_31)),
+    );
+    let end_effector_composite_inertia_35 = end_effector_composite_inertia_33 + end_effector_composite_inertia_34;
     let end_effector_composite_inertia_36 = q[15].mul_add(n(0.136), q[14] * n(0.51));
     let end_effector_composite_inertia_37 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
     let end_effector_composite_inertia_38 = q[14].mul_add(n(0.085), q[13] * n(0.136));
-    let end_effector_composite_inertia_39 = q[14]
-        .mul_add(
-            q[15]
-                .mul_add(
-                    n(0.042300000000000004),
-                    q[14].mul_add(n(0.18225), q[13] * n(0.0078)),
-                ),
-            q[13]
-                * ((-q[15])
-                    .mul_add(
-                        n(0.027499999999999997),
-                        q[14].mul_add(n(0.0078), q[13] * n(0.19388)),
-                    )),
-        );
-    let end_effector_composite_inertia_40 = (-q[15])
-        .mul_add(
-            (-q[15])
-                .mul_add(
-                    n(0.02713),
-                    (-q[14])
-                        .mul_add(
-                            n(0.042300000000000004),
-                            q[13] * n(0.027499999999999997),
-                        ),
-                ),
-            end_effector_composite_inertia_39,
-        );
-    let end_effector_composite_inertia_41 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_38,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_37,
-                    q[7] * end_effector_composite_inertia_36,
-                ),
-        );
-    let end_effector_composite_inertia_42 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_38,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_37,
-                    q[10] * end_effector_composite_inertia_36,
-                ),
-        );
+    let end_effector_composite_inertia_39 = q[14].mul_add(
+        q[15].mul_add(n(0.042300000000000004), q[14].mul_add(n(0.18225), q[13] * n(0.0078))),
+        q[13] * ((-q[15]).mul_add(n(0.027499999999999997), q[14].mul_add(n(0.0078), q[13] * n(0.19388)))),
+    );
+    let end_effector_composite_inertia_40 = (-q[15]).mul_add(
+        (-q[15]).mul_add(n(0.02713), (-q[14]).mul_add(n(0.042300000000000004), q[13] * n(0.027499999999999997))),
+        end_effector_composite_inertia_39,
+    );
+    let end_effector_composite_inertia_41 = (-q[9]).mul_add(
+        end_effector_composite_inertia_38,
+        q[8].mul_add(end_effector_composite_inertia_37, q[7] * end_effector_composite_inertia_36),
+    );
+    let end_effector_composite_inertia_42 = (-q[12]).mul_add(
+        end_effector_composite_inertia_38,
+        q[11].mul_add(end_effector_composite_inertia_37, q[10] * end_effector_composite_inertia_36),
+    );
     let end_effector_composite_inertia_43 = end_effector_composite_inertia_41
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_42
-                .mul_add(n(0.15), end_effector_composite_inertia_40),
-        );
-    let end_effector_composite_inertia_44 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_42,
-                    q[1] * end_effector_composite_inertia_41,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_42,
-                        q[4] * end_effector_composite_inertia_41,
-                    )),
-        );
-    let end_effector_composite_inertia_45 = end_effector_composite_inertia_43
-        + end_effector_composite_inertia_44;
-    let end_effector_composite_inertia_46 = (-q[8])
-        .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
-    let end_effector_composite_inertia_47 = (-q[11])
-        .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
+        .mul_add(n(0.02), end_effector_composite_inertia_42.mul_add(n(0.15), end_effector_composite_inertia_40));
+    let end_effector_composite_inertia_44 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_composite_inertia_42, q[1] * end_effector_composite_inertia_41),
+        q[3] * (q[5].mul_add(end_effector_composite_inertia_42, q[4] * end_effector_composite_inertia_41)),
+    );
+    let end_effector_composite_inertia_45 = end_effector_composite_inertia_43 + end_effector_composite_inertia_44;
+    let end_effector_composite_inertia_46 = (-q[8]).mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
+    let end_effector_composite_inertia_47 = (-q[11]).mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
     let end_effector_composite_inertia_48 = q[7]
-        .mul_add(
-            n(0.007750000000000002),
-            end_effector_composite_inertia_2 - end_effector_composite_inertia,
-        );
+        .mul_add(n(0.007750000000000002), end_effector_composite_inertia_2 - end_effector_composite_inertia);
     let end_effector_composite_inertia_49 = (-q[8])
-        .mul_add(
-            n(0.01938),
-            end_effector_composite_inertia_5 + end_effector_composite_inertia_4,
-        );
-    let end_effector_composite_inertia_50 = q[9]
-        .mul_add(n(0.1745), end_effector_composite_inertia_7);
-    let end_effector_composite_inertia_51 = (-q[11])
-        .mul_add(
-            (-q[11])
-                .mul_add(
-                    n(0.01938),
-                    end_effector_composite_inertia_23 + end_effector_composite_inertia_22,
-                ),
-            q[10]
-                * (q[10]
-                    .mul_add(
-                        n(0.007750000000000002),
-                        end_effector_composite_inertia_20
-                            - end_effector_composite_inertia_19,
-                    )),
-        );
-    let end_effector_composite_inertia_52 = (-q[8])
-        .mul_add(
+        .mul_add(n(0.01938), end_effector_composite_inertia_5 + end_effector_composite_inertia_4);
+    let end_effector_composite_inertia_50 = q[9].mul_add(n(0.1745), end_effector_composite_inertia_7);
+    let end_effector_composite_inertia_51 = (-q[11]).mul_add(
+        (-q[11]).mul_add(n(0.01938), end_effector_composite_inertia_23 + end_effector_composite_inertia_22),
+        q[10] * (q[10].mul_add(n(0.007750000000000002), end_effector_composite_inertia_20 - end_effector_composite_inertia_19)),
+    );
+    let end_effector_composite_inertia_52 = (-q[8]).mul_add(
+        end_effector_composite_inertia_49,
+        end_effector_composite_inertia_46
+            .mul_add(n(0.3), q[9].mul_add(end_effector_composite_inertia_50, q[7] * end_effector_composite_inertia_48)),
+    );
+    let end_effector_composite_inertia_53 = (-end_effector_composite_inertia_46).mul_add(
+        n(0.02),
+        (-q[11]).mul_add(
             end_effector_composite_inertia_49,
-            end_effector_composite_inertia_46
-                .mul_add(
-                    n(0.3),
-                    q[9]
-                        .mul_add(
-                            end_effector_composite_inertia_50,
-                            q[7] * end_effector_composite_inertia_48,
-                        ),
-                ),
-        );
-    let end_effector_composite_inertia_53 = (-end_effector_composite_inertia_46)
-        .mul_add(
-            n(0.02),
-            (-q[11])
-                .mul_add(
-                    end_effector_composite_inertia_49,
-                    end_effector_composite_inertia_47
-                        .mul_add(
-                            n(0.15),
-                            q[12]
-                                .mul_add(
-                                    end_effector_composite_inertia_50,
-                                    q[10] * end_effector_composite_inertia_48,
-                                ),
-                        ),
-                ),
-        );
+            end_effector_composite_inertia_47.mul_add(
+                n(0.15),
+                q[12].mul_add(end_effector_composite_inertia_50, q[10] * end_effector_composite_inertia_48),
+            ),
+        ),
+    );
     // cart: composite inertia (26 additions, 30 multiplications)
     let cart_composite_inertia = end_effector_composite_inertia_46 + n(0.495);
     let cart_composite_inertia_2 = end_effector_composite_inertia_47 + n(0.046);
-    let cart_composite_inertia_3 = end_effector_composite_inertia_52
-        + n(0.12764999999999999);
-    let cart_composite_inertia_4 = end_effector_composite_inertia_53
-        - n(0.002300000000000001);
-    let cart_composite_inertia_5 = (-end_effector_composite_inertia_47)
-        .mul_add(
-            n(0.04),
-            q[12]
-                .mul_add(
-                    q[12].mul_add(n(0.1745), end_effector_composite_inertia_25),
-                    end_effector_composite_inertia_51 + n(0.03728),
-                ),
-        );
+    let cart_composite_inertia_3 = end_effector_composite_inertia_52 + n(0.12764999999999999);
+    let cart_composite_inertia_4 = end_effector_composite_inertia_53 - n(0.002300000000000001);
+    let cart_composite_inertia_5 = (-end_effector_composite_inertia_47).mul_add(
+        n(0.04),
+        q[12].mul_add(
+            q[12].mul_add(n(0.1745), end_effector_composite_inertia_25),
+            end_effector_composite_inertia_51 + n(0.03728),
+        ),
+    );
     let cart_composite_inertia_6 = cart_composite_inertia_3 + cart_composite_inertia_5;
-    let cart_composite_inertia_7 = (-q[6])
-        .mul_add(
-            (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
-            q[3]
-                * ((-q[5])
-                    .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
-        );
+    let cart_composite_inertia_7 = (-q[6]).mul_add(
+        (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
+        q[3] * ((-q[5]).mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
+    );
     let cart_composite_inertia_8 = cart_composite_inertia_6 - cart_composite_inertia_7;
-    let cart_composite_inertia_9 = (-q[3])
-        .mul_add(q[4] * n(5.7), q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2));
-    let cart_composite_inertia_10 = q[2]
-        .mul_add(
-            q[2].mul_add(cart_composite_inertia_5, q[1] * cart_composite_inertia_4),
-            q[1]
-                * (q[2]
-                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_3)),
-        );
-    let cart_composite_inertia_11 = q[5]
-        .mul_add(
-            q[5].mul_add(cart_composite_inertia_5, q[4] * cart_composite_inertia_4),
-            q[4]
-                * (q[5]
-                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_3)),
-        );
+    let cart_composite_inertia_9 = (-q[3]).mul_add(q[4] * n(5.7), q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2));
+    let cart_composite_inertia_10 = q[2].mul_add(
+        q[2].mul_add(cart_composite_inertia_5, q[1] * cart_composite_inertia_4),
+        q[1] * (q[2].mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_3)),
+    );
+    let cart_composite_inertia_11 = q[5].mul_add(
+        q[5].mul_add(cart_composite_inertia_5, q[4] * cart_composite_inertia_4),
+        q[4] * (q[5].mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_3)),
+    );
     let cart_composite_inertia_12 = (q[3]
-        .mul_add(
-            n(2.85),
-            q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
-        )) * (q[3] + q[3]);
+        .mul_add(n(2.85), q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia))) * (q[3] + q[3]);
     let cart_composite_inertia_13 = (q[6]
-        .mul_add(
-            n(2.85),
-            q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
-        )) * (q[6] + q[6]);
+        .mul_add(n(2.85), q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia))) * (q[6] + q[6]);
     [
         [
             cart_composite_inertia_10 + cart_composite_inertia_12 + n(1.1700000000000002)
                 + cart_composite_inertia_11 + cart_composite_inertia_13
                 + n(0.8799999999999999),
-            cart_composite_inertia_8,
-            -cart_composite_inertia_9,
-            end_effector_composite_inertia_18,
-            end_effector_composite_inertia_35,
-            end_effector_composite_inertia_45,
+            cart_composite_inertia_8, -cart_composite_inertia_9, end_effector_composite_inertia_18,
+            end_effector_composite_inertia_35, end_effector_composite_inertia_45,
         ],
         [
-            cart_composite_inertia_8,
-            cart_composite_inertia_6,
-            -cart_composite_inertia_2,
-            end_effector_composite_inertia_16,
-            end_effector_composite_inertia_33,
-            end_effector_composite_inertia_43,
+            cart_composite_inertia_8, cart_composite_inertia_6, -cart_composite_inertia_2, end_effector_composite_inertia_16,
+            end_effector_composite_inertia_33, end_effector_composite_inertia_43,
         ],
         [
-            -cart_composite_inertia_9,
-            -cart_composite_inertia_2,
+            -cart_composite_inertia_9, -cart_composite_inertia_2,
             n(5.7),
-            end_effector_composite_inertia_14,
-            end_effector_composite_inertia_31,
-            end_effector_composite_inertia_41,
+            end_effector_composite_inertia_14, end_effector_composite_inertia_31, end_effector_composite_inertia_41,
         ],
         [
-            end_effector_composite_inertia_18,
-            end_effector_composite_inertia_16,
-            end_effector_composite_inertia_14,
-            (-q[9])
-                .mul_add(
-                    end_effector_composite_inertia_8,
-                    q[8]
-                        .mul_add(
-                            end_effector_composite_inertia_6,
-                            q[7] * end_effector_composite_inertia_3,
-                        ),
-                ),
-            end_effector_composite_inertia_12,
-            end_effector_composite_inertia_13,
+            end_effector_composite_inertia_18, end_effector_composite_inertia_16, end_effector_composite_inertia_14,
+            (-q[9]).mul_add(
+                end_effector_composite_inertia_8,
+                q[8].mul_add(end_effector_composite_inertia_6, q[7] * end_effector_composite_inertia_3),
+            ),
+            end_effector_composite_inertia_12, end_effector_composite_inertia_13,
         ],
         [
-            end_effector_composite_inertia_35,
-            end_effector_composite_inertia_33,
-            end_effector_composite_inertia_31,
+            end_effector_composite_inertia_35, end_effector_composite_inertia_33, end_effector_composite_inertia_31,
             end_effector_composite_inertia_12,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_26,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_24,
-                            q[10] * end_effector_composite_inertia_21,
-                        ),
-                ),
+            (-q[12]).mul_add(
+                end_effector_composite_inertia_26,
+                q[11].mul_add(end_effector_composite_inertia_24, q[10] * end_effector_composite_inertia_21),
+            ),
             end_effector_composite_inertia_30,
         ],
         [
-            end_effector_composite_inertia_45,
-            end_effector_composite_inertia_43,
-            end_effector_composite_inertia_41,
-            end_effector_composite_inertia_13,
-            end_effector_composite_inertia_30,
-            end_effector_composite_inertia_40,
+            end_effector_composite_inertia_45, end_effector_composite_inertia_43, end_effector_composite_inertia_41,
+            end_effector_composite_inertia_13, end_effector_composite_inertia_30, end_effector_composite_inertia_40,
         ],
     ]
 }
@@ -1701,18 +940,12 @@ pub fn bias_forces<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 6] {
     let cart_acceleration = v[0] * v[2];
     let cart_acceleration_2 = q[3] * plate_acceleration;
     let cart_acceleration_3 = q[6] * plate_acceleration;
-    let cart_acceleration_4 = q[4]
-        .mul_add(cart_acceleration_3, q[1] * cart_acceleration_2);
+    let cart_acceleration_4 = q[4].mul_add(cart_acceleration_3, q[1] * cart_acceleration_2);
     let cart_acceleration_5 = cart_rate_z * cart_rate_z;
-    let cart_acceleration_6 = (-q[5])
-        .mul_add(
-            cart_acceleration_3,
-            (-q[2])
-                .mul_add(
-                    cart_acceleration_2,
-                    v[1].mul_add(v[2], cart_acceleration + cart_acceleration),
-                ),
-        );
+    let cart_acceleration_6 = (-q[5]).mul_add(
+        cart_acceleration_3,
+        (-q[2]).mul_add(cart_acceleration_2, v[1].mul_add(v[2], cart_acceleration + cart_acceleration)),
+    );
     // end_effector: joint (6 additions, 9 multiplications)
     let end_effector_joint = v[5].mul_add(q[13], v[4].mul_add(q[10], v[3] * q[7]));
     let end_effector_joint_2 = v[5].mul_add(q[14], v[4].mul_add(q[11], v[3] * q[8]));
@@ -1726,199 +959,104 @@ pub fn bias_forces<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 6] {
     let end_effector_rate_z = end_effector_joint_3 + end_effector_angular_velocity_3;
     // end_effector: acceleration (20 additions, 23 multiplications)
     let end_effector_acceleration = (-end_effector_joint_2)
-        .mul_add(
-            end_effector_angular_velocity_3,
-            end_effector_joint_3 * end_effector_angular_velocity_2,
-        );
+        .mul_add(end_effector_angular_velocity_3, end_effector_joint_3 * end_effector_angular_velocity_2);
     let end_effector_acceleration_2 = (-end_effector_joint_3)
-        .mul_add(
-            end_effector_angular_velocity,
-            end_effector_joint * end_effector_angular_velocity_3,
-        );
+        .mul_add(end_effector_angular_velocity, end_effector_joint * end_effector_angular_velocity_3);
     let end_effector_acceleration_3 = (-end_effector_joint)
-        .mul_add(
-            end_effector_angular_velocity_2,
-            end_effector_joint_2 * end_effector_angular_velocity,
-        );
-    let end_effector_acceleration_4 = cart_acceleration_5
-        .mul_add(n(0.15), cart_acceleration_4);
-    let end_effector_acceleration_5 = cart_acceleration_5
-        .mul_add(n(0.02), cart_acceleration_6);
+        .mul_add(end_effector_angular_velocity_2, end_effector_joint_2 * end_effector_angular_velocity);
+    let end_effector_acceleration_4 = cart_acceleration_5.mul_add(n(0.15), cart_acceleration_4);
+    let end_effector_acceleration_5 = cart_acceleration_5.mul_add(n(0.02), cart_acceleration_6);
     let end_effector_acceleration_6 = (-q[13])
-        .mul_add(
-            n(9.81),
-            (-q[10])
-                .mul_add(end_effector_acceleration_5, q[7] * end_effector_acceleration_4),
-        );
+        .mul_add(n(9.81), (-q[10]).mul_add(end_effector_acceleration_5, q[7] * end_effector_acceleration_4));
     let end_effector_acceleration_7 = (-q[14])
-        .mul_add(
-            n(9.81),
-            (-q[11])
-                .mul_add(end_effector_acceleration_5, q[8] * end_effector_acceleration_4),
-        );
+        .mul_add(n(9.81), (-q[11]).mul_add(end_effector_acceleration_5, q[8] * end_effector_acceleration_4));
     let end_effector_acceleration_8 = (-q[15])
-        .mul_add(
-            n(9.81),
-            (-q[12])
-                .mul_add(end_effector_acceleration_5, q[9] * end_effector_acceleration_4),
-        );
+        .mul_add(n(9.81), (-q[12]).mul_add(end_effector_acceleration_5, q[9] * end_effector_acceleration_4));
     let end_effector_acceleration_9 = end_effector_rate_x * end_effector_rate_x;
     let end_effector_acceleration_10 = end_effector_rate_x * end_effector_rate_y;
     let end_effector_acceleration_11 = end_effector_rate_x * end_effector_rate_z;
     let end_effector_acceleration_12 = end_effector_rate_y * end_effector_rate_y;
     let end_effector_acceleration_13 = end_effector_rate_y * end_effector_rate_z;
     let end_effector_acceleration_14 = end_effector_rate_z * end_effector_rate_z;
-    let end_effector_acceleration_15 = end_effector_acceleration_3
-        + end_effector_acceleration_10;
-    let end_effector_acceleration_16 = end_effector_acceleration_2
-        - end_effector_acceleration_11;
-    let end_effector_acceleration_17 = end_effector_acceleration_3
-        - end_effector_acceleration_10;
-    let end_effector_acceleration_18 = end_effector_acceleration
-        + end_effector_acceleration_13;
-    let end_effector_acceleration_19 = end_effector_acceleration_2
-        + end_effector_acceleration_11;
-    let end_effector_acceleration_20 = end_effector_acceleration
-        - end_effector_acceleration_13;
+    let end_effector_acceleration_15 = end_effector_acceleration_3 + end_effector_acceleration_10;
+    let end_effector_acceleration_16 = end_effector_acceleration_2 - end_effector_acceleration_11;
+    let end_effector_acceleration_17 = end_effector_acceleration_3 - end_effector_acceleration_10;
+    let end_effector_acceleration_18 = end_effector_acceleration + end_effector_acceleration_13;
+    let end_effector_acceleration_19 = end_effector_acceleration_2 + end_effector_acceleration_11;
+    let end_effector_acceleration_20 = end_effector_acceleration - end_effector_acceleration_13;
     // end_effector: force (27 additions, 30 multiplications)
-    let end_effector_force = (-end_effector_acceleration_13)
-        .mul_add(
-            n(0.15511999999999998),
-            (end_effector_acceleration_12 - end_effector_acceleration_14)
-                .mul_add(
-                    n(0.042300000000000004),
-                    end_effector_acceleration_16
-                        .mul_add(n(0.0078), end_effector_acceleration * n(0.19388)),
-                ),
-        );
-    let end_effector_force_2 = (end_effector_acceleration_9
-        - end_effector_acceleration_14)
-        .mul_add(
-            n(0.027499999999999997),
-            end_effector_acceleration_17
-                .mul_add(
-                    n(0.042300000000000004),
-                    end_effector_acceleration_11
-                        .mul_add(
-                            n(0.16674999999999998),
-                            end_effector_acceleration_2 * n(0.18225),
-                        ),
-                ),
-        );
-    let end_effector_force_3 = (-end_effector_acceleration_20)
-        .mul_add(
-            n(0.027499999999999997),
-            (-end_effector_acceleration_10)
-                .mul_add(
-                    n(0.01163),
-                    (end_effector_acceleration_9 - end_effector_acceleration_12)
-                        .mul_add(n(0.0078), end_effector_acceleration_3 * n(0.02713)),
-                ),
-        );
-    let end_effector_force_4 = (-end_effector_acceleration_15)
-        .mul_add(
-            n(0.027499999999999997),
-            end_effector_acceleration_7
-                .mul_add(
-                    n(0.51),
-                    end_effector_acceleration_8.mul_add(n(0.136), end_effector_force),
-                ),
-        );
-    let end_effector_force_5 = (-end_effector_acceleration_6)
-        .mul_add(
-            n(0.51),
-            end_effector_acceleration_8
-                .mul_add(
-                    n(0.085),
-                    end_effector_acceleration_18.mul_add(n(0.0078), end_effector_force_2),
-                ),
-        );
-    let end_effector_force_6 = (-end_effector_acceleration_6)
-        .mul_add(
-            n(0.136),
-            (-end_effector_acceleration_7)
-                .mul_add(
-                    n(0.085),
-                    end_effector_acceleration_19
-                        .mul_add(n(0.042300000000000004), end_effector_force_3),
-                ),
-        );
-    let end_effector_force_7 = (-end_effector_acceleration_19)
-        .mul_add(
-            n(0.51),
-            (-end_effector_acceleration_17)
-                .mul_add(
-                    n(0.136),
-                    (end_effector_acceleration_12 + end_effector_acceleration_14)
-                        * n(0.085),
-                ),
-        );
-    let end_effector_force_8 = (-end_effector_acceleration_20)
-        .mul_add(
-            n(0.51),
-            (end_effector_acceleration_9 + end_effector_acceleration_14)
-                .mul_add(n(0.136), end_effector_acceleration_15 * n(0.085)),
-        );
-    let end_effector_force_9 = (end_effector_acceleration_9
-        + end_effector_acceleration_12)
-        .mul_add(
-            n(0.51),
-            end_effector_acceleration_18
-                .mul_add(n(0.136), end_effector_acceleration_16 * n(0.085)),
-        );
+    let end_effector_force = (-end_effector_acceleration_13).mul_add(
+        n(0.15511999999999998),
+        (end_effector_acceleration_12 - end_effector_acceleration_14).mul_add(
+            n(0.042300000000000004),
+            end_effector_acceleration_16.mul_add(n(0.0078), end_effector_acceleration * n(0.19388)),
+        ),
+    );
+    let end_effector_force_2 = (end_effector_acceleration_9 - end_effector_acceleration_14).mul_add(
+        n(0.027499999999999997),
+        end_effector_acceleration_17.mul_add(
+            n(0.042300000000000004),
+            end_effector_acceleration_11.mul_add(n(0.16674999999999998), end_effector_acceleration_2 * n(0.18225)),
+        ),
+    );
+    let end_effector_force_3 = (-end_effector_acceleration_20).mul_add(
+        n(0.027499999999999997),
+        (-end_effector_acceleration_10).mul_add(
+            n(0.01163),
+            (end_effector_acceleration_9 - end_effector_acceleration_12)
+                .mul_add(n(0.0078), end_effector_acceleration_3 * n(0.02713)),
+        ),
+    );
+    let end_effector_force_4 = (-end_effector_acceleration_15).mul_add(
+        n(0.027499999999999997),
+        end_effector_acceleration_7.mul_add(n(0.51), end_effector_acceleration_8.mul_add(n(0.136), end_effector_force)),
+    );
+    let end_effector_force_5 = (-end_effector_acceleration_6).mul_add(
+        n(0.51),
+        end_effector_acceleration_8.mul_add(n(0.085), end_effector_acceleration_18.mul_add(n(0.0078), end_effector_force_2)),
+    );
+    let end_effector_force_6 = (-end_effector_acceleration_6).mul_add(
+        n(0.136),
+        (-end_effector_acceleration_7)
+            .mul_add(n(0.085), end_effector_acceleration_19.mul_add(n(0.042300000000000004), end_effector_force_3)),
+    );
+    let end_effector_force_7 = (-end_effector_acceleration_19).mul_add(
+        n(0.51),
+        (-end_effector_acceleration_17)
+            .mul_add(n(0.136), (end_effector_acceleration_12 + end_effector_acceleration_14) * n(0.085)),
+    );
+    let end_effector_force_8 = (-end_effector_acceleration_20).mul_add(
+        n(0.51),
+        (end_effector_acceleration_9 + end_effector_acceleration_14).mul_add(n(0.136), end_effector_acceleration_15 * n(0.085)),
+    );
+    let end_effector_force_9 = (end_effector_acceleration_9 + end_effector_acceleration_12)
+        .mul_add(n(0.51), end_effector_acceleration_18.mul_add(n(0.136), end_effector_acceleration_16 * n(0.085)));
     // end_effector: effort (12 additions, 17 multiplications)
     let end_effector_effort = q[15]
-        .mul_add(
-            end_effector_force_6,
-            q[14].mul_add(end_effector_force_5, q[13] * end_effector_force_4),
-        );
+        .mul_add(end_effector_force_6, q[14].mul_add(end_effector_force_5, q[13] * end_effector_force_4));
     let end_effector_effort_2 = (-q[8])
-        .mul_add(
-            end_effector_force_8,
-            q[9].mul_add(end_effector_force_9, q[7] * end_effector_force_7),
-        );
+        .mul_add(end_effector_force_8, q[9].mul_add(end_effector_force_9, q[7] * end_effector_force_7));
     let end_effector_effort_3 = (-q[11])
-        .mul_add(
-            end_effector_force_8,
-            q[12].mul_add(end_effector_force_9, q[10] * end_effector_force_7),
-        );
+        .mul_add(end_effector_force_8, q[12].mul_add(end_effector_force_9, q[10] * end_effector_force_7));
     // cart: effort (7 additions, 6 multiplications)
-    let cart_effort = (-end_effector_effort_2)
-        .mul_add(
-            n(0.02),
-            (-end_effector_effort_3)
-                .mul_add(
-                    n(0.15),
-                    cart_acceleration_4
-                        .mul_add(
-                            n(0.046),
-                            cart_acceleration_6.mul_add(n(0.495), end_effector_effort),
-                        ),
-                ),
-        );
-    let cart_effort_2 = cart_acceleration_5
-        .mul_add(n(0.495), cart_acceleration_4.mul_add(n(5.7), end_effector_effort_2));
-    let cart_effort_3 = (-cart_acceleration_5)
-        .mul_add(n(0.046), cart_acceleration_6.mul_add(n(5.7), -end_effector_effort_3));
-    let cart_effort_4 = (-q[6])
-        .mul_add(
-            (-q[2]).mul_add(cart_effort_3, q[1] * cart_effort_2),
-            q[3] * ((-q[5]).mul_add(cart_effort_3, q[4] * cart_effort_2)),
-        );
+    let cart_effort = (-end_effector_effort_2).mul_add(
+        n(0.02),
+        (-end_effector_effort_3).mul_add(
+            n(0.15),
+            cart_acceleration_4.mul_add(n(0.046), cart_acceleration_6.mul_add(n(0.495), end_effector_effort)),
+        ),
+    );
+    let cart_effort_2 = cart_acceleration_5.mul_add(n(0.495), cart_acceleration_4.mul_add(n(5.7), end_effector_effort_2));
+    let cart_effort_3 = (-cart_acceleration_5).mul_add(n(0.046), cart_acceleration_6.mul_add(n(5.7), -end_effector_effort_3));
+    let cart_effort_4 = (-q[6]).mul_add(
+        (-q[2]).mul_add(cart_effort_3, q[1] * cart_effort_2),
+        q[3] * ((-q[5]).mul_add(cart_effort_3, q[4] * cart_effort_2)),
+    );
     [
         cart_effort - cart_effort_4,
-        cart_effort,
-        -cart_effort_2,
-        q[9]
-            .mul_add(
-                end_effector_force_6,
-                q[8].mul_add(end_effector_force_5, q[7] * end_effector_force_4),
-            ),
-        q[12]
-            .mul_add(
-                end_effector_force_6,
-                q[11].mul_add(end_effector_force_5, q[10] * end_effector_force_4),
-            ),
+        cart_effort, -cart_effort_2,
+        q[9].mul_add(end_effector_force_6, q[8].mul_add(end_effector_force_5, q[7] * end_effector_force_4)),
+        q[12].mul_add(end_effector_force_6, q[11].mul_add(end_effector_force_5, q[10] * end_effector_force_4)),
         end_effector_effort,
     ]
 }
@@ -1934,856 +1072,457 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 16], p: &[T; 6], tau: &[T; 7]) -> [[T; 
     let end_effector_composite_inertia = q[8] * n(0.0078);
     let end_effector_composite_inertia_2 = q[9] * n(0.027499999999999997);
     let end_effector_composite_inertia_3 = q[7]
-        .mul_add(
-            n(0.19388),
-            end_effector_composite_inertia - end_effector_composite_inertia_2,
-        );
+        .mul_add(n(0.19388), end_effector_composite_inertia - end_effector_composite_inertia_2);
     let end_effector_composite_inertia_4 = q[7] * n(0.0078);
     let end_effector_composite_inertia_5 = q[9] * n(0.042300000000000004);
     let end_effector_composite_inertia_6 = q[8]
-        .mul_add(
-            n(0.18225),
-            end_effector_composite_inertia_4 + end_effector_composite_inertia_5,
-        );
-    let end_effector_composite_inertia_7 = (-q[8])
-        .mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997));
-    let end_effector_composite_inertia_8 = (-q[9])
-        .mul_add(n(0.02713), end_effector_composite_inertia_7);
+        .mul_add(n(0.18225), end_effector_composite_inertia_4 + end_effector_composite_inertia_5);
+    let end_effector_composite_inertia_7 = (-q[8]).mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997));
+    let end_effector_composite_inertia_8 = (-q[9]).mul_add(n(0.02713), end_effector_composite_inertia_7);
     let end_effector_composite_inertia_9 = q[9].mul_add(n(0.136), q[8] * n(0.51));
     let end_effector_composite_inertia_10 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
     let end_effector_composite_inertia_11 = q[8].mul_add(n(0.085), q[7] * n(0.136));
-    let end_effector_composite_inertia_12 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_8,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_6,
-                    q[13] * end_effector_composite_inertia_3,
-                ),
-        );
-    let end_effector_composite_inertia_13 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_11,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_10,
-                    q[7] * end_effector_composite_inertia_9,
-                ),
-        );
-    let end_effector_composite_inertia_14 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_11,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_10,
-                    q[10] * end_effector_composite_inertia_9,
-                ),
-        );
+    let end_effector_composite_inertia_12 = (-q[15]).mul_add(
+        end_effector_composite_inertia_8,
+        q[14].mul_add(end_effector_composite_inertia_6, q[13] * end_effector_composite_inertia_3),
+    );
+    let end_effector_composite_inertia_13 = (-q[9]).mul_add(
+        end_effector_composite_inertia_11,
+        q[8].mul_add(end_effector_composite_inertia_10, q[7] * end_effector_composite_inertia_9),
+    );
+    let end_effector_composite_inertia_14 = (-q[12]).mul_add(
+        end_effector_composite_inertia_11,
+        q[11].mul_add(end_effector_composite_inertia_10, q[10] * end_effector_composite_inertia_9),
+    );
     let end_effector_composite_inertia_15 = end_effector_composite_inertia_13
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_14
-                .mul_add(n(0.15), end_effector_composite_inertia_12),
-        );
-    let end_effector_composite_inertia_16 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_14,
-                    q[1] * end_effector_composite_inertia_13,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_14,
-                        q[4] * end_effector_composite_inertia_13,
-                    )),
-        );
+        .mul_add(n(0.02), end_effector_composite_inertia_14.mul_add(n(0.15), end_effector_composite_inertia_12));
+    let end_effector_composite_inertia_16 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_composite_inertia_14, q[1] * end_effector_composite_inertia_13),
+        q[3] * (q[5].mul_add(end_effector_composite_inertia_14, q[4] * end_effector_composite_inertia_13)),
+    );
     let end_effector_composite_inertia_17 = q[11] * n(0.0078);
     let end_effector_composite_inertia_18 = q[12] * n(0.027499999999999997);
     let end_effector_composite_inertia_19 = q[10]
-        .mul_add(
-            n(0.19388),
-            end_effector_composite_inertia_17 - end_effector_composite_inertia_18,
-        );
+        .mul_add(n(0.19388), end_effector_composite_inertia_17 - end_effector_composite_inertia_18);
     let end_effector_composite_inertia_20 = q[10] * n(0.0078);
     let end_effector_composite_inertia_21 = q[12] * n(0.042300000000000004);
     let end_effector_composite_inertia_22 = q[11]
-        .mul_add(
-            n(0.18225),
-            end_effector_composite_inertia_20 + end_effector_composite_inertia_21,
-        );
-    let end_effector_composite_inertia_23 = (-q[11])
-        .mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997));
-    let end_effector_composite_inertia_24 = (-q[12])
-        .mul_add(n(0.02713), end_effector_composite_inertia_23);
+        .mul_add(n(0.18225), end_effector_composite_inertia_20 + end_effector_composite_inertia_21);
+    let end_effector_composite_inertia_23 = (-q[11]).mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997));
+    let end_effector_composite_inertia_24 = (-q[12]).mul_add(n(0.02713), end_effector_composite_inertia_23);
     let end_effector_composite_inertia_25 = q[12].mul_add(n(0.136), q[11] * n(0.51));
     let end_effector_composite_inertia_26 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
     let end_effector_composite_inertia_27 = q[11].mul_add(n(0.085), q[10] * n(0.136));
-    let end_effector_composite_inertia_28 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_24,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_22,
-                    q[13] * end_effector_composite_inertia_19,
-                ),
-        );
-    let end_effector_composite_inertia_29 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_27,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_26,
-                    q[7] * end_effector_composite_inertia_25,
-                ),
-        );
-    let end_effector_composite_inertia_30 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_27,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_26,
-                    q[10] * end_effector_composite_inertia_25,
-                ),
-        );
+    let end_effector_composite_inertia_28 = (-q[15]).mul_add(
+        end_effector_composite_inertia_24,
+        q[14].mul_add(end_effector_composite_inertia_22, q[13] * end_effector_composite_inertia_19),
+    );
+    let end_effector_composite_inertia_29 = (-q[9]).mul_add(
+        end_effector_composite_inertia_27,
+        q[8].mul_add(end_effector_composite_inertia_26, q[7] * end_effector_composite_inertia_25),
+    );
+    let end_effector_composite_inertia_30 = (-q[12]).mul_add(
+        end_effector_composite_inertia_27,
+        q[11].mul_add(end_effector_composite_inertia_26, q[10] * end_effector_composite_inertia_25),
+    );
     let end_effector_composite_inertia_31 = end_effector_composite_inertia_29
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_30
-                .mul_add(n(0.15), end_effector_composite_inertia_28),
-        );
-    let end_effector_composite_inertia_32 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_30,
-                    q[1] * end_effector_composite_inertia_29,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_30,
-                        q[4] * end_effector_composite_inertia_29,
-                    )),
-        );
+        .mul_add(n(0.02), end_effector_composite_inertia_30.mul_add(n(0.15), end_effector_composite_inertia_28));
+    let end_effector_composite_inertia_32 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_composite_inertia_30, q[1] * end_effector_composite_inertia_29),
+        q[3] * (q[5].mul_add(end_effector_composite_inertia_30, q[4] * end_effector_composite_inertia_29)),
+    );
     let end_effector_composite_inertia_33 = q[15].mul_add(n(0.136), q[14] * n(0.51));
     let end_effector_composite_inertia_34 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
     let end_effector_composite_inertia_35 = q[14].mul_add(n(0.085), q[13] * n(0.136));
-    let end_effector_composite_inertia_36 = q[14]
-        .mul_add(
-            q[15]
-                .mul_add(
-                    n(0.042300000000000004),
-                    q[14].mul_add(n(0.18225), q[13] * n(0.0078)),
-                ),
-            q[13]
-                * ((-q[15])
-                    .mul_add(
-                        n(0.027499999999999997),
-                        q[14].mul_add(n(0.0078), q[13] * n(0.19388)),
-                    )),
-        );
-    let end_effector_composite_inertia_37 = (-q[15])
-        .mul_add(
-            (-q[15])
-                .mul_add(
-                    n(0.02713),
-                    (-q[14])
-                        .mul_add(
-                            n(0.042300000000000004),
-                            q[13] * n(0.027499999999999997),
-                        ),
-                ),
-            end_effector_composite_inertia_36,
-        );
-    let end_effector_composite_inertia_38 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_35,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_34,
-                    q[7] * end_effector_composite_inertia_33,
-                ),
-        );
-    let end_effector_composite_inertia_39 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_35,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_34,
-                    q[10] * end_effector_composite_inertia_33,
-                ),
-        );
+    let end_effector_composite_inertia_36 = q[14].mul_add(
+        q[15].mul_add(n(0.042300000000000004), q[14].mul_add(n(0.18225), q[13] * n(0.0078))),
+        q[13] * ((-q[15]).mul_add(n(0.027499999999999997), q[14].mul_add(n(0.0078), q[13] * n(0.19388)))),
+    );
+    let end_effector_composite_inertia_37 = (-q[15]).mul_add(
+        (-q[15]).mul_add(n(0.02713), (-q[14]).mul_add(n(0.042300000000000004), q[13] * n(0.027499999999999997))),
+        end_effector_composite_inertia_36,
+    );
+    let end_effector_composite_inertia_38 = (-q[9]).mul_add(
+        end_effector_composite_inertia_35,
+        q[8].mul_add(end_effector_composite_inertia_34, q[7] * end_effector_composite_inertia_33),
+    );
+    let end_effector_composite_inertia_39 = (-q[12]).mul_add(
+        end_effector_composite_inertia_35,
+        q[11].mul_add(end_effector_composite_inertia_34, q[10] * end_effector_composite_inertia_33),
+    );
     let end_effector_composite_inertia_40 = end_effector_composite_inertia_38
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_39
-                .mul_add(n(0.15), end_effector_composite_inertia_37),
-        );
-    let end_effector_composite_inertia_41 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_39,
-                    q[1] * end_effector_composite_inertia_38,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_39,
-                        q[4] * end_effector_composite_inertia_38,
-                    )),
-        );
-    let end_effector_composite_inertia_42 = end_effector_composite_inertia_40
-        + end_effector_composite_inertia_41;
-    let end_effector_composite_inertia_43 = (-q[8])
-        .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
-    let end_effector_composite_inertia_44 = (-q[11])
-        .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
+        .mul_add(n(0.02), end_effector_composite_inertia_39.mul_add(n(0.15), end_effector_composite_inertia_37));
+    let end_effector_composite_inertia_41 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_composite_inertia_39, q[1] * end_effector_composite_inertia_38),
+        q[3] * (q[5].mul_add(end_effector_composite_inertia_39, q[4] * end_effector_composite_inertia_38)),
+    );
+    let end_effector_composite_inertia_42 = end_effector_composite_inertia_40 + end_effector_composite_inertia_41;
+    let end_effector_composite_inertia_43 = (-q[8]).mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
+    let end_effector_composite_inertia_44 = (-q[11]).mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
     let end_effector_composite_inertia_45 = q[7]
-        .mul_add(
-            n(0.007750000000000002),
-            end_effector_composite_inertia_2 - end_effector_composite_inertia,
-        );
+        .mul_add(n(0.007750000000000002), end_effector_composite_inertia_2 - end_effector_composite_inertia);
     let end_effector_composite_inertia_46 = (-q[8])
-        .mul_add(
-            n(0.01938),
-            end_effector_composite_inertia_5 + end_effector_composite_inertia_4,
-        );
-    let end_effector_composite_inertia_47 = q[9]
-        .mul_add(n(0.1745), end_effector_composite_inertia_7);
-    let end_effector_composite_inertia_48 = (-q[11])
-        .mul_add(
-            (-q[11])
-                .mul_add(
-                    n(0.01938),
-                    end_effector_composite_inertia_21 + end_effector_composite_inertia_20,
-                ),
-            q[10]
-                * (q[10]
-                    .mul_add(
-                        n(0.007750000000000002),
-                        end_effector_composite_inertia_18
-                            - end_effector_composite_inertia_17,
-                    )),
-        );
-    let end_effector_composite_inertia_49 = (-q[8])
-        .mul_add(
+        .mul_add(n(0.01938), end_effector_composite_inertia_5 + end_effector_composite_inertia_4);
+    let end_effector_composite_inertia_47 = q[9].mul_add(n(0.1745), end_effector_composite_inertia_7);
+    let end_effector_composite_inertia_48 = (-q[11]).mul_add(
+        (-q[11]).mul_add(n(0.01938), end_effector_composite_inertia_21 + end_effector_composite_inertia_20),
+        q[10] * (q[10].mul_add(n(0.007750000000000002), end_effector_composite_inertia_18 - end_effector_composite_inertia_17)),
+    );
+    let end_effector_composite_inertia_49 = (-q[8]).mul_add(
+        end_effector_composite_inertia_46,
+        end_effector_composite_inertia_43
+            .mul_add(n(0.3), q[9].mul_add(end_effector_composite_inertia_47, q[7] * end_effector_composite_inertia_45)),
+    );
+    let end_effector_composite_inertia_50 = (-end_effector_composite_inertia_43).mul_add(
+        n(0.02),
+        (-q[11]).mul_add(
             end_effector_composite_inertia_46,
-            end_effector_composite_inertia_43
-                .mul_add(
-                    n(0.3),
-                    q[9]
-                        .mul_add(
-                            end_effector_composite_inertia_47,
-                            q[7] * end_effector_composite_inertia_45,
-                        ),
-                ),
-        );
-    let end_effector_composite_inertia_50 = (-end_effector_composite_inertia_43)
-        .mul_add(
-            n(0.02),
-            (-q[11])
-                .mul_add(
-                    end_effector_composite_inertia_46,
-                    end_effector_composite_inertia_44
-                        .mul_add(
-                            n(0.15),
-                            q[12]
-                                .mul_add(
-                                    end_effector_composite_inertia_47,
-                                    q[10] * end_effector_composite_inertia_45,
-                                ),
-                        ),
-                ),
-        );
+            end_effector_composite_inertia_44.mul_add(
+                n(0.15),
+                q[12].mul_add(end_effector_composite_inertia_47, q[10] * end_effector_composite_inertia_45),
+            ),
+        ),
+    );
     // cart: composite inertia (26 additions, 30 multiplications)
     let cart_composite_inertia = end_effector_composite_inertia_43 + n(0.495);
     let cart_composite_inertia_2 = end_effector_composite_inertia_44 + n(0.046);
-    let cart_composite_inertia_3 = end_effector_composite_inertia_49
-        + n(0.12764999999999999);
-    let cart_composite_inertia_4 = end_effector_composite_inertia_50
-        - n(0.002300000000000001);
-    let cart_composite_inertia_5 = (-end_effector_composite_inertia_44)
-        .mul_add(
-            n(0.04),
-            q[12]
-                .mul_add(
-                    q[12].mul_add(n(0.1745), end_effector_composite_inertia_23),
-                    end_effector_composite_inertia_48 + n(0.03728),
-                ),
-        );
+    let cart_composite_inertia_3 = end_effector_composite_inertia_49 + n(0.12764999999999999);
+    let cart_composite_inertia_4 = end_effector_composite_inertia_50 - n(0.002300000000000001);
+    let cart_composite_inertia_5 = (-end_effector_composite_inertia_44).mul_add(
+        n(0.04),
+        q[12].mul_add(
+            q[12].mul_add(n(0.1745), end_effector_composite_inertia_23),
+            end_effector_composite_inertia_48 + n(0.03728),
+        ),
+    );
     let cart_composite_inertia_6 = cart_composite_inertia_3 + cart_composite_inertia_5;
-    let cart_composite_inertia_7 = (-q[6])
-        .mul_add(
-            (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
-            q[3]
-                * ((-q[5])
-                    .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
-        );
-    let cart_composite_inertia_8 = q[2]
-        .mul_add(
-            q[2].mul_add(cart_composite_inertia_5, q[1] * cart_composite_inertia_4),
-            q[1]
-                * (q[2]
-                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_3)),
-        );
-    let cart_composite_inertia_9 = q[5]
-        .mul_add(
-            q[5].mul_add(cart_composite_inertia_5, q[4] * cart_composite_inertia_4),
-            q[4]
-                * (q[5]
-                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_3)),
-        );
+    let cart_composite_inertia_7 = (-q[6]).mul_add(
+        (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
+        q[3] * ((-q[5]).mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
+    );
+    let cart_composite_inertia_8 = q[2].mul_add(
+        q[2].mul_add(cart_composite_inertia_5, q[1] * cart_composite_inertia_4),
+        q[1] * (q[2].mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_3)),
+    );
+    let cart_composite_inertia_9 = q[5].mul_add(
+        q[5].mul_add(cart_composite_inertia_5, q[4] * cart_composite_inertia_4),
+        q[4] * (q[5].mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_3)),
+    );
     let cart_composite_inertia_10 = (q[3]
-        .mul_add(
-            n(2.85),
-            q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
-        )) * (q[3] + q[3]);
+        .mul_add(n(2.85), q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia))) * (q[3] + q[3]);
     let cart_composite_inertia_11 = (q[6]
-        .mul_add(
-            n(2.85),
-            q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
-        )) * (q[6] + q[6]);
+        .mul_add(n(2.85), q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia))) * (q[6] + q[6]);
     // end_effector: factor (31 additions, 43 multiplications, 3 divisions)
     let end_effector_factor = n(1.0) / end_effector_composite_inertia_37;
     let end_effector_factor_2 = end_effector_composite_inertia_28 * end_effector_factor;
-    let end_effector_factor_3 = (-end_effector_composite_inertia_28)
-        .mul_add(
-            end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_24,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_22,
-                            q[10] * end_effector_composite_inertia_19,
-                        ),
-                ),
-        );
-    let end_effector_factor_4 = (-end_effector_composite_inertia_12)
-        .mul_add(
-            end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_8,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_6,
-                            q[10] * end_effector_composite_inertia_3,
-                        ),
-                ),
-        );
+    let end_effector_factor_3 = (-end_effector_composite_inertia_28).mul_add(
+        end_effector_factor_2,
+        (-q[12]).mul_add(
+            end_effector_composite_inertia_24,
+            q[11].mul_add(end_effector_composite_inertia_22, q[10] * end_effector_composite_inertia_19),
+        ),
+    );
+    let end_effector_factor_4 = (-end_effector_composite_inertia_12).mul_add(
+        end_effector_factor_2,
+        (-q[12]).mul_add(
+            end_effector_composite_inertia_8,
+            q[11].mul_add(end_effector_composite_inertia_6, q[10] * end_effector_composite_inertia_3),
+        ),
+    );
     let end_effector_factor_5 = (-end_effector_composite_inertia_38)
         .mul_add(end_effector_factor_2, end_effector_composite_inertia_29);
     let end_effector_factor_6 = (-end_effector_composite_inertia_40)
         .mul_add(end_effector_factor_2, end_effector_composite_inertia_31);
     let end_effector_factor_7 = (-end_effector_composite_inertia_42)
-        .mul_add(
-            end_effector_factor_2,
-            end_effector_composite_inertia_31 + end_effector_composite_inertia_32,
-        );
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_31 + end_effector_composite_inertia_32);
     let end_effector_factor_8 = end_effector_composite_inertia_12 * end_effector_factor;
-    let end_effector_factor_9 = (-end_effector_composite_inertia_12)
-        .mul_add(
-            end_effector_factor_8,
-            (-q[9])
-                .mul_add(
-                    end_effector_composite_inertia_8,
-                    q[8]
-                        .mul_add(
-                            end_effector_composite_inertia_6,
-                            q[7] * end_effector_composite_inertia_3,
-                        ),
-                ),
-        );
+    let end_effector_factor_9 = (-end_effector_composite_inertia_12).mul_add(
+        end_effector_factor_8,
+        (-q[9]).mul_add(
+            end_effector_composite_inertia_8,
+            q[8].mul_add(end_effector_composite_inertia_6, q[7] * end_effector_composite_inertia_3),
+        ),
+    );
     let end_effector_factor_10 = end_effector_composite_inertia_38 * end_effector_factor;
-    let end_effector_factor_11 = (-q[3])
-        .mul_add(
-            q[4] * n(5.7),
-            end_effector_composite_inertia_42
-                .mul_add(
-                    end_effector_factor_10,
-                    q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2),
-                ),
-        );
+    let end_effector_factor_11 = (-q[3]).mul_add(
+        q[4] * n(5.7),
+        end_effector_composite_inertia_42
+            .mul_add(end_effector_factor_10, q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2)),
+    );
     let end_effector_factor_12 = end_effector_composite_inertia_40 * end_effector_factor;
     let end_effector_factor_13 = end_effector_composite_inertia_42 * end_effector_factor;
-    let end_effector_factor_14 = (-end_effector_composite_inertia_42)
-        .mul_add(
-            end_effector_factor_13,
-            cart_composite_inertia_8 + cart_composite_inertia_10 + n(1.1700000000000002)
-                + cart_composite_inertia_9 + cart_composite_inertia_11
-                + n(0.8799999999999999),
-        );
+    let end_effector_factor_14 = (-end_effector_composite_inertia_42).mul_add(
+        end_effector_factor_13,
+        cart_composite_inertia_8 + cart_composite_inertia_10 + n(1.1700000000000002)
+            + cart_composite_inertia_9 + cart_composite_inertia_11
+            + n(0.8799999999999999),
+    );
     let end_effector_factor_15 = n(1.0) / end_effector_factor_3;
     let end_effector_factor_16 = end_effector_factor_4 * end_effector_factor_15;
-    let end_effector_factor_17 = (-end_effector_factor_5)
-        .mul_add(
-            end_effector_factor_16,
-            (-end_effector_composite_inertia_38)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_13),
-        );
-    let end_effector_factor_18 = (-end_effector_factor_6)
-        .mul_add(
-            end_effector_factor_16,
-            (-end_effector_composite_inertia_40)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_15),
-        );
-    let end_effector_factor_19 = (-end_effector_factor_7)
-        .mul_add(
-            end_effector_factor_16,
-            (-end_effector_composite_inertia_42)
-                .mul_add(
-                    end_effector_factor_8,
-                    end_effector_composite_inertia_15 + end_effector_composite_inertia_16,
-                ),
-        );
+    let end_effector_factor_17 = (-end_effector_factor_5).mul_add(
+        end_effector_factor_16,
+        (-end_effector_composite_inertia_38).mul_add(end_effector_factor_8, end_effector_composite_inertia_13),
+    );
+    let end_effector_factor_18 = (-end_effector_factor_6).mul_add(
+        end_effector_factor_16,
+        (-end_effector_composite_inertia_40).mul_add(end_effector_factor_8, end_effector_composite_inertia_15),
+    );
+    let end_effector_factor_19 = (-end_effector_factor_7).mul_add(
+        end_effector_factor_16,
+        (-end_effector_composite_inertia_42)
+            .mul_add(end_effector_factor_8, end_effector_composite_inertia_15 + end_effector_composite_inertia_16),
+    );
     let end_effector_factor_20 = end_effector_factor_5 * end_effector_factor_15;
     let end_effector_factor_21 = end_effector_factor_6 * end_effector_factor_15;
     let end_effector_factor_22 = end_effector_factor_7 * end_effector_factor_15;
-    let end_effector_factor_23 = n(1.0)
-        / ((-end_effector_factor_4)
-            .mul_add(end_effector_factor_16, end_effector_factor_9));
+    let end_effector_factor_23 = n(1.0) / ((-end_effector_factor_4).mul_add(end_effector_factor_16, end_effector_factor_9));
     let end_effector_factor_24 = end_effector_factor_17 * end_effector_factor_23;
-    let end_effector_factor_25 = end_effector_factor_18
-        .mul_add(
-            end_effector_factor_24,
-            end_effector_factor_6
-                .mul_add(
-                    end_effector_factor_20,
-                    end_effector_composite_inertia_40
-                        .mul_add(end_effector_factor_10, cart_composite_inertia_2),
-                ),
-        );
+    let end_effector_factor_25 = end_effector_factor_18.mul_add(
+        end_effector_factor_24,
+        end_effector_factor_6.mul_add(
+            end_effector_factor_20,
+            end_effector_composite_inertia_40.mul_add(end_effector_factor_10, cart_composite_inertia_2),
+        ),
+    );
     let end_effector_factor_26 = end_effector_factor_19
-        .mul_add(
-            end_effector_factor_24,
-            end_effector_factor_7.mul_add(end_effector_factor_20, end_effector_factor_11),
-        );
+        .mul_add(end_effector_factor_24, end_effector_factor_7.mul_add(end_effector_factor_20, end_effector_factor_11));
     let end_effector_factor_27 = end_effector_factor_18 * end_effector_factor_23;
-    let end_effector_factor_28 = (-end_effector_factor_19)
-        .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_7)
-                .mul_add(
-                    end_effector_factor_21,
-                    (-end_effector_composite_inertia_42)
-                        .mul_add(
-                            end_effector_factor_12,
-                            cart_composite_inertia_6 - cart_composite_inertia_7,
-                        ),
-                ),
-        );
+    let end_effector_factor_28 = (-end_effector_factor_19).mul_add(
+        end_effector_factor_27,
+        (-end_effector_factor_7).mul_add(
+            end_effector_factor_21,
+            (-end_effector_composite_inertia_42)
+                .mul_add(end_effector_factor_12, cart_composite_inertia_6 - cart_composite_inertia_7),
+        ),
+    );
     let end_effector_factor_29 = end_effector_factor_19 * end_effector_factor_23;
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load = (-p[5]).mul_add(end_effector_factor_2, p[4]);
     let end_effector_load_2 = (-end_effector_factor_16)
         .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[3]));
-    let end_effector_load_3 = (-end_effector_factor_24)
-        .mul_add(
-            end_effector_load_2,
-            (-end_effector_factor_20)
-                .mul_add(
-                    end_effector_load,
-                    (-p[5]).mul_add(end_effector_factor_10, p[2]),
-                ),
-        );
+    let end_effector_load_3 = (-end_effector_factor_24).mul_add(
+        end_effector_load_2,
+        (-end_effector_factor_20).mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_10, p[2])),
+    );
     // cart: factor (4 additions, 7 multiplications, 2 divisions)
-    let cart_factor = n(1.0)
-        / (end_effector_factor_17
-            .mul_add(
-                end_effector_factor_24,
-                end_effector_factor_5
-                    .mul_add(
-                        end_effector_factor_20,
-                        end_effector_composite_inertia_38
-                            .mul_add(end_effector_factor_10, -n(5.7)),
-                    ),
-            ));
+    let cart_factor = n(1.0) / (end_effector_factor_17.mul_add(
+        end_effector_factor_24,
+        end_effector_factor_5.mul_add(
+            end_effector_factor_20,
+            end_effector_composite_inertia_38.mul_add(end_effector_factor_10, -n(5.7)),
+        ),
+    ));
     let cart_factor_2 = end_effector_factor_25 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_18)
-        .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_6)
-                .mul_add(
-                    end_effector_factor_21,
-                    (-end_effector_composite_inertia_40)
-                        .mul_add(
-                            end_effector_factor_12,
-                            end_effector_factor_25
-                                .mul_add(cart_factor_2, cart_composite_inertia_6),
-                        ),
-                ),
-        );
-    let cart_factor_4 = end_effector_factor_26
-        .mul_add(cart_factor_2, end_effector_factor_28);
+    let cart_factor_3 = (-end_effector_factor_18).mul_add(
+        end_effector_factor_27,
+        (-end_effector_factor_6).mul_add(
+            end_effector_factor_21,
+            (-end_effector_composite_inertia_40).mul_add(
+                end_effector_factor_12,
+                end_effector_factor_25.mul_add(cart_factor_2, cart_composite_inertia_6),
+            ),
+        ),
+    );
+    let cart_factor_4 = end_effector_factor_26.mul_add(cart_factor_2, end_effector_factor_28);
     let cart_factor_5 = end_effector_factor_26 * cart_factor;
     let cart_factor_6 = n(1.0) / cart_factor_3;
     let cart_factor_7 = cart_factor_4 * cart_factor_6;
-    let cart_factor_8 = (-cart_factor_4)
-        .mul_add(
-            cart_factor_7,
-            (-end_effector_factor_19)
-                .mul_add(
-                    end_effector_factor_29,
-                    (-end_effector_factor_7)
-                        .mul_add(
-                            end_effector_factor_22,
-                            end_effector_factor_26
-                                .mul_add(cart_factor_5, end_effector_factor_14),
-                        ),
-                ),
-        );
+    let cart_factor_8 = (-cart_factor_4).mul_add(
+        cart_factor_7,
+        (-end_effector_factor_19).mul_add(
+            end_effector_factor_29,
+            (-end_effector_factor_7)
+                .mul_add(end_effector_factor_22, end_effector_factor_26.mul_add(cart_factor_5, end_effector_factor_14)),
+        ),
+    );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load = (-cart_factor_2)
-        .mul_add(
-            end_effector_load_3,
-            (-end_effector_factor_27)
-                .mul_add(
-                    end_effector_load_2,
-                    (-end_effector_factor_21)
-                        .mul_add(
-                            end_effector_load,
-                            (-p[5]).mul_add(end_effector_factor_12, p[1]),
-                        ),
-                ),
-        );
-    let cart_load_2 = (-cart_factor_5)
-        .mul_add(
-            end_effector_load_3,
-            (-end_effector_factor_29)
-                .mul_add(
-                    end_effector_load_2,
-                    (-end_effector_factor_22)
-                        .mul_add(
-                            end_effector_load,
-                            (-p[5]).mul_add(end_effector_factor_13, p[0]),
-                        ),
-                ),
-        );
+    let cart_load = (-cart_factor_2).mul_add(
+        end_effector_load_3,
+        (-end_effector_factor_27).mul_add(
+            end_effector_load_2,
+            (-end_effector_factor_21).mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_12, p[1])),
+        ),
+    );
+    let cart_load_2 = (-cart_factor_5).mul_add(
+        end_effector_load_3,
+        (-end_effector_factor_29).mul_add(
+            end_effector_load_2,
+            (-end_effector_factor_22).mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_13, p[0])),
+        ),
+    );
     // plate: response (1 multiplication)
-    let plate_speed = (n(1.0) / cart_factor_8)
-        * ((-cart_factor_7).mul_add(cart_load, cart_load_2));
+    let plate_speed = (n(1.0) / cart_factor_8) * ((-cart_factor_7).mul_add(cart_load, cart_load_2));
     // cart: response (3 additions, 5 multiplications)
     let cart_speed = cart_factor_6 * ((-cart_factor_4).mul_add(plate_speed, cart_load));
     let cart_speed_2 = cart_factor
-        * (end_effector_factor_26
-            .mul_add(
-                plate_speed,
-                end_effector_factor_25.mul_add(cart_speed, end_effector_load_3),
-            ));
+        * (end_effector_factor_26.mul_add(plate_speed, end_effector_factor_25.mul_add(cart_speed, end_effector_load_3)));
     // cart: momentum (6 additions, 10 multiplications)
     let cart_momentum = q[6] * plate_speed;
     let cart_momentum_2 = q[3] * plate_speed;
     let cart_momentum_3 = (-q[5]).mul_add(cart_momentum_2, q[2] * cart_momentum);
     let cart_momentum_4 = plate_speed + cart_speed;
-    let cart_momentum_5 = (-q[4])
-        .mul_add(cart_momentum_2, q[1].mul_add(cart_momentum, cart_speed_2));
+    let cart_momentum_5 = (-q[4]).mul_add(cart_momentum_2, q[1].mul_add(cart_momentum, cart_speed_2));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_speed = end_effector_factor_23
-        * ((-end_effector_factor_19)
-            .mul_add(
-                plate_speed,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        cart_speed,
-                        end_effector_factor_17.mul_add(cart_speed_2, end_effector_load_2),
-                    ),
-            ));
-    let end_effector_response = (-end_effector_factor_5)
-        .mul_add(
-            cart_speed_2,
-            end_effector_factor_7
-                .mul_add(
-                    plate_speed,
-                    end_effector_factor_6
-                        .mul_add(cart_speed, end_effector_factor_4 * end_effector_speed),
-                ),
-        );
-    let end_effector_speed_2 = end_effector_factor_15
-        * (end_effector_load - end_effector_response);
-    let end_effector_response_2 = (-end_effector_composite_inertia_38)
-        .mul_add(
-            cart_speed_2,
-            end_effector_composite_inertia_40
-                .mul_add(
-                    cart_speed,
-                    end_effector_composite_inertia_12
-                        .mul_add(
-                            end_effector_speed,
-                            end_effector_composite_inertia_28 * end_effector_speed_2,
-                        ),
-                ),
-        );
+    let end_effector_speed = end_effector_factor_23 * ((-end_effector_factor_19).mul_add(
+        plate_speed,
+        (-end_effector_factor_18).mul_add(cart_speed, end_effector_factor_17.mul_add(cart_speed_2, end_effector_load_2)),
+    ));
+    let end_effector_response = (-end_effector_factor_5).mul_add(
+        cart_speed_2,
+        end_effector_factor_7
+            .mul_add(plate_speed, end_effector_factor_6.mul_add(cart_speed, end_effector_factor_4 * end_effector_speed)),
+    );
+    let end_effector_speed_2 = end_effector_factor_15 * (end_effector_load - end_effector_response);
+    let end_effector_response_2 = (-end_effector_composite_inertia_38).mul_add(
+        cart_speed_2,
+        end_effector_composite_inertia_40.mul_add(
+            cart_speed,
+            end_effector_composite_inertia_12
+                .mul_add(end_effector_speed, end_effector_composite_inertia_28 * end_effector_speed_2),
+        ),
+    );
     let end_effector_speed_3 = end_effector_factor
-        * ((-end_effector_composite_inertia_42)
-            .mul_add(plate_speed, p[5] - end_effector_response_2));
+        * ((-end_effector_composite_inertia_42).mul_add(plate_speed, p[5] - end_effector_response_2));
     // end_effector: momentum (23 additions, 32 multiplications)
     let end_effector_momentum = (-cart_momentum_4).mul_add(n(0.02), cart_momentum_5);
     let end_effector_momentum_2 = (-cart_momentum_4).mul_add(n(0.15), cart_momentum_3);
-    let end_effector_momentum_3 = q[10]
-        .mul_add(end_effector_momentum_2, q[7] * end_effector_momentum);
-    let end_effector_momentum_4 = q[11]
-        .mul_add(end_effector_momentum_2, q[8] * end_effector_momentum);
-    let end_effector_momentum_5 = q[12]
-        .mul_add(end_effector_momentum_2, q[9] * end_effector_momentum);
-    let end_effector_momentum_6 = q[13]
-        .mul_add(
-            cart_momentum_4,
-            q[13]
-                .mul_add(
-                    end_effector_speed_3,
-                    q[10].mul_add(end_effector_speed_2, q[7] * end_effector_speed),
-                ),
-        );
-    let end_effector_momentum_7 = q[14]
-        .mul_add(
-            cart_momentum_4,
-            q[14]
-                .mul_add(
-                    end_effector_speed_3,
-                    q[11].mul_add(end_effector_speed_2, q[8] * end_effector_speed),
-                ),
-        );
-    let end_effector_momentum_8 = q[15]
-        .mul_add(
-            cart_momentum_4,
-            q[15]
-                .mul_add(
-                    end_effector_speed_3,
-                    q[12].mul_add(end_effector_speed_2, q[9] * end_effector_speed),
-                ),
-        );
-    let end_effector_momentum_9 = (-end_effector_momentum_8)
-        .mul_add(
-            n(0.027499999999999997),
-            end_effector_momentum_4
-                .mul_add(
-                    n(0.51),
-                    end_effector_momentum_5
-                        .mul_add(
-                            n(0.136),
-                            end_effector_momentum_7
-                                .mul_add(n(0.0078), end_effector_momentum_6 * n(0.19388)),
-                        ),
-                ),
-        );
-    let end_effector_momentum_10 = (-end_effector_momentum_3)
-        .mul_add(
+    let end_effector_momentum_3 = q[10].mul_add(end_effector_momentum_2, q[7] * end_effector_momentum);
+    let end_effector_momentum_4 = q[11].mul_add(end_effector_momentum_2, q[8] * end_effector_momentum);
+    let end_effector_momentum_5 = q[12].mul_add(end_effector_momentum_2, q[9] * end_effector_momentum);
+    let end_effector_momentum_6 = q[13].mul_add(
+        cart_momentum_4,
+        q[13].mul_add(end_effector_speed_3, q[10].mul_add(end_effector_speed_2, q[7] * end_effector_speed)),
+    );
+    let end_effector_momentum_7 = q[14].mul_add(
+        cart_momentum_4,
+        q[14].mul_add(end_effector_speed_3, q[11].mul_add(end_effector_speed_2, q[8] * end_effector_speed)),
+    );
+    let end_effector_momentum_8 = q[15].mul_add(
+        cart_momentum_4,
+        q[15].mul_add(end_effector_speed_3, q[12].mul_add(end_effector_speed_2, q[9] * end_effector_speed)),
+    );
+    let end_effector_momentum_9 = (-end_effector_momentum_8).mul_add(
+        n(0.027499999999999997),
+        end_effector_momentum_4.mul_add(
             n(0.51),
             end_effector_momentum_5
-                .mul_add(
-                    n(0.085),
-                    end_effector_momentum_8
-                        .mul_add(
-                            n(0.042300000000000004),
-                            end_effector_momentum_7
-                                .mul_add(n(0.18225), end_effector_momentum_6 * n(0.0078)),
-                        ),
-                ),
-        );
-    let end_effector_momentum_11 = (-end_effector_momentum_8)
-        .mul_add(
-            n(0.02713),
-            (-end_effector_momentum_7)
-                .mul_add(
-                    n(0.042300000000000004),
-                    end_effector_momentum_3
-                        .mul_add(
-                            n(0.136),
-                            end_effector_momentum_4
-                                .mul_add(
-                                    n(0.085),
-                                    end_effector_momentum_6 * n(0.027499999999999997),
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_momentum_12 = end_effector_momentum_8
-        .mul_add(n(0.136), end_effector_momentum_7 * n(0.51));
-    let end_effector_momentum_13 = (-end_effector_momentum_6)
-        .mul_add(n(0.51), end_effector_momentum_8 * n(0.085));
-    let end_effector_momentum_14 = end_effector_momentum_7
-        .mul_add(n(0.085), end_effector_momentum_6 * n(0.136));
+                .mul_add(n(0.136), end_effector_momentum_7.mul_add(n(0.0078), end_effector_momentum_6 * n(0.19388))),
+        ),
+    );
+    let end_effector_momentum_10 = (-end_effector_momentum_3).mul_add(
+        n(0.51),
+        end_effector_momentum_5.mul_add(
+            n(0.085),
+            end_effector_momentum_8.mul_add(
+                n(0.042300000000000004),
+                end_effector_momentum_7.mul_add(n(0.18225), end_effector_momentum_6 * n(0.0078)),
+            ),
+        ),
+    );
+    let end_effector_momentum_11 = (-end_effector_momentum_8).mul_add(
+        n(0.02713),
+        (-end_effector_momentum_7).mul_add(
+            n(0.042300000000000004),
+            end_effector_momentum_3.mul_add(
+                n(0.136),
+                end_effector_momentum_4.mul_add(n(0.085), end_effector_momentum_6 * n(0.027499999999999997)),
+            ),
+        ),
+    );
+    let end_effector_momentum_12 = end_effector_momentum_8.mul_add(n(0.136), end_effector_momentum_7 * n(0.51));
+    let end_effector_momentum_13 = (-end_effector_momentum_6).mul_add(n(0.51), end_effector_momentum_8 * n(0.085));
+    let end_effector_momentum_14 = end_effector_momentum_7.mul_add(n(0.085), end_effector_momentum_6 * n(0.136));
     // end_effector: weight (3 additions, 6 multiplications)
-    let end_effector_weight = q[14]
-        .mul_add(n(5.003100000000001), q[15] * n(1.3341600000000002));
-    let end_effector_weight_2 = (-q[15])
-        .mul_add(n(0.8338500000000001), q[13] * n(5.003100000000001));
-    let end_effector_weight_3 = q[13]
-        .mul_add(n(1.3341600000000002), q[14] * n(0.8338500000000001));
+    let end_effector_weight = q[14].mul_add(n(5.003100000000001), q[15] * n(1.3341600000000002));
+    let end_effector_weight_2 = (-q[15]).mul_add(n(0.8338500000000001), q[13] * n(5.003100000000001));
+    let end_effector_weight_3 = q[13].mul_add(n(1.3341600000000002), q[14] * n(0.8338500000000001));
     // end_effector: momentum rate (41 additions, 45 multiplications)
-    let end_effector_momentum_rate = (-end_effector_momentum_5)
-        .mul_add(
-            end_effector_momentum_13,
-            (-end_effector_momentum_4)
-                .mul_add(
-                    end_effector_momentum_14,
-                    end_effector_momentum_8
-                        .mul_add(
-                            end_effector_momentum_10,
-                            end_effector_momentum_7 * end_effector_momentum_11,
-                        ),
-                ),
-        );
-    let end_effector_momentum_rate_2 = (-end_effector_momentum_3)
-        .mul_add(
+    let end_effector_momentum_rate = (-end_effector_momentum_5).mul_add(
+        end_effector_momentum_13,
+        (-end_effector_momentum_4).mul_add(
             end_effector_momentum_14,
-            (-end_effector_momentum_5)
-                .mul_add(
-                    end_effector_momentum_12,
-                    end_effector_momentum_6
-                        .mul_add(
-                            end_effector_momentum_11,
-                            end_effector_momentum_8 * end_effector_momentum_9,
-                        ),
-                ),
-        );
-    let end_effector_momentum_rate_3 = (-end_effector_momentum_3)
-        .mul_add(
-            end_effector_momentum_13,
-            (-end_effector_momentum_7)
-                .mul_add(
-                    end_effector_momentum_9,
-                    end_effector_momentum_4
-                        .mul_add(
-                            end_effector_momentum_12,
-                            end_effector_momentum_6 * end_effector_momentum_10,
-                        ),
-                ),
-        );
+            end_effector_momentum_8.mul_add(end_effector_momentum_10, end_effector_momentum_7 * end_effector_momentum_11),
+        ),
+    );
+    let end_effector_momentum_rate_2 = (-end_effector_momentum_3).mul_add(
+        end_effector_momentum_14,
+        (-end_effector_momentum_5).mul_add(
+            end_effector_momentum_12,
+            end_effector_momentum_6.mul_add(end_effector_momentum_11, end_effector_momentum_8 * end_effector_momentum_9),
+        ),
+    );
+    let end_effector_momentum_rate_3 = (-end_effector_momentum_3).mul_add(
+        end_effector_momentum_13,
+        (-end_effector_momentum_7).mul_add(
+            end_effector_momentum_9,
+            end_effector_momentum_4.mul_add(end_effector_momentum_12, end_effector_momentum_6 * end_effector_momentum_10),
+        ),
+    );
     let end_effector_momentum_rate_4 = end_effector_weight + end_effector_momentum_rate;
-    let end_effector_momentum_rate_5 = end_effector_weight_2
-        + end_effector_momentum_rate_2;
-    let end_effector_momentum_rate_6 = end_effector_weight_3
-        + end_effector_momentum_rate_3;
+    let end_effector_momentum_rate_5 = end_effector_weight_2 + end_effector_momentum_rate_2;
+    let end_effector_momentum_rate_6 = end_effector_weight_3 + end_effector_momentum_rate_3;
     let end_effector_momentum_rate_7 = (-q[12])
-        .mul_add(
-            end_effector_momentum_11,
-            q[11].mul_add(end_effector_momentum_10, q[10] * end_effector_momentum_9),
-        );
+        .mul_add(end_effector_momentum_11, q[11].mul_add(end_effector_momentum_10, q[10] * end_effector_momentum_9));
     let end_effector_momentum_rate_8 = (-q[15])
-        .mul_add(
-            end_effector_momentum_11,
-            q[14].mul_add(end_effector_momentum_10, q[13] * end_effector_momentum_9),
-        );
+        .mul_add(end_effector_momentum_11, q[14].mul_add(end_effector_momentum_10, q[13] * end_effector_momentum_9));
     let end_effector_momentum_rate_9 = (-q[9])
-        .mul_add(
-            end_effector_momentum_11,
-            q[8].mul_add(end_effector_momentum_10, q[7] * end_effector_momentum_9),
-        );
-    let end_effector_momentum_rate_10 = (-q[9])
-        .mul_add(
-            end_effector_momentum_rate_6,
-            (-q[8])
-                .mul_add(
-                    end_effector_momentum_rate_5,
-                    (-end_effector_speed_3)
-                        .mul_add(
-                            end_effector_momentum_rate_7,
-                            q[7]
-                                .mul_add(
-                                    end_effector_momentum_rate_4,
-                                    end_effector_speed_2
-                                        .mul_add(end_effector_momentum_rate_8, tau[4]),
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_momentum_rate_11 = (-q[12])
-        .mul_add(
-            end_effector_momentum_rate_6,
-            (-q[11])
-                .mul_add(
-                    end_effector_momentum_rate_5,
-                    (-end_effector_speed)
-                        .mul_add(
-                            end_effector_momentum_rate_8,
-                            q[10]
-                                .mul_add(
-                                    end_effector_momentum_rate_4,
-                                    end_effector_speed_3
-                                        .mul_add(end_effector_momentum_rate_9, tau[5]),
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_momentum_rate_12 = (-q[15])
-        .mul_add(
-            end_effector_momentum_rate_6,
-            (-q[14])
-                .mul_add(
-                    end_effector_momentum_rate_5,
-                    (-end_effector_speed_2)
-                        .mul_add(
-                            end_effector_momentum_rate_9,
-                            q[13]
-                                .mul_add(
-                                    end_effector_momentum_rate_4,
-                                    end_effector_speed
-                                        .mul_add(end_effector_momentum_rate_7, tau[6]),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(end_effector_momentum_11, q[8].mul_add(end_effector_momentum_10, q[7] * end_effector_momentum_9));
+    let end_effector_momentum_rate_10 = (-q[9]).mul_add(
+        end_effector_momentum_rate_6,
+        (-q[8]).mul_add(
+            end_effector_momentum_rate_5,
+            (-end_effector_speed_3).mul_add(
+                end_effector_momentum_rate_7,
+                q[7].mul_add(end_effector_momentum_rate_4, end_effector_speed_2.mul_add(end_effector_momentum_rate_8, tau[4])),
+            ),
+        ),
+    );
+    let end_effector_momentum_rate_11 = (-q[12]).mul_add(
+        end_effector_momentum_rate_6,
+        (-q[11]).mul_add(
+            end_effector_momentum_rate_5,
+            (-end_effector_speed).mul_add(
+                end_effector_momentum_rate_8,
+                q[10].mul_add(end_effector_momentum_rate_4, end_effector_speed_3.mul_add(end_effector_momentum_rate_9, tau[5])),
+            ),
+        ),
+    );
+    let end_effector_momentum_rate_12 = (-q[15]).mul_add(
+        end_effector_momentum_rate_6,
+        (-q[14]).mul_add(
+            end_effector_momentum_rate_5,
+            (-end_effector_speed_2).mul_add(
+                end_effector_momentum_rate_9,
+                q[13].mul_add(end_effector_momentum_rate_4, end_effector_speed.mul_add(end_effector_momentum_rate_7, tau[6])),
+            ),
+        ),
+    );
     let end_effector_momentum_rate_13 = (-q[15])
-        .mul_add(
-            end_effector_weight_3,
-            (-q[14]).mul_add(end_effector_weight_2, q[13] * end_effector_weight),
-        );
-    let end_effector_momentum_rate_14 = (-q[8])
-        .mul_add(
-            end_effector_momentum_13,
-            (-q[7])
-                .mul_add(
-                    end_effector_momentum_12,
-                    q[9]
-                        .mul_add(
-                            end_effector_momentum_14,
-                            cart_momentum_4.mul_add(n(0.046), cart_momentum_5 * n(5.7)),
-                        ),
-                ),
-        );
-    let end_effector_momentum_rate_15 = (-q[11])
-        .mul_add(
-            end_effector_momentum_13,
-            (-q[10])
-                .mul_add(
-                    end_effector_momentum_12,
-                    (-cart_momentum_4)
-                        .mul_add(
-                            n(0.495),
-                            q[12]
-                                .mul_add(end_effector_momentum_14, cart_momentum_3 * n(5.7)),
-                        ),
-                ),
-        );
+        .mul_add(end_effector_weight_3, (-q[14]).mul_add(end_effector_weight_2, q[13] * end_effector_weight));
+    let end_effector_momentum_rate_14 = (-q[8]).mul_add(
+        end_effector_momentum_13,
+        (-q[7]).mul_add(
+            end_effector_momentum_12,
+            q[9].mul_add(end_effector_momentum_14, cart_momentum_4.mul_add(n(0.046), cart_momentum_5 * n(5.7))),
+        ),
+    );
+    let end_effector_momentum_rate_15 = (-q[11]).mul_add(
+        end_effector_momentum_13,
+        (-q[10]).mul_add(
+            end_effector_momentum_12,
+            (-cart_momentum_4).mul_add(n(0.495), q[12].mul_add(end_effector_momentum_14, cart_momentum_3 * n(5.7))),
+        ),
+    );
     [
-        [
-            plate_speed,
-            cart_speed,
-            -cart_speed_2,
-            end_effector_speed,
-            end_effector_speed_2,
-            end_effector_speed_3,
-        ],
+        [plate_speed, cart_speed, -cart_speed_2, end_effector_speed, end_effector_speed_2, end_effector_speed_3],
         [
             end_effector_momentum_rate_13 + tau[0],
-            (-cart_momentum_5)
-                .mul_add(
-                    end_effector_momentum_rate_15,
-                    cart_momentum_3
-                        .mul_add(
-                            end_effector_momentum_rate_14,
-                            tau[1] + end_effector_momentum_rate_13,
-                        ),
-                ),
+            (-cart_momentum_5).mul_add(
+                end_effector_momentum_rate_15,
+                cart_momentum_3.mul_add(end_effector_momentum_rate_14, tau[1] + end_effector_momentum_rate_13),
+            ),
             (-cart_momentum_4).mul_add(end_effector_momentum_rate_15, tau[2]),
-            end_effector_momentum_rate_10,
-            end_effector_momentum_rate_11,
-            end_effector_momentum_rate_12,
+            end_effector_momentum_rate_10, end_effector_momentum_rate_11, end_effector_momentum_rate_12,
         ],
     ]
 }
@@ -2800,133 +1539,79 @@ pub fn momenta<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 6] {
     let cart_momentum_2 = v[0] * q[3];
     let cart_momentum_3 = (-q[5]).mul_add(cart_momentum_2, q[2] * cart_momentum);
     let cart_momentum_4 = v[0] + v[1];
-    let cart_momentum_5 = (-q[1])
-        .mul_add(cart_momentum, q[4].mul_add(cart_momentum_2, v[2]));
+    let cart_momentum_5 = (-q[1]).mul_add(cart_momentum, q[4].mul_add(cart_momentum_2, v[2]));
     // end_effector: momentum (38 additions, 49 multiplications)
     let end_effector_momentum = cart_momentum_4.mul_add(n(0.02), cart_momentum_5);
     let end_effector_momentum_2 = (-cart_momentum_4).mul_add(n(0.15), cart_momentum_3);
-    let end_effector_momentum_3 = (-q[10])
-        .mul_add(end_effector_momentum_2, q[7] * end_effector_momentum);
-    let end_effector_momentum_4 = (-q[11])
-        .mul_add(end_effector_momentum_2, q[8] * end_effector_momentum);
-    let end_effector_momentum_5 = (-q[12])
-        .mul_add(end_effector_momentum_2, q[9] * end_effector_momentum);
-    let end_effector_momentum_6 = q[13]
-        .mul_add(cart_momentum_4, v[5].mul_add(q[13], v[4].mul_add(q[10], v[3] * q[7])));
-    let end_effector_momentum_7 = q[14]
-        .mul_add(cart_momentum_4, v[5].mul_add(q[14], v[4].mul_add(q[11], v[3] * q[8])));
-    let end_effector_momentum_8 = q[15]
-        .mul_add(cart_momentum_4, v[5].mul_add(q[15], v[4].mul_add(q[12], v[3] * q[9])));
-    let end_effector_momentum_9 = (-end_effector_momentum_4)
-        .mul_add(
-            n(0.51),
-            (-end_effector_momentum_5)
-                .mul_add(
-                    n(0.136),
-                    (-end_effector_momentum_8)
-                        .mul_add(
-                            n(0.027499999999999997),
-                            end_effector_momentum_7
-                                .mul_add(n(0.0078), end_effector_momentum_6 * n(0.19388)),
-                        ),
-                ),
-        );
-    let end_effector_momentum_10 = (-end_effector_momentum_5)
-        .mul_add(
-            n(0.085),
-            end_effector_momentum_3
-                .mul_add(
-                    n(0.51),
-                    end_effector_momentum_8
-                        .mul_add(
-                            n(0.042300000000000004),
-                            end_effector_momentum_7
-                                .mul_add(n(0.18225), end_effector_momentum_6 * n(0.0078)),
-                        ),
-                ),
-        );
-    let end_effector_momentum_11 = (-end_effector_momentum_3)
-        .mul_add(
+    let end_effector_momentum_3 = (-q[10]).mul_add(end_effector_momentum_2, q[7] * end_effector_momentum);
+    let end_effector_momentum_4 = (-q[11]).mul_add(end_effector_momentum_2, q[8] * end_effector_momentum);
+    let end_effector_momentum_5 = (-q[12]).mul_add(end_effector_momentum_2, q[9] * end_effector_momentum);
+    let end_effector_momentum_6 = q[13].mul_add(cart_momentum_4, v[5].mul_add(q[13], v[4].mul_add(q[10], v[3] * q[7])));
+    let end_effector_momentum_7 = q[14].mul_add(cart_momentum_4, v[5].mul_add(q[14], v[4].mul_add(q[11], v[3] * q[8])));
+    let end_effector_momentum_8 = q[15].mul_add(cart_momentum_4, v[5].mul_add(q[15], v[4].mul_add(q[12], v[3] * q[9])));
+    let end_effector_momentum_9 = (-end_effector_momentum_4).mul_add(
+        n(0.51),
+        (-end_effector_momentum_5).mul_add(
             n(0.136),
-            (-end_effector_momentum_4)
-                .mul_add(
-                    n(0.085),
-                    (-end_effector_momentum_8)
-                        .mul_add(
-                            n(0.02713),
-                            (-end_effector_momentum_7)
-                                .mul_add(
-                                    n(0.042300000000000004),
-                                    end_effector_momentum_6 * n(0.027499999999999997),
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_momentum_12 = end_effector_momentum_8
-        .mul_add(n(0.136), end_effector_momentum_7 * n(0.51));
-    let end_effector_momentum_13 = (-end_effector_momentum_6)
-        .mul_add(n(0.51), end_effector_momentum_8 * n(0.085));
-    let end_effector_momentum_14 = end_effector_momentum_7
-        .mul_add(n(0.085), end_effector_momentum_6 * n(0.136));
+            (-end_effector_momentum_8).mul_add(
+                n(0.027499999999999997),
+                end_effector_momentum_7.mul_add(n(0.0078), end_effector_momentum_6 * n(0.19388)),
+            ),
+        ),
+    );
+    let end_effector_momentum_10 = (-end_effector_momentum_5).mul_add(
+        n(0.085),
+        end_effector_momentum_3.mul_add(
+            n(0.51),
+            end_effector_momentum_8.mul_add(
+                n(0.042300000000000004),
+                end_effector_momentum_7.mul_add(n(0.18225), end_effector_momentum_6 * n(0.0078)),
+            ),
+        ),
+    );
+    let end_effector_momentum_11 = (-end_effector_momentum_3).mul_add(
+        n(0.136),
+        (-end_effector_momentum_4).mul_add(
+            n(0.085),
+            (-end_effector_momentum_8).mul_add(
+                n(0.02713),
+                (-end_effector_momentum_7).mul_add(n(0.042300000000000004), end_effector_momentum_6 * n(0.027499999999999997)),
+            ),
+        ),
+    );
+    let end_effector_momentum_12 = end_effector_momentum_8.mul_add(n(0.136), end_effector_momentum_7 * n(0.51));
+    let end_effector_momentum_13 = (-end_effector_momentum_6).mul_add(n(0.51), end_effector_momentum_8 * n(0.085));
+    let end_effector_momentum_14 = end_effector_momentum_7.mul_add(n(0.085), end_effector_momentum_6 * n(0.136));
     let end_effector_momentum_15 = (-q[15])
-        .mul_add(
-            end_effector_momentum_11,
-            q[14].mul_add(end_effector_momentum_10, q[13] * end_effector_momentum_9),
-        );
+        .mul_add(end_effector_momentum_11, q[14].mul_add(end_effector_momentum_10, q[13] * end_effector_momentum_9));
     let end_effector_momentum_16 = (-q[9])
-        .mul_add(
-            end_effector_momentum_14,
-            q[8].mul_add(end_effector_momentum_13, q[7] * end_effector_momentum_12),
-        );
+        .mul_add(end_effector_momentum_14, q[8].mul_add(end_effector_momentum_13, q[7] * end_effector_momentum_12));
     let end_effector_momentum_17 = (-q[12])
-        .mul_add(
-            end_effector_momentum_14,
-            q[11].mul_add(end_effector_momentum_13, q[10] * end_effector_momentum_12),
-        );
-    let end_effector_momentum_18 = (-cart_momentum_5)
-        .mul_add(
-            n(0.046),
-            (-cart_momentum_3)
-                .mul_add(
-                    n(0.495),
-                    end_effector_momentum_16
-                        .mul_add(
-                            n(0.02),
-                            end_effector_momentum_17
-                                .mul_add(
-                                    n(0.15),
-                                    cart_momentum_4
-                                        .mul_add(n(0.16493), end_effector_momentum_15),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(end_effector_momentum_14, q[11].mul_add(end_effector_momentum_13, q[10] * end_effector_momentum_12));
+    let end_effector_momentum_18 = (-cart_momentum_5).mul_add(
+        n(0.046),
+        (-cart_momentum_3).mul_add(
+            n(0.495),
+            end_effector_momentum_16.mul_add(
+                n(0.02),
+                end_effector_momentum_17.mul_add(n(0.15), cart_momentum_4.mul_add(n(0.16493), end_effector_momentum_15)),
+            ),
+        ),
+    );
     let end_effector_momentum_19 = (-cart_momentum_4)
         .mul_add(n(0.046), cart_momentum_5.mul_add(n(5.7), end_effector_momentum_16));
     let end_effector_momentum_20 = (-cart_momentum_4)
         .mul_add(n(0.495), cart_momentum_3.mul_add(n(5.7), -end_effector_momentum_17));
     // cart: momentum (5 additions, 6 multiplications)
-    let cart_momentum_6 = (-q[6])
-        .mul_add(
-            (-q[2]).mul_add(end_effector_momentum_20, q[1] * end_effector_momentum_19),
-            q[3]
-                * ((-q[5])
-                    .mul_add(end_effector_momentum_20, q[4] * end_effector_momentum_19)),
-        );
+    let cart_momentum_6 = (-q[6]).mul_add(
+        (-q[2]).mul_add(end_effector_momentum_20, q[1] * end_effector_momentum_19),
+        q[3] * ((-q[5]).mul_add(end_effector_momentum_20, q[4] * end_effector_momentum_19)),
+    );
     [
         v[0].mul_add(n(2.05), end_effector_momentum_18 + cart_momentum_6),
-        end_effector_momentum_18,
-        end_effector_momentum_19,
-        (-q[9])
-            .mul_add(
-                end_effector_momentum_11,
-                q[8].mul_add(end_effector_momentum_10, q[7] * end_effector_momentum_9),
-            ),
-        (-q[12])
-            .mul_add(
-                end_effector_momentum_11,
-                q[11].mul_add(end_effector_momentum_10, q[10] * end_effector_momentum_9),
-            ),
+        end_effector_momentum_18, end_effector_momentum_19,
+        (-q[9]).mul_add(end_effector_momentum_11, q[8].mul_add(end_effector_momentum_10, q[7] * end_effector_momentum_9)),
+        (-q[12]).mul_add(end_effector_momentum_11, q[11].mul_add(end_effector_momentum_10, q[10] * end_effector_momentum_9)),
         end_effector_momentum_15,
     ]
 }
@@ -2942,591 +1627,312 @@ pub fn speeds_from_momenta<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 6] {
     let end_effector_composite_inertia = q[8] * n(0.0078);
     let end_effector_composite_inertia_2 = q[9] * n(0.027499999999999997);
     let end_effector_composite_inertia_3 = q[7]
-        .mul_add(
-            n(0.19388),
-            end_effector_composite_inertia - end_effector_composite_inertia_2,
-        );
+        .mul_add(n(0.19388), end_effector_composite_inertia - end_effector_composite_inertia_2);
     let end_effector_composite_inertia_4 = q[7] * n(0.0078);
     let end_effector_composite_inertia_5 = q[9] * n(0.042300000000000004);
     let end_effector_composite_inertia_6 = q[8]
-        .mul_add(
-            n(0.18225),
-            end_effector_composite_inertia_4 + end_effector_composite_inertia_5,
-        );
-    let end_effector_composite_inertia_7 = (-q[8])
-        .mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997));
-    let end_effector_composite_inertia_8 = (-q[9])
-        .mul_add(n(0.02713), end_effector_composite_inertia_7);
+        .mul_add(n(0.18225), end_effector_composite_inertia_4 + end_effector_composite_inertia_5);
+    let end_effector_composite_inertia_7 = (-q[8]).mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997));
+    let end_effector_composite_inertia_8 = (-q[9]).mul_add(n(0.02713), end_effector_composite_inertia_7);
     let end_effector_composite_inertia_9 = q[9].mul_add(n(0.136), q[8] * n(0.51));
     let end_effector_composite_inertia_10 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
     let end_effector_composite_inertia_11 = q[8].mul_add(n(0.085), q[7] * n(0.136));
-    let end_effector_composite_inertia_12 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_8,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_6,
-                    q[13] * end_effector_composite_inertia_3,
-                ),
-        );
-    let end_effector_composite_inertia_13 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_11,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_10,
-                    q[7] * end_effector_composite_inertia_9,
-                ),
-        );
-    let end_effector_composite_inertia_14 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_11,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_10,
-                    q[10] * end_effector_composite_inertia_9,
-                ),
-        );
+    let end_effector_composite_inertia_12 = (-q[15]).mul_add(
+        end_effector_composite_inertia_8,
+        q[14].mul_add(end_effector_composite_inertia_6, q[13] * end_effector_composite_inertia_3),
+    );
+    let end_effector_composite_inertia_13 = (-q[9]).mul_add(
+        end_effector_composite_inertia_11,
+        q[8].mul_add(end_effector_composite_inertia_10, q[7] * end_effector_composite_inertia_9),
+    );
+    let end_effector_composite_inertia_14 = (-q[12]).mul_add(
+        end_effector_composite_inertia_11,
+        q[11].mul_add(end_effector_composite_inertia_10, q[10] * end_effector_composite_inertia_9),
+    );
     let end_effector_composite_inertia_15 = end_effector_composite_inertia_13
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_14
-                .mul_add(n(0.15), end_effector_composite_inertia_12),
-        );
-    let end_effector_composite_inertia_16 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_14,
-                    q[1] * end_effector_composite_inertia_13,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_14,
-                        q[4] * end_effector_composite_inertia_13,
-                    )),
-        );
+        .mul_add(n(0.02), end_effector_composite_inertia_14.mul_add(n(0.15), end_effector_composite_inertia_12));
+    let end_effector_composite_inertia_16 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_composite_inertia_14, q[1] * end_effector_composite_inertia_13),
+        q[3] * (q[5].mul_add(end_effector_composite_inertia_14, q[4] * end_effector_composite_inertia_13)),
+    );
     let end_effector_composite_inertia_17 = q[11] * n(0.0078);
     let end_effector_composite_inertia_18 = q[12] * n(0.027499999999999997);
     let end_effector_composite_inertia_19 = q[10]
-        .mul_add(
-            n(0.19388),
-            end_effector_composite_inertia_17 - end_effector_composite_inertia_18,
-        );
+        .mul_add(n(0.19388), end_effector_composite_inertia_17 - end_effector_composite_inertia_18);
     let end_effector_composite_inertia_20 = q[10] * n(0.0078);
     let end_effector_composite_inertia_21 = q[12] * n(0.042300000000000004);
     let end_effector_composite_inertia_22 = q[11]
-        .mul_add(
-            n(0.18225),
-            end_effector_composite_inertia_20 + end_effector_composite_inertia_21,
-        );
-    let end_effector_composite_inertia_23 = (-q[11])
-        .mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997));
-    let end_effector_composite_inertia_24 = (-q[12])
-        .mul_add(n(0.02713), end_effector_composite_inertia_23);
+        .mul_add(n(0.18225), end_effector_composite_inertia_20 + end_effector_composite_inertia_21);
+    let end_effector_composite_inertia_23 = (-q[11]).mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997));
+    let end_effector_composite_inertia_24 = (-q[12]).mul_add(n(0.02713), end_effector_composite_inertia_23);
     let end_effector_composite_inertia_25 = q[12].mul_add(n(0.136), q[11] * n(0.51));
     let end_effector_composite_inertia_26 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
     let end_effector_composite_inertia_27 = q[11].mul_add(n(0.085), q[10] * n(0.136));
-    let end_effector_composite_inertia_28 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_24,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_22,
-                    q[13] * end_effector_composite_inertia_19,
-                ),
-        );
-    let end_effector_composite_inertia_29 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_27,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_26,
-                    q[7] * end_effector_composite_inertia_25,
-                ),
-        );
-    let end_effector_composite_inertia_30 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_27,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_26,
-                    q[10] * end_effector_composite_inertia_25,
-                ),
-        );
+    let end_effector_composite_inertia_28 = (-q[15]).mul_add(
+        end_effector_composite_inertia_24,
+        q[14].mul_add(end_effector_composite_inertia_22, q[13] * end_effector_composite_inertia_19),
+    );
+    let end_effector_composite_inertia_29 = (-q[9]).mul_add(
+        end_effector_composite_inertia_27,
+        q[8].mul_add(end_effector_composite_inertia_26, q[7] * end_effector_composite_inertia_25),
+    );
+    let end_effector_composite_inertia_30 = (-q[12]).mul_add(
+        end_effector_composite_inertia_27,
+        q[11].mul_add(end_effector_composite_inertia_26, q[10] * end_effector_composite_inertia_25),
+    );
     let end_effector_composite_inertia_31 = end_effector_composite_inertia_29
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_30
-                .mul_add(n(0.15), end_effector_composite_inertia_28),
-        );
-    let end_effector_composite_inertia_32 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_30,
-                    q[1] * end_effector_composite_inertia_29,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_30,
-                        q[4] * end_effector_composite_inertia_29,
-                    )),
-        );
+        .mul_add(n(0.02), end_effector_composite_inertia_30.mul_add(n(0.15), end_effector_composite_inertia_28));
+    let end_effector_composite_inertia_32 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_composite_inertia_30, q[1] * end_effector_composite_inertia_29),
+        q[3] * (q[5].mul_add(end_effector_composite_inertia_30, q[4] * end_effector_composite_inertia_29)),
+    );
     let end_effector_composite_inertia_33 = q[15].mul_add(n(0.136), q[14] * n(0.51));
     let end_effector_composite_inertia_34 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
     let end_effector_composite_inertia_35 = q[14].mul_add(n(0.085), q[13] * n(0.136));
-    let end_effector_composite_inertia_36 = q[14]
-        .mul_add(
-            q[15]
-                .mul_add(
-                    n(0.042300000000000004),
-                    q[14].mul_add(n(0.18225), q[13] * n(0.0078)),
-                ),
-            q[13]
-                * ((-q[15])
-                    .mul_add(
-                        n(0.027499999999999997),
-                        q[14].mul_add(n(0.0078), q[13] * n(0.19388)),
-                    )),
-        );
-    let end_effector_composite_inertia_37 = (-q[15])
-        .mul_add(
-            (-q[15])
-                .mul_add(
-                    n(0.02713),
-                    (-q[14])
-                        .mul_add(
-                            n(0.042300000000000004),
-                            q[13] * n(0.027499999999999997),
-                        ),
-                ),
-            end_effector_composite_inertia_36,
-        );
-    let end_effector_composite_inertia_38 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_35,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_34,
-                    q[7] * end_effector_composite_inertia_33,
-                ),
-        );
-    let end_effector_composite_inertia_39 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_35,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_34,
-                    q[10] * end_effector_composite_inertia_33,
-                ),
-        );
+    let end_effector_composite_inertia_36 = q[14].mul_add(
+        q[15].mul_add(n(0.042300000000000004), q[14].mul_add(n(0.18225), q[13] * n(0.0078))),
+        q[13] * ((-q[15]).mul_add(n(0.027499999999999997), q[14].mul_add(n(0.0078), q[13] * n(0.19388)))),
+    );
+    let end_effector_composite_inertia_37 = (-q[15]).mul_add(
+        (-q[15]).mul_add(n(0.02713), (-q[14]).mul_add(n(0.042300000000000004), q[13] * n(0.027499999999999997))),
+        end_effector_composite_inertia_36,
+    );
+    let end_effector_composite_inertia_38 = (-q[9]).mul_add(
+        end_effector_composite_inertia_35,
+        q[8].mul_add(end_effector_composite_inertia_34, q[7] * end_effector_composite_inertia_33),
+    );
+    let end_effector_composite_inertia_39 = (-q[12]).mul_add(
+        end_effector_composite_inertia_35,
+        q[11].mul_add(end_effector_composite_inertia_34, q[10] * end_effector_composite_inertia_33),
+    );
     let end_effector_composite_inertia_40 = end_effector_composite_inertia_38
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_39
-                .mul_add(n(0.15), end_effector_composite_inertia_37),
-        );
-    let end_effector_composite_inertia_41 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_39,
-                    q[1] * end_effector_composite_inertia_38,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_39,
-                        q[4] * end_effector_composite_inertia_38,
-                    )),
-        );
-    let end_effector_composite_inertia_42 = end_effector_composite_inertia_40
-        + end_effector_composite_inertia_41;
-    let end_effector_composite_inertia_43 = (-q[8])
-        .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
-    let end_effector_composite_inertia_44 = (-q[11])
-        .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
+        .mul_add(n(0.02), end_effector_composite_inertia_39.mul_add(n(0.15), end_effector_composite_inertia_37));
+    let end_effector_composite_inertia_41 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_composite_inertia_39, q[1] * end_effector_composite_inertia_38),
+        q[3] * (q[5].mul_add(end_effector_composite_inertia_39, q[4] * end_effector_composite_inertia_38)),
+    );
+    let end_effector_composite_inertia_42 = end_effector_composite_inertia_40 + end_effector_composite_inertia_41;
+    let end_effector_composite_inertia_43 = (-q[8]).mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
+    let end_effector_composite_inertia_44 = (-q[11]).mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
     let end_effector_composite_inertia_45 = q[7]
-        .mul_add(
-            n(0.007750000000000002),
-            end_effector_composite_inertia_2 - end_effector_composite_inertia,
-        );
+        .mul_add(n(0.007750000000000002), end_effector_composite_inertia_2 - end_effector_composite_inertia);
     let end_effector_composite_inertia_46 = (-q[8])
-        .mul_add(
-            n(0.01938),
-            end_effector_composite_inertia_5 + end_effector_composite_inertia_4,
-        );
-    let end_effector_composite_inertia_47 = q[9]
-        .mul_add(n(0.1745), end_effector_composite_inertia_7);
-    let end_effector_composite_inertia_48 = (-q[11])
-        .mul_add(
-            (-q[11])
-                .mul_add(
-                    n(0.01938),
-                    end_effector_composite_inertia_21 + end_effector_composite_inertia_20,
-                ),
-            q[10]
-                * (q[10]
-                    .mul_add(
-                        n(0.007750000000000002),
-                        end_effector_composite_inertia_18
-                            - end_effector_composite_inertia_17,
-                    )),
-        );
-    let end_effector_composite_inertia_49 = (-q[8])
-        .mul_add(
+        .mul_add(n(0.01938), end_effector_composite_inertia_5 + end_effector_composite_inertia_4);
+    let end_effector_composite_inertia_47 = q[9].mul_add(n(0.1745), end_effector_composite_inertia_7);
+    let end_effector_composite_inertia_48 = (-q[11]).mul_add(
+        (-q[11]).mul_add(n(0.01938), end_effector_composite_inertia_21 + end_effector_composite_inertia_20),
+        q[10] * (q[10].mul_add(n(0.007750000000000002), end_effector_composite_inertia_18 - end_effector_composite_inertia_17)),
+    );
+    let end_effector_composite_inertia_49 = (-q[8]).mul_add(
+        end_effector_composite_inertia_46,
+        end_effector_composite_inertia_43
+            .mul_add(n(0.3), q[9].mul_add(end_effector_composite_inertia_47, q[7] * end_effector_composite_inertia_45)),
+    );
+    let end_effector_composite_inertia_50 = (-end_effector_composite_inertia_43).mul_add(
+        n(0.02),
+        (-q[11]).mul_add(
             end_effector_composite_inertia_46,
-            end_effector_composite_inertia_43
-                .mul_add(
-                    n(0.3),
-                    q[9]
-                        .mul_add(
-                            end_effector_composite_inertia_47,
-                            q[7] * end_effector_composite_inertia_45,
-                        ),
-                ),
-        );
-    let end_effector_composite_inertia_50 = (-end_effector_composite_inertia_43)
-        .mul_add(
-            n(0.02),
-            (-q[11])
-                .mul_add(
-                    end_effector_composite_inertia_46,
-                    end_effector_composite_inertia_44
-                        .mul_add(
-                            n(0.15),
-                            q[12]
-                                .mul_add(
-                                    end_effector_composite_inertia_47,
-                                    q[10] * end_effector_composite_inertia_45,
-                                ),
-                        ),
-                ),
-        );
+            end_effector_composite_inertia_44.mul_add(
+                n(0.15),
+                q[12].mul_add(end_effector_composite_inertia_47, q[10] * end_effector_composite_inertia_45),
+            ),
+        ),
+    );
     // cart: composite inertia (26 additions, 30 multiplications)
     let cart_composite_inertia = end_effector_composite_inertia_43 + n(0.495);
     let cart_composite_inertia_2 = end_effector_composite_inertia_44 + n(0.046);
-    let cart_composite_inertia_3 = end_effector_composite_inertia_49
-        + n(0.12764999999999999);
-    let cart_composite_inertia_4 = end_effector_composite_inertia_50
-        - n(0.002300000000000001);
-    let cart_composite_inertia_5 = (-end_effector_composite_inertia_44)
-        .mul_add(
-            n(0.04),
-            q[12]
-                .mul_add(
-                    q[12].mul_add(n(0.1745), end_effector_composite_inertia_23),
-                    end_effector_composite_inertia_48 + n(0.03728),
-                ),
-        );
+    let cart_composite_inertia_3 = end_effector_composite_inertia_49 + n(0.12764999999999999);
+    let cart_composite_inertia_4 = end_effector_composite_inertia_50 - n(0.002300000000000001);
+    let cart_composite_inertia_5 = (-end_effector_composite_inertia_44).mul_add(
+        n(0.04),
+        q[12].mul_add(
+            q[12].mul_add(n(0.1745), end_effector_composite_inertia_23),
+            end_effector_composite_inertia_48 + n(0.03728),
+        ),
+    );
     let cart_composite_inertia_6 = cart_composite_inertia_3 + cart_composite_inertia_5;
-    let cart_composite_inertia_7 = (-q[6])
-        .mul_add(
-            (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
-            q[3]
-                * ((-q[5])
-                    .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
-        );
-    let cart_composite_inertia_8 = q[2]
-        .mul_add(
-            q[2].mul_add(cart_composite_inertia_5, q[1] * cart_composite_inertia_4),
-            q[1]
-                * (q[2]
-                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_3)),
-        );
-    let cart_composite_inertia_9 = q[5]
-        .mul_add(
-            q[5].mul_add(cart_composite_inertia_5, q[4] * cart_composite_inertia_4),
-            q[4]
-                * (q[5]
-                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_3)),
-        );
+    let cart_composite_inertia_7 = (-q[6]).mul_add(
+        (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
+        q[3] * ((-q[5]).mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
+    );
+    let cart_composite_inertia_8 = q[2].mul_add(
+        q[2].mul_add(cart_composite_inertia_5, q[1] * cart_composite_inertia_4),
+        q[1] * (q[2].mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_3)),
+    );
+    let cart_composite_inertia_9 = q[5].mul_add(
+        q[5].mul_add(cart_composite_inertia_5, q[4] * cart_composite_inertia_4),
+        q[4] * (q[5].mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_3)),
+    );
     let cart_composite_inertia_10 = (q[3]
-        .mul_add(
-            n(2.85),
-            q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
-        )) * (q[3] + q[3]);
+        .mul_add(n(2.85), q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia))) * (q[3] + q[3]);
     let cart_composite_inertia_11 = (q[6]
-        .mul_add(
-            n(2.85),
-            q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
-        )) * (q[6] + q[6]);
+        .mul_add(n(2.85), q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia))) * (q[6] + q[6]);
     // end_effector: factor (31 additions, 43 multiplications, 3 divisions)
     let end_effector_factor = n(1.0) / end_effector_composite_inertia_37;
     let end_effector_factor_2 = end_effector_composite_inertia_28 * end_effector_factor;
-    let end_effector_factor_3 = (-end_effector_composite_inertia_28)
-        .mul_add(
-            end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_24,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_22,
-                            q[10] * end_effector_composite_inertia_19,
-                        ),
-                ),
-        );
-    let end_effector_factor_4 = (-end_effector_composite_inertia_12)
-        .mul_add(
-            end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_8,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_6,
-                            q[10] * end_effector_composite_inertia_3,
-                        ),
-                ),
-        );
+    let end_effector_factor_3 = (-end_effector_composite_inertia_28).mul_add(
+        end_effector_factor_2,
+        (-q[12]).mul_add(
+            end_effector_composite_inertia_24,
+            q[11].mul_add(end_effector_composite_inertia_22, q[10] * end_effector_composite_inertia_19),
+        ),
+    );
+    let end_effector_factor_4 = (-end_effector_composite_inertia_12).mul_add(
+        end_effector_factor_2,
+        (-q[12]).mul_add(
+            end_effector_composite_inertia_8,
+            q[11].mul_add(end_effector_composite_inertia_6, q[10] * end_effector_composite_inertia_3),
+        ),
+    );
     let end_effector_factor_5 = (-end_effector_composite_inertia_38)
         .mul_add(end_effector_factor_2, end_effector_composite_inertia_29);
     let end_effector_factor_6 = (-end_effector_composite_inertia_40)
         .mul_add(end_effector_factor_2, end_effector_composite_inertia_31);
     let end_effector_factor_7 = (-end_effector_composite_inertia_42)
-        .mul_add(
-            end_effector_factor_2,
-            end_effector_composite_inertia_31 + end_effector_composite_inertia_32,
-        );
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_31 + end_effector_composite_inertia_32);
     let end_effector_factor_8 = end_effector_composite_inertia_12 * end_effector_factor;
-    let end_effector_factor_9 = (-end_effector_composite_inertia_12)
-        .mul_add(
-            end_effector_factor_8,
-            (-q[9])
-                .mul_add(
-                    end_effector_composite_inertia_8,
-                    q[8]
-                        .mul_add(
-                            end_effector_composite_inertia_6,
-                            q[7] * end_effector_composite_inertia_3,
-                        ),
-                ),
-        );
+    let end_effector_factor_9 = (-end_effector_composite_inertia_12).mul_add(
+        end_effector_factor_8,
+        (-q[9]).mul_add(
+            end_effector_composite_inertia_8,
+            q[8].mul_add(end_effector_composite_inertia_6, q[7] * end_effector_composite_inertia_3),
+        ),
+    );
     let end_effector_factor_10 = end_effector_composite_inertia_38 * end_effector_factor;
-    let end_effector_factor_11 = (-q[3])
-        .mul_add(
-            q[4] * n(5.7),
-            end_effector_composite_inertia_42
-                .mul_add(
-                    end_effector_factor_10,
-                    q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2),
-                ),
-        );
+    let end_effector_factor_11 = (-q[3]).mul_add(
+        q[4] * n(5.7),
+        end_effector_composite_inertia_42
+            .mul_add(end_effector_factor_10, q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2)),
+    );
     let end_effector_factor_12 = end_effector_composite_inertia_40 * end_effector_factor;
     let end_effector_factor_13 = end_effector_composite_inertia_42 * end_effector_factor;
-    let end_effector_factor_14 = (-end_effector_composite_inertia_42)
-        .mul_add(
-            end_effector_factor_13,
-            cart_composite_inertia_8 + cart_composite_inertia_10 + n(1.1700000000000002)
-                + cart_composite_inertia_9 + cart_composite_inertia_11
-                + n(0.8799999999999999),
-        );
+    let end_effector_factor_14 = (-end_effector_composite_inertia_42).mul_add(
+        end_effector_factor_13,
+        cart_composite_inertia_8 + cart_composite_inertia_10 + n(1.1700000000000002)
+            + cart_composite_inertia_9 + cart_composite_inertia_11
+            + n(0.8799999999999999),
+    );
     let end_effector_factor_15 = n(1.0) / end_effector_factor_3;
     let end_effector_factor_16 = end_effector_factor_4 * end_effector_factor_15;
-    let end_effector_factor_17 = (-end_effector_factor_5)
-        .mul_add(
-            end_effector_factor_16,
-            (-end_effector_composite_inertia_38)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_13),
-        );
-    let end_effector_factor_18 = (-end_effector_factor_6)
-        .mul_add(
-            end_effector_factor_16,
-            (-end_effector_composite_inertia_40)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_15),
-        );
-    let end_effector_factor_19 = (-end_effector_factor_7)
-        .mul_add(
-            end_effector_factor_16,
-            (-end_effector_composite_inertia_42)
-                .mul_add(
-                    end_effector_factor_8,
-                    end_effector_composite_inertia_15 + end_effector_composite_inertia_16,
-                ),
-        );
+    let end_effector_factor_17 = (-end_effector_factor_5).mul_add(
+        end_effector_factor_16,
+        (-end_effector_composite_inertia_38).mul_add(end_effector_factor_8, end_effector_composite_inertia_13),
+    );
+    let end_effector_factor_18 = (-end_effector_factor_6).mul_add(
+        end_effector_factor_16,
+        (-end_effector_composite_inertia_40).mul_add(end_effector_factor_8, end_effector_composite_inertia_15),
+    );
+    let end_effector_factor_19 = (-end_effector_factor_7).mul_add(
+        end_effector_factor_16,
+        (-end_effector_composite_inertia_42)
+            .mul_add(end_effector_factor_8, end_effector_composite_inertia_15 + end_effector_composite_inertia_16),
+    );
     let end_effector_factor_20 = end_effector_factor_5 * end_effector_factor_15;
     let end_effector_factor_21 = end_effector_factor_6 * end_effector_factor_15;
     let end_effector_factor_22 = end_effector_factor_7 * end_effector_factor_15;
-    let end_effector_factor_23 = n(1.0)
-        / ((-end_effector_factor_4)
-            .mul_add(end_effector_factor_16, end_effector_factor_9));
+    let end_effector_factor_23 = n(1.0) / ((-end_effector_factor_4).mul_add(end_effector_factor_16, end_effector_factor_9));
     let end_effector_factor_24 = end_effector_factor_17 * end_effector_factor_23;
-    let end_effector_factor_25 = end_effector_factor_18
-        .mul_add(
-            end_effector_factor_24,
-            end_effector_factor_6
-                .mul_add(
-                    end_effector_factor_20,
-                    end_effector_composite_inertia_40
-                        .mul_add(end_effector_factor_10, cart_composite_inertia_2),
-                ),
-        );
+    let end_effector_factor_25 = end_effector_factor_18.mul_add(
+        end_effector_factor_24,
+        end_effector_factor_6.mul_add(
+            end_effector_factor_20,
+            end_effector_composite_inertia_40.mul_add(end_effector_factor_10, cart_composite_inertia_2),
+        ),
+    );
     let end_effector_factor_26 = end_effector_factor_19
-        .mul_add(
-            end_effector_factor_24,
-            end_effector_factor_7.mul_add(end_effector_factor_20, end_effector_factor_11),
-        );
+        .mul_add(end_effector_factor_24, end_effector_factor_7.mul_add(end_effector_factor_20, end_effector_factor_11));
     let end_effector_factor_27 = end_effector_factor_18 * end_effector_factor_23;
-    let end_effector_factor_28 = (-end_effector_factor_19)
-        .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_7)
-                .mul_add(
-                    end_effector_factor_21,
-                    (-end_effector_composite_inertia_42)
-                        .mul_add(
-                            end_effector_factor_12,
-                            cart_composite_inertia_6 - cart_composite_inertia_7,
-                        ),
-                ),
-        );
+    let end_effector_factor_28 = (-end_effector_factor_19).mul_add(
+        end_effector_factor_27,
+        (-end_effector_factor_7).mul_add(
+            end_effector_factor_21,
+            (-end_effector_composite_inertia_42)
+                .mul_add(end_effector_factor_12, cart_composite_inertia_6 - cart_composite_inertia_7),
+        ),
+    );
     let end_effector_factor_29 = end_effector_factor_19 * end_effector_factor_23;
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load = (-p[5]).mul_add(end_effector_factor_2, p[4]);
     let end_effector_load_2 = (-end_effector_factor_16)
         .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[3]));
-    let end_effector_load_3 = (-end_effector_factor_24)
-        .mul_add(
-            end_effector_load_2,
-            (-end_effector_factor_20)
-                .mul_add(
-                    end_effector_load,
-                    (-p[5]).mul_add(end_effector_factor_10, p[2]),
-                ),
-        );
+    let end_effector_load_3 = (-end_effector_factor_24).mul_add(
+        end_effector_load_2,
+        (-end_effector_factor_20).mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_10, p[2])),
+    );
     // cart: factor (4 additions, 7 multiplications, 2 divisions)
-    let cart_factor = n(1.0)
-        / (end_effector_factor_17
-            .mul_add(
-                end_effector_factor_24,
-                end_effector_factor_5
-                    .mul_add(
-                        end_effector_factor_20,
-                        end_effector_composite_inertia_38
-                            .mul_add(end_effector_factor_10, -n(5.7)),
-                    ),
-            ));
+    let cart_factor = n(1.0) / (end_effector_factor_17.mul_add(
+        end_effector_factor_24,
+        end_effector_factor_5.mul_add(
+            end_effector_factor_20,
+            end_effector_composite_inertia_38.mul_add(end_effector_factor_10, -n(5.7)),
+        ),
+    ));
     let cart_factor_2 = end_effector_factor_25 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_18)
-        .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_6)
-                .mul_add(
-                    end_effector_factor_21,
-                    (-end_effector_composite_inertia_40)
-                        .mul_add(
-                            end_effector_factor_12,
-                            end_effector_factor_25
-                                .mul_add(cart_factor_2, cart_composite_inertia_6),
-                        ),
-                ),
-        );
-    let cart_factor_4 = end_effector_factor_26
-        .mul_add(cart_factor_2, end_effector_factor_28);
+    let cart_factor_3 = (-end_effector_factor_18).mul_add(
+        end_effector_factor_27,
+        (-end_effector_factor_6).mul_add(
+            end_effector_factor_21,
+            (-end_effector_composite_inertia_40).mul_add(
+                end_effector_factor_12,
+                end_effector_factor_25.mul_add(cart_factor_2, cart_composite_inertia_6),
+            ),
+        ),
+    );
+    let cart_factor_4 = end_effector_factor_26.mul_add(cart_factor_2, end_effector_factor_28);
     let cart_factor_5 = end_effector_factor_26 * cart_factor;
     let cart_factor_6 = n(1.0) / cart_factor_3;
     let cart_factor_7 = cart_factor_4 * cart_factor_6;
-    let cart_factor_8 = (-cart_factor_4)
-        .mul_add(
-            cart_factor_7,
-            (-end_effector_factor_19)
-                .mul_add(
-                    end_effector_factor_29,
-                    (-end_effector_factor_7)
-                        .mul_add(
-                            end_effector_factor_22,
-                            end_effector_factor_26
-                                .mul_add(cart_factor_5, end_effector_factor_14),
-                        ),
-                ),
-        );
+    let cart_factor_8 = (-cart_factor_4).mul_add(
+        cart_factor_7,
+        (-end_effector_factor_19).mul_add(
+            end_effector_factor_29,
+            (-end_effector_factor_7)
+                .mul_add(end_effector_factor_22, end_effector_factor_26.mul_add(cart_factor_5, end_effector_factor_14)),
+        ),
+    );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load = (-cart_factor_2)
-        .mul_add(
-            end_effector_load_3,
-            (-end_effector_factor_27)
-                .mul_add(
-                    end_effector_load_2,
-                    (-end_effector_factor_21)
-                        .mul_add(
-                            end_effector_load,
-                            (-p[5]).mul_add(end_effector_factor_12, p[1]),
-                        ),
-                ),
-        );
-    let cart_load_2 = (-cart_factor_5)
-        .mul_add(
-            end_effector_load_3,
-            (-end_effector_factor_29)
-                .mul_add(
-                    end_effector_load_2,
-                    (-end_effector_factor_22)
-                        .mul_add(
-                            end_effector_load,
-                            (-p[5]).mul_add(end_effector_factor_13, p[0]),
-                        ),
-                ),
-        );
+    let cart_load = (-cart_factor_2).mul_add(
+        end_effector_load_3,
+        (-end_effector_factor_27).mul_add(
+            end_effector_load_2,
+            (-end_effector_factor_21).mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_12, p[1])),
+        ),
+    );
+    let cart_load_2 = (-cart_factor_5).mul_add(
+        end_effector_load_3,
+        (-end_effector_factor_29).mul_add(
+            end_effector_load_2,
+            (-end_effector_factor_22).mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_13, p[0])),
+        ),
+    );
     // plate: response (1 multiplication)
-    let plate_speed = (n(1.0) / cart_factor_8)
-        * ((-cart_factor_7).mul_add(cart_load, cart_load_2));
+    let plate_speed = (n(1.0) / cart_factor_8) * ((-cart_factor_7).mul_add(cart_load, cart_load_2));
     // cart: response (3 additions, 5 multiplications)
     let cart_speed = cart_factor_6 * ((-cart_factor_4).mul_add(plate_speed, cart_load));
     let cart_speed_2 = cart_factor
-        * (end_effector_factor_26
-            .mul_add(
-                plate_speed,
-                end_effector_factor_25.mul_add(cart_speed, end_effector_load_3),
-            ));
+        * (end_effector_factor_26.mul_add(plate_speed, end_effector_factor_25.mul_add(cart_speed, end_effector_load_3)));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_speed = end_effector_factor_23
-        * ((-end_effector_factor_19)
-            .mul_add(
-                plate_speed,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        cart_speed,
-                        end_effector_factor_17.mul_add(cart_speed_2, end_effector_load_2),
-                    ),
-            ));
-    let end_effector_response = (-end_effector_factor_5)
-        .mul_add(
-            cart_speed_2,
-            end_effector_factor_7
-                .mul_add(
-                    plate_speed,
-                    end_effector_factor_6
-                        .mul_add(cart_speed, end_effector_factor_4 * end_effector_speed),
-                ),
-        );
-    let end_effector_speed_2 = end_effector_factor_15
-        * (end_effector_load - end_effector_response);
-    let end_effector_response_2 = (-end_effector_composite_inertia_38)
-        .mul_add(
-            cart_speed_2,
-            end_effector_composite_inertia_40
-                .mul_add(
-                    cart_speed,
-                    end_effector_composite_inertia_12
-                        .mul_add(
-                            end_effector_speed,
-                            end_effector_composite_inertia_28 * end_effector_speed_2,
-                        ),
-                ),
-        );
-    [
+    let end_effector_speed = end_effector_factor_23 * ((-end_effector_factor_19).mul_add(
         plate_speed,
-        cart_speed,
-        -cart_speed_2,
-        end_effector_speed,
-        end_effector_speed_2,
-        end_effector_factor
-            * ((-end_effector_composite_inertia_42)
-                .mul_add(plate_speed, p[5] - end_effector_response_2)),
+        (-end_effector_factor_18).mul_add(cart_speed, end_effector_factor_17.mul_add(cart_speed_2, end_effector_load_2)),
+    ));
+    let end_effector_response = (-end_effector_factor_5).mul_add(
+        cart_speed_2,
+        end_effector_factor_7
+            .mul_add(plate_speed, end_effector_factor_6.mul_add(cart_speed, end_effector_factor_4 * end_effector_speed)),
+    );
+    let end_effector_speed_2 = end_effector_factor_15 * (end_effector_load - end_effector_response);
+    let end_effector_response_2 = (-end_effector_composite_inertia_38).mul_add(
+        cart_speed_2,
+        end_effector_composite_inertia_40.mul_add(
+            cart_speed,
+            end_effector_composite_inertia_12
+                .mul_add(end_effector_speed, end_effector_composite_inertia_28 * end_effector_speed_2),
+        ),
+    );
+    [
+        plate_speed, cart_speed, -cart_speed_2, end_effector_speed, end_effector_speed_2,
+        end_effector_factor * ((-end_effector_composite_inertia_42).mul_add(plate_speed, p[5] - end_effector_response_2)),
     ]
 }
 
@@ -3541,604 +1947,317 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 16], p: &[T; 6]) -> [T; 1] {
     let end_effector_composite_inertia = q[8] * n(0.0078);
     let end_effector_composite_inertia_2 = q[9] * n(0.027499999999999997);
     let end_effector_composite_inertia_3 = q[7]
-        .mul_add(
-            n(0.19388),
-            end_effector_composite_inertia - end_effector_composite_inertia_2,
-        );
+        .mul_add(n(0.19388), end_effector_composite_inertia - end_effector_composite_inertia_2);
     let end_effector_composite_inertia_4 = q[7] * n(0.0078);
     let end_effector_composite_inertia_5 = q[9] * n(0.042300000000000004);
     let end_effector_composite_inertia_6 = q[8]
-        .mul_add(
-            n(0.18225),
-            end_effector_composite_inertia_4 + end_effector_composite_inertia_5,
-        );
-    let end_effector_composite_inertia_7 = (-q[8])
-        .mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997));
-    let end_effector_composite_inertia_8 = (-q[9])
-        .mul_add(n(0.02713), end_effector_composite_inertia_7);
+        .mul_add(n(0.18225), end_effector_composite_inertia_4 + end_effector_composite_inertia_5);
+    let end_effector_composite_inertia_7 = (-q[8]).mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997));
+    let end_effector_composite_inertia_8 = (-q[9]).mul_add(n(0.02713), end_effector_composite_inertia_7);
     let end_effector_composite_inertia_9 = q[9].mul_add(n(0.136), q[8] * n(0.51));
     let end_effector_composite_inertia_10 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
     let end_effector_composite_inertia_11 = q[8].mul_add(n(0.085), q[7] * n(0.136));
-    let end_effector_composite_inertia_12 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_8,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_6,
-                    q[13] * end_effector_composite_inertia_3,
-                ),
-        );
-    let end_effector_composite_inertia_13 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_11,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_10,
-                    q[7] * end_effector_composite_inertia_9,
-                ),
-        );
-    let end_effector_composite_inertia_14 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_11,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_10,
-                    q[10] * end_effector_composite_inertia_9,
-                ),
-        );
+    let end_effector_composite_inertia_12 = (-q[15]).mul_add(
+        end_effector_composite_inertia_8,
+        q[14].mul_add(end_effector_composite_inertia_6, q[13] * end_effector_composite_inertia_3),
+    );
+    let end_effector_composite_inertia_13 = (-q[9]).mul_add(
+        end_effector_composite_inertia_11,
+        q[8].mul_add(end_effector_composite_inertia_10, q[7] * end_effector_composite_inertia_9),
+    );
+    let end_effector_composite_inertia_14 = (-q[12]).mul_add(
+        end_effector_composite_inertia_11,
+        q[11].mul_add(end_effector_composite_inertia_10, q[10] * end_effector_composite_inertia_9),
+    );
     let end_effector_composite_inertia_15 = end_effector_composite_inertia_13
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_14
-                .mul_add(n(0.15), end_effector_composite_inertia_12),
-        );
-    let end_effector_composite_inertia_16 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_14,
-                    q[1] * end_effector_composite_inertia_13,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_14,
-                        q[4] * end_effector_composite_inertia_13,
-                    )),
-        );
+        .mul_add(n(0.02), end_effector_composite_inertia_14.mul_add(n(0.15), end_effector_composite_inertia_12));
+    let end_effector_composite_inertia_16 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_composite_inertia_14, q[1] * end_effector_composite_inertia_13),
+        q[3] * (q[5].mul_add(end_effector_composite_inertia_14, q[4] * end_effector_composite_inertia_13)),
+    );
     let end_effector_composite_inertia_17 = q[11] * n(0.0078);
     let end_effector_composite_inertia_18 = q[12] * n(0.027499999999999997);
     let end_effector_composite_inertia_19 = q[10]
-        .mul_add(
-            n(0.19388),
-            end_effector_composite_inertia_17 - end_effector_composite_inertia_18,
-        );
+        .mul_add(n(0.19388), end_effector_composite_inertia_17 - end_effector_composite_inertia_18);
     let end_effector_composite_inertia_20 = q[10] * n(0.0078);
     let end_effector_composite_inertia_21 = q[12] * n(0.042300000000000004);
     let end_effector_composite_inertia_22 = q[11]
-        .mul_add(
-            n(0.18225),
-            end_effector_composite_inertia_20 + end_effector_composite_inertia_21,
-        );
-    let end_effector_composite_inertia_23 = (-q[11])
-        .mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997));
-    let end_effector_composite_inertia_24 = (-q[12])
-        .mul_add(n(0.02713), end_effector_composite_inertia_23);
+        .mul_add(n(0.18225), end_effector_composite_inertia_20 + end_effector_composite_inertia_21);
+    let end_effector_composite_inertia_23 = (-q[11]).mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997));
+    let end_effector_composite_inertia_24 = (-q[12]).mul_add(n(0.02713), end_effector_composite_inertia_23);
     let end_effector_composite_inertia_25 = q[12].mul_add(n(0.136), q[11] * n(0.51));
     let end_effector_composite_inertia_26 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
     let end_effector_composite_inertia_27 = q[11].mul_add(n(0.085), q[10] * n(0.136));
-    let end_effector_composite_inertia_28 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_24,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_22,
-                    q[13] * end_effector_composite_inertia_19,
-                ),
-        );
-    let end_effector_composite_inertia_29 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_27,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_26,
-                    q[7] * end_effector_composite_inertia_25,
-                ),
-        );
-    let end_effector_composite_inertia_30 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_27,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_26,
-                    q[10] * end_effector_composite_inertia_25,
-                ),
-        );
+    let end_effector_composite_inertia_28 = (-q[15]).mul_add(
+        end_effector_composite_inertia_24,
+        q[14].mul_add(end_effector_composite_inertia_22, q[13] * end_effector_composite_inertia_19),
+    );
+    let end_effector_composite_inertia_29 = (-q[9]).mul_add(
+        end_effector_composite_inertia_27,
+        q[8].mul_add(end_effector_composite_inertia_26, q[7] * end_effector_composite_inertia_25),
+    );
+    let end_effector_composite_inertia_30 = (-q[12]).mul_add(
+        end_effector_composite_inertia_27,
+        q[11].mul_add(end_effector_composite_inertia_26, q[10] * end_effector_composite_inertia_25),
+    );
     let end_effector_composite_inertia_31 = end_effector_composite_inertia_29
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_30
-                .mul_add(n(0.15), end_effector_composite_inertia_28),
-        );
-    let end_effector_composite_inertia_32 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_30,
-                    q[1] * end_effector_composite_inertia_29,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_30,
-                        q[4] * end_effector_composite_inertia_29,
-                    )),
-        );
+        .mul_add(n(0.02), end_effector_composite_inertia_30.mul_add(n(0.15), end_effector_composite_inertia_28));
+    let end_effector_composite_inertia_32 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_composite_inertia_30, q[1] * end_effector_composite_inertia_29),
+        q[3] * (q[5].mul_add(end_effector_composite_inertia_30, q[4] * end_effector_composite_inertia_29)),
+    );
     let end_effector_composite_inertia_33 = q[15].mul_add(n(0.136), q[14] * n(0.51));
     let end_effector_composite_inertia_34 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
     let end_effector_composite_inertia_35 = q[14].mul_add(n(0.085), q[13] * n(0.136));
-    let end_effector_composite_inertia_36 = q[14]
-        .mul_add(
-            q[15]
-                .mul_add(
-                    n(0.042300000000000004),
-                    q[14].mul_add(n(0.18225), q[13] * n(0.0078)),
-                ),
-            q[13]
-                * ((-q[15])
-                    .mul_add(
-                        n(0.027499999999999997),
-                        q[14].mul_add(n(0.0078), q[13] * n(0.19388)),
-                    )),
-        );
-    let end_effector_composite_inertia_37 = (-q[15])
-        .mul_add(
-            (-q[15])
-                .mul_add(
-                    n(0.02713),
-                    (-q[14])
-                        .mul_add(
-                            n(0.042300000000000004),
-                            q[13] * n(0.027499999999999997),
-                        ),
-                ),
-            end_effector_composite_inertia_36,
-        );
-    let end_effector_composite_inertia_38 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_35,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_34,
-                    q[7] * end_effector_composite_inertia_33,
-                ),
-        );
-    let end_effector_composite_inertia_39 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_35,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_34,
-                    q[10] * end_effector_composite_inertia_33,
-                ),
-        );
+    let end_effector_composite_inertia_36 = q[14].mul_add(
+        q[15].mul_add(n(0.042300000000000004), q[14].mul_add(n(0.18225), q[13] * n(0.0078))),
+        q[13] * ((-q[15]).mul_add(n(0.027499999999999997), q[14].mul_add(n(0.0078), q[13] * n(0.19388)))),
+    );
+    let end_effector_composite_inertia_37 = (-q[15]).mul_add(
+        (-q[15]).mul_add(n(0.02713), (-q[14]).mul_add(n(0.042300000000000004), q[13] * n(0.027499999999999997))),
+        end_effector_composite_inertia_36,
+    );
+    let end_effector_composite_inertia_38 = (-q[9]).mul_add(
+        end_effector_composite_inertia_35,
+        q[8].mul_add(end_effector_composite_inertia_34, q[7] * end_effector_composite_inertia_33),
+    );
+    let end_effector_composite_inertia_39 = (-q[12]).mul_add(
+        end_effector_composite_inertia_35,
+        q[11].mul_add(end_effector_composite_inertia_34, q[10] * end_effector_composite_inertia_33),
+    );
     let end_effector_composite_inertia_40 = end_effector_composite_inertia_38
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_39
-                .mul_add(n(0.15), end_effector_composite_inertia_37),
-        );
-    let end_effector_composite_inertia_41 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_39,
-                    q[1] * end_effector_composite_inertia_38,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_39,
-                        q[4] * end_effector_composite_inertia_38,
-                    )),
-        );
-    let end_effector_composite_inertia_42 = end_effector_composite_inertia_40
-        + end_effector_composite_inertia_41;
-    let end_effector_composite_inertia_43 = (-q[8])
-        .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
-    let end_effector_composite_inertia_44 = (-q[11])
-        .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
+        .mul_add(n(0.02), end_effector_composite_inertia_39.mul_add(n(0.15), end_effector_composite_inertia_37));
+    let end_effector_composite_inertia_41 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_composite_inertia_39, q[1] * end_effector_composite_inertia_38),
+        q[3] * (q[5].mul_add(end_effector_composite_inertia_39, q[4] * end_effector_composite_inertia_38)),
+    );
+    let end_effector_composite_inertia_42 = end_effector_composite_inertia_40 + end_effector_composite_inertia_41;
+    let end_effector_composite_inertia_43 = (-q[8]).mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
+    let end_effector_composite_inertia_44 = (-q[11]).mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
     let end_effector_composite_inertia_45 = q[7]
-        .mul_add(
-            n(0.007750000000000002),
-            end_effector_composite_inertia_2 - end_effector_composite_inertia,
-        );
+        .mul_add(n(0.007750000000000002), end_effector_composite_inertia_2 - end_effector_composite_inertia);
     let end_effector_composite_inertia_46 = (-q[8])
-        .mul_add(
-            n(0.01938),
-            end_effector_composite_inertia_5 + end_effector_composite_inertia_4,
-        );
-    let end_effector_composite_inertia_47 = q[9]
-        .mul_add(n(0.1745), end_effector_composite_inertia_7);
-    let end_effector_composite_inertia_48 = (-q[11])
-        .mul_add(
-            (-q[11])
-                .mul_add(
-                    n(0.01938),
-                    end_effector_composite_inertia_21 + end_effector_composite_inertia_20,
-                ),
-            q[10]
-                * (q[10]
-                    .mul_add(
-                        n(0.007750000000000002),
-                        end_effector_composite_inertia_18
-                            - end_effector_composite_inertia_17,
-                    )),
-        );
-    let end_effector_composite_inertia_49 = (-q[8])
-        .mul_add(
+        .mul_add(n(0.01938), end_effector_composite_inertia_5 + end_effector_composite_inertia_4);
+    let end_effector_composite_inertia_47 = q[9].mul_add(n(0.1745), end_effector_composite_inertia_7);
+    let end_effector_composite_inertia_48 = (-q[11]).mul_add(
+        (-q[11]).mul_add(n(0.01938), end_effector_composite_inertia_21 + end_effector_composite_inertia_20),
+        q[10] * (q[10].mul_add(n(0.007750000000000002), end_effector_composite_inertia_18 - end_effector_composite_inertia_17)),
+    );
+    let end_effector_composite_inertia_49 = (-q[8]).mul_add(
+        end_effector_composite_inertia_46,
+        end_effector_composite_inertia_43
+            .mul_add(n(0.3), q[9].mul_add(end_effector_composite_inertia_47, q[7] * end_effector_composite_inertia_45)),
+    );
+    let end_effector_composite_inertia_50 = (-end_effector_composite_inertia_43).mul_add(
+        n(0.02),
+        (-q[11]).mul_add(
             end_effector_composite_inertia_46,
-            end_effector_composite_inertia_43
-                .mul_add(
-                    n(0.3),
-                    q[9]
-                        .mul_add(
-                            end_effector_composite_inertia_47,
-                            q[7] * end_effector_composite_inertia_45,
-                        ),
-                ),
-        );
-    let end_effector_composite_inertia_50 = (-end_effector_composite_inertia_43)
-        .mul_add(
-            n(0.02),
-            (-q[11])
-                .mul_add(
-                    end_effector_composite_inertia_46,
-                    end_effector_composite_inertia_44
-                        .mul_add(
-                            n(0.15),
-                            q[12]
-                                .mul_add(
-                                    end_effector_composite_inertia_47,
-                                    q[10] * end_effector_composite_inertia_45,
-                                ),
-                        ),
-                ),
-        );
+            end_effector_composite_inertia_44.mul_add(
+                n(0.15),
+                q[12].mul_add(end_effector_composite_inertia_47, q[10] * end_effector_composite_inertia_45),
+            ),
+        ),
+    );
     // cart: composite inertia (27 additions, 30 multiplications)
     let cart_composite_inertia = end_effector_composite_inertia_43 + n(0.495);
     let cart_composite_inertia_2 = end_effector_composite_inertia_44 + n(0.046);
-    let cart_composite_inertia_3 = end_effector_composite_inertia_49
-        + n(0.12764999999999999);
-    let cart_composite_inertia_4 = end_effector_composite_inertia_50
-        - n(0.002300000000000001);
-    let cart_composite_inertia_5 = (-end_effector_composite_inertia_44)
-        .mul_add(
-            n(0.04),
-            q[12]
-                .mul_add(
-                    q[12].mul_add(n(0.1745), end_effector_composite_inertia_23),
-                    end_effector_composite_inertia_48 + n(0.03728),
-                ),
-        );
+    let cart_composite_inertia_3 = end_effector_composite_inertia_49 + n(0.12764999999999999);
+    let cart_composite_inertia_4 = end_effector_composite_inertia_50 - n(0.002300000000000001);
+    let cart_composite_inertia_5 = (-end_effector_composite_inertia_44).mul_add(
+        n(0.04),
+        q[12].mul_add(
+            q[12].mul_add(n(0.1745), end_effector_composite_inertia_23),
+            end_effector_composite_inertia_48 + n(0.03728),
+        ),
+    );
     let cart_composite_inertia_6 = cart_composite_inertia_3 + cart_composite_inertia_5;
-    let cart_composite_inertia_7 = (-q[6])
-        .mul_add(
-            (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
-            q[3]
-                * ((-q[5])
-                    .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
-        );
-    let cart_composite_inertia_8 = q[2]
-        .mul_add(
-            q[2].mul_add(cart_composite_inertia_5, q[1] * cart_composite_inertia_4),
-            q[1]
-                * (q[2]
-                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_3)),
-        );
-    let cart_composite_inertia_9 = q[5]
-        .mul_add(
-            q[5].mul_add(cart_composite_inertia_5, q[4] * cart_composite_inertia_4),
-            q[4]
-                * (q[5]
-                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_3)),
-        );
+    let cart_composite_inertia_7 = (-q[6]).mul_add(
+        (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
+        q[3] * ((-q[5]).mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
+    );
+    let cart_composite_inertia_8 = q[2].mul_add(
+        q[2].mul_add(cart_composite_inertia_5, q[1] * cart_composite_inertia_4),
+        q[1] * (q[2].mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_3)),
+    );
+    let cart_composite_inertia_9 = q[5].mul_add(
+        q[5].mul_add(cart_composite_inertia_5, q[4] * cart_composite_inertia_4),
+        q[4] * (q[5].mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_3)),
+    );
     let cart_composite_inertia_10 = (q[3]
-        .mul_add(
-            n(2.85),
-            q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
-        )) * (q[3] + q[3]);
+        .mul_add(n(2.85), q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia))) * (q[3] + q[3]);
     let cart_composite_inertia_11 = (q[6]
-        .mul_add(
-            n(2.85),
-            q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
-        )) * (q[6] + q[6]);
+        .mul_add(n(2.85), q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia))) * (q[6] + q[6]);
     // end_effector: factor (31 additions, 43 multiplications, 3 divisions)
     let end_effector_factor = n(1.0) / end_effector_composite_inertia_37;
     let end_effector_factor_2 = end_effector_composite_inertia_28 * end_effector_factor;
-    let end_effector_factor_3 = (-end_effector_composite_inertia_28)
-        .mul_add(
-            end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_24,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_22,
-                            q[10] * end_effector_composite_inertia_19,
-                        ),
-                ),
-        );
-    let end_effector_factor_4 = (-end_effector_composite_inertia_12)
-        .mul_add(
-            end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_8,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_6,
-                            q[10] * end_effector_composite_inertia_3,
-                        ),
-                ),
-        );
+    let end_effector_factor_3 = (-end_effector_composite_inertia_28).mul_add(
+        end_effector_factor_2,
+        (-q[12]).mul_add(
+            end_effector_composite_inertia_24,
+            q[11].mul_add(end_effector_composite_inertia_22, q[10] * end_effector_composite_inertia_19),
+        ),
+    );
+    let end_effector_factor_4 = (-end_effector_composite_inertia_12).mul_add(
+        end_effector_factor_2,
+        (-q[12]).mul_add(
+            end_effector_composite_inertia_8,
+            q[11].mul_add(end_effector_composite_inertia_6, q[10] * end_effector_composite_inertia_3),
+        ),
+    );
     let end_effector_factor_5 = (-end_effector_composite_inertia_38)
         .mul_add(end_effector_factor_2, end_effector_composite_inertia_29);
     let end_effector_factor_6 = (-end_effector_composite_inertia_40)
         .mul_add(end_effector_factor_2, end_effector_composite_inertia_31);
     let end_effector_factor_7 = (-end_effector_composite_inertia_42)
-        .mul_add(
-            end_effector_factor_2,
-            end_effector_composite_inertia_31 + end_effector_composite_inertia_32,
-        );
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_31 + end_effector_composite_inertia_32);
     let end_effector_factor_8 = end_effector_composite_inertia_12 * end_effector_factor;
-    let end_effector_factor_9 = (-end_effector_composite_inertia_12)
-        .mul_add(
-            end_effector_factor_8,
-            (-q[9])
-                .mul_add(
-                    end_effector_composite_inertia_8,
-                    q[8]
-                        .mul_add(
-                            end_effector_composite_inertia_6,
-                            q[7] * end_effector_composite_inertia_3,
-                        ),
-                ),
-        );
+    let end_effector_factor_9 = (-end_effector_composite_inertia_12).mul_add(
+        end_effector_factor_8,
+        (-q[9]).mul_add(
+            end_effector_composite_inertia_8,
+            q[8].mul_add(end_effector_composite_inertia_6, q[7] * end_effector_composite_inertia_3),
+        ),
+    );
     let end_effector_factor_10 = end_effector_composite_inertia_38 * end_effector_factor;
-    let end_effector_factor_11 = (-q[3])
-        .mul_add(
-            q[4] * n(5.7),
-            end_effector_composite_inertia_42
-                .mul_add(
-                    end_effector_factor_10,
-                    q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2),
-                ),
-        );
+    let end_effector_factor_11 = (-q[3]).mul_add(
+        q[4] * n(5.7),
+        end_effector_composite_inertia_42
+            .mul_add(end_effector_factor_10, q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2)),
+    );
     let end_effector_factor_12 = end_effector_composite_inertia_40 * end_effector_factor;
     let end_effector_factor_13 = end_effector_composite_inertia_42 * end_effector_factor;
-    let end_effector_factor_14 = (-end_effector_composite_inertia_42)
-        .mul_add(
-            end_effector_factor_13,
-            cart_composite_inertia_8 + cart_composite_inertia_10 + n(1.1700000000000002)
-                + cart_composite_inertia_9 + cart_composite_inertia_11
-                + n(0.8799999999999999),
-        );
+    let end_effector_factor_14 = (-end_effector_composite_inertia_42).mul_add(
+        end_effector_factor_13,
+        cart_composite_inertia_8 + cart_composite_inertia_10 + n(1.1700000000000002)
+            + cart_composite_inertia_9 + cart_composite_inertia_11
+            + n(0.8799999999999999),
+    );
     let end_effector_factor_15 = n(1.0) / end_effector_factor_3;
     let end_effector_factor_16 = end_effector_factor_4 * end_effector_factor_15;
-    let end_effector_factor_17 = (-end_effector_factor_5)
-        .mul_add(
-            end_effector_factor_16,
-            (-end_effector_composite_inertia_38)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_13),
-        );
-    let end_effector_factor_18 = (-end_effector_factor_6)
-        .mul_add(
-            end_effector_factor_16,
-            (-end_effector_composite_inertia_40)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_15),
-        );
-    let end_effector_factor_19 = (-end_effector_factor_7)
-        .mul_add(
-            end_effector_factor_16,
-            (-end_effector_composite_inertia_42)
-                .mul_add(
-                    end_effector_factor_8,
-                    end_effector_composite_inertia_15 + end_effector_composite_inertia_16,
-                ),
-        );
+    let end_effector_factor_17 = (-end_effector_factor_5).mul_add(
+        end_effector_factor_16,
+        (-end_effector_composite_inertia_38).mul_add(end_effector_factor_8, end_effector_composite_inertia_13),
+    );
+    let end_effector_factor_18 = (-end_effector_factor_6).mul_add(
+        end_effector_factor_16,
+        (-end_effector_composite_inertia_40).mul_add(end_effector_factor_8, end_effector_composite_inertia_15),
+    );
+    let end_effector_factor_19 = (-end_effector_factor_7).mul_add(
+        end_effector_factor_16,
+        (-end_effector_composite_inertia_42)
+            .mul_add(end_effector_factor_8, end_effector_composite_inertia_15 + end_effector_composite_inertia_16),
+    );
     let end_effector_factor_20 = end_effector_factor_5 * end_effector_factor_15;
     let end_effector_factor_21 = end_effector_factor_6 * end_effector_factor_15;
     let end_effector_factor_22 = end_effector_factor_7 * end_effector_factor_15;
-    let end_effector_factor_23 = n(1.0)
-        / ((-end_effector_factor_4)
-            .mul_add(end_effector_factor_16, end_effector_factor_9));
+    let end_effector_factor_23 = n(1.0) / ((-end_effector_factor_4).mul_add(end_effector_factor_16, end_effector_factor_9));
     let end_effector_factor_24 = end_effector_factor_17 * end_effector_factor_23;
-    let end_effector_factor_25 = end_effector_factor_18
-        .mul_add(
-            end_effector_factor_24,
-            end_effector_factor_6
-                .mul_add(
-                    end_effector_factor_20,
-                    end_effector_composite_inertia_40
-                        .mul_add(end_effector_factor_10, cart_composite_inertia_2),
-                ),
-        );
+    let end_effector_factor_25 = end_effector_factor_18.mul_add(
+        end_effector_factor_24,
+        end_effector_factor_6.mul_add(
+            end_effector_factor_20,
+            end_effector_composite_inertia_40.mul_add(end_effector_factor_10, cart_composite_inertia_2),
+        ),
+    );
     let end_effector_factor_26 = end_effector_factor_19
-        .mul_add(
-            end_effector_factor_24,
-            end_effector_factor_7.mul_add(end_effector_factor_20, end_effector_factor_11),
-        );
+        .mul_add(end_effector_factor_24, end_effector_factor_7.mul_add(end_effector_factor_20, end_effector_factor_11));
     let end_effector_factor_27 = end_effector_factor_18 * end_effector_factor_23;
-    let end_effector_factor_28 = (-end_effector_factor_19)
-        .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_7)
-                .mul_add(
-                    end_effector_factor_21,
-                    (-end_effector_composite_inertia_42)
-                        .mul_add(
-                            end_effector_factor_12,
-                            cart_composite_inertia_6 - cart_composite_inertia_7,
-                        ),
-                ),
-        );
+    let end_effector_factor_28 = (-end_effector_factor_19).mul_add(
+        end_effector_factor_27,
+        (-end_effector_factor_7).mul_add(
+            end_effector_factor_21,
+            (-end_effector_composite_inertia_42)
+                .mul_add(end_effector_factor_12, cart_composite_inertia_6 - cart_composite_inertia_7),
+        ),
+    );
     let end_effector_factor_29 = end_effector_factor_19 * end_effector_factor_23;
     // end_effector: load (12 additions, 12 multiplications)
     let end_effector_load = (-p[5]).mul_add(end_effector_factor_2, p[4]);
     let end_effector_load_2 = (-end_effector_factor_16)
         .mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_8, p[3]));
-    let end_effector_load_3 = (-end_effector_factor_24)
-        .mul_add(
-            end_effector_load_2,
-            (-end_effector_factor_20)
-                .mul_add(
-                    end_effector_load,
-                    (-p[5]).mul_add(end_effector_factor_10, p[2]),
-                ),
-        );
+    let end_effector_load_3 = (-end_effector_factor_24).mul_add(
+        end_effector_load_2,
+        (-end_effector_factor_20).mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_10, p[2])),
+    );
     // cart: factor (4 additions, 7 multiplications, 2 divisions)
-    let cart_factor = n(1.0)
-        / (end_effector_factor_17
-            .mul_add(
-                end_effector_factor_24,
-                end_effector_factor_5
-                    .mul_add(
-                        end_effector_factor_20,
-                        end_effector_composite_inertia_38
-                            .mul_add(end_effector_factor_10, -n(5.7)),
-                    ),
-            ));
+    let cart_factor = n(1.0) / (end_effector_factor_17.mul_add(
+        end_effector_factor_24,
+        end_effector_factor_5.mul_add(
+            end_effector_factor_20,
+            end_effector_composite_inertia_38.mul_add(end_effector_factor_10, -n(5.7)),
+        ),
+    ));
     let cart_factor_2 = end_effector_factor_25 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_18)
-        .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_6)
-                .mul_add(
-                    end_effector_factor_21,
-                    (-end_effector_composite_inertia_40)
-                        .mul_add(
-                            end_effector_factor_12,
-                            end_effector_factor_25
-                                .mul_add(cart_factor_2, cart_composite_inertia_6),
-                        ),
-                ),
-        );
-    let cart_factor_4 = end_effector_factor_26
-        .mul_add(cart_factor_2, end_effector_factor_28);
+    let cart_factor_3 = (-end_effector_factor_18).mul_add(
+        end_effector_factor_27,
+        (-end_effector_factor_6).mul_add(
+            end_effector_factor_21,
+            (-end_effector_composite_inertia_40).mul_add(
+                end_effector_factor_12,
+                end_effector_factor_25.mul_add(cart_factor_2, cart_composite_inertia_6),
+            ),
+        ),
+    );
+    let cart_factor_4 = end_effector_factor_26.mul_add(cart_factor_2, end_effector_factor_28);
     let cart_factor_5 = end_effector_factor_26 * cart_factor;
     let cart_factor_6 = n(1.0) / cart_factor_3;
     let cart_factor_7 = cart_factor_4 * cart_factor_6;
-    let cart_factor_8 = (-cart_factor_4)
-        .mul_add(
-            cart_factor_7,
-            (-end_effector_factor_19)
-                .mul_add(
-                    end_effector_factor_29,
-                    (-end_effector_factor_7)
-                        .mul_add(
-                            end_effector_factor_22,
-                            end_effector_factor_26
-                                .mul_add(cart_factor_5, end_effector_factor_14),
-                        ),
-                ),
-        );
+    let cart_factor_8 = (-cart_factor_4).mul_add(
+        cart_factor_7,
+        (-end_effector_factor_19).mul_add(
+            end_effector_factor_29,
+            (-end_effector_factor_7)
+                .mul_add(end_effector_factor_22, end_effector_factor_26.mul_add(cart_factor_5, end_effector_factor_14)),
+        ),
+    );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load = (-cart_factor_2)
-        .mul_add(
-            end_effector_load_3,
-            (-end_effector_factor_27)
-                .mul_add(
-                    end_effector_load_2,
-                    (-end_effector_factor_21)
-                        .mul_add(
-                            end_effector_load,
-                            (-p[5]).mul_add(end_effector_factor_12, p[1]),
-                        ),
-                ),
-        );
-    let cart_load_2 = (-cart_factor_5)
-        .mul_add(
-            end_effector_load_3,
-            (-end_effector_factor_29)
-                .mul_add(
-                    end_effector_load_2,
-                    (-end_effector_factor_22)
-                        .mul_add(
-                            end_effector_load,
-                            (-p[5]).mul_add(end_effector_factor_13, p[0]),
-                        ),
-                ),
-        );
+    let cart_load = (-cart_factor_2).mul_add(
+        end_effector_load_3,
+        (-end_effector_factor_27).mul_add(
+            end_effector_load_2,
+            (-end_effector_factor_21).mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_12, p[1])),
+        ),
+    );
+    let cart_load_2 = (-cart_factor_5).mul_add(
+        end_effector_load_3,
+        (-end_effector_factor_29).mul_add(
+            end_effector_load_2,
+            (-end_effector_factor_22).mul_add(end_effector_load, (-p[5]).mul_add(end_effector_factor_13, p[0])),
+        ),
+    );
     // plate: response (1 multiplication)
-    let plate_speed = (n(1.0) / cart_factor_8)
-        * ((-cart_factor_7).mul_add(cart_load, cart_load_2));
+    let plate_speed = (n(1.0) / cart_factor_8) * ((-cart_factor_7).mul_add(cart_load, cart_load_2));
     // cart: response (3 additions, 5 multiplications)
     let cart_speed = cart_factor_6 * ((-cart_factor_4).mul_add(plate_speed, cart_load));
     let cart_speed_2 = cart_factor
-        * (end_effector_factor_26
-            .mul_add(
-                plate_speed,
-                end_effector_factor_25.mul_add(cart_speed, end_effector_load_3),
-            ));
+        * (end_effector_factor_26.mul_add(plate_speed, end_effector_factor_25.mul_add(cart_speed, end_effector_load_3)));
     // end_effector: response (17 additions, 22 multiplications)
-    let end_effector_speed = end_effector_factor_23
-        * ((-end_effector_factor_19)
-            .mul_add(
-                plate_speed,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        cart_speed,
-                        end_effector_factor_17.mul_add(cart_speed_2, end_effector_load_2),
-                    ),
-            ));
-    let end_effector_response = (-end_effector_factor_5)
-        .mul_add(
-            cart_speed_2,
-            end_effector_factor_7
-                .mul_add(
-                    plate_speed,
-                    end_effector_factor_6
-                        .mul_add(cart_speed, end_effector_factor_4 * end_effector_speed),
-                ),
-        );
-    let end_effector_speed_2 = end_effector_factor_15
-        * (end_effector_load - end_effector_response);
-    let end_effector_response_2 = (-end_effector_composite_inertia_38)
-        .mul_add(
-            cart_speed_2,
-            end_effector_composite_inertia_40
-                .mul_add(
-                    cart_speed,
-                    end_effector_composite_inertia_12
-                        .mul_add(
-                            end_effector_speed,
-                            end_effector_composite_inertia_28 * end_effector_speed_2,
-                        ),
-                ),
-        );
+    let end_effector_speed = end_effector_factor_23 * ((-end_effector_factor_19).mul_add(
+        plate_speed,
+        (-end_effector_factor_18).mul_add(cart_speed, end_effector_factor_17.mul_add(cart_speed_2, end_effector_load_2)),
+    ));
+    let end_effector_response = (-end_effector_factor_5).mul_add(
+        cart_speed_2,
+        end_effector_factor_7
+            .mul_add(plate_speed, end_effector_factor_6.mul_add(cart_speed, end_effector_factor_4 * end_effector_speed)),
+    );
+    let end_effector_speed_2 = end_effector_factor_15 * (end_effector_load - end_effector_response);
+    let end_effector_response_2 = (-end_effector_composite_inertia_38).mul_add(
+        cart_speed_2,
+        end_effector_composite_inertia_40.mul_add(
+            cart_speed,
+            end_effector_composite_inertia_12
+                .mul_add(end_effector_speed, end_effector_composite_inertia_28 * end_effector_speed_2),
+        ),
+    );
     let end_effector_response_3 = (-p[2])
-        .mul_add(
-            cart_speed_2,
-            p[3]
-                .mul_add(
-                    end_effector_speed,
-                    p[1].mul_add(cart_speed, p[0] * plate_speed),
-                ),
-        );
-    let end_effector_response_4 = p[5]
-        .mul_add(
-            end_effector_factor
-                * ((-end_effector_composite_inertia_42)
-                    .mul_add(plate_speed, p[5] - end_effector_response_2)),
-            p[4].mul_add(end_effector_speed_2, end_effector_response_3),
-        );
+        .mul_add(cart_speed_2, p[3].mul_add(end_effector_speed, p[1].mul_add(cart_speed, p[0] * plate_speed)));
+    let end_effector_response_4 = p[5].mul_add(
+        end_effector_factor * ((-end_effector_composite_inertia_42).mul_add(plate_speed, p[5] - end_effector_response_2)),
+        p[4].mul_add(end_effector_speed_2, end_effector_response_3),
+    );
     // plate: first moment (2 additions, 1 multiplication)
-    let plate_first_moment = (-q[14])
-        .mul_add(
-            n(0.136),
-            q[15].mul_add(n(0.51), q[13].mul_add(n(0.085), n(1.31) - n(0.36))),
-        );
+    let plate_first_moment = (-q[14]).mul_add(n(0.136), q[15].mul_add(n(0.51), q[13].mul_add(n(0.085), n(1.31) - n(0.36))));
     [plate_first_moment.mul_add(n(9.81), end_effector_response_4 * n(0.5))]
 }
 
@@ -4154,123 +2273,74 @@ pub fn energies<T: Scalar>(q: &[T; 16], v: &[T; 6]) -> [T; 2] {
     let cart_momentum_2 = v[0] * q[3];
     let cart_momentum_3 = (-q[5]).mul_add(cart_momentum_2, q[2] * cart_momentum);
     let cart_momentum_4 = v[0] + v[1];
-    let cart_momentum_5 = (-q[1])
-        .mul_add(cart_momentum, q[4].mul_add(cart_momentum_2, v[2]));
+    let cart_momentum_5 = (-q[1]).mul_add(cart_momentum, q[4].mul_add(cart_momentum_2, v[2]));
     // cart: kinetic energy (3 additions, 3 multiplications)
-    let cart_kinetic_energy = cart_momentum_3
-        .mul_add(
-            (-cart_momentum_4).mul_add(n(0.495), cart_momentum_3 * n(5.7)),
-            cart_momentum_5
-                * ((-cart_momentum_4).mul_add(n(0.046), cart_momentum_5 * n(5.7))),
-        );
-    let cart_kinetic_energy_2 = cart_momentum_4
-        .mul_add(
-            (-cart_momentum_5)
-                .mul_add(
-                    n(0.046),
-                    (-cart_momentum_3).mul_add(n(0.495), cart_momentum_4 * n(0.16493)),
-                ),
-            cart_kinetic_energy,
-        );
+    let cart_kinetic_energy = cart_momentum_3.mul_add(
+        (-cart_momentum_4).mul_add(n(0.495), cart_momentum_3 * n(5.7)),
+        cart_momentum_5 * ((-cart_momentum_4).mul_add(n(0.046), cart_momentum_5 * n(5.7))),
+    );
+    let cart_kinetic_energy_2 = cart_momentum_4.mul_add(
+        (-cart_momentum_5).mul_add(n(0.046), (-cart_momentum_3).mul_add(n(0.495), cart_momentum_4 * n(0.16493))),
+        cart_kinetic_energy,
+    );
     // end_effector: momentum (23 additions, 32 multiplications)
     let end_effector_momentum = cart_momentum_4.mul_add(n(0.02), cart_momentum_5);
     let end_effector_momentum_2 = (-cart_momentum_4).mul_add(n(0.15), cart_momentum_3);
-    let end_effector_momentum_3 = (-q[10])
-        .mul_add(end_effector_momentum_2, q[7] * end_effector_momentum);
-    let end_effector_momentum_4 = (-q[11])
-        .mul_add(end_effector_momentum_2, q[8] * end_effector_momentum);
-    let end_effector_momentum_5 = (-q[12])
-        .mul_add(end_effector_momentum_2, q[9] * end_effector_momentum);
-    let end_effector_momentum_6 = q[13]
-        .mul_add(cart_momentum_4, v[5].mul_add(q[13], v[4].mul_add(q[10], v[3] * q[7])));
-    let end_effector_momentum_7 = q[14]
-        .mul_add(cart_momentum_4, v[5].mul_add(q[14], v[4].mul_add(q[11], v[3] * q[8])));
-    let end_effector_momentum_8 = q[15]
-        .mul_add(cart_momentum_4, v[5].mul_add(q[15], v[4].mul_add(q[12], v[3] * q[9])));
-    let end_effector_momentum_9 = (-end_effector_momentum_4)
-        .mul_add(
+    let end_effector_momentum_3 = (-q[10]).mul_add(end_effector_momentum_2, q[7] * end_effector_momentum);
+    let end_effector_momentum_4 = (-q[11]).mul_add(end_effector_momentum_2, q[8] * end_effector_momentum);
+    let end_effector_momentum_5 = (-q[12]).mul_add(end_effector_momentum_2, q[9] * end_effector_momentum);
+    let end_effector_momentum_6 = q[13].mul_add(cart_momentum_4, v[5].mul_add(q[13], v[4].mul_add(q[10], v[3] * q[7])));
+    let end_effector_momentum_7 = q[14].mul_add(cart_momentum_4, v[5].mul_add(q[14], v[4].mul_add(q[11], v[3] * q[8])));
+    let end_effector_momentum_8 = q[15].mul_add(cart_momentum_4, v[5].mul_add(q[15], v[4].mul_add(q[12], v[3] * q[9])));
+    let end_effector_momentum_9 = (-end_effector_momentum_4).mul_add(
+        n(0.51),
+        (-end_effector_momentum_5).mul_add(
+            n(0.136),
+            (-end_effector_momentum_8).mul_add(
+                n(0.027499999999999997),
+                end_effector_momentum_7.mul_add(n(0.0078), end_effector_momentum_6 * n(0.19388)),
+            ),
+        ),
+    );
+    let end_effector_momentum_10 = (-end_effector_momentum_5).mul_add(
+        n(0.085),
+        end_effector_momentum_3.mul_add(
             n(0.51),
-            (-end_effector_momentum_5)
-                .mul_add(
-                    n(0.136),
-                    (-end_effector_momentum_8)
-                        .mul_add(
-                            n(0.027499999999999997),
-                            end_effector_momentum_7
-                                .mul_add(n(0.0078), end_effector_momentum_6 * n(0.19388)),
-                        ),
-                ),
-        );
-    let end_effector_momentum_10 = (-end_effector_momentum_5)
-        .mul_add(
+            end_effector_momentum_8.mul_add(
+                n(0.042300000000000004),
+                end_effector_momentum_7.mul_add(n(0.18225), end_effector_momentum_6 * n(0.0078)),
+            ),
+        ),
+    );
+    let end_effector_momentum_11 = (-end_effector_momentum_3).mul_add(
+        n(0.136),
+        (-end_effector_momentum_4).mul_add(
             n(0.085),
-            end_effector_momentum_3
-                .mul_add(
-                    n(0.51),
-                    end_effector_momentum_8
-                        .mul_add(
-                            n(0.042300000000000004),
-                            end_effector_momentum_7
-                                .mul_add(n(0.18225), end_effector_momentum_6 * n(0.0078)),
-                        ),
-                ),
-        );
-    let end_effector_momentum_11 = (-end_effector_momentum_3)
-        .mul_add(
-            n(0.136),
-            (-end_effector_momentum_4)
-                .mul_add(
-                    n(0.085),
-                    (-end_effector_momentum_8)
-                        .mul_add(
-                            n(0.02713),
-                            (-end_effector_momentum_7)
-                                .mul_add(
-                                    n(0.042300000000000004),
-                                    end_effector_momentum_6 * n(0.027499999999999997),
-                                ),
-                        ),
-                ),
-        );
+            (-end_effector_momentum_8).mul_add(
+                n(0.02713),
+                (-end_effector_momentum_7).mul_add(n(0.042300000000000004), end_effector_momentum_6 * n(0.027499999999999997)),
+            ),
+        ),
+    );
     // end_effector: kinetic energy (6 additions, 7 multiplications)
-    let end_effector_kinetic_energy = end_effector_momentum_4
-        .mul_add(
-            (-end_effector_momentum_6)
-                .mul_add(n(0.51), end_effector_momentum_8 * n(0.085)),
-            end_effector_momentum_3
-                * (end_effector_momentum_8
-                    .mul_add(n(0.136), end_effector_momentum_7 * n(0.51))),
-        );
-    let end_effector_kinetic_energy_2 = (-end_effector_momentum_5)
-        .mul_add(
-            end_effector_momentum_7
-                .mul_add(n(0.085), end_effector_momentum_6 * n(0.136)),
-            (-end_effector_momentum_8)
-                .mul_add(
-                    end_effector_momentum_11,
-                    end_effector_momentum_7
-                        .mul_add(
-                            end_effector_momentum_10,
-                            end_effector_momentum_6
-                                .mul_add(
-                                    end_effector_momentum_9,
-                                    end_effector_kinetic_energy,
-                                ),
-                        ),
-                ),
-        );
+    let end_effector_kinetic_energy = end_effector_momentum_4.mul_add(
+        (-end_effector_momentum_6).mul_add(n(0.51), end_effector_momentum_8 * n(0.085)),
+        end_effector_momentum_3 * (end_effector_momentum_8.mul_add(n(0.136), end_effector_momentum_7 * n(0.51))),
+    );
+    let end_effector_kinetic_energy_2 = (-end_effector_momentum_5).mul_add(
+        end_effector_momentum_7.mul_add(n(0.085), end_effector_momentum_6 * n(0.136)),
+        (-end_effector_momentum_8).mul_add(
+            end_effector_momentum_11,
+            end_effector_momentum_7.mul_add(
+                end_effector_momentum_10,
+                end_effector_momentum_6.mul_add(end_effector_momentum_9, end_effector_kinetic_energy),
+            ),
+        ),
+    );
     // plate: first moment (1 addition, 1 multiplication)
-    let plate_first_moment = (-q[14])
-        .mul_add(
-            n(0.136),
-            q[15].mul_add(n(0.51), q[13].mul_add(n(0.085), n(1.31) - n(0.36))),
-        );
+    let plate_first_moment = (-q[14]).mul_add(n(0.136), q[15].mul_add(n(0.51), q[13].mul_add(n(0.085), n(1.31) - n(0.36))));
     [
-        (v[0]
-            .mul_add(
-                v[0] * n(2.05),
-                cart_kinetic_energy_2 + end_effector_kinetic_energy_2,
-            )) * n(0.5),
+        (v[0].mul_add(v[0] * n(2.05), cart_kinetic_energy_2 + end_effector_kinetic_energy_2)) * n(0.5),
         plate_first_moment * n(9.81),
     ]
 }
@@ -4294,32 +2364,16 @@ pub fn poses<T: Scalar>(q: &[T; 16]) -> [[T; 12]; 3] {
     let cart_pose_5 = plate_cos.mul_add(q[4], plate_sin * q[1]);
     let cart_pose_6 = plate_cos.mul_add(q[5], plate_sin * q[2]);
     [
+        [plate_cos, -plate_sin, n(0.0), plate_sin, plate_cos, n(0.0), n(0.0), n(0.0), n(1.0), n(0.0), n(0.0), n(0.0)],
         [
-            plate_cos,
-            -plate_sin,
+            cart_pose_3, cart_pose_4,
             n(0.0),
-            plate_sin,
-            plate_cos,
+            cart_pose_5, cart_pose_6,
             n(0.0),
             n(0.0),
             n(0.0),
             n(1.0),
-            n(0.0),
-            n(0.0),
-            n(0.0),
-        ],
-        [
-            cart_pose_3,
-            cart_pose_4,
-            n(0.0),
-            cart_pose_5,
-            cart_pose_6,
-            n(0.0),
-            n(0.0),
-            n(0.0),
-            n(1.0),
-            cart_pose,
-            cart_pose_2,
+            cart_pose, cart_pose_2,
             n(0.08),
         ],
         [
@@ -4344,11 +2398,7 @@ pub fn poses<T: Scalar>(q: &[T; 16]) -> [[T; 12]; 3] {
 /// Operations: 1280 additions, 1534 multiplications, 6 divisions.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
-pub fn forward_dynamics_derivatives<T: Scalar>(
-    q: &[T; 16],
-    v: &[T; 6],
-    tau: &[T; 7],
-) -> [[T; 21]; 6] {
+pub fn forward_dynamics_derivatives<T: Scalar>(q: &[T; 16], v: &[T; 6], tau: &[T; 7]) -> [[T; 21]; 6] {
     let n = T::from_f64;
     // end_effector: joint (6 additions, 9 multiplications)
     let end_effector_joint = v[5].mul_add(q[13], v[4].mul_add(q[10], v[3] * q[7]));
@@ -4370,782 +2420,418 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_acceleration_2 = v[1].mul_add(v[2], cart_acceleration + cart_acceleration);
     let cart_acceleration_3 = q[3] * plate_acceleration;
     let cart_acceleration_4 = q[6] * plate_acceleration;
-    let cart_acceleration_5 = q[4]
-        .mul_add(cart_acceleration_4, q[1] * cart_acceleration_3);
+    let cart_acceleration_5 = q[4].mul_add(cart_acceleration_4, q[1] * cart_acceleration_3);
     let cart_acceleration_6 = cart_rate_z * cart_rate_z;
-    let cart_acceleration_7 = (-q[5])
-        .mul_add(
-            cart_acceleration_4,
-            (-q[2]).mul_add(cart_acceleration_3, cart_acceleration_2),
-        );
+    let cart_acceleration_7 = (-q[5]).mul_add(cart_acceleration_4, (-q[2]).mul_add(cart_acceleration_3, cart_acceleration_2));
     // cart: force (3 additions, 6 multiplications)
     let cart_force = cart_acceleration_6 * n(0.495);
     let cart_force_2 = cart_acceleration_6 * n(0.046);
     // end_effector: acceleration (20 additions, 23 multiplications)
     let end_effector_acceleration = (-end_effector_joint_2)
-        .mul_add(
-            end_effector_angular_velocity_3,
-            end_effector_joint_3 * end_effector_angular_velocity_2,
-        );
+        .mul_add(end_effector_angular_velocity_3, end_effector_joint_3 * end_effector_angular_velocity_2);
     let end_effector_acceleration_2 = (-end_effector_joint_3)
-        .mul_add(
-            end_effector_angular_velocity,
-            end_effector_joint * end_effector_angular_velocity_3,
-        );
+        .mul_add(end_effector_angular_velocity, end_effector_joint * end_effector_angular_velocity_3);
     let end_effector_acceleration_3 = (-end_effector_joint)
-        .mul_add(
-            end_effector_angular_velocity_2,
-            end_effector_joint_2 * end_effector_angular_velocity,
-        );
+        .mul_add(end_effector_angular_velocity_2, end_effector_joint_2 * end_effector_angular_velocity);
     let end_effector_acceleration_4 = cart_acceleration_6 * n(0.15);
     let end_effector_acceleration_5 = cart_acceleration_6 * n(0.02);
     let end_effector_acceleration_6 = cart_acceleration_5 + end_effector_acceleration_4;
     let end_effector_acceleration_7 = cart_acceleration_7 + end_effector_acceleration_5;
     let end_effector_acceleration_8 = q[13] * n(9.81);
     let end_effector_acceleration_9 = (-q[10])
-        .mul_add(
-            end_effector_acceleration_7,
-            q[7].mul_add(end_effector_acceleration_6, -end_effector_acceleration_8),
-        );
+        .mul_add(end_effector_acceleration_7, q[7].mul_add(end_effector_acceleration_6, -end_effector_acceleration_8));
     let end_effector_acceleration_10 = q[14] * n(9.81);
     let end_effector_acceleration_11 = (-q[11])
-        .mul_add(
-            end_effector_acceleration_7,
-            q[8].mul_add(end_effector_acceleration_6, -end_effector_acceleration_10),
-        );
+        .mul_add(end_effector_acceleration_7, q[8].mul_add(end_effector_acceleration_6, -end_effector_acceleration_10));
     let end_effector_acceleration_12 = q[15] * n(9.81);
     let end_effector_acceleration_13 = (-q[12])
-        .mul_add(
-            end_effector_acceleration_7,
-            q[9].mul_add(end_effector_acceleration_6, -end_effector_acceleration_12),
-        );
+        .mul_add(end_effector_acceleration_7, q[9].mul_add(end_effector_acceleration_6, -end_effector_acceleration_12));
     let end_effector_acceleration_14 = end_effector_rate_x * end_effector_rate_x;
     let end_effector_acceleration_15 = end_effector_rate_x * end_effector_rate_y;
     let end_effector_acceleration_16 = end_effector_rate_x * end_effector_rate_z;
     let end_effector_acceleration_17 = end_effector_rate_y * end_effector_rate_y;
     let end_effector_acceleration_18 = end_effector_rate_y * end_effector_rate_z;
     let end_effector_acceleration_19 = end_effector_rate_z * end_effector_rate_z;
-    let end_effector_acceleration_20 = end_effector_acceleration_3
-        + end_effector_acceleration_15;
-    let end_effector_acceleration_21 = end_effector_acceleration_2
-        - end_effector_acceleration_16;
-    let end_effector_acceleration_22 = end_effector_acceleration_3
-        - end_effector_acceleration_15;
-    let end_effector_acceleration_23 = end_effector_acceleration
-        + end_effector_acceleration_18;
-    let end_effector_acceleration_24 = end_effector_acceleration_2
-        + end_effector_acceleration_16;
-    let end_effector_acceleration_25 = end_effector_acceleration
-        - end_effector_acceleration_18;
+    let end_effector_acceleration_20 = end_effector_acceleration_3 + end_effector_acceleration_15;
+    let end_effector_acceleration_21 = end_effector_acceleration_2 - end_effector_acceleration_16;
+    let end_effector_acceleration_22 = end_effector_acceleration_3 - end_effector_acceleration_15;
+    let end_effector_acceleration_23 = end_effector_acceleration + end_effector_acceleration_18;
+    let end_effector_acceleration_24 = end_effector_acceleration_2 + end_effector_acceleration_16;
+    let end_effector_acceleration_25 = end_effector_acceleration - end_effector_acceleration_18;
     // end_effector: force (27 additions, 30 multiplications)
     let end_effector_force = end_effector_acceleration_18 * n(0.15511999999999998);
-    let end_effector_force_2 = (end_effector_acceleration_17
-        - end_effector_acceleration_19) * n(0.042300000000000004);
-    let end_effector_force_3 = (-end_effector_acceleration_20)
-        .mul_add(
-            n(0.027499999999999997),
-            end_effector_acceleration_21
-                .mul_add(
-                    n(0.0078),
-                    end_effector_acceleration
-                        .mul_add(n(0.19388), end_effector_force_2 - end_effector_force),
-                ),
-        );
+    let end_effector_force_2 = (end_effector_acceleration_17 - end_effector_acceleration_19) * n(0.042300000000000004);
+    let end_effector_force_3 = (-end_effector_acceleration_20).mul_add(
+        n(0.027499999999999997),
+        end_effector_acceleration_21
+            .mul_add(n(0.0078), end_effector_acceleration.mul_add(n(0.19388), end_effector_force_2 - end_effector_force)),
+    );
     let end_effector_force_4 = end_effector_acceleration_16 * n(0.16674999999999998);
-    let end_effector_force_5 = (end_effector_acceleration_14
-        - end_effector_acceleration_19) * n(0.027499999999999997);
-    let end_effector_force_6 = end_effector_acceleration_23
-        .mul_add(
-            n(0.0078),
-            end_effector_acceleration_22
-                .mul_add(
-                    n(0.042300000000000004),
-                    end_effector_acceleration_2
-                        .mul_add(n(0.18225), end_effector_force_4 + end_effector_force_5),
-                ),
-        );
+    let end_effector_force_5 = (end_effector_acceleration_14 - end_effector_acceleration_19) * n(0.027499999999999997);
+    let end_effector_force_6 = end_effector_acceleration_23.mul_add(
+        n(0.0078),
+        end_effector_acceleration_22.mul_add(
+            n(0.042300000000000004),
+            end_effector_acceleration_2.mul_add(n(0.18225), end_effector_force_4 + end_effector_force_5),
+        ),
+    );
     let end_effector_force_7 = end_effector_acceleration_15 * n(0.01163);
-    let end_effector_force_8 = (end_effector_acceleration_14
-        - end_effector_acceleration_17) * n(0.0078);
-    let end_effector_force_9 = (-end_effector_acceleration_25)
-        .mul_add(
-            n(0.027499999999999997),
-            end_effector_acceleration_24
-                .mul_add(
-                    n(0.042300000000000004),
-                    end_effector_acceleration_3
-                        .mul_add(n(0.02713), end_effector_force_8 - end_effector_force_7),
-                ),
-        );
+    let end_effector_force_8 = (end_effector_acceleration_14 - end_effector_acceleration_17) * n(0.0078);
+    let end_effector_force_9 = (-end_effector_acceleration_25).mul_add(
+        n(0.027499999999999997),
+        end_effector_acceleration_24.mul_add(
+            n(0.042300000000000004),
+            end_effector_acceleration_3.mul_add(n(0.02713), end_effector_force_8 - end_effector_force_7),
+        ),
+    );
     let end_effector_force_10 = end_effector_acceleration_11
-        .mul_add(
-            n(0.51),
-            end_effector_acceleration_13.mul_add(n(0.136), end_effector_force_3),
-        );
+        .mul_add(n(0.51), end_effector_acceleration_13.mul_add(n(0.136), end_effector_force_3));
     let end_effector_force_11 = (-end_effector_acceleration_9)
-        .mul_add(
-            n(0.51),
-            end_effector_acceleration_13.mul_add(n(0.085), end_effector_force_6),
-        );
+        .mul_add(n(0.51), end_effector_acceleration_13.mul_add(n(0.085), end_effector_force_6));
     let end_effector_force_12 = (-end_effector_acceleration_9)
-        .mul_add(
-            n(0.136),
-            (-end_effector_acceleration_11).mul_add(n(0.085), end_effector_force_9),
-        );
-    let end_effector_force_13 = (end_effector_acceleration_17
-        + end_effector_acceleration_19) * n(0.085);
+        .mul_add(n(0.136), (-end_effector_acceleration_11).mul_add(n(0.085), end_effector_force_9));
+    let end_effector_force_13 = (end_effector_acceleration_17 + end_effector_acceleration_19) * n(0.085);
     let end_effector_force_14 = (-end_effector_acceleration_24)
-        .mul_add(
-            n(0.51),
-            (-end_effector_acceleration_22).mul_add(n(0.136), end_effector_force_13),
-        );
-    let end_effector_force_15 = (end_effector_acceleration_14
-        + end_effector_acceleration_19) * n(0.136);
+        .mul_add(n(0.51), (-end_effector_acceleration_22).mul_add(n(0.136), end_effector_force_13));
+    let end_effector_force_15 = (end_effector_acceleration_14 + end_effector_acceleration_19) * n(0.136);
     let end_effector_force_16 = (-end_effector_acceleration_25)
-        .mul_add(
-            n(0.51),
-            end_effector_acceleration_20.mul_add(n(0.085), end_effector_force_15),
-        );
-    let end_effector_force_17 = (end_effector_acceleration_14
-        + end_effector_acceleration_17) * n(0.51);
+        .mul_add(n(0.51), end_effector_acceleration_20.mul_add(n(0.085), end_effector_force_15));
+    let end_effector_force_17 = (end_effector_acceleration_14 + end_effector_acceleration_17) * n(0.51);
     let end_effector_force_18 = end_effector_acceleration_23
-        .mul_add(
-            n(0.136),
-            end_effector_acceleration_21.mul_add(n(0.085), end_effector_force_17),
-        );
+        .mul_add(n(0.136), end_effector_acceleration_21.mul_add(n(0.085), end_effector_force_17));
     // end_effector: effort (12 additions, 17 multiplications)
     let end_effector_effort = q[15]
-        .mul_add(
-            end_effector_force_12,
-            q[14].mul_add(end_effector_force_11, q[13] * end_effector_force_10),
-        );
+        .mul_add(end_effector_force_12, q[14].mul_add(end_effector_force_11, q[13] * end_effector_force_10));
     let end_effector_effort_2 = (-q[8])
-        .mul_add(
-            end_effector_force_16,
-            q[9].mul_add(end_effector_force_18, q[7] * end_effector_force_14),
-        );
+        .mul_add(end_effector_force_16, q[9].mul_add(end_effector_force_18, q[7] * end_effector_force_14));
     let end_effector_effort_3 = (-q[11])
-        .mul_add(
-            end_effector_force_16,
-            q[12].mul_add(end_effector_force_18, q[10] * end_effector_force_14),
-        );
+        .mul_add(end_effector_force_16, q[12].mul_add(end_effector_force_18, q[10] * end_effector_force_14));
     // end_effector: composite inertia (93 additions, 130 multiplications)
     let end_effector_composite_inertia = q[8] * n(0.0078);
     let end_effector_composite_inertia_2 = q[9] * n(0.027499999999999997);
     let end_effector_composite_inertia_3 = q[7]
-        .mul_add(
-            n(0.19388),
-            end_effector_composite_inertia - end_effector_composite_inertia_2,
-        );
+        .mul_add(n(0.19388), end_effector_composite_inertia - end_effector_composite_inertia_2);
     let end_effector_composite_inertia_4 = q[7] * n(0.0078);
     let end_effector_composite_inertia_5 = q[9] * n(0.042300000000000004);
     let end_effector_composite_inertia_6 = q[8]
-        .mul_add(
-            n(0.18225),
-            end_effector_composite_inertia_4 + end_effector_composite_inertia_5,
-        );
-    let end_effector_composite_inertia_7 = (-q[8])
-        .mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997));
-    let end_effector_composite_inertia_8 = (-q[9])
-        .mul_add(n(0.02713), end_effector_composite_inertia_7);
+        .mul_add(n(0.18225), end_effector_composite_inertia_4 + end_effector_composite_inertia_5);
+    let end_effector_composite_inertia_7 = (-q[8]).mul_add(n(0.042300000000000004), q[7] * n(0.027499999999999997));
+    let end_effector_composite_inertia_8 = (-q[9]).mul_add(n(0.02713), end_effector_composite_inertia_7);
     let end_effector_composite_inertia_9 = q[9].mul_add(n(0.136), q[8] * n(0.51));
     let end_effector_composite_inertia_10 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
     let end_effector_composite_inertia_11 = q[8].mul_add(n(0.085), q[7] * n(0.136));
-    let end_effector_composite_inertia_12 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_8,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_6,
-                    q[13] * end_effector_composite_inertia_3,
-                ),
-        );
-    let end_effector_composite_inertia_13 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_11,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_10,
-                    q[7] * end_effector_composite_inertia_9,
-                ),
-        );
-    let end_effector_composite_inertia_14 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_11,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_10,
-                    q[10] * end_effector_composite_inertia_9,
-                ),
-        );
+    let end_effector_composite_inertia_12 = (-q[15]).mul_add(
+        end_effector_composite_inertia_8,
+        q[14].mul_add(end_effector_composite_inertia_6, q[13] * end_effector_composite_inertia_3),
+    );
+    let end_effector_composite_inertia_13 = (-q[9]).mul_add(
+        end_effector_composite_inertia_11,
+        q[8].mul_add(end_effector_composite_inertia_10, q[7] * end_effector_composite_inertia_9),
+    );
+    let end_effector_composite_inertia_14 = (-q[12]).mul_add(
+        end_effector_composite_inertia_11,
+        q[11].mul_add(end_effector_composite_inertia_10, q[10] * end_effector_composite_inertia_9),
+    );
     let end_effector_composite_inertia_15 = end_effector_composite_inertia_13
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_14
-                .mul_add(n(0.15), end_effector_composite_inertia_12),
-        );
-    let end_effector_composite_inertia_16 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_14,
-                    q[1] * end_effector_composite_inertia_13,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_14,
-                        q[4] * end_effector_composite_inertia_13,
-                    )),
-        );
+        .mul_add(n(0.02), end_effector_composite_inertia_14.mul_add(n(0.15), end_effector_composite_inertia_12));
+    let end_effector_composite_inertia_16 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_composite_inertia_14, q[1] * end_effector_composite_inertia_13),
+        q[3] * (q[5].mul_add(end_effector_composite_inertia_14, q[4] * end_effector_composite_inertia_13)),
+    );
     let end_effector_composite_inertia_17 = q[11] * n(0.0078);
     let end_effector_composite_inertia_18 = q[12] * n(0.027499999999999997);
     let end_effector_composite_inertia_19 = q[10]
-        .mul_add(
-            n(0.19388),
-            end_effector_composite_inertia_17 - end_effector_composite_inertia_18,
-        );
+        .mul_add(n(0.19388), end_effector_composite_inertia_17 - end_effector_composite_inertia_18);
     let end_effector_composite_inertia_20 = q[10] * n(0.0078);
     let end_effector_composite_inertia_21 = q[12] * n(0.042300000000000004);
     let end_effector_composite_inertia_22 = q[11]
-        .mul_add(
-            n(0.18225),
-            end_effector_composite_inertia_20 + end_effector_composite_inertia_21,
-        );
-    let end_effector_composite_inertia_23 = (-q[11])
-        .mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997));
-    let end_effector_composite_inertia_24 = (-q[12])
-        .mul_add(n(0.02713), end_effector_composite_inertia_23);
+        .mul_add(n(0.18225), end_effector_composite_inertia_20 + end_effector_composite_inertia_21);
+    let end_effector_composite_inertia_23 = (-q[11]).mul_add(n(0.042300000000000004), q[10] * n(0.027499999999999997));
+    let end_effector_composite_inertia_24 = (-q[12]).mul_add(n(0.02713), end_effector_composite_inertia_23);
     let end_effector_composite_inertia_25 = q[12].mul_add(n(0.136), q[11] * n(0.51));
     let end_effector_composite_inertia_26 = (-q[10]).mul_add(n(0.51), q[12] * n(0.085));
     let end_effector_composite_inertia_27 = q[11].mul_add(n(0.085), q[10] * n(0.136));
-    let end_effector_composite_inertia_28 = (-q[15])
-        .mul_add(
-            end_effector_composite_inertia_24,
-            q[14]
-                .mul_add(
-                    end_effector_composite_inertia_22,
-                    q[13] * end_effector_composite_inertia_19,
-                ),
-        );
-    let end_effector_composite_inertia_29 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_27,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_26,
-                    q[7] * end_effector_composite_inertia_25,
-                ),
-        );
-    let end_effector_composite_inertia_30 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_27,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_26,
-                    q[10] * end_effector_composite_inertia_25,
-                ),
-        );
+    let end_effector_composite_inertia_28 = (-q[15]).mul_add(
+        end_effector_composite_inertia_24,
+        q[14].mul_add(end_effector_composite_inertia_22, q[13] * end_effector_composite_inertia_19),
+    );
+    let end_effector_composite_inertia_29 = (-q[9]).mul_add(
+        end_effector_composite_inertia_27,
+        q[8].mul_add(end_effector_composite_inertia_26, q[7] * end_effector_composite_inertia_25),
+    );
+    let end_effector_composite_inertia_30 = (-q[12]).mul_add(
+        end_effector_composite_inertia_27,
+        q[11].mul_add(end_effector_composite_inertia_26, q[10] * end_effector_composite_inertia_25),
+    );
     let end_effector_composite_inertia_31 = end_effector_composite_inertia_29
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_30
-                .mul_add(n(0.15), end_effector_composite_inertia_28),
-        );
-    let end_effector_composite_inertia_32 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_30,
-                    q[1] * end_effector_composite_inertia_29,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_30,
-                        q[4] * end_effector_composite_inertia_29,
-                    )),
-        );
+        .mul_add(n(0.02), end_effector_composite_inertia_30.mul_add(n(0.15), end_effector_composite_inertia_28));
+    let end_effector_composite_inertia_32 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_composite_inertia_30, q[1] * end_effector_composite_inertia_29),
+        q[3] * (q[5].mul_add(end_effector_composite_inertia_30, q[4] * end_effector_composite_inertia_29)),
+    );
     let end_effector_composite_inertia_33 = q[15].mul_add(n(0.136), q[14] * n(0.51));
     let end_effector_composite_inertia_34 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
     let end_effector_composite_inertia_35 = q[14].mul_add(n(0.085), q[13] * n(0.136));
-    let end_effector_composite_inertia_36 = q[14]
-        .mul_add(
-            q[15]
-                .mul_add(
-                    n(0.042300000000000004),
-                    q[14].mul_add(n(0.18225), q[13] * n(0.0078)),
-                ),
-            q[13]
-                * ((-q[15])
-                    .mul_add(
-                        n(0.027499999999999997),
-                        q[14].mul_add(n(0.0078), q[13] * n(0.19388)),
-                    )),
-        );
-    let end_effector_composite_inertia_37 = (-q[15])
-        .mul_add(
-            (-q[15])
-                .mul_add(
-                    n(0.02713),
-                    (-q[14])
-                        .mul_add(
-                            n(0.042300000000000004),
-                            q[13] * n(0.027499999999999997),
-                        ),
-                ),
-            end_effector_composite_inertia_36,
-        );
-    let end_effector_composite_inertia_38 = (-q[9])
-        .mul_add(
-            end_effector_composite_inertia_35,
-            q[8]
-                .mul_add(
-                    end_effector_composite_inertia_34,
-                    q[7] * end_effector_composite_inertia_33,
-                ),
-        );
-    let end_effector_composite_inertia_39 = (-q[12])
-        .mul_add(
-            end_effector_composite_inertia_35,
-            q[11]
-                .mul_add(
-                    end_effector_composite_inertia_34,
-                    q[10] * end_effector_composite_inertia_33,
-                ),
-        );
+    let end_effector_composite_inertia_36 = q[14].mul_add(
+        q[15].mul_add(n(0.042300000000000004), q[14].mul_add(n(0.18225), q[13] * n(0.0078))),
+        q[13] * ((-q[15]).mul_add(n(0.027499999999999997), q[14].mul_add(n(0.0078), q[13] * n(0.19388)))),
+    );
+    let end_effector_composite_inertia_37 = (-q[15]).mul_add(
+        (-q[15]).mul_add(n(0.02713), (-q[14]).mul_add(n(0.042300000000000004), q[13] * n(0.027499999999999997))),
+        end_effector_composite_inertia_36,
+    );
+    let end_effector_composite_inertia_38 = (-q[9]).mul_add(
+        end_effector_composite_inertia_35,
+        q[8].mul_add(end_effector_composite_inertia_34, q[7] * end_effector_composite_inertia_33),
+    );
+    let end_effector_composite_inertia_39 = (-q[12]).mul_add(
+        end_effector_composite_inertia_35,
+        q[11].mul_add(end_effector_composite_inertia_34, q[10] * end_effector_composite_inertia_33),
+    );
     let end_effector_composite_inertia_40 = end_effector_composite_inertia_38
-        .mul_add(
-            n(0.02),
-            end_effector_composite_inertia_39
-                .mul_add(n(0.15), end_effector_composite_inertia_37),
-        );
-    let end_effector_composite_inertia_41 = (-q[6])
-        .mul_add(
-            q[2]
-                .mul_add(
-                    end_effector_composite_inertia_39,
-                    q[1] * end_effector_composite_inertia_38,
-                ),
-            q[3]
-                * (q[5]
-                    .mul_add(
-                        end_effector_composite_inertia_39,
-                        q[4] * end_effector_composite_inertia_38,
-                    )),
-        );
-    let end_effector_composite_inertia_42 = end_effector_composite_inertia_40
-        + end_effector_composite_inertia_41;
-    let end_effector_composite_inertia_43 = (-q[8])
-        .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
-    let end_effector_composite_inertia_44 = (-q[11])
-        .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
+        .mul_add(n(0.02), end_effector_composite_inertia_39.mul_add(n(0.15), end_effector_composite_inertia_37));
+    let end_effector_composite_inertia_41 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_composite_inertia_39, q[1] * end_effector_composite_inertia_38),
+        q[3] * (q[5].mul_add(end_effector_composite_inertia_39, q[4] * end_effector_composite_inertia_38)),
+    );
+    let end_effector_composite_inertia_42 = end_effector_composite_inertia_40 + end_effector_composite_inertia_41;
+    let end_effector_composite_inertia_43 = (-q[8]).mul_add(n(0.136), q[9].mul_add(n(0.51), q[7] * n(0.085)));
+    let end_effector_composite_inertia_44 = (-q[11]).mul_add(n(0.136), q[12].mul_add(n(0.51), q[10] * n(0.085)));
     let end_effector_composite_inertia_45 = q[7]
-        .mul_add(
-            n(0.007750000000000002),
-            end_effector_composite_inertia_2 - end_effector_composite_inertia,
-        );
+        .mul_add(n(0.007750000000000002), end_effector_composite_inertia_2 - end_effector_composite_inertia);
     let end_effector_composite_inertia_46 = (-q[8])
-        .mul_add(
-            n(0.01938),
-            end_effector_composite_inertia_5 + end_effector_composite_inertia_4,
-        );
-    let end_effector_composite_inertia_47 = q[9]
-        .mul_add(n(0.1745), end_effector_composite_inertia_7);
-    let end_effector_composite_inertia_48 = (-q[11])
-        .mul_add(
-            (-q[11])
-                .mul_add(
-                    n(0.01938),
-                    end_effector_composite_inertia_21 + end_effector_composite_inertia_20,
-                ),
-            q[10]
-                * (q[10]
-                    .mul_add(
-                        n(0.007750000000000002),
-                        end_effector_composite_inertia_18
-                            - end_effector_composite_inertia_17,
-                    )),
-        );
-    let end_effector_composite_inertia_49 = (-q[8])
-        .mul_add(
+        .mul_add(n(0.01938), end_effector_composite_inertia_5 + end_effector_composite_inertia_4);
+    let end_effector_composite_inertia_47 = q[9].mul_add(n(0.1745), end_effector_composite_inertia_7);
+    let end_effector_composite_inertia_48 = (-q[11]).mul_add(
+        (-q[11]).mul_add(n(0.01938), end_effector_composite_inertia_21 + end_effector_composite_inertia_20),
+        q[10] * (q[10].mul_add(n(0.007750000000000002), end_effector_composite_inertia_18 - end_effector_composite_inertia_17)),
+    );
+    let end_effector_composite_inertia_49 = (-q[8]).mul_add(
+        end_effector_composite_inertia_46,
+        end_effector_composite_inertia_43
+            .mul_add(n(0.3), q[9].mul_add(end_effector_composite_inertia_47, q[7] * end_effector_composite_inertia_45)),
+    );
+    let end_effector_composite_inertia_50 = (-end_effector_composite_inertia_43).mul_add(
+        n(0.02),
+        (-q[11]).mul_add(
             end_effector_composite_inertia_46,
-            end_effector_composite_inertia_43
-                .mul_add(
-                    n(0.3),
-                    q[9]
-                        .mul_add(
-                            end_effector_composite_inertia_47,
-                            q[7] * end_effector_composite_inertia_45,
-                        ),
-                ),
-        );
-    let end_effector_composite_inertia_50 = (-end_effector_composite_inertia_43)
-        .mul_add(
-            n(0.02),
-            (-q[11])
-                .mul_add(
-                    end_effector_composite_inertia_46,
-                    end_effector_composite_inertia_44
-                        .mul_add(
-                            n(0.15),
-                            q[12]
-                                .mul_add(
-                                    end_effector_composite_inertia_47,
-                                    q[10] * end_effector_composite_inertia_45,
-                                ),
-                        ),
-                ),
-        );
+            end_effector_composite_inertia_44.mul_add(
+                n(0.15),
+                q[12].mul_add(end_effector_composite_inertia_47, q[10] * end_effector_composite_inertia_45),
+            ),
+        ),
+    );
     // cart: effort (7 additions, 6 multiplications)
-    let cart_effort = (-end_effector_effort_2)
-        .mul_add(
-            n(0.02),
-            (-end_effector_effort_3)
-                .mul_add(
-                    n(0.15),
-                    cart_acceleration_5
-                        .mul_add(
-                            n(0.046),
-                            cart_acceleration_7.mul_add(n(0.495), end_effector_effort),
-                        ),
-                ),
-        );
-    let cart_effort_2 = cart_acceleration_5
-        .mul_add(n(5.7), cart_force + end_effector_effort_2);
-    let cart_effort_3 = cart_acceleration_7
-        .mul_add(n(5.7), -cart_force_2 - end_effector_effort_3);
-    let cart_effort_4 = (-q[6])
-        .mul_add(
-            (-q[2]).mul_add(cart_effort_3, q[1] * cart_effort_2),
-            q[3] * ((-q[5]).mul_add(cart_effort_3, q[4] * cart_effort_2)),
-        );
+    let cart_effort = (-end_effector_effort_2).mul_add(
+        n(0.02),
+        (-end_effector_effort_3).mul_add(
+            n(0.15),
+            cart_acceleration_5.mul_add(n(0.046), cart_acceleration_7.mul_add(n(0.495), end_effector_effort)),
+        ),
+    );
+    let cart_effort_2 = cart_acceleration_5.mul_add(n(5.7), cart_force + end_effector_effort_2);
+    let cart_effort_3 = cart_acceleration_7.mul_add(n(5.7), -cart_force_2 - end_effector_effort_3);
+    let cart_effort_4 = (-q[6]).mul_add(
+        (-q[2]).mul_add(cart_effort_3, q[1] * cart_effort_2),
+        q[3] * ((-q[5]).mul_add(cart_effort_3, q[4] * cart_effort_2)),
+    );
     // cart: composite inertia (26 additions, 30 multiplications)
     let cart_composite_inertia = end_effector_composite_inertia_43 + n(0.495);
     let cart_composite_inertia_2 = end_effector_composite_inertia_44 + n(0.046);
-    let cart_composite_inertia_3 = end_effector_composite_inertia_49
-        + n(0.12764999999999999);
-    let cart_composite_inertia_4 = end_effector_composite_inertia_50
-        - n(0.002300000000000001);
-    let cart_composite_inertia_5 = (-end_effector_composite_inertia_44)
-        .mul_add(
-            n(0.04),
-            q[12]
-                .mul_add(
-                    q[12].mul_add(n(0.1745), end_effector_composite_inertia_23),
-                    end_effector_composite_inertia_48 + n(0.03728),
-                ),
-        );
+    let cart_composite_inertia_3 = end_effector_composite_inertia_49 + n(0.12764999999999999);
+    let cart_composite_inertia_4 = end_effector_composite_inertia_50 - n(0.002300000000000001);
+    let cart_composite_inertia_5 = (-end_effector_composite_inertia_44).mul_add(
+        n(0.04),
+        q[12].mul_add(
+            q[12].mul_add(n(0.1745), end_effector_composite_inertia_23),
+            end_effector_composite_inertia_48 + n(0.03728),
+        ),
+    );
     let cart_composite_inertia_6 = cart_composite_inertia_3 + cart_composite_inertia_5;
-    let cart_composite_inertia_7 = (-q[6])
-        .mul_add(
-            (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
-            q[3]
-                * ((-q[5])
-                    .mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
-        );
-    let cart_composite_inertia_8 = q[2]
-        .mul_add(
-            q[2].mul_add(cart_composite_inertia_5, q[1] * cart_composite_inertia_4),
-            q[1]
-                * (q[2]
-                    .mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_3)),
-        );
-    let cart_composite_inertia_9 = q[5]
-        .mul_add(
-            q[5].mul_add(cart_composite_inertia_5, q[4] * cart_composite_inertia_4),
-            q[4]
-                * (q[5]
-                    .mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_3)),
-        );
+    let cart_composite_inertia_7 = (-q[6]).mul_add(
+        (-q[2]).mul_add(cart_composite_inertia, q[1] * cart_composite_inertia_2),
+        q[3] * ((-q[5]).mul_add(cart_composite_inertia, q[4] * cart_composite_inertia_2)),
+    );
+    let cart_composite_inertia_8 = q[2].mul_add(
+        q[2].mul_add(cart_composite_inertia_5, q[1] * cart_composite_inertia_4),
+        q[1] * (q[2].mul_add(cart_composite_inertia_4, q[1] * cart_composite_inertia_3)),
+    );
+    let cart_composite_inertia_9 = q[5].mul_add(
+        q[5].mul_add(cart_composite_inertia_5, q[4] * cart_composite_inertia_4),
+        q[4] * (q[5].mul_add(cart_composite_inertia_4, q[4] * cart_composite_inertia_3)),
+    );
     let cart_composite_inertia_10 = (q[3]
-        .mul_add(
-            n(2.85),
-            q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia),
-        )) * (q[3] + q[3]);
+        .mul_add(n(2.85), q[2].mul_add(cart_composite_inertia_2, q[1] * cart_composite_inertia))) * (q[3] + q[3]);
     let cart_composite_inertia_11 = (q[6]
-        .mul_add(
-            n(2.85),
-            q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia),
-        )) * (q[6] + q[6]);
+        .mul_add(n(2.85), q[5].mul_add(cart_composite_inertia_2, q[4] * cart_composite_inertia))) * (q[6] + q[6]);
     // end_effector: effort (3 additions)
     let end_effector_effort_4 = end_effector_effort - tau[6];
     // end_effector: factor (31 additions, 43 multiplications, 3 divisions)
     let end_effector_factor = n(1.0) / end_effector_composite_inertia_37;
     let end_effector_factor_2 = end_effector_composite_inertia_28 * end_effector_factor;
-    let end_effector_factor_3 = (-end_effector_composite_inertia_28)
-        .mul_add(
-            end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_24,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_22,
-                            q[10] * end_effector_composite_inertia_19,
-                        ),
-                ),
-        );
-    let end_effector_factor_4 = (-end_effector_composite_inertia_12)
-        .mul_add(
-            end_effector_factor_2,
-            (-q[12])
-                .mul_add(
-                    end_effector_composite_inertia_8,
-                    q[11]
-                        .mul_add(
-                            end_effector_composite_inertia_6,
-                            q[10] * end_effector_composite_inertia_3,
-                        ),
-                ),
-        );
+    let end_effector_factor_3 = (-end_effector_composite_inertia_28).mul_add(
+        end_effector_factor_2,
+        (-q[12]).mul_add(
+            end_effector_composite_inertia_24,
+            q[11].mul_add(end_effector_composite_inertia_22, q[10] * end_effector_composite_inertia_19),
+        ),
+    );
+    let end_effector_factor_4 = (-end_effector_composite_inertia_12).mul_add(
+        end_effector_factor_2,
+        (-q[12]).mul_add(
+            end_effector_composite_inertia_8,
+            q[11].mul_add(end_effector_composite_inertia_6, q[10] * end_effector_composite_inertia_3),
+        ),
+    );
     let end_effector_factor_5 = (-end_effector_composite_inertia_38)
         .mul_add(end_effector_factor_2, end_effector_composite_inertia_29);
     let end_effector_factor_6 = (-end_effector_composite_inertia_40)
         .mul_add(end_effector_factor_2, end_effector_composite_inertia_31);
     let end_effector_factor_7 = (-end_effector_composite_inertia_42)
-        .mul_add(
-            end_effector_factor_2,
-            end_effector_composite_inertia_31 + end_effector_composite_inertia_32,
-        );
+        .mul_add(end_effector_factor_2, end_effector_composite_inertia_31 + end_effector_composite_inertia_32);
     let end_effector_factor_8 = end_effector_composite_inertia_12 * end_effector_factor;
-    let end_effector_factor_9 = (-end_effector_composite_inertia_12)
-        .mul_add(
-            end_effector_factor_8,
-            (-q[9])
-                .mul_add(
-                    end_effector_composite_inertia_8,
-                    q[8]
-                        .mul_add(
-                            end_effector_composite_inertia_6,
-                            q[7] * end_effector_composite_inertia_3,
-                        ),
-                ),
-        );
+    let end_effector_factor_9 = (-end_effector_composite_inertia_12).mul_add(
+        end_effector_factor_8,
+        (-q[9]).mul_add(
+            end_effector_composite_inertia_8,
+            q[8].mul_add(end_effector_composite_inertia_6, q[7] * end_effector_composite_inertia_3),
+        ),
+    );
     let end_effector_factor_10 = end_effector_composite_inertia_38 * end_effector_factor;
-    let end_effector_factor_11 = (-q[3])
-        .mul_add(
-            q[4] * n(5.7),
-            end_effector_composite_inertia_42
-                .mul_add(
-                    end_effector_factor_10,
-                    q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2),
-                ),
-        );
+    let end_effector_factor_11 = (-q[3]).mul_add(
+        q[4] * n(5.7),
+        end_effector_composite_inertia_42
+            .mul_add(end_effector_factor_10, q[6].mul_add(q[1] * n(5.7), cart_composite_inertia_2)),
+    );
     let end_effector_factor_12 = end_effector_composite_inertia_40 * end_effector_factor;
     let end_effector_factor_13 = end_effector_composite_inertia_42 * end_effector_factor;
-    let end_effector_factor_14 = (-end_effector_composite_inertia_42)
-        .mul_add(
-            end_effector_factor_13,
-            cart_composite_inertia_8 + cart_composite_inertia_10 + n(1.1700000000000002)
-                + cart_composite_inertia_9 + cart_composite_inertia_11
-                + n(0.8799999999999999),
-        );
+    let end_effector_factor_14 = (-end_effector_composite_inertia_42).mul_add(
+        end_effector_factor_13,
+        cart_composite_inertia_8 + cart_composite_inertia_10 + n(1.1700000000000002)
+            + cart_composite_inertia_9 + cart_composite_inertia_11
+            + n(0.8799999999999999),
+    );
     let end_effector_factor_15 = n(1.0) / end_effector_factor_3;
     let end_effector_factor_16 = end_effector_factor_4 * end_effector_factor_15;
-    let end_effector_factor_17 = (-end_effector_factor_5)
-        .mul_add(
-            end_effector_factor_16,
-            (-end_effector_composite_inertia_38)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_13),
-        );
-    let end_effector_factor_18 = (-end_effector_factor_6)
-        .mul_add(
-            end_effector_factor_16,
-            (-end_effector_composite_inertia_40)
-                .mul_add(end_effector_factor_8, end_effector_composite_inertia_15),
-        );
-    let end_effector_factor_19 = (-end_effector_factor_7)
-        .mul_add(
-            end_effector_factor_16,
-            (-end_effector_composite_inertia_42)
-                .mul_add(
-                    end_effector_factor_8,
-                    end_effector_composite_inertia_15 + end_effector_composite_inertia_16,
-                ),
-        );
+    let end_effector_factor_17 = (-end_effector_factor_5).mul_add(
+        end_effector_factor_16,
+        (-end_effector_composite_inertia_38).mul_add(end_effector_factor_8, end_effector_composite_inertia_13),
+    );
+    let end_effector_factor_18 = (-end_effector_factor_6).mul_add(
+        end_effector_factor_16,
+        (-end_effector_composite_inertia_40).mul_add(end_effector_factor_8, end_effector_composite_inertia_15),
+    );
+    let end_effector_factor_19 = (-end_effector_factor_7).mul_add(
+        end_effector_factor_16,
+        (-end_effector_composite_inertia_42)
+            .mul_add(end_effector_factor_8, end_effector_composite_inertia_15 + end_effector_composite_inertia_16),
+    );
     let end_effector_factor_20 = end_effector_factor_5 * end_effector_factor_15;
     let end_effector_factor_21 = end_effector_factor_6 * end_effector_factor_15;
     let end_effector_factor_22 = end_effector_factor_7 * end_effector_factor_15;
-    let end_effector_factor_23 = n(1.0)
-        / ((-end_effector_factor_4)
-            .mul_add(end_effector_factor_16, end_effector_factor_9));
+    let end_effector_factor_23 = n(1.0) / ((-end_effector_factor_4).mul_add(end_effector_factor_16, end_effector_factor_9));
     let end_effector_factor_24 = end_effector_factor_17 * end_effector_factor_23;
-    let end_effector_factor_25 = end_effector_factor_18
-        .mul_add(
-            end_effector_factor_24,
-            end_effector_factor_6
-                .mul_add(
-                    end_effector_factor_20,
-                    end_effector_composite_inertia_40
-                        .mul_add(end_effector_factor_10, cart_composite_inertia_2),
-                ),
-        );
+    let end_effector_factor_25 = end_effector_factor_18.mul_add(
+        end_effector_factor_24,
+        end_effector_factor_6.mul_add(
+            end_effector_factor_20,
+            end_effector_composite_inertia_40.mul_add(end_effector_factor_10, cart_composite_inertia_2),
+        ),
+    );
     let end_effector_factor_26 = end_effector_factor_19
-        .mul_add(
-            end_effector_factor_24,
-            end_effector_factor_7.mul_add(end_effector_factor_20, end_effector_factor_11),
-        );
+        .mul_add(end_effector_factor_24, end_effector_factor_7.mul_add(end_effector_factor_20, end_effector_factor_11));
     let end_effector_factor_27 = end_effector_factor_18 * end_effector_factor_23;
-    let end_effector_factor_28 = (-end_effector_factor_19)
-        .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_7)
-                .mul_add(
-                    end_effector_factor_21,
-                    (-end_effector_composite_inertia_42)
-                        .mul_add(
-                            end_effector_factor_12,
-                            cart_composite_inertia_6 - cart_composite_inertia_7,
-                        ),
-                ),
-        );
+    let end_effector_factor_28 = (-end_effector_factor_19).mul_add(
+        end_effector_factor_27,
+        (-end_effector_factor_7).mul_add(
+            end_effector_factor_21,
+            (-end_effector_composite_inertia_42)
+                .mul_add(end_effector_factor_12, cart_composite_inertia_6 - cart_composite_inertia_7),
+        ),
+    );
     let end_effector_factor_29 = end_effector_factor_19 * end_effector_factor_23;
     // end_effector: load (12 additions, 12 multiplications)
-    let end_effector_load = (-end_effector_effort_4)
-        .mul_add(
-            end_effector_factor_2,
-            q[12]
-                .mul_add(
-                    end_effector_force_12,
-                    q[11]
-                        .mul_add(
-                            end_effector_force_11,
-                            q[10].mul_add(end_effector_force_10, -tau[5]),
-                        ),
-                ),
-        );
-    let end_effector_load_2 = (-end_effector_effort_4)
-        .mul_add(
-            end_effector_factor_8,
-            q[9]
-                .mul_add(
-                    end_effector_force_12,
-                    q[8]
-                        .mul_add(
-                            end_effector_force_11,
-                            q[7].mul_add(end_effector_force_10, -tau[4]),
-                        ),
-                ),
-        );
-    let end_effector_load_3 = (-end_effector_factor_16)
-        .mul_add(end_effector_load, end_effector_load_2);
-    let end_effector_load_4 = end_effector_factor_24
-        .mul_add(
-            end_effector_load_3,
-            end_effector_factor_20
-                .mul_add(
-                    end_effector_load,
-                    end_effector_effort_4
-                        .mul_add(end_effector_factor_10, cart_effort_2 + tau[2]),
-                ),
-        );
-    let end_effector_load_5 = (-end_effector_factor_27)
-        .mul_add(
-            end_effector_load_3,
-            (-end_effector_factor_21)
-                .mul_add(
-                    end_effector_load,
-                    (-end_effector_effort_4)
-                        .mul_add(end_effector_factor_12, cart_effort - tau[1]),
-                ),
-        );
-    let end_effector_load_6 = (-end_effector_factor_29)
-        .mul_add(
-            end_effector_load_3,
-            (-end_effector_factor_22)
-                .mul_add(
-                    end_effector_load,
-                    (-end_effector_effort_4)
-                        .mul_add(
-                            end_effector_factor_13,
-                            cart_effort - cart_effort_4 - tau[0],
-                        ),
-                ),
-        );
+    let end_effector_load = (-end_effector_effort_4).mul_add(
+        end_effector_factor_2,
+        q[12].mul_add(
+            end_effector_force_12,
+            q[11].mul_add(end_effector_force_11, q[10].mul_add(end_effector_force_10, -tau[5])),
+        ),
+    );
+    let end_effector_load_2 = (-end_effector_effort_4).mul_add(
+        end_effector_factor_8,
+        q[9].mul_add(end_effector_force_12, q[8].mul_add(end_effector_force_11, q[7].mul_add(end_effector_force_10, -tau[4]))),
+    );
+    let end_effector_load_3 = (-end_effector_factor_16).mul_add(end_effector_load, end_effector_load_2);
+    let end_effector_load_4 = end_effector_factor_24.mul_add(
+        end_effector_load_3,
+        end_effector_factor_20
+            .mul_add(end_effector_load, end_effector_effort_4.mul_add(end_effector_factor_10, cart_effort_2 + tau[2])),
+    );
+    let end_effector_load_5 = (-end_effector_factor_27).mul_add(
+        end_effector_load_3,
+        (-end_effector_factor_21)
+            .mul_add(end_effector_load, (-end_effector_effort_4).mul_add(end_effector_factor_12, cart_effort - tau[1])),
+    );
+    let end_effector_load_6 = (-end_effector_factor_29).mul_add(
+        end_effector_load_3,
+        (-end_effector_factor_22).mul_add(
+            end_effector_load,
+            (-end_effector_effort_4).mul_add(end_effector_factor_13, cart_effort - cart_effort_4 - tau[0]),
+        ),
+    );
     // cart: factor (4 additions, 7 multiplications, 2 divisions)
-    let cart_factor = n(1.0)
-        / (end_effector_factor_17
-            .mul_add(
-                end_effector_factor_24,
-                end_effector_factor_5
-                    .mul_add(
-                        end_effector_factor_20,
-                        end_effector_composite_inertia_38
-                            .mul_add(end_effector_factor_10, -n(5.7)),
-                    ),
-            ));
+    let cart_factor = n(1.0) / (end_effector_factor_17.mul_add(
+        end_effector_factor_24,
+        end_effector_factor_5.mul_add(
+            end_effector_factor_20,
+            end_effector_composite_inertia_38.mul_add(end_effector_factor_10, -n(5.7)),
+        ),
+    ));
     let cart_factor_2 = end_effector_factor_25 * cart_factor;
-    let cart_factor_3 = (-end_effector_factor_18)
-        .mul_add(
-            end_effector_factor_27,
-            (-end_effector_factor_6)
-                .mul_add(
-                    end_effector_factor_21,
-                    (-end_effector_composite_inertia_40)
-                        .mul_add(
-                            end_effector_factor_12,
-                            end_effector_factor_25
-                                .mul_add(cart_factor_2, cart_composite_inertia_6),
-                        ),
-                ),
-        );
-    let cart_factor_4 = end_effector_factor_26
-        .mul_add(cart_factor_2, end_effector_factor_28);
+    let cart_factor_3 = (-end_effector_factor_18).mul_add(
+        end_effector_factor_27,
+        (-end_effector_factor_6).mul_add(
+            end_effector_factor_21,
+            (-end_effector_composite_inertia_40).mul_add(
+                end_effector_factor_12,
+                end_effector_factor_25.mul_add(cart_factor_2, cart_composite_inertia_6),
+            ),
+        ),
+    );
+    let cart_factor_4 = end_effector_factor_26.mul_add(cart_factor_2, end_effector_factor_28);
     let cart_factor_5 = end_effector_factor_26 * cart_factor;
     let cart_factor_6 = n(1.0) / cart_factor_3;
     let cart_factor_7 = cart_factor_4 * cart_factor_6;
-    let cart_factor_8 = (-cart_factor_4)
-        .mul_add(
-            cart_factor_7,
-            (-end_effector_factor_19)
-                .mul_add(
-                    end_effector_factor_29,
-                    (-end_effector_factor_7)
-                        .mul_add(
-                            end_effector_factor_22,
-                            end_effector_factor_26
-                                .mul_add(cart_factor_5, end_effector_factor_14),
-                        ),
-                ),
-        );
+    let cart_factor_8 = (-cart_factor_4).mul_add(
+        cart_factor_7,
+        (-end_effector_factor_19).mul_add(
+            end_effector_factor_29,
+            (-end_effector_factor_7)
+                .mul_add(end_effector_factor_22, end_effector_factor_26.mul_add(cart_factor_5, end_effector_factor_14)),
+        ),
+    );
     // cart: load (3 additions, 3 multiplications)
     let cart_load = cart_factor_2.mul_add(end_effector_load_4, end_effector_load_5);
     // plate: factor (1 division)
     let plate_factor = n(1.0) / cart_factor_8;
     // plate: response (1 multiplication)
     let plate_acceleration_2 = plate_factor
-        * ((-cart_factor_7)
-            .mul_add(
-                cart_load,
-                cart_factor_5.mul_add(end_effector_load_4, end_effector_load_6),
-            ));
+        * ((-cart_factor_7).mul_add(cart_load, cart_factor_5.mul_add(end_effector_load_4, end_effector_load_6)));
     // cart: response (3 additions, 5 multiplications)
-    let cart_acceleration_8 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_acceleration_2, cart_load));
+    let cart_acceleration_8 = cart_factor_6 * ((-cart_factor_4).mul_add(plate_acceleration_2, cart_load));
     let cart_acceleration_9 = cart_factor
         * ((-end_effector_factor_26)
-            .mul_add(
-                plate_acceleration_2,
-                (-end_effector_factor_25)
-                    .mul_add(cart_acceleration_8, end_effector_load_4),
-            ));
+            .mul_add(plate_acceleration_2, (-end_effector_factor_25).mul_add(cart_acceleration_8, end_effector_load_4)));
     // cart: acceleration (7 additions, 6 multiplications)
     let cart_acceleration_10 = q[6] * plate_acceleration_2;
     let cart_acceleration_11 = cart_acceleration_3 - cart_acceleration_10;
     let cart_acceleration_12 = q[3] * plate_acceleration_2;
     let cart_acceleration_13 = cart_acceleration_4 + cart_acceleration_12;
     let cart_acceleration_14 = plate_acceleration_2 + cart_acceleration_8;
-    let cart_acceleration_15 = q[4]
-        .mul_add(
-            cart_acceleration_13,
-            q[1].mul_add(cart_acceleration_11, cart_acceleration_9),
-        );
+    let cart_acceleration_15 = q[4].mul_add(cart_acceleration_13, q[1].mul_add(cart_acceleration_11, cart_acceleration_9));
     let cart_acceleration_16 = (-q[5])
-        .mul_add(
-            cart_acceleration_13,
-            (-q[2]).mul_add(cart_acceleration_11, cart_acceleration_2),
-        );
+        .mul_add(cart_acceleration_13, (-q[2]).mul_add(cart_acceleration_11, cart_acceleration_2));
     // cart: motion (11 additions, 16 multiplications)
     let cart_motion = v[0] * q[6];
     let cart_motion_2 = v[0] * q[3];
@@ -5156,221 +2842,118 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_variation = v[0] + cart_rate_z;
     let cart_variation_2 = cart_motion_3 - cart_motion_5;
     let cart_variation_3 = cart_motion_4 + cart_motion_4;
-    let cart_variation_4 = (-v[0])
-        .mul_add(
-            cart_motion_3,
-            (-q[5]).mul_add(cart_acceleration_12, q[2] * cart_acceleration_10),
-        );
-    let cart_variation_5 = (-q[4])
-        .mul_add(
-            cart_acceleration_12,
-            v[0].mul_add(cart_motion_4, q[1] * cart_acceleration_10),
-        );
+    let cart_variation_4 = (-v[0]).mul_add(cart_motion_3, (-q[5]).mul_add(cart_acceleration_12, q[2] * cart_acceleration_10));
+    let cart_variation_5 = (-q[4]).mul_add(cart_acceleration_12, v[0].mul_add(cart_motion_4, q[1] * cart_acceleration_10));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_acceleration_26 = end_effector_factor_23
-        * ((-end_effector_factor_19)
-            .mul_add(
-                plate_acceleration_2,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        cart_acceleration_8,
-                        (-end_effector_factor_17)
-                            .mul_add(cart_acceleration_9, end_effector_load_3),
-                    ),
-            ));
-    let end_effector_response = end_effector_factor_7
-        .mul_add(
-            plate_acceleration_2,
-            end_effector_factor_6
-                .mul_add(
-                    cart_acceleration_8,
-                    end_effector_factor_5
-                        .mul_add(
-                            cart_acceleration_9,
-                            end_effector_factor_4 * end_effector_acceleration_26,
-                        ),
-                ),
-        );
-    let end_effector_acceleration_27 = end_effector_factor_15
-        * (end_effector_load - end_effector_response);
-    let end_effector_response_2 = end_effector_composite_inertia_40
-        .mul_add(
+    let end_effector_acceleration_26 = end_effector_factor_23 * ((-end_effector_factor_19).mul_add(
+        plate_acceleration_2,
+        (-end_effector_factor_18)
+            .mul_add(cart_acceleration_8, (-end_effector_factor_17).mul_add(cart_acceleration_9, end_effector_load_3)),
+    ));
+    let end_effector_response = end_effector_factor_7.mul_add(
+        plate_acceleration_2,
+        end_effector_factor_6.mul_add(
             cart_acceleration_8,
-            end_effector_composite_inertia_38
-                .mul_add(
-                    cart_acceleration_9,
-                    end_effector_composite_inertia_12
-                        .mul_add(
-                            end_effector_acceleration_26,
-                            end_effector_composite_inertia_28
-                                * end_effector_acceleration_27,
-                        ),
-                ),
-        );
+            end_effector_factor_5.mul_add(cart_acceleration_9, end_effector_factor_4 * end_effector_acceleration_26),
+        ),
+    );
+    let end_effector_acceleration_27 = end_effector_factor_15 * (end_effector_load - end_effector_response);
+    let end_effector_response_2 = end_effector_composite_inertia_40.mul_add(
+        cart_acceleration_8,
+        end_effector_composite_inertia_38.mul_add(
+            cart_acceleration_9,
+            end_effector_composite_inertia_12.mul_add(
+                end_effector_acceleration_26,
+                end_effector_composite_inertia_28 * end_effector_acceleration_27,
+            ),
+        ),
+    );
     let end_effector_acceleration_28 = end_effector_factor
-        * ((-end_effector_composite_inertia_42)
-            .mul_add(
-                plate_acceleration_2,
-                end_effector_effort_4 - end_effector_response_2,
-            ));
+        * ((-end_effector_composite_inertia_42).mul_add(plate_acceleration_2, end_effector_effort_4 - end_effector_response_2));
     // end_effector: acceleration (28 additions, 20 multiplications)
     let end_effector_acceleration_29 = cart_acceleration_14 * n(0.02);
     let end_effector_acceleration_30 = cart_acceleration_14 * n(0.15);
-    let end_effector_acceleration_31 = cart_acceleration_15 + end_effector_acceleration_4
-        + end_effector_acceleration_29;
-    let end_effector_acceleration_32 = cart_acceleration_16 + end_effector_acceleration_5
-        - end_effector_acceleration_30;
+    let end_effector_acceleration_31 = cart_acceleration_15 + end_effector_acceleration_4 + end_effector_acceleration_29;
+    let end_effector_acceleration_32 = cart_acceleration_16 + end_effector_acceleration_5 - end_effector_acceleration_30;
     let end_effector_acceleration_33 = (-q[7])
-        .mul_add(
-            end_effector_acceleration_31,
-            q[10].mul_add(end_effector_acceleration_32, end_effector_acceleration_8),
-        );
+        .mul_add(end_effector_acceleration_31, q[10].mul_add(end_effector_acceleration_32, end_effector_acceleration_8));
     let end_effector_acceleration_34 = (-q[8])
-        .mul_add(
-            end_effector_acceleration_31,
-            q[11].mul_add(end_effector_acceleration_32, end_effector_acceleration_10),
-        );
+        .mul_add(end_effector_acceleration_31, q[11].mul_add(end_effector_acceleration_32, end_effector_acceleration_10));
     let end_effector_acceleration_35 = (-q[9])
-        .mul_add(
-            end_effector_acceleration_31,
-            q[12].mul_add(end_effector_acceleration_32, end_effector_acceleration_12),
-        );
-    let end_effector_acceleration_36 = q[13]
-        .mul_add(
-            end_effector_acceleration_28,
-            q[10]
-                .mul_add(
-                    end_effector_acceleration_27,
-                    q[7] * end_effector_acceleration_26,
-                ),
-        );
-    let end_effector_acceleration_37 = q[14]
-        .mul_add(
-            end_effector_acceleration_28,
-            q[11]
-                .mul_add(
-                    end_effector_acceleration_27,
-                    q[8] * end_effector_acceleration_26,
-                ),
-        );
-    let end_effector_acceleration_38 = q[15]
-        .mul_add(
-            end_effector_acceleration_28,
-            q[12]
-                .mul_add(
-                    end_effector_acceleration_27,
-                    q[9] * end_effector_acceleration_26,
-                ),
-        );
+        .mul_add(end_effector_acceleration_31, q[12].mul_add(end_effector_acceleration_32, end_effector_acceleration_12));
+    let end_effector_acceleration_36 = q[13].mul_add(
+        end_effector_acceleration_28,
+        q[10].mul_add(end_effector_acceleration_27, q[7] * end_effector_acceleration_26),
+    );
+    let end_effector_acceleration_37 = q[14].mul_add(
+        end_effector_acceleration_28,
+        q[11].mul_add(end_effector_acceleration_27, q[8] * end_effector_acceleration_26),
+    );
+    let end_effector_acceleration_38 = q[15].mul_add(
+        end_effector_acceleration_28,
+        q[12].mul_add(end_effector_acceleration_27, q[9] * end_effector_acceleration_26),
+    );
     let end_effector_acceleration_39 = q[13] * cart_acceleration_14;
     let end_effector_acceleration_40 = q[14] * cart_acceleration_14;
     let end_effector_acceleration_41 = q[15] * cart_acceleration_14;
-    let end_effector_acceleration_42 = end_effector_acceleration
-        - end_effector_acceleration_36 - end_effector_acceleration_39;
+    let end_effector_acceleration_42 = end_effector_acceleration - end_effector_acceleration_36 - end_effector_acceleration_39;
     let end_effector_acceleration_43 = end_effector_acceleration_2
         - end_effector_acceleration_37 - end_effector_acceleration_40;
     let end_effector_acceleration_44 = end_effector_acceleration_3
         - end_effector_acceleration_38 - end_effector_acceleration_41;
-    let end_effector_acceleration_45 = end_effector_acceleration_15
-        + end_effector_acceleration_44;
-    let end_effector_acceleration_46 = end_effector_acceleration_16
-        - end_effector_acceleration_43;
-    let end_effector_acceleration_47 = end_effector_acceleration_15
-        - end_effector_acceleration_44;
-    let end_effector_acceleration_48 = end_effector_acceleration_18
-        + end_effector_acceleration_42;
-    let end_effector_acceleration_49 = end_effector_acceleration_16
-        + end_effector_acceleration_43;
-    let end_effector_acceleration_50 = end_effector_acceleration_18
-        - end_effector_acceleration_42;
+    let end_effector_acceleration_45 = end_effector_acceleration_15 + end_effector_acceleration_44;
+    let end_effector_acceleration_46 = end_effector_acceleration_16 - end_effector_acceleration_43;
+    let end_effector_acceleration_47 = end_effector_acceleration_15 - end_effector_acceleration_44;
+    let end_effector_acceleration_48 = end_effector_acceleration_18 + end_effector_acceleration_42;
+    let end_effector_acceleration_49 = end_effector_acceleration_16 + end_effector_acceleration_43;
+    let end_effector_acceleration_50 = end_effector_acceleration_18 - end_effector_acceleration_42;
     // end_effector: motion (37 additions, 41 multiplications)
     let end_effector_motion = cart_rate_z.mul_add(n(0.02), cart_motion_5);
     let end_effector_motion_2 = (-cart_rate_z).mul_add(n(0.15), cart_motion_4);
-    let end_effector_motion_3 = (-q[10])
-        .mul_add(end_effector_motion_2, q[7] * end_effector_motion);
-    let end_effector_motion_4 = (-q[11])
-        .mul_add(end_effector_motion_2, q[8] * end_effector_motion);
-    let end_effector_motion_5 = (-q[12])
-        .mul_add(end_effector_motion_2, q[9] * end_effector_motion);
-    let end_effector_motion_6 = cart_rate_z
-        .mul_add(cart_motion_4, end_effector_acceleration_29 + cart_acceleration_15);
-    let end_effector_motion_7 = cart_rate_z
-        .mul_add(cart_motion_5, end_effector_acceleration_30 - cart_acceleration_16);
+    let end_effector_motion_3 = (-q[10]).mul_add(end_effector_motion_2, q[7] * end_effector_motion);
+    let end_effector_motion_4 = (-q[11]).mul_add(end_effector_motion_2, q[8] * end_effector_motion);
+    let end_effector_motion_5 = (-q[12]).mul_add(end_effector_motion_2, q[9] * end_effector_motion);
+    let end_effector_motion_6 = cart_rate_z.mul_add(cart_motion_4, end_effector_acceleration_29 + cart_acceleration_15);
+    let end_effector_motion_7 = cart_rate_z.mul_add(cart_motion_5, end_effector_acceleration_30 - cart_acceleration_16);
     let end_effector_motion_8 = (-q[10])
-        .mul_add(
-            end_effector_motion_7,
-            (-q[7]).mul_add(end_effector_motion_6, end_effector_acceleration_8),
-        );
+        .mul_add(end_effector_motion_7, (-q[7]).mul_add(end_effector_motion_6, end_effector_acceleration_8));
     let end_effector_motion_9 = (-q[11])
-        .mul_add(
-            end_effector_motion_7,
-            (-q[8]).mul_add(end_effector_motion_6, end_effector_acceleration_10),
-        );
+        .mul_add(end_effector_motion_7, (-q[8]).mul_add(end_effector_motion_6, end_effector_acceleration_10));
     let end_effector_motion_10 = (-q[12])
-        .mul_add(
-            end_effector_motion_7,
-            (-q[9]).mul_add(end_effector_motion_6, end_effector_acceleration_12),
-        );
-    let end_effector_motion_11 = (-end_effector_acceleration_45)
-        .mul_add(
+        .mul_add(end_effector_motion_7, (-q[9]).mul_add(end_effector_motion_6, end_effector_acceleration_12));
+    let end_effector_motion_11 = (-end_effector_acceleration_45).mul_add(
+        n(0.027499999999999997),
+        (-end_effector_acceleration_46).mul_add(
+            n(0.0078),
+            end_effector_acceleration_42.mul_add(n(0.19388), end_effector_force_2 - end_effector_force),
+        ),
+    );
+    let end_effector_motion_12 = (-end_effector_acceleration_47).mul_add(
+        n(0.042300000000000004),
+        end_effector_acceleration_48.mul_add(
+            n(0.0078),
+            end_effector_acceleration_43.mul_add(n(0.18225), end_effector_force_5 + end_effector_force_4),
+        ),
+    );
+    let end_effector_motion_13 = end_effector_acceleration_49.mul_add(
+        n(0.042300000000000004),
+        end_effector_acceleration_50.mul_add(
             n(0.027499999999999997),
-            (-end_effector_acceleration_46)
-                .mul_add(
-                    n(0.0078),
-                    end_effector_acceleration_42
-                        .mul_add(n(0.19388), end_effector_force_2 - end_effector_force),
-                ),
-        );
-    let end_effector_motion_12 = (-end_effector_acceleration_47)
-        .mul_add(
-            n(0.042300000000000004),
-            end_effector_acceleration_48
-                .mul_add(
-                    n(0.0078),
-                    end_effector_acceleration_43
-                        .mul_add(n(0.18225), end_effector_force_5 + end_effector_force_4),
-                ),
-        );
-    let end_effector_motion_13 = end_effector_acceleration_49
-        .mul_add(
-            n(0.042300000000000004),
-            end_effector_acceleration_50
-                .mul_add(
-                    n(0.027499999999999997),
-                    end_effector_acceleration_44
-                        .mul_add(n(0.02713), end_effector_force_8 - end_effector_force_7),
-                ),
-        );
+            end_effector_acceleration_44.mul_add(n(0.02713), end_effector_force_8 - end_effector_force_7),
+        ),
+    );
     let end_effector_motion_14 = (-end_effector_acceleration_34)
-        .mul_add(
-            n(0.51),
-            (-end_effector_acceleration_35).mul_add(n(0.136), end_effector_motion_11),
-        );
+        .mul_add(n(0.51), (-end_effector_acceleration_35).mul_add(n(0.136), end_effector_motion_11));
     let end_effector_motion_15 = (-end_effector_acceleration_35)
-        .mul_add(
-            n(0.085),
-            end_effector_acceleration_33.mul_add(n(0.51), end_effector_motion_12),
-        );
+        .mul_add(n(0.085), end_effector_acceleration_33.mul_add(n(0.51), end_effector_motion_12));
     let end_effector_motion_16 = end_effector_acceleration_33
-        .mul_add(
-            n(0.136),
-            end_effector_acceleration_34.mul_add(n(0.085), end_effector_motion_13),
-        );
+        .mul_add(n(0.136), end_effector_acceleration_34.mul_add(n(0.085), end_effector_motion_13));
     let end_effector_motion_17 = (-end_effector_acceleration_49)
-        .mul_add(
-            n(0.51),
-            end_effector_acceleration_47.mul_add(n(0.136), end_effector_force_13),
-        );
+        .mul_add(n(0.51), end_effector_acceleration_47.mul_add(n(0.136), end_effector_force_13));
     let end_effector_motion_18 = end_effector_acceleration_50
-        .mul_add(
-            n(0.51),
-            end_effector_acceleration_45.mul_add(n(0.085), end_effector_force_15),
-        );
+        .mul_add(n(0.51), end_effector_acceleration_45.mul_add(n(0.085), end_effector_force_15));
     let end_effector_motion_19 = (-end_effector_acceleration_46)
-        .mul_add(
-            n(0.085),
-            end_effector_acceleration_48.mul_add(n(0.136), end_effector_force_17),
-        );
+        .mul_add(n(0.085), end_effector_acceleration_48.mul_add(n(0.136), end_effector_force_17));
     // end_effector: variation (113 additions, 111 multiplications)
     let end_effector_variation = end_effector_angular_velocity + end_effector_rate_x;
     let end_effector_variation_2 = end_effector_angular_velocity_2 + end_effector_rate_y;
@@ -5380,10 +2963,8 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_variation_6 = end_effector_motion_5 + end_effector_motion_5;
     let end_effector_variation_7 = end_effector_angular_velocity_2 * end_effector_rate_y;
     let end_effector_variation_8 = end_effector_angular_velocity_3 * end_effector_rate_z;
-    let end_effector_variation_9 = end_effector_angular_velocity_2
-        * end_effector_motion_4;
-    let end_effector_variation_10 = end_effector_angular_velocity_3
-        * end_effector_motion_5;
+    let end_effector_variation_9 = end_effector_angular_velocity_2 * end_effector_motion_4;
+    let end_effector_variation_10 = end_effector_angular_velocity_3 * end_effector_motion_5;
     let end_effector_variation_11 = end_effector_rate_y * end_effector_motion_4;
     let end_effector_variation_12 = end_effector_rate_z * end_effector_motion_5;
     let end_effector_variation_13 = end_effector_joint_2 * end_effector_rate_y;
@@ -5395,172 +2976,98 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_variation_18 = end_effector_variation_9 + end_effector_variation_10
         + end_effector_variation_11 + end_effector_variation_12
         + end_effector_variation_15 + end_effector_variation_16;
-    let end_effector_variation_19 = end_effector_joint_2
-        .mul_add(
-            end_effector_motion_3,
-            end_effector_angular_velocity
-                .mul_add(
-                    end_effector_motion_4,
-                    end_effector_rate_y
-                        .mul_add(end_effector_motion_3, end_effector_motion_10),
-                ),
-        );
-    let end_effector_variation_20 = (-end_effector_joint_3)
-        .mul_add(
-            end_effector_motion_3,
-            (-end_effector_angular_velocity)
-                .mul_add(
-                    end_effector_motion_5,
-                    (-end_effector_rate_z)
-                        .mul_add(end_effector_motion_3, end_effector_motion_9),
-                ),
-        );
-    let end_effector_variation_21 = (-end_effector_joint_2)
-        .mul_add(
-            end_effector_rate_x,
-            (-end_effector_angular_velocity)
-                .mul_add(
-                    end_effector_rate_y,
-                    end_effector_acceleration_38 + end_effector_acceleration_41,
-                ),
-        );
-    let end_effector_variation_22 = end_effector_joint_3
-        .mul_add(
-            end_effector_rate_x,
-            end_effector_angular_velocity
-                .mul_add(
-                    end_effector_rate_z,
-                    end_effector_acceleration_37 + end_effector_acceleration_40,
-                ),
-        );
+    let end_effector_variation_19 = end_effector_joint_2.mul_add(
+        end_effector_motion_3,
+        end_effector_angular_velocity
+            .mul_add(end_effector_motion_4, end_effector_rate_y.mul_add(end_effector_motion_3, end_effector_motion_10)),
+    );
+    let end_effector_variation_20 = (-end_effector_joint_3).mul_add(
+        end_effector_motion_3,
+        (-end_effector_angular_velocity)
+            .mul_add(end_effector_motion_5, (-end_effector_rate_z).mul_add(end_effector_motion_3, end_effector_motion_9)),
+    );
+    let end_effector_variation_21 = (-end_effector_joint_2).mul_add(
+        end_effector_rate_x,
+        (-end_effector_angular_velocity)
+            .mul_add(end_effector_rate_y, end_effector_acceleration_38 + end_effector_acceleration_41),
+    );
+    let end_effector_variation_22 = end_effector_joint_3.mul_add(
+        end_effector_rate_x,
+        end_effector_angular_velocity.mul_add(end_effector_rate_z, end_effector_acceleration_37 + end_effector_acceleration_40),
+    );
     let end_effector_variation_23 = end_effector_angular_velocity * end_effector_rate_x;
-    let end_effector_variation_24 = end_effector_angular_velocity
-        * end_effector_motion_3;
+    let end_effector_variation_24 = end_effector_angular_velocity * end_effector_motion_3;
     let end_effector_variation_25 = end_effector_rate_x * end_effector_motion_3;
     let end_effector_variation_26 = end_effector_joint * end_effector_rate_x;
     let end_effector_variation_27 = end_effector_joint * end_effector_motion_3;
     let end_effector_variation_28 = end_effector_variation_8 + end_effector_variation_23
         + end_effector_variation_14 + end_effector_variation_26;
-    let end_effector_variation_29 = (-end_effector_joint)
-        .mul_add(
-            end_effector_motion_4,
-            (-end_effector_angular_velocity_2)
-                .mul_add(
-                    end_effector_motion_3,
-                    (-end_effector_rate_x)
-                        .mul_add(end_effector_motion_4, end_effector_motion_10),
-                ),
-        );
+    let end_effector_variation_29 = (-end_effector_joint).mul_add(
+        end_effector_motion_4,
+        (-end_effector_angular_velocity_2)
+            .mul_add(end_effector_motion_3, (-end_effector_rate_x).mul_add(end_effector_motion_4, end_effector_motion_10)),
+    );
     let end_effector_variation_30 = end_effector_variation_10 + end_effector_variation_24
         + end_effector_variation_12 + end_effector_variation_25
         + end_effector_variation_16 + end_effector_variation_27;
-    let end_effector_variation_31 = end_effector_joint_3
-        .mul_add(
-            end_effector_motion_4,
-            end_effector_angular_velocity_2
-                .mul_add(
-                    end_effector_motion_5,
-                    end_effector_rate_z
-                        .mul_add(end_effector_motion_4, end_effector_motion_8),
-                ),
-        );
-    let end_effector_variation_32 = end_effector_joint
-        .mul_add(
-            end_effector_rate_y,
-            end_effector_angular_velocity_2
-                .mul_add(
-                    end_effector_rate_x,
-                    end_effector_acceleration_38 + end_effector_acceleration_41,
-                ),
-        );
-    let end_effector_variation_33 = (-end_effector_joint_3)
-        .mul_add(
-            end_effector_rate_y,
-            (-end_effector_angular_velocity_2)
-                .mul_add(
-                    end_effector_rate_z,
-                    end_effector_acceleration_36 + end_effector_acceleration_39,
-                ),
-        );
+    let end_effector_variation_31 = end_effector_joint_3.mul_add(
+        end_effector_motion_4,
+        end_effector_angular_velocity_2
+            .mul_add(end_effector_motion_5, end_effector_rate_z.mul_add(end_effector_motion_4, end_effector_motion_8)),
+    );
+    let end_effector_variation_32 = end_effector_joint.mul_add(
+        end_effector_rate_y,
+        end_effector_angular_velocity_2
+            .mul_add(end_effector_rate_x, end_effector_acceleration_38 + end_effector_acceleration_41),
+    );
+    let end_effector_variation_33 = (-end_effector_joint_3).mul_add(
+        end_effector_rate_y,
+        (-end_effector_angular_velocity_2)
+            .mul_add(end_effector_rate_z, end_effector_acceleration_36 + end_effector_acceleration_39),
+    );
     let end_effector_variation_34 = end_effector_variation_7 + end_effector_variation_23
         + end_effector_variation_13 + end_effector_variation_26;
-    let end_effector_variation_35 = end_effector_joint
-        .mul_add(
-            end_effector_motion_5,
-            end_effector_angular_velocity_3
-                .mul_add(
-                    end_effector_motion_3,
-                    end_effector_rate_x
-                        .mul_add(end_effector_motion_5, end_effector_motion_9),
-                ),
-        );
-    let end_effector_variation_36 = (-end_effector_joint_2)
-        .mul_add(
-            end_effector_motion_5,
-            (-end_effector_angular_velocity_3)
-                .mul_add(
-                    end_effector_motion_4,
-                    (-end_effector_rate_y)
-                        .mul_add(end_effector_motion_5, end_effector_motion_8),
-                ),
-        );
+    let end_effector_variation_35 = end_effector_joint.mul_add(
+        end_effector_motion_5,
+        end_effector_angular_velocity_3
+            .mul_add(end_effector_motion_3, end_effector_rate_x.mul_add(end_effector_motion_5, end_effector_motion_9)),
+    );
+    let end_effector_variation_36 = (-end_effector_joint_2).mul_add(
+        end_effector_motion_5,
+        (-end_effector_angular_velocity_3)
+            .mul_add(end_effector_motion_4, (-end_effector_rate_y).mul_add(end_effector_motion_5, end_effector_motion_8)),
+    );
     let end_effector_variation_37 = end_effector_variation_9 + end_effector_variation_24
         + end_effector_variation_11 + end_effector_variation_25
         + end_effector_variation_15 + end_effector_variation_27;
-    let end_effector_variation_38 = (-end_effector_joint)
-        .mul_add(
-            end_effector_rate_z,
-            (-end_effector_angular_velocity_3)
-                .mul_add(
-                    end_effector_rate_x,
-                    end_effector_acceleration_37 + end_effector_acceleration_40,
-                ),
-        );
-    let end_effector_variation_39 = end_effector_joint_2
-        .mul_add(
-            end_effector_rate_z,
-            end_effector_angular_velocity_3
-                .mul_add(
-                    end_effector_rate_y,
-                    end_effector_acceleration_36 + end_effector_acceleration_39,
-                ),
-        );
-    let end_effector_variation_40 = (-q[8])
-        .mul_add(end_effector_variation_3, q[9] * end_effector_variation_2);
-    let end_effector_variation_41 = (-q[9])
-        .mul_add(end_effector_variation, q[7] * end_effector_variation_3);
-    let end_effector_variation_42 = (-q[7])
-        .mul_add(end_effector_variation_2, q[8] * end_effector_variation);
-    let end_effector_variation_43 = (-q[8])
-        .mul_add(end_effector_variation_6, q[9] * end_effector_variation_5);
-    let end_effector_variation_44 = (-q[9])
-        .mul_add(end_effector_variation_4, q[7] * end_effector_variation_6);
-    let end_effector_variation_45 = (-q[7])
-        .mul_add(end_effector_variation_5, q[8] * end_effector_variation_4);
-    let end_effector_variation_46 = (-q[11])
-        .mul_add(end_effector_variation_3, q[12] * end_effector_variation_2);
-    let end_effector_variation_47 = (-q[12])
-        .mul_add(end_effector_variation, q[10] * end_effector_variation_3);
-    let end_effector_variation_48 = (-q[10])
-        .mul_add(end_effector_variation_2, q[11] * end_effector_variation);
-    let end_effector_variation_49 = (-q[11])
-        .mul_add(end_effector_variation_6, q[12] * end_effector_variation_5);
-    let end_effector_variation_50 = (-q[12])
-        .mul_add(end_effector_variation_4, q[10] * end_effector_variation_6);
-    let end_effector_variation_51 = (-q[10])
-        .mul_add(end_effector_variation_5, q[11] * end_effector_variation_4);
-    let end_effector_variation_52 = (-q[14])
-        .mul_add(end_effector_variation_3, q[15] * end_effector_variation_2);
-    let end_effector_variation_53 = (-q[15])
-        .mul_add(end_effector_variation, q[13] * end_effector_variation_3);
-    let end_effector_variation_54 = (-q[13])
-        .mul_add(end_effector_variation_2, q[14] * end_effector_variation);
-    let end_effector_variation_55 = (-q[14])
-        .mul_add(end_effector_variation_6, q[15] * end_effector_variation_5);
-    let end_effector_variation_56 = (-q[15])
-        .mul_add(end_effector_variation_4, q[13] * end_effector_variation_6);
-    let end_effector_variation_57 = (-q[13])
-        .mul_add(end_effector_variation_5, q[14] * end_effector_variation_4);
+    let end_effector_variation_38 = (-end_effector_joint).mul_add(
+        end_effector_rate_z,
+        (-end_effector_angular_velocity_3)
+            .mul_add(end_effector_rate_x, end_effector_acceleration_37 + end_effector_acceleration_40),
+    );
+    let end_effector_variation_39 = end_effector_joint_2.mul_add(
+        end_effector_rate_z,
+        end_effector_angular_velocity_3
+            .mul_add(end_effector_rate_y, end_effector_acceleration_36 + end_effector_acceleration_39),
+    );
+    let end_effector_variation_40 = (-q[8]).mul_add(end_effector_variation_3, q[9] * end_effector_variation_2);
+    let end_effector_variation_41 = (-q[9]).mul_add(end_effector_variation, q[7] * end_effector_variation_3);
+    let end_effector_variation_42 = (-q[7]).mul_add(end_effector_variation_2, q[8] * end_effector_variation);
+    let end_effector_variation_43 = (-q[8]).mul_add(end_effector_variation_6, q[9] * end_effector_variation_5);
+    let end_effector_variation_44 = (-q[9]).mul_add(end_effector_variation_4, q[7] * end_effector_variation_6);
+    let end_effector_variation_45 = (-q[7]).mul_add(end_effector_variation_5, q[8] * end_effector_variation_4);
+    let end_effector_variation_46 = (-q[11]).mul_add(end_effector_variation_3, q[12] * end_effector_variation_2);
+    let end_effector_variation_47 = (-q[12]).mul_add(end_effector_variation, q[10] * end_effector_variation_3);
+    let end_effector_variation_48 = (-q[10]).mul_add(end_effector_variation_2, q[11] * end_effector_variation);
+    let end_effector_variation_49 = (-q[11]).mul_add(end_effector_variation_6, q[12] * end_effector_variation_5);
+    let end_effector_variation_50 = (-q[12]).mul_add(end_effector_variation_4, q[10] * end_effector_variation_6);
+    let end_effector_variation_51 = (-q[10]).mul_add(end_effector_variation_5, q[11] * end_effector_variation_4);
+    let end_effector_variation_52 = (-q[14]).mul_add(end_effector_variation_3, q[15] * end_effector_variation_2);
+    let end_effector_variation_53 = (-q[15]).mul_add(end_effector_variation, q[13] * end_effector_variation_3);
+    let end_effector_variation_54 = (-q[13]).mul_add(end_effector_variation_2, q[14] * end_effector_variation);
+    let end_effector_variation_55 = (-q[14]).mul_add(end_effector_variation_6, q[15] * end_effector_variation_5);
+    let end_effector_variation_56 = (-q[15]).mul_add(end_effector_variation_4, q[13] * end_effector_variation_6);
+    let end_effector_variation_57 = (-q[13]).mul_add(end_effector_variation_5, q[14] * end_effector_variation_4);
     let end_effector_variation_58 = cart_motion_4 * n(11.4);
     let end_effector_variation_59 = end_effector_rate_y * n(0.05499999999999999);
     let end_effector_variation_60 = end_effector_rate_z * n(0.0156);
@@ -5568,1143 +3075,592 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let end_effector_variation_62 = end_effector_motion_3 * n(0.17);
     let end_effector_variation_63 = end_effector_motion_4 * n(0.272);
     let end_effector_variation_64 = end_effector_motion_5 * n(1.02);
-    let end_effector_variation_65 = end_effector_variation_64 + end_effector_variation_62
-        - end_effector_variation_63;
+    let end_effector_variation_65 = end_effector_variation_64 + end_effector_variation_62 - end_effector_variation_63;
     let end_effector_variation_66 = end_effector_variation_59 + end_effector_variation_60
         + end_effector_variation_62 - end_effector_variation_65;
     let end_effector_variation_67 = (-end_effector_rate_x)
-        .mul_add(
-            n(0.05499999999999999),
-            end_effector_motion_4
-                .mul_add(n(0.17), end_effector_rate_z * n(0.015500000000000003)),
-        );
+        .mul_add(n(0.05499999999999999), end_effector_motion_4.mul_add(n(0.17), end_effector_rate_z * n(0.015500000000000003)));
     let end_effector_variation_68 = (-end_effector_motion_5)
-        .mul_add(
-            n(0.17),
-            end_effector_rate_y
-                .mul_add(n(0.015500000000000003), end_effector_rate_x * n(0.0156)),
-        );
+        .mul_add(n(0.17), end_effector_rate_y.mul_add(n(0.015500000000000003), end_effector_rate_x * n(0.0156)));
     let end_effector_variation_69 = end_effector_motion_3
-        .mul_add(
-            n(0.272),
-            end_effector_rate_z
-                .mul_add(n(0.03876), end_effector_rate_y * n(0.08460000000000001)),
-        );
+        .mul_add(n(0.272), end_effector_rate_z.mul_add(n(0.03876), end_effector_rate_y * n(0.08460000000000001)));
     let end_effector_variation_70 = end_effector_variation_60 + end_effector_variation_63
         + end_effector_variation_65 - end_effector_variation_61;
     let end_effector_variation_71 = (-end_effector_motion_5)
-        .mul_add(
-            n(0.272),
-            end_effector_rate_y.mul_add(n(0.0156), end_effector_rate_x * n(0.03876)),
-        );
+        .mul_add(n(0.272), end_effector_rate_y.mul_add(n(0.0156), end_effector_rate_x * n(0.03876)));
     let end_effector_variation_72 = end_effector_motion_3
-        .mul_add(
-            n(1.02),
-            end_effector_rate_z
-                .mul_add(n(0.08460000000000001), end_effector_rate_y * n(0.349)),
-        );
+        .mul_add(n(1.02), end_effector_rate_z.mul_add(n(0.08460000000000001), end_effector_rate_y * n(0.349)));
     let end_effector_variation_73 = (-end_effector_rate_x)
-        .mul_add(
-            n(0.349),
-            end_effector_motion_4
-                .mul_add(n(1.02), end_effector_rate_z * n(0.05499999999999999)),
-        );
+        .mul_add(n(0.349), end_effector_motion_4.mul_add(n(1.02), end_effector_rate_z * n(0.05499999999999999)));
     let end_effector_variation_74 = end_effector_variation_59 + end_effector_variation_61
         + end_effector_variation_65 - end_effector_variation_64;
-    let end_effector_variation_75 = end_effector_rate_z
-        .mul_add(n(0.272), end_effector_rate_y * n(1.02));
-    let end_effector_variation_76 = (-end_effector_rate_x)
-        .mul_add(n(1.02), end_effector_rate_z * n(0.17));
-    let end_effector_variation_77 = end_effector_rate_y
-        .mul_add(n(0.17), end_effector_rate_x * n(0.272));
+    let end_effector_variation_75 = end_effector_rate_z.mul_add(n(0.272), end_effector_rate_y * n(1.02));
+    let end_effector_variation_76 = (-end_effector_rate_x).mul_add(n(1.02), end_effector_rate_z * n(0.17));
+    let end_effector_variation_77 = end_effector_rate_y.mul_add(n(0.17), end_effector_rate_x * n(0.272));
     // end_effector: slope (355 additions, 432 multiplications)
     let end_effector_slope = end_effector_rate_z * end_effector_variation_77;
     let end_effector_slope_2 = end_effector_rate_y * end_effector_variation_76;
-    let end_effector_slope_3 = (-end_effector_variation_20)
-        .mul_add(
-            n(0.136),
-            end_effector_variation_19
-                .mul_add(
-                    n(0.51),
-                    end_effector_variation_22
-                        .mul_add(
-                            n(0.027499999999999997),
-                            end_effector_variation_21
-                                .mul_add(n(0.0078), end_effector_variation_17 * n(0.19388)),
-                        ),
-                ),
-        );
-    let end_effector_slope_4 = (-end_effector_variation_20)
-        .mul_add(
-            n(0.085),
-            (-end_effector_variation_22)
-                .mul_add(
-                    n(0.042300000000000004),
-                    end_effector_variation_18
-                        .mul_add(
-                            n(0.51),
-                            end_effector_variation_21
-                                .mul_add(n(0.18225), end_effector_variation_17 * n(0.0078)),
-                        ),
-                ),
-        );
-    let end_effector_slope_5 = (-end_effector_variation_18)
-        .mul_add(
-            n(0.136),
-            (-end_effector_variation_21)
-                .mul_add(
-                    n(0.042300000000000004),
-                    end_effector_variation_19
-                        .mul_add(
-                            n(0.085),
-                            end_effector_variation_22
-                                .mul_add(
-                                    n(0.02713),
-                                    end_effector_variation_17 * n(0.027499999999999997),
-                                ),
-                        ),
-                ),
-        );
+    let end_effector_slope_3 = (-end_effector_variation_20).mul_add(
+        n(0.136),
+        end_effector_variation_19.mul_add(
+            n(0.51),
+            end_effector_variation_22.mul_add(
+                n(0.027499999999999997),
+                end_effector_variation_21.mul_add(n(0.0078), end_effector_variation_17 * n(0.19388)),
+            ),
+        ),
+    );
+    let end_effector_slope_4 = (-end_effector_variation_20).mul_add(
+        n(0.085),
+        (-end_effector_variation_22).mul_add(
+            n(0.042300000000000004),
+            end_effector_variation_18
+                .mul_add(n(0.51), end_effector_variation_21.mul_add(n(0.18225), end_effector_variation_17 * n(0.0078))),
+        ),
+    );
+    let end_effector_slope_5 = (-end_effector_variation_18).mul_add(
+        n(0.136),
+        (-end_effector_variation_21).mul_add(
+            n(0.042300000000000004),
+            end_effector_variation_19.mul_add(
+                n(0.085),
+                end_effector_variation_22.mul_add(n(0.02713), end_effector_variation_17 * n(0.027499999999999997)),
+            ),
+        ),
+    );
     let end_effector_slope_6 = end_effector_rate_y
-        .mul_add(
-            end_effector_variation_72,
-            end_effector_rate_z.mul_add(end_effector_variation_69, -end_effector_slope_3),
-        );
+        .mul_add(end_effector_variation_72, end_effector_rate_z.mul_add(end_effector_variation_69, -end_effector_slope_3));
     let end_effector_slope_7 = end_effector_rate_y
-        .mul_add(
-            end_effector_variation_73,
-            end_effector_rate_z.mul_add(end_effector_variation_70, -end_effector_slope_4),
-        );
+        .mul_add(end_effector_variation_73, end_effector_rate_z.mul_add(end_effector_variation_70, -end_effector_slope_4));
     let end_effector_slope_8 = end_effector_rate_y
-        .mul_add(
-            end_effector_variation_74,
-            end_effector_rate_z.mul_add(end_effector_variation_71, -end_effector_slope_5),
-        );
+        .mul_add(end_effector_variation_74, end_effector_rate_z.mul_add(end_effector_variation_71, -end_effector_slope_5));
     let end_effector_slope_9 = (-end_effector_variation_22)
-        .mul_add(
-            n(0.136),
-            end_effector_variation_21
-                .mul_add(n(0.51), end_effector_slope - end_effector_slope_2),
-        );
+        .mul_add(n(0.136), end_effector_variation_21.mul_add(n(0.51), end_effector_slope - end_effector_slope_2));
     let end_effector_slope_10 = end_effector_rate_x * end_effector_variation_75;
-    let end_effector_slope_11 = (-end_effector_variation_31)
-        .mul_add(
-            n(0.136),
-            (-end_effector_variation_28)
-                .mul_add(
-                    n(0.0078),
-                    end_effector_variation_30
-                        .mul_add(
-                            n(0.51),
-                            end_effector_variation_33
-                                .mul_add(
-                                    n(0.027499999999999997),
-                                    end_effector_variation_32 * n(0.19388),
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_12 = (-end_effector_variation_31)
-        .mul_add(
+    let end_effector_slope_11 = (-end_effector_variation_31).mul_add(
+        n(0.136),
+        (-end_effector_variation_28).mul_add(
+            n(0.0078),
+            end_effector_variation_30.mul_add(
+                n(0.51),
+                end_effector_variation_33.mul_add(n(0.027499999999999997), end_effector_variation_32 * n(0.19388)),
+            ),
+        ),
+    );
+    let end_effector_slope_12 = (-end_effector_variation_31).mul_add(
+        n(0.085),
+        (-end_effector_variation_29).mul_add(
+            n(0.51),
+            (-end_effector_variation_33).mul_add(
+                n(0.042300000000000004),
+                (-end_effector_variation_28).mul_add(n(0.18225), end_effector_variation_32 * n(0.0078)),
+            ),
+        ),
+    );
+    let end_effector_slope_13 = end_effector_variation_29.mul_add(
+        n(0.136),
+        end_effector_variation_30.mul_add(
             n(0.085),
-            (-end_effector_variation_29)
-                .mul_add(
-                    n(0.51),
-                    (-end_effector_variation_33)
-                        .mul_add(
-                            n(0.042300000000000004),
-                            (-end_effector_variation_28)
-                                .mul_add(n(0.18225), end_effector_variation_32 * n(0.0078)),
-                        ),
-                ),
-        );
-    let end_effector_slope_13 = end_effector_variation_29
-        .mul_add(
-            n(0.136),
-            end_effector_variation_30
-                .mul_add(
-                    n(0.085),
-                    end_effector_variation_33
-                        .mul_add(
-                            n(0.02713),
-                            end_effector_variation_28
-                                .mul_add(
-                                    n(0.042300000000000004),
-                                    end_effector_variation_32 * n(0.027499999999999997),
-                                ),
-                        ),
-                ),
-        );
+            end_effector_variation_33.mul_add(
+                n(0.02713),
+                end_effector_variation_28.mul_add(n(0.042300000000000004), end_effector_variation_32 * n(0.027499999999999997)),
+            ),
+        ),
+    );
     let end_effector_slope_14 = (-end_effector_rate_x)
-        .mul_add(
-            end_effector_variation_72,
-            end_effector_rate_z.mul_add(end_effector_variation_66, end_effector_slope_11),
-        );
+        .mul_add(end_effector_variation_72, end_effector_rate_z.mul_add(end_effector_variation_66, end_effector_slope_11));
     let end_effector_slope_15 = (-end_effector_rate_x)
-        .mul_add(
-            end_effector_variation_73,
-            end_effector_rate_z.mul_add(end_effector_variation_67, end_effector_slope_12),
-        );
+        .mul_add(end_effector_variation_73, end_effector_rate_z.mul_add(end_effector_variation_67, end_effector_slope_12));
     let end_effector_slope_16 = (-end_effector_rate_x)
-        .mul_add(
-            end_effector_variation_74,
-            end_effector_rate_z.mul_add(end_effector_variation_68, end_effector_slope_13),
-        );
+        .mul_add(end_effector_variation_74, end_effector_rate_z.mul_add(end_effector_variation_68, end_effector_slope_13));
     let end_effector_slope_17 = end_effector_variation_32
-        .mul_add(
+        .mul_add(n(0.51), end_effector_variation_33.mul_add(n(0.085), end_effector_slope - end_effector_slope_10));
+    let end_effector_slope_18 = (-end_effector_variation_36).mul_add(
+        n(0.51),
+        (-end_effector_variation_37).mul_add(
+            n(0.136),
+            (-end_effector_variation_34).mul_add(
+                n(0.027499999999999997),
+                (-end_effector_variation_39).mul_add(n(0.0078), end_effector_variation_38 * n(0.19388)),
+            ),
+        ),
+    );
+    let end_effector_slope_19 = (-end_effector_variation_37).mul_add(
+        n(0.085),
+        (-end_effector_variation_35).mul_add(
             n(0.51),
-            end_effector_variation_33
-                .mul_add(n(0.085), end_effector_slope - end_effector_slope_10),
-        );
-    let end_effector_slope_18 = (-end_effector_variation_36)
-        .mul_add(
-            n(0.51),
-            (-end_effector_variation_37)
-                .mul_add(
-                    n(0.136),
-                    (-end_effector_variation_34)
-                        .mul_add(
-                            n(0.027499999999999997),
-                            (-end_effector_variation_39)
-                                .mul_add(n(0.0078), end_effector_variation_38 * n(0.19388)),
-                        ),
-                ),
-        );
-    let end_effector_slope_19 = (-end_effector_variation_37)
-        .mul_add(
-            n(0.085),
-            (-end_effector_variation_35)
-                .mul_add(
-                    n(0.51),
-                    (-end_effector_variation_39)
-                        .mul_add(
-                            n(0.18225),
-                            end_effector_variation_34
-                                .mul_add(
-                                    n(0.042300000000000004),
-                                    end_effector_variation_38 * n(0.0078),
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_20 = (-end_effector_variation_36)
-        .mul_add(
-            n(0.085),
-            (-end_effector_variation_34)
-                .mul_add(
-                    n(0.02713),
-                    end_effector_variation_35
-                        .mul_add(
-                            n(0.136),
-                            end_effector_variation_39
-                                .mul_add(
-                                    n(0.042300000000000004),
-                                    end_effector_variation_38 * n(0.027499999999999997),
-                                ),
-                        ),
-                ),
-        );
+            (-end_effector_variation_39).mul_add(
+                n(0.18225),
+                end_effector_variation_34.mul_add(n(0.042300000000000004), end_effector_variation_38 * n(0.0078)),
+            ),
+        ),
+    );
+    let end_effector_slope_20 = (-end_effector_variation_36).mul_add(
+        n(0.085),
+        (-end_effector_variation_34).mul_add(
+            n(0.02713),
+            end_effector_variation_35.mul_add(
+                n(0.136),
+                end_effector_variation_39.mul_add(n(0.042300000000000004), end_effector_variation_38 * n(0.027499999999999997)),
+            ),
+        ),
+    );
     let end_effector_slope_21 = end_effector_rate_x
-        .mul_add(
-            end_effector_variation_69,
-            end_effector_rate_y.mul_add(end_effector_variation_66, end_effector_slope_18),
-        );
+        .mul_add(end_effector_variation_69, end_effector_rate_y.mul_add(end_effector_variation_66, end_effector_slope_18));
     let end_effector_slope_22 = end_effector_rate_x
-        .mul_add(
-            end_effector_variation_70,
-            end_effector_rate_y.mul_add(end_effector_variation_67, end_effector_slope_19),
-        );
+        .mul_add(end_effector_variation_70, end_effector_rate_y.mul_add(end_effector_variation_67, end_effector_slope_19));
     let end_effector_slope_23 = end_effector_rate_x
-        .mul_add(
-            end_effector_variation_71,
-            end_effector_rate_y.mul_add(end_effector_variation_68, end_effector_slope_20),
-        );
+        .mul_add(end_effector_variation_71, end_effector_rate_y.mul_add(end_effector_variation_68, end_effector_slope_20));
     let end_effector_slope_24 = (-end_effector_variation_39)
-        .mul_add(
-            n(0.085),
-            end_effector_variation_38
-                .mul_add(n(0.136), end_effector_slope_2 + end_effector_slope_10),
-        );
+        .mul_add(n(0.085), end_effector_variation_38.mul_add(n(0.136), end_effector_slope_2 + end_effector_slope_10));
     let end_effector_slope_25 = q[7] * end_effector_variation_66;
     let end_effector_slope_26 = q[8] * end_effector_variation_70;
     let end_effector_slope_27 = q[9] * end_effector_variation_74;
-    let end_effector_slope_28 = (-end_effector_variation_44)
-        .mul_add(
-            n(0.51),
-            (-end_effector_variation_45)
-                .mul_add(
-                    n(0.136),
-                    (-end_effector_variation_42)
-                        .mul_add(
-                            n(0.027499999999999997),
-                            end_effector_variation_41
-                                .mul_add(n(0.0078), end_effector_variation_40 * n(0.19388)),
-                        ),
-                ),
-        );
-    let end_effector_slope_29 = (-end_effector_variation_45)
-        .mul_add(
-            n(0.085),
-            end_effector_variation_43
-                .mul_add(
-                    n(0.51),
-                    end_effector_variation_42
-                        .mul_add(
-                            n(0.042300000000000004),
-                            end_effector_variation_41
-                                .mul_add(n(0.18225), end_effector_variation_40 * n(0.0078)),
-                        ),
-                ),
-        );
-    let end_effector_slope_30 = (-end_effector_variation_43)
-        .mul_add(
+    let end_effector_slope_28 = (-end_effector_variation_44).mul_add(
+        n(0.51),
+        (-end_effector_variation_45).mul_add(
             n(0.136),
-            (-end_effector_variation_44)
-                .mul_add(
-                    n(0.085),
-                    (-end_effector_variation_42)
-                        .mul_add(
-                            n(0.02713),
-                            (-end_effector_variation_41)
-                                .mul_add(
-                                    n(0.042300000000000004),
-                                    end_effector_variation_40 * n(0.027499999999999997),
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_31 = (-q[8])
-        .mul_add(
-            end_effector_variation_69,
-            q[9]
-                .mul_add(
-                    end_effector_variation_72,
-                    end_effector_slope_25 - end_effector_slope_28,
-                ),
-        );
-    let end_effector_slope_32 = q[9]
-        .mul_add(
-            end_effector_variation_73,
-            q[7]
-                .mul_add(
-                    end_effector_variation_67,
-                    -end_effector_slope_26 - end_effector_slope_29,
-                ),
-        );
-    let end_effector_slope_33 = (-q[8])
-        .mul_add(
-            end_effector_variation_71,
-            q[7]
-                .mul_add(
-                    end_effector_variation_68,
-                    end_effector_slope_27 - end_effector_slope_30,
-                ),
-        );
-    let end_effector_slope_34 = (-end_effector_variation_42)
-        .mul_add(
-            n(0.136),
-            (-end_effector_variation_41)
-                .mul_add(
-                    n(0.51),
-                    q[9]
-                        .mul_add(
-                            end_effector_variation_76,
-                            q[8] * end_effector_variation_77,
-                        ),
-                ),
-        );
-    let end_effector_slope_35 = (-end_effector_variation_40)
-        .mul_add(
+            (-end_effector_variation_42).mul_add(
+                n(0.027499999999999997),
+                end_effector_variation_41.mul_add(n(0.0078), end_effector_variation_40 * n(0.19388)),
+            ),
+        ),
+    );
+    let end_effector_slope_29 = (-end_effector_variation_45).mul_add(
+        n(0.085),
+        end_effector_variation_43.mul_add(
             n(0.51),
-            end_effector_variation_42
-                .mul_add(
-                    n(0.085),
-                    q[7]
-                        .mul_add(
-                            end_effector_variation_77,
-                            q[9] * end_effector_variation_75,
-                        ),
-                ),
-        );
-    let end_effector_slope_36 = (-end_effector_variation_41)
-        .mul_add(
+            end_effector_variation_42.mul_add(
+                n(0.042300000000000004),
+                end_effector_variation_41.mul_add(n(0.18225), end_effector_variation_40 * n(0.0078)),
+            ),
+        ),
+    );
+    let end_effector_slope_30 = (-end_effector_variation_43).mul_add(
+        n(0.136),
+        (-end_effector_variation_44).mul_add(
             n(0.085),
-            (-end_effector_variation_40)
-                .mul_add(
-                    n(0.136),
-                    (-q[8])
-                        .mul_add(
-                            end_effector_variation_75,
-                            q[7] * end_effector_variation_76,
-                        ),
-                ),
-        );
+            (-end_effector_variation_42).mul_add(
+                n(0.02713),
+                (-end_effector_variation_41)
+                    .mul_add(n(0.042300000000000004), end_effector_variation_40 * n(0.027499999999999997)),
+            ),
+        ),
+    );
+    let end_effector_slope_31 = (-q[8]).mul_add(
+        end_effector_variation_69,
+        q[9].mul_add(end_effector_variation_72, end_effector_slope_25 - end_effector_slope_28),
+    );
+    let end_effector_slope_32 = q[9].mul_add(
+        end_effector_variation_73,
+        q[7].mul_add(end_effector_variation_67, -end_effector_slope_26 - end_effector_slope_29),
+    );
+    let end_effector_slope_33 = (-q[8]).mul_add(
+        end_effector_variation_71,
+        q[7].mul_add(end_effector_variation_68, end_effector_slope_27 - end_effector_slope_30),
+    );
+    let end_effector_slope_34 = (-end_effector_variation_42).mul_add(
+        n(0.136),
+        (-end_effector_variation_41)
+            .mul_add(n(0.51), q[9].mul_add(end_effector_variation_76, q[8] * end_effector_variation_77)),
+    );
+    let end_effector_slope_35 = (-end_effector_variation_40).mul_add(
+        n(0.51),
+        end_effector_variation_42.mul_add(n(0.085), q[7].mul_add(end_effector_variation_77, q[9] * end_effector_variation_75)),
+    );
+    let end_effector_slope_36 = (-end_effector_variation_41).mul_add(
+        n(0.085),
+        (-end_effector_variation_40)
+            .mul_add(n(0.136), (-q[8]).mul_add(end_effector_variation_75, q[7] * end_effector_variation_76)),
+    );
     let end_effector_slope_37 = q[10] * end_effector_variation_66;
     let end_effector_slope_38 = q[11] * end_effector_variation_70;
     let end_effector_slope_39 = q[12] * end_effector_variation_74;
-    let end_effector_slope_40 = (-end_effector_variation_50)
-        .mul_add(
-            n(0.51),
-            (-end_effector_variation_51)
-                .mul_add(
-                    n(0.136),
-                    (-end_effector_variation_48)
-                        .mul_add(
-                            n(0.027499999999999997),
-                            end_effector_variation_47
-                                .mul_add(n(0.0078), end_effector_variation_46 * n(0.19388)),
-                        ),
-                ),
-        );
-    let end_effector_slope_41 = (-end_effector_variation_51)
-        .mul_add(
-            n(0.085),
-            end_effector_variation_49
-                .mul_add(
-                    n(0.51),
-                    end_effector_variation_48
-                        .mul_add(
-                            n(0.042300000000000004),
-                            end_effector_variation_47
-                                .mul_add(n(0.18225), end_effector_variation_46 * n(0.0078)),
-                        ),
-                ),
-        );
-    let end_effector_slope_42 = (-end_effector_variation_49)
-        .mul_add(
+    let end_effector_slope_40 = (-end_effector_variation_50).mul_add(
+        n(0.51),
+        (-end_effector_variation_51).mul_add(
             n(0.136),
-            (-end_effector_variation_50)
-                .mul_add(
-                    n(0.085),
-                    (-end_effector_variation_48)
-                        .mul_add(
-                            n(0.02713),
-                            (-end_effector_variation_47)
-                                .mul_add(
-                                    n(0.042300000000000004),
-                                    end_effector_variation_46 * n(0.027499999999999997),
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_43 = (-q[11])
-        .mul_add(
-            end_effector_variation_69,
-            q[12]
-                .mul_add(
-                    end_effector_variation_72,
-                    end_effector_slope_37 - end_effector_slope_40,
-                ),
-        );
-    let end_effector_slope_44 = q[12]
-        .mul_add(
-            end_effector_variation_73,
-            q[10]
-                .mul_add(
-                    end_effector_variation_67,
-                    -end_effector_slope_38 - end_effector_slope_41,
-                ),
-        );
-    let end_effector_slope_45 = (-q[11])
-        .mul_add(
-            end_effector_variation_71,
-            q[10]
-                .mul_add(
-                    end_effector_variation_68,
-                    end_effector_slope_39 - end_effector_slope_42,
-                ),
-        );
-    let end_effector_slope_46 = (-end_effector_variation_48)
-        .mul_add(
-            n(0.136),
-            (-end_effector_variation_47)
-                .mul_add(
-                    n(0.51),
-                    q[12]
-                        .mul_add(
-                            end_effector_variation_76,
-                            q[11] * end_effector_variation_77,
-                        ),
-                ),
-        );
-    let end_effector_slope_47 = (-end_effector_variation_46)
-        .mul_add(
+            (-end_effector_variation_48).mul_add(
+                n(0.027499999999999997),
+                end_effector_variation_47.mul_add(n(0.0078), end_effector_variation_46 * n(0.19388)),
+            ),
+        ),
+    );
+    let end_effector_slope_41 = (-end_effector_variation_51).mul_add(
+        n(0.085),
+        end_effector_variation_49.mul_add(
             n(0.51),
-            end_effector_variation_48
-                .mul_add(
-                    n(0.085),
-                    q[10]
-                        .mul_add(
-                            end_effector_variation_77,
-                            q[12] * end_effector_variation_75,
-                        ),
-                ),
-        );
-    let end_effector_slope_48 = (-end_effector_variation_47)
-        .mul_add(
+            end_effector_variation_48.mul_add(
+                n(0.042300000000000004),
+                end_effector_variation_47.mul_add(n(0.18225), end_effector_variation_46 * n(0.0078)),
+            ),
+        ),
+    );
+    let end_effector_slope_42 = (-end_effector_variation_49).mul_add(
+        n(0.136),
+        (-end_effector_variation_50).mul_add(
             n(0.085),
-            (-end_effector_variation_46)
-                .mul_add(
-                    n(0.136),
-                    (-q[11])
-                        .mul_add(
-                            end_effector_variation_75,
-                            q[10] * end_effector_variation_76,
-                        ),
-                ),
-        );
+            (-end_effector_variation_48).mul_add(
+                n(0.02713),
+                (-end_effector_variation_47)
+                    .mul_add(n(0.042300000000000004), end_effector_variation_46 * n(0.027499999999999997)),
+            ),
+        ),
+    );
+    let end_effector_slope_43 = (-q[11]).mul_add(
+        end_effector_variation_69,
+        q[12].mul_add(end_effector_variation_72, end_effector_slope_37 - end_effector_slope_40),
+    );
+    let end_effector_slope_44 = q[12].mul_add(
+        end_effector_variation_73,
+        q[10].mul_add(end_effector_variation_67, -end_effector_slope_38 - end_effector_slope_41),
+    );
+    let end_effector_slope_45 = (-q[11]).mul_add(
+        end_effector_variation_71,
+        q[10].mul_add(end_effector_variation_68, end_effector_slope_39 - end_effector_slope_42),
+    );
+    let end_effector_slope_46 = (-end_effector_variation_48).mul_add(
+        n(0.136),
+        (-end_effector_variation_47)
+            .mul_add(n(0.51), q[12].mul_add(end_effector_variation_76, q[11] * end_effector_variation_77)),
+    );
+    let end_effector_slope_47 = (-end_effector_variation_46).mul_add(
+        n(0.51),
+        end_effector_variation_48
+            .mul_add(n(0.085), q[10].mul_add(end_effector_variation_77, q[12] * end_effector_variation_75)),
+    );
+    let end_effector_slope_48 = (-end_effector_variation_47).mul_add(
+        n(0.085),
+        (-end_effector_variation_46)
+            .mul_add(n(0.136), (-q[11]).mul_add(end_effector_variation_75, q[10] * end_effector_variation_76)),
+    );
     let end_effector_slope_49 = q[13] * end_effector_variation_66;
     let end_effector_slope_50 = q[14] * end_effector_variation_70;
     let end_effector_slope_51 = q[15] * end_effector_variation_74;
-    let end_effector_slope_52 = (-end_effector_variation_56)
-        .mul_add(
-            n(0.51),
-            (-end_effector_variation_57)
-                .mul_add(
-                    n(0.136),
-                    (-end_effector_variation_54)
-                        .mul_add(
-                            n(0.027499999999999997),
-                            end_effector_variation_53
-                                .mul_add(n(0.0078), end_effector_variation_52 * n(0.19388)),
-                        ),
-                ),
-        );
-    let end_effector_slope_53 = (-end_effector_variation_57)
-        .mul_add(
-            n(0.085),
-            end_effector_variation_55
-                .mul_add(
-                    n(0.51),
-                    end_effector_variation_54
-                        .mul_add(
-                            n(0.042300000000000004),
-                            end_effector_variation_53
-                                .mul_add(n(0.18225), end_effector_variation_52 * n(0.0078)),
-                        ),
-                ),
-        );
-    let end_effector_slope_54 = (-end_effector_variation_55)
-        .mul_add(
+    let end_effector_slope_52 = (-end_effector_variation_56).mul_add(
+        n(0.51),
+        (-end_effector_variation_57).mul_add(
             n(0.136),
-            (-end_effector_variation_56)
-                .mul_add(
-                    n(0.085),
-                    (-end_effector_variation_54)
-                        .mul_add(
-                            n(0.02713),
-                            (-end_effector_variation_53)
-                                .mul_add(
-                                    n(0.042300000000000004),
-                                    end_effector_variation_52 * n(0.027499999999999997),
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_55 = (-q[14])
-        .mul_add(
-            end_effector_variation_69,
-            q[15]
-                .mul_add(
-                    end_effector_variation_72,
-                    end_effector_slope_49 - end_effector_slope_52,
-                ),
-        );
-    let end_effector_slope_56 = q[15]
-        .mul_add(
-            end_effector_variation_73,
-            q[13]
-                .mul_add(
-                    end_effector_variation_67,
-                    -end_effector_slope_50 - end_effector_slope_53,
-                ),
-        );
-    let end_effector_slope_57 = (-q[14])
-        .mul_add(
-            end_effector_variation_71,
-            q[13]
-                .mul_add(
-                    end_effector_variation_68,
-                    end_effector_slope_51 - end_effector_slope_54,
-                ),
-        );
-    let end_effector_slope_58 = (-end_effector_variation_54)
-        .mul_add(
-            n(0.136),
-            (-end_effector_variation_53)
-                .mul_add(
-                    n(0.51),
-                    q[15]
-                        .mul_add(
-                            end_effector_variation_76,
-                            q[14] * end_effector_variation_77,
-                        ),
-                ),
-        );
-    let end_effector_slope_59 = (-end_effector_variation_52)
-        .mul_add(
+            (-end_effector_variation_54).mul_add(
+                n(0.027499999999999997),
+                end_effector_variation_53.mul_add(n(0.0078), end_effector_variation_52 * n(0.19388)),
+            ),
+        ),
+    );
+    let end_effector_slope_53 = (-end_effector_variation_57).mul_add(
+        n(0.085),
+        end_effector_variation_55.mul_add(
             n(0.51),
-            end_effector_variation_54
-                .mul_add(
-                    n(0.085),
-                    q[13]
-                        .mul_add(
-                            end_effector_variation_77,
-                            q[15] * end_effector_variation_75,
-                        ),
-                ),
-        );
-    let end_effector_slope_60 = (-end_effector_variation_53)
-        .mul_add(
+            end_effector_variation_54.mul_add(
+                n(0.042300000000000004),
+                end_effector_variation_53.mul_add(n(0.18225), end_effector_variation_52 * n(0.0078)),
+            ),
+        ),
+    );
+    let end_effector_slope_54 = (-end_effector_variation_55).mul_add(
+        n(0.136),
+        (-end_effector_variation_56).mul_add(
             n(0.085),
-            (-end_effector_variation_52)
-                .mul_add(
-                    n(0.136),
-                    (-q[14])
-                        .mul_add(
-                            end_effector_variation_75,
-                            q[13] * end_effector_variation_76,
-                        ),
-                ),
-        );
-    let end_effector_slope_61 = (-q[9])
-        .mul_add(
-            end_effector_slope_8,
-            (-q[8])
-                .mul_add(
-                    end_effector_motion_16,
-                    q[8]
-                        .mul_add(
-                            end_effector_slope_7,
-                            q[7]
-                                .mul_add(
-                                    end_effector_slope_6,
-                                    q[9] * end_effector_motion_15,
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_62 = (-q[12])
-        .mul_add(
-            end_effector_slope_8,
-            (-q[11])
-                .mul_add(
-                    end_effector_motion_16,
-                    q[11]
-                        .mul_add(
-                            end_effector_slope_7,
-                            q[10]
-                                .mul_add(
-                                    end_effector_slope_6,
-                                    q[12] * end_effector_motion_15,
-                                ),
-                        ),
-                ),
-        );
+            (-end_effector_variation_54).mul_add(
+                n(0.02713),
+                (-end_effector_variation_53)
+                    .mul_add(n(0.042300000000000004), end_effector_variation_52 * n(0.027499999999999997)),
+            ),
+        ),
+    );
+    let end_effector_slope_55 = (-q[14]).mul_add(
+        end_effector_variation_69,
+        q[15].mul_add(end_effector_variation_72, end_effector_slope_49 - end_effector_slope_52),
+    );
+    let end_effector_slope_56 = q[15].mul_add(
+        end_effector_variation_73,
+        q[13].mul_add(end_effector_variation_67, -end_effector_slope_50 - end_effector_slope_53),
+    );
+    let end_effector_slope_57 = (-q[14]).mul_add(
+        end_effector_variation_71,
+        q[13].mul_add(end_effector_variation_68, end_effector_slope_51 - end_effector_slope_54),
+    );
+    let end_effector_slope_58 = (-end_effector_variation_54).mul_add(
+        n(0.136),
+        (-end_effector_variation_53)
+            .mul_add(n(0.51), q[15].mul_add(end_effector_variation_76, q[14] * end_effector_variation_77)),
+    );
+    let end_effector_slope_59 = (-end_effector_variation_52).mul_add(
+        n(0.51),
+        end_effector_variation_54
+            .mul_add(n(0.085), q[13].mul_add(end_effector_variation_77, q[15] * end_effector_variation_75)),
+    );
+    let end_effector_slope_60 = (-end_effector_variation_53).mul_add(
+        n(0.085),
+        (-end_effector_variation_52)
+            .mul_add(n(0.136), (-q[14]).mul_add(end_effector_variation_75, q[13] * end_effector_variation_76)),
+    );
+    let end_effector_slope_61 = (-q[9]).mul_add(
+        end_effector_slope_8,
+        (-q[8]).mul_add(
+            end_effector_motion_16,
+            q[8].mul_add(end_effector_slope_7, q[7].mul_add(end_effector_slope_6, q[9] * end_effector_motion_15)),
+        ),
+    );
+    let end_effector_slope_62 = (-q[12]).mul_add(
+        end_effector_slope_8,
+        (-q[11]).mul_add(
+            end_effector_motion_16,
+            q[11].mul_add(end_effector_slope_7, q[10].mul_add(end_effector_slope_6, q[12] * end_effector_motion_15)),
+        ),
+    );
     let end_effector_slope_63 = q[13] * end_effector_slope_6;
-    let end_effector_slope_64 = (-q[15])
-        .mul_add(
-            end_effector_slope_8,
-            (-q[14])
-                .mul_add(
-                    end_effector_motion_16,
-                    q[14]
-                        .mul_add(
-                            end_effector_slope_7,
-                            q[15].mul_add(end_effector_motion_15, end_effector_slope_63),
-                        ),
-                ),
-        );
-    let end_effector_slope_65 = (-q[9])
-        .mul_add(
-            end_effector_slope_16,
-            (-q[9])
-                .mul_add(
-                    end_effector_motion_14,
-                    q[8]
-                        .mul_add(
-                            end_effector_slope_15,
-                            q[7]
-                                .mul_add(
-                                    end_effector_slope_14,
-                                    q[7] * end_effector_motion_16,
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_66 = (-q[12])
-        .mul_add(
-            end_effector_slope_16,
-            (-q[12])
-                .mul_add(
-                    end_effector_motion_14,
-                    q[11]
-                        .mul_add(
-                            end_effector_slope_15,
-                            q[10]
-                                .mul_add(
-                                    end_effector_slope_14,
-                                    q[10] * end_effector_motion_16,
-                                ),
-                        ),
-                ),
-        );
+    let end_effector_slope_64 = (-q[15]).mul_add(
+        end_effector_slope_8,
+        (-q[14]).mul_add(
+            end_effector_motion_16,
+            q[14].mul_add(end_effector_slope_7, q[15].mul_add(end_effector_motion_15, end_effector_slope_63)),
+        ),
+    );
+    let end_effector_slope_65 = (-q[9]).mul_add(
+        end_effector_slope_16,
+        (-q[9]).mul_add(
+            end_effector_motion_14,
+            q[8].mul_add(end_effector_slope_15, q[7].mul_add(end_effector_slope_14, q[7] * end_effector_motion_16)),
+        ),
+    );
+    let end_effector_slope_66 = (-q[12]).mul_add(
+        end_effector_slope_16,
+        (-q[12]).mul_add(
+            end_effector_motion_14,
+            q[11].mul_add(end_effector_slope_15, q[10].mul_add(end_effector_slope_14, q[10] * end_effector_motion_16)),
+        ),
+    );
     let end_effector_slope_67 = q[14] * end_effector_slope_15;
-    let end_effector_slope_68 = (-q[15])
-        .mul_add(
-            end_effector_slope_16,
-            (-q[15])
-                .mul_add(
-                    end_effector_motion_14,
-                    q[13]
-                        .mul_add(
-                            end_effector_slope_14,
-                            q[13].mul_add(end_effector_motion_16, end_effector_slope_67),
-                        ),
-                ),
-        );
-    let end_effector_slope_69 = (-q[8])
-        .mul_add(
-            end_effector_slope_22,
-            (-q[7])
-                .mul_add(
-                    end_effector_slope_21,
-                    (-q[7])
-                        .mul_add(
-                            end_effector_motion_15,
-                            q[9]
-                                .mul_add(
-                                    end_effector_slope_23,
-                                    q[8] * end_effector_motion_14,
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_70 = (-q[11])
-        .mul_add(
-            end_effector_slope_22,
-            (-q[10])
-                .mul_add(
-                    end_effector_slope_21,
-                    (-q[10])
-                        .mul_add(
-                            end_effector_motion_15,
-                            q[12]
-                                .mul_add(
-                                    end_effector_slope_23,
-                                    q[11] * end_effector_motion_14,
-                                ),
-                        ),
-                ),
-        );
+    let end_effector_slope_68 = (-q[15]).mul_add(
+        end_effector_slope_16,
+        (-q[15]).mul_add(
+            end_effector_motion_14,
+            q[13].mul_add(end_effector_slope_14, q[13].mul_add(end_effector_motion_16, end_effector_slope_67)),
+        ),
+    );
+    let end_effector_slope_69 = (-q[8]).mul_add(
+        end_effector_slope_22,
+        (-q[7]).mul_add(
+            end_effector_slope_21,
+            (-q[7]).mul_add(end_effector_motion_15, q[9].mul_add(end_effector_slope_23, q[8] * end_effector_motion_14)),
+        ),
+    );
+    let end_effector_slope_70 = (-q[11]).mul_add(
+        end_effector_slope_22,
+        (-q[10]).mul_add(
+            end_effector_slope_21,
+            (-q[10]).mul_add(end_effector_motion_15, q[12].mul_add(end_effector_slope_23, q[11] * end_effector_motion_14)),
+        ),
+    );
     let end_effector_slope_71 = q[15] * end_effector_slope_23;
-    let end_effector_slope_72 = (-q[14])
-        .mul_add(
-            end_effector_slope_22,
-            (-q[13])
-                .mul_add(
-                    end_effector_slope_21,
-                    (-q[13])
-                        .mul_add(
-                            end_effector_motion_15,
-                            q[14].mul_add(end_effector_motion_14, end_effector_slope_71),
-                        ),
-                ),
-        );
+    let end_effector_slope_72 = (-q[14]).mul_add(
+        end_effector_slope_22,
+        (-q[13]).mul_add(
+            end_effector_slope_21,
+            (-q[13]).mul_add(end_effector_motion_15, q[14].mul_add(end_effector_motion_14, end_effector_slope_71)),
+        ),
+    );
     let end_effector_slope_73 = (-q[15])
-        .mul_add(
-            end_effector_slope_33,
-            q[14].mul_add(end_effector_slope_32, q[13] * end_effector_slope_31),
-        );
+        .mul_add(end_effector_slope_33, q[14].mul_add(end_effector_slope_32, q[13] * end_effector_slope_31));
     let end_effector_slope_74 = (-q[15])
-        .mul_add(
-            end_effector_slope_45,
-            q[14].mul_add(end_effector_slope_44, q[13] * end_effector_slope_43),
-        );
+        .mul_add(end_effector_slope_45, q[14].mul_add(end_effector_slope_44, q[13] * end_effector_slope_43));
     let end_effector_slope_75 = (-q[15])
-        .mul_add(
-            end_effector_slope_57,
-            q[14].mul_add(end_effector_slope_56, q[13] * end_effector_slope_55),
-        );
-    let end_effector_slope_76 = (-end_effector_rate_y)
-        .mul_add(
-            end_effector_variation_75,
-            end_effector_variation_17
-                .mul_add(
-                    n(0.51),
-                    end_effector_variation_22.mul_add(n(0.085), end_effector_motion_19),
-                ),
-        );
-    let end_effector_slope_77 = (-end_effector_rate_z)
-        .mul_add(
-            end_effector_variation_75,
-            end_effector_variation_21
-                .mul_add(
-                    n(0.085),
-                    end_effector_variation_17.mul_add(n(0.136), end_effector_motion_18),
-                ),
-        );
-    let end_effector_slope_78 = end_effector_variation_33
-        .mul_add(
-            n(0.136),
-            end_effector_variation_28
-                .mul_add(
-                    n(0.51),
-                    end_effector_rate_x
-                        .mul_add(end_effector_variation_76, end_effector_motion_19),
-                ),
-        );
-    let end_effector_slope_79 = (-end_effector_variation_32)
-        .mul_add(
-            n(0.136),
-            (-end_effector_rate_z)
-                .mul_add(
-                    end_effector_variation_76,
-                    end_effector_variation_28.mul_add(n(0.085), end_effector_motion_17),
-                ),
-        );
-    let end_effector_slope_80 = (-end_effector_variation_39)
-        .mul_add(
-            n(0.51),
-            (-end_effector_rate_x)
-                .mul_add(
-                    end_effector_variation_77,
-                    end_effector_variation_34.mul_add(n(0.136), end_effector_motion_18),
-                ),
-        );
-    let end_effector_slope_81 = (-end_effector_variation_38)
-        .mul_add(
-            n(0.51),
-            (-end_effector_rate_y)
-                .mul_add(
-                    end_effector_variation_77,
-                    end_effector_variation_34.mul_add(n(0.085), end_effector_motion_17),
-                ),
-        );
+        .mul_add(end_effector_slope_57, q[14].mul_add(end_effector_slope_56, q[13] * end_effector_slope_55));
+    let end_effector_slope_76 = (-end_effector_rate_y).mul_add(
+        end_effector_variation_75,
+        end_effector_variation_17.mul_add(n(0.51), end_effector_variation_22.mul_add(n(0.085), end_effector_motion_19)),
+    );
+    let end_effector_slope_77 = (-end_effector_rate_z).mul_add(
+        end_effector_variation_75,
+        end_effector_variation_21.mul_add(n(0.085), end_effector_variation_17.mul_add(n(0.136), end_effector_motion_18)),
+    );
+    let end_effector_slope_78 = end_effector_variation_33.mul_add(
+        n(0.136),
+        end_effector_variation_28
+            .mul_add(n(0.51), end_effector_rate_x.mul_add(end_effector_variation_76, end_effector_motion_19)),
+    );
+    let end_effector_slope_79 = (-end_effector_variation_32).mul_add(
+        n(0.136),
+        (-end_effector_rate_z)
+            .mul_add(end_effector_variation_76, end_effector_variation_28.mul_add(n(0.085), end_effector_motion_17)),
+    );
+    let end_effector_slope_80 = (-end_effector_variation_39).mul_add(
+        n(0.51),
+        (-end_effector_rate_x)
+            .mul_add(end_effector_variation_77, end_effector_variation_34.mul_add(n(0.136), end_effector_motion_18)),
+    );
+    let end_effector_slope_81 = (-end_effector_variation_38).mul_add(
+        n(0.51),
+        (-end_effector_rate_y)
+            .mul_add(end_effector_variation_77, end_effector_variation_34.mul_add(n(0.085), end_effector_motion_17)),
+    );
     let end_effector_slope_82 = (-q[9])
-        .mul_add(
-            end_effector_slope_77,
-            (-q[8]).mul_add(end_effector_slope_76, q[7] * end_effector_slope_9),
-        );
+        .mul_add(end_effector_slope_77, (-q[8]).mul_add(end_effector_slope_76, q[7] * end_effector_slope_9));
     let end_effector_slope_83 = (-q[12])
-        .mul_add(
-            end_effector_slope_77,
-            (-q[11]).mul_add(end_effector_slope_76, q[10] * end_effector_slope_9),
-        );
-    let end_effector_slope_84 = (-end_effector_slope_82)
-        .mul_add(
-            n(0.02),
-            (-end_effector_slope_83)
-                .mul_add(
-                    n(0.15),
-                    (-q[14])
-                        .mul_add(
-                            end_effector_motion_16 - end_effector_slope_7,
-                            q[15]
-                                .mul_add(
-                                    end_effector_motion_15 - end_effector_slope_8,
-                                    end_effector_slope_63,
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(end_effector_slope_77, (-q[11]).mul_add(end_effector_slope_76, q[10] * end_effector_slope_9));
+    let end_effector_slope_84 = (-end_effector_slope_82).mul_add(
+        n(0.02),
+        (-end_effector_slope_83).mul_add(
+            n(0.15),
+            (-q[14]).mul_add(
+                end_effector_motion_16 - end_effector_slope_7,
+                q[15].mul_add(end_effector_motion_15 - end_effector_slope_8, end_effector_slope_63),
+            ),
+        ),
+    );
     let end_effector_slope_85 = (-q[9])
-        .mul_add(
-            end_effector_slope_79,
-            q[8].mul_add(end_effector_slope_17, q[7] * end_effector_slope_78),
-        );
+        .mul_add(end_effector_slope_79, q[8].mul_add(end_effector_slope_17, q[7] * end_effector_slope_78));
     let end_effector_slope_86 = (-q[12])
-        .mul_add(
-            end_effector_slope_79,
-            q[11].mul_add(end_effector_slope_17, q[10] * end_effector_slope_78),
-        );
-    let end_effector_slope_87 = (-end_effector_slope_85)
-        .mul_add(
-            n(0.02),
-            (-end_effector_slope_86)
-                .mul_add(
-                    n(0.15),
-                    (-q[15])
-                        .mul_add(
-                            end_effector_motion_14 + end_effector_slope_16,
-                            q[13]
-                                .mul_add(
-                                    end_effector_motion_16 + end_effector_slope_14,
-                                    end_effector_slope_67,
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(end_effector_slope_79, q[11].mul_add(end_effector_slope_17, q[10] * end_effector_slope_78));
+    let end_effector_slope_87 = (-end_effector_slope_85).mul_add(
+        n(0.02),
+        (-end_effector_slope_86).mul_add(
+            n(0.15),
+            (-q[15]).mul_add(
+                end_effector_motion_14 + end_effector_slope_16,
+                q[13].mul_add(end_effector_motion_16 + end_effector_slope_14, end_effector_slope_67),
+            ),
+        ),
+    );
     let end_effector_slope_88 = (-q[9])
-        .mul_add(
-            end_effector_slope_24,
-            q[8].mul_add(end_effector_slope_81, q[7] * end_effector_slope_80),
-        );
+        .mul_add(end_effector_slope_24, q[8].mul_add(end_effector_slope_81, q[7] * end_effector_slope_80));
     let end_effector_slope_89 = (-q[12])
-        .mul_add(
-            end_effector_slope_24,
-            q[11].mul_add(end_effector_slope_81, q[10] * end_effector_slope_80),
-        );
-    let end_effector_slope_90 = (-end_effector_slope_88)
-        .mul_add(
-            n(0.02),
-            (-end_effector_slope_89)
-                .mul_add(
-                    n(0.15),
-                    (-q[13])
-                        .mul_add(
-                            end_effector_motion_15 + end_effector_slope_21,
-                            q[14]
-                                .mul_add(
-                                    end_effector_motion_14 - end_effector_slope_22,
-                                    end_effector_slope_71,
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(end_effector_slope_24, q[11].mul_add(end_effector_slope_81, q[10] * end_effector_slope_80));
+    let end_effector_slope_90 = (-end_effector_slope_88).mul_add(
+        n(0.02),
+        (-end_effector_slope_89).mul_add(
+            n(0.15),
+            (-q[13]).mul_add(
+                end_effector_motion_15 + end_effector_slope_21,
+                q[14].mul_add(end_effector_motion_14 - end_effector_slope_22, end_effector_slope_71),
+            ),
+        ),
+    );
     let end_effector_slope_91 = (-q[9])
-        .mul_add(
-            end_effector_slope_36,
-            (-q[8]).mul_add(end_effector_slope_35, q[7] * end_effector_slope_34),
-        );
+        .mul_add(end_effector_slope_36, (-q[8]).mul_add(end_effector_slope_35, q[7] * end_effector_slope_34));
     let end_effector_slope_92 = (-q[12])
-        .mul_add(
-            end_effector_slope_36,
-            (-q[11]).mul_add(end_effector_slope_35, q[10] * end_effector_slope_34),
-        );
+        .mul_add(end_effector_slope_36, (-q[11]).mul_add(end_effector_slope_35, q[10] * end_effector_slope_34));
     let end_effector_slope_93 = end_effector_slope_91
         .mul_add(n(0.02), end_effector_slope_92.mul_add(n(0.15), end_effector_slope_73));
     let end_effector_slope_94 = (-q[9])
-        .mul_add(
-            end_effector_slope_48,
-            (-q[8]).mul_add(end_effector_slope_47, q[7] * end_effector_slope_46),
-        );
+        .mul_add(end_effector_slope_48, (-q[8]).mul_add(end_effector_slope_47, q[7] * end_effector_slope_46));
     let end_effector_slope_95 = (-q[12])
-        .mul_add(
-            end_effector_slope_48,
-            (-q[11]).mul_add(end_effector_slope_47, q[10] * end_effector_slope_46),
-        );
+        .mul_add(end_effector_slope_48, (-q[11]).mul_add(end_effector_slope_47, q[10] * end_effector_slope_46));
     let end_effector_slope_96 = end_effector_slope_94
         .mul_add(n(0.02), end_effector_slope_95.mul_add(n(0.15), end_effector_slope_74));
     let end_effector_slope_97 = (-q[9])
-        .mul_add(
-            end_effector_slope_60,
-            (-q[8]).mul_add(end_effector_slope_59, q[7] * end_effector_slope_58),
-        );
+        .mul_add(end_effector_slope_60, (-q[8]).mul_add(end_effector_slope_59, q[7] * end_effector_slope_58));
     let end_effector_slope_98 = (-q[12])
-        .mul_add(
-            end_effector_slope_60,
-            (-q[11]).mul_add(end_effector_slope_59, q[10] * end_effector_slope_58),
-        );
+        .mul_add(end_effector_slope_60, (-q[11]).mul_add(end_effector_slope_59, q[10] * end_effector_slope_58));
     let end_effector_slope_99 = end_effector_slope_97
         .mul_add(n(0.02), end_effector_slope_98.mul_add(n(0.15), end_effector_slope_75));
-    let end_effector_slope_100 = (-q[14])
-        .mul_add(
-            (-q[9])
-                .mul_add(
-                    end_effector_variation_71,
-                    q[7].mul_add(end_effector_variation_69, end_effector_slope_26),
-                ),
-            q[13]
-                * ((-q[9])
-                    .mul_add(
-                        end_effector_variation_68,
-                        q[8].mul_add(end_effector_variation_67, end_effector_slope_25),
-                    )),
-        );
-    let end_effector_slope_101 = (-q[15])
-        .mul_add(
-            (-q[8])
-                .mul_add(
-                    end_effector_variation_73,
-                    (-q[7]).mul_add(end_effector_variation_72, end_effector_slope_27),
-                ),
-            end_effector_slope_100,
-        );
-    let end_effector_slope_102 = (-q[14])
-        .mul_add(
-            (-q[12])
-                .mul_add(
-                    end_effector_variation_71,
-                    q[10].mul_add(end_effector_variation_69, end_effector_slope_38),
-                ),
-            q[13]
-                * ((-q[12])
-                    .mul_add(
-                        end_effector_variation_68,
-                        q[11].mul_add(end_effector_variation_67, end_effector_slope_37),
-                    )),
-        );
-    let end_effector_slope_103 = (-q[15])
-        .mul_add(
-            (-q[11])
-                .mul_add(
-                    end_effector_variation_73,
-                    (-q[10]).mul_add(end_effector_variation_72, end_effector_slope_39),
-                ),
-            end_effector_slope_102,
-        );
-    let end_effector_slope_104 = (-q[14])
-        .mul_add(
-            (-q[15])
-                .mul_add(
-                    end_effector_variation_71,
-                    q[13].mul_add(end_effector_variation_69, end_effector_slope_50),
-                ),
-            q[13]
-                * ((-q[15])
-                    .mul_add(
-                        end_effector_variation_68,
-                        q[14].mul_add(end_effector_variation_67, end_effector_slope_49),
-                    )),
-        );
-    let end_effector_slope_105 = (-q[15])
-        .mul_add(
-            (-q[14])
-                .mul_add(
-                    end_effector_variation_73,
-                    (-q[13]).mul_add(end_effector_variation_72, end_effector_slope_51),
-                ),
-            end_effector_slope_104,
-        );
+    let end_effector_slope_100 = (-q[14]).mul_add(
+        (-q[9]).mul_add(end_effector_variation_71, q[7].mul_add(end_effector_variation_69, end_effector_slope_26)),
+        q[13] * ((-q[9]).mul_add(end_effector_variation_68, q[8].mul_add(end_effector_variation_67, end_effector_slope_25))),
+    );
+    let end_effector_slope_101 = (-q[15]).mul_add(
+        (-q[8]).mul_add(end_effector_variation_73, (-q[7]).mul_add(end_effector_variation_72, end_effector_slope_27)),
+        end_effector_slope_100,
+    );
+    let end_effector_slope_102 = (-q[14]).mul_add(
+        (-q[12]).mul_add(end_effector_variation_71, q[10].mul_add(end_effector_variation_69, end_effector_slope_38)),
+        q[13] * ((-q[12]).mul_add(end_effector_variation_68, q[11].mul_add(end_effector_variation_67, end_effector_slope_37))),
+    );
+    let end_effector_slope_103 = (-q[15]).mul_add(
+        (-q[11]).mul_add(end_effector_variation_73, (-q[10]).mul_add(end_effector_variation_72, end_effector_slope_39)),
+        end_effector_slope_102,
+    );
+    let end_effector_slope_104 = (-q[14]).mul_add(
+        (-q[15]).mul_add(end_effector_variation_71, q[13].mul_add(end_effector_variation_69, end_effector_slope_50)),
+        q[13] * ((-q[15]).mul_add(end_effector_variation_68, q[14].mul_add(end_effector_variation_67, end_effector_slope_49))),
+    );
+    let end_effector_slope_105 = (-q[15]).mul_add(
+        (-q[14]).mul_add(end_effector_variation_73, (-q[13]).mul_add(end_effector_variation_72, end_effector_slope_51)),
+        end_effector_slope_104,
+    );
     let end_effector_slope_106 = (-end_effector_composite_inertia_39)
         .mul_add(cart_variation_5, end_effector_composite_inertia_38 * cart_variation_4);
     let end_effector_slope_107 = end_effector_composite_inertia_39
-        .mul_add(
-            plate_acceleration_2,
-            plate_acceleration * end_effector_composite_inertia_38,
-        );
+        .mul_add(plate_acceleration_2, plate_acceleration * end_effector_composite_inertia_38);
     let end_effector_slope_108 = (-plate_acceleration)
-        .mul_add(
-            end_effector_composite_inertia_39,
-            end_effector_composite_inertia_38 * plate_acceleration_2,
-        );
+        .mul_add(end_effector_composite_inertia_39, end_effector_composite_inertia_38 * plate_acceleration_2);
     let end_effector_slope_109 = (-end_effector_composite_inertia_39)
-        .mul_add(
-            cart_variation_2,
-            end_effector_composite_inertia_38
-                .mul_add(cart_variation_3, end_effector_slope_105),
-        );
+        .mul_add(cart_variation_2, end_effector_composite_inertia_38.mul_add(cart_variation_3, end_effector_slope_105));
     let end_effector_slope_110 = end_effector_composite_inertia_39 * cart_variation;
-    let end_effector_slope_111 = (-q[6])
-        .mul_add(
-            q[2].mul_add(end_effector_slope_83, q[1] * end_effector_slope_82),
-            q[3] * (q[5].mul_add(end_effector_slope_83, q[4] * end_effector_slope_82)),
-        );
-    let end_effector_slope_112 = (-q[6])
-        .mul_add(
-            q[2].mul_add(end_effector_slope_86, q[1] * end_effector_slope_85),
-            q[3] * (q[5].mul_add(end_effector_slope_86, q[4] * end_effector_slope_85)),
-        );
-    let end_effector_slope_113 = (-q[6])
-        .mul_add(
-            q[2].mul_add(end_effector_slope_89, q[1] * end_effector_slope_88),
-            q[3] * (q[5].mul_add(end_effector_slope_89, q[4] * end_effector_slope_88)),
-        );
-    let end_effector_slope_114 = (-q[6])
-        .mul_add(
-            q[2].mul_add(end_effector_slope_92, q[1] * end_effector_slope_91),
-            q[3] * (q[5].mul_add(end_effector_slope_92, q[4] * end_effector_slope_91)),
-        );
-    let end_effector_slope_115 = (-q[6])
-        .mul_add(
-            q[2].mul_add(end_effector_slope_95, q[1] * end_effector_slope_94),
-            q[3] * (q[5].mul_add(end_effector_slope_95, q[4] * end_effector_slope_94)),
-        );
-    let end_effector_slope_116 = (-q[6])
-        .mul_add(
-            q[2].mul_add(end_effector_slope_98, q[1] * end_effector_slope_97),
-            q[3] * (q[5].mul_add(end_effector_slope_98, q[4] * end_effector_slope_97)),
-        );
+    let end_effector_slope_111 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_slope_83, q[1] * end_effector_slope_82),
+        q[3] * (q[5].mul_add(end_effector_slope_83, q[4] * end_effector_slope_82)),
+    );
+    let end_effector_slope_112 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_slope_86, q[1] * end_effector_slope_85),
+        q[3] * (q[5].mul_add(end_effector_slope_86, q[4] * end_effector_slope_85)),
+    );
+    let end_effector_slope_113 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_slope_89, q[1] * end_effector_slope_88),
+        q[3] * (q[5].mul_add(end_effector_slope_89, q[4] * end_effector_slope_88)),
+    );
+    let end_effector_slope_114 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_slope_92, q[1] * end_effector_slope_91),
+        q[3] * (q[5].mul_add(end_effector_slope_92, q[4] * end_effector_slope_91)),
+    );
+    let end_effector_slope_115 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_slope_95, q[1] * end_effector_slope_94),
+        q[3] * (q[5].mul_add(end_effector_slope_95, q[4] * end_effector_slope_94)),
+    );
+    let end_effector_slope_116 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_slope_98, q[1] * end_effector_slope_97),
+        q[3] * (q[5].mul_add(end_effector_slope_98, q[4] * end_effector_slope_97)),
+    );
     let end_effector_slope_117 = (-q[9])
-        .mul_add(
-            end_effector_variation_77,
-            q[8].mul_add(end_effector_variation_76, q[7] * end_effector_variation_75),
-        );
+        .mul_add(end_effector_variation_77, q[8].mul_add(end_effector_variation_76, q[7] * end_effector_variation_75));
     let end_effector_slope_118 = (-q[12])
-        .mul_add(
-            end_effector_variation_77,
-            q[11].mul_add(end_effector_variation_76, q[10] * end_effector_variation_75),
-        );
-    let end_effector_slope_119 = ((-q[15])
-        .mul_add(
-            end_effector_variation_77,
-            q[14].mul_add(end_effector_variation_76, q[13] * end_effector_variation_75),
-        )) * n(0.3);
-    let end_effector_slope_120 = (-end_effector_slope_118)
-        .mul_add(
-            n(0.02),
-            (-cart_motion_4)
-                .mul_add(
-                    n(0.092),
-                    end_effector_slope_117
-                        .mul_add(
-                            n(0.15),
-                            cart_motion_5
-                                .mul_add(
-                                    n(0.99),
-                                    end_effector_slope_119 - end_effector_slope_105
-                                        - end_effector_slope_119,
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_121 = (-cart_rate_z)
-        .mul_add(n(0.092), cart_motion_5.mul_add(n(11.4), end_effector_slope_117));
-    let end_effector_slope_122 = (-cart_rate_z)
-        .mul_add(n(0.99), end_effector_variation_58 - end_effector_slope_118);
-    let end_effector_slope_123 = (-q[8])
-        .mul_add(
-            end_effector_motion_18,
-            (-cart_acceleration_14)
-                .mul_add(
-                    n(0.046),
-                    q[9]
-                        .mul_add(
-                            end_effector_motion_19,
-                            q[7]
-                                .mul_add(
-                                    end_effector_motion_17,
-                                    cart_acceleration_15.mul_add(n(5.7), cart_force),
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_124 = (-q[12])
-        .mul_add(
-            end_effector_motion_19,
-            (-q[10])
-                .mul_add(
-                    end_effector_motion_17,
-                    (-cart_acceleration_14)
-                        .mul_add(
-                            n(0.495),
-                            q[11]
-                                .mul_add(
-                                    end_effector_motion_18,
-                                    cart_acceleration_16.mul_add(n(5.7), -cart_force_2),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(end_effector_variation_77, q[11].mul_add(end_effector_variation_76, q[10] * end_effector_variation_75));
+    let end_effector_slope_119 = ((-q[15]).mul_add(
+        end_effector_variation_77,
+        q[14].mul_add(end_effector_variation_76, q[13] * end_effector_variation_75),
+    )) * n(0.3);
+    let end_effector_slope_120 = (-end_effector_slope_118).mul_add(
+        n(0.02),
+        (-cart_motion_4).mul_add(
+            n(0.092),
+            end_effector_slope_117.mul_add(
+                n(0.15),
+                cart_motion_5.mul_add(n(0.99), end_effector_slope_119 - end_effector_slope_105 - end_effector_slope_119),
+            ),
+        ),
+    );
+    let end_effector_slope_121 = (-cart_rate_z).mul_add(n(0.092), cart_motion_5.mul_add(n(11.4), end_effector_slope_117));
+    let end_effector_slope_122 = (-cart_rate_z).mul_add(n(0.99), end_effector_variation_58 - end_effector_slope_118);
+    let end_effector_slope_123 = (-q[8]).mul_add(
+        end_effector_motion_18,
+        (-cart_acceleration_14).mul_add(
+            n(0.046),
+            q[9].mul_add(
+                end_effector_motion_19,
+                q[7].mul_add(end_effector_motion_17, cart_acceleration_15.mul_add(n(5.7), cart_force)),
+            ),
+        ),
+    );
+    let end_effector_slope_124 = (-q[12]).mul_add(
+        end_effector_motion_19,
+        (-q[10]).mul_add(
+            end_effector_motion_17,
+            (-cart_acceleration_14).mul_add(
+                n(0.495),
+                q[11].mul_add(end_effector_motion_18, cart_acceleration_16.mul_add(n(5.7), -cart_force_2)),
+            ),
+        ),
+    );
     // cart: slope (33 additions, 49 multiplications)
-    let cart_slope = cart_composite_inertia_2
-        .mul_add(cart_variation_4, cart_composite_inertia * cart_variation_5);
+    let cart_slope = cart_composite_inertia_2.mul_add(cart_variation_4, cart_composite_inertia * cart_variation_5);
     let cart_slope_2 = cart_variation_4 * n(5.7);
-    let cart_slope_3 = (-plate_acceleration)
-        .mul_add(
-            cart_composite_inertia_2,
-            cart_composite_inertia * plate_acceleration_2,
-        );
+    let cart_slope_3 = (-plate_acceleration).mul_add(cart_composite_inertia_2, cart_composite_inertia * plate_acceleration_2);
     let cart_slope_4 = plate_acceleration * n(5.7);
     let cart_slope_5 = plate_acceleration_2 * n(5.7);
-    let cart_slope_6 = cart_composite_inertia_2
-        .mul_add(plate_acceleration_2, plate_acceleration * cart_composite_inertia);
+    let cart_slope_6 = cart_composite_inertia_2.mul_add(plate_acceleration_2, plate_acceleration * cart_composite_inertia);
     let cart_slope_7 = cart_composite_inertia_2
-        .mul_add(
-            cart_variation_3,
-            cart_composite_inertia.mul_add(cart_variation_2, end_effector_slope_120),
-        );
+        .mul_add(cart_variation_3, cart_composite_inertia.mul_add(cart_variation_2, end_effector_slope_120));
     let cart_slope_8 = end_effector_variation_58 - end_effector_slope_122;
     let cart_slope_9 = cart_variation_2.mul_add(n(5.7), end_effector_slope_121);
     let cart_slope_10 = cart_composite_inertia * cart_variation;
@@ -6712,1747 +3668,929 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
     let cart_slope_12 = end_effector_slope_124 - cart_slope_2;
     let cart_slope_13 = cart_variation_5.mul_add(n(5.7), end_effector_slope_123);
     let cart_slope_14 = (-q[6])
-        .mul_add(
-            q[2].mul_add(cart_slope_13, q[1] * cart_slope_12),
-            q[3] * (q[5].mul_add(cart_slope_13, q[4] * cart_slope_12)),
-        );
+        .mul_add(q[2].mul_add(cart_slope_13, q[1] * cart_slope_12), q[3] * (q[5].mul_add(cart_slope_13, q[4] * cart_slope_12)));
     let cart_slope_15 = (-q[6])
-        .mul_add(
-            q[2].mul_add(cart_slope_5, q[1] * cart_slope_4),
-            q[3] * (q[5].mul_add(cart_slope_5, q[4] * cart_slope_4)),
-        );
-    let cart_slope_16 = (-q[6])
-        .mul_add(
-            (-q[2]).mul_add(cart_slope_4, q[1] * cart_slope_5),
-            q[3] * ((-q[5]).mul_add(cart_slope_4, q[4] * cart_slope_5)),
-        );
-    let cart_slope_17 = (-q[6])
-        .mul_add(
-            (-q[2]).mul_add(cart_slope_9, q[1] * cart_slope_8),
-            q[3] * ((-q[5]).mul_add(cart_slope_9, q[4] * cart_slope_8)),
-        );
-    let cart_slope_18 = q[6]
-        .mul_add(
-            (-q[5]).mul_add(end_effector_slope_122, q[4] * end_effector_slope_121),
-            q[3]
-                * ((-q[2])
-                    .mul_add(end_effector_slope_122, q[1] * end_effector_slope_121)),
-        );
+        .mul_add(q[2].mul_add(cart_slope_5, q[1] * cart_slope_4), q[3] * (q[5].mul_add(cart_slope_5, q[4] * cart_slope_4)));
+    let cart_slope_16 = (-q[6]).mul_add(
+        (-q[2]).mul_add(cart_slope_4, q[1] * cart_slope_5),
+        q[3] * ((-q[5]).mul_add(cart_slope_4, q[4] * cart_slope_5)),
+    );
+    let cart_slope_17 = (-q[6]).mul_add(
+        (-q[2]).mul_add(cart_slope_9, q[1] * cart_slope_8),
+        q[3] * ((-q[5]).mul_add(cart_slope_9, q[4] * cart_slope_8)),
+    );
+    let cart_slope_18 = q[6].mul_add(
+        (-q[5]).mul_add(end_effector_slope_122, q[4] * end_effector_slope_121),
+        q[3] * ((-q[2]).mul_add(end_effector_slope_122, q[1] * end_effector_slope_121)),
+    );
     // end_effector: load (12 additions, 12 multiplications)
-    let end_effector_load_7 = (-end_effector_factor_2)
-        .mul_add(
+    let end_effector_load_7 = (-end_effector_factor_2).mul_add(
+        end_effector_slope_106,
+        (-end_effector_composite_inertia_30).mul_add(cart_variation_5, end_effector_composite_inertia_29 * cart_variation_4),
+    );
+    let end_effector_load_8 = (-end_effector_factor_16).mul_add(
+        end_effector_load_7,
+        (-end_effector_factor_8).mul_add(
             end_effector_slope_106,
-            (-end_effector_composite_inertia_30)
-                .mul_add(
-                    cart_variation_5,
-                    end_effector_composite_inertia_29 * cart_variation_4,
-                ),
-        );
-    let end_effector_load_8 = (-end_effector_factor_16)
-        .mul_add(
+            (-end_effector_composite_inertia_14)
+                .mul_add(cart_variation_5, end_effector_composite_inertia_13 * cart_variation_4),
+        ),
+    );
+    let end_effector_load_9 = (-end_effector_factor_24).mul_add(
+        end_effector_load_8,
+        (-end_effector_factor_20)
+            .mul_add(end_effector_load_7, (-end_effector_factor_10).mul_add(end_effector_slope_106, cart_slope_2)),
+    );
+    let end_effector_load_10 = end_effector_factor_29.mul_add(
+        end_effector_load_8,
+        end_effector_factor_22.mul_add(
             end_effector_load_7,
-            (-end_effector_factor_8)
-                .mul_add(
-                    end_effector_slope_106,
-                    (-end_effector_composite_inertia_14)
-                        .mul_add(
-                            cart_variation_5,
-                            end_effector_composite_inertia_13 * cart_variation_4,
-                        ),
-                ),
-        );
-    let end_effector_load_9 = (-end_effector_factor_24)
-        .mul_add(
-            end_effector_load_8,
-            (-end_effector_factor_20)
-                .mul_add(
-                    end_effector_load_7,
-                    (-end_effector_factor_10)
-                        .mul_add(end_effector_slope_106, cart_slope_2),
-                ),
-        );
-    let end_effector_load_10 = end_effector_factor_29
-        .mul_add(
-            end_effector_load_8,
-            end_effector_factor_22
-                .mul_add(
-                    end_effector_load_7,
-                    end_effector_factor_13
-                        .mul_add(end_effector_slope_106, cart_slope + cart_slope_14),
-                ),
-        );
+            end_effector_factor_13.mul_add(end_effector_slope_106, cart_slope + cart_slope_14),
+        ),
+    );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_2 = cart_factor_2
-        .mul_add(
-            end_effector_load_9,
-            end_effector_factor_27
-                .mul_add(
-                    end_effector_load_8,
-                    end_effector_factor_21
-                        .mul_add(
-                            end_effector_load_7,
-                            end_effector_factor_12
-                                .mul_add(end_effector_slope_106, cart_slope),
-                        ),
-                ),
-        );
+    let cart_load_2 = cart_factor_2.mul_add(
+        end_effector_load_9,
+        end_effector_factor_27.mul_add(
+            end_effector_load_8,
+            end_effector_factor_21
+                .mul_add(end_effector_load_7, end_effector_factor_12.mul_add(end_effector_slope_106, cart_slope)),
+        ),
+    );
     // plate: response (1 multiplication)
     let plate_slope = plate_factor
-        * ((-cart_factor_7)
-            .mul_add(
-                cart_load_2,
-                cart_factor_5.mul_add(end_effector_load_9, end_effector_load_10),
-            ));
+        * ((-cart_factor_7).mul_add(cart_load_2, cart_factor_5.mul_add(end_effector_load_9, end_effector_load_10)));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_19 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope, cart_load_2));
+    let cart_slope_19 = cart_factor_6 * ((-cart_factor_4).mul_add(plate_slope, cart_load_2));
     let cart_slope_20 = cart_factor
         * ((-end_effector_factor_26)
-            .mul_add(
-                plate_slope,
-                (-end_effector_factor_25).mul_add(cart_slope_19, end_effector_load_9),
-            ));
+            .mul_add(plate_slope, (-end_effector_factor_25).mul_add(cart_slope_19, end_effector_load_9)));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_125 = end_effector_factor_23
-        * (end_effector_factor_19
-            .mul_add(
-                plate_slope,
-                end_effector_factor_18
-                    .mul_add(
-                        cart_slope_19,
-                        end_effector_factor_17
-                            .mul_add(cart_slope_20, end_effector_load_8),
-                    ),
-            ));
-    let end_effector_response_3 = (-end_effector_factor_7)
-        .mul_add(
-            plate_slope,
-            (-end_effector_factor_6)
-                .mul_add(
-                    cart_slope_19,
-                    (-end_effector_factor_5)
-                        .mul_add(
-                            cart_slope_20,
-                            end_effector_factor_4 * end_effector_slope_125,
-                        ),
-                ),
-        );
-    let end_effector_slope_126 = end_effector_factor_15
-        * (end_effector_load_7 - end_effector_response_3);
-    let end_effector_response_4 = (-end_effector_composite_inertia_40)
-        .mul_add(
+    let end_effector_slope_125 = end_effector_factor_23 * (end_effector_factor_19.mul_add(
+        plate_slope,
+        end_effector_factor_18.mul_add(cart_slope_19, end_effector_factor_17.mul_add(cart_slope_20, end_effector_load_8)),
+    ));
+    let end_effector_response_3 = (-end_effector_factor_7).mul_add(
+        plate_slope,
+        (-end_effector_factor_6).mul_add(
             cart_slope_19,
-            (-end_effector_composite_inertia_38)
-                .mul_add(
-                    cart_slope_20,
-                    end_effector_composite_inertia_12
-                        .mul_add(
-                            end_effector_slope_125,
-                            end_effector_composite_inertia_28 * end_effector_slope_126,
-                        ),
-                ),
-        );
+            (-end_effector_factor_5).mul_add(cart_slope_20, end_effector_factor_4 * end_effector_slope_125),
+        ),
+    );
+    let end_effector_slope_126 = end_effector_factor_15 * (end_effector_load_7 - end_effector_response_3);
+    let end_effector_response_4 = (-end_effector_composite_inertia_40).mul_add(
+        cart_slope_19,
+        (-end_effector_composite_inertia_38).mul_add(
+            cart_slope_20,
+            end_effector_composite_inertia_12
+                .mul_add(end_effector_slope_125, end_effector_composite_inertia_28 * end_effector_slope_126),
+        ),
+    );
     // end_effector: load (12 additions, 12 multiplications)
-    let end_effector_load_11 = (-end_effector_factor_2)
-        .mul_add(
+    let end_effector_load_11 = (-end_effector_factor_2).mul_add(
+        end_effector_slope_107,
+        end_effector_composite_inertia_30.mul_add(plate_acceleration_2, plate_acceleration * end_effector_composite_inertia_29),
+    );
+    let end_effector_load_12 = (-end_effector_factor_16).mul_add(
+        end_effector_load_11,
+        (-end_effector_factor_8).mul_add(
             end_effector_slope_107,
-            end_effector_composite_inertia_30
-                .mul_add(
-                    plate_acceleration_2,
-                    plate_acceleration * end_effector_composite_inertia_29,
-                ),
-        );
-    let end_effector_load_12 = (-end_effector_factor_16)
-        .mul_add(
+            end_effector_composite_inertia_14
+                .mul_add(plate_acceleration_2, plate_acceleration * end_effector_composite_inertia_13),
+        ),
+    );
+    let end_effector_load_13 = (-end_effector_factor_24).mul_add(
+        end_effector_load_12,
+        (-end_effector_factor_20)
+            .mul_add(end_effector_load_11, (-end_effector_factor_10).mul_add(end_effector_slope_107, cart_slope_4)),
+    );
+    let end_effector_load_14 = end_effector_factor_29.mul_add(
+        end_effector_load_12,
+        end_effector_factor_22.mul_add(
             end_effector_load_11,
-            (-end_effector_factor_8)
-                .mul_add(
-                    end_effector_slope_107,
-                    end_effector_composite_inertia_14
-                        .mul_add(
-                            plate_acceleration_2,
-                            plate_acceleration * end_effector_composite_inertia_13,
-                        ),
-                ),
-        );
-    let end_effector_load_13 = (-end_effector_factor_24)
-        .mul_add(
-            end_effector_load_12,
-            (-end_effector_factor_20)
-                .mul_add(
-                    end_effector_load_11,
-                    (-end_effector_factor_10)
-                        .mul_add(end_effector_slope_107, cart_slope_4),
-                ),
-        );
-    let end_effector_load_14 = end_effector_factor_29
-        .mul_add(
-            end_effector_load_12,
-            end_effector_factor_22
-                .mul_add(
-                    end_effector_load_11,
-                    end_effector_factor_13
-                        .mul_add(
-                            end_effector_slope_107,
-                            end_effector_slope_124 - cart_slope_3 - cart_slope_15,
-                        ),
-                ),
-        );
+            end_effector_factor_13.mul_add(end_effector_slope_107, end_effector_slope_124 - cart_slope_3 - cart_slope_15),
+        ),
+    );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_3 = (-cart_factor_2)
-        .mul_add(
-            end_effector_load_13,
-            (-end_effector_factor_27)
-                .mul_add(
-                    end_effector_load_12,
-                    (-end_effector_factor_21)
-                        .mul_add(
-                            end_effector_load_11,
-                            (-end_effector_factor_12)
-                                .mul_add(end_effector_slope_107, cart_slope_3),
-                        ),
-                ),
-        );
+    let cart_load_3 = (-cart_factor_2).mul_add(
+        end_effector_load_13,
+        (-end_effector_factor_27).mul_add(
+            end_effector_load_12,
+            (-end_effector_factor_21)
+                .mul_add(end_effector_load_11, (-end_effector_factor_12).mul_add(end_effector_slope_107, cart_slope_3)),
+        ),
+    );
     // plate: response (1 multiplication)
     let plate_slope_2 = plate_factor
-        * (cart_factor_7
-            .mul_add(
-                cart_load_3,
-                cart_factor_5.mul_add(end_effector_load_13, end_effector_load_14),
-            ));
+        * (cart_factor_7.mul_add(cart_load_3, cart_factor_5.mul_add(end_effector_load_13, end_effector_load_14)));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_21 = cart_factor_6
-        * (cart_factor_4.mul_add(plate_slope_2, cart_load_3));
+    let cart_slope_21 = cart_factor_6 * (cart_factor_4.mul_add(plate_slope_2, cart_load_3));
     let cart_slope_22 = cart_factor
         * ((-end_effector_factor_26)
-            .mul_add(
-                plate_slope_2,
-                end_effector_factor_25.mul_add(cart_slope_21, end_effector_load_13),
-            ));
+            .mul_add(plate_slope_2, end_effector_factor_25.mul_add(cart_slope_21, end_effector_load_13)));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_127 = end_effector_factor_23
-        * ((-end_effector_factor_18)
-            .mul_add(
-                cart_slope_21,
-                end_effector_factor_19
-                    .mul_add(
-                        plate_slope_2,
-                        end_effector_factor_17
-                            .mul_add(cart_slope_22, end_effector_load_12),
-                    ),
-            ));
-    let end_effector_response_5 = (-end_effector_factor_7)
-        .mul_add(
-            plate_slope_2,
-            (-end_effector_factor_5)
-                .mul_add(
-                    cart_slope_22,
-                    end_effector_factor_6
-                        .mul_add(
-                            cart_slope_21,
-                            end_effector_factor_4 * end_effector_slope_127,
-                        ),
-                ),
-        );
-    let end_effector_slope_128 = end_effector_factor_15
-        * (end_effector_load_11 - end_effector_response_5);
-    let end_effector_response_6 = (-end_effector_composite_inertia_38)
-        .mul_add(
+    let end_effector_slope_127 = end_effector_factor_23 * ((-end_effector_factor_18).mul_add(
+        cart_slope_21,
+        end_effector_factor_19.mul_add(plate_slope_2, end_effector_factor_17.mul_add(cart_slope_22, end_effector_load_12)),
+    ));
+    let end_effector_response_5 = (-end_effector_factor_7).mul_add(
+        plate_slope_2,
+        (-end_effector_factor_5).mul_add(
             cart_slope_22,
-            end_effector_composite_inertia_40
-                .mul_add(
-                    cart_slope_21,
-                    end_effector_composite_inertia_12
-                        .mul_add(
-                            end_effector_slope_127,
-                            end_effector_composite_inertia_28 * end_effector_slope_128,
-                        ),
-                ),
-        );
+            end_effector_factor_6.mul_add(cart_slope_21, end_effector_factor_4 * end_effector_slope_127),
+        ),
+    );
+    let end_effector_slope_128 = end_effector_factor_15 * (end_effector_load_11 - end_effector_response_5);
+    let end_effector_response_6 = (-end_effector_composite_inertia_38).mul_add(
+        cart_slope_22,
+        end_effector_composite_inertia_40.mul_add(
+            cart_slope_21,
+            end_effector_composite_inertia_12
+                .mul_add(end_effector_slope_127, end_effector_composite_inertia_28 * end_effector_slope_128),
+        ),
+    );
     // end_effector: load (12 additions, 12 multiplications)
-    let end_effector_load_15 = (-end_effector_factor_2)
-        .mul_add(
+    let end_effector_load_15 = (-end_effector_factor_2).mul_add(
+        end_effector_slope_108,
+        (-plate_acceleration)
+            .mul_add(end_effector_composite_inertia_30, end_effector_composite_inertia_29 * plate_acceleration_2),
+    );
+    let end_effector_load_16 = (-end_effector_factor_16).mul_add(
+        end_effector_load_15,
+        (-end_effector_factor_8).mul_add(
             end_effector_slope_108,
             (-plate_acceleration)
-                .mul_add(
-                    end_effector_composite_inertia_30,
-                    end_effector_composite_inertia_29 * plate_acceleration_2,
-                ),
-        );
-    let end_effector_load_16 = (-end_effector_factor_16)
-        .mul_add(
+                .mul_add(end_effector_composite_inertia_14, end_effector_composite_inertia_13 * plate_acceleration_2),
+        ),
+    );
+    let end_effector_load_17 = (-end_effector_factor_24).mul_add(
+        end_effector_load_16,
+        (-end_effector_factor_20)
+            .mul_add(end_effector_load_15, (-end_effector_factor_10).mul_add(end_effector_slope_108, cart_slope_5)),
+    );
+    let end_effector_load_18 = (-end_effector_factor_29).mul_add(
+        end_effector_load_16,
+        (-end_effector_factor_22).mul_add(
             end_effector_load_15,
-            (-end_effector_factor_8)
-                .mul_add(
-                    end_effector_slope_108,
-                    (-plate_acceleration)
-                        .mul_add(
-                            end_effector_composite_inertia_14,
-                            end_effector_composite_inertia_13 * plate_acceleration_2,
-                        ),
-                ),
-        );
-    let end_effector_load_17 = (-end_effector_factor_24)
-        .mul_add(
-            end_effector_load_16,
-            (-end_effector_factor_20)
-                .mul_add(
-                    end_effector_load_15,
-                    (-end_effector_factor_10)
-                        .mul_add(end_effector_slope_108, cart_slope_5),
-                ),
-        );
-    let end_effector_load_18 = (-end_effector_factor_29)
-        .mul_add(
-            end_effector_load_16,
-            (-end_effector_factor_22)
-                .mul_add(
-                    end_effector_load_15,
-                    (-end_effector_factor_13)
-                        .mul_add(
-                            end_effector_slope_108,
-                            end_effector_slope_123 + cart_slope_16 - cart_slope_6,
-                        ),
-                ),
-        );
+            (-end_effector_factor_13).mul_add(end_effector_slope_108, end_effector_slope_123 + cart_slope_16 - cart_slope_6),
+        ),
+    );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_4 = cart_factor_2
-        .mul_add(
-            end_effector_load_17,
-            end_effector_factor_27
-                .mul_add(
-                    end_effector_load_16,
-                    end_effector_factor_21
-                        .mul_add(
-                            end_effector_load_15,
-                            end_effector_factor_12
-                                .mul_add(end_effector_slope_108, cart_slope_6),
-                        ),
-                ),
-        );
+    let cart_load_4 = cart_factor_2.mul_add(
+        end_effector_load_17,
+        end_effector_factor_27.mul_add(
+            end_effector_load_16,
+            end_effector_factor_21
+                .mul_add(end_effector_load_15, end_effector_factor_12.mul_add(end_effector_slope_108, cart_slope_6)),
+        ),
+    );
     // plate: response (1 multiplication)
     let plate_slope_3 = plate_factor
-        * ((-cart_factor_5)
-            .mul_add(
-                end_effector_load_17,
-                cart_factor_7.mul_add(cart_load_4, end_effector_load_18),
-            ));
+        * ((-cart_factor_5).mul_add(end_effector_load_17, cart_factor_7.mul_add(cart_load_4, end_effector_load_18)));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_23 = cart_factor_6
-        * (cart_factor_4.mul_add(plate_slope_3, cart_load_4));
+    let cart_slope_23 = cart_factor_6 * (cart_factor_4.mul_add(plate_slope_3, cart_load_4));
     let cart_slope_24 = cart_factor
         * ((-end_effector_factor_25)
-            .mul_add(
-                cart_slope_23,
-                end_effector_factor_26.mul_add(plate_slope_3, end_effector_load_17),
-            ));
+            .mul_add(cart_slope_23, end_effector_factor_26.mul_add(plate_slope_3, end_effector_load_17)));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_129 = end_effector_factor_23
-        * ((-end_effector_factor_19)
-            .mul_add(
-                plate_slope_3,
-                end_effector_factor_18
-                    .mul_add(
-                        cart_slope_23,
-                        end_effector_factor_17
-                            .mul_add(cart_slope_24, end_effector_load_16),
-                    ),
-            ));
-    let end_effector_response_7 = (-end_effector_factor_6)
-        .mul_add(
-            cart_slope_23,
-            (-end_effector_factor_5)
-                .mul_add(
-                    cart_slope_24,
-                    end_effector_factor_7
-                        .mul_add(
-                            plate_slope_3,
-                            end_effector_factor_4 * end_effector_slope_129,
-                        ),
-                ),
-        );
-    let end_effector_slope_130 = end_effector_factor_15
-        * (end_effector_load_15 - end_effector_response_7);
-    let end_effector_response_8 = (-end_effector_composite_inertia_40)
-        .mul_add(
-            cart_slope_23,
-            (-end_effector_composite_inertia_38)
-                .mul_add(
-                    cart_slope_24,
-                    end_effector_composite_inertia_12
-                        .mul_add(
-                            end_effector_slope_129,
-                            end_effector_composite_inertia_28 * end_effector_slope_130,
-                        ),
-                ),
-        );
+    let end_effector_slope_129 = end_effector_factor_23 * ((-end_effector_factor_19).mul_add(
+        plate_slope_3,
+        end_effector_factor_18.mul_add(cart_slope_23, end_effector_factor_17.mul_add(cart_slope_24, end_effector_load_16)),
+    ));
+    let end_effector_response_7 = (-end_effector_factor_6).mul_add(
+        cart_slope_23,
+        (-end_effector_factor_5).mul_add(
+            cart_slope_24,
+            end_effector_factor_7.mul_add(plate_slope_3, end_effector_factor_4 * end_effector_slope_129),
+        ),
+    );
+    let end_effector_slope_130 = end_effector_factor_15 * (end_effector_load_15 - end_effector_response_7);
+    let end_effector_response_8 = (-end_effector_composite_inertia_40).mul_add(
+        cart_slope_23,
+        (-end_effector_composite_inertia_38).mul_add(
+            cart_slope_24,
+            end_effector_composite_inertia_12
+                .mul_add(end_effector_slope_129, end_effector_composite_inertia_28 * end_effector_slope_130),
+        ),
+    );
     // end_effector: load (12 additions, 12 multiplications)
-    let end_effector_load_19 = (-end_effector_factor_2)
-        .mul_add(end_effector_slope_64, end_effector_slope_62);
+    let end_effector_load_19 = (-end_effector_factor_2).mul_add(end_effector_slope_64, end_effector_slope_62);
     let end_effector_load_20 = (-end_effector_factor_16)
-        .mul_add(
+        .mul_add(end_effector_load_19, (-end_effector_factor_8).mul_add(end_effector_slope_64, end_effector_slope_61));
+    let end_effector_load_21 = end_effector_factor_24.mul_add(
+        end_effector_load_20,
+        end_effector_factor_20
+            .mul_add(end_effector_load_19, end_effector_factor_10.mul_add(end_effector_slope_64, end_effector_slope_82)),
+    );
+    let end_effector_load_22 = (-end_effector_factor_29).mul_add(
+        end_effector_load_20,
+        (-end_effector_factor_22).mul_add(
             end_effector_load_19,
-            (-end_effector_factor_8)
-                .mul_add(end_effector_slope_64, end_effector_slope_61),
-        );
-    let end_effector_load_21 = end_effector_factor_24
-        .mul_add(
-            end_effector_load_20,
-            end_effector_factor_20
-                .mul_add(
-                    end_effector_load_19,
-                    end_effector_factor_10
-                        .mul_add(end_effector_slope_64, end_effector_slope_82),
-                ),
-        );
-    let end_effector_load_22 = (-end_effector_factor_29)
-        .mul_add(
-            end_effector_load_20,
-            (-end_effector_factor_22)
-                .mul_add(
-                    end_effector_load_19,
-                    (-end_effector_factor_13)
-                        .mul_add(
-                            end_effector_slope_64,
-                            end_effector_slope_84 - end_effector_slope_111,
-                        ),
-                ),
-        );
+            (-end_effector_factor_13).mul_add(end_effector_slope_64, end_effector_slope_84 - end_effector_slope_111),
+        ),
+    );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_5 = (-end_effector_factor_27)
-        .mul_add(
-            end_effector_load_20,
-            (-end_effector_factor_21)
-                .mul_add(
-                    end_effector_load_19,
-                    (-end_effector_factor_12)
-                        .mul_add(
-                            end_effector_slope_64,
-                            cart_factor_2
-                                .mul_add(end_effector_load_21, end_effector_slope_84),
-                        ),
-                ),
-        );
+    let cart_load_5 = (-end_effector_factor_27).mul_add(
+        end_effector_load_20,
+        (-end_effector_factor_21).mul_add(
+            end_effector_load_19,
+            (-end_effector_factor_12)
+                .mul_add(end_effector_slope_64, cart_factor_2.mul_add(end_effector_load_21, end_effector_slope_84)),
+        ),
+    );
     // plate: response (1 multiplication)
     let plate_slope_4 = plate_factor
-        * ((-cart_factor_7)
-            .mul_add(
-                cart_load_5,
-                cart_factor_5.mul_add(end_effector_load_21, end_effector_load_22),
-            ));
+        * ((-cart_factor_7).mul_add(cart_load_5, cart_factor_5.mul_add(end_effector_load_21, end_effector_load_22)));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_25 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope_4, cart_load_5));
+    let cart_slope_25 = cart_factor_6 * ((-cart_factor_4).mul_add(plate_slope_4, cart_load_5));
     let cart_slope_26 = cart_factor
         * ((-end_effector_factor_26)
-            .mul_add(
-                plate_slope_4,
-                (-end_effector_factor_25).mul_add(cart_slope_25, end_effector_load_21),
-            ));
+            .mul_add(plate_slope_4, (-end_effector_factor_25).mul_add(cart_slope_25, end_effector_load_21)));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_131 = end_effector_factor_23
-        * ((-end_effector_factor_19)
-            .mul_add(
-                plate_slope_4,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        cart_slope_25,
-                        (-end_effector_factor_17)
-                            .mul_add(cart_slope_26, end_effector_load_20),
-                    ),
-            ));
-    let end_effector_response_9 = end_effector_factor_7
-        .mul_add(
-            plate_slope_4,
-            end_effector_factor_6
-                .mul_add(
-                    cart_slope_25,
-                    end_effector_factor_5
-                        .mul_add(
-                            cart_slope_26,
-                            end_effector_factor_4 * end_effector_slope_131,
-                        ),
-                ),
-        );
-    let end_effector_slope_132 = end_effector_factor_15
-        * (end_effector_load_19 - end_effector_response_9);
-    let end_effector_response_10 = end_effector_composite_inertia_40
-        .mul_add(
+    let end_effector_slope_131 = end_effector_factor_23 * ((-end_effector_factor_19).mul_add(
+        plate_slope_4,
+        (-end_effector_factor_18)
+            .mul_add(cart_slope_25, (-end_effector_factor_17).mul_add(cart_slope_26, end_effector_load_20)),
+    ));
+    let end_effector_response_9 = end_effector_factor_7.mul_add(
+        plate_slope_4,
+        end_effector_factor_6.mul_add(
             cart_slope_25,
-            end_effector_composite_inertia_38
-                .mul_add(
-                    cart_slope_26,
-                    end_effector_composite_inertia_12
-                        .mul_add(
-                            end_effector_slope_131,
-                            end_effector_composite_inertia_28 * end_effector_slope_132,
-                        ),
-                ),
-        );
+            end_effector_factor_5.mul_add(cart_slope_26, end_effector_factor_4 * end_effector_slope_131),
+        ),
+    );
+    let end_effector_slope_132 = end_effector_factor_15 * (end_effector_load_19 - end_effector_response_9);
+    let end_effector_response_10 = end_effector_composite_inertia_40.mul_add(
+        cart_slope_25,
+        end_effector_composite_inertia_38.mul_add(
+            cart_slope_26,
+            end_effector_composite_inertia_12
+                .mul_add(end_effector_slope_131, end_effector_composite_inertia_28 * end_effector_slope_132),
+        ),
+    );
     // end_effector: load (12 additions, 12 multiplications)
-    let end_effector_load_23 = (-end_effector_factor_2)
-        .mul_add(end_effector_slope_68, end_effector_slope_66);
+    let end_effector_load_23 = (-end_effector_factor_2).mul_add(end_effector_slope_68, end_effector_slope_66);
     let end_effector_load_24 = (-end_effector_factor_16)
-        .mul_add(
+        .mul_add(end_effector_load_23, (-end_effector_factor_8).mul_add(end_effector_slope_68, end_effector_slope_65));
+    let end_effector_load_25 = end_effector_factor_24.mul_add(
+        end_effector_load_24,
+        end_effector_factor_20
+            .mul_add(end_effector_load_23, end_effector_factor_10.mul_add(end_effector_slope_68, end_effector_slope_85)),
+    );
+    let end_effector_load_26 = (-end_effector_factor_29).mul_add(
+        end_effector_load_24,
+        (-end_effector_factor_22).mul_add(
             end_effector_load_23,
-            (-end_effector_factor_8)
-                .mul_add(end_effector_slope_68, end_effector_slope_65),
-        );
-    let end_effector_load_25 = end_effector_factor_24
-        .mul_add(
-            end_effector_load_24,
-            end_effector_factor_20
-                .mul_add(
-                    end_effector_load_23,
-                    end_effector_factor_10
-                        .mul_add(end_effector_slope_68, end_effector_slope_85),
-                ),
-        );
-    let end_effector_load_26 = (-end_effector_factor_29)
-        .mul_add(
-            end_effector_load_24,
-            (-end_effector_factor_22)
-                .mul_add(
-                    end_effector_load_23,
-                    (-end_effector_factor_13)
-                        .mul_add(
-                            end_effector_slope_68,
-                            end_effector_slope_87 - end_effector_slope_112,
-                        ),
-                ),
-        );
+            (-end_effector_factor_13).mul_add(end_effector_slope_68, end_effector_slope_87 - end_effector_slope_112),
+        ),
+    );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_6 = (-end_effector_factor_27)
-        .mul_add(
-            end_effector_load_24,
-            (-end_effector_factor_21)
-                .mul_add(
-                    end_effector_load_23,
-                    (-end_effector_factor_12)
-                        .mul_add(
-                            end_effector_slope_68,
-                            cart_factor_2
-                                .mul_add(end_effector_load_25, end_effector_slope_87),
-                        ),
-                ),
-        );
+    let cart_load_6 = (-end_effector_factor_27).mul_add(
+        end_effector_load_24,
+        (-end_effector_factor_21).mul_add(
+            end_effector_load_23,
+            (-end_effector_factor_12)
+                .mul_add(end_effector_slope_68, cart_factor_2.mul_add(end_effector_load_25, end_effector_slope_87)),
+        ),
+    );
     // plate: response (1 multiplication)
     let plate_slope_5 = plate_factor
-        * ((-cart_factor_7)
-            .mul_add(
-                cart_load_6,
-                cart_factor_5.mul_add(end_effector_load_25, end_effector_load_26),
-            ));
+        * ((-cart_factor_7).mul_add(cart_load_6, cart_factor_5.mul_add(end_effector_load_25, end_effector_load_26)));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_27 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope_5, cart_load_6));
+    let cart_slope_27 = cart_factor_6 * ((-cart_factor_4).mul_add(plate_slope_5, cart_load_6));
     let cart_slope_28 = cart_factor
         * ((-end_effector_factor_26)
-            .mul_add(
-                plate_slope_5,
-                (-end_effector_factor_25).mul_add(cart_slope_27, end_effector_load_25),
-            ));
+            .mul_add(plate_slope_5, (-end_effector_factor_25).mul_add(cart_slope_27, end_effector_load_25)));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_133 = end_effector_factor_23
-        * ((-end_effector_factor_19)
-            .mul_add(
-                plate_slope_5,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        cart_slope_27,
-                        (-end_effector_factor_17)
-                            .mul_add(cart_slope_28, end_effector_load_24),
-                    ),
-            ));
-    let end_effector_response_11 = end_effector_factor_7
-        .mul_add(
-            plate_slope_5,
-            end_effector_factor_6
-                .mul_add(
-                    cart_slope_27,
-                    end_effector_factor_5
-                        .mul_add(
-                            cart_slope_28,
-                            end_effector_factor_4 * end_effector_slope_133,
-                        ),
-                ),
-        );
-    let end_effector_slope_134 = end_effector_factor_15
-        * (end_effector_load_23 - end_effector_response_11);
-    let end_effector_response_12 = end_effector_composite_inertia_40
-        .mul_add(
+    let end_effector_slope_133 = end_effector_factor_23 * ((-end_effector_factor_19).mul_add(
+        plate_slope_5,
+        (-end_effector_factor_18)
+            .mul_add(cart_slope_27, (-end_effector_factor_17).mul_add(cart_slope_28, end_effector_load_24)),
+    ));
+    let end_effector_response_11 = end_effector_factor_7.mul_add(
+        plate_slope_5,
+        end_effector_factor_6.mul_add(
             cart_slope_27,
-            end_effector_composite_inertia_38
-                .mul_add(
-                    cart_slope_28,
-                    end_effector_composite_inertia_12
-                        .mul_add(
-                            end_effector_slope_133,
-                            end_effector_composite_inertia_28 * end_effector_slope_134,
-                        ),
-                ),
-        );
+            end_effector_factor_5.mul_add(cart_slope_28, end_effector_factor_4 * end_effector_slope_133),
+        ),
+    );
+    let end_effector_slope_134 = end_effector_factor_15 * (end_effector_load_23 - end_effector_response_11);
+    let end_effector_response_12 = end_effector_composite_inertia_40.mul_add(
+        cart_slope_27,
+        end_effector_composite_inertia_38.mul_add(
+            cart_slope_28,
+            end_effector_composite_inertia_12
+                .mul_add(end_effector_slope_133, end_effector_composite_inertia_28 * end_effector_slope_134),
+        ),
+    );
     // end_effector: load (12 additions, 12 multiplications)
-    let end_effector_load_27 = (-end_effector_factor_2)
-        .mul_add(end_effector_slope_72, end_effector_slope_70);
+    let end_effector_load_27 = (-end_effector_factor_2).mul_add(end_effector_slope_72, end_effector_slope_70);
     let end_effector_load_28 = (-end_effector_factor_16)
-        .mul_add(
+        .mul_add(end_effector_load_27, (-end_effector_factor_8).mul_add(end_effector_slope_72, end_effector_slope_69));
+    let end_effector_load_29 = end_effector_factor_24.mul_add(
+        end_effector_load_28,
+        end_effector_factor_20
+            .mul_add(end_effector_load_27, end_effector_factor_10.mul_add(end_effector_slope_72, end_effector_slope_88)),
+    );
+    let end_effector_load_30 = (-end_effector_factor_29).mul_add(
+        end_effector_load_28,
+        (-end_effector_factor_22).mul_add(
             end_effector_load_27,
-            (-end_effector_factor_8)
-                .mul_add(end_effector_slope_72, end_effector_slope_69),
-        );
-    let end_effector_load_29 = end_effector_factor_24
-        .mul_add(
-            end_effector_load_28,
-            end_effector_factor_20
-                .mul_add(
-                    end_effector_load_27,
-                    end_effector_factor_10
-                        .mul_add(end_effector_slope_72, end_effector_slope_88),
-                ),
-        );
-    let end_effector_load_30 = (-end_effector_factor_29)
-        .mul_add(
-            end_effector_load_28,
-            (-end_effector_factor_22)
-                .mul_add(
-                    end_effector_load_27,
-                    (-end_effector_factor_13)
-                        .mul_add(
-                            end_effector_slope_72,
-                            end_effector_slope_90 - end_effector_slope_113,
-                        ),
-                ),
-        );
+            (-end_effector_factor_13).mul_add(end_effector_slope_72, end_effector_slope_90 - end_effector_slope_113),
+        ),
+    );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_7 = (-end_effector_factor_27)
-        .mul_add(
-            end_effector_load_28,
-            (-end_effector_factor_21)
-                .mul_add(
-                    end_effector_load_27,
-                    (-end_effector_factor_12)
-                        .mul_add(
-                            end_effector_slope_72,
-                            cart_factor_2
-                                .mul_add(end_effector_load_29, end_effector_slope_90),
-                        ),
-                ),
-        );
+    let cart_load_7 = (-end_effector_factor_27).mul_add(
+        end_effector_load_28,
+        (-end_effector_factor_21).mul_add(
+            end_effector_load_27,
+            (-end_effector_factor_12)
+                .mul_add(end_effector_slope_72, cart_factor_2.mul_add(end_effector_load_29, end_effector_slope_90)),
+        ),
+    );
     // plate: response (1 multiplication)
     let plate_slope_6 = plate_factor
-        * ((-cart_factor_7)
-            .mul_add(
-                cart_load_7,
-                cart_factor_5.mul_add(end_effector_load_29, end_effector_load_30),
-            ));
+        * ((-cart_factor_7).mul_add(cart_load_7, cart_factor_5.mul_add(end_effector_load_29, end_effector_load_30)));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_29 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope_6, cart_load_7));
+    let cart_slope_29 = cart_factor_6 * ((-cart_factor_4).mul_add(plate_slope_6, cart_load_7));
     let cart_slope_30 = cart_factor
         * ((-end_effector_factor_26)
-            .mul_add(
-                plate_slope_6,
-                (-end_effector_factor_25).mul_add(cart_slope_29, end_effector_load_29),
-            ));
+            .mul_add(plate_slope_6, (-end_effector_factor_25).mul_add(cart_slope_29, end_effector_load_29)));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_135 = end_effector_factor_23
-        * ((-end_effector_factor_19)
-            .mul_add(
-                plate_slope_6,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        cart_slope_29,
-                        (-end_effector_factor_17)
-                            .mul_add(cart_slope_30, end_effector_load_28),
-                    ),
-            ));
-    let end_effector_response_13 = end_effector_factor_7
-        .mul_add(
-            plate_slope_6,
-            end_effector_factor_6
-                .mul_add(
-                    cart_slope_29,
-                    end_effector_factor_5
-                        .mul_add(
-                            cart_slope_30,
-                            end_effector_factor_4 * end_effector_slope_135,
-                        ),
-                ),
-        );
-    let end_effector_slope_136 = end_effector_factor_15
-        * (end_effector_load_27 - end_effector_response_13);
-    let end_effector_response_14 = end_effector_composite_inertia_40
-        .mul_add(
+    let end_effector_slope_135 = end_effector_factor_23 * ((-end_effector_factor_19).mul_add(
+        plate_slope_6,
+        (-end_effector_factor_18)
+            .mul_add(cart_slope_29, (-end_effector_factor_17).mul_add(cart_slope_30, end_effector_load_28)),
+    ));
+    let end_effector_response_13 = end_effector_factor_7.mul_add(
+        plate_slope_6,
+        end_effector_factor_6.mul_add(
             cart_slope_29,
-            end_effector_composite_inertia_38
-                .mul_add(
-                    cart_slope_30,
-                    end_effector_composite_inertia_12
-                        .mul_add(
-                            end_effector_slope_135,
-                            end_effector_composite_inertia_28 * end_effector_slope_136,
-                        ),
-                ),
-        );
+            end_effector_factor_5.mul_add(cart_slope_30, end_effector_factor_4 * end_effector_slope_135),
+        ),
+    );
+    let end_effector_slope_136 = end_effector_factor_15 * (end_effector_load_27 - end_effector_response_13);
+    let end_effector_response_14 = end_effector_composite_inertia_40.mul_add(
+        cart_slope_29,
+        end_effector_composite_inertia_38.mul_add(
+            cart_slope_30,
+            end_effector_composite_inertia_12
+                .mul_add(end_effector_slope_135, end_effector_composite_inertia_28 * end_effector_slope_136),
+        ),
+    );
     // end_effector: load (12 additions, 12 multiplications)
-    let end_effector_load_31 = (-end_effector_factor_2)
-        .mul_add(end_effector_slope_105, end_effector_slope_103);
+    let end_effector_load_31 = (-end_effector_factor_2).mul_add(end_effector_slope_105, end_effector_slope_103);
     let end_effector_load_32 = (-end_effector_factor_16)
-        .mul_add(
+        .mul_add(end_effector_load_31, (-end_effector_factor_8).mul_add(end_effector_slope_105, end_effector_slope_101));
+    let end_effector_load_33 = end_effector_factor_24.mul_add(
+        end_effector_load_32,
+        end_effector_factor_20
+            .mul_add(end_effector_load_31, end_effector_factor_10.mul_add(end_effector_slope_105, end_effector_slope_122)),
+    );
+    let end_effector_load_34 = end_effector_factor_29.mul_add(
+        end_effector_load_32,
+        end_effector_factor_22.mul_add(
             end_effector_load_31,
-            (-end_effector_factor_8)
-                .mul_add(end_effector_slope_105, end_effector_slope_101),
-        );
-    let end_effector_load_33 = end_effector_factor_24
-        .mul_add(
-            end_effector_load_32,
-            end_effector_factor_20
-                .mul_add(
-                    end_effector_load_31,
-                    end_effector_factor_10
-                        .mul_add(end_effector_slope_105, end_effector_slope_122),
-                ),
-        );
-    let end_effector_load_34 = end_effector_factor_29
-        .mul_add(
-            end_effector_load_32,
-            end_effector_factor_22
-                .mul_add(
-                    end_effector_load_31,
-                    end_effector_factor_13
-                        .mul_add(
-                            end_effector_slope_105,
-                            end_effector_slope_120 + cart_slope_18,
-                        ),
-                ),
-        );
+            end_effector_factor_13.mul_add(end_effector_slope_105, end_effector_slope_120 + cart_slope_18),
+        ),
+    );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_8 = (-cart_factor_2)
-        .mul_add(
-            end_effector_load_33,
-            end_effector_factor_27
-                .mul_add(
-                    end_effector_load_32,
-                    end_effector_factor_21
-                        .mul_add(
-                            end_effector_load_31,
-                            end_effector_factor_12
-                                .mul_add(end_effector_slope_105, end_effector_slope_120),
-                        ),
-                ),
-        );
+    let cart_load_8 = (-cart_factor_2).mul_add(
+        end_effector_load_33,
+        end_effector_factor_27.mul_add(
+            end_effector_load_32,
+            end_effector_factor_21.mul_add(
+                end_effector_load_31,
+                end_effector_factor_12.mul_add(end_effector_slope_105, end_effector_slope_120),
+            ),
+        ),
+    );
     // plate: response (1 multiplication)
     let plate_slope_7 = plate_factor
-        * ((-cart_factor_7)
-            .mul_add(
-                cart_load_8,
-                (-cart_factor_5).mul_add(end_effector_load_33, end_effector_load_34),
-            ));
+        * ((-cart_factor_7).mul_add(cart_load_8, (-cart_factor_5).mul_add(end_effector_load_33, end_effector_load_34)));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_31 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope_7, cart_load_8));
+    let cart_slope_31 = cart_factor_6 * ((-cart_factor_4).mul_add(plate_slope_7, cart_load_8));
     let cart_slope_32 = cart_factor
-        * (end_effector_factor_26
-            .mul_add(
-                plate_slope_7,
-                end_effector_factor_25.mul_add(cart_slope_31, end_effector_load_33),
-            ));
+        * (end_effector_factor_26.mul_add(plate_slope_7, end_effector_factor_25.mul_add(cart_slope_31, end_effector_load_33)));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_137 = end_effector_factor_23
-        * ((-end_effector_factor_17)
-            .mul_add(
-                cart_slope_32,
-                end_effector_factor_19
-                    .mul_add(
-                        plate_slope_7,
-                        end_effector_factor_18
-                            .mul_add(cart_slope_31, end_effector_load_32),
-                    ),
-            ));
-    let end_effector_response_15 = (-end_effector_factor_7)
-        .mul_add(
-            plate_slope_7,
-            (-end_effector_factor_6)
-                .mul_add(
-                    cart_slope_31,
-                    end_effector_factor_5
-                        .mul_add(
-                            cart_slope_32,
-                            end_effector_factor_4 * end_effector_slope_137,
-                        ),
-                ),
-        );
-    let end_effector_slope_138 = end_effector_factor_15
-        * (end_effector_load_31 - end_effector_response_15);
-    let end_effector_response_16 = (-end_effector_composite_inertia_40)
-        .mul_add(
+    let end_effector_slope_137 = end_effector_factor_23 * ((-end_effector_factor_17).mul_add(
+        cart_slope_32,
+        end_effector_factor_19.mul_add(plate_slope_7, end_effector_factor_18.mul_add(cart_slope_31, end_effector_load_32)),
+    ));
+    let end_effector_response_15 = (-end_effector_factor_7).mul_add(
+        plate_slope_7,
+        (-end_effector_factor_6).mul_add(
             cart_slope_31,
-            end_effector_composite_inertia_38
-                .mul_add(
-                    cart_slope_32,
-                    end_effector_composite_inertia_12
-                        .mul_add(
-                            end_effector_slope_137,
-                            end_effector_composite_inertia_28 * end_effector_slope_138,
-                        ),
-                ),
-        );
+            end_effector_factor_5.mul_add(cart_slope_32, end_effector_factor_4 * end_effector_slope_137),
+        ),
+    );
+    let end_effector_slope_138 = end_effector_factor_15 * (end_effector_load_31 - end_effector_response_15);
+    let end_effector_response_16 = (-end_effector_composite_inertia_40).mul_add(
+        cart_slope_31,
+        end_effector_composite_inertia_38.mul_add(
+            cart_slope_32,
+            end_effector_composite_inertia_12
+                .mul_add(end_effector_slope_137, end_effector_composite_inertia_28 * end_effector_slope_138),
+        ),
+    );
     // end_effector: load (12 additions, 12 multiplications)
-    let end_effector_load_35 = (-end_effector_factor_2)
-        .mul_add(
+    let end_effector_load_35 = (-end_effector_factor_2).mul_add(
+        end_effector_slope_109,
+        (-end_effector_composite_inertia_30)
+            .mul_add(cart_variation_2, end_effector_composite_inertia_29.mul_add(cart_variation_3, end_effector_slope_103)),
+    );
+    let end_effector_load_36 = (-end_effector_factor_16).mul_add(
+        end_effector_load_35,
+        (-end_effector_factor_8).mul_add(
             end_effector_slope_109,
-            (-end_effector_composite_inertia_30)
-                .mul_add(
-                    cart_variation_2,
-                    end_effector_composite_inertia_29
-                        .mul_add(cart_variation_3, end_effector_slope_103),
-                ),
-        );
-    let end_effector_load_36 = (-end_effector_factor_16)
-        .mul_add(
+            (-end_effector_composite_inertia_14).mul_add(
+                cart_variation_2,
+                end_effector_composite_inertia_13.mul_add(cart_variation_3, end_effector_slope_101),
+            ),
+        ),
+    );
+    let end_effector_load_37 = (-end_effector_factor_24).mul_add(
+        end_effector_load_36,
+        (-end_effector_factor_20)
+            .mul_add(end_effector_load_35, (-end_effector_factor_10).mul_add(end_effector_slope_109, cart_slope_8)),
+    );
+    let end_effector_load_38 = end_effector_factor_29.mul_add(
+        end_effector_load_36,
+        end_effector_factor_22.mul_add(
             end_effector_load_35,
-            (-end_effector_factor_8)
-                .mul_add(
-                    end_effector_slope_109,
-                    (-end_effector_composite_inertia_14)
-                        .mul_add(
-                            cart_variation_2,
-                            end_effector_composite_inertia_13
-                                .mul_add(cart_variation_3, end_effector_slope_101),
-                        ),
-                ),
-        );
-    let end_effector_load_37 = (-end_effector_factor_24)
-        .mul_add(
-            end_effector_load_36,
-            (-end_effector_factor_20)
-                .mul_add(
-                    end_effector_load_35,
-                    (-end_effector_factor_10)
-                        .mul_add(end_effector_slope_109, cart_slope_8),
-                ),
-        );
-    let end_effector_load_38 = end_effector_factor_29
-        .mul_add(
-            end_effector_load_36,
-            end_effector_factor_22
-                .mul_add(
-                    end_effector_load_35,
-                    end_effector_factor_13
-                        .mul_add(end_effector_slope_109, cart_slope_7 - cart_slope_17),
-                ),
-        );
+            end_effector_factor_13.mul_add(end_effector_slope_109, cart_slope_7 - cart_slope_17),
+        ),
+    );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_9 = cart_factor_2
-        .mul_add(
-            end_effector_load_37,
-            end_effector_factor_27
-                .mul_add(
-                    end_effector_load_36,
-                    end_effector_factor_21
-                        .mul_add(
-                            end_effector_load_35,
-                            end_effector_factor_12
-                                .mul_add(end_effector_slope_109, cart_slope_7),
-                        ),
-                ),
-        );
+    let cart_load_9 = cart_factor_2.mul_add(
+        end_effector_load_37,
+        end_effector_factor_27.mul_add(
+            end_effector_load_36,
+            end_effector_factor_21
+                .mul_add(end_effector_load_35, end_effector_factor_12.mul_add(end_effector_slope_109, cart_slope_7)),
+        ),
+    );
     // plate: response (1 multiplication)
     let plate_slope_8 = plate_factor
-        * ((-cart_factor_7)
-            .mul_add(
-                cart_load_9,
-                cart_factor_5.mul_add(end_effector_load_37, end_effector_load_38),
-            ));
+        * ((-cart_factor_7).mul_add(cart_load_9, cart_factor_5.mul_add(end_effector_load_37, end_effector_load_38)));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_33 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope_8, cart_load_9));
+    let cart_slope_33 = cart_factor_6 * ((-cart_factor_4).mul_add(plate_slope_8, cart_load_9));
     let cart_slope_34 = cart_factor
         * ((-end_effector_factor_26)
-            .mul_add(
-                plate_slope_8,
-                (-end_effector_factor_25).mul_add(cart_slope_33, end_effector_load_37),
-            ));
+            .mul_add(plate_slope_8, (-end_effector_factor_25).mul_add(cart_slope_33, end_effector_load_37)));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_139 = end_effector_factor_23
-        * (end_effector_factor_19
-            .mul_add(
-                plate_slope_8,
-                end_effector_factor_18
-                    .mul_add(
-                        cart_slope_33,
-                        end_effector_factor_17
-                            .mul_add(cart_slope_34, end_effector_load_36),
-                    ),
-            ));
-    let end_effector_response_17 = (-end_effector_factor_7)
-        .mul_add(
-            plate_slope_8,
-            (-end_effector_factor_6)
-                .mul_add(
-                    cart_slope_33,
-                    (-end_effector_factor_5)
-                        .mul_add(
-                            cart_slope_34,
-                            end_effector_factor_4 * end_effector_slope_139,
-                        ),
-                ),
-        );
-    let end_effector_slope_140 = end_effector_factor_15
-        * (end_effector_load_35 - end_effector_response_17);
-    let end_effector_response_18 = (-end_effector_composite_inertia_40)
-        .mul_add(
+    let end_effector_slope_139 = end_effector_factor_23 * (end_effector_factor_19.mul_add(
+        plate_slope_8,
+        end_effector_factor_18.mul_add(cart_slope_33, end_effector_factor_17.mul_add(cart_slope_34, end_effector_load_36)),
+    ));
+    let end_effector_response_17 = (-end_effector_factor_7).mul_add(
+        plate_slope_8,
+        (-end_effector_factor_6).mul_add(
             cart_slope_33,
-            (-end_effector_composite_inertia_38)
-                .mul_add(
-                    cart_slope_34,
-                    end_effector_composite_inertia_12
-                        .mul_add(
-                            end_effector_slope_139,
-                            end_effector_composite_inertia_28 * end_effector_slope_140,
-                        ),
-                ),
-        );
+            (-end_effector_factor_5).mul_add(cart_slope_34, end_effector_factor_4 * end_effector_slope_139),
+        ),
+    );
+    let end_effector_slope_140 = end_effector_factor_15 * (end_effector_load_35 - end_effector_response_17);
+    let end_effector_response_18 = (-end_effector_composite_inertia_40).mul_add(
+        cart_slope_33,
+        (-end_effector_composite_inertia_38).mul_add(
+            cart_slope_34,
+            end_effector_composite_inertia_12
+                .mul_add(end_effector_slope_139, end_effector_composite_inertia_28 * end_effector_slope_140),
+        ),
+    );
     // end_effector: load (11 additions, 12 multiplications)
     let end_effector_load_39 = (-end_effector_factor_2)
-        .mul_add(
-            end_effector_slope_110,
-            end_effector_composite_inertia_30 * cart_variation,
-        );
-    let end_effector_load_40 = (-end_effector_factor_13)
-        .mul_add(
-            end_effector_slope_110,
-            (-q[6])
-                .mul_add(
-                    q[2] * cart_slope_11,
-                    q[3].mul_add(q[5] * cart_slope_11, cart_slope_10),
-                ),
-        );
-    let end_effector_load_41 = (-end_effector_factor_16)
-        .mul_add(
-            end_effector_load_39,
-            (-end_effector_factor_8)
-                .mul_add(
-                    end_effector_slope_110,
-                    end_effector_composite_inertia_14 * cart_variation,
-                ),
-        );
-    let end_effector_load_42 = end_effector_factor_24
-        .mul_add(
-            end_effector_load_41,
-            end_effector_factor_20
-                .mul_add(
-                    end_effector_load_39,
-                    end_effector_factor_10 * end_effector_slope_110,
-                ),
-        );
+        .mul_add(end_effector_slope_110, end_effector_composite_inertia_30 * cart_variation);
+    let end_effector_load_40 = (-end_effector_factor_13).mul_add(
+        end_effector_slope_110,
+        (-q[6]).mul_add(q[2] * cart_slope_11, q[3].mul_add(q[5] * cart_slope_11, cart_slope_10)),
+    );
+    let end_effector_load_41 = (-end_effector_factor_16).mul_add(
+        end_effector_load_39,
+        (-end_effector_factor_8).mul_add(end_effector_slope_110, end_effector_composite_inertia_14 * cart_variation),
+    );
+    let end_effector_load_42 = end_effector_factor_24.mul_add(
+        end_effector_load_41,
+        end_effector_factor_20.mul_add(end_effector_load_39, end_effector_factor_10 * end_effector_slope_110),
+    );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_10 = (-end_effector_factor_27)
-        .mul_add(
+    let cart_load_10 = (-end_effector_factor_27).mul_add(
+        end_effector_load_41,
+        (-end_effector_factor_21).mul_add(
+            end_effector_load_39,
+            (-end_effector_factor_12)
+                .mul_add(end_effector_slope_110, cart_factor_2.mul_add(end_effector_load_42, cart_slope_10)),
+        ),
+    );
+    let cart_load_11 = (-cart_factor_7).mul_add(
+        cart_load_10,
+        (-end_effector_factor_29).mul_add(
             end_effector_load_41,
-            (-end_effector_factor_21)
-                .mul_add(
-                    end_effector_load_39,
-                    (-end_effector_factor_12)
-                        .mul_add(
-                            end_effector_slope_110,
-                            cart_factor_2.mul_add(end_effector_load_42, cart_slope_10),
-                        ),
-                ),
-        );
-    let cart_load_11 = (-cart_factor_7)
-        .mul_add(
-            cart_load_10,
-            (-end_effector_factor_29)
-                .mul_add(
-                    end_effector_load_41,
-                    (-end_effector_factor_22)
-                        .mul_add(
-                            end_effector_load_39,
-                            cart_factor_5
-                                .mul_add(end_effector_load_42, end_effector_load_40),
-                        ),
-                ),
-        );
+            (-end_effector_factor_22)
+                .mul_add(end_effector_load_39, cart_factor_5.mul_add(end_effector_load_42, end_effector_load_40)),
+        ),
+    );
     // plate: response (1 multiplication)
     let plate_slope_9 = plate_factor * cart_load_11;
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_35 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope_9, cart_load_10));
+    let cart_slope_35 = cart_factor_6 * ((-cart_factor_4).mul_add(plate_slope_9, cart_load_10));
     let cart_slope_36 = cart_factor
         * ((-end_effector_factor_26)
-            .mul_add(
-                plate_slope_9,
-                (-end_effector_factor_25).mul_add(cart_slope_35, end_effector_load_42),
-            ));
+            .mul_add(plate_slope_9, (-end_effector_factor_25).mul_add(cart_slope_35, end_effector_load_42)));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_141 = end_effector_factor_23
-        * ((-end_effector_factor_19)
-            .mul_add(
-                plate_slope_9,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        cart_slope_35,
-                        (-end_effector_factor_17)
-                            .mul_add(cart_slope_36, end_effector_load_41),
-                    ),
-            ));
-    let end_effector_response_19 = end_effector_factor_7
-        .mul_add(
-            plate_slope_9,
-            end_effector_factor_6
-                .mul_add(
-                    cart_slope_35,
-                    end_effector_factor_5
-                        .mul_add(
-                            cart_slope_36,
-                            end_effector_factor_4 * end_effector_slope_141,
-                        ),
-                ),
-        );
-    let end_effector_slope_142 = end_effector_factor_15
-        * (end_effector_load_39 - end_effector_response_19);
-    let end_effector_response_20 = end_effector_composite_inertia_40
-        .mul_add(
+    let end_effector_slope_141 = end_effector_factor_23 * ((-end_effector_factor_19).mul_add(
+        plate_slope_9,
+        (-end_effector_factor_18)
+            .mul_add(cart_slope_35, (-end_effector_factor_17).mul_add(cart_slope_36, end_effector_load_41)),
+    ));
+    let end_effector_response_19 = end_effector_factor_7.mul_add(
+        plate_slope_9,
+        end_effector_factor_6.mul_add(
             cart_slope_35,
-            end_effector_composite_inertia_38
-                .mul_add(
-                    cart_slope_36,
-                    end_effector_composite_inertia_12
-                        .mul_add(
-                            end_effector_slope_141,
-                            end_effector_composite_inertia_28 * end_effector_slope_142,
-                        ),
-                ),
-        );
+            end_effector_factor_5.mul_add(cart_slope_36, end_effector_factor_4 * end_effector_slope_141),
+        ),
+    );
+    let end_effector_slope_142 = end_effector_factor_15 * (end_effector_load_39 - end_effector_response_19);
+    let end_effector_response_20 = end_effector_composite_inertia_40.mul_add(
+        cart_slope_35,
+        end_effector_composite_inertia_38.mul_add(
+            cart_slope_36,
+            end_effector_composite_inertia_12
+                .mul_add(end_effector_slope_141, end_effector_composite_inertia_28 * end_effector_slope_142),
+        ),
+    );
     // end_effector: load (12 additions, 12 multiplications)
-    let end_effector_load_43 = (-end_effector_factor_2)
-        .mul_add(
-            end_effector_slope_73,
-            (-q[12])
-                .mul_add(
-                    end_effector_slope_33,
-                    q[11].mul_add(end_effector_slope_32, q[10] * end_effector_slope_31),
-                ),
-        );
-    let end_effector_load_44 = (-end_effector_factor_8)
-        .mul_add(
-            end_effector_slope_73,
-            (-q[9])
-                .mul_add(
-                    end_effector_slope_33,
-                    q[8].mul_add(end_effector_slope_32, q[7] * end_effector_slope_31),
-                ),
-        );
-    let end_effector_load_45 = (-end_effector_factor_16)
-        .mul_add(end_effector_load_43, end_effector_load_44);
-    let end_effector_load_46 = (-end_effector_factor_24)
-        .mul_add(
-            end_effector_load_45,
-            (-end_effector_factor_20)
-                .mul_add(
-                    end_effector_load_43,
-                    (-end_effector_factor_10)
-                        .mul_add(end_effector_slope_73, end_effector_slope_91),
-                ),
-        );
-    let end_effector_load_47 = (-end_effector_factor_29)
-        .mul_add(
-            end_effector_load_45,
-            (-end_effector_factor_22)
-                .mul_add(
-                    end_effector_load_43,
-                    (-end_effector_factor_13)
-                        .mul_add(
-                            end_effector_slope_73,
-                            end_effector_slope_93 + end_effector_slope_114,
-                        ),
-                ),
-        );
+    let end_effector_load_43 = (-end_effector_factor_2).mul_add(
+        end_effector_slope_73,
+        (-q[12]).mul_add(end_effector_slope_33, q[11].mul_add(end_effector_slope_32, q[10] * end_effector_slope_31)),
+    );
+    let end_effector_load_44 = (-end_effector_factor_8).mul_add(
+        end_effector_slope_73,
+        (-q[9]).mul_add(end_effector_slope_33, q[8].mul_add(end_effector_slope_32, q[7] * end_effector_slope_31)),
+    );
+    let end_effector_load_45 = (-end_effector_factor_16).mul_add(end_effector_load_43, end_effector_load_44);
+    let end_effector_load_46 = (-end_effector_factor_24).mul_add(
+        end_effector_load_45,
+        (-end_effector_factor_20)
+            .mul_add(end_effector_load_43, (-end_effector_factor_10).mul_add(end_effector_slope_73, end_effector_slope_91)),
+    );
+    let end_effector_load_47 = (-end_effector_factor_29).mul_add(
+        end_effector_load_45,
+        (-end_effector_factor_22).mul_add(
+            end_effector_load_43,
+            (-end_effector_factor_13).mul_add(end_effector_slope_73, end_effector_slope_93 + end_effector_slope_114),
+        ),
+    );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_12 = (-cart_factor_2)
-        .mul_add(
-            end_effector_load_46,
-            (-end_effector_factor_27)
-                .mul_add(
-                    end_effector_load_45,
-                    (-end_effector_factor_21)
-                        .mul_add(
-                            end_effector_load_43,
-                            (-end_effector_factor_12)
-                                .mul_add(end_effector_slope_73, end_effector_slope_93),
-                        ),
-                ),
-        );
+    let cart_load_12 = (-cart_factor_2).mul_add(
+        end_effector_load_46,
+        (-end_effector_factor_27).mul_add(
+            end_effector_load_45,
+            (-end_effector_factor_21).mul_add(
+                end_effector_load_43,
+                (-end_effector_factor_12).mul_add(end_effector_slope_73, end_effector_slope_93),
+            ),
+        ),
+    );
     // plate: response (1 multiplication)
     let plate_slope_10 = plate_factor
-        * ((-cart_factor_7)
-            .mul_add(
-                cart_load_12,
-                (-cart_factor_5).mul_add(end_effector_load_46, end_effector_load_47),
-            ));
+        * ((-cart_factor_7).mul_add(cart_load_12, (-cart_factor_5).mul_add(end_effector_load_46, end_effector_load_47)));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_37 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope_10, cart_load_12));
+    let cart_slope_37 = cart_factor_6 * ((-cart_factor_4).mul_add(plate_slope_10, cart_load_12));
     let cart_slope_38 = cart_factor
-        * (end_effector_factor_26
-            .mul_add(
-                plate_slope_10,
-                end_effector_factor_25.mul_add(cart_slope_37, end_effector_load_46),
-            ));
+        * (end_effector_factor_26.mul_add(plate_slope_10, end_effector_factor_25.mul_add(cart_slope_37, end_effector_load_46)));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_143 = end_effector_factor_23
-        * ((-end_effector_factor_19)
-            .mul_add(
-                plate_slope_10,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        cart_slope_37,
-                        end_effector_factor_17
-                            .mul_add(cart_slope_38, end_effector_load_45),
-                    ),
-            ));
-    let end_effector_response_21 = (-end_effector_factor_5)
-        .mul_add(
-            cart_slope_38,
-            end_effector_factor_7
-                .mul_add(
-                    plate_slope_10,
-                    end_effector_factor_6
-                        .mul_add(
-                            cart_slope_37,
-                            end_effector_factor_4 * end_effector_slope_143,
-                        ),
-                ),
-        );
-    let end_effector_slope_144 = end_effector_factor_15
-        * (end_effector_load_43 - end_effector_response_21);
-    let end_effector_response_22 = (-end_effector_composite_inertia_38)
-        .mul_add(
-            cart_slope_38,
-            end_effector_composite_inertia_40
-                .mul_add(
-                    cart_slope_37,
-                    end_effector_composite_inertia_12
-                        .mul_add(
-                            end_effector_slope_143,
-                            end_effector_composite_inertia_28 * end_effector_slope_144,
-                        ),
-                ),
-        );
+    let end_effector_slope_143 = end_effector_factor_23 * ((-end_effector_factor_19).mul_add(
+        plate_slope_10,
+        (-end_effector_factor_18).mul_add(cart_slope_37, end_effector_factor_17.mul_add(cart_slope_38, end_effector_load_45)),
+    ));
+    let end_effector_response_21 = (-end_effector_factor_5).mul_add(
+        cart_slope_38,
+        end_effector_factor_7.mul_add(
+            plate_slope_10,
+            end_effector_factor_6.mul_add(cart_slope_37, end_effector_factor_4 * end_effector_slope_143),
+        ),
+    );
+    let end_effector_slope_144 = end_effector_factor_15 * (end_effector_load_43 - end_effector_response_21);
+    let end_effector_response_22 = (-end_effector_composite_inertia_38).mul_add(
+        cart_slope_38,
+        end_effector_composite_inertia_40.mul_add(
+            cart_slope_37,
+            end_effector_composite_inertia_12
+                .mul_add(end_effector_slope_143, end_effector_composite_inertia_28 * end_effector_slope_144),
+        ),
+    );
     // end_effector: load (12 additions, 12 multiplications)
-    let end_effector_load_48 = (-end_effector_factor_2)
-        .mul_add(
-            end_effector_slope_74,
-            (-q[12])
-                .mul_add(
-                    end_effector_slope_45,
-                    q[11].mul_add(end_effector_slope_44, q[10] * end_effector_slope_43),
-                ),
-        );
-    let end_effector_load_49 = (-end_effector_factor_8)
-        .mul_add(
-            end_effector_slope_74,
-            (-q[9])
-                .mul_add(
-                    end_effector_slope_45,
-                    q[8].mul_add(end_effector_slope_44, q[7] * end_effector_slope_43),
-                ),
-        );
-    let end_effector_load_50 = (-end_effector_factor_16)
-        .mul_add(end_effector_load_48, end_effector_load_49);
-    let end_effector_load_51 = (-end_effector_factor_24)
-        .mul_add(
-            end_effector_load_50,
-            (-end_effector_factor_20)
-                .mul_add(
-                    end_effector_load_48,
-                    (-end_effector_factor_10)
-                        .mul_add(end_effector_slope_74, end_effector_slope_94),
-                ),
-        );
-    let end_effector_load_52 = (-end_effector_factor_29)
-        .mul_add(
-            end_effector_load_50,
-            (-end_effector_factor_22)
-                .mul_add(
-                    end_effector_load_48,
-                    (-end_effector_factor_13)
-                        .mul_add(
-                            end_effector_slope_74,
-                            end_effector_slope_96 + end_effector_slope_115,
-                        ),
-                ),
-        );
+    let end_effector_load_48 = (-end_effector_factor_2).mul_add(
+        end_effector_slope_74,
+        (-q[12]).mul_add(end_effector_slope_45, q[11].mul_add(end_effector_slope_44, q[10] * end_effector_slope_43)),
+    );
+    let end_effector_load_49 = (-end_effector_factor_8).mul_add(
+        end_effector_slope_74,
+        (-q[9]).mul_add(end_effector_slope_45, q[8].mul_add(end_effector_slope_44, q[7] * end_effector_slope_43)),
+    );
+    let end_effector_load_50 = (-end_effector_factor_16).mul_add(end_effector_load_48, end_effector_load_49);
+    let end_effector_load_51 = (-end_effector_factor_24).mul_add(
+        end_effector_load_50,
+        (-end_effector_factor_20)
+            .mul_add(end_effector_load_48, (-end_effector_factor_10).mul_add(end_effector_slope_74, end_effector_slope_94)),
+    );
+    let end_effector_load_52 = (-end_effector_factor_29).mul_add(
+        end_effector_load_50,
+        (-end_effector_factor_22).mul_add(
+            end_effector_load_48,
+            (-end_effector_factor_13).mul_add(end_effector_slope_74, end_effector_slope_96 + end_effector_slope_115),
+        ),
+    );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_13 = (-cart_factor_2)
-        .mul_add(
-            end_effector_load_51,
-            (-end_effector_factor_27)
-                .mul_add(
-                    end_effector_load_50,
-                    (-end_effector_factor_21)
-                        .mul_add(
-                            end_effector_load_48,
-                            (-end_effector_factor_12)
-                                .mul_add(end_effector_slope_74, end_effector_slope_96),
-                        ),
-                ),
-        );
+    let cart_load_13 = (-cart_factor_2).mul_add(
+        end_effector_load_51,
+        (-end_effector_factor_27).mul_add(
+            end_effector_load_50,
+            (-end_effector_factor_21).mul_add(
+                end_effector_load_48,
+                (-end_effector_factor_12).mul_add(end_effector_slope_74, end_effector_slope_96),
+            ),
+        ),
+    );
     // plate: response (1 multiplication)
     let plate_slope_11 = plate_factor
-        * ((-cart_factor_7)
-            .mul_add(
-                cart_load_13,
-                (-cart_factor_5).mul_add(end_effector_load_51, end_effector_load_52),
-            ));
+        * ((-cart_factor_7).mul_add(cart_load_13, (-cart_factor_5).mul_add(end_effector_load_51, end_effector_load_52)));
     // cart: response (3 additions, 5 multiplications)
-    let cart_slope_39 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope_11, cart_load_13));
+    let cart_slope_39 = cart_factor_6 * ((-cart_factor_4).mul_add(plate_slope_11, cart_load_13));
     let cart_slope_40 = cart_factor
-        * (end_effector_factor_26
-            .mul_add(
-                plate_slope_11,
-                end_effector_factor_25.mul_add(cart_slope_39, end_effector_load_51),
-            ));
+        * (end_effector_factor_26.mul_add(plate_slope_11, end_effector_factor_25.mul_add(cart_slope_39, end_effector_load_51)));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_145 = end_effector_factor_23
-        * ((-end_effector_factor_19)
-            .mul_add(
-                plate_slope_11,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        cart_slope_39,
-                        end_effector_factor_17
-                            .mul_add(cart_slope_40, end_effector_load_50),
-                    ),
-            ));
-    let end_effector_response_23 = (-end_effector_factor_5)
-        .mul_add(
-            cart_slope_40,
-            end_effector_factor_7
-                .mul_add(
-                    plate_slope_11,
-                    end_effector_factor_6
-                        .mul_add(
-                            cart_slope_39,
-                            end_effector_factor_4 * end_effector_slope_145,
-                        ),
-                ),
-        );
-    let end_effector_slope_146 = end_effector_factor_15
-        * (end_effector_load_48 - end_effector_response_23);
-    let end_effector_response_24 = (-end_effector_composite_inertia_38)
-        .mul_add(
-            cart_slope_40,
-            end_effector_composite_inertia_40
-                .mul_add(
-                    cart_slope_39,
-                    end_effector_composite_inertia_12
-                        .mul_add(
-                            end_effector_slope_145,
-                            end_effector_composite_inertia_28 * end_effector_slope_146,
-                        ),
-                ),
-        );
+    let end_effector_slope_145 = end_effector_factor_23 * ((-end_effector_factor_19).mul_add(
+        plate_slope_11,
+        (-end_effector_factor_18).mul_add(cart_slope_39, end_effector_factor_17.mul_add(cart_slope_40, end_effector_load_50)),
+    ));
+    let end_effector_response_23 = (-end_effector_factor_5).mul_add(
+        cart_slope_40,
+        end_effector_factor_7.mul_add(
+            plate_slope_11,
+            end_effector_factor_6.mul_add(cart_slope_39, end_effector_factor_4 * end_effector_slope_145),
+        ),
+    );
+    let end_effector_slope_146 = end_effector_factor_15 * (end_effector_load_48 - end_effector_response_23);
+    let end_effector_response_24 = (-end_effector_composite_inertia_38).mul_add(
+        cart_slope_40,
+        end_effector_composite_inertia_40.mul_add(
+            cart_slope_39,
+            end_effector_composite_inertia_12
+                .mul_add(end_effector_slope_145, end_effector_composite_inertia_28 * end_effector_slope_146),
+        ),
+    );
     // end_effector: load (12 additions, 12 multiplications)
-    let end_effector_load_53 = (-end_effector_factor_2)
-        .mul_add(
-            end_effector_slope_75,
-            (-q[12])
-                .mul_add(
-                    end_effector_slope_57,
-                    q[11].mul_add(end_effector_slope_56, q[10] * end_effector_slope_55),
-                ),
-        );
-    let end_effector_load_54 = (-end_effector_factor_8)
-        .mul_add(
-            end_effector_slope_75,
-            (-q[9])
-                .mul_add(
-                    end_effector_slope_57,
-                    q[8].mul_add(end_effector_slope_56, q[7] * end_effector_slope_55),
-                ),
-        );
-    let end_effector_load_55 = (-end_effector_factor_16)
-        .mul_add(end_effector_load_53, end_effector_load_54);
-    let end_effector_load_56 = (-end_effector_factor_24)
-        .mul_add(
-            end_effector_load_55,
-            (-end_effector_factor_20)
-                .mul_add(
-                    end_effector_load_53,
-                    (-end_effector_factor_10)
-                        .mul_add(end_effector_slope_75, end_effector_slope_97),
-                ),
-        );
-    let end_effector_load_57 = (-end_effector_factor_29)
-        .mul_add(
-            end_effector_load_55,
-            (-end_effector_factor_22)
-                .mul_add(
-                    end_effector_load_53,
-                    (-end_effector_factor_13)
-                        .mul_add(
-                            end_effector_slope_75,
-                            end_effector_slope_99 + end_effector_slope_116,
-                        ),
-                ),
-        );
+    let end_effector_load_53 = (-end_effector_factor_2).mul_add(
+        end_effector_slope_75,
+        (-q[12]).mul_add(end_effector_slope_57, q[11].mul_add(end_effector_slope_56, q[10] * end_effector_slope_55)),
+    );
+    let end_effector_load_54 = (-end_effector_factor_8).mul_add(
+        end_effector_slope_75,
+        (-q[9]).mul_add(end_effector_slope_57, q[8].mul_add(end_effector_slope_56, q[7] * end_effector_slope_55)),
+    );
+    let end_effector_load_55 = (-end_effector_factor_16).mul_add(end_effector_load_53, end_effector_load_54);
+    let end_effector_load_56 = (-end_effector_factor_24).mul_add(
+        end_effector_load_55,
+        (-end_effector_factor_20)
+            .mul_add(end_effector_load_53, (-end_effector_factor_10).mul_add(end_effector_slope_75, end_effector_slope_97)),
+    );
+    let end_effector_load_57 = (-end_effector_factor_29).mul_add(
+        end_effector_load_55,
+        (-end_effector_factor_22).mul_add(
+            end_effector_load_53,
+            (-end_effector_factor_13).mul_add(end_effector_slope_75, end_effector_slope_99 + end_effector_slope_116),
+        ),
+    );
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_14 = (-cart_factor_2)
-        .mul_add(
-            end_effector_load_56,
-            (-end_effector_factor_27)
-                .mul_add(
-                    end_effector_load_55,
-                    (-end_effector_factor_21)
-                        .mul_add(
-                            end_effector_load_53,
-                            (-end_effector_factor_12)
-                                .mul_add(end_effector_slope_75, end_effector_slope_99),
-                        ),
-                ),
-        );
+    let cart_load_14 = (-cart_factor_2).mul_add(
+        end_effector_load_56,
+        (-end_effector_factor_27).mul_add(
+            end_effector_load_55,
+            (-end_effector_factor_21).mul_add(
+                end_effector_load_53,
+                (-end_effector_factor_12).mul_add(end_effector_slope_75, end_effector_slope_99),
+            ),
+        ),
+    );
     // plate: response (2 multiplications)
     let plate_slope_12 = plate_factor
-        * ((-cart_factor_7)
-            .mul_add(
-                cart_load_14,
-                (-cart_factor_5).mul_add(end_effector_load_56, end_effector_load_57),
-            ));
+        * ((-cart_factor_7).mul_add(cart_load_14, (-cart_factor_5).mul_add(end_effector_load_56, end_effector_load_57)));
     let plate_response = cart_factor_7 * plate_factor;
     // cart: response (4 additions, 7 multiplications)
-    let cart_slope_41 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_slope_12, cart_load_14));
+    let cart_slope_41 = cart_factor_6 * ((-cart_factor_4).mul_add(plate_slope_12, cart_load_14));
     let cart_slope_42 = cart_factor
-        * (end_effector_factor_26
-            .mul_add(
-                plate_slope_12,
-                end_effector_factor_25.mul_add(cart_slope_41, end_effector_load_56),
-            ));
+        * (end_effector_factor_26.mul_add(plate_slope_12, end_effector_factor_25.mul_add(cart_slope_41, end_effector_load_56)));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_slope_147 = end_effector_factor_23
-        * ((-end_effector_factor_19)
-            .mul_add(
-                plate_slope_12,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        cart_slope_41,
-                        end_effector_factor_17
-                            .mul_add(cart_slope_42, end_effector_load_55),
-                    ),
-            ));
-    let end_effector_response_25 = (-end_effector_factor_5)
-        .mul_add(
-            cart_slope_42,
-            end_effector_factor_7
-                .mul_add(
-                    plate_slope_12,
-                    end_effector_factor_6
-                        .mul_add(
-                            cart_slope_41,
-                            end_effector_factor_4 * end_effector_slope_147,
-                        ),
-                ),
-        );
-    let end_effector_slope_148 = end_effector_factor_15
-        * (end_effector_load_53 - end_effector_response_25);
-    let end_effector_response_26 = (-end_effector_composite_inertia_38)
-        .mul_add(
-            cart_slope_42,
-            end_effector_composite_inertia_40
-                .mul_add(
-                    cart_slope_41,
-                    end_effector_composite_inertia_12
-                        .mul_add(
-                            end_effector_slope_147,
-                            end_effector_composite_inertia_28 * end_effector_slope_148,
-                        ),
-                ),
-        );
+    let end_effector_slope_147 = end_effector_factor_23 * ((-end_effector_factor_19).mul_add(
+        plate_slope_12,
+        (-end_effector_factor_18).mul_add(cart_slope_41, end_effector_factor_17.mul_add(cart_slope_42, end_effector_load_55)),
+    ));
+    let end_effector_response_25 = (-end_effector_factor_5).mul_add(
+        cart_slope_42,
+        end_effector_factor_7.mul_add(
+            plate_slope_12,
+            end_effector_factor_6.mul_add(cart_slope_41, end_effector_factor_4 * end_effector_slope_147),
+        ),
+    );
+    let end_effector_slope_148 = end_effector_factor_15 * (end_effector_load_53 - end_effector_response_25);
+    let end_effector_response_26 = (-end_effector_composite_inertia_38).mul_add(
+        cart_slope_42,
+        end_effector_composite_inertia_40.mul_add(
+            cart_slope_41,
+            end_effector_composite_inertia_12
+                .mul_add(end_effector_slope_147, end_effector_composite_inertia_28 * end_effector_slope_148),
+        ),
+    );
     // plate: response (1 multiplication)
-    let plate_response_2 = plate_factor
-        * ((-cart_factor_2).mul_add(cart_factor_7, cart_factor_5));
+    let plate_response_2 = plate_factor * ((-cart_factor_2).mul_add(cart_factor_7, cart_factor_5));
     // cart: response (3 additions, 5 multiplications)
-    let cart_response = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_response_2, cart_factor_2));
+    let cart_response = cart_factor_6 * ((-cart_factor_4).mul_add(plate_response_2, cart_factor_2));
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_15 = (-end_effector_factor_24)
-        .mul_add(cart_factor_2, end_effector_factor_27);
+    let cart_load_15 = (-end_effector_factor_24).mul_add(cart_factor_2, end_effector_factor_27);
     // plate: response (1 multiplication)
     let plate_response_3 = plate_factor
-        * ((-cart_factor_7)
-            .mul_add(
-                cart_load_15,
-                (-end_effector_factor_24).mul_add(cart_factor_5, end_effector_factor_29),
-            ));
+        * ((-cart_factor_7).mul_add(cart_load_15, (-end_effector_factor_24).mul_add(cart_factor_5, end_effector_factor_29)));
     // cart: response (3 additions, 5 multiplications)
-    let cart_response_2 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_response_3, cart_load_15));
+    let cart_response_2 = cart_factor_6 * ((-cart_factor_4).mul_add(plate_response_3, cart_load_15));
     let cart_response_3 = cart_factor
         * (end_effector_factor_26
-            .mul_add(
-                plate_response_3,
-                end_effector_factor_25.mul_add(cart_response_2, end_effector_factor_24),
-            ));
+            .mul_add(plate_response_3, end_effector_factor_25.mul_add(cart_response_2, end_effector_factor_24)));
     // end_effector: response (3 additions, 4 multiplications)
-    let end_effector_response_27 = end_effector_factor_23
-        * ((-end_effector_factor_19)
-            .mul_add(
-                plate_response_3,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        cart_response_2,
-                        end_effector_factor_17.mul_add(cart_response_3, -n(1.0)),
-                    ),
-            ));
+    let end_effector_response_27 = end_effector_factor_23 * ((-end_effector_factor_19).mul_add(
+        plate_response_3,
+        (-end_effector_factor_18).mul_add(cart_response_2, end_effector_factor_17.mul_add(cart_response_3, -n(1.0))),
+    ));
     // end_effector: load (3 additions, 3 multiplications)
-    let end_effector_load_58 = (-end_effector_factor_16)
-        .mul_add(end_effector_factor_24, end_effector_factor_20);
+    let end_effector_load_58 = (-end_effector_factor_16).mul_add(end_effector_factor_24, end_effector_factor_20);
     // cart: load (3 additions, 3 multiplications)
     let cart_load_16 = (-cart_factor_2)
-        .mul_add(
-            end_effector_load_58,
-            (-end_effector_factor_16)
-                .mul_add(end_effector_factor_27, end_effector_factor_21),
-        );
+        .mul_add(end_effector_load_58, (-end_effector_factor_16).mul_add(end_effector_factor_27, end_effector_factor_21));
     // plate: response (1 multiplication)
-    let plate_response_4 = plate_factor
-        * ((-cart_factor_7)
-            .mul_add(
-                cart_load_16,
-                (-cart_factor_5)
-                    .mul_add(
-                        end_effector_load_58,
-                        (-end_effector_factor_16)
-                            .mul_add(end_effector_factor_29, end_effector_factor_22),
-                    ),
-            ));
+    let plate_response_4 = plate_factor * ((-cart_factor_7).mul_add(
+        cart_load_16,
+        (-cart_factor_5).mul_add(
+            end_effector_load_58,
+            (-end_effector_factor_16).mul_add(end_effector_factor_29, end_effector_factor_22),
+        ),
+    ));
     // cart: response (3 additions, 5 multiplications)
-    let cart_response_4 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_response_4, cart_load_16));
+    let cart_response_4 = cart_factor_6 * ((-cart_factor_4).mul_add(plate_response_4, cart_load_16));
     let cart_response_5 = cart_factor
         * (end_effector_factor_26
-            .mul_add(
-                plate_response_4,
-                end_effector_factor_25.mul_add(cart_response_4, end_effector_load_58),
-            ));
+            .mul_add(plate_response_4, end_effector_factor_25.mul_add(cart_response_4, end_effector_load_58)));
     // end_effector: response (7 additions, 9 multiplications)
-    let end_effector_response_28 = end_effector_factor_23
-        * ((-end_effector_factor_19)
-            .mul_add(
-                plate_response_4,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        cart_response_4,
-                        end_effector_factor_17
-                            .mul_add(cart_response_5, end_effector_factor_16),
-                    ),
-            ));
-    let end_effector_response_29 = (-end_effector_factor_5)
-        .mul_add(
-            cart_response_5,
-            end_effector_factor_7
-                .mul_add(
-                    plate_response_4,
-                    end_effector_factor_6
-                        .mul_add(
-                            cart_response_4,
-                            end_effector_factor_4 * end_effector_response_28,
-                        ),
-                ),
-        );
+    let end_effector_response_28 = end_effector_factor_23 * ((-end_effector_factor_19).mul_add(
+        plate_response_4,
+        (-end_effector_factor_18)
+            .mul_add(cart_response_4, end_effector_factor_17.mul_add(cart_response_5, end_effector_factor_16)),
+    ));
+    let end_effector_response_29 = (-end_effector_factor_5).mul_add(
+        cart_response_5,
+        end_effector_factor_7.mul_add(
+            plate_response_4,
+            end_effector_factor_6.mul_add(cart_response_4, end_effector_factor_4 * end_effector_response_28),
+        ),
+    );
     // end_effector: load (7 additions, 7 multiplications)
-    let end_effector_load_59 = (-end_effector_factor_2)
-        .mul_add(end_effector_factor_16, end_effector_factor_8);
+    let end_effector_load_59 = (-end_effector_factor_2).mul_add(end_effector_factor_16, end_effector_factor_8);
     let end_effector_load_60 = (-end_effector_factor_24)
-        .mul_add(
-            end_effector_load_59,
-            (-end_effector_factor_2)
-                .mul_add(end_effector_factor_20, end_effector_factor_10),
-        );
+        .mul_add(end_effector_load_59, (-end_effector_factor_2).mul_add(end_effector_factor_20, end_effector_factor_10));
     // cart: load (3 additions, 3 multiplications)
-    let cart_load_17 = (-cart_factor_2)
-        .mul_add(
+    let cart_load_17 = (-cart_factor_2).mul_add(
+        end_effector_load_60,
+        (-end_effector_factor_27).mul_add(
+            end_effector_load_59,
+            (-end_effector_factor_2).mul_add(end_effector_factor_21, end_effector_factor_12),
+        ),
+    );
+    let cart_load_18 = (-cart_factor_7).mul_add(
+        cart_load_17,
+        (-cart_factor_5).mul_add(
             end_effector_load_60,
-            (-end_effector_factor_27)
-                .mul_add(
-                    end_effector_load_59,
-                    (-end_effector_factor_2)
-                        .mul_add(end_effector_factor_21, end_effector_factor_12),
-                ),
-        );
-    let cart_load_18 = (-cart_factor_7)
-        .mul_add(
-            cart_load_17,
-            (-cart_factor_5)
-                .mul_add(
-                    end_effector_load_60,
-                    (-end_effector_factor_29)
-                        .mul_add(
-                            end_effector_load_59,
-                            (-end_effector_factor_2)
-                                .mul_add(end_effector_factor_22, end_effector_factor_13),
-                        ),
-                ),
-        );
+            (-end_effector_factor_29).mul_add(
+                end_effector_load_59,
+                (-end_effector_factor_2).mul_add(end_effector_factor_22, end_effector_factor_13),
+            ),
+        ),
+    );
     // plate: response (1 multiplication)
     let plate_response_5 = plate_factor * cart_load_18;
     // cart: response (3 additions, 5 multiplications)
-    let cart_response_6 = cart_factor_6
-        * ((-cart_factor_4).mul_add(plate_response_5, cart_load_17));
+    let cart_response_6 = cart_factor_6 * ((-cart_factor_4).mul_add(plate_response_5, cart_load_17));
     let cart_response_7 = cart_factor
         * (end_effector_factor_26
-            .mul_add(
-                plate_response_5,
-                end_effector_factor_25.mul_add(cart_response_6, end_effector_load_60),
-            ));
+            .mul_add(plate_response_5, end_effector_factor_25.mul_add(cart_response_6, end_effector_load_60)));
     // end_effector: response (12 additions, 15 multiplications)
-    let end_effector_response_30 = end_effector_factor_23
-        * ((-end_effector_factor_19)
-            .mul_add(
-                plate_response_5,
-                (-end_effector_factor_18)
-                    .mul_add(
-                        cart_response_6,
-                        end_effector_factor_17
-                            .mul_add(cart_response_7, end_effector_load_59),
-                    ),
-            ));
-    let end_effector_response_31 = (-end_effector_factor_5)
-        .mul_add(
-            cart_response_7,
-            end_effector_factor_7
-                .mul_add(
-                    plate_response_5,
-                    end_effector_factor_6
-                        .mul_add(
-                            cart_response_6,
-                            end_effector_factor_4 * end_effector_response_30,
-                        ),
-                ),
-        );
-    let end_effector_response_32 = end_effector_factor_15
-        * (end_effector_factor_2 - end_effector_response_31);
-    let end_effector_response_33 = (-end_effector_composite_inertia_38)
-        .mul_add(
-            cart_response_7,
-            end_effector_composite_inertia_40
-                .mul_add(
-                    cart_response_6,
-                    end_effector_composite_inertia_12
-                        .mul_add(
-                            end_effector_response_30,
-                            end_effector_composite_inertia_28 * end_effector_response_32,
-                        ),
-                ),
-        );
+    let end_effector_response_30 = end_effector_factor_23 * ((-end_effector_factor_19).mul_add(
+        plate_response_5,
+        (-end_effector_factor_18)
+            .mul_add(cart_response_6, end_effector_factor_17.mul_add(cart_response_7, end_effector_load_59)),
+    ));
+    let end_effector_response_31 = (-end_effector_factor_5).mul_add(
+        cart_response_7,
+        end_effector_factor_7.mul_add(
+            plate_response_5,
+            end_effector_factor_6.mul_add(cart_response_6, end_effector_factor_4 * end_effector_response_30),
+        ),
+    );
+    let end_effector_response_32 = end_effector_factor_15 * (end_effector_factor_2 - end_effector_response_31);
+    let end_effector_response_33 = (-end_effector_composite_inertia_38).mul_add(
+        cart_response_7,
+        end_effector_composite_inertia_40.mul_add(
+            cart_response_6,
+            end_effector_composite_inertia_12
+                .mul_add(end_effector_response_30, end_effector_composite_inertia_28 * end_effector_response_32),
+        ),
+    );
     [
         [
             n(0.0),
-            plate_slope,
-            -plate_slope_2,
-            -plate_slope_3,
-            -plate_slope_4,
-            -plate_slope_5,
-            -plate_slope_6,
-            -plate_slope_7,
-            -plate_slope_8,
-            -plate_slope_9,
-            plate_slope_10,
-            plate_slope_11,
-            plate_slope_12,
-            plate_factor,
-            -plate_response,
+            plate_slope, -plate_slope_2, -plate_slope_3, -plate_slope_4, -plate_slope_5, -plate_slope_6, -plate_slope_7,
+            -plate_slope_8, -plate_slope_9, plate_slope_10, plate_slope_11, plate_slope_12, plate_factor, -plate_response,
             -plate_response_2,
             n(0.0),
-            -plate_response_3,
-            -plate_response_4,
-            -plate_response_5,
-            -plate_acceleration_2,
+            -plate_response_3, -plate_response_4, -plate_response_5, -plate_acceleration_2,
         ],
         [
             n(0.0),
-            cart_slope_19,
-            cart_slope_21,
-            cart_slope_23,
-            -cart_slope_25,
-            -cart_slope_27,
-            -cart_slope_29,
-            -cart_slope_31,
-            -cart_slope_33,
-            -cart_slope_35,
-            cart_slope_37,
-            cart_slope_39,
-            cart_slope_41,
-            -plate_response,
+            cart_slope_19, cart_slope_21, cart_slope_23, -cart_slope_25, -cart_slope_27, -cart_slope_29, -cart_slope_31,
+            -cart_slope_33, -cart_slope_35, cart_slope_37, cart_slope_39, cart_slope_41, -plate_response,
             cart_factor_6 * (cart_factor_4.mul_add(plate_response, n(1.0))),
             -cart_response,
             n(0.0),
-            -cart_response_2,
-            -cart_response_4,
-            -cart_response_6,
-            -cart_acceleration_8,
+            -cart_response_2, -cart_response_4, -cart_response_6, -cart_acceleration_8,
         ],
         [
             n(0.0),
-            cart_slope_20,
-            -cart_slope_22,
-            cart_slope_24,
-            -cart_slope_26,
-            -cart_slope_28,
-            -cart_slope_30,
-            cart_slope_32,
-            -cart_slope_34,
-            -cart_slope_36,
-            -cart_slope_38,
-            -cart_slope_40,
-            -cart_slope_42,
-            -plate_response_2,
-            -cart_response,
+            cart_slope_20, -cart_slope_22, cart_slope_24, -cart_slope_26, -cart_slope_28, -cart_slope_30, cart_slope_32,
+            -cart_slope_34, -cart_slope_36, -cart_slope_38, -cart_slope_40, -cart_slope_42, -plate_response_2, -cart_response,
             cart_factor
-                * (end_effector_factor_26
-                    .mul_add(
-                        plate_response_2,
-                        end_effector_factor_25.mul_add(cart_response, -n(1.0)),
-                    )),
+                * (end_effector_factor_26.mul_add(plate_response_2, end_effector_factor_25.mul_add(cart_response, -n(1.0)))),
             n(0.0),
-            cart_response_3,
-            cart_response_5,
-            cart_response_7,
-            -cart_acceleration_9,
+            cart_response_3, cart_response_5, cart_response_7, -cart_acceleration_9,
         ],
         [
             n(0.0),
-            -end_effector_slope_125,
-            end_effector_slope_127,
-            -end_effector_slope_129,
-            -end_effector_slope_131,
-            -end_effector_slope_133,
-            -end_effector_slope_135,
-            end_effector_slope_137,
-            end_effector_slope_139,
-            -end_effector_slope_141,
-            end_effector_slope_143,
-            end_effector_slope_145,
-            end_effector_slope_147,
-            -plate_response_3,
-            -cart_response_2,
-            cart_response_3,
+            -end_effector_slope_125, end_effector_slope_127, -end_effector_slope_129, -end_effector_slope_131,
+            -end_effector_slope_133, -end_effector_slope_135, end_effector_slope_137, end_effector_slope_139,
+            -end_effector_slope_141, end_effector_slope_143, end_effector_slope_145, end_effector_slope_147, -plate_response_3,
+            -cart_response_2, cart_response_3,
             n(0.0),
-            -end_effector_response_27,
-            -end_effector_response_28,
-            -end_effector_response_30,
-            -end_effector_acceleration_26,
+            -end_effector_response_27, -end_effector_response_28, -end_effector_response_30, -end_effector_acceleration_26,
         ],
         [
             n(0.0),
-            -end_effector_slope_126,
-            end_effector_slope_128,
-            -end_effector_slope_130,
-            -end_effector_slope_132,
-            -end_effector_slope_134,
-            -end_effector_slope_136,
-            end_effector_slope_138,
-            end_effector_slope_140,
-            -end_effector_slope_142,
-            end_effector_slope_144,
-            end_effector_slope_146,
-            end_effector_slope_148,
-            -plate_response_4,
-            -cart_response_4,
-            cart_response_5,
+            -end_effector_slope_126, end_effector_slope_128, -end_effector_slope_130, -end_effector_slope_132,
+            -end_effector_slope_134, -end_effector_slope_136, end_effector_slope_138, end_effector_slope_140,
+            -end_effector_slope_142, end_effector_slope_144, end_effector_slope_146, end_effector_slope_148, -plate_response_4,
+            -cart_response_4, cart_response_5,
             n(0.0),
             -end_effector_response_28,
             end_effector_factor_15 * (end_effector_response_29 + n(1.0)),
-            -end_effector_response_32,
-            -end_effector_acceleration_27,
+            -end_effector_response_32, -end_effector_acceleration_27,
         ],
         [
             n(0.0),
             -(end_effector_factor
-                * (end_effector_composite_inertia_42
-                    .mul_add(
-                        plate_slope,
-                        end_effector_slope_106 - end_effector_response_4,
-                    ))),
+                * (end_effector_composite_inertia_42.mul_add(plate_slope, end_effector_slope_106 - end_effector_response_4))),
             end_effector_factor
-                * (end_effector_composite_inertia_42
-                    .mul_add(
-                        plate_slope_2,
-                        end_effector_slope_107 - end_effector_response_6,
-                    )),
+                * (end_effector_composite_inertia_42.mul_add(plate_slope_2, end_effector_slope_107 - end_effector_response_6)),
             -(end_effector_factor
                 * ((-end_effector_composite_inertia_42)
-                    .mul_add(
-                        plate_slope_3,
-                        end_effector_slope_108 - end_effector_response_8,
-                    ))),
+                    .mul_add(plate_slope_3, end_effector_slope_108 - end_effector_response_8))),
             -(end_effector_factor
                 * ((-end_effector_composite_inertia_42)
-                    .mul_add(
-                        plate_slope_4,
-                        end_effector_slope_64 - end_effector_response_10,
-                    ))),
+                    .mul_add(plate_slope_4, end_effector_slope_64 - end_effector_response_10))),
             -(end_effector_factor
                 * ((-end_effector_composite_inertia_42)
-                    .mul_add(
-                        plate_slope_5,
-                        end_effector_slope_68 - end_effector_response_12,
-                    ))),
+                    .mul_add(plate_slope_5, end_effector_slope_68 - end_effector_response_12))),
             -(end_effector_factor
                 * ((-end_effector_composite_inertia_42)
-                    .mul_add(
-                        plate_slope_6,
-                        end_effector_slope_72 - end_effector_response_14,
-                    ))),
+                    .mul_add(plate_slope_6, end_effector_slope_72 - end_effector_response_14))),
             end_effector_factor
-                * (end_effector_composite_inertia_42
-                    .mul_add(
-                        plate_slope_7,
-                        end_effector_slope_105 - end_effector_response_16,
-                    )),
+                * (end_effector_composite_inertia_42.mul_add(plate_slope_7, end_effector_slope_105 - end_effector_response_16)),
             end_effector_factor
-                * (end_effector_composite_inertia_42
-                    .mul_add(
-                        plate_slope_8,
-                        end_effector_slope_109 - end_effector_response_18,
-                    )),
+                * (end_effector_composite_inertia_42.mul_add(plate_slope_8, end_effector_slope_109 - end_effector_response_18)),
             -(end_effector_factor
                 * ((-end_effector_composite_inertia_42)
-                    .mul_add(
-                        plate_slope_9,
-                        end_effector_slope_110 - end_effector_response_20,
-                    ))),
+                    .mul_add(plate_slope_9, end_effector_slope_110 - end_effector_response_20))),
             end_effector_factor
                 * ((-end_effector_composite_inertia_42)
-                    .mul_add(
-                        plate_slope_10,
-                        end_effector_slope_73 - end_effector_response_22,
-                    )),
+                    .mul_add(plate_slope_10, end_effector_slope_73 - end_effector_response_22)),
             end_effector_factor
                 * ((-end_effector_composite_inertia_42)
-                    .mul_add(
-                        plate_slope_11,
-                        end_effector_slope_74 - end_effector_response_24,
-                    )),
+                    .mul_add(plate_slope_11, end_effector_slope_74 - end_effector_response_24)),
             end_effector_factor
                 * ((-end_effector_composite_inertia_42)
-                    .mul_add(
-                        plate_slope_12,
-                        end_effector_slope_75 - end_effector_response_26,
-                    )),
-            -plate_response_5,
-            -cart_response_6,
-            cart_response_7,
+                    .mul_add(plate_slope_12, end_effector_slope_75 - end_effector_response_26)),
+            -plate_response_5, -cart_response_6, cart_response_7,
             n(0.0),
-            -end_effector_response_30,
-            -end_effector_response_32,
+            -end_effector_response_30, -end_effector_response_32,
             end_effector_factor
-                * (end_effector_composite_inertia_42
-                    .mul_add(plate_response_5, end_effector_response_33 + n(1.0))),
+                * (end_effector_composite_inertia_42.mul_add(plate_response_5, end_effector_response_33 + n(1.0))),
             -end_effector_acceleration_28,
         ],
     ]
@@ -8463,11 +4601,7 @@ pub fn forward_dynamics_derivatives<T: Scalar>(
 /// Operations: 637 additions, 765 multiplications.
 #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
 #[must_use]
-pub fn inverse_dynamics_derivatives<T: Scalar>(
-    q: &[T; 16],
-    v: &[T; 6],
-    a: &[T; 6],
-) -> [[T; 13]; 6] {
+pub fn inverse_dynamics_derivatives<T: Scalar>(q: &[T; 16], v: &[T; 6], a: &[T; 6]) -> [[T; 13]; 6] {
     let n = T::from_f64;
     // plate: acceleration (1 multiplication)
     let plate_acceleration = v[0] * v[0];
@@ -8481,17 +4615,11 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
     let cart_acceleration_5 = (-q[6]).mul_add(plate_acceleration, cart_acceleration_4);
     let cart_acceleration_6 = a[0] + a[1];
     let cart_acceleration_7 = cart_rate_z * cart_rate_z;
-    let cart_acceleration_8 = (-q[1])
-        .mul_add(cart_acceleration_3, q[4].mul_add(cart_acceleration_5, a[2]));
-    let cart_acceleration_9 = (-q[2])
-        .mul_add(
-            cart_acceleration_3,
-            q[5]
-                .mul_add(
-                    cart_acceleration_5,
-                    v[1].mul_add(v[2], cart_acceleration + cart_acceleration),
-                ),
-        );
+    let cart_acceleration_8 = (-q[1]).mul_add(cart_acceleration_3, q[4].mul_add(cart_acceleration_5, a[2]));
+    let cart_acceleration_9 = (-q[2]).mul_add(
+        cart_acceleration_3,
+        q[5].mul_add(cart_acceleration_5, v[1].mul_add(v[2], cart_acceleration + cart_acceleration)),
+    );
     // cart: motion (11 additions, 18 multiplications)
     let cart_motion = v[0] * q[6];
     let cart_motion_2 = v[0] * q[3];
@@ -8502,16 +4630,8 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
     let cart_variation = v[0] + cart_rate_z;
     let cart_variation_2 = cart_motion_3 - cart_motion_5;
     let cart_variation_3 = cart_motion_4 + cart_motion_4;
-    let cart_variation_4 = (-q[5])
-        .mul_add(
-            cart_acceleration_4,
-            v[0].mul_add(cart_motion_3, q[2] * cart_acceleration_2),
-        );
-    let cart_variation_5 = (-v[0])
-        .mul_add(
-            cart_motion_4,
-            (-q[4]).mul_add(cart_acceleration_4, q[1] * cart_acceleration_2),
-        );
+    let cart_variation_4 = (-q[5]).mul_add(cart_acceleration_4, v[0].mul_add(cart_motion_3, q[2] * cart_acceleration_2));
+    let cart_variation_5 = (-v[0]).mul_add(cart_motion_4, (-q[4]).mul_add(cart_acceleration_4, q[1] * cart_acceleration_2));
     // end_effector: joint (6 additions, 9 multiplications)
     let end_effector_joint = v[5].mul_add(q[13], v[4].mul_add(q[10], v[3] * q[7]));
     let end_effector_joint_2 = v[5].mul_add(q[14], v[4].mul_add(q[11], v[3] * q[8]));
@@ -8526,197 +4646,112 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
     // end_effector: acceleration (34 additions, 37 multiplications)
     let end_effector_acceleration = cart_acceleration_6 * n(0.02);
     let end_effector_acceleration_2 = cart_acceleration_6 * n(0.15);
-    let end_effector_acceleration_3 = (-cart_acceleration_7)
-        .mul_add(n(0.15), cart_acceleration_8 + end_effector_acceleration);
-    let end_effector_acceleration_4 = cart_acceleration_7
-        .mul_add(n(0.02), cart_acceleration_9 + end_effector_acceleration_2);
+    let end_effector_acceleration_3 = (-cart_acceleration_7).mul_add(n(0.15), cart_acceleration_8 + end_effector_acceleration);
+    let end_effector_acceleration_4 = cart_acceleration_7.mul_add(n(0.02), cart_acceleration_9 + end_effector_acceleration_2);
     let end_effector_acceleration_5 = q[13] * n(9.81);
     let end_effector_acceleration_6 = q[10]
-        .mul_add(
-            end_effector_acceleration_4,
-            q[7].mul_add(end_effector_acceleration_3, end_effector_acceleration_5),
-        );
+        .mul_add(end_effector_acceleration_4, q[7].mul_add(end_effector_acceleration_3, end_effector_acceleration_5));
     let end_effector_acceleration_7 = q[14] * n(9.81);
     let end_effector_acceleration_8 = q[11]
-        .mul_add(
-            end_effector_acceleration_4,
-            q[8].mul_add(end_effector_acceleration_3, end_effector_acceleration_7),
-        );
+        .mul_add(end_effector_acceleration_4, q[8].mul_add(end_effector_acceleration_3, end_effector_acceleration_7));
     let end_effector_acceleration_9 = q[15] * n(9.81);
     let end_effector_acceleration_10 = q[12]
-        .mul_add(
-            end_effector_acceleration_4,
-            q[9].mul_add(end_effector_acceleration_3, end_effector_acceleration_9),
-        );
-    let end_effector_acceleration_11 = q[13]
-        .mul_add(a[5], q[10].mul_add(a[4], q[7] * a[3]));
-    let end_effector_acceleration_12 = q[14]
-        .mul_add(a[5], q[11].mul_add(a[4], q[8] * a[3]));
-    let end_effector_acceleration_13 = q[15]
-        .mul_add(a[5], q[12].mul_add(a[4], q[9] * a[3]));
+        .mul_add(end_effector_acceleration_4, q[9].mul_add(end_effector_acceleration_3, end_effector_acceleration_9));
+    let end_effector_acceleration_11 = q[13].mul_add(a[5], q[10].mul_add(a[4], q[7] * a[3]));
+    let end_effector_acceleration_12 = q[14].mul_add(a[5], q[11].mul_add(a[4], q[8] * a[3]));
+    let end_effector_acceleration_13 = q[15].mul_add(a[5], q[12].mul_add(a[4], q[9] * a[3]));
     let end_effector_acceleration_14 = q[13] * cart_acceleration_6;
     let end_effector_acceleration_15 = q[14] * cart_acceleration_6;
     let end_effector_acceleration_16 = q[15] * cart_acceleration_6;
-    let end_effector_acceleration_17 = (-end_effector_joint_2)
-        .mul_add(
-            end_effector_angular_velocity_3,
-            end_effector_joint_3
-                .mul_add(
-                    end_effector_angular_velocity_2,
-                    end_effector_acceleration_11 + end_effector_acceleration_14,
-                ),
-        );
-    let end_effector_acceleration_18 = (-end_effector_joint_3)
-        .mul_add(
-            end_effector_angular_velocity,
-            end_effector_joint
-                .mul_add(
-                    end_effector_angular_velocity_3,
-                    end_effector_acceleration_12 + end_effector_acceleration_15,
-                ),
-        );
-    let end_effector_acceleration_19 = (-end_effector_joint)
-        .mul_add(
-            end_effector_angular_velocity_2,
-            end_effector_joint_2
-                .mul_add(
-                    end_effector_angular_velocity,
-                    end_effector_acceleration_13 + end_effector_acceleration_16,
-                ),
-        );
+    let end_effector_acceleration_17 = (-end_effector_joint_2).mul_add(
+        end_effector_angular_velocity_3,
+        end_effector_joint_3
+            .mul_add(end_effector_angular_velocity_2, end_effector_acceleration_11 + end_effector_acceleration_14),
+    );
+    let end_effector_acceleration_18 = (-end_effector_joint_3).mul_add(
+        end_effector_angular_velocity,
+        end_effector_joint
+            .mul_add(end_effector_angular_velocity_3, end_effector_acceleration_12 + end_effector_acceleration_15),
+    );
+    let end_effector_acceleration_19 = (-end_effector_joint).mul_add(
+        end_effector_angular_velocity_2,
+        end_effector_joint_2
+            .mul_add(end_effector_angular_velocity, end_effector_acceleration_13 + end_effector_acceleration_16),
+    );
     let end_effector_acceleration_20 = end_effector_rate_x * end_effector_rate_x;
     let end_effector_acceleration_21 = end_effector_rate_x * end_effector_rate_y;
     let end_effector_acceleration_22 = end_effector_rate_x * end_effector_rate_z;
     let end_effector_acceleration_23 = end_effector_rate_y * end_effector_rate_y;
     let end_effector_acceleration_24 = end_effector_rate_y * end_effector_rate_z;
     let end_effector_acceleration_25 = end_effector_rate_z * end_effector_rate_z;
-    let end_effector_acceleration_26 = end_effector_acceleration_19
-        + end_effector_acceleration_21;
-    let end_effector_acceleration_27 = end_effector_acceleration_18
-        - end_effector_acceleration_22;
-    let end_effector_acceleration_28 = end_effector_acceleration_19
-        - end_effector_acceleration_21;
-    let end_effector_acceleration_29 = end_effector_acceleration_17
-        + end_effector_acceleration_24;
-    let end_effector_acceleration_30 = end_effector_acceleration_18
-        + end_effector_acceleration_22;
-    let end_effector_acceleration_31 = end_effector_acceleration_17
-        - end_effector_acceleration_24;
+    let end_effector_acceleration_26 = end_effector_acceleration_19 + end_effector_acceleration_21;
+    let end_effector_acceleration_27 = end_effector_acceleration_18 - end_effector_acceleration_22;
+    let end_effector_acceleration_28 = end_effector_acceleration_19 - end_effector_acceleration_21;
+    let end_effector_acceleration_29 = end_effector_acceleration_17 + end_effector_acceleration_24;
+    let end_effector_acceleration_30 = end_effector_acceleration_18 + end_effector_acceleration_22;
+    let end_effector_acceleration_31 = end_effector_acceleration_17 - end_effector_acceleration_24;
     // end_effector: motion (40 additions, 50 multiplications)
     let end_effector_motion = cart_rate_z.mul_add(n(0.02), cart_motion_5);
     let end_effector_motion_2 = (-cart_rate_z).mul_add(n(0.15), cart_motion_4);
-    let end_effector_motion_3 = (-q[10])
-        .mul_add(end_effector_motion_2, q[7] * end_effector_motion);
-    let end_effector_motion_4 = (-q[11])
-        .mul_add(end_effector_motion_2, q[8] * end_effector_motion);
-    let end_effector_motion_5 = (-q[12])
-        .mul_add(end_effector_motion_2, q[9] * end_effector_motion);
-    let end_effector_motion_6 = (-cart_rate_z)
-        .mul_add(cart_motion_4, end_effector_acceleration + cart_acceleration_8);
-    let end_effector_motion_7 = (-cart_rate_z)
-        .mul_add(cart_motion_5, end_effector_acceleration_2 + cart_acceleration_9);
+    let end_effector_motion_3 = (-q[10]).mul_add(end_effector_motion_2, q[7] * end_effector_motion);
+    let end_effector_motion_4 = (-q[11]).mul_add(end_effector_motion_2, q[8] * end_effector_motion);
+    let end_effector_motion_5 = (-q[12]).mul_add(end_effector_motion_2, q[9] * end_effector_motion);
+    let end_effector_motion_6 = (-cart_rate_z).mul_add(cart_motion_4, end_effector_acceleration + cart_acceleration_8);
+    let end_effector_motion_7 = (-cart_rate_z).mul_add(cart_motion_5, end_effector_acceleration_2 + cart_acceleration_9);
     let end_effector_motion_8 = q[10]
-        .mul_add(
-            end_effector_motion_7,
-            q[7].mul_add(end_effector_motion_6, end_effector_acceleration_5),
-        );
+        .mul_add(end_effector_motion_7, q[7].mul_add(end_effector_motion_6, end_effector_acceleration_5));
     let end_effector_motion_9 = q[11]
-        .mul_add(
-            end_effector_motion_7,
-            q[8].mul_add(end_effector_motion_6, end_effector_acceleration_7),
-        );
+        .mul_add(end_effector_motion_7, q[8].mul_add(end_effector_motion_6, end_effector_acceleration_7));
     let end_effector_motion_10 = q[12]
-        .mul_add(
-            end_effector_motion_7,
-            q[9].mul_add(end_effector_motion_6, end_effector_acceleration_9),
-        );
-    let end_effector_motion_11 = (-end_effector_acceleration_24)
-        .mul_add(
-            n(0.15511999999999998),
-            (end_effector_acceleration_23 - end_effector_acceleration_25)
-                .mul_add(
-                    n(0.042300000000000004),
-                    end_effector_acceleration_27
-                        .mul_add(n(0.0078), end_effector_acceleration_17 * n(0.19388)),
-                ),
-        );
-    let end_effector_motion_12 = (end_effector_acceleration_20
-        - end_effector_acceleration_25)
-        .mul_add(
-            n(0.027499999999999997),
-            end_effector_acceleration_28
-                .mul_add(
-                    n(0.042300000000000004),
-                    end_effector_acceleration_22
-                        .mul_add(
-                            n(0.16674999999999998),
-                            end_effector_acceleration_18 * n(0.18225),
-                        ),
-                ),
-        );
-    let end_effector_motion_13 = (-end_effector_acceleration_31)
-        .mul_add(
-            n(0.027499999999999997),
-            (-end_effector_acceleration_21)
-                .mul_add(
-                    n(0.01163),
-                    (end_effector_acceleration_20 - end_effector_acceleration_23)
-                        .mul_add(n(0.0078), end_effector_acceleration_19 * n(0.02713)),
-                ),
-        );
-    let end_effector_motion_14 = (-end_effector_acceleration_8)
-        .mul_add(
-            n(0.51),
-            (-end_effector_acceleration_10)
-                .mul_add(
-                    n(0.136),
-                    (-end_effector_acceleration_26)
-                        .mul_add(n(0.027499999999999997), end_effector_motion_11),
-                ),
-        );
-    let end_effector_motion_15 = (-end_effector_acceleration_10)
-        .mul_add(
-            n(0.085),
-            end_effector_acceleration_6
-                .mul_add(
-                    n(0.51),
-                    end_effector_acceleration_29
-                        .mul_add(n(0.0078), end_effector_motion_12),
-                ),
-        );
-    let end_effector_motion_16 = end_effector_acceleration_6
-        .mul_add(
-            n(0.136),
-            end_effector_acceleration_8
-                .mul_add(
-                    n(0.085),
-                    end_effector_acceleration_30
-                        .mul_add(n(0.042300000000000004), end_effector_motion_13),
-                ),
-        );
-    let end_effector_motion_17 = (-end_effector_acceleration_30)
-        .mul_add(
-            n(0.51),
-            (-end_effector_acceleration_28)
-                .mul_add(
-                    n(0.136),
-                    (end_effector_acceleration_23 + end_effector_acceleration_25)
-                        * n(0.085),
-                ),
-        );
-    let end_effector_motion_18 = (-end_effector_acceleration_31)
-        .mul_add(
-            n(0.51),
-            (end_effector_acceleration_20 + end_effector_acceleration_25)
-                .mul_add(n(0.136), end_effector_acceleration_26 * n(0.085)),
-        );
-    let end_effector_motion_19 = (end_effector_acceleration_20
-        + end_effector_acceleration_23)
-        .mul_add(
-            n(0.51),
-            end_effector_acceleration_29
-                .mul_add(n(0.136), end_effector_acceleration_27 * n(0.085)),
-        );
+        .mul_add(end_effector_motion_7, q[9].mul_add(end_effector_motion_6, end_effector_acceleration_9));
+    let end_effector_motion_11 = (-end_effector_acceleration_24).mul_add(
+        n(0.15511999999999998),
+        (end_effector_acceleration_23 - end_effector_acceleration_25).mul_add(
+            n(0.042300000000000004),
+            end_effector_acceleration_27.mul_add(n(0.0078), end_effector_acceleration_17 * n(0.19388)),
+        ),
+    );
+    let end_effector_motion_12 = (end_effector_acceleration_20 - end_effector_acceleration_25).mul_add(
+        n(0.027499999999999997),
+        end_effector_acceleration_28.mul_add(
+            n(0.042300000000000004),
+            end_effector_acceleration_22.mul_add(n(0.16674999999999998), end_effector_acceleration_18 * n(0.18225)),
+        ),
+    );
+    let end_effector_motion_13 = (-end_effector_acceleration_31).mul_add(
+        n(0.027499999999999997),
+        (-end_effector_acceleration_21).mul_add(
+            n(0.01163),
+            (end_effector_acceleration_20 - end_effector_acceleration_23)
+                .mul_add(n(0.0078), end_effector_acceleration_19 * n(0.02713)),
+        ),
+    );
+    let end_effector_motion_14 = (-end_effector_acceleration_8).mul_add(
+        n(0.51),
+        (-end_effector_acceleration_10)
+            .mul_add(n(0.136), (-end_effector_acceleration_26).mul_add(n(0.027499999999999997), end_effector_motion_11)),
+    );
+    let end_effector_motion_15 = (-end_effector_acceleration_10).mul_add(
+        n(0.085),
+        end_effector_acceleration_6.mul_add(n(0.51), end_effector_acceleration_29.mul_add(n(0.0078), end_effector_motion_12)),
+    );
+    let end_effector_motion_16 = end_effector_acceleration_6.mul_add(
+        n(0.136),
+        end_effector_acceleration_8
+            .mul_add(n(0.085), end_effector_acceleration_30.mul_add(n(0.042300000000000004), end_effector_motion_13)),
+    );
+    let end_effector_motion_17 = (-end_effector_acceleration_30).mul_add(
+        n(0.51),
+        (-end_effector_acceleration_28)
+            .mul_add(n(0.136), (end_effector_acceleration_23 + end_effector_acceleration_25) * n(0.085)),
+    );
+    let end_effector_motion_18 = (-end_effector_acceleration_31).mul_add(
+        n(0.51),
+        (end_effector_acceleration_20 + end_effector_acceleration_25)
+            .mul_add(n(0.136), end_effector_acceleration_26 * n(0.085)),
+    );
+    let end_effector_motion_19 = (end_effector_acceleration_20 + end_effector_acceleration_23)
+        .mul_add(n(0.51), end_effector_acceleration_29.mul_add(n(0.136), end_effector_acceleration_27 * n(0.085)));
     // end_effector: variation (113 additions, 111 multiplications)
     let end_effector_variation = end_effector_angular_velocity + end_effector_rate_x;
     let end_effector_variation_2 = end_effector_angular_velocity_2 + end_effector_rate_y;
@@ -8726,10 +4761,8 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
     let end_effector_variation_6 = end_effector_motion_5 + end_effector_motion_5;
     let end_effector_variation_7 = end_effector_angular_velocity_2 * end_effector_rate_y;
     let end_effector_variation_8 = end_effector_angular_velocity_3 * end_effector_rate_z;
-    let end_effector_variation_9 = end_effector_angular_velocity_2
-        * end_effector_motion_4;
-    let end_effector_variation_10 = end_effector_angular_velocity_3
-        * end_effector_motion_5;
+    let end_effector_variation_9 = end_effector_angular_velocity_2 * end_effector_motion_4;
+    let end_effector_variation_10 = end_effector_angular_velocity_3 * end_effector_motion_5;
     let end_effector_variation_11 = end_effector_rate_y * end_effector_motion_4;
     let end_effector_variation_12 = end_effector_rate_z * end_effector_motion_5;
     let end_effector_variation_13 = end_effector_joint_2 * end_effector_rate_y;
@@ -8741,172 +4774,98 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
     let end_effector_variation_18 = end_effector_variation_9 + end_effector_variation_10
         + end_effector_variation_11 + end_effector_variation_12
         + end_effector_variation_15 + end_effector_variation_16;
-    let end_effector_variation_19 = end_effector_joint_2
-        .mul_add(
-            end_effector_motion_3,
-            end_effector_angular_velocity
-                .mul_add(
-                    end_effector_motion_4,
-                    end_effector_rate_y
-                        .mul_add(end_effector_motion_3, end_effector_motion_10),
-                ),
-        );
-    let end_effector_variation_20 = (-end_effector_joint_3)
-        .mul_add(
-            end_effector_motion_3,
-            (-end_effector_angular_velocity)
-                .mul_add(
-                    end_effector_motion_5,
-                    (-end_effector_rate_z)
-                        .mul_add(end_effector_motion_3, end_effector_motion_9),
-                ),
-        );
-    let end_effector_variation_21 = end_effector_joint_2
-        .mul_add(
-            end_effector_rate_x,
-            end_effector_angular_velocity
-                .mul_add(
-                    end_effector_rate_y,
-                    end_effector_acceleration_13 + end_effector_acceleration_16,
-                ),
-        );
-    let end_effector_variation_22 = (-end_effector_joint_3)
-        .mul_add(
-            end_effector_rate_x,
-            (-end_effector_angular_velocity)
-                .mul_add(
-                    end_effector_rate_z,
-                    end_effector_acceleration_12 + end_effector_acceleration_15,
-                ),
-        );
+    let end_effector_variation_19 = end_effector_joint_2.mul_add(
+        end_effector_motion_3,
+        end_effector_angular_velocity
+            .mul_add(end_effector_motion_4, end_effector_rate_y.mul_add(end_effector_motion_3, end_effector_motion_10)),
+    );
+    let end_effector_variation_20 = (-end_effector_joint_3).mul_add(
+        end_effector_motion_3,
+        (-end_effector_angular_velocity)
+            .mul_add(end_effector_motion_5, (-end_effector_rate_z).mul_add(end_effector_motion_3, end_effector_motion_9)),
+    );
+    let end_effector_variation_21 = end_effector_joint_2.mul_add(
+        end_effector_rate_x,
+        end_effector_angular_velocity.mul_add(end_effector_rate_y, end_effector_acceleration_13 + end_effector_acceleration_16),
+    );
+    let end_effector_variation_22 = (-end_effector_joint_3).mul_add(
+        end_effector_rate_x,
+        (-end_effector_angular_velocity)
+            .mul_add(end_effector_rate_z, end_effector_acceleration_12 + end_effector_acceleration_15),
+    );
     let end_effector_variation_23 = end_effector_angular_velocity * end_effector_rate_x;
-    let end_effector_variation_24 = end_effector_angular_velocity
-        * end_effector_motion_3;
+    let end_effector_variation_24 = end_effector_angular_velocity * end_effector_motion_3;
     let end_effector_variation_25 = end_effector_rate_x * end_effector_motion_3;
     let end_effector_variation_26 = end_effector_joint * end_effector_rate_x;
     let end_effector_variation_27 = end_effector_joint * end_effector_motion_3;
     let end_effector_variation_28 = end_effector_variation_8 + end_effector_variation_23
         + end_effector_variation_14 + end_effector_variation_26;
-    let end_effector_variation_29 = (-end_effector_joint)
-        .mul_add(
-            end_effector_motion_4,
-            (-end_effector_angular_velocity_2)
-                .mul_add(
-                    end_effector_motion_3,
-                    (-end_effector_rate_x)
-                        .mul_add(end_effector_motion_4, end_effector_motion_10),
-                ),
-        );
+    let end_effector_variation_29 = (-end_effector_joint).mul_add(
+        end_effector_motion_4,
+        (-end_effector_angular_velocity_2)
+            .mul_add(end_effector_motion_3, (-end_effector_rate_x).mul_add(end_effector_motion_4, end_effector_motion_10)),
+    );
     let end_effector_variation_30 = end_effector_variation_10 + end_effector_variation_24
         + end_effector_variation_12 + end_effector_variation_25
         + end_effector_variation_16 + end_effector_variation_27;
-    let end_effector_variation_31 = end_effector_joint_3
-        .mul_add(
-            end_effector_motion_4,
-            end_effector_angular_velocity_2
-                .mul_add(
-                    end_effector_motion_5,
-                    end_effector_rate_z
-                        .mul_add(end_effector_motion_4, end_effector_motion_8),
-                ),
-        );
-    let end_effector_variation_32 = (-end_effector_joint)
-        .mul_add(
-            end_effector_rate_y,
-            (-end_effector_angular_velocity_2)
-                .mul_add(
-                    end_effector_rate_x,
-                    end_effector_acceleration_13 + end_effector_acceleration_16,
-                ),
-        );
-    let end_effector_variation_33 = end_effector_joint_3
-        .mul_add(
-            end_effector_rate_y,
-            end_effector_angular_velocity_2
-                .mul_add(
-                    end_effector_rate_z,
-                    end_effector_acceleration_11 + end_effector_acceleration_14,
-                ),
-        );
+    let end_effector_variation_31 = end_effector_joint_3.mul_add(
+        end_effector_motion_4,
+        end_effector_angular_velocity_2
+            .mul_add(end_effector_motion_5, end_effector_rate_z.mul_add(end_effector_motion_4, end_effector_motion_8)),
+    );
+    let end_effector_variation_32 = (-end_effector_joint).mul_add(
+        end_effector_rate_y,
+        (-end_effector_angular_velocity_2)
+            .mul_add(end_effector_rate_x, end_effector_acceleration_13 + end_effector_acceleration_16),
+    );
+    let end_effector_variation_33 = end_effector_joint_3.mul_add(
+        end_effector_rate_y,
+        end_effector_angular_velocity_2
+            .mul_add(end_effector_rate_z, end_effector_acceleration_11 + end_effector_acceleration_14),
+    );
     let end_effector_variation_34 = end_effector_variation_7 + end_effector_variation_23
         + end_effector_variation_13 + end_effector_variation_26;
-    let end_effector_variation_35 = end_effector_joint
-        .mul_add(
-            end_effector_motion_5,
-            end_effector_angular_velocity_3
-                .mul_add(
-                    end_effector_motion_3,
-                    end_effector_rate_x
-                        .mul_add(end_effector_motion_5, end_effector_motion_9),
-                ),
-        );
-    let end_effector_variation_36 = (-end_effector_joint_2)
-        .mul_add(
-            end_effector_motion_5,
-            (-end_effector_angular_velocity_3)
-                .mul_add(
-                    end_effector_motion_4,
-                    (-end_effector_rate_y)
-                        .mul_add(end_effector_motion_5, end_effector_motion_8),
-                ),
-        );
+    let end_effector_variation_35 = end_effector_joint.mul_add(
+        end_effector_motion_5,
+        end_effector_angular_velocity_3
+            .mul_add(end_effector_motion_3, end_effector_rate_x.mul_add(end_effector_motion_5, end_effector_motion_9)),
+    );
+    let end_effector_variation_36 = (-end_effector_joint_2).mul_add(
+        end_effector_motion_5,
+        (-end_effector_angular_velocity_3)
+            .mul_add(end_effector_motion_4, (-end_effector_rate_y).mul_add(end_effector_motion_5, end_effector_motion_8)),
+    );
     let end_effector_variation_37 = end_effector_variation_9 + end_effector_variation_24
         + end_effector_variation_11 + end_effector_variation_25
         + end_effector_variation_15 + end_effector_variation_27;
-    let end_effector_variation_38 = end_effector_joint
-        .mul_add(
-            end_effector_rate_z,
-            end_effector_angular_velocity_3
-                .mul_add(
-                    end_effector_rate_x,
-                    end_effector_acceleration_12 + end_effector_acceleration_15,
-                ),
-        );
-    let end_effector_variation_39 = (-end_effector_joint_2)
-        .mul_add(
-            end_effector_rate_z,
-            (-end_effector_angular_velocity_3)
-                .mul_add(
-                    end_effector_rate_y,
-                    end_effector_acceleration_11 + end_effector_acceleration_14,
-                ),
-        );
-    let end_effector_variation_40 = (-q[8])
-        .mul_add(end_effector_variation_3, q[9] * end_effector_variation_2);
-    let end_effector_variation_41 = (-q[9])
-        .mul_add(end_effector_variation, q[7] * end_effector_variation_3);
-    let end_effector_variation_42 = (-q[7])
-        .mul_add(end_effector_variation_2, q[8] * end_effector_variation);
-    let end_effector_variation_43 = (-q[8])
-        .mul_add(end_effector_variation_6, q[9] * end_effector_variation_5);
-    let end_effector_variation_44 = (-q[9])
-        .mul_add(end_effector_variation_4, q[7] * end_effector_variation_6);
-    let end_effector_variation_45 = (-q[7])
-        .mul_add(end_effector_variation_5, q[8] * end_effector_variation_4);
-    let end_effector_variation_46 = (-q[11])
-        .mul_add(end_effector_variation_3, q[12] * end_effector_variation_2);
-    let end_effector_variation_47 = (-q[12])
-        .mul_add(end_effector_variation, q[10] * end_effector_variation_3);
-    let end_effector_variation_48 = (-q[10])
-        .mul_add(end_effector_variation_2, q[11] * end_effector_variation);
-    let end_effector_variation_49 = (-q[11])
-        .mul_add(end_effector_variation_6, q[12] * end_effector_variation_5);
-    let end_effector_variation_50 = (-q[12])
-        .mul_add(end_effector_variation_4, q[10] * end_effector_variation_6);
-    let end_effector_variation_51 = (-q[10])
-        .mul_add(end_effector_variation_5, q[11] * end_effector_variation_4);
-    let end_effector_variation_52 = (-q[14])
-        .mul_add(end_effector_variation_3, q[15] * end_effector_variation_2);
-    let end_effector_variation_53 = (-q[15])
-        .mul_add(end_effector_variation, q[13] * end_effector_variation_3);
-    let end_effector_variation_54 = (-q[13])
-        .mul_add(end_effector_variation_2, q[14] * end_effector_variation);
-    let end_effector_variation_55 = (-q[14])
-        .mul_add(end_effector_variation_6, q[15] * end_effector_variation_5);
-    let end_effector_variation_56 = (-q[15])
-        .mul_add(end_effector_variation_4, q[13] * end_effector_variation_6);
-    let end_effector_variation_57 = (-q[13])
-        .mul_add(end_effector_variation_5, q[14] * end_effector_variation_4);
+    let end_effector_variation_38 = end_effector_joint.mul_add(
+        end_effector_rate_z,
+        end_effector_angular_velocity_3
+            .mul_add(end_effector_rate_x, end_effector_acceleration_12 + end_effector_acceleration_15),
+    );
+    let end_effector_variation_39 = (-end_effector_joint_2).mul_add(
+        end_effector_rate_z,
+        (-end_effector_angular_velocity_3)
+            .mul_add(end_effector_rate_y, end_effector_acceleration_11 + end_effector_acceleration_14),
+    );
+    let end_effector_variation_40 = (-q[8]).mul_add(end_effector_variation_3, q[9] * end_effector_variation_2);
+    let end_effector_variation_41 = (-q[9]).mul_add(end_effector_variation, q[7] * end_effector_variation_3);
+    let end_effector_variation_42 = (-q[7]).mul_add(end_effector_variation_2, q[8] * end_effector_variation);
+    let end_effector_variation_43 = (-q[8]).mul_add(end_effector_variation_6, q[9] * end_effector_variation_5);
+    let end_effector_variation_44 = (-q[9]).mul_add(end_effector_variation_4, q[7] * end_effector_variation_6);
+    let end_effector_variation_45 = (-q[7]).mul_add(end_effector_variation_5, q[8] * end_effector_variation_4);
+    let end_effector_variation_46 = (-q[11]).mul_add(end_effector_variation_3, q[12] * end_effector_variation_2);
+    let end_effector_variation_47 = (-q[12]).mul_add(end_effector_variation, q[10] * end_effector_variation_3);
+    let end_effector_variation_48 = (-q[10]).mul_add(end_effector_variation_2, q[11] * end_effector_variation);
+    let end_effector_variation_49 = (-q[11]).mul_add(end_effector_variation_6, q[12] * end_effector_variation_5);
+    let end_effector_variation_50 = (-q[12]).mul_add(end_effector_variation_4, q[10] * end_effector_variation_6);
+    let end_effector_variation_51 = (-q[10]).mul_add(end_effector_variation_5, q[11] * end_effector_variation_4);
+    let end_effector_variation_52 = (-q[14]).mul_add(end_effector_variation_3, q[15] * end_effector_variation_2);
+    let end_effector_variation_53 = (-q[15]).mul_add(end_effector_variation, q[13] * end_effector_variation_3);
+    let end_effector_variation_54 = (-q[13]).mul_add(end_effector_variation_2, q[14] * end_effector_variation);
+    let end_effector_variation_55 = (-q[14]).mul_add(end_effector_variation_6, q[15] * end_effector_variation_5);
+    let end_effector_variation_56 = (-q[15]).mul_add(end_effector_variation_4, q[13] * end_effector_variation_6);
+    let end_effector_variation_57 = (-q[13]).mul_add(end_effector_variation_5, q[14] * end_effector_variation_4);
     let end_effector_variation_58 = cart_motion_4 * n(11.4);
     let end_effector_variation_59 = end_effector_rate_y * n(0.05499999999999999);
     let end_effector_variation_60 = end_effector_rate_z * n(0.0156);
@@ -8914,825 +4873,421 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
     let end_effector_variation_62 = end_effector_motion_3 * n(0.17);
     let end_effector_variation_63 = end_effector_motion_4 * n(0.272);
     let end_effector_variation_64 = end_effector_motion_5 * n(1.02);
-    let end_effector_variation_65 = end_effector_variation_64 + end_effector_variation_62
-        - end_effector_variation_63;
+    let end_effector_variation_65 = end_effector_variation_64 + end_effector_variation_62 - end_effector_variation_63;
     let end_effector_variation_66 = end_effector_variation_59 + end_effector_variation_60
         + end_effector_variation_62 - end_effector_variation_65;
     let end_effector_variation_67 = (-end_effector_rate_x)
-        .mul_add(
-            n(0.05499999999999999),
-            end_effector_motion_4
-                .mul_add(n(0.17), end_effector_rate_z * n(0.015500000000000003)),
-        );
+        .mul_add(n(0.05499999999999999), end_effector_motion_4.mul_add(n(0.17), end_effector_rate_z * n(0.015500000000000003)));
     let end_effector_variation_68 = (-end_effector_motion_5)
-        .mul_add(
-            n(0.17),
-            end_effector_rate_y
-                .mul_add(n(0.015500000000000003), end_effector_rate_x * n(0.0156)),
-        );
+        .mul_add(n(0.17), end_effector_rate_y.mul_add(n(0.015500000000000003), end_effector_rate_x * n(0.0156)));
     let end_effector_variation_69 = end_effector_motion_3
-        .mul_add(
-            n(0.272),
-            end_effector_rate_z
-                .mul_add(n(0.03876), end_effector_rate_y * n(0.08460000000000001)),
-        );
+        .mul_add(n(0.272), end_effector_rate_z.mul_add(n(0.03876), end_effector_rate_y * n(0.08460000000000001)));
     let end_effector_variation_70 = end_effector_variation_60 + end_effector_variation_63
         + end_effector_variation_65 - end_effector_variation_61;
     let end_effector_variation_71 = (-end_effector_motion_5)
-        .mul_add(
-            n(0.272),
-            end_effector_rate_y.mul_add(n(0.0156), end_effector_rate_x * n(0.03876)),
-        );
+        .mul_add(n(0.272), end_effector_rate_y.mul_add(n(0.0156), end_effector_rate_x * n(0.03876)));
     let end_effector_variation_72 = end_effector_motion_3
-        .mul_add(
-            n(1.02),
-            end_effector_rate_z
-                .mul_add(n(0.08460000000000001), end_effector_rate_y * n(0.349)),
-        );
+        .mul_add(n(1.02), end_effector_rate_z.mul_add(n(0.08460000000000001), end_effector_rate_y * n(0.349)));
     let end_effector_variation_73 = (-end_effector_rate_x)
-        .mul_add(
-            n(0.349),
-            end_effector_motion_4
-                .mul_add(n(1.02), end_effector_rate_z * n(0.05499999999999999)),
-        );
+        .mul_add(n(0.349), end_effector_motion_4.mul_add(n(1.02), end_effector_rate_z * n(0.05499999999999999)));
     let end_effector_variation_74 = end_effector_variation_59 + end_effector_variation_61
         + end_effector_variation_65 - end_effector_variation_64;
-    let end_effector_variation_75 = end_effector_rate_z
-        .mul_add(n(0.272), end_effector_rate_y * n(1.02));
-    let end_effector_variation_76 = (-end_effector_rate_x)
-        .mul_add(n(1.02), end_effector_rate_z * n(0.17));
-    let end_effector_variation_77 = end_effector_rate_y
-        .mul_add(n(0.17), end_effector_rate_x * n(0.272));
+    let end_effector_variation_75 = end_effector_rate_z.mul_add(n(0.272), end_effector_rate_y * n(1.02));
+    let end_effector_variation_76 = (-end_effector_rate_x).mul_add(n(1.02), end_effector_rate_z * n(0.17));
+    let end_effector_variation_77 = end_effector_rate_y.mul_add(n(0.17), end_effector_rate_x * n(0.272));
     // end_effector: slope (382 additions, 474 multiplications)
     let end_effector_slope = end_effector_rate_z * end_effector_variation_77;
     let end_effector_slope_2 = end_effector_rate_y * end_effector_variation_76;
-    let end_effector_slope_3 = (-end_effector_variation_20)
-        .mul_add(
-            n(0.136),
-            (-end_effector_variation_22)
-                .mul_add(
-                    n(0.027499999999999997),
-                    (-end_effector_variation_21)
-                        .mul_add(
-                            n(0.0078),
-                            end_effector_variation_19
-                                .mul_add(n(0.51), end_effector_variation_17 * n(0.19388)),
-                        ),
-                ),
-        );
-    let end_effector_slope_4 = (-end_effector_variation_20)
-        .mul_add(
-            n(0.085),
+    let end_effector_slope_3 = (-end_effector_variation_20).mul_add(
+        n(0.136),
+        (-end_effector_variation_22).mul_add(
+            n(0.027499999999999997),
             (-end_effector_variation_21)
-                .mul_add(
-                    n(0.18225),
-                    end_effector_variation_18
-                        .mul_add(
-                            n(0.51),
-                            end_effector_variation_22
-                                .mul_add(
-                                    n(0.042300000000000004),
-                                    end_effector_variation_17 * n(0.0078),
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_5 = (-end_effector_variation_18)
-        .mul_add(
-            n(0.136),
-            (-end_effector_variation_22)
-                .mul_add(
-                    n(0.02713),
-                    end_effector_variation_19
-                        .mul_add(
-                            n(0.085),
-                            end_effector_variation_21
-                                .mul_add(
-                                    n(0.042300000000000004),
-                                    end_effector_variation_17 * n(0.027499999999999997),
-                                ),
-                        ),
-                ),
-        );
+                .mul_add(n(0.0078), end_effector_variation_19.mul_add(n(0.51), end_effector_variation_17 * n(0.19388))),
+        ),
+    );
+    let end_effector_slope_4 = (-end_effector_variation_20).mul_add(
+        n(0.085),
+        (-end_effector_variation_21).mul_add(
+            n(0.18225),
+            end_effector_variation_18.mul_add(
+                n(0.51),
+                end_effector_variation_22.mul_add(n(0.042300000000000004), end_effector_variation_17 * n(0.0078)),
+            ),
+        ),
+    );
+    let end_effector_slope_5 = (-end_effector_variation_18).mul_add(
+        n(0.136),
+        (-end_effector_variation_22).mul_add(
+            n(0.02713),
+            end_effector_variation_19.mul_add(
+                n(0.085),
+                end_effector_variation_21.mul_add(n(0.042300000000000004), end_effector_variation_17 * n(0.027499999999999997)),
+            ),
+        ),
+    );
     let end_effector_slope_6 = end_effector_rate_y
-        .mul_add(
-            end_effector_variation_72,
-            end_effector_rate_z.mul_add(end_effector_variation_69, -end_effector_slope_3),
-        );
+        .mul_add(end_effector_variation_72, end_effector_rate_z.mul_add(end_effector_variation_69, -end_effector_slope_3));
     let end_effector_slope_7 = end_effector_rate_y
-        .mul_add(
-            end_effector_variation_73,
-            end_effector_rate_z.mul_add(end_effector_variation_70, -end_effector_slope_4),
-        );
+        .mul_add(end_effector_variation_73, end_effector_rate_z.mul_add(end_effector_variation_70, -end_effector_slope_4));
     let end_effector_slope_8 = end_effector_rate_y
-        .mul_add(
-            end_effector_variation_74,
-            end_effector_rate_z.mul_add(end_effector_variation_71, -end_effector_slope_5),
-        );
+        .mul_add(end_effector_variation_74, end_effector_rate_z.mul_add(end_effector_variation_71, -end_effector_slope_5));
     let end_effector_slope_9 = (-end_effector_variation_21)
-        .mul_add(
-            n(0.51),
-            end_effector_variation_22
-                .mul_add(n(0.136), end_effector_slope - end_effector_slope_2),
-        );
+        .mul_add(n(0.51), end_effector_variation_22.mul_add(n(0.136), end_effector_slope - end_effector_slope_2));
     let end_effector_slope_10 = end_effector_rate_x * end_effector_variation_75;
-    let end_effector_slope_11 = (-end_effector_variation_30)
-        .mul_add(
-            n(0.51),
-            end_effector_variation_31
-                .mul_add(
-                    n(0.136),
-                    end_effector_variation_33
-                        .mul_add(
-                            n(0.027499999999999997),
-                            end_effector_variation_28
-                                .mul_add(n(0.0078), end_effector_variation_32 * n(0.19388)),
-                        ),
-                ),
-        );
-    let end_effector_slope_12 = (-end_effector_variation_33)
-        .mul_add(
-            n(0.042300000000000004),
-            end_effector_variation_31
-                .mul_add(
-                    n(0.085),
-                    end_effector_variation_29
-                        .mul_add(
-                            n(0.51),
-                            end_effector_variation_28
-                                .mul_add(n(0.18225), end_effector_variation_32 * n(0.0078)),
-                        ),
-                ),
-        );
-    let end_effector_slope_13 = (-end_effector_variation_29)
-        .mul_add(
+    let end_effector_slope_11 = (-end_effector_variation_30).mul_add(
+        n(0.51),
+        end_effector_variation_31.mul_add(
             n(0.136),
-            (-end_effector_variation_30)
-                .mul_add(
-                    n(0.085),
-                    (-end_effector_variation_28)
-                        .mul_add(
-                            n(0.042300000000000004),
-                            end_effector_variation_33
-                                .mul_add(
-                                    n(0.02713),
-                                    end_effector_variation_32 * n(0.027499999999999997),
-                                ),
-                        ),
-                ),
-        );
+            end_effector_variation_33.mul_add(
+                n(0.027499999999999997),
+                end_effector_variation_28.mul_add(n(0.0078), end_effector_variation_32 * n(0.19388)),
+            ),
+        ),
+    );
+    let end_effector_slope_12 = (-end_effector_variation_33).mul_add(
+        n(0.042300000000000004),
+        end_effector_variation_31.mul_add(
+            n(0.085),
+            end_effector_variation_29
+                .mul_add(n(0.51), end_effector_variation_28.mul_add(n(0.18225), end_effector_variation_32 * n(0.0078))),
+        ),
+    );
+    let end_effector_slope_13 = (-end_effector_variation_29).mul_add(
+        n(0.136),
+        (-end_effector_variation_30).mul_add(
+            n(0.085),
+            (-end_effector_variation_28).mul_add(
+                n(0.042300000000000004),
+                end_effector_variation_33.mul_add(n(0.02713), end_effector_variation_32 * n(0.027499999999999997)),
+            ),
+        ),
+    );
     let end_effector_slope_14 = (-end_effector_rate_x)
-        .mul_add(
-            end_effector_variation_72,
-            end_effector_rate_z
-                .mul_add(end_effector_variation_66, -end_effector_slope_11),
-        );
+        .mul_add(end_effector_variation_72, end_effector_rate_z.mul_add(end_effector_variation_66, -end_effector_slope_11));
     let end_effector_slope_15 = (-end_effector_rate_x)
-        .mul_add(
-            end_effector_variation_73,
-            end_effector_rate_z
-                .mul_add(end_effector_variation_67, -end_effector_slope_12),
-        );
+        .mul_add(end_effector_variation_73, end_effector_rate_z.mul_add(end_effector_variation_67, -end_effector_slope_12));
     let end_effector_slope_16 = (-end_effector_rate_x)
-        .mul_add(
-            end_effector_variation_74,
-            end_effector_rate_z
-                .mul_add(end_effector_variation_68, -end_effector_slope_13),
-        );
+        .mul_add(end_effector_variation_74, end_effector_rate_z.mul_add(end_effector_variation_68, -end_effector_slope_13));
     let end_effector_slope_17 = (-end_effector_variation_32)
-        .mul_add(
+        .mul_add(n(0.51), (-end_effector_variation_33).mul_add(n(0.085), end_effector_slope - end_effector_slope_10));
+    let end_effector_slope_18 = (-end_effector_variation_39).mul_add(
+        n(0.0078),
+        end_effector_variation_36.mul_add(
             n(0.51),
-            (-end_effector_variation_33)
-                .mul_add(n(0.085), end_effector_slope - end_effector_slope_10),
-        );
-    let end_effector_slope_18 = (-end_effector_variation_39)
-        .mul_add(
-            n(0.0078),
-            end_effector_variation_36
-                .mul_add(
-                    n(0.51),
-                    end_effector_variation_37
-                        .mul_add(
-                            n(0.136),
-                            end_effector_variation_34
-                                .mul_add(
-                                    n(0.027499999999999997),
-                                    end_effector_variation_38 * n(0.19388),
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_19 = (-end_effector_variation_34)
-        .mul_add(
-            n(0.042300000000000004),
-            (-end_effector_variation_39)
-                .mul_add(
-                    n(0.18225),
-                    end_effector_variation_37
-                        .mul_add(
-                            n(0.085),
-                            end_effector_variation_35
-                                .mul_add(n(0.51), end_effector_variation_38 * n(0.0078)),
-                        ),
-                ),
-        );
-    let end_effector_slope_20 = (-end_effector_variation_35)
-        .mul_add(
-            n(0.136),
-            end_effector_variation_36
-                .mul_add(
-                    n(0.085),
-                    end_effector_variation_34
-                        .mul_add(
-                            n(0.02713),
-                            end_effector_variation_39
-                                .mul_add(
-                                    n(0.042300000000000004),
-                                    end_effector_variation_38 * n(0.027499999999999997),
-                                ),
-                        ),
-                ),
-        );
+            end_effector_variation_37.mul_add(
+                n(0.136),
+                end_effector_variation_34.mul_add(n(0.027499999999999997), end_effector_variation_38 * n(0.19388)),
+            ),
+        ),
+    );
+    let end_effector_slope_19 = (-end_effector_variation_34).mul_add(
+        n(0.042300000000000004),
+        (-end_effector_variation_39).mul_add(
+            n(0.18225),
+            end_effector_variation_37
+                .mul_add(n(0.085), end_effector_variation_35.mul_add(n(0.51), end_effector_variation_38 * n(0.0078))),
+        ),
+    );
+    let end_effector_slope_20 = (-end_effector_variation_35).mul_add(
+        n(0.136),
+        end_effector_variation_36.mul_add(
+            n(0.085),
+            end_effector_variation_34.mul_add(
+                n(0.02713),
+                end_effector_variation_39.mul_add(n(0.042300000000000004), end_effector_variation_38 * n(0.027499999999999997)),
+            ),
+        ),
+    );
     let end_effector_slope_21 = end_effector_rate_x
-        .mul_add(
-            end_effector_variation_69,
-            end_effector_rate_y
-                .mul_add(end_effector_variation_66, -end_effector_slope_18),
-        );
+        .mul_add(end_effector_variation_69, end_effector_rate_y.mul_add(end_effector_variation_66, -end_effector_slope_18));
     let end_effector_slope_22 = end_effector_rate_x
-        .mul_add(
-            end_effector_variation_70,
-            end_effector_rate_y
-                .mul_add(end_effector_variation_67, -end_effector_slope_19),
-        );
+        .mul_add(end_effector_variation_70, end_effector_rate_y.mul_add(end_effector_variation_67, -end_effector_slope_19));
     let end_effector_slope_23 = end_effector_rate_x
-        .mul_add(
-            end_effector_variation_71,
-            end_effector_rate_y
-                .mul_add(end_effector_variation_68, -end_effector_slope_20),
-        );
+        .mul_add(end_effector_variation_71, end_effector_rate_y.mul_add(end_effector_variation_68, -end_effector_slope_20));
     let end_effector_slope_24 = (-end_effector_variation_38)
-        .mul_add(
-            n(0.136),
-            end_effector_variation_39
-                .mul_add(n(0.085), end_effector_slope_2 + end_effector_slope_10),
-        );
+        .mul_add(n(0.136), end_effector_variation_39.mul_add(n(0.085), end_effector_slope_2 + end_effector_slope_10));
     let end_effector_slope_25 = q[7] * end_effector_variation_66;
     let end_effector_slope_26 = q[8] * end_effector_variation_70;
     let end_effector_slope_27 = q[9] * end_effector_variation_74;
-    let end_effector_slope_28 = (-end_effector_variation_44)
-        .mul_add(
-            n(0.51),
-            (-end_effector_variation_45)
-                .mul_add(
-                    n(0.136),
-                    (-end_effector_variation_42)
-                        .mul_add(
-                            n(0.027499999999999997),
-                            end_effector_variation_41
-                                .mul_add(n(0.0078), end_effector_variation_40 * n(0.19388)),
-                        ),
-                ),
-        );
-    let end_effector_slope_29 = (-end_effector_variation_45)
-        .mul_add(
-            n(0.085),
-            end_effector_variation_43
-                .mul_add(
-                    n(0.51),
-                    end_effector_variation_42
-                        .mul_add(
-                            n(0.042300000000000004),
-                            end_effector_variation_41
-                                .mul_add(n(0.18225), end_effector_variation_40 * n(0.0078)),
-                        ),
-                ),
-        );
-    let end_effector_slope_30 = (-end_effector_variation_43)
-        .mul_add(
+    let end_effector_slope_28 = (-end_effector_variation_44).mul_add(
+        n(0.51),
+        (-end_effector_variation_45).mul_add(
             n(0.136),
-            (-end_effector_variation_44)
-                .mul_add(
-                    n(0.085),
-                    (-end_effector_variation_42)
-                        .mul_add(
-                            n(0.02713),
-                            (-end_effector_variation_41)
-                                .mul_add(
-                                    n(0.042300000000000004),
-                                    end_effector_variation_40 * n(0.027499999999999997),
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_31 = (-q[8])
-        .mul_add(
-            end_effector_variation_69,
-            q[9]
-                .mul_add(
-                    end_effector_variation_72,
-                    end_effector_slope_25 - end_effector_slope_28,
-                ),
-        );
-    let end_effector_slope_32 = q[9]
-        .mul_add(
-            end_effector_variation_73,
-            q[7]
-                .mul_add(
-                    end_effector_variation_67,
-                    -end_effector_slope_26 - end_effector_slope_29,
-                ),
-        );
-    let end_effector_slope_33 = (-q[8])
-        .mul_add(
-            end_effector_variation_71,
-            q[7]
-                .mul_add(
-                    end_effector_variation_68,
-                    end_effector_slope_27 - end_effector_slope_30,
-                ),
-        );
-    let end_effector_slope_34 = (-end_effector_variation_42)
-        .mul_add(
-            n(0.136),
-            (-end_effector_variation_41)
-                .mul_add(
-                    n(0.51),
-                    q[9]
-                        .mul_add(
-                            end_effector_variation_76,
-                            q[8] * end_effector_variation_77,
-                        ),
-                ),
-        );
-    let end_effector_slope_35 = (-end_effector_variation_40)
-        .mul_add(
+            (-end_effector_variation_42).mul_add(
+                n(0.027499999999999997),
+                end_effector_variation_41.mul_add(n(0.0078), end_effector_variation_40 * n(0.19388)),
+            ),
+        ),
+    );
+    let end_effector_slope_29 = (-end_effector_variation_45).mul_add(
+        n(0.085),
+        end_effector_variation_43.mul_add(
             n(0.51),
-            end_effector_variation_42
-                .mul_add(
-                    n(0.085),
-                    q[7]
-                        .mul_add(
-                            end_effector_variation_77,
-                            q[9] * end_effector_variation_75,
-                        ),
-                ),
-        );
-    let end_effector_slope_36 = (-end_effector_variation_41)
-        .mul_add(
+            end_effector_variation_42.mul_add(
+                n(0.042300000000000004),
+                end_effector_variation_41.mul_add(n(0.18225), end_effector_variation_40 * n(0.0078)),
+            ),
+        ),
+    );
+    let end_effector_slope_30 = (-end_effector_variation_43).mul_add(
+        n(0.136),
+        (-end_effector_variation_44).mul_add(
             n(0.085),
-            (-end_effector_variation_40)
-                .mul_add(
-                    n(0.136),
-                    (-q[8])
-                        .mul_add(
-                            end_effector_variation_75,
-                            q[7] * end_effector_variation_76,
-                        ),
-                ),
-        );
+            (-end_effector_variation_42).mul_add(
+                n(0.02713),
+                (-end_effector_variation_41)
+                    .mul_add(n(0.042300000000000004), end_effector_variation_40 * n(0.027499999999999997)),
+            ),
+        ),
+    );
+    let end_effector_slope_31 = (-q[8]).mul_add(
+        end_effector_variation_69,
+        q[9].mul_add(end_effector_variation_72, end_effector_slope_25 - end_effector_slope_28),
+    );
+    let end_effector_slope_32 = q[9].mul_add(
+        end_effector_variation_73,
+        q[7].mul_add(end_effector_variation_67, -end_effector_slope_26 - end_effector_slope_29),
+    );
+    let end_effector_slope_33 = (-q[8]).mul_add(
+        end_effector_variation_71,
+        q[7].mul_add(end_effector_variation_68, end_effector_slope_27 - end_effector_slope_30),
+    );
+    let end_effector_slope_34 = (-end_effector_variation_42).mul_add(
+        n(0.136),
+        (-end_effector_variation_41)
+            .mul_add(n(0.51), q[9].mul_add(end_effector_variation_76, q[8] * end_effector_variation_77)),
+    );
+    let end_effector_slope_35 = (-end_effector_variation_40).mul_add(
+        n(0.51),
+        end_effector_variation_42.mul_add(n(0.085), q[7].mul_add(end_effector_variation_77, q[9] * end_effector_variation_75)),
+    );
+    let end_effector_slope_36 = (-end_effector_variation_41).mul_add(
+        n(0.085),
+        (-end_effector_variation_40)
+            .mul_add(n(0.136), (-q[8]).mul_add(end_effector_variation_75, q[7] * end_effector_variation_76)),
+    );
     let end_effector_slope_37 = q[10] * end_effector_variation_66;
     let end_effector_slope_38 = q[11] * end_effector_variation_70;
     let end_effector_slope_39 = q[12] * end_effector_variation_74;
-    let end_effector_slope_40 = (-end_effector_variation_50)
-        .mul_add(
-            n(0.51),
-            (-end_effector_variation_51)
-                .mul_add(
-                    n(0.136),
-                    (-end_effector_variation_48)
-                        .mul_add(
-                            n(0.027499999999999997),
-                            end_effector_variation_47
-                                .mul_add(n(0.0078), end_effector_variation_46 * n(0.19388)),
-                        ),
-                ),
-        );
-    let end_effector_slope_41 = (-end_effector_variation_51)
-        .mul_add(
-            n(0.085),
-            end_effector_variation_49
-                .mul_add(
-                    n(0.51),
-                    end_effector_variation_48
-                        .mul_add(
-                            n(0.042300000000000004),
-                            end_effector_variation_47
-                                .mul_add(n(0.18225), end_effector_variation_46 * n(0.0078)),
-                        ),
-                ),
-        );
-    let end_effector_slope_42 = (-end_effector_variation_49)
-        .mul_add(
+    let end_effector_slope_40 = (-end_effector_variation_50).mul_add(
+        n(0.51),
+        (-end_effector_variation_51).mul_add(
             n(0.136),
-            (-end_effector_variation_50)
-                .mul_add(
-                    n(0.085),
-                    (-end_effector_variation_48)
-                        .mul_add(
-                            n(0.02713),
-                            (-end_effector_variation_47)
-                                .mul_add(
-                                    n(0.042300000000000004),
-                                    end_effector_variation_46 * n(0.027499999999999997),
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_43 = (-q[11])
-        .mul_add(
-            end_effector_variation_69,
-            q[12]
-                .mul_add(
-                    end_effector_variation_72,
-                    end_effector_slope_37 - end_effector_slope_40,
-                ),
-        );
-    let end_effector_slope_44 = q[12]
-        .mul_add(
-            end_effector_variation_73,
-            q[10]
-                .mul_add(
-                    end_effector_variation_67,
-                    -end_effector_slope_38 - end_effector_slope_41,
-                ),
-        );
-    let end_effector_slope_45 = (-q[11])
-        .mul_add(
-            end_effector_variation_71,
-            q[10]
-                .mul_add(
-                    end_effector_variation_68,
-                    end_effector_slope_39 - end_effector_slope_42,
-                ),
-        );
-    let end_effector_slope_46 = (-end_effector_variation_48)
-        .mul_add(
-            n(0.136),
-            (-end_effector_variation_47)
-                .mul_add(
-                    n(0.51),
-                    q[12]
-                        .mul_add(
-                            end_effector_variation_76,
-                            q[11] * end_effector_variation_77,
-                        ),
-                ),
-        );
-    let end_effector_slope_47 = (-end_effector_variation_46)
-        .mul_add(
+            (-end_effector_variation_48).mul_add(
+                n(0.027499999999999997),
+                end_effector_variation_47.mul_add(n(0.0078), end_effector_variation_46 * n(0.19388)),
+            ),
+        ),
+    );
+    let end_effector_slope_41 = (-end_effector_variation_51).mul_add(
+        n(0.085),
+        end_effector_variation_49.mul_add(
             n(0.51),
-            end_effector_variation_48
-                .mul_add(
-                    n(0.085),
-                    q[10]
-                        .mul_add(
-                            end_effector_variation_77,
-                            q[12] * end_effector_variation_75,
-                        ),
-                ),
-        );
-    let end_effector_slope_48 = (-end_effector_variation_47)
-        .mul_add(
+            end_effector_variation_48.mul_add(
+                n(0.042300000000000004),
+                end_effector_variation_47.mul_add(n(0.18225), end_effector_variation_46 * n(0.0078)),
+            ),
+        ),
+    );
+    let end_effector_slope_42 = (-end_effector_variation_49).mul_add(
+        n(0.136),
+        (-end_effector_variation_50).mul_add(
             n(0.085),
-            (-end_effector_variation_46)
-                .mul_add(
-                    n(0.136),
-                    (-q[11])
-                        .mul_add(
-                            end_effector_variation_75,
-                            q[10] * end_effector_variation_76,
-                        ),
-                ),
-        );
+            (-end_effector_variation_48).mul_add(
+                n(0.02713),
+                (-end_effector_variation_47)
+                    .mul_add(n(0.042300000000000004), end_effector_variation_46 * n(0.027499999999999997)),
+            ),
+        ),
+    );
+    let end_effector_slope_43 = (-q[11]).mul_add(
+        end_effector_variation_69,
+        q[12].mul_add(end_effector_variation_72, end_effector_slope_37 - end_effector_slope_40),
+    );
+    let end_effector_slope_44 = q[12].mul_add(
+        end_effector_variation_73,
+        q[10].mul_add(end_effector_variation_67, -end_effector_slope_38 - end_effector_slope_41),
+    );
+    let end_effector_slope_45 = (-q[11]).mul_add(
+        end_effector_variation_71,
+        q[10].mul_add(end_effector_variation_68, end_effector_slope_39 - end_effector_slope_42),
+    );
+    let end_effector_slope_46 = (-end_effector_variation_48).mul_add(
+        n(0.136),
+        (-end_effector_variation_47)
+            .mul_add(n(0.51), q[12].mul_add(end_effector_variation_76, q[11] * end_effector_variation_77)),
+    );
+    let end_effector_slope_47 = (-end_effector_variation_46).mul_add(
+        n(0.51),
+        end_effector_variation_48
+            .mul_add(n(0.085), q[10].mul_add(end_effector_variation_77, q[12] * end_effector_variation_75)),
+    );
+    let end_effector_slope_48 = (-end_effector_variation_47).mul_add(
+        n(0.085),
+        (-end_effector_variation_46)
+            .mul_add(n(0.136), (-q[11]).mul_add(end_effector_variation_75, q[10] * end_effector_variation_76)),
+    );
     let end_effector_slope_49 = q[13] * end_effector_variation_66;
     let end_effector_slope_50 = q[14] * end_effector_variation_70;
     let end_effector_slope_51 = q[15] * end_effector_variation_74;
-    let end_effector_slope_52 = (-end_effector_variation_56)
-        .mul_add(
-            n(0.51),
-            (-end_effector_variation_57)
-                .mul_add(
-                    n(0.136),
-                    (-end_effector_variation_54)
-                        .mul_add(
-                            n(0.027499999999999997),
-                            end_effector_variation_53
-                                .mul_add(n(0.0078), end_effector_variation_52 * n(0.19388)),
-                        ),
-                ),
-        );
-    let end_effector_slope_53 = (-end_effector_variation_57)
-        .mul_add(
-            n(0.085),
-            end_effector_variation_55
-                .mul_add(
-                    n(0.51),
-                    end_effector_variation_54
-                        .mul_add(
-                            n(0.042300000000000004),
-                            end_effector_variation_53
-                                .mul_add(n(0.18225), end_effector_variation_52 * n(0.0078)),
-                        ),
-                ),
-        );
-    let end_effector_slope_54 = (-end_effector_variation_55)
-        .mul_add(
+    let end_effector_slope_52 = (-end_effector_variation_56).mul_add(
+        n(0.51),
+        (-end_effector_variation_57).mul_add(
             n(0.136),
-            (-end_effector_variation_56)
-                .mul_add(
-                    n(0.085),
-                    (-end_effector_variation_54)
-                        .mul_add(
-                            n(0.02713),
-                            (-end_effector_variation_53)
-                                .mul_add(
-                                    n(0.042300000000000004),
-                                    end_effector_variation_52 * n(0.027499999999999997),
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_55 = (-q[14])
-        .mul_add(
-            end_effector_variation_69,
-            q[15]
-                .mul_add(
-                    end_effector_variation_72,
-                    end_effector_slope_49 - end_effector_slope_52,
-                ),
-        );
-    let end_effector_slope_56 = q[15]
-        .mul_add(
-            end_effector_variation_73,
-            q[13]
-                .mul_add(
-                    end_effector_variation_67,
-                    -end_effector_slope_50 - end_effector_slope_53,
-                ),
-        );
-    let end_effector_slope_57 = (-q[14])
-        .mul_add(
-            end_effector_variation_71,
-            q[13]
-                .mul_add(
-                    end_effector_variation_68,
-                    end_effector_slope_51 - end_effector_slope_54,
-                ),
-        );
-    let end_effector_slope_58 = (-end_effector_variation_54)
-        .mul_add(
-            n(0.136),
-            (-end_effector_variation_53)
-                .mul_add(
-                    n(0.51),
-                    q[15]
-                        .mul_add(
-                            end_effector_variation_76,
-                            q[14] * end_effector_variation_77,
-                        ),
-                ),
-        );
-    let end_effector_slope_59 = (-end_effector_variation_52)
-        .mul_add(
+            (-end_effector_variation_54).mul_add(
+                n(0.027499999999999997),
+                end_effector_variation_53.mul_add(n(0.0078), end_effector_variation_52 * n(0.19388)),
+            ),
+        ),
+    );
+    let end_effector_slope_53 = (-end_effector_variation_57).mul_add(
+        n(0.085),
+        end_effector_variation_55.mul_add(
             n(0.51),
-            end_effector_variation_54
-                .mul_add(
-                    n(0.085),
-                    q[13]
-                        .mul_add(
-                            end_effector_variation_77,
-                            q[15] * end_effector_variation_75,
-                        ),
-                ),
-        );
-    let end_effector_slope_60 = (-end_effector_variation_53)
-        .mul_add(
+            end_effector_variation_54.mul_add(
+                n(0.042300000000000004),
+                end_effector_variation_53.mul_add(n(0.18225), end_effector_variation_52 * n(0.0078)),
+            ),
+        ),
+    );
+    let end_effector_slope_54 = (-end_effector_variation_55).mul_add(
+        n(0.136),
+        (-end_effector_variation_56).mul_add(
             n(0.085),
-            (-end_effector_variation_52)
-                .mul_add(
-                    n(0.136),
-                    (-q[14])
-                        .mul_add(
-                            end_effector_variation_75,
-                            q[13] * end_effector_variation_76,
-                        ),
-                ),
-        );
-    let end_effector_slope_61 = (-q[9])
-        .mul_add(
-            end_effector_slope_8,
-            (-q[8])
-                .mul_add(
-                    end_effector_motion_16,
-                    q[8]
-                        .mul_add(
-                            end_effector_slope_7,
-                            q[7]
-                                .mul_add(
-                                    end_effector_slope_6,
-                                    q[9] * end_effector_motion_15,
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_62 = (-q[12])
-        .mul_add(
-            end_effector_slope_8,
-            (-q[11])
-                .mul_add(
-                    end_effector_motion_16,
-                    q[11]
-                        .mul_add(
-                            end_effector_slope_7,
-                            q[10]
-                                .mul_add(
-                                    end_effector_slope_6,
-                                    q[12] * end_effector_motion_15,
-                                ),
-                        ),
-                ),
-        );
+            (-end_effector_variation_54).mul_add(
+                n(0.02713),
+                (-end_effector_variation_53)
+                    .mul_add(n(0.042300000000000004), end_effector_variation_52 * n(0.027499999999999997)),
+            ),
+        ),
+    );
+    let end_effector_slope_55 = (-q[14]).mul_add(
+        end_effector_variation_69,
+        q[15].mul_add(end_effector_variation_72, end_effector_slope_49 - end_effector_slope_52),
+    );
+    let end_effector_slope_56 = q[15].mul_add(
+        end_effector_variation_73,
+        q[13].mul_add(end_effector_variation_67, -end_effector_slope_50 - end_effector_slope_53),
+    );
+    let end_effector_slope_57 = (-q[14]).mul_add(
+        end_effector_variation_71,
+        q[13].mul_add(end_effector_variation_68, end_effector_slope_51 - end_effector_slope_54),
+    );
+    let end_effector_slope_58 = (-end_effector_variation_54).mul_add(
+        n(0.136),
+        (-end_effector_variation_53)
+            .mul_add(n(0.51), q[15].mul_add(end_effector_variation_76, q[14] * end_effector_variation_77)),
+    );
+    let end_effector_slope_59 = (-end_effector_variation_52).mul_add(
+        n(0.51),
+        end_effector_variation_54
+            .mul_add(n(0.085), q[13].mul_add(end_effector_variation_77, q[15] * end_effector_variation_75)),
+    );
+    let end_effector_slope_60 = (-end_effector_variation_53).mul_add(
+        n(0.085),
+        (-end_effector_variation_52)
+            .mul_add(n(0.136), (-q[14]).mul_add(end_effector_variation_75, q[13] * end_effector_variation_76)),
+    );
+    let end_effector_slope_61 = (-q[9]).mul_add(
+        end_effector_slope_8,
+        (-q[8]).mul_add(
+            end_effector_motion_16,
+            q[8].mul_add(end_effector_slope_7, q[7].mul_add(end_effector_slope_6, q[9] * end_effector_motion_15)),
+        ),
+    );
+    let end_effector_slope_62 = (-q[12]).mul_add(
+        end_effector_slope_8,
+        (-q[11]).mul_add(
+            end_effector_motion_16,
+            q[11].mul_add(end_effector_slope_7, q[10].mul_add(end_effector_slope_6, q[12] * end_effector_motion_15)),
+        ),
+    );
     let end_effector_slope_63 = q[13] * end_effector_slope_6;
-    let end_effector_slope_64 = (-q[15])
-        .mul_add(
-            end_effector_slope_8,
-            (-q[14])
-                .mul_add(
-                    end_effector_motion_16,
-                    q[14]
-                        .mul_add(
-                            end_effector_slope_7,
-                            q[15].mul_add(end_effector_motion_15, end_effector_slope_63),
-                        ),
-                ),
-        );
-    let end_effector_slope_65 = (-q[9])
-        .mul_add(
-            end_effector_slope_16,
-            (-q[9])
-                .mul_add(
-                    end_effector_motion_14,
-                    q[8]
-                        .mul_add(
-                            end_effector_slope_15,
-                            q[7]
-                                .mul_add(
-                                    end_effector_slope_14,
-                                    q[7] * end_effector_motion_16,
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_66 = (-q[12])
-        .mul_add(
-            end_effector_slope_16,
-            (-q[12])
-                .mul_add(
-                    end_effector_motion_14,
-                    q[11]
-                        .mul_add(
-                            end_effector_slope_15,
-                            q[10]
-                                .mul_add(
-                                    end_effector_slope_14,
-                                    q[10] * end_effector_motion_16,
-                                ),
-                        ),
-                ),
-        );
+    let end_effector_slope_64 = (-q[15]).mul_add(
+        end_effector_slope_8,
+        (-q[14]).mul_add(
+            end_effector_motion_16,
+            q[14].mul_add(end_effector_slope_7, q[15].mul_add(end_effector_motion_15, end_effector_slope_63)),
+        ),
+    );
+    let end_effector_slope_65 = (-q[9]).mul_add(
+        end_effector_slope_16,
+        (-q[9]).mul_add(
+            end_effector_motion_14,
+            q[8].mul_add(end_effector_slope_15, q[7].mul_add(end_effector_slope_14, q[7] * end_effector_motion_16)),
+        ),
+    );
+    let end_effector_slope_66 = (-q[12]).mul_add(
+        end_effector_slope_16,
+        (-q[12]).mul_add(
+            end_effector_motion_14,
+            q[11].mul_add(end_effector_slope_15, q[10].mul_add(end_effector_slope_14, q[10] * end_effector_motion_16)),
+        ),
+    );
     let end_effector_slope_67 = q[14] * end_effector_slope_15;
-    let end_effector_slope_68 = (-q[15])
-        .mul_add(
-            end_effector_slope_16,
-            (-q[15])
-                .mul_add(
-                    end_effector_motion_14,
-                    q[13]
-                        .mul_add(
-                            end_effector_slope_14,
-                            q[13].mul_add(end_effector_motion_16, end_effector_slope_67),
-                        ),
-                ),
-        );
-    let end_effector_slope_69 = (-q[8])
-        .mul_add(
-            end_effector_slope_22,
-            (-q[7])
-                .mul_add(
-                    end_effector_slope_21,
-                    (-q[7])
-                        .mul_add(
-                            end_effector_motion_15,
-                            q[9]
-                                .mul_add(
-                                    end_effector_slope_23,
-                                    q[8] * end_effector_motion_14,
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_70 = (-q[11])
-        .mul_add(
-            end_effector_slope_22,
-            (-q[10])
-                .mul_add(
-                    end_effector_slope_21,
-                    (-q[10])
-                        .mul_add(
-                            end_effector_motion_15,
-                            q[12]
-                                .mul_add(
-                                    end_effector_slope_23,
-                                    q[11] * end_effector_motion_14,
-                                ),
-                        ),
-                ),
-        );
+    let end_effector_slope_68 = (-q[15]).mul_add(
+        end_effector_slope_16,
+        (-q[15]).mul_add(
+            end_effector_motion_14,
+            q[13].mul_add(end_effector_slope_14, q[13].mul_add(end_effector_motion_16, end_effector_slope_67)),
+        ),
+    );
+    let end_effector_slope_69 = (-q[8]).mul_add(
+        end_effector_slope_22,
+        (-q[7]).mul_add(
+            end_effector_slope_21,
+            (-q[7]).mul_add(end_effector_motion_15, q[9].mul_add(end_effector_slope_23, q[8] * end_effector_motion_14)),
+        ),
+    );
+    let end_effector_slope_70 = (-q[11]).mul_add(
+        end_effector_slope_22,
+        (-q[10]).mul_add(
+            end_effector_slope_21,
+            (-q[10]).mul_add(end_effector_motion_15, q[12].mul_add(end_effector_slope_23, q[11] * end_effector_motion_14)),
+        ),
+    );
     let end_effector_slope_71 = q[15] * end_effector_slope_23;
-    let end_effector_slope_72 = (-q[14])
-        .mul_add(
-            end_effector_slope_22,
-            (-q[13])
-                .mul_add(
-                    end_effector_slope_21,
-                    (-q[13])
-                        .mul_add(
-                            end_effector_motion_15,
-                            q[14].mul_add(end_effector_motion_14, end_effector_slope_71),
-                        ),
-                ),
-        );
+    let end_effector_slope_72 = (-q[14]).mul_add(
+        end_effector_slope_22,
+        (-q[13]).mul_add(
+            end_effector_slope_21,
+            (-q[13]).mul_add(end_effector_motion_15, q[14].mul_add(end_effector_motion_14, end_effector_slope_71)),
+        ),
+    );
     let end_effector_slope_73 = (-q[15])
-        .mul_add(
-            end_effector_slope_33,
-            q[14].mul_add(end_effector_slope_32, q[13] * end_effector_slope_31),
-        );
+        .mul_add(end_effector_slope_33, q[14].mul_add(end_effector_slope_32, q[13] * end_effector_slope_31));
     let end_effector_slope_74 = (-q[15])
-        .mul_add(
-            end_effector_slope_45,
-            q[14].mul_add(end_effector_slope_44, q[13] * end_effector_slope_43),
-        );
+        .mul_add(end_effector_slope_45, q[14].mul_add(end_effector_slope_44, q[13] * end_effector_slope_43));
     let end_effector_slope_75 = (-q[15])
-        .mul_add(
-            end_effector_slope_57,
-            q[14].mul_add(end_effector_slope_56, q[13] * end_effector_slope_55),
-        );
-    let end_effector_slope_76 = (-end_effector_variation_22)
-        .mul_add(
-            n(0.085),
-            (-end_effector_rate_y)
-                .mul_add(
-                    end_effector_variation_75,
-                    end_effector_variation_17.mul_add(n(0.51), end_effector_motion_19),
-                ),
-        );
-    let end_effector_slope_77 = (-end_effector_variation_21)
-        .mul_add(
-            n(0.085),
-            (-end_effector_rate_z)
-                .mul_add(
-                    end_effector_variation_75,
-                    end_effector_variation_17.mul_add(n(0.136), end_effector_motion_18),
-                ),
-        );
-    let end_effector_slope_78 = (-end_effector_variation_33)
-        .mul_add(
-            n(0.136),
-            end_effector_variation_28
-                .mul_add(
-                    n(0.51),
-                    end_effector_rate_x
-                        .mul_add(end_effector_variation_76, end_effector_motion_19),
-                ),
-        );
-    let end_effector_slope_79 = (-end_effector_rate_z)
-        .mul_add(
-            end_effector_variation_76,
-            end_effector_variation_28
-                .mul_add(
-                    n(0.085),
-                    end_effector_variation_32.mul_add(n(0.136), end_effector_motion_17),
-                ),
-        );
-    let end_effector_slope_80 = (-end_effector_rate_x)
-        .mul_add(
-            end_effector_variation_77,
-            end_effector_variation_34
-                .mul_add(
-                    n(0.136),
-                    end_effector_variation_39.mul_add(n(0.51), end_effector_motion_18),
-                ),
-        );
-    let end_effector_slope_81 = (-end_effector_rate_y)
-        .mul_add(
-            end_effector_variation_77,
-            end_effector_variation_38
-                .mul_add(
-                    n(0.51),
-                    end_effector_variation_34.mul_add(n(0.085), end_effector_motion_17),
-                ),
-        );
+        .mul_add(end_effector_slope_57, q[14].mul_add(end_effector_slope_56, q[13] * end_effector_slope_55));
+    let end_effector_slope_76 = (-end_effector_variation_22).mul_add(
+        n(0.085),
+        (-end_effector_rate_y)
+            .mul_add(end_effector_variation_75, end_effector_variation_17.mul_add(n(0.51), end_effector_motion_19)),
+    );
+    let end_effector_slope_77 = (-end_effector_variation_21).mul_add(
+        n(0.085),
+        (-end_effector_rate_z)
+            .mul_add(end_effector_variation_75, end_effector_variation_17.mul_add(n(0.136), end_effector_motion_18)),
+    );
+    let end_effector_slope_78 = (-end_effector_variation_33).mul_add(
+        n(0.136),
+        end_effector_variation_28
+            .mul_add(n(0.51), end_effector_rate_x.mul_add(end_effector_variation_76, end_effector_motion_19)),
+    );
+    let end_effector_slope_79 = (-end_effector_rate_z).mul_add(
+        end_effector_variation_76,
+        end_effector_variation_28.mul_add(n(0.085), end_effector_variation_32.mul_add(n(0.136), end_effector_motion_17)),
+    );
+    let end_effector_slope_80 = (-end_effector_rate_x).mul_add(
+        end_effector_variation_77,
+        end_effector_variation_34.mul_add(n(0.136), end_effector_variation_39.mul_add(n(0.51), end_effector_motion_18)),
+    );
+    let end_effector_slope_81 = (-end_effector_rate_y).mul_add(
+        end_effector_variation_77,
+        end_effector_variation_38.mul_add(n(0.51), end_effector_variation_34.mul_add(n(0.085), end_effector_motion_17)),
+    );
     let end_effector_slope_82 = q[9].mul_add(n(0.136), q[8] * n(0.51));
     let end_effector_slope_83 = (-q[7]).mul_add(n(0.51), q[9] * n(0.085));
     let end_effector_slope_84 = q[8].mul_add(n(0.085), q[7] * n(0.136));
@@ -9743,388 +5298,200 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
     let end_effector_slope_89 = (-q[13]).mul_add(n(0.51), q[15] * n(0.085));
     let end_effector_slope_90 = q[14].mul_add(n(0.085), q[13] * n(0.136));
     let end_effector_slope_91 = (-q[9])
-        .mul_add(
-            end_effector_slope_77,
-            (-q[8]).mul_add(end_effector_slope_76, q[7] * end_effector_slope_9),
-        );
+        .mul_add(end_effector_slope_77, (-q[8]).mul_add(end_effector_slope_76, q[7] * end_effector_slope_9));
     let end_effector_slope_92 = (-q[12])
-        .mul_add(
-            end_effector_slope_77,
-            (-q[11]).mul_add(end_effector_slope_76, q[10] * end_effector_slope_9),
-        );
-    let end_effector_slope_93 = (-end_effector_slope_91)
-        .mul_add(
-            n(0.02),
-            (-end_effector_slope_92)
-                .mul_add(
-                    n(0.15),
-                    (-q[14])
-                        .mul_add(
-                            end_effector_motion_16 - end_effector_slope_7,
-                            q[15]
-                                .mul_add(
-                                    end_effector_motion_15 - end_effector_slope_8,
-                                    end_effector_slope_63,
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(end_effector_slope_77, (-q[11]).mul_add(end_effector_slope_76, q[10] * end_effector_slope_9));
+    let end_effector_slope_93 = (-end_effector_slope_91).mul_add(
+        n(0.02),
+        (-end_effector_slope_92).mul_add(
+            n(0.15),
+            (-q[14]).mul_add(
+                end_effector_motion_16 - end_effector_slope_7,
+                q[15].mul_add(end_effector_motion_15 - end_effector_slope_8, end_effector_slope_63),
+            ),
+        ),
+    );
     let end_effector_slope_94 = (-q[9])
-        .mul_add(
-            end_effector_slope_79,
-            q[8].mul_add(end_effector_slope_17, q[7] * end_effector_slope_78),
-        );
+        .mul_add(end_effector_slope_79, q[8].mul_add(end_effector_slope_17, q[7] * end_effector_slope_78));
     let end_effector_slope_95 = (-q[12])
-        .mul_add(
-            end_effector_slope_79,
-            q[11].mul_add(end_effector_slope_17, q[10] * end_effector_slope_78),
-        );
-    let end_effector_slope_96 = (-end_effector_slope_94)
-        .mul_add(
-            n(0.02),
-            (-end_effector_slope_95)
-                .mul_add(
-                    n(0.15),
-                    (-q[15])
-                        .mul_add(
-                            end_effector_motion_14 + end_effector_slope_16,
-                            q[13]
-                                .mul_add(
-                                    end_effector_motion_16 + end_effector_slope_14,
-                                    end_effector_slope_67,
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(end_effector_slope_79, q[11].mul_add(end_effector_slope_17, q[10] * end_effector_slope_78));
+    let end_effector_slope_96 = (-end_effector_slope_94).mul_add(
+        n(0.02),
+        (-end_effector_slope_95).mul_add(
+            n(0.15),
+            (-q[15]).mul_add(
+                end_effector_motion_14 + end_effector_slope_16,
+                q[13].mul_add(end_effector_motion_16 + end_effector_slope_14, end_effector_slope_67),
+            ),
+        ),
+    );
     let end_effector_slope_97 = (-q[9])
-        .mul_add(
-            end_effector_slope_24,
-            q[8].mul_add(end_effector_slope_81, q[7] * end_effector_slope_80),
-        );
+        .mul_add(end_effector_slope_24, q[8].mul_add(end_effector_slope_81, q[7] * end_effector_slope_80));
     let end_effector_slope_98 = (-q[12])
-        .mul_add(
-            end_effector_slope_24,
-            q[11].mul_add(end_effector_slope_81, q[10] * end_effector_slope_80),
-        );
-    let end_effector_slope_99 = (-end_effector_slope_97)
-        .mul_add(
-            n(0.02),
-            (-end_effector_slope_98)
-                .mul_add(
-                    n(0.15),
-                    (-q[13])
-                        .mul_add(
-                            end_effector_motion_15 + end_effector_slope_21,
-                            q[14]
-                                .mul_add(
-                                    end_effector_motion_14 - end_effector_slope_22,
-                                    end_effector_slope_71,
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(end_effector_slope_24, q[11].mul_add(end_effector_slope_81, q[10] * end_effector_slope_80));
+    let end_effector_slope_99 = (-end_effector_slope_97).mul_add(
+        n(0.02),
+        (-end_effector_slope_98).mul_add(
+            n(0.15),
+            (-q[13]).mul_add(
+                end_effector_motion_15 + end_effector_slope_21,
+                q[14].mul_add(end_effector_motion_14 - end_effector_slope_22, end_effector_slope_71),
+            ),
+        ),
+    );
     let end_effector_slope_100 = (-q[9])
-        .mul_add(
-            end_effector_slope_36,
-            (-q[8]).mul_add(end_effector_slope_35, q[7] * end_effector_slope_34),
-        );
+        .mul_add(end_effector_slope_36, (-q[8]).mul_add(end_effector_slope_35, q[7] * end_effector_slope_34));
     let end_effector_slope_101 = (-q[12])
-        .mul_add(
-            end_effector_slope_36,
-            (-q[11]).mul_add(end_effector_slope_35, q[10] * end_effector_slope_34),
-        );
+        .mul_add(end_effector_slope_36, (-q[11]).mul_add(end_effector_slope_35, q[10] * end_effector_slope_34));
     let end_effector_slope_102 = end_effector_slope_100
-        .mul_add(
-            n(0.02),
-            end_effector_slope_101.mul_add(n(0.15), end_effector_slope_73),
-        );
+        .mul_add(n(0.02), end_effector_slope_101.mul_add(n(0.15), end_effector_slope_73));
     let end_effector_slope_103 = (-q[9])
-        .mul_add(
-            end_effector_slope_48,
-            (-q[8]).mul_add(end_effector_slope_47, q[7] * end_effector_slope_46),
-        );
+        .mul_add(end_effector_slope_48, (-q[8]).mul_add(end_effector_slope_47, q[7] * end_effector_slope_46));
     let end_effector_slope_104 = (-q[12])
-        .mul_add(
-            end_effector_slope_48,
-            (-q[11]).mul_add(end_effector_slope_47, q[10] * end_effector_slope_46),
-        );
+        .mul_add(end_effector_slope_48, (-q[11]).mul_add(end_effector_slope_47, q[10] * end_effector_slope_46));
     let end_effector_slope_105 = end_effector_slope_103
-        .mul_add(
-            n(0.02),
-            end_effector_slope_104.mul_add(n(0.15), end_effector_slope_74),
-        );
+        .mul_add(n(0.02), end_effector_slope_104.mul_add(n(0.15), end_effector_slope_74));
     let end_effector_slope_106 = (-q[9])
-        .mul_add(
-            end_effector_slope_60,
-            (-q[8]).mul_add(end_effector_slope_59, q[7] * end_effector_slope_58),
-        );
+        .mul_add(end_effector_slope_60, (-q[8]).mul_add(end_effector_slope_59, q[7] * end_effector_slope_58));
     let end_effector_slope_107 = (-q[12])
-        .mul_add(
-            end_effector_slope_60,
-            (-q[11]).mul_add(end_effector_slope_59, q[10] * end_effector_slope_58),
-        );
+        .mul_add(end_effector_slope_60, (-q[11]).mul_add(end_effector_slope_59, q[10] * end_effector_slope_58));
     let end_effector_slope_108 = end_effector_slope_106
-        .mul_add(
-            n(0.02),
-            end_effector_slope_107.mul_add(n(0.15), end_effector_slope_75),
-        );
+        .mul_add(n(0.02), end_effector_slope_107.mul_add(n(0.15), end_effector_slope_75));
     let end_effector_slope_109 = (-q[9])
-        .mul_add(
-            end_effector_slope_84,
-            q[8].mul_add(end_effector_slope_83, q[7] * end_effector_slope_82),
-        );
+        .mul_add(end_effector_slope_84, q[8].mul_add(end_effector_slope_83, q[7] * end_effector_slope_82));
     let end_effector_slope_110 = (-q[12])
-        .mul_add(
-            end_effector_slope_84,
-            q[11].mul_add(end_effector_slope_83, q[10] * end_effector_slope_82),
-        );
-    let end_effector_slope_111 = (-q[14])
-        .mul_add(
-            (-q[9])
-                .mul_add(
-                    end_effector_variation_71,
-                    q[7].mul_add(end_effector_variation_69, end_effector_slope_26),
-                ),
-            q[13]
-                * ((-q[9])
-                    .mul_add(
-                        end_effector_variation_68,
-                        q[8].mul_add(end_effector_variation_67, end_effector_slope_25),
-                    )),
-        );
-    let end_effector_slope_112 = (-q[15])
-        .mul_add(
-            (-q[8])
-                .mul_add(
-                    end_effector_variation_73,
-                    (-q[7]).mul_add(end_effector_variation_72, end_effector_slope_27),
-                ),
-            end_effector_slope_111,
-        );
+        .mul_add(end_effector_slope_84, q[11].mul_add(end_effector_slope_83, q[10] * end_effector_slope_82));
+    let end_effector_slope_111 = (-q[14]).mul_add(
+        (-q[9]).mul_add(end_effector_variation_71, q[7].mul_add(end_effector_variation_69, end_effector_slope_26)),
+        q[13] * ((-q[9]).mul_add(end_effector_variation_68, q[8].mul_add(end_effector_variation_67, end_effector_slope_25))),
+    );
+    let end_effector_slope_112 = (-q[15]).mul_add(
+        (-q[8]).mul_add(end_effector_variation_73, (-q[7]).mul_add(end_effector_variation_72, end_effector_slope_27)),
+        end_effector_slope_111,
+    );
     let end_effector_slope_113 = (-q[9])
-        .mul_add(
-            end_effector_slope_87,
-            q[8].mul_add(end_effector_slope_86, q[7] * end_effector_slope_85),
-        );
+        .mul_add(end_effector_slope_87, q[8].mul_add(end_effector_slope_86, q[7] * end_effector_slope_85));
     let end_effector_slope_114 = (-q[12])
-        .mul_add(
-            end_effector_slope_87,
-            q[11].mul_add(end_effector_slope_86, q[10] * end_effector_slope_85),
-        );
-    let end_effector_slope_115 = (-q[14])
-        .mul_add(
-            (-q[12])
-                .mul_add(
-                    end_effector_variation_71,
-                    q[10].mul_add(end_effector_variation_69, end_effector_slope_38),
-                ),
-            q[13]
-                * ((-q[12])
-                    .mul_add(
-                        end_effector_variation_68,
-                        q[11].mul_add(end_effector_variation_67, end_effector_slope_37),
-                    )),
-        );
-    let end_effector_slope_116 = (-q[15])
-        .mul_add(
-            (-q[11])
-                .mul_add(
-                    end_effector_variation_73,
-                    (-q[10]).mul_add(end_effector_variation_72, end_effector_slope_39),
-                ),
-            end_effector_slope_115,
-        );
+        .mul_add(end_effector_slope_87, q[11].mul_add(end_effector_slope_86, q[10] * end_effector_slope_85));
+    let end_effector_slope_115 = (-q[14]).mul_add(
+        (-q[12]).mul_add(end_effector_variation_71, q[10].mul_add(end_effector_variation_69, end_effector_slope_38)),
+        q[13] * ((-q[12]).mul_add(end_effector_variation_68, q[11].mul_add(end_effector_variation_67, end_effector_slope_37))),
+    );
+    let end_effector_slope_116 = (-q[15]).mul_add(
+        (-q[11]).mul_add(end_effector_variation_73, (-q[10]).mul_add(end_effector_variation_72, end_effector_slope_39)),
+        end_effector_slope_115,
+    );
     let end_effector_slope_117 = (-q[9])
-        .mul_add(
-            end_effector_slope_90,
-            q[8].mul_add(end_effector_slope_89, q[7] * end_effector_slope_88),
-        );
+        .mul_add(end_effector_slope_90, q[8].mul_add(end_effector_slope_89, q[7] * end_effector_slope_88));
     let end_effector_slope_118 = (-q[12])
-        .mul_add(
-            end_effector_slope_90,
-            q[11].mul_add(end_effector_slope_89, q[10] * end_effector_slope_88),
-        );
-    let end_effector_slope_119 = (-q[14])
-        .mul_add(
-            (-q[15])
-                .mul_add(
-                    end_effector_variation_71,
-                    q[13].mul_add(end_effector_variation_69, end_effector_slope_50),
-                ),
-            q[13]
-                * ((-q[15])
-                    .mul_add(
-                        end_effector_variation_68,
-                        q[14].mul_add(end_effector_variation_67, end_effector_slope_49),
-                    )),
-        );
-    let end_effector_slope_120 = (-q[15])
-        .mul_add(
-            (-q[14])
-                .mul_add(
-                    end_effector_variation_73,
-                    (-q[13]).mul_add(end_effector_variation_72, end_effector_slope_51),
-                ),
-            end_effector_slope_119,
-        );
-    let end_effector_slope_121 = (-q[6])
-        .mul_add(
-            q[2].mul_add(end_effector_slope_92, q[1] * end_effector_slope_91),
-            q[3] * (q[5].mul_add(end_effector_slope_92, q[4] * end_effector_slope_91)),
-        );
-    let end_effector_slope_122 = (-q[6])
-        .mul_add(
-            q[2].mul_add(end_effector_slope_95, q[1] * end_effector_slope_94),
-            q[3] * (q[5].mul_add(end_effector_slope_95, q[4] * end_effector_slope_94)),
-        );
-    let end_effector_slope_123 = (-q[6])
-        .mul_add(
-            q[2].mul_add(end_effector_slope_98, q[1] * end_effector_slope_97),
-            q[3] * (q[5].mul_add(end_effector_slope_98, q[4] * end_effector_slope_97)),
-        );
-    let end_effector_slope_124 = (-q[6])
-        .mul_add(
-            q[2].mul_add(end_effector_slope_101, q[1] * end_effector_slope_100),
-            q[3] * (q[5].mul_add(end_effector_slope_101, q[4] * end_effector_slope_100)),
-        );
-    let end_effector_slope_125 = (-q[6])
-        .mul_add(
-            q[2].mul_add(end_effector_slope_104, q[1] * end_effector_slope_103),
-            q[3] * (q[5].mul_add(end_effector_slope_104, q[4] * end_effector_slope_103)),
-        );
-    let end_effector_slope_126 = (-q[6])
-        .mul_add(
-            q[2].mul_add(end_effector_slope_107, q[1] * end_effector_slope_106),
-            q[3] * (q[5].mul_add(end_effector_slope_107, q[4] * end_effector_slope_106)),
-        );
+        .mul_add(end_effector_slope_90, q[11].mul_add(end_effector_slope_89, q[10] * end_effector_slope_88));
+    let end_effector_slope_119 = (-q[14]).mul_add(
+        (-q[15]).mul_add(end_effector_variation_71, q[13].mul_add(end_effector_variation_69, end_effector_slope_50)),
+        q[13] * ((-q[15]).mul_add(end_effector_variation_68, q[14].mul_add(end_effector_variation_67, end_effector_slope_49))),
+    );
+    let end_effector_slope_120 = (-q[15]).mul_add(
+        (-q[14]).mul_add(end_effector_variation_73, (-q[13]).mul_add(end_effector_variation_72, end_effector_slope_51)),
+        end_effector_slope_119,
+    );
+    let end_effector_slope_121 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_slope_92, q[1] * end_effector_slope_91),
+        q[3] * (q[5].mul_add(end_effector_slope_92, q[4] * end_effector_slope_91)),
+    );
+    let end_effector_slope_122 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_slope_95, q[1] * end_effector_slope_94),
+        q[3] * (q[5].mul_add(end_effector_slope_95, q[4] * end_effector_slope_94)),
+    );
+    let end_effector_slope_123 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_slope_98, q[1] * end_effector_slope_97),
+        q[3] * (q[5].mul_add(end_effector_slope_98, q[4] * end_effector_slope_97)),
+    );
+    let end_effector_slope_124 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_slope_101, q[1] * end_effector_slope_100),
+        q[3] * (q[5].mul_add(end_effector_slope_101, q[4] * end_effector_slope_100)),
+    );
+    let end_effector_slope_125 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_slope_104, q[1] * end_effector_slope_103),
+        q[3] * (q[5].mul_add(end_effector_slope_104, q[4] * end_effector_slope_103)),
+    );
+    let end_effector_slope_126 = (-q[6]).mul_add(
+        q[2].mul_add(end_effector_slope_107, q[1] * end_effector_slope_106),
+        q[3] * (q[5].mul_add(end_effector_slope_107, q[4] * end_effector_slope_106)),
+    );
     let end_effector_slope_127 = (-q[9])
-        .mul_add(
-            end_effector_variation_77,
-            q[8].mul_add(end_effector_variation_76, q[7] * end_effector_variation_75),
-        );
+        .mul_add(end_effector_variation_77, q[8].mul_add(end_effector_variation_76, q[7] * end_effector_variation_75));
     let end_effector_slope_128 = (-q[12])
-        .mul_add(
-            end_effector_variation_77,
-            q[11].mul_add(end_effector_variation_76, q[10] * end_effector_variation_75),
-        );
-    let end_effector_slope_129 = ((-q[15])
-        .mul_add(
-            end_effector_variation_77,
-            q[14].mul_add(end_effector_variation_76, q[13] * end_effector_variation_75),
-        )) * n(0.3);
-    let end_effector_slope_130 = (-q[8])
-        .mul_add(n(0.136), q[9].mul_add(n(0.51), q[7].mul_add(n(0.085), n(0.495))));
-    let end_effector_slope_131 = (-q[11])
-        .mul_add(n(0.136), q[12].mul_add(n(0.51), q[10].mul_add(n(0.085), n(0.046))));
-    let end_effector_slope_132 = (-end_effector_slope_128)
-        .mul_add(
-            n(0.02),
-            (-cart_motion_4)
-                .mul_add(
-                    n(0.092),
-                    end_effector_slope_127
-                        .mul_add(
-                            n(0.15),
-                            cart_motion_5
-                                .mul_add(
-                                    n(0.99),
-                                    end_effector_slope_129 - end_effector_slope_120
-                                        - end_effector_slope_129,
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_133 = (-cart_rate_z)
-        .mul_add(n(0.092), cart_motion_5.mul_add(n(11.4), end_effector_slope_127));
-    let end_effector_slope_134 = (-cart_rate_z)
-        .mul_add(n(0.99), end_effector_variation_58 - end_effector_slope_128);
-    let end_effector_slope_135 = (-q[9])
-        .mul_add(
-            end_effector_motion_19,
-            (-q[7])
-                .mul_add(
-                    end_effector_motion_17,
-                    (-cart_acceleration_6)
-                        .mul_add(
-                            n(0.046),
-                            (-cart_acceleration_7)
-                                .mul_add(
-                                    n(0.495),
-                                    q[8]
-                                        .mul_add(
-                                            end_effector_motion_18,
-                                            cart_acceleration_8 * n(5.7),
-                                        ),
-                                ),
-                        ),
-                ),
-        );
-    let end_effector_slope_136 = (-q[12])
-        .mul_add(
-            end_effector_motion_19,
-            (-q[10])
-                .mul_add(
-                    end_effector_motion_17,
-                    (-cart_acceleration_7)
-                        .mul_add(
-                            n(0.046),
-                            q[11]
-                                .mul_add(
-                                    end_effector_motion_18,
-                                    cart_acceleration_6
-                                        .mul_add(n(0.495), cart_acceleration_9 * n(5.7)),
-                                ),
-                        ),
-                ),
-        );
+        .mul_add(end_effector_variation_77, q[11].mul_add(end_effector_variation_76, q[10] * end_effector_variation_75));
+    let end_effector_slope_129 = ((-q[15]).mul_add(
+        end_effector_variation_77,
+        q[14].mul_add(end_effector_variation_76, q[13] * end_effector_variation_75),
+    )) * n(0.3);
+    let end_effector_slope_130 = (-q[8]).mul_add(n(0.136), q[9].mul_add(n(0.51), q[7].mul_add(n(0.085), n(0.495))));
+    let end_effector_slope_131 = (-q[11]).mul_add(n(0.136), q[12].mul_add(n(0.51), q[10].mul_add(n(0.085), n(0.046))));
+    let end_effector_slope_132 = (-end_effector_slope_128).mul_add(
+        n(0.02),
+        (-cart_motion_4).mul_add(
+            n(0.092),
+            end_effector_slope_127.mul_add(
+                n(0.15),
+                cart_motion_5.mul_add(n(0.99), end_effector_slope_129 - end_effector_slope_120 - end_effector_slope_129),
+            ),
+        ),
+    );
+    let end_effector_slope_133 = (-cart_rate_z).mul_add(n(0.092), cart_motion_5.mul_add(n(11.4), end_effector_slope_127));
+    let end_effector_slope_134 = (-cart_rate_z).mul_add(n(0.99), end_effector_variation_58 - end_effector_slope_128);
+    let end_effector_slope_135 = (-q[9]).mul_add(
+        end_effector_motion_19,
+        (-q[7]).mul_add(
+            end_effector_motion_17,
+            (-cart_acceleration_6).mul_add(
+                n(0.046),
+                (-cart_acceleration_7).mul_add(n(0.495), q[8].mul_add(end_effector_motion_18, cart_acceleration_8 * n(5.7))),
+            ),
+        ),
+    );
+    let end_effector_slope_136 = (-q[12]).mul_add(
+        end_effector_motion_19,
+        (-q[10]).mul_add(
+            end_effector_motion_17,
+            (-cart_acceleration_7).mul_add(
+                n(0.046),
+                q[11].mul_add(end_effector_motion_18, cart_acceleration_6.mul_add(n(0.495), cart_acceleration_9 * n(5.7))),
+            ),
+        ),
+    );
     // cart: slope (33 additions, 49 multiplications)
-    let cart_slope = cart_variation_4
-        .mul_add(end_effector_slope_131, cart_variation_5 * end_effector_slope_130);
+    let cart_slope = cart_variation_4.mul_add(end_effector_slope_131, cart_variation_5 * end_effector_slope_130);
     let cart_slope_2 = cart_variation_4 * n(5.7);
-    let cart_slope_3 = plate_acceleration
-        .mul_add(end_effector_slope_131, a[0] * end_effector_slope_130);
+    let cart_slope_3 = plate_acceleration.mul_add(end_effector_slope_131, a[0] * end_effector_slope_130);
     let cart_slope_4 = plate_acceleration * n(5.7);
     let cart_slope_5 = a[0] * n(5.7);
-    let cart_slope_6 = (-a[0])
-        .mul_add(end_effector_slope_131, plate_acceleration * end_effector_slope_130);
+    let cart_slope_6 = (-a[0]).mul_add(end_effector_slope_131, plate_acceleration * end_effector_slope_130);
     let cart_slope_7 = cart_variation_3
-        .mul_add(
-            end_effector_slope_131,
-            cart_variation_2.mul_add(end_effector_slope_130, end_effector_slope_132),
-        );
+        .mul_add(end_effector_slope_131, cart_variation_2.mul_add(end_effector_slope_130, end_effector_slope_132));
     let cart_slope_8 = end_effector_variation_58 - end_effector_slope_134;
     let cart_slope_9 = cart_variation_2.mul_add(n(5.7), end_effector_slope_133);
     let cart_slope_10 = cart_variation * end_effector_slope_130;
     let cart_slope_11 = cart_variation * n(5.7);
     let cart_slope_12 = end_effector_slope_136 + cart_slope_2;
     let cart_slope_13 = cart_variation_5.mul_add(n(5.7), end_effector_slope_135);
-    let cart_slope_14 = (-q[6])
-        .mul_add(
-            (-q[2]).mul_add(cart_slope_13, q[1] * cart_slope_12),
-            q[3] * ((-q[5]).mul_add(cart_slope_13, q[4] * cart_slope_12)),
-        );
-    let cart_slope_15 = (-q[6])
-        .mul_add(
-            (-q[2]).mul_add(cart_slope_5, q[1] * cart_slope_4),
-            q[3] * ((-q[5]).mul_add(cart_slope_5, q[4] * cart_slope_4)),
-        );
+    let cart_slope_14 = (-q[6]).mul_add(
+        (-q[2]).mul_add(cart_slope_13, q[1] * cart_slope_12),
+        q[3] * ((-q[5]).mul_add(cart_slope_13, q[4] * cart_slope_12)),
+    );
+    let cart_slope_15 = (-q[6]).mul_add(
+        (-q[2]).mul_add(cart_slope_5, q[1] * cart_slope_4),
+        q[3] * ((-q[5]).mul_add(cart_slope_5, q[4] * cart_slope_4)),
+    );
     let cart_slope_16 = (-q[6])
-        .mul_add(
-            q[2].mul_add(cart_slope_4, q[1] * cart_slope_5),
-            q[3] * (q[5].mul_add(cart_slope_4, q[4] * cart_slope_5)),
-        );
-    let cart_slope_17 = (-q[6])
-        .mul_add(
-            (-q[2]).mul_add(cart_slope_9, q[1] * cart_slope_8),
-            q[3] * ((-q[5]).mul_add(cart_slope_9, q[4] * cart_slope_8)),
-        );
-    let cart_slope_18 = q[6]
-        .mul_add(
-            (-q[5]).mul_add(end_effector_slope_134, q[4] * end_effector_slope_133),
-            q[3]
-                * ((-q[2])
-                    .mul_add(end_effector_slope_134, q[1] * end_effector_slope_133)),
-        );
+        .mul_add(q[2].mul_add(cart_slope_4, q[1] * cart_slope_5), q[3] * (q[5].mul_add(cart_slope_4, q[4] * cart_slope_5)));
+    let cart_slope_17 = (-q[6]).mul_add(
+        (-q[2]).mul_add(cart_slope_9, q[1] * cart_slope_8),
+        q[3] * ((-q[5]).mul_add(cart_slope_9, q[4] * cart_slope_8)),
+    );
+    let cart_slope_18 = q[6].mul_add(
+        (-q[5]).mul_add(end_effector_slope_134, q[4] * end_effector_slope_133),
+        q[3] * ((-q[2]).mul_add(end_effector_slope_134, q[1] * end_effector_slope_133)),
+    );
     [
         [
             n(0.0),
@@ -10136,149 +5503,60 @@ pub fn inverse_dynamics_derivatives<T: Scalar>(
             end_effector_slope_99 - end_effector_slope_123,
             end_effector_slope_132 + cart_slope_18,
             cart_slope_7 - cart_slope_17,
-            (-q[6])
-                .mul_add(
-                    q[2] * cart_slope_11,
-                    q[3].mul_add(q[5] * cart_slope_11, cart_slope_10),
-                ),
+            (-q[6]).mul_add(q[2] * cart_slope_11, q[3].mul_add(q[5] * cart_slope_11, cart_slope_10)),
             -end_effector_slope_102 - end_effector_slope_124,
             -end_effector_slope_105 - end_effector_slope_125,
             -end_effector_slope_108 - end_effector_slope_126,
         ],
         [
             n(0.0),
-            cart_slope,
-            cart_slope_3,
-            -cart_slope_6,
-            end_effector_slope_93,
-            end_effector_slope_96,
-            end_effector_slope_99,
-            end_effector_slope_132,
-            cart_slope_7,
-            cart_slope_10,
-            -end_effector_slope_102,
-            -end_effector_slope_105,
+            cart_slope, cart_slope_3, -cart_slope_6, end_effector_slope_93, end_effector_slope_96, end_effector_slope_99,
+            end_effector_slope_132, cart_slope_7, cart_slope_10, -end_effector_slope_102, -end_effector_slope_105,
             -end_effector_slope_108,
         ],
         [
             n(0.0),
-            -cart_slope_2,
-            -cart_slope_4,
-            -cart_slope_5,
-            -end_effector_slope_91,
-            -end_effector_slope_94,
-            -end_effector_slope_97,
-            end_effector_slope_134,
-            -cart_slope_8,
+            -cart_slope_2, -cart_slope_4, -cart_slope_5, -end_effector_slope_91, -end_effector_slope_94, -end_effector_slope_97,
+            end_effector_slope_134, -cart_slope_8,
             n(0.0),
-            -end_effector_slope_100,
-            -end_effector_slope_103,
-            -end_effector_slope_106,
+            -end_effector_slope_100, -end_effector_slope_103, -end_effector_slope_106,
         ],
         [
             n(0.0),
-            (-cart_variation_4)
-                .mul_add(
-                    end_effector_slope_109,
-                    cart_variation_5 * end_effector_slope_110,
-                ),
-            (-plate_acceleration)
-                .mul_add(end_effector_slope_109, a[0] * end_effector_slope_110),
-            (-plate_acceleration)
-                .mul_add(end_effector_slope_110, -(a[0] * end_effector_slope_109)),
-            end_effector_slope_61,
-            end_effector_slope_65,
-            end_effector_slope_69,
-            -end_effector_slope_112,
+            (-cart_variation_4).mul_add(end_effector_slope_109, cart_variation_5 * end_effector_slope_110),
+            (-plate_acceleration).mul_add(end_effector_slope_109, a[0] * end_effector_slope_110),
+            (-plate_acceleration).mul_add(end_effector_slope_110, -(a[0] * end_effector_slope_109)),
+            end_effector_slope_61, end_effector_slope_65, end_effector_slope_69, -end_effector_slope_112,
             (-cart_variation_3)
-                .mul_add(
-                    end_effector_slope_109,
-                    cart_variation_2
-                        .mul_add(end_effector_slope_110, -end_effector_slope_112),
-                ),
+                .mul_add(end_effector_slope_109, cart_variation_2.mul_add(end_effector_slope_110, -end_effector_slope_112)),
             cart_variation * end_effector_slope_110,
-            (-q[8])
-                .mul_add(
-                    end_effector_slope_32,
-                    (-q[7]).mul_add(end_effector_slope_31, q[9] * end_effector_slope_33),
-                ),
-            (-q[8])
-                .mul_add(
-                    end_effector_slope_44,
-                    (-q[7]).mul_add(end_effector_slope_43, q[9] * end_effector_slope_45),
-                ),
-            (-q[8])
-                .mul_add(
-                    end_effector_slope_56,
-                    (-q[7]).mul_add(end_effector_slope_55, q[9] * end_effector_slope_57),
-                ),
+            (-q[8]).mul_add(end_effector_slope_32, (-q[7]).mul_add(end_effector_slope_31, q[9] * end_effector_slope_33)),
+            (-q[8]).mul_add(end_effector_slope_44, (-q[7]).mul_add(end_effector_slope_43, q[9] * end_effector_slope_45)),
+            (-q[8]).mul_add(end_effector_slope_56, (-q[7]).mul_add(end_effector_slope_55, q[9] * end_effector_slope_57)),
         ],
         [
             n(0.0),
-            (-cart_variation_4)
-                .mul_add(
-                    end_effector_slope_113,
-                    cart_variation_5 * end_effector_slope_114,
-                ),
-            (-plate_acceleration)
-                .mul_add(end_effector_slope_113, a[0] * end_effector_slope_114),
-            (-plate_acceleration)
-                .mul_add(end_effector_slope_114, -(a[0] * end_effector_slope_113)),
-            end_effector_slope_62,
-            end_effector_slope_66,
-            end_effector_slope_70,
-            -end_effector_slope_116,
+            (-cart_variation_4).mul_add(end_effector_slope_113, cart_variation_5 * end_effector_slope_114),
+            (-plate_acceleration).mul_add(end_effector_slope_113, a[0] * end_effector_slope_114),
+            (-plate_acceleration).mul_add(end_effector_slope_114, -(a[0] * end_effector_slope_113)),
+            end_effector_slope_62, end_effector_slope_66, end_effector_slope_70, -end_effector_slope_116,
             (-cart_variation_3)
-                .mul_add(
-                    end_effector_slope_113,
-                    cart_variation_2
-                        .mul_add(end_effector_slope_114, -end_effector_slope_116),
-                ),
+                .mul_add(end_effector_slope_113, cart_variation_2.mul_add(end_effector_slope_114, -end_effector_slope_116)),
             cart_variation * end_effector_slope_114,
-            (-q[11])
-                .mul_add(
-                    end_effector_slope_32,
-                    (-q[10])
-                        .mul_add(end_effector_slope_31, q[12] * end_effector_slope_33),
-                ),
-            (-q[11])
-                .mul_add(
-                    end_effector_slope_44,
-                    (-q[10])
-                        .mul_add(end_effector_slope_43, q[12] * end_effector_slope_45),
-                ),
-            (-q[11])
-                .mul_add(
-                    end_effector_slope_56,
-                    (-q[10])
-                        .mul_add(end_effector_slope_55, q[12] * end_effector_slope_57),
-                ),
+            (-q[11]).mul_add(end_effector_slope_32, (-q[10]).mul_add(end_effector_slope_31, q[12] * end_effector_slope_33)),
+            (-q[11]).mul_add(end_effector_slope_44, (-q[10]).mul_add(end_effector_slope_43, q[12] * end_effector_slope_45)),
+            (-q[11]).mul_add(end_effector_slope_56, (-q[10]).mul_add(end_effector_slope_55, q[12] * end_effector_slope_57)),
         ],
         [
             n(0.0),
-            (-cart_variation_4)
-                .mul_add(
-                    end_effector_slope_117,
-                    cart_variation_5 * end_effector_slope_118,
-                ),
-            (-plate_acceleration)
-                .mul_add(end_effector_slope_117, a[0] * end_effector_slope_118),
-            (-plate_acceleration)
-                .mul_add(end_effector_slope_118, -(a[0] * end_effector_slope_117)),
-            end_effector_slope_64,
-            end_effector_slope_68,
-            end_effector_slope_72,
-            -end_effector_slope_120,
+            (-cart_variation_4).mul_add(end_effector_slope_117, cart_variation_5 * end_effector_slope_118),
+            (-plate_acceleration).mul_add(end_effector_slope_117, a[0] * end_effector_slope_118),
+            (-plate_acceleration).mul_add(end_effector_slope_118, -(a[0] * end_effector_slope_117)),
+            end_effector_slope_64, end_effector_slope_68, end_effector_slope_72, -end_effector_slope_120,
             (-cart_variation_3)
-                .mul_add(
-                    end_effector_slope_117,
-                    cart_variation_2
-                        .mul_add(end_effector_slope_118, -end_effector_slope_120),
-                ),
+                .mul_add(end_effector_slope_117, cart_variation_2.mul_add(end_effector_slope_118, -end_effector_slope_120)),
             cart_variation * end_effector_slope_118,
-            -end_effector_slope_73,
-            -end_effector_slope_74,
-            -end_effector_slope_75,
+            -end_effector_slope_73, -end_effector_slope_74, -end_effector_slope_75,
         ],
     ]
 }

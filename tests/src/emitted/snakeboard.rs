@@ -71,16 +71,13 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 9], v: &[T; 6], tau: &[T; 6]) -> [T; 
     // back: constraint (1 multiplication)
     let back_constraint = back_cos * n(0.3);
     // board: constraint (3 additions, 10 multiplications, 1 division)
-    let board_constraint = n(1.0)
-        / (front_cos.mul_add(back_constraint, back_cos * front_constraint));
+    let board_constraint = n(1.0) / (front_cos.mul_add(back_constraint, back_cos * front_constraint));
     let board_constraint_2 = back_cos * board_constraint;
     let board_constraint_3 = front_cos * board_constraint;
-    let board_constraint_4 = (-back_sin)
-        .mul_add(board_constraint_3, front_sin * board_constraint_2);
+    let board_constraint_4 = (-back_sin).mul_add(board_constraint_3, front_sin * board_constraint_2);
     let board_constraint_5 = back_constraint * board_constraint;
     let board_constraint_6 = front_constraint * board_constraint;
-    let board_constraint_7 = back_sin
-        .mul_add(board_constraint_6, front_sin * board_constraint_5);
+    let board_constraint_7 = back_sin.mul_add(board_constraint_6, front_sin * board_constraint_5);
     // board: acceleration (3 multiplications)
     let board_acceleration = v[0] * v[2];
     let board_acceleration_2 = v[0] * v[1];
@@ -89,58 +86,35 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 9], v: &[T; 6], tau: &[T; 6]) -> [T; 
     // front: momentum (2 additions, 3 multiplications)
     let front_momentum = v[0] * n(0.3);
     // front: constraint (1 addition, 1 multiplication)
-    let front_constraint_2 = (-(v[0] + v[4]))
-        .mul_add(
-            front_sin.mul_add(v[2] + front_momentum, v[1] * front_cos),
-            front_cos
-                .mul_add(
-                    board_acceleration_2,
-                    front_sin * (board_acceleration + front_acceleration),
-                ),
-        );
+    let front_constraint_2 = (-(v[0] + v[4])).mul_add(
+        front_sin.mul_add(v[2] + front_momentum, v[1] * front_cos),
+        front_cos.mul_add(board_acceleration_2, front_sin * (board_acceleration + front_acceleration)),
+    );
     // back: constraint (3 additions, 5 multiplications)
-    let back_constraint_2 = (-(v[0] + v[5]))
-        .mul_add(
-            back_sin.mul_add(v[2] - front_momentum, v[1] * back_cos),
-            back_cos
-                .mul_add(
-                    board_acceleration_2,
-                    back_sin * (board_acceleration - front_acceleration),
-                ),
-        );
-    let back_constraint_3 = (-board_constraint_3)
-        .mul_add(back_constraint_2, board_constraint_2 * front_constraint_2);
+    let back_constraint_2 = (-(v[0] + v[5])).mul_add(
+        back_sin.mul_add(v[2] - front_momentum, v[1] * back_cos),
+        back_cos.mul_add(board_acceleration_2, back_sin * (board_acceleration - front_acceleration)),
+    );
+    let back_constraint_3 = (-board_constraint_3).mul_add(back_constraint_2, board_constraint_2 * front_constraint_2);
     // board: effort (6 additions)
-    let board_effort = (-back_constraint_3)
-        .mul_add(
-            n(0.24200000000000005),
-            (tau[5] - back_constraint_3)
-                .mul_add(n(0.003), (tau[4] - back_constraint_3) * n(0.003)),
-        );
+    let board_effort = (-back_constraint_3).mul_add(
+        n(0.24200000000000005),
+        (tau[5] - back_constraint_3).mul_add(n(0.003), (tau[4] - back_constraint_3) * n(0.003)),
+    );
     // back: effort (2 additions, 2 multiplications)
     let back_effort = board_constraint_7
         * (((-board_constraint_6)
-            .mul_add(
-                back_constraint_2,
-                (-board_constraint_5).mul_add(front_constraint_2, board_acceleration_2),
-            ))
+            .mul_add(back_constraint_2, (-board_constraint_5).mul_add(front_constraint_2, board_acceleration_2)))
             .mul_add(n(7.800000000000001), -tau[2]));
-    let back_effort_2 = (-board_constraint_4)
-        .mul_add(
-            (tau[3] - back_constraint_3).mul_add(n(0.05), board_effort - tau[0]),
-            board_acceleration.mul_add(n(7.800000000000001), tau[1] - back_effort),
-        );
+    let back_effort_2 = (-board_constraint_4).mul_add(
+        (tau[3] - back_constraint_3).mul_add(n(0.05), board_effort - tau[0]),
+        board_acceleration.mul_add(n(7.800000000000001), tau[1] - back_effort),
+    );
     // board: composite inertia (2 additions, 5 multiplications, 1 division)
-    let board_composite_inertia = n(1.0)
-        / (board_constraint_7
-            .mul_add(
-                board_constraint_7 * n(7.800000000000001),
-                board_constraint_4
-                    .mul_add(
-                        board_constraint_4 * n(0.29800000000000004),
-                        n(7.800000000000001),
-                    ),
-            ));
+    let board_composite_inertia = n(1.0) / (board_constraint_7.mul_add(
+        board_constraint_7 * n(7.800000000000001),
+        board_constraint_4.mul_add(board_constraint_4 * n(0.29800000000000004), n(7.800000000000001)),
+    ));
     [n(0.0), back_effort_2 * board_composite_inertia, n(0.0), tau[3], tau[4], tau[5]]
 }
 
@@ -160,39 +134,24 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 9], p: &[T; 6], tau: &[T; 6]) -> [[T; 6
     // back: constraint (1 multiplication)
     let back_constraint = back_cos * n(0.3);
     // board: constraint (3 additions, 10 multiplications, 1 division)
-    let board_constraint = n(1.0)
-        / (front_cos.mul_add(back_constraint, back_cos * front_constraint));
+    let board_constraint = n(1.0) / (front_cos.mul_add(back_constraint, back_cos * front_constraint));
     let board_constraint_2 = back_cos * board_constraint;
     let board_constraint_3 = front_cos * board_constraint;
-    let board_constraint_4 = (-back_sin)
-        .mul_add(board_constraint_3, front_sin * board_constraint_2);
+    let board_constraint_4 = (-back_sin).mul_add(board_constraint_3, front_sin * board_constraint_2);
     let board_constraint_5 = back_constraint * board_constraint;
     let board_constraint_6 = front_constraint * board_constraint;
-    let board_constraint_7 = back_sin
-        .mul_add(board_constraint_6, front_sin * board_constraint_5);
+    let board_constraint_7 = back_sin.mul_add(board_constraint_6, front_sin * board_constraint_5);
     // board: composite inertia (5 additions, 12 multiplications, 1 division)
     let board_composite_inertia = board_constraint_4 * n(0.003);
-    let board_composite_inertia_2 = (-p[5])
-        .mul_add(
-            board_composite_inertia,
-            (-p[4])
-                .mul_add(
-                    board_composite_inertia,
-                    (-p[3]).mul_add(board_constraint_4 * n(0.05), p[1]),
-                ),
-        );
-    let board_composite_inertia_3 = n(1.0)
-        / (board_constraint_7
-            .mul_add(
-                board_constraint_7 * n(7.800000000000001),
-                board_constraint_4
-                    .mul_add(
-                        board_constraint_4 * n(0.29800000000000004),
-                        n(7.800000000000001),
-                    ),
-            ));
-    let board_composite_inertia_4 = board_composite_inertia_2
-        * board_composite_inertia_3;
+    let board_composite_inertia_2 = (-p[5]).mul_add(
+        board_composite_inertia,
+        (-p[4]).mul_add(board_composite_inertia, (-p[3]).mul_add(board_constraint_4 * n(0.05), p[1])),
+    );
+    let board_composite_inertia_3 = n(1.0) / (board_constraint_7.mul_add(
+        board_constraint_7 * n(7.800000000000001),
+        board_constraint_4.mul_add(board_constraint_4 * n(0.29800000000000004), n(7.800000000000001)),
+    ));
+    let board_composite_inertia_4 = board_composite_inertia_2 * board_composite_inertia_3;
     let board_composite_inertia_5 = board_constraint_4 * board_composite_inertia_4;
     let board_composite_inertia_6 = board_constraint_7 * board_composite_inertia_4;
     // board: momentum (3 multiplications)
@@ -203,94 +162,49 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 9], p: &[T; 6], tau: &[T; 6]) -> [[T; 6
     // back: momentum (4 additions, 3 multiplications)
     let back_momentum = p[5] + board_composite_inertia_5;
     // rotor: momentum (1 addition)
-    let rotor_momentum = back_momentum
-        .mul_add(
-            n(0.003),
-            board_composite_inertia_5
-                .mul_add(
-                    n(0.24200000000000005),
-                    front_momentum_2
-                        .mul_add(n(0.003), (p[3] + board_composite_inertia_5) * n(0.05)),
-                ),
-        );
+    let rotor_momentum = back_momentum.mul_add(
+        n(0.003),
+        board_composite_inertia_5.mul_add(
+            n(0.24200000000000005),
+            front_momentum_2.mul_add(n(0.003), (p[3] + board_composite_inertia_5) * n(0.05)),
+        ),
+    );
     // board: momentum (2 additions, 8 multiplications)
-    let board_momentum_2 = board_constraint_5
-        .mul_add(board_momentum, board_constraint_2 * rotor_momentum);
-    let board_momentum_3 = (-board_constraint_6)
-        .mul_add(board_momentum, board_constraint_3 * rotor_momentum);
+    let board_momentum_2 = board_constraint_5.mul_add(board_momentum, board_constraint_2 * rotor_momentum);
+    let board_momentum_3 = (-board_constraint_6).mul_add(board_momentum, board_constraint_3 * rotor_momentum);
     let board_momentum_4 = front_momentum_2 * board_momentum_2;
     let board_momentum_5 = back_momentum * board_momentum_3;
     // back: momentum rate (3 additions, 5 multiplications)
     let back_momentum_rate = back_sin * board_momentum_5;
-    let back_momentum_rate_2 = back_momentum_rate
-        .mul_add(
-            n(0.3),
-            (back_sin
-                .mul_add(
-                    board_composite_inertia_6 - front_momentum,
-                    back_cos * board_composite_inertia_4,
-                )) * board_momentum_3,
-        );
+    let back_momentum_rate_2 = back_momentum_rate.mul_add(
+        n(0.3),
+        (back_sin.mul_add(board_composite_inertia_6 - front_momentum, back_cos * board_composite_inertia_4)) * board_momentum_3,
+    );
     // front: momentum rate (6 additions, 5 multiplications)
     let front_momentum_rate = front_sin * board_momentum_4;
-    let front_momentum_rate_2 = (-front_momentum_rate)
-        .mul_add(
-            n(0.3),
-            (front_sin
-                .mul_add(
-                    board_composite_inertia_6 + front_momentum,
-                    front_cos * board_composite_inertia_4,
-                )) * board_momentum_2,
-        );
+    let front_momentum_rate_2 = (-front_momentum_rate).mul_add(
+        n(0.3),
+        (front_sin
+            .mul_add(board_composite_inertia_6 + front_momentum, front_cos * board_composite_inertia_4)) * board_momentum_2,
+    );
     let front_momentum_rate_3 = (-back_sin)
-        .mul_add(
-            board_momentum_3,
-            front_sin
-                .mul_add(
-                    board_momentum_2,
-                    board_composite_inertia_4 * n(7.800000000000001),
-                ),
-        );
-    let front_momentum_rate_4 = (-front_cos)
-        .mul_add(board_momentum_2, back_cos.mul_add(board_momentum_3, board_momentum));
+        .mul_add(board_momentum_3, front_sin.mul_add(board_momentum_2, board_composite_inertia_4 * n(7.800000000000001)));
+    let front_momentum_rate_4 = (-front_cos).mul_add(board_momentum_2, back_cos.mul_add(board_momentum_3, board_momentum));
     // board: momentum rate (9 additions, 6 multiplications)
-    let board_momentum_rate = board_constraint_4
-        * ((-board_composite_inertia_4)
-            .mul_add(
-                front_momentum_rate_4,
-                board_composite_inertia_6
-                    .mul_add(
-                        front_momentum_rate_3,
-                        tau[0] + back_momentum_rate_2 - front_momentum_rate_2,
-                    ),
-            ));
-    let board_momentum_rate_2 = (-back_cos)
-        .mul_add(
-            board_momentum_5,
-            board_constraint_7
-                .mul_add(
-                    (-board_composite_inertia_5)
-                        .mul_add(
-                            front_momentum_rate_3,
-                            tau[2] + front_momentum_rate - back_momentum_rate,
-                        ),
-                    board_composite_inertia_5
-                        .mul_add(
-                            front_momentum_rate_4,
-                            front_cos
-                                .mul_add(board_momentum_4, tau[1] + board_momentum_rate),
-                        ),
-                ),
-        );
+    let board_momentum_rate = board_constraint_4 * ((-board_composite_inertia_4).mul_add(
+        front_momentum_rate_4,
+        board_composite_inertia_6.mul_add(front_momentum_rate_3, tau[0] + back_momentum_rate_2 - front_momentum_rate_2),
+    ));
+    let board_momentum_rate_2 = (-back_cos).mul_add(
+        board_momentum_5,
+        board_constraint_7.mul_add(
+            (-board_composite_inertia_5).mul_add(front_momentum_rate_3, tau[2] + front_momentum_rate - back_momentum_rate),
+            board_composite_inertia_5
+                .mul_add(front_momentum_rate_4, front_cos.mul_add(board_momentum_4, tau[1] + board_momentum_rate)),
+        ),
+    );
     [
-        [
-            board_composite_inertia_5,
-            board_composite_inertia_4,
-            board_composite_inertia_6,
-            p[3],
-            p[4],
-            p[5],
-        ],
+        [board_composite_inertia_5, board_composite_inertia_4, board_composite_inertia_6, p[3], p[4], p[5]],
         [n(0.0), board_momentum_rate_2, n(0.0), tau[3], tau[4], tau[5]],
     ]
 }
@@ -311,54 +225,31 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 9], p: &[T; 6]) -> [T; 1] {
     // back: constraint (1 multiplication)
     let back_constraint = back_cos * n(0.3);
     // board: constraint (3 additions, 10 multiplications, 1 division)
-    let board_constraint = n(1.0)
-        / (front_cos.mul_add(back_constraint, back_cos * front_constraint));
-    let board_constraint_2 = (-back_sin)
-        .mul_add(
-            front_cos * board_constraint,
-            front_sin * (back_cos * board_constraint),
-        );
+    let board_constraint = n(1.0) / (front_cos.mul_add(back_constraint, back_cos * front_constraint));
+    let board_constraint_2 = (-back_sin).mul_add(front_cos * board_constraint, front_sin * (back_cos * board_constraint));
     let board_constraint_3 = back_sin
-        .mul_add(
-            front_constraint * board_constraint,
-            front_sin * (back_constraint * board_constraint),
-        );
+        .mul_add(front_constraint * board_constraint, front_sin * (back_constraint * board_constraint));
     // board: composite inertia (5 additions, 12 multiplications, 1 division)
     let board_composite_inertia = board_constraint_2 * n(0.003);
-    let board_composite_inertia_2 = (-p[5])
-        .mul_add(
-            board_composite_inertia,
-            (-p[4])
-                .mul_add(
-                    board_composite_inertia,
-                    (-p[3]).mul_add(board_constraint_2 * n(0.05), p[1]),
-                ),
-        );
-    let board_composite_inertia_3 = n(1.0)
-        / (board_constraint_3
-            .mul_add(
-                board_constraint_3 * n(7.800000000000001),
-                board_constraint_2
-                    .mul_add(
-                        board_constraint_2 * n(0.29800000000000004),
-                        n(7.800000000000001),
-                    ),
-            ));
-    let board_composite_inertia_4 = board_composite_inertia_2
-        * board_composite_inertia_3;
+    let board_composite_inertia_2 = (-p[5]).mul_add(
+        board_composite_inertia,
+        (-p[4]).mul_add(board_composite_inertia, (-p[3]).mul_add(board_constraint_2 * n(0.05), p[1])),
+    );
+    let board_composite_inertia_3 = n(1.0) / (board_constraint_3.mul_add(
+        board_constraint_3 * n(7.800000000000001),
+        board_constraint_2.mul_add(board_constraint_2 * n(0.29800000000000004), n(7.800000000000001)),
+    ));
+    let board_composite_inertia_4 = board_composite_inertia_2 * board_composite_inertia_3;
     let board_composite_inertia_5 = board_constraint_2 * board_composite_inertia_4;
     let board_composite_inertia_6 = board_constraint_3 * board_composite_inertia_4;
     // board: kinetic energy (2 additions, 3 multiplications)
-    let board_kinetic_energy = board_composite_inertia_6
-        .mul_add(
-            board_composite_inertia_6 * n(7.800000000000001),
-            board_composite_inertia_4
-                .mul_add(
-                    board_composite_inertia_4 * n(7.800000000000001),
-                    board_composite_inertia_5
-                        * (board_composite_inertia_5 * n(0.24200000000000005)),
-                ),
-        );
+    let board_kinetic_energy = board_composite_inertia_6.mul_add(
+        board_composite_inertia_6 * n(7.800000000000001),
+        board_composite_inertia_4.mul_add(
+            board_composite_inertia_4 * n(7.800000000000001),
+            board_composite_inertia_5 * (board_composite_inertia_5 * n(0.24200000000000005)),
+        ),
+    );
     // rotor: momentum (1 addition, 1 multiplication)
     let rotor_momentum = p[3] + board_composite_inertia_5;
     // front: momentum (1 addition, 1 multiplication)
@@ -366,15 +257,10 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 9], p: &[T; 6]) -> [T; 1] {
     // back: momentum (1 addition, 1 multiplication)
     let back_momentum = p[5] + board_composite_inertia_5;
     // back: kinetic energy (1 addition, 2 multiplications)
-    let back_kinetic_energy = back_momentum
-        .mul_add(
-            back_momentum * n(0.003),
-            front_momentum
-                .mul_add(
-                    front_momentum * n(0.003),
-                    rotor_momentum
-                        .mul_add(rotor_momentum * n(0.05), board_kinetic_energy),
-                ),
-        );
+    let back_kinetic_energy = back_momentum.mul_add(
+        back_momentum * n(0.003),
+        front_momentum
+            .mul_add(front_momentum * n(0.003), rotor_momentum.mul_add(rotor_momentum * n(0.05), board_kinetic_energy)),
+    );
     [back_kinetic_energy.mul_add(n(0.5), n(1.9620000000000002))]
 }

@@ -3,8 +3,8 @@
 use super::ball::Ball;
 use super::jet::Jet;
 use hamel_codegen::derived::Primitive;
-use hamel_codegen::emit::formula::{Binding, Node, Program};
 use hamel_codegen::expr::{Atom, Expr, Symbol};
+use hamel_codegen::formula::{Binding, Node, Program};
 use hamel_codegen::matrix::Matrix;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};

@@ -66,7 +66,7 @@ impl<'a> At<'a> {
                 &arguments.local,
                 (0..arguments.local.len()).map(|_| Jet::constant(Ball::zero())),
             );
-        let q = point.configuration(&derived.spec);
+        let q = point.configuration(&derived.space);
         let values = values.with(&arguments.configuration, constant(q));
         Self {
             derived,
@@ -96,8 +96,9 @@ impl<'a> At<'a> {
             .map(|r| r.value.value.clone())
             .chain(sides.into_iter().flatten());
         let positive: Vec<Ball> = positive.map(|e| of(&e)).collect();
-        let loci: Vec<Ball> = spec.loci.iter().map(|l| of(&l.value.function)).collect();
-        let relations: Vec<Ball> = spec.manifold.value.relations().iter().map(of).collect();
+        let space = &self.derived.space;
+        let loci: Vec<Ball> = space.loci.iter().map(|l| of(&l.value.function)).collect();
+        let relations: Vec<Ball> = space.manifold.relations().iter().map(of).collect();
         let outside = positive
             .iter()
             .any(|x| x.is_negative() || x.is_zero() || x.is_undefined())
@@ -212,7 +213,7 @@ impl<'a> At<'a> {
     /// Φ(Q, 0) = Q, Φ on the manifold to second order and at finite ϕ, and what was lowered of Φ.
     fn manifold(&mut self) {
         let arguments = &self.derived.arguments;
-        let manifold = &self.derived.spec.manifold.value;
+        let manifold = &self.derived.space.manifold;
         let there = self.moved(SECOND);
         let q: Vec<Jet> = arguments
             .configuration

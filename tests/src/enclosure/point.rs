@@ -2,7 +2,7 @@
 
 use super::ball::Ball;
 use hamel_codegen::manifold::Kind;
-use hamel_codegen::model::JointSpec;
+use hamel_codegen::model::ConfigurationSpace;
 
 /// Doubles from which a point is made: they name it at every precision.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,8 +22,8 @@ fn chart_size(kind: Kind, scalars: usize) -> usize {
 }
 
 /// Doubles in the chart of a joint.
-pub fn dimensions(spec: &JointSpec) -> usize {
-    let factors = spec.manifold.value.factors().iter();
+pub fn dimensions(space: &ConfigurationSpace) -> usize {
+    let factors = space.manifold.factors().iter();
     factors
         .map(|f| chart_size(f.kind, f.coordinates.len()))
         .sum()
@@ -37,8 +37,8 @@ impl Point {
 
     /// The stored scalars. Real factors on which a relation holds are divided by their norm: what is declared may then be a sphere of
     /// radius 1; whether a point meets all relations is seen where the domain is.
-    pub fn configuration(&self, spec: &JointSpec) -> Vec<Ball> {
-        let manifold = &spec.manifold.value;
+    pub fn configuration(&self, space: &ConfigurationSpace) -> Vec<Ball> {
+        let manifold = &space.manifold;
         let mut rest = self.chart.iter().map(|x| Ball::exact(*x));
         let factors = manifold.factors().iter().flat_map(|factor| {
             let count = chart_size(factor.kind, factor.coordinates.len());

@@ -7,14 +7,12 @@ use hamel_codegen::matrix::Matrix;
 use hamel_codegen::scene::JointType;
 
 /// Kernels that no law here evaluates: finite maps beside Φ, home, and what tells how far a configuration is from where it belongs.
-const UNJUDGED: [KernelKind; 10] = [
+const UNJUDGED: [KernelKind; 8] = [
     KernelKind::Home,
     KernelKind::Local,
-    KernelKind::RetractTangent,
     KernelKind::RetractDifferential,
     KernelKind::RetractDifferentialInverse,
     KernelKind::Relations,
-    KernelKind::RelationGradient,
     KernelKind::Project,
     KernelKind::Residual,
     KernelKind::Singularity,
@@ -32,7 +30,7 @@ fn at(chart: &[f64], parameters: &[f64]) -> Point {
 fn the_library_holds() {
     for name in crate::spec_names() {
         let derived = crate::derived(&name);
-        let count = super::dimensions(&derived.spec);
+        let count = super::dimensions(&derived.space);
         let parameters: Vec<f64> = (0..derived.spec.parameters.len())
             .map(|i| 1.5 / (1.0 + i as f64))
             .collect();
@@ -92,10 +90,7 @@ fn with_false(derived: &Derived, kind: KernelKind) -> Option<Derived> {
     let off = &x - &Expr::integer(5);
     let tiny = Expr::fraction(1, 1_000_000_000_000_000).square();
     let bump = &tiny * &(&Expr::integer(-1_000_000) * &off.square()).exp();
-    let kernel = falsified
-        .kernels
-        .iter_mut()
-        .find(|kernel| kernel.kind == kind)?;
+    let mut kernel = falsified.kernel(kind)?.clone();
     let output = kernel.outputs.first_mut()?;
     if output.entries().is_empty() {
         return None;
@@ -105,6 +100,7 @@ fn with_false(derived: &Derived, kind: KernelKind) -> Option<Derived> {
         true => entry + &bump,
         false => entry.clone(),
     });
+    falsified.replace(kernel);
     Some(falsified)
 }
 

@@ -164,7 +164,7 @@ fn examined(made: &Made, seed: u64, tally: &mut Tally) -> Option<String> {
     let points = points(
         made,
         derived.spec.parameters.len(),
-        dimensions(&derived.spec),
+        dimensions(&derived.space),
         seed,
     );
     let verdict = points

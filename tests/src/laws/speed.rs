@@ -42,6 +42,18 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
             &rate.tr_mul(wrench),
         );
         close("Ẋ̄^c", J::NAME, &joint.twist_map_rate(q, speeds), &rate);
+        close(
+            "c by products",
+            J::NAME,
+            &joint.bias_acceleration_by_products(q, speeds),
+            &(rate * speeds),
+        );
+        close(
+            "Ẋ̄^cᵀ h by products",
+            J::NAME,
+            &joint.bias_momentum_by_products(q, speeds, wrench),
+            &rate.tr_mul(wrench),
+        );
         self.gradient_laws(speeds, wrench);
         self.slope_laws(speeds, wrench);
     }

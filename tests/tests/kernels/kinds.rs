@@ -53,7 +53,7 @@ fn no_law_of_these_joints_is_violated() {
         for n in 0..6_u32 {
             let size = [0.4, 1.3, 7.0][n as usize % 3];
             let scale = if n < 3 { 1.75 } else { 17.5 };
-            let dimensions = u32::try_from(dimensions(&joint.spec)).expect("few dimensions");
+            let dimensions = u32::try_from(dimensions(&joint.space)).expect("few dimensions");
             let point = Point {
                 parameters: parameters(&joint, scale),
                 // No number occurs twice, and none is a special one.
@@ -68,7 +68,7 @@ fn no_law_of_these_joints_is_violated() {
             }
         }
         // Points of a manifold by relations are not chosen freely.
-        let by_relations = !joint.spec.manifold.value.declared().is_empty();
+        let by_relations = !joint.space.manifold.declared().is_empty();
         assert!(held > 1 || by_relations, "{file}: {undecided:?}");
     }
 }

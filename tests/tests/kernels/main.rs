@@ -10,6 +10,7 @@ mod hyperbolic;
 mod kinds;
 mod laws;
 mod no_std;
+mod operations;
 mod paper;
 mod rotation_tables;
 mod structure_constants;

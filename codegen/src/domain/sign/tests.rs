@@ -2,6 +2,7 @@
 
 use crate::domain::Domain;
 use crate::expr::Expr;
+use crate::model::ConfigurationSpace;
 use crate::spec;
 
 fn check(parameters: &str, pose: &str) -> bool {
@@ -14,7 +15,7 @@ fn check_with(parameters: &str, require: &str, pose: &str) -> bool {
     );
     let joint = spec::parse(&source, "test.joint").expect("a valid spec");
     let expression: Expr = joint.pose.value.translation.at(2, 0).clone();
-    Domain::new(&joint).is_positive(&expression)
+    Domain::new(&ConfigurationSpace::declared(&joint)).is_positive(&expression)
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::text::{cell, html, paragraphs};
 use crate::emit::report::layout::{left_aligned, width};
 use crate::emit::report::{Formula, Report};
-use crate::emit::text::{fence, markdown, visible};
+use crate::text::{fence, markdown, visible};
 use std::collections::BTreeMap;
 use tera::Context;
 

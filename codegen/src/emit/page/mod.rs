@@ -7,8 +7,8 @@ mod text;
 
 pub use overview::overview;
 
+use super::header;
 use super::report::{Accuracy, Report};
-use super::rust::header;
 use crate::derived::Derived;
 use context::{Medium, context};
 use drawing::Drawing;

@@ -4,8 +4,8 @@ use super::drawing::Drawing;
 use super::render;
 use super::text::cell;
 use crate::derived::Derived;
+use crate::emit::header;
 use crate::emit::report::{Accuracy, ClaimRow, Report};
-use crate::emit::rust::header;
 use std::collections::{BTreeMap, BTreeSet};
 use tera::Context;
 

@@ -1,6 +1,6 @@
 //! Text of specs and proofs in Markdown and HTML, where some characters mean something.
 
-use crate::emit::text::{inline_but, visible};
+use crate::text::{inline_but, visible};
 
 /// Text inside HTML; words between backticks are code.
 pub fn html(text: &str) -> String {

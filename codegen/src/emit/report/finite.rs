@@ -1,7 +1,7 @@
 //! How the maps that move the state are found: those at finite ϕ, and those onto the manifold.
 
 use crate::derived::{Derived, Kernel, KernelKind, Method};
-use crate::emit::rust::{self, meaning};
+use crate::emit::method::{Signature, meaning};
 
 /// A finite map.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -14,10 +14,9 @@ pub struct FiniteRow {
     pub method: String,
 }
 
-const FINITE: [KernelKind; 9] = [
+const FINITE: [KernelKind; 8] = [
     KernelKind::Retract,
     KernelKind::Local,
-    KernelKind::RetractTangent,
     KernelKind::RetractDifferential,
     KernelKind::RetractDifferentialInverse,
     KernelKind::Relations,
@@ -28,7 +27,7 @@ const FINITE: [KernelKind; 9] = [
 
 pub(super) fn rows(derived: &Derived) -> Vec<FiniteRow> {
     let row = |kernel: &Kernel| FiniteRow {
-        kernel: rust::method_name(derived, kernel).to_owned(),
+        kernel: Signature::new(kernel, derived.shape).name.to_owned(),
         meaning: meaning(kernel.kind).to_owned(),
         method: in_words(kernel.method).to_owned(),
     };

@@ -5,9 +5,10 @@ use super::series::series;
 use super::shared;
 use super::statement;
 use super::typeset::{Equation, Mark, Math};
-use crate::derived::{Derived, Kernel, KernelKind};
-use crate::expr::Expr;
+use crate::derived::{Derived, Kernel, KernelKind, Step, Word};
+use crate::expr::{Expr, Symbol};
 use crate::matrix::Matrix;
+use std::collections::BTreeSet;
 
 /// Up to so many derivatives along ϕ_k are shown one by one; more are summed up in one matrix.
 const FEW: usize = 3;
@@ -28,9 +29,11 @@ pub struct Formula {
 impl Formula {
     fn new(title: &str, equations: Vec<Equation>, statement: String) -> Self {
         let text: Vec<String> = equations.iter().map(Equation::text).collect();
+        // Matrices stand apart; lines do not.
+        let is_line = text.iter().all(|equation| !equation.contains('\n'));
         Self {
             title: title.into(),
-            text: text.join("\n\n"),
+            text: text.join(if is_line { "\n" } else { "\n\n" }),
             equations,
             statement,
         }
@@ -41,12 +44,30 @@ impl Formula {
 pub fn main_formulas(derived: &Derived) -> Vec<Formula> {
     let notation = Notation::new(derived);
     let kernels = [KernelKind::Pose, KernelKind::TwistMap];
-    let mut shown: Vec<Formula> = kernels
+    let of = |kind: &KernelKind| of_kernel(derived, &notation, *kind);
+    let names = names(derived, &notation, &kernels);
+    let formulas = kernels.iter().filter_map(of).chain(names);
+    let series = std::iter::once(velocity_map(derived, &notation));
+    formulas.chain(series).collect()
+}
+
+/// What the names of the spec that stand in the formulas of these kernels mean, and the derivatives of those.
+fn names(derived: &Derived, notation: &Notation, kernels: &[KernelKind]) -> Option<Formula> {
+    let of = |kind: &KernelKind| derived.kernel(*kind);
+    let steps = kernels
         .iter()
-        .filter_map(|kind| of_kernel(derived, &notation, *kind))
-        .collect();
-    shown.push(velocity_map(derived, &notation));
-    shown
+        .filter_map(of)
+        .flat_map(|kernel| &kernel.steps);
+    let used: BTreeSet<&Symbol> = steps.flat_map(Step::bound).collect();
+    let words = derived.words.iter();
+    let words = words.filter(|word| used.contains(&word.symbol));
+    let equation = |word: &Word| Equation {
+        left: notation.set_symbol(&word.symbol),
+        right: notation.set(&word.value),
+    };
+    let equations: Vec<Equation> = words.map(equation).collect();
+    let title = "Names of the spec, and their derivatives";
+    (!equations.is_empty()).then(|| Formula::new(title, equations, String::new()))
 }
 
 /// All formulas of a page.
@@ -70,7 +91,12 @@ pub(super) fn formulas(derived: &Derived, notation: &Notation) -> Vec<Formula> {
         KernelKind::BiasMomentum,
     ];
     let of = |kind: &KernelKind| of_kernel(derived, notation, *kind);
-    let first: Vec<Formula> = before.iter().filter_map(of).collect();
+    let all = [&before[..], &after].concat();
+    let names = names(derived, notation, &all);
+    let first: Vec<Formula> = names
+        .into_iter()
+        .chain(before.iter().filter_map(of))
+        .collect();
     let series = std::iter::once(velocity_map(derived, notation));
     first
         .into_iter()
@@ -123,7 +149,7 @@ fn of_kernel(derived: &Derived, notation: &Notation, kind: KernelKind) -> Option
         None => name,
     };
     let equations = equations(derived, notation, kernel, &name);
-    let statement = statement(&derived.spec, kind).unwrap_or_default();
+    let statement = statement(derived, kind).unwrap_or_default();
     (!equations.is_empty()).then(|| Formula::new(title, equations, statement))
 }
 

@@ -20,7 +20,7 @@ pub use provenance::{Statement, sources, statement};
 pub use series::{Series, series};
 pub use tables::{ClaimRow, CountRow, FreedomRow, ParameterRow, proof_in_words};
 
-use super::names::type_name;
+use super::types::type_name;
 use crate::derived::{Derived, Shape};
 use crate::model::{Declared, JointSpec, Locus, VelocityFrame};
 use notation::Notation;
@@ -106,7 +106,7 @@ impl Report {
             speeds: derived.speed_names.clone(),
             velocity_frame: velocity_frame(spec).to_owned(),
             formulas: vec![],
-            singularities: singularities(spec, &notation),
+            singularities: singularities(derived, &notation),
             claims: tables::claims(derived),
             finite: finite::rows(derived),
             accuracy: vec![],
@@ -140,7 +140,7 @@ pub struct LocusRow {
     pub cause: String,
 }
 
-fn singularities(spec: &JointSpec, notation: &Notation) -> Vec<LocusRow> {
+fn singularities(derived: &Derived, notation: &Notation) -> Vec<LocusRow> {
     let row = |locus: &Declared<Locus>| LocusRow {
         function: notation.set(&locus.value.function),
         text: locus.value.text.clone(),
@@ -151,7 +151,7 @@ fn singularities(spec: &JointSpec, notation: &Notation) -> Vec<LocusRow> {
             .collect::<Vec<_>>()
             .join(" "),
     };
-    spec.loci.iter().map(row).collect()
+    derived.space.loci.iter().map(row).collect()
 }
 
 fn requirements(spec: &JointSpec) -> Vec<String> {
@@ -183,7 +183,7 @@ pub fn summary(docs: &[String], name: &str) -> String {
 
 /// The configuration manifold: `R ∈ SO3, p ∈ R3`.
 pub fn manifold(derived: &Derived) -> String {
-    let factors = derived.spec.manifold.value.factors().iter();
+    let factors = derived.space.manifold.factors().iter();
     let named: Vec<String> = factors
         .map(|factor| format!("{} ∈ {}", factor.name, factor.kind.name()))
         .collect();

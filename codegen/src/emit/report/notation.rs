@@ -1,9 +1,9 @@
 //! How a joint's symbols and expressions are set, in the symbols of the paper: `Q₁₁ v₁ − ½ (a + b)`.
 
 use super::typeset::{Equation, Mark, Math, composed, named};
-use crate::derived::Derived;
-use crate::emit::formula::{Node, factored};
+use crate::derived::{Derived, Word};
 use crate::expr::{Expr, Symbol};
+use crate::formula::{Node, factored};
 use crate::manifold::{Factor, Kind};
 use crate::matrix::Matrix;
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ impl Notation {
     pub fn new(derived: &Derived) -> Self {
         let mut by_symbol = BTreeMap::new();
         let arguments = &derived.arguments;
-        let factors = derived.spec.manifold.value.factors();
+        let factors = derived.space.manifold.factors();
         let names: Vec<Math> = factors.iter().flat_map(names_of_factor).collect();
         for (symbol, name) in arguments.configuration.iter().zip(&names) {
             by_symbol.insert(symbol.clone(), name.clone());
@@ -47,7 +47,23 @@ impl Notation {
         for parameter in &derived.spec.parameters {
             by_symbol.insert(parameter.symbol.clone(), named(&parameter.symbol.name));
         }
-        Self { by_symbol }
+        let mut notation = Self { by_symbol };
+        for word in &derived.words {
+            notation.name_word(word, &arguments.local);
+        }
+        notation
+    }
+
+    /// A derivative is set as one: `∂lean/∂ϕ₁`.
+    fn name_word(&mut self, word: &Word, locals: &[Symbol]) {
+        let name = word.along.iter().fold(named(&word.base), |name, &k| {
+            let name = match name {
+                Math::Partial(..) => name.grouped(),
+                name => name,
+            };
+            Math::Partial(Box::new(name), Box::new(self.set_symbol(&locals[k])))
+        });
+        self.name(&word.symbol, name);
     }
 
     /// A symbol, set.

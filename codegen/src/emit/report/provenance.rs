@@ -4,17 +4,18 @@ mod statements;
 
 pub use statements::Statement;
 
-use crate::derived::KernelKind;
+use crate::derived::{Derived, KernelKind};
 use crate::model::{JointSpec, VelocityFrame};
 use crate::spec::comments::without_comments;
 use std::ops::Range;
 
 /// All statements that the values of a kernel depend on, in the order of the spec, `let` among them.
-pub fn sources(spec: &JointSpec, kind: KernelKind) -> Vec<Statement> {
+pub fn sources(derived: &Derived, kind: KernelKind) -> Vec<Statement> {
+    let spec = &derived.spec;
     let all = statements::statements(&spec.source);
     let mut used: Vec<bool> = all.iter().map(|_| false).collect();
     for part in parts(spec, kind) {
-        let spans = part.spans(spec);
+        let spans = part.spans(derived);
         for (statement, used) in all.iter().zip(&mut used) {
             let holds =
                 |span: &Range<usize>| !span.is_empty() && statement.span.contains(&span.start);
@@ -49,12 +50,18 @@ enum Part {
 
 impl Part {
     /// Where the spec declares it, as far as its model says.
-    fn spans(self, spec: &JointSpec) -> Vec<Range<usize>> {
+    fn spans(self, derived: &Derived) -> Vec<Range<usize>> {
+        let spec = &derived.spec;
         let of = |declared: Option<Range<usize>>| declared.into_iter().collect::<Vec<_>>();
         match self {
             Self::Manifold => vec![spec.manifold.span.clone()],
             Self::Home => of(spec.home.as_ref().map(|declared| declared.span.clone())),
-            Self::Loci => spec.loci.iter().map(|locus| locus.span.clone()).collect(),
+            Self::Loci => derived
+                .space
+                .loci
+                .iter()
+                .map(|locus| locus.span.clone())
+                .collect(),
             Self::Motion => of(spec.retract.as_ref().map(|declared| declared.span.clone())),
             Self::Pose => vec![spec.pose.span.clone()],
             Self::Velocity => of(spec
@@ -122,13 +129,11 @@ fn parts(spec: &JointSpec, kind: KernelKind) -> Vec<Part> {
         KernelKind::SpeedBasisGradient => vec![speeds, &[Motion]],
         KernelKind::Retract
         | KernelKind::Local
-        | KernelKind::RetractTangent
         | KernelKind::RetractDifferential
         | KernelKind::RetractDifferentialInverse => vec![&[Manifold, Motion]],
-        KernelKind::Relations
-        | KernelKind::RelationGradient
-        | KernelKind::Project
-        | KernelKind::Residual => vec![&[Manifold]],
+        KernelKind::Relations | KernelKind::Project | KernelKind::Residual => {
+            vec![&[Manifold]]
+        }
         KernelKind::Singularity => vec![&[Loci]],
         KernelKind::BiasAcceleration | KernelKind::BiasMomentum => {
             vec![twist, speeds, &[Pose, Motion]]
@@ -138,7 +143,8 @@ fn parts(spec: &JointSpec, kind: KernelKind) -> Vec<Part> {
 }
 
 /// The statements that a kernel comes from directly, as written; nothing for kernels that follow from several.
-pub fn statement(spec: &JointSpec, kind: KernelKind) -> Option<String> {
+pub fn statement(derived: &Derived, kind: KernelKind) -> Option<String> {
+    let spec = &derived.spec;
     let span = match kind {
         KernelKind::Pose => spec.pose.span.clone(),
         KernelKind::TwistMap => match &spec.twist_map {
@@ -154,7 +160,7 @@ pub fn statement(spec: &JointSpec, kind: KernelKind) -> Option<String> {
             None => spec.freedoms.span.clone(),
         },
         KernelKind::Project | KernelKind::Residual | KernelKind::Home => spec.manifold.span.clone(),
-        KernelKind::Singularity => spec.loci.first()?.span.clone(),
+        KernelKind::Singularity => derived.space.loci.first()?.span.clone(),
         _ => return None,
     };
     lines_around(&spec.source, span)
@@ -197,13 +203,13 @@ joint slider(lead: m) {
     fn sources_are_found_with_their_lines_through_lets() {
         let derived = derive(SPEC, "test").unwrap_or_else(|errors| panic!("{errors}"));
         let lines = |kind| -> Vec<usize> {
-            let sources = sources(&derived.spec, kind);
+            let sources = sources(&derived, kind);
             sources.iter().map(|statement| statement.line).collect()
         };
         assert_eq!(lines(KernelKind::Pose), [5, 6, 8, 9]);
         assert_eq!(lines(KernelKind::Home), [4]);
         assert_eq!(lines(KernelKind::SpeedBasis), [0; 0]);
-        let pose = sources(&derived.spec, KernelKind::Pose);
+        let pose = sources(&derived, KernelKind::Pose);
         assert_eq!(pose[1].text, "let pitch = lead / (2 * pi);");
     }
 
@@ -212,7 +218,7 @@ joint slider(lead: m) {
         let source = include_str!("../../../../joint-specs/cart.joint");
         let derived = derive(source, "cart.joint").unwrap_or_else(|errors| panic!("{errors}"));
         let keywords = |kind| -> Vec<String> {
-            let sources = sources(&derived.spec, kind);
+            let sources = sources(&derived, kind);
             sources
                 .into_iter()
                 .map(|statement| statement.keyword)

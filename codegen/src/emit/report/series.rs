@@ -44,7 +44,7 @@ pub fn series(derived: &Derived, notation: &Notation) -> Series {
 
 /// The name of a matrix of coordinates: a factor itself, or its transpose.
 fn known_matrix(derived: &Derived, matrix: &Matrix) -> Option<Math> {
-    let mut factors = derived.spec.manifold.value.factors().iter();
+    let mut factors = derived.space.manifold.factors().iter();
     factors.find_map(|factor| {
         let (itself, name) = (factor.matrix(), named(&factor.name));
         match (*matrix == itself, *matrix == itself.transpose()) {
@@ -112,7 +112,7 @@ fn adjoint(derived: &Derived, local: &[Expr]) -> Option<Matrix> {
     if freedoms.iter().any(other) {
         return None;
     }
-    let kind = derived.spec.manifold.value.factors().get(factor)?.kind;
+    let kind = derived.space.manifold.factors().get(factor)?.kind;
     let generators: Vec<Vec<Expr>> = freedoms
         .iter()
         .map(|freedom| freedom.generator.clone())

@@ -3,10 +3,9 @@
 use super::notation::Notation;
 use super::typeset::{Equation, Math};
 use crate::derived::{Derived, Kernel};
-use crate::emit::formula::Binding;
-use crate::emit::names::Names;
-use crate::emit::rust::Method;
+use crate::emit::method::Method;
 use crate::expr::Symbol;
+use crate::formula::Binding;
 
 /// Parts of a formula that a reader takes in as a whole: longer ones are written with names for what they share.
 pub const LONGEST: usize = 300;
@@ -19,13 +18,15 @@ pub fn equations(
     kernel: &Kernel,
     names: &[Math],
 ) -> Option<Vec<Equation>> {
-    let claimed = Names::new(derived);
+    let claimed = derived.names();
     let method = Method::new(derived, kernel, &claimed);
-    let program = method.program();
+    let program = &method.program;
     let mut notation = notation.clone();
     let mut definitions = vec![];
     for binding in &program.bindings {
         match binding {
+            // Names of the spec are told once, before all formulas.
+            Binding::Value { name, .. } if is_word(derived, name) => {}
             Binding::Value { name, value } => {
                 let left = Math::Letter('w').with_index(Math::integer(definitions.len() + 1));
                 let right = notation.formula(value);
@@ -62,4 +63,8 @@ pub fn equations(
             .chain(definitions)
             .collect(),
     )
+}
+
+fn is_word(derived: &Derived, name: &Symbol) -> bool {
+    derived.words.iter().any(|word| word.symbol == *name)
 }

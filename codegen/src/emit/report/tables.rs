@@ -4,10 +4,9 @@ use super::notation::Notation;
 use super::ranges;
 use super::units;
 use crate::derived::{Claim, Derived, Kernel, Method as FoundBy, Structure};
-use crate::emit::formula::Counts;
-use crate::emit::names::Names;
-use crate::emit::rust::Method;
+use crate::emit::method::{Method, products};
 use crate::expr::Rational;
+use crate::formula::Counts;
 use crate::model::Parameter;
 use num_traits::{One, Zero};
 
@@ -135,14 +134,18 @@ pub fn proof_in_words(claim: &Claim) -> String {
 }
 
 pub(super) fn counts(derived: &Derived) -> Vec<CountRow> {
-    let names = Names::new(derived);
+    let names = derived.names();
     let row = |kernel: &Kernel| {
         let method = Method::new(derived, kernel, &names);
+        let products = products(derived, kernel);
         CountRow {
-            kernel: method.name().to_owned(),
+            kernel: method.signature.name.to_owned(),
             structure: structure_in_words(kernel.structure).to_owned(),
-            operations: method.counts(),
-            besides: besides(kernel.method),
+            operations: products.unwrap_or_else(|| method.counts()),
+            besides: products.map_or_else(
+                || besides(kernel.method),
+                |_| Some("all by products of other kernels"),
+            ),
         }
     };
     derived.kernels.iter().map(row).collect()

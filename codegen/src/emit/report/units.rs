@@ -59,7 +59,7 @@ fn is_rate(derived: &Derived, k: usize) -> bool {
 }
 
 fn unit(derived: &Derived, k: usize, freedom: &Freedom) -> &'static str {
-    let Some(factor) = derived.spec.manifold.value.factors().get(freedom.factor) else {
+    let Some(factor) = derived.space.manifold.factors().get(freedom.factor) else {
         return "";
     };
     let turns = |count: usize| {
@@ -89,7 +89,7 @@ fn of_twist(derived: &Derived, twist_map: Option<&Matrix>, k: usize) -> &'static
         return "";
     }
     let column = twist_map.column(k);
-    let ideal = derived.spec.manifold.value.ideal();
+    let ideal = derived.space.manifold.ideal();
     let is_unit = |part: &[Expr]| {
         let square = || -> Expr { part.iter().map(Expr::square).sum() };
         let unit = budget::scope(UNIT_WORK, || ideal.normal_form(&square()).is_one());

@@ -1,14 +1,15 @@
 //! Documentation of emitted code: what a kernel maps, its shape, frame and units, its equation, its cost.
 
-use super::kernel::Method;
 use super::numeric;
-use super::signature::{Output, Signature};
 use crate::derived::{Derived, Kernel, KernelKind, Structure};
+use crate::emit::method::{
+    Method, Output, Signature, absent_in_words, meaning, operations_by_products,
+};
 use crate::emit::report::{
     ClaimRow, FreedomRow, Report, Statement, main_formulas, manifold, sources, units,
     velocity_frame,
 };
-use crate::emit::text::{inline, markdown, visible};
+use crate::text::{inline, markdown, visible};
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -43,6 +44,7 @@ pub fn module(derived: &Derived) -> TokenStream {
     };
     lines.push(String::new());
     lines.extend(storage(derived, &report));
+    lines.extend(absent_in_words(derived));
     lines.extend([String::new(), "```text".into()]);
     for (i, formula) in main_formulas(derived).into_iter().enumerate() {
         lines.extend((i > 0).then(String::new));
@@ -103,15 +105,30 @@ fn claims(report: &Report) -> Vec<String> {
 
 /// The documentation of a kernel.
 pub fn kernel(derived: &Derived, kernel: &Kernel, method: &Method<'_>) -> TokenStream {
-    let mut lines = vec![meaning(kernel.kind).to_owned(), String::new()];
+    let mut lines = vec![meaning(kernel.kind).to_owned()];
     let shape = shape_of(derived, kernel);
     let cost = match numeric::sentence(kernel) {
         Some(sentence) => sentence.to_owned(),
-        None => format!("Operations: {}.", method.counts()),
+        None => format!(
+            "Operations: {}{}.",
+            method.counts(),
+            instead(derived, kernel)
+        ),
     };
     lines.push(format!("{shape}{} {cost}", constancy(kernel.structure)));
-    lines.extend(origin(&sources(&derived.spec, kernel.kind)));
+    lines.extend(origin(&sources(derived, kernel.kind)));
     outer(&lines)
+}
+
+/// What the products of other kernels would take, for a kernel that follows from them.
+fn instead(derived: &Derived, kernel: &Kernel) -> String {
+    match kernel.kind {
+        KernelKind::BiasAcceleration | KernelKind::BiasMomentum => {
+            let products = operations_by_products(derived, kernel.kind).total();
+            format!(", instead of {products} operations by products")
+        }
+        _ => String::new(),
+    }
 }
 
 /// The statements of the spec that a kernel comes from: one in full, several by line and first word.
@@ -132,7 +149,7 @@ fn origin(sources: &[Statement]) -> Vec<String> {
             several.iter().map(short).collect::<Vec<_>>().join(", ")
         }
     };
-    vec![String::new(), format!("From {text}.")]
+    vec![format!("From {text}.")]
 }
 
 fn constancy(structure: Structure) -> &'static str {
@@ -190,57 +207,5 @@ fn listed(units: &[String]) -> String {
         units if units.iter().any(String::is_empty) => String::new(),
         [first, rest @ ..] if rest.iter().all(|unit| unit == first) => first.clone(),
         units => units.join(", "),
-    }
-}
-
-/// What a kernel maps to what.
-pub fn meaning(kind: KernelKind) -> &'static str {
-    match kind {
-        KernelKind::Home => "The home configuration.",
-        KernelKind::Pose => "H(Q): child coordinates to parent coordinates.",
-        KernelKind::TwistMap => {
-            "X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1)."
-        }
-        KernelKind::TwistMapChild => "X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.",
-        KernelKind::TwistMapChildGradient => {
-            "∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k."
-        }
-        KernelKind::VelocityMap => "S₀(Q): ϕ̇ to v at ϕ = 0 (23).",
-        KernelKind::VelocityMapInverse => "S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.",
-        KernelKind::VelocityMapGradient => "∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.",
-        KernelKind::Gamma => "Σ_k γ_k v_k (17): stands on the left of (24).",
-        KernelKind::J22 => "J22(Q, p) (28): stands on the right of (27).",
-        KernelKind::Constraint => "A(Q) with Aᵀ v = 0 (Definition 2).",
-        KernelKind::SpeedBasis => "S̄(Q): speeds v̄ to v (Definition 2, (15)).",
-        KernelKind::SpeedBasisGradient => "∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.",
-        KernelKind::ConfigurationRate => "Q̇(Q, v) (31): the rates of the stored scalars.",
-        KernelKind::Retract => {
-            "Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration."
-        }
-        KernelKind::Local => "The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.",
-        KernelKind::RetractTangent => {
-            "∂Φ/∂ϕ at finite ϕ: ϕ̇ to the rates of the stored scalars of Φ(Q, ϕ)."
-        }
-        KernelKind::RetractDifferential => {
-            "D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D."
-        }
-        KernelKind::RetractDifferentialInverse => {
-            "ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π."
-        }
-        KernelKind::Project => "The configuration on the manifold that is nearest to `q`.",
-        KernelKind::Residual => {
-            "Root of the sum of squares of the manifold's relations: 0 on the manifold."
-        }
-        KernelKind::Relations => "The relations of the manifold: 0 on it.",
-        KernelKind::RelationGradient => "Derivatives of the relations by the stored scalars.",
-        KernelKind::Singularity => {
-            "Least absolute value of the functions whose zeros the joint must stay away from."
-        }
-        KernelKind::BiasAcceleration => {
-            "c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame."
-        }
-        KernelKind::BiasMomentum => {
-            "(d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame."
-        }
     }
 }

@@ -5,9 +5,9 @@ use super::limits;
 use super::tokens::ident;
 use super::type_ident;
 use crate::derived::Derived;
-use crate::emit::names::Names;
 use crate::emit::report::summary;
-use crate::emit::text::is_visible;
+use crate::formula::Names;
+use crate::text::is_visible;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -23,20 +23,27 @@ pub fn tokens(derived: &Derived) -> TokenStream {
             &parameter.unit,
             parameter.docs.trim(),
         );
-        let limits = limits::fields(&parameter.range);
-        quote! { ParameterInfo { name: #name, unit: #unit, description: #description, #limits } }
+        let limits = limits::methods(&parameter.range);
+        quote! { ParameterInfo::new(#name, #unit, #description) #limits }
     });
     let count = Literal::usize_unsuffixed(spec.parameters.len());
+    let (table, parameters) = match spec.parameters.is_empty() {
+        true => (None, quote! { &[] }),
+        false => (
+            Some(quote! { const PARAMETERS: [ParameterInfo; #count] = [#(#infos),*]; }),
+            quote! { &PARAMETERS },
+        ),
+    };
     let source = raw_string(&spec.source);
     let entry_docs = docs::outer(&["How a scene finds this joint by name."]);
     let spec_docs = docs::outer(&["The spec that this joint was generated from."]);
     quote! {
-        const PARAMETERS: [ParameterInfo; #count] = [#(#infos),*];
+        #table
         #entry_docs
         pub const ENTRY: JointEntry = JointEntry {
             name: #name,
             summary: #summary,
-            parameters: &PARAMETERS,
+            parameters: #parameters,
             build: #build,
         };
         #spec_docs
@@ -51,12 +58,12 @@ fn build(derived: &Derived) -> TokenStream {
     if parameters.is_empty() {
         return quote! {
             |values| {
-                ::hamel::registry::check_parameters(#name, &PARAMETERS, values)?;
+                ::hamel::registry::check_parameters(#name, &[], values)?;
                 Ok(::hamel::erased::erase(#type_name))
             }
         };
     }
-    let names = Names::of_parameters(derived);
+    let names = Names::of_parameters(&derived.spec.parameters);
     let fields: Vec<_> = parameters
         .iter()
         .map(|parameter| ident(names.get(&parameter.symbol)))

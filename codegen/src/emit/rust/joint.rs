@@ -1,18 +1,18 @@
 //! The type of a joint and its implementation of the trait.
 
 use super::docs;
-use super::kernel::Method;
 use super::limits;
 use super::numeric;
 use super::patterns;
 use super::tokens::{ident, signed_literal};
 use super::type_ident;
 use crate::derived::{Derived, Kernel, KernelKind, Structure};
-use crate::emit::names::Names;
+use crate::emit::method::Method;
+use crate::emit::method::absent;
 use crate::emit::report::summary;
-use crate::emit::text::inline;
 use crate::expr::Rational;
 use crate::model::VelocityFrame;
+use crate::text::inline;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -23,7 +23,7 @@ pub fn tokens(derived: &Derived) -> TokenStream {
     let [n, k, s, c] = sizes(derived);
     let constants = constants(derived);
     let parameters = parameters(derived);
-    let names = Names::new(derived);
+    let names = derived.names();
     let method = |kernel: &Kernel| {
         let method = Method::new(derived, kernel, &names);
         method.tokens(&docs::kernel(derived, kernel, &method))
@@ -31,6 +31,7 @@ pub fn tokens(derived: &Derived) -> TokenStream {
     let (own, methods): (Vec<&Kernel>, Vec<&Kernel>) = derived
         .kernels
         .iter()
+        .filter(|kernel| absent(derived, kernel).is_none())
         .partition(|kernel| numeric::is_beside_the_trait(kernel.kind));
     let (own, methods) = (own.into_iter().map(method), methods.into_iter().map(method));
     let own: Vec<TokenStream> = own.collect();
@@ -110,7 +111,11 @@ fn constructor_docs(derived: &Derived) -> TokenStream {
     docs::outer(&lines)
 }
 
+/// Names and values of the parameters; the trait's default where there are none.
 fn parameters(derived: &Derived) -> TokenStream {
+    if derived.spec.parameters.is_empty() {
+        return TokenStream::new();
+    }
     let names = derived
         .spec
         .parameters
@@ -164,7 +169,7 @@ fn constants(derived: &Derived) -> TokenStream {
     let structures = structures(derived);
     let patterns = patterns::tokens(derived);
     let inertias = derived.imperceptible.iter().map(inertia);
-    let loci = spec.loci.iter().map(|locus| &locus.value.text);
+    let loci = derived.space.loci.iter().map(|locus| &locus.value.text);
     quote! {
         const NAME: &'static str = #name;
         #coordinates
@@ -183,42 +188,79 @@ fn inertia(weights: &[Rational; 10]) -> TokenStream {
     quote! { [#(#weights),*] }
 }
 
+/// The structure of each kernel that differs from the nearer one of `Structures::TRIVIAL` and `Structures::GENERAL`.
 fn structures(derived: &Derived) -> TokenStream {
-    let fields = [
-        ("twist_map", KernelKind::TwistMap),
-        ("twist_map_child", KernelKind::TwistMapChild),
-        (
-            "twist_map_child_gradient",
-            KernelKind::TwistMapChildGradient,
-        ),
-        ("velocity_map", KernelKind::VelocityMap),
-        ("velocity_map_gradient", KernelKind::VelocityMapGradient),
-        ("gamma", KernelKind::Gamma),
-        ("speed_basis", KernelKind::SpeedBasis),
-        ("speed_basis_gradient", KernelKind::SpeedBasisGradient),
-        (
-            "retract_differential",
-            KernelKind::RetractDifferentialInverse,
-        ),
-        ("bias_acceleration", KernelKind::BiasAcceleration),
-        ("bias_momentum", KernelKind::BiasMomentum),
-    ];
     let of_kernel = |kind| {
         let kernel = derived.kernel(kind);
         kernel.map_or(Structure::General, |kernel| kernel.structure)
     };
     let speed_map = Structure::of(std::slice::from_ref(&derived.speed_map));
-    let fields = fields.map(|(field, kind)| (field, of_kernel(kind)));
-    let fields = fields.into_iter().chain([("speed_map", speed_map)]);
-    let fields = fields.map(|(field, structure)| {
-        let field = ident(field);
-        let structure = ident(match structure {
-            Structure::Zero => "Zero",
-            Structure::Identity => "Identity",
-            Structure::Constant => "Constant",
-            Structure::General => "General",
-        });
-        quote! { #field: Structure::#structure }
-    });
-    quote! { Structures { #(#fields),* } }
+    let of_kernels = TRIVIAL.map(|(field, kind, trivial)| (field, of_kernel(kind), trivial));
+    let all = of_kernels
+        .into_iter()
+        .chain([("speed_map", speed_map, Structure::Constant)]);
+    let (mut beyond, mut below) = (vec![], vec![]);
+    for (field, structure, trivial) in all {
+        let tokens = field_tokens(field, structure);
+        if structure != trivial {
+            beyond.push(tokens.clone());
+        }
+        if structure != Structure::General {
+            below.push(tokens);
+        }
+    }
+    match (beyond.len(), below.len()) {
+        (0, _) => quote! { Structures::TRIVIAL },
+        (beyond_count, below_count) if beyond_count <= below_count => {
+            quote! { Structures { #(#beyond,)* ..Structures::TRIVIAL } }
+        }
+        (_, 0) => quote! { Structures::GENERAL },
+        _ => quote! { Structures { #(#below,)* ..Structures::GENERAL } },
+    }
+}
+
+/// The fields of the runtime's `Structures`, with the kernels that they tell of and their values in `Structures::TRIVIAL`.
+const TRIVIAL: [(&str, KernelKind, Structure); 13] = [
+    ("twist_map", KernelKind::TwistMap, Structure::Constant),
+    (
+        "twist_map_child",
+        KernelKind::TwistMapChild,
+        Structure::Constant,
+    ),
+    (
+        "twist_map_child_gradient",
+        KernelKind::TwistMapChildGradient,
+        Structure::Zero,
+    ),
+    ("velocity_map", KernelKind::VelocityMap, Structure::Identity),
+    (
+        "velocity_map_gradient",
+        KernelKind::VelocityMapGradient,
+        Structure::Zero,
+    ),
+    ("gamma", KernelKind::Gamma, Structure::Zero),
+    ("speed_basis", KernelKind::SpeedBasis, Structure::Identity),
+    (
+        "speed_basis_gradient",
+        KernelKind::SpeedBasisGradient,
+        Structure::Zero,
+    ),
+    (
+        "retract_differential",
+        KernelKind::RetractDifferentialInverse,
+        Structure::Identity,
+    ),
+    ("project", KernelKind::Project, Structure::Identity),
+    ("residual", KernelKind::Residual, Structure::Zero),
+    (
+        "bias_acceleration",
+        KernelKind::BiasAcceleration,
+        Structure::Zero,
+    ),
+    ("bias_momentum", KernelKind::BiasMomentum, Structure::Zero),
+];
+
+fn field_tokens(field: &str, structure: Structure) -> TokenStream {
+    let (field, structure) = (ident(field), ident(&format!("{structure:?}")));
+    quote! { #field: Structure::#structure }
 }

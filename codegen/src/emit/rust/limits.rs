@@ -2,25 +2,26 @@
 
 use super::tokens::{Writer, ident, signed_literal};
 use crate::derived::Derived;
-use crate::emit::formula::{Program, factored};
-use crate::emit::names::Names;
 use crate::expr::Rational;
+use crate::formula::Names;
+use crate::formula::{Program, factored};
 use crate::model::{End, Interval, Parameter};
 use num_traits::ToPrimitive;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-/// The fields `lower` and `upper` of a parameter's entry.
-pub fn fields(range: &Interval) -> TokenStream {
-    let limit = |end: &Option<End>| match end {
-        None => quote! { None },
-        Some(End { value, included }) => {
-            let value = signed_literal(value);
-            quote! { Some(Limit { value: #value, included: #included }) }
-        }
+/// The range of a parameter as methods of its entry: `.above(0.0).at_most(2.5)`.
+pub fn methods(range: &Interval) -> TokenStream {
+    let limit = |end: &Option<End>, included: &str, excluded: &str| {
+        end.as_ref().map(|end| {
+            let method = ident(if end.included { included } else { excluded });
+            let value = signed_literal(&end.value);
+            quote! { .#method(#value) }
+        })
     };
-    let (lower, upper) = (limit(&range.lower), limit(&range.upper));
-    quote! { lower: #lower, upper: #upper }
+    let lower = limit(&range.lower, "at_least", "above");
+    let upper = limit(&range.upper, "at_most", "below");
+    quote! { #lower #upper }
 }
 
 /// The range in words: `greater than 0 and at most 1`, `other than 0`.

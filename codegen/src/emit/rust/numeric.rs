@@ -1,4 +1,4 @@
-//! Kernels whose value no formula gives: calls of the runtime's Newton iterations and solves with the kernels that define it.
+//! Kernels whose value no formula gives: calls of the runtime's Newton iterations and solves with Φ and the relations.
 
 use crate::derived::{Derived, Kernel, KernelKind, Method};
 use crate::expr::Symbol;
@@ -10,48 +10,28 @@ pub fn call(derived: &Derived, kernel: &Kernel, start: &TokenStream) -> Option<T
     if kernel.method == Method::Formula {
         return None;
     }
-    let tangents = quote! {
-        let moved = self.retract(q, phi);
-        let tangent = self.retract_tangent(q, phi);
-        let tangent_there = self.retract_tangent(&moved, &SVector::zeros());
-    };
+    let retract = quote! { |q, phi| self.retract(q, phi) };
     Some(match kernel.kind {
         KernelKind::Local => quote! {
-            ::hamel::finite::local(
-                target,
-                |phi| self.retract(q, phi),
-                |phi| self.retract_tangent(q, phi),
-            )
+            ::hamel::finite::local(q, target, #retract)
         },
         KernelKind::RetractDifferential => quote! {
-            #tangents
-            ::hamel::finite::differential(&tangent, &tangent_there)
+            ::hamel::finite::differential(q, phi, #retract)
         },
         KernelKind::RetractDifferentialInverse => quote! {
-            #tangents
-            ::hamel::finite::differential_inverse(&tangent, &tangent_there, rate)
+            ::hamel::finite::differential_inverse(q, phi, rate, #retract)
         },
         KernelKind::Project => {
             let codimension = Literal::usize_unsuffixed(codimension(derived));
-            quote! {
-                ::hamel::finite::project(
-                    #start,
-                    #codimension,
-                    |q| self.relations(q),
-                    |q| self.relation_gradient(q),
-                )
-            }
+            quote! { ::hamel::finite::project(#start, #codimension, |q| self.relations(q)) }
         }
         _ => return None,
     })
 }
 
-/// Whether a kernel is a method of the joint's type alone: one that only these calls need.
+/// Whether a kernel is a method of the joint's type alone: the one that only these calls need.
 pub fn is_beside_the_trait(kind: KernelKind) -> bool {
-    matches!(
-        kind,
-        KernelKind::RetractTangent | KernelKind::Relations | KernelKind::RelationGradient
-    )
+    kind == KernelKind::Relations
 }
 
 /// Rank of the derivatives of the relations on the manifold: N less the dimension that they cut out, without what known factors
@@ -63,7 +43,7 @@ fn codimension(derived: &Derived) -> usize {
         .flat_map(|column| column.entries())
         .flat_map(|entry| entry.symbols())
         .collect();
-    let factors = derived.spec.manifold.value.factors().iter();
+    let factors = derived.space.manifold.factors().iter();
     let apart: usize = factors
         .filter(|factor| !factor.coordinates.iter().any(|q| named.contains(q)))
         .map(|factor| factor.coordinates.len() - factor.kind.dimension())
@@ -83,6 +63,6 @@ pub fn sentence(kernel: &Kernel) -> Option<&'static str> {
             "By Newton's method, in at most [`PROJECT_ITERATIONS`](::hamel::finite::PROJECT_ITERATIONS); NaN where it does \
              not converge.",
         ),
-        _ => Some("By a least-squares solve with ∂Φ/∂ϕ at Q and at Q′."),
+        _ => Some("By a least-squares solve with ∂Φ/∂ϕ at (Q, ϕ) and at (Q′, 0)."),
     }
 }

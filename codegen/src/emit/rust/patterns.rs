@@ -1,6 +1,7 @@
 //! Which entries of H, X^c, S̄ and the derivatives of the last two are 0 or 1 at every configuration, for the runtime's recursions.
 
 use super::joint::sizes;
+use super::tokens::ident;
 use crate::derived::{Derived, KernelKind};
 use crate::expr::Expr;
 use crate::matrix::Matrix;
@@ -19,20 +20,29 @@ pub fn tokens(derived: &Derived) -> TokenStream {
         6,
         shape.freedoms,
     );
-    let basis = value(derived, KernelKind::SpeedBasis, 0);
-    let basis = rows(basis, shape.freedoms, shape.speeds);
-    let map_slices = slices(derived, KernelKind::TwistMapChildGradient);
-    let basis_slices = slices(derived, KernelKind::SpeedBasisGradient);
+    let basis = value(derived, KernelKind::SpeedBasis, 0).filter(|basis| !is_identity(basis));
+    let basis = basis.map(|basis| {
+        let rows = rows(Some(basis), shape.freedoms, shape.speeds);
+        quote! { .speed_basis([#(#rows),*]) }
+    });
+    let gradient = |name: &str, kind| {
+        let (name, slices) = (ident(name), slices(derived, kind));
+        (!slices.is_empty()).then(|| quote! { .#name(&[#(#slices),*]) })
+    };
+    let of_map = gradient(
+        "twist_map_child_gradient",
+        KernelKind::TwistMapChildGradient,
+    );
+    let of_basis = gradient("speed_basis_gradient", KernelKind::SpeedBasisGradient);
     quote! {
-        const PATTERNS: Patterns<#k, #s> = Patterns::new(
-            [#(#rotation),*],
-            #translation,
-            [#(#twist_map),*],
-            [#(#basis),*],
-            &[#(#map_slices),*],
-            &[#(#basis_slices),*],
-        );
+        const PATTERNS: Patterns<#k, #s> =
+            Patterns::new([#(#rotation),*], #translation, [#(#twist_map),*]) #basis #of_map #of_basis;
     }
+}
+
+/// What `Patterns::new` says of S̄.
+fn is_identity(matrix: &Matrix) -> bool {
+    matrix.rows() == matrix.columns() && matrix.is_identity()
 }
 
 fn value(derived: &Derived, kind: KernelKind, output: usize) -> Option<&Matrix> {

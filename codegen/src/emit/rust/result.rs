@@ -1,12 +1,15 @@
 //! The last expression of a method: matrices as rows, so that a reader sees them.
 
-use super::signature::{Output, Signature};
 use super::tokens::Writer;
 use crate::derived::{Kernel, KernelKind};
-use crate::emit::formula::Node;
+use crate::emit::method::{Output, Signature};
+use crate::formula::Node;
 use crate::matrix::Matrix;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
+
+/// From as many zero rows on, those that are not zero are written with their numbers.
+const MANY_ZERO_ROWS: usize = 2;
 
 /// The result of a kernel; `entries` are those of its outputs, one matrix after the other.
 pub fn tokens(
@@ -45,7 +48,9 @@ pub fn tokens(
             quote! { [SMatrix::zeros(); #count] }
         }
         (_, slices) => {
-            let slices = slices.iter().map(|(slice, own)| matrix(writer, slice, own));
+            let slices = slices
+                .iter()
+                .map(|(matrix, own)| slice(writer, matrix, own));
             quote! { [#(#slices),*] }
         }
     }
@@ -59,6 +64,22 @@ fn matrix(writer: &Writer<'_>, matrix: &Matrix, entries: &[Node]) -> TokenStream
         return quote! { SMatrix::identity() };
     }
     writer.rows(entries, matrix.columns())
+}
+
+/// A slice of a derivative: the rows that are not zero with their numbers, where most are.
+fn slice(writer: &Writer<'_>, slice: &Matrix, entries: &[Node]) -> TokenStream {
+    let rows: Vec<&[Node]> = entries.chunks(slice.columns().max(1)).collect();
+    let used = |row: &&[Node]| row.iter().any(|entry| !entry.is_zero());
+    let count = rows.iter().filter(|row| used(row)).count();
+    if count == 0 || rows.len() - count < MANY_ZERO_ROWS {
+        return matrix(writer, slice, entries);
+    }
+    let numbered = rows.iter().enumerate().filter(|(_, row)| used(row));
+    let numbered = numbered.map(|(i, row)| {
+        let (i, row) = (Literal::usize_unsuffixed(i), writer.list(row));
+        quote! { (#i, #row) }
+    });
+    quote! { rows_at([#(#numbered),*]) }
 }
 
 fn vector(writer: &Writer<'_>, column: &Matrix, entries: &[Node]) -> TokenStream {

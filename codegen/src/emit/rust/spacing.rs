@@ -1,7 +1,8 @@
 //! Blank lines between items and methods, in modules as well, and comments in bodies: what the printer of tokens leaves out.
 
 use super::comment::with_comments;
-use syn::{Attribute, Expr, File, Item, ItemMod};
+use super::lines::joined;
+use syn::{Attribute, Expr, File, Item, ItemConst, ItemMod};
 
 /// The file as text, items and methods apart from each other.
 pub fn spaced(file: &File) -> String {
@@ -19,10 +20,11 @@ fn items(items: &[Item], place: &dyn Fn(&Item, &str) -> String) -> String {
         }
         let alone = prettyplease::unparse(&file_of(vec![], vec![item.clone()]));
         let alone = match item {
-            Item::Impl(_) => apart(&with_comments(&alone)),
-            Item::Fn(_) => with_comments(&alone),
+            Item::Impl(_) => apart(&joined(&with_comments(&alone))),
+            Item::Fn(_) => joined(&with_comments(&alone)),
             Item::Mod(module) => nested(module),
             Item::Macro(_) => one_call_a_line(&alone),
+            Item::Const(constant) if !is_text(constant) => joined(&alone),
             _ => alone,
         };
         text += &place(item, &alone);
@@ -50,7 +52,7 @@ fn nested(module: &ItemMod) -> String {
 
 /// An item's lines one level deeper.
 fn deeper(item: &Item, text: &str) -> String {
-    let is_text = matches!(item, Item::Const(constant) if matches!(*constant.expr, Expr::Lit(_)));
+    let is_text = matches!(item, Item::Const(constant) if is_text(constant));
     let mut moved = String::with_capacity(text.len());
     let mut in_literal = false;
     for line in text.lines() {
@@ -65,6 +67,11 @@ fn deeper(item: &Item, text: &str) -> String {
         in_literal |= is_text && line.contains("const ");
     }
     moved
+}
+
+/// Whether the constant is a literal, whose lines are its value.
+fn is_text(constant: &ItemConst) -> bool {
+    matches!(*constant.expr, Expr::Lit(_))
 }
 
 fn file_of(attrs: Vec<Attribute>, items: Vec<Item>) -> File {

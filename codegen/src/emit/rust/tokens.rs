@@ -1,8 +1,9 @@
 //! Formulas as Rust tokens, generic in the scalar `T`.
 
-use crate::emit::formula::{Binding, Chain, Node, Program};
-use crate::emit::names::{NameSet, Names, is_number_word, number_name};
 use crate::expr::{Function, Rational, Symbol};
+use crate::formula::Names;
+use crate::formula::names::{NameSet, is_number_word, number_name};
+use crate::formula::{Binding, Chain, Node, Program};
 use num_bigint::BigInt;
 use num_traits::{One, ToPrimitive, Zero};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
@@ -124,6 +125,9 @@ impl<'a> Writer<'a> {
         let Some(chain) = Chain::new(terms) else {
             return self.plain_sum(terms.iter());
         };
+        if let Some(pairs) = pairs(&chain) {
+            return self.dot(&pairs);
+        }
         let rest = self.plain_sum(chain.rest.iter().copied());
         let products = chain.products.iter().rev();
         products.fold(rest, |rest, (minus, factors, last)| {
@@ -134,12 +138,25 @@ impl<'a> Writer<'a> {
                     quote! { (#several) }
                 }
             };
-            let last = match minus {
-                true => self.formula(&(*last).clone().negated().polished()),
-                false => self.formula(last),
-            };
+            let last = self.signed(*minus, last);
             quote! { #receiver.mul_add(#last, #rest) }
         })
+    }
+
+    /// `dot([a, b], [c, d])`: the sum of the products, fused.
+    fn dot(&self, pairs: &[Pair<'_>]) -> TokenStream {
+        let left = pairs.iter().map(|(_, factors, _)| self.product(factors));
+        let right = pairs
+            .iter()
+            .map(|(minus, _, last)| self.signed(*minus, last));
+        quote! { dot([#(#left),*], [#(#right),*]) }
+    }
+
+    fn signed(&self, minus: bool, node: &Node) -> TokenStream {
+        match minus {
+            true => self.formula(&node.clone().negated().polished()),
+            false => self.formula(node),
+        }
     }
 
     fn plain_sum<'n>(&self, terms: impl Iterator<Item = &'n (bool, Node)>) -> TokenStream {
@@ -247,6 +264,20 @@ impl<'a> Writer<'a> {
             tokens
         }
     }
+}
+
+/// A product in a sum: whether it is subtracted, all factors but the last, the last.
+type Pair<'a> = (bool, &'a [Node], &'a Node);
+
+/// The products of a sum that has no other terms, in the order in which they are added to the last.
+fn pairs<'a>(chain: &Chain<'a>) -> Option<Vec<Pair<'a>>> {
+    let [(false, Node::Product(factors))] = chain.rest.as_slice() else {
+        return None;
+    };
+    let (last, others) = factors.split_last()?;
+    let mut pairs = chain.products.clone();
+    pairs.push((false, others, last));
+    Some(pairs)
 }
 
 /// A positive rational as a literal, or as the quotient of two where that alone says what it is.

@@ -2,8 +2,9 @@
 
 use crate::expr::{Rational, Symbol};
 use crate::manifold::Kind;
-use crate::model::{End, Interval as Range, JointSpec};
+use crate::model::{End, Interval as Range};
 use crate::precise::{Enclosure, Interval, Point, Precise};
+use crate::prepare::Prepared;
 use num_bigint::BigInt;
 use num_traits::ToPrimitive;
 use num_traits::float::FloatCore;
@@ -37,11 +38,11 @@ pub struct Side {
 pub type Cell = Vec<Side>;
 
 /// The whole range of those of the symbols that can be varied freely, and whether these are all of them.
-pub fn whole(spec: &JointSpec, symbols: &BTreeSet<Symbol>) -> (Cell, bool) {
+pub fn whole(joint: &Prepared, symbols: &BTreeSet<Symbol>) -> (Cell, bool) {
     let mut sides: Cell = vec![];
     let mut complete = true;
     for symbol in symbols {
-        match side(spec, symbol) {
+        match side(joint, symbol) {
             Some(side) if sides.iter().all(|known| known.axis != side.axis) => sides.push(side),
             Some(_) => {}
             None => complete = false,
@@ -51,21 +52,21 @@ pub fn whole(spec: &JointSpec, symbols: &BTreeSet<Symbol>) -> (Cell, bool) {
 }
 
 /// The same without parameters that move the manifold: whoever varies these has to find the manifold again at each point.
-pub fn on_one_manifold(spec: &JointSpec, symbols: &BTreeSet<Symbol>) -> (Cell, bool) {
-    let relations = spec.manifold.value.declared().iter();
+pub fn on_one_manifold(joint: &Prepared, symbols: &BTreeSet<Symbol>) -> (Cell, bool) {
+    let relations = joint.space.manifold.declared().iter();
     let moving: BTreeSet<Symbol> = relations.flat_map(|e| e.symbols()).collect();
     let fixed: BTreeSet<Symbol> = symbols.difference(&moving).cloned().collect();
-    let (sides, complete) = whole(spec, &fixed);
+    let (sides, complete) = whole(joint, &fixed);
     (sides, complete && fixed.len() == symbols.len())
 }
 
-fn side(spec: &JointSpec, symbol: &Symbol) -> Option<Side> {
-    if let Some(parameter) = spec.parameters.iter().find(|p| p.symbol == *symbol) {
+fn side(joint: &Prepared, symbol: &Symbol) -> Option<Side> {
+    if let Some(parameter) = joint.spec.parameters.iter().find(|p| p.symbol == *symbol) {
         let axis = Axis::Real(symbol.clone());
         let (low, high) = doubles_in(&parameter.range)?;
         return Some(Side { axis, low, high });
     }
-    let manifold = &spec.manifold.value;
+    let manifold = &joint.space.manifold;
     if !manifold.declared().is_empty() {
         return None;
     }

@@ -40,11 +40,12 @@ enum Side {
 impl Search<'_> {
     /// A place in some cell where the claim fails; and why some part of the domain was not looked at.
     pub(super) fn cells(&self) -> (Option<Place>, Option<String>) {
-        let spec = self.identities.spec;
-        let required = spec.requirements.iter().map(|r| &r.value.value);
+        let joint = self.identities.joint;
+        let required = joint.spec.requirements.iter().map(|r| &r.value.value);
         let conditions = Conditions {
             positive: required.chain(&self.sides).collect(),
-            loci: spec
+            loci: joint
+                .space
                 .loci
                 .iter()
                 .map(|locus| &locus.value.function)
@@ -55,7 +56,7 @@ impl Search<'_> {
         if symbols.is_empty() {
             return (None, None);
         }
-        let (whole, complete) = axes::whole(spec, &symbols);
+        let (whole, complete) = axes::whole(joint, &symbols);
         if !complete || whole.len() > MOST_AXES {
             // Points beside every exception were drawn; which patterns they met is not known.
             return (
@@ -110,7 +111,7 @@ impl Search<'_> {
 
     /// A place where the claim fails in some of the cells; and whether it was tried in one at all.
     fn try_cells(&self, cells: &[Box]) -> (Option<Place>, bool) {
-        let mut sampler = Sampler::new(self.identities.spec, super::BITS).single();
+        let mut sampler = Sampler::new(&self.identities.joint.space, super::BITS).single();
         let (mut refuting, mut tried) = (None, false);
         let mut cells: Vec<&Box> = cells.iter().collect();
         cells.sort_by(|a, b| axes::extent(a).total_cmp(&axes::extent(b)));
@@ -138,7 +139,7 @@ impl Search<'_> {
     }
 
     fn in_words(&self, pattern: &[bool]) -> String {
-        let loci = self.identities.spec.loci.iter().zip(pattern);
+        let loci = self.identities.joint.space.loci.iter().zip(pattern);
         let signs: Vec<String> = loci
             .map(|(locus, positive)| {
                 let sign = if *positive { ">" } else { "<" };

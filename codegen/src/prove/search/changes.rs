@@ -5,7 +5,8 @@ use super::place::Place;
 use super::{MOST_TERMS, Open, Search};
 use crate::expr::{Atom, Expr, Function, Monomial, Symbol};
 use crate::manifold::{Factor, Kind};
-use crate::model::{JointSpec, Parameter};
+use crate::model::Parameter;
+use crate::prepare::Prepared;
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
@@ -34,7 +35,7 @@ impl Search<'_> {
 
     /// The derivatives of residuals that do not vanish by algebra.
     fn slopes(&self) -> Vec<Open> {
-        let directions = tangents(self.identities.spec);
+        let directions = tangents(self.identities.joint);
         let of_all = self.open.iter().flat_map(|(_, residual)| {
             directions
                 .iter()
@@ -78,15 +79,15 @@ fn along(expression: &Expr, direction: &Direction) -> Expr {
 
 /// Tangents of the domain: parameters that have more than one value and do not move the manifold, free scalars, rotations of the others two by two. Where the spec
 /// declares relations there are tangents for one of them, of real coordinates.
-fn tangents(spec: &JointSpec) -> Vec<Direction> {
+fn tangents(joint: &Prepared) -> Vec<Direction> {
     let single = |symbol: &Symbol| vec![(symbol.clone(), Expr::integer(1))];
-    let manifold = &spec.manifold.value;
+    let manifold = &joint.space.manifold;
     let moves_manifold = |symbol: &Symbol| {
         let mut relations = manifold.declared().iter();
         relations.any(|relation| relation.symbols().contains(symbol))
     };
     let free = |p: &&Parameter| !p.range.is_one_number() && !moves_manifold(&p.symbol);
-    let ranges = spec.parameters.iter().filter(free);
+    let ranges = joint.spec.parameters.iter().filter(free);
     let mut tangents: Vec<Direction> = ranges.map(|p| single(&p.symbol)).collect();
     match manifold.declared() {
         [] => manifold.factors().iter().for_each(|factor| {

@@ -35,13 +35,13 @@ impl Search<'_> {
             collect(normal, &mut arguments);
         }
         let mut found = None;
-        let mut sampler = Sampler::new(self.identities.spec, super::BITS).single();
+        let mut sampler = Sampler::new(&self.identities.joint.space, super::BITS).single();
         for _ in 0..LINES {
             let Some(base) = sampler.point() else {
                 break;
             };
             for argument in arguments.iter().take(MOST_ARGUMENTS) {
-                let (whole, _) = axes::on_one_manifold(self.identities.spec, &argument.symbols());
+                let (whole, _) = axes::on_one_manifold(self.identities.joint, &argument.symbols());
                 // Each line goes through an extremum along those before it: functions of several variables peak at one point.
                 let mut through = base.clone();
                 for side in whole {

@@ -97,7 +97,7 @@ fn draw<'i>(
     count: usize,
     far: bool,
 ) -> impl Iterator<Item = Point> + 'i {
-    let sampler = Sampler::new(identities.spec, bits)
+    let sampler = Sampler::new(&identities.joint.space, bits)
         .beside(identities.sides())
         .single();
     let mut sampler = if far { sampler.far() } else { sampler };
@@ -189,7 +189,7 @@ impl Search<'_> {
                     &of_normal
                 };
                 return Said::Refutes(Place::new(
-                    self.identities.spec,
+                    self.identities.joint,
                     entry,
                     point,
                     tighter,
@@ -223,12 +223,12 @@ impl Search<'_> {
 
     /// The point on the manifold: a parameter that was moved may have taken the manifold with it.
     fn on_manifold(&self, point: &Point) -> Option<Point> {
-        let spec = self.identities.spec;
-        match spec.manifold.value.declared().is_empty() {
+        let joint = self.identities.joint;
+        match joint.space.manifold.declared().is_empty() {
             true => Some(point.clone()),
             false => {
                 budget::spend(COST_OF_NEWTON);
-                Sampler::new(spec, point.bits()).settled(point)
+                Sampler::new(&joint.space, point.bits()).settled(point)
             }
         }
     }
@@ -236,7 +236,7 @@ impl Search<'_> {
     /// Every symbol near its value at the point, in so many bits: for who then frees some of them.
     fn near(&self, base: &Point, bits: usize) -> Enclosure {
         let mut enclosure = Enclosure::new(bits);
-        for symbol in self.identities.spec.symbols() {
+        for symbol in self.identities.joint.space.symbols() {
             let value = base.value(&symbol).to_bits(bits);
             enclosure.bind(&symbol, room(&value));
         }
@@ -246,12 +246,12 @@ impl Search<'_> {
     /// The point with as much room as it may miss the manifold by.
     fn around(&self, point: &Point) -> Enclosure {
         let mut enclosure = Enclosure::new(point.bits());
-        let spec = self.identities.spec;
-        for parameter in &spec.parameters {
+        let joint = self.identities.joint;
+        for parameter in &joint.spec.parameters {
             let value = point.value(&parameter.symbol);
             enclosure.bind(&parameter.symbol, Interval::point(value));
         }
-        let manifold = &spec.manifold.value;
+        let manifold = &joint.space.manifold;
         let exact = |kind| matches!(kind, crate::manifold::Kind::Real(_));
         for factor in manifold.factors() {
             let free = exact(factor.kind) && manifold.declared().is_empty();
@@ -273,11 +273,13 @@ impl Search<'_> {
     /// Whether the point meets every requirement, keeps off every exception and lies on the side of home.
     fn admits(&self, point: &Point) -> bool {
         let enclosure = self.around(point);
-        let spec = self.identities.spec;
-        let required = spec.requirements.iter().map(|r| &r.value.value);
+        let joint = self.identities.joint;
+        let required = joint.spec.requirements.iter().map(|r| &r.value.value);
         let mut positive = required.chain(&self.sides);
-        let mut loci = spec.loci.iter().map(|locus| &locus.value.function);
-        spec.parameters
+        let mut loci = joint.space.loci.iter().map(|locus| &locus.value.function);
+        joint
+            .spec
+            .parameters
             .iter()
             .all(|p| may_be(p, &point.value(&p.symbol)))
             && positive.all(|e| enclosure.of(e).is_positive())

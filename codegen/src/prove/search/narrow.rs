@@ -24,11 +24,11 @@ impl Search<'_> {
     pub(super) fn narrow(&self) -> Option<Place> {
         let entries = self.open.iter().flat_map(|(entry, normal)| [entry, normal]);
         let symbols: BTreeSet<Symbol> = entries.flat_map(|e| e.symbols()).collect();
-        let (whole, complete) = axes::on_one_manifold(self.identities.spec, &symbols);
+        let (whole, complete) = axes::on_one_manifold(self.identities.joint, &symbols);
         if whole.is_empty() {
             return None;
         }
-        let mut sampler = Sampler::new(self.identities.spec, BITS).single();
+        let mut sampler = Sampler::new(&self.identities.joint.space, BITS).single();
         let mut found = None;
         if complete && whole.len() <= MOST_AXES {
             found = self.largest_in(whole.clone(), &sampler.anywhere()?, MOST_CELLS);

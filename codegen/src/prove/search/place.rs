@@ -1,8 +1,8 @@
 //! A place where a claim fails, in words.
 
 use crate::expr::Expr;
-use crate::model::JointSpec;
 use crate::precise::{Interval, Point, Precise};
+use crate::prepare::Prepared;
 use std::fmt::{Display, Formatter};
 
 /// The binary logarithm of a residual, beside its terms, that is large.
@@ -26,14 +26,15 @@ pub struct Place {
 impl Place {
     /// The point at which an entry with this enclosure excludes 0; `size` encloses the sum of the sizes of its terms.
     pub fn new(
-        spec: &JointSpec,
+        joint: &Prepared,
         entry: &Expr,
         point: &Point,
         residual: &Interval,
         size: &Interval,
     ) -> Self {
         let held = entry.symbols();
-        let symbols = spec
+        let symbols = joint
+            .space
             .symbols()
             .into_iter()
             .filter(|symbol| held.contains(symbol));

@@ -4,7 +4,7 @@ use super::lines::{Formula, Line, Loop, Place, Row};
 use super::lower::{Lowering, partners};
 use super::straight::{given, heading};
 use super::{Function, Lowered};
-use crate::emit::names::NameSet;
+use crate::formula::names::NameSet;
 use crate::scene::alike::{Plan, Read, Trigonometry};
 use crate::scene::graph::{Graph, Operation, Operations};
 use rustc_hash::FxHashMap;

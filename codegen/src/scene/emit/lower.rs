@@ -1,8 +1,8 @@
 //! From nodes to lines: what is named, what stands inside a formula, in which order.
 
 use super::lines::{Formula, Heading, Line};
-use crate::emit::names::NameSet;
 use crate::expr::Function as Known;
+use crate::formula::names::NameSet;
 use crate::scene::graph::{Graph, Operation, Operations, Value};
 use rustc_hash::{FxHashMap, FxHashSet};
 

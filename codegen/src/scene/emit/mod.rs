@@ -17,7 +17,7 @@ pub use rust::module;
 use super::alike::Plan;
 use super::graph::{Argument, Graph, Operations, Value};
 use super::model::Model;
-use crate::emit::names::NameSet;
+use crate::formula::names::NameSet;
 use lines::{Formula, Line};
 use std::collections::BTreeMap;
 

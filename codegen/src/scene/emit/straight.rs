@@ -3,7 +3,7 @@
 use super::lines::{Formula, Heading, Line, Place};
 use super::lower::{Lowering, partners};
 use super::{Function, Lowered};
-use crate::emit::names::NameSet;
+use crate::formula::names::NameSet;
 use crate::scene::alike::{Blocks, Read, late};
 use crate::scene::graph::{Graph, Operation, Operations};
 use rustc_hash::{FxHashMap, FxHashSet};

@@ -16,6 +16,7 @@ mod scope;
 mod stored;
 mod unit;
 mod unproved;
+mod words;
 
 use self::freedoms::Freedoms;
 use self::once::Once;
@@ -26,7 +27,7 @@ use super::{code, limits};
 use crate::diagnostic::Diagnostic;
 use crate::expr::budget;
 use crate::manifold::Manifold;
-use crate::model::{Declared, JointSpec, PoseExpr, VelocityFrame};
+use crate::model::{Declared, JointSpec, PoseExpr, VelocityFrame, Worded};
 
 /// The joint that the file declares; `None` where something essential is wrong. Reasons are among the errors.
 pub(super) fn joint(source: &str, file: &File, errors: &mut Vec<Diagnostic>) -> Option<JointSpec> {
@@ -118,6 +119,10 @@ fn declare(
     };
     scope::report_unused(file, statements, evaluator);
     let (freedoms, matrices): (Freedoms, _) = (freedoms?, matrices?);
+    let worded = match evaluator.errors.is_empty() {
+        true => words::worded(&context, source, &freedoms.names()),
+        false => Worded::default(),
+    };
     let spec = JointSpec {
         name: Declared {
             value: file.name.text.clone(),
@@ -138,6 +143,7 @@ fn declare(
         constraint: matrices.constraint,
         speed_basis: matrices.speed_basis,
         speed_names: matrices.speed_names,
+        worded,
         unproved: unproved::unproved(&statements.unproved, evaluator),
     };
     evaluator

@@ -4,8 +4,8 @@ use super::super::ast::Name;
 use super::super::evaluate::Evaluator;
 use super::super::{code, names};
 use crate::diagnostic::Diagnostic;
+use crate::model::CHECKABLE;
 use crate::model::{Declared, Unproved};
-use crate::prove::CHECKABLE;
 
 /// The claims, each once; other names are errors.
 pub(super) fn unproved(

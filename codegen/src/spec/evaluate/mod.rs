@@ -7,9 +7,11 @@ mod function;
 mod literal;
 mod local;
 mod rotation;
+mod words;
 
 pub use function::NAMES as FUNCTIONS;
 pub(super) use local::Locals;
+pub(super) use words::Words;
 
 use super::ast::{Name, Node, NodeKind};
 use super::value::Value;
@@ -30,6 +32,8 @@ pub(super) struct Evaluator<'a> {
     locals: Option<Locals>,
     /// Whether a definition could not be read, so that unknown names may be right.
     pub lenient: bool,
+    /// The names that values get, where the declarations are wanted in names.
+    pub words: Option<Words>,
 }
 
 impl<'a> Evaluator<'a> {
@@ -40,6 +44,7 @@ impl<'a> Evaluator<'a> {
             expected: BTreeSet::new(),
             locals: None,
             lenient: false,
+            words: None,
         }
     }
 
@@ -248,9 +253,16 @@ impl<'a> Evaluator<'a> {
     }
 
     fn call(&mut self, name: &Name, arguments: &[Node], span: &Range<usize>) -> Option<Value> {
-        let values = self.values(arguments);
-        let result = function::apply(name, &values?, span);
-        self.settle(result)
+        let mut values = self.values(arguments)?;
+        if let Some(words) = &mut self.words {
+            words.name_angles(&name.text, &mut values);
+        }
+        let result = function::apply(name, &values, span);
+        let value = self.settle(result)?;
+        Some(match &mut self.words {
+            Some(words) => words.name_root(&name.text, value),
+            None => value,
+        })
     }
 }
 

@@ -1,7 +1,7 @@
 //! What the recursion keeps of each body: a compact copy of what never changes, and the workspace.
 
 use super::slender::is_slender;
-use crate::erased::Kernels;
+use crate::erased::AnyJoint;
 use crate::mechanism::{Body, Mechanism};
 use crate::spatial::{Pose, SpatialInertia, join};
 use crate::steps::{Motion, Placement};
@@ -13,7 +13,7 @@ use nalgebra::{Vector3, Vector6};
 /// One body and its joint, as the sweeps read them: next to each other in memory, without names.
 #[derive(Clone, Debug)]
 pub(super) struct Link {
-    pub(super) joint: Arc<dyn Kernels>,
+    pub(super) joint: Arc<dyn AnyJoint>,
     pub(super) parent: Option<usize>,
     pub(super) configuration: Range<usize>,
     pub(super) freedoms: Range<usize>,
@@ -65,7 +65,7 @@ impl Link {
     fn new(body: &Body) -> Self {
         let ranges = body.ranges();
         Self {
-            joint: Arc::clone(body.kernels()),
+            joint: body.shared_joint(),
             parent: body.parent(),
             configuration: ranges.configuration.clone(),
             freedoms: ranges.freedoms.clone(),
@@ -135,7 +135,7 @@ impl Kind {
     }
 
     fn new(body: &Body) -> Self {
-        let (speeds, joint) = (&body.ranges().speeds, body.kernels());
+        let (speeds, joint) = (&body.ranges().speeds, body.joint());
         let turns = |j: usize| !joint.column_parts(j).1;
         let slides = |j: usize| !joint.column_parts(j).0;
         let first = (0..speeds.len()).take_while(|&j| turns(j)).count();

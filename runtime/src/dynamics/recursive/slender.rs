@@ -225,7 +225,7 @@ impl Recursive {
         motion.twist = turn_out(rotation, &own.twist);
     }
 
-    /// [`crate::steps::Steps::reduce`] of a slender body's joint, for a `wrench` in world axes.
+    /// [`AnyJoint::reduce`](crate::erased::AnyJoint::reduce) of a slender body's joint, for a `wrench` in world axes.
     pub(super) fn reduce_slender(
         &mut self,
         index: usize,
@@ -239,7 +239,7 @@ impl Recursive {
         turn_out(&rotation, &turned)
     }
 
-    /// [`crate::steps::Steps::reduce`] of a slender body's joint, for a `wrench` in child axes.
+    /// [`AnyJoint::reduce`](crate::erased::AnyJoint::reduce) of a slender body's joint, for a `wrench` in child axes.
     fn reduce_in_child(
         &mut self,
         index: usize,

@@ -1,9 +1,9 @@
 //! The joints' own part of a linearised step: how local coordinates and ϕ̇ of a stage change.
 
-use crate::chart::ChartDerivatives;
 use crate::dynamics::Sensitivity;
 use crate::integrate::flow::multiply;
 use crate::mechanism::{Body, Mechanism};
+use crate::steps::ChartDerivatives;
 use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -61,7 +61,7 @@ impl Charts {
                 rate_by_speeds: &mut own.rate_by_speeds,
             };
             let (phi, speeds) = (&phi[own.freedoms.clone()], &speeds[own.speeds.clone()]);
-            body.kernels()
+            body.joint()
                 .differentiate(body.configuration(base), phi, speeds, &mut out);
         }
     }

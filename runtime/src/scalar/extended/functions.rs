@@ -115,6 +115,7 @@ impl Extended {
 impl Scalar for Extended {
     type Mask = bool;
 
+    #[inline]
     fn from_f64(value: f64) -> Self {
         Self::from(value)
     }
@@ -266,10 +267,12 @@ impl Scalar for Extended {
         rotation::quaternion_vector(quaternion)
     }
 
+    #[inline]
     fn less(self, other: Self) -> bool {
         self.high < other.high || (self.high == other.high && self.low < other.low)
     }
 
+    #[inline]
     fn select(mask: bool, if_true: Self, if_false: Self) -> Self {
         if mask { if_true } else { if_false }
     }

@@ -82,6 +82,7 @@ fn halves(a: f64) -> (f64, f64) {
 }
 
 impl From<f64> for Extended {
+    #[inline]
     fn from(value: f64) -> Self {
         Self {
             high: value,

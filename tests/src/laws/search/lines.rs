@@ -49,7 +49,7 @@ pub(super) fn samples() -> Vec<f64> {
 impl Place<'_> {
     /// All lines through a configuration.
     pub fn directions(&self) -> Vec<Direction> {
-        let manifold = &self.definition.spec().manifold.value;
+        let manifold = &self.definition.space().manifold;
         let local = (0..self.definition.freedoms()).map(Direction::Local);
         let group = |kind: Kind| kind != Kind::S2;
         let all_reached =

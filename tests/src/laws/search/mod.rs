@@ -32,7 +32,7 @@ use compare::Definitions;
 use hamel::joint::Joint;
 use hamel_codegen::derived::{Derived, KernelKind};
 use hamel_codegen::matrix::Matrix;
-use hamel_codegen::model::{Declared, End, Interval, JointSpec};
+use hamel_codegen::model::{ConfigurationSpace, Declared, End, Interval, JointSpec};
 use hamel_codegen::precise::Sampler;
 use lines::{Direction, Place, samples};
 use parameters::Axis;
@@ -166,11 +166,8 @@ fn complete(derived: &Derived) -> Derived {
     let mut complete = derived.clone();
     let of = |kind: KernelKind| -> Option<Declared<Matrix>> {
         let kernel = derived.kernel(kind)?;
-        let value = kernel.outputs.first()?.clone();
-        kernel
-            .steps
-            .is_empty()
-            .then_some(Declared { value, span: 0..0 })
+        let value = kernel.expanded().into_iter().next()?;
+        Some(Declared { value, span: 0..0 })
     };
     if derived.shape.constraints > 0 {
         let spec = &mut complete.spec;
@@ -186,9 +183,9 @@ fn complete(derived: &Derived) -> Derived {
     complete
 }
 
-/// The spec with its parameters fixed.
-fn pinned(spec: &JointSpec, values: &[f64]) -> JointSpec {
-    let mut pinned = spec.clone();
+/// Where the joint lives with its parameters fixed.
+fn pinned(space: &ConfigurationSpace, values: &[f64]) -> ConfigurationSpace {
+    let mut pinned = space.clone();
     for (parameter, value) in pinned.parameters.iter_mut().zip(values) {
         let end = Some(End {
             value: parameters::exact(*value),
@@ -339,11 +336,11 @@ impl Search<'_> {
 
     /// Configurations to start lines from: home, and some of each sign pattern that random points meet.
     fn bases(&mut self, place: &Place, parameters: &[f64]) -> Vec<Vec<f64>> {
-        let spec = pinned(&self.derived.spec, parameters);
-        let coordinates = spec.manifold.value.coordinates();
+        let space = pinned(&self.derived.space, parameters);
+        let coordinates = space.manifold.coordinates();
         let mut samplers = [
-            Sampler::new(&spec, 64).single(),
-            Sampler::new(&spec, 64).single().far(),
+            Sampler::new(&space, 64).single(),
+            Sampler::new(&space, 64).single().far(),
         ];
         let mut bases = vec![place.joint.home()];
         let mut met: BTreeMap<Vec<bool>, usize> = BTreeMap::new();

@@ -1,8 +1,8 @@
 //! From formulas of the ring to formulas on paper.
 
 use super::Math;
-use crate::emit::formula::Node;
 use crate::expr::{Function, Rational, Symbol};
+use crate::formula::Node;
 use num_traits::One;
 
 /// A formula whose symbols are set by `symbol`.

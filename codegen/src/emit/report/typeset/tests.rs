@@ -1,8 +1,8 @@
 //! Expressions that are easily set wrongly, in all three forms.
 
 use super::{Math, composed, named};
-use crate::emit::formula::factored;
 use crate::expr::{Expr, Role, Symbol};
+use crate::formula::factored;
 
 fn symbol(name: &str) -> Expr {
     let index = name.bytes().next().unwrap_or_default();

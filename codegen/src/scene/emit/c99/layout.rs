@@ -1,7 +1,7 @@
 //! Where each body's share lies in the arguments, for the header.
 
-use crate::emit::text::one_line;
 use crate::scene::model::{Body, Model};
+use crate::text::one_line;
 use serde::Serialize;
 use std::ops::Range;
 
@@ -55,7 +55,7 @@ fn part(range: Range<usize>, names: Vec<String>) -> Part {
 }
 
 fn stored(body: &Body) -> Vec<String> {
-    let coordinates = body.joint.derived.spec.manifold.value.coordinates();
+    let coordinates = body.joint.derived.space.manifold.coordinates();
     coordinates
         .iter()
         .map(|symbol| symbol.name.to_string())

@@ -11,9 +11,9 @@ mod layout;
 mod statement;
 
 use super::{Function, Lowered, argument_size, identifier, identifiers};
-use crate::emit::text::one_line;
 use crate::scene::graph::Argument;
 use crate::scene::model::Model;
+use crate::text::one_line;
 use breaks::broken;
 use formula::value;
 use helpers::Used;

@@ -4,7 +4,7 @@ use super::super::lines::{Formula, Line, Loop};
 use super::super::{Lowered, array, list};
 use super::formula::{index, literal, value};
 use super::helpers::{Used, several};
-use crate::emit::text::one_line;
+use crate::text::one_line;
 use serde::Serialize;
 
 /// A statement, its parts as text.

@@ -5,8 +5,8 @@ mod lines;
 
 use super::{Function, Lowered, array, identifiers};
 use crate::emit::rust::{WriteError, text};
-use crate::emit::text::one_line;
 use crate::scene::model::Model;
+use crate::text::one_line;
 use equations::{equations, is_batched};
 use lines::{line, value};
 use proc_macro2::{Ident, Literal, Span, TokenStream};

@@ -253,7 +253,7 @@ fn branches(mechanism: &Mechanism) -> Vec<Branch> {
             parent: body.parent().unwrap_or(WORLD),
             freedoms: (ranges.freedoms.start, ranges.freedoms.end),
             speeds: (ranges.speeds.start, ranges.speeds.end),
-            parts: body.kernels().parts(),
+            parts: body.joint().parts(),
             forks: false,
         }
     };

@@ -2,7 +2,7 @@
 
 use super::super::Recursive;
 use super::super::link::Link;
-use crate::erased::Kernels;
+use crate::erased::AnyJoint;
 use crate::scalar::Extended;
 use crate::spatial::{Pose, SpatialInertia, Symmetric3, join, nearest_rotation, shift_wrench};
 use crate::steps::{Motion, Placement};
@@ -17,7 +17,7 @@ type E = Extended;
 /// One body and its joint, in extended numbers.
 #[derive(Clone, Debug)]
 struct Body {
-    joint: Arc<dyn Kernels>,
+    joint: Arc<dyn AnyJoint<E>>,
     parent: Option<usize>,
     configuration: Range<usize>,
     speeds: Range<usize>,
@@ -48,7 +48,7 @@ impl Body {
     fn new(link: &Link) -> Self {
         let (frame, inertia) = (&link.frame, &link.inertia);
         Self {
-            joint: Arc::clone(&link.joint),
+            joint: Arc::clone(&link.joint).extended(),
             parent: link.parent,
             configuration: link.configuration.clone(),
             speeds: link.speeds.clone(),
@@ -97,9 +97,12 @@ impl Residual {
     /// Takes the configuration.
     pub(super) fn place(&mut self, q: &[f64]) {
         for body in &self.bodies {
-            let own = body.configuration.clone();
-            body.joint
-                .exact_configuration(&q[own.clone()], &mut self.configuration[own]);
+            let own = &mut self.configuration[body.configuration.clone()];
+            for (exact, &entry) in own.iter_mut().zip(&q[body.configuration.clone()]) {
+                *exact = E::from(entry);
+            }
+            // A rotation whose entries are doubles is one to 53 bits alone. Where it fails, it is NaN, and no round gains anything.
+            _ = body.joint.project(own);
         }
     }
 
@@ -159,8 +162,7 @@ impl Residual {
                 &rates[speeds.clone()],
             );
             let columns = &mut self.columns[speeds];
-            body.joint
-                .advance_extended(state, &body.frame, parent, own, columns);
+            body.joint.advance(state, &body.frame, parent, own, columns);
             let inertia = body.inertia.rotated(&own.placement.rotation);
             self.wrenches[index] = inertia.wrench(&own.twist, &own.rate);
         }
@@ -172,7 +174,7 @@ impl Residual {
             let own = body.speeds.clone();
             let (columns, out) = (&self.columns[own.clone()], &mut self.gathered[own.clone()]);
             let wrench = self.wrenches[index];
-            body.joint.gather_extended(&wrench, columns, out);
+            body.joint.gather(&wrench, columns, out);
             for (out, (&inertia, &rate)) in
                 out.iter_mut().zip(body.armature.iter().zip(&rates[own]))
             {

@@ -1,14 +1,16 @@
 //! Subexpressions that occur more than once are computed once, under a name that says what they are.
 
+use super::Names;
 use super::divisor::shared_sums;
 use super::exponential::in_range;
+use super::few::{named, with_few_shared};
+use super::names::{NameSet, describe};
 use super::pairs::extract_pairs;
 use super::reciprocal::share_reciprocals;
 use super::shapes::{Shape, Shapes};
 use super::{Counts, Node, factored};
-use crate::derived::{Primitive, Step};
-use crate::emit::names::{NameSet, describe};
 use crate::expr::{Expr, Function, Role, Symbol};
+use crate::kernel::{Primitive, Step};
 use crate::matrix::Matrix;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeSet;
@@ -67,7 +69,7 @@ impl Binding {
 }
 
 /// A kernel's body: lines in order, then the entries of all its outputs, one matrix after the other, row by row.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Program {
     /// The lines before the result.
     pub bindings: Vec<Binding>,
@@ -94,6 +96,13 @@ impl Program {
         }
     }
 
+    /// The same in the names of a joint, which it takes for the symbols that its lines bind.
+    pub fn in_names(steps: &[Step], outputs: &[Matrix], mut names: Names) -> Self {
+        let bound = steps.iter().flat_map(Step::bound);
+        bound.for_each(|symbol| names.claim(symbol));
+        Self::new(steps, outputs, names.taken())
+    }
+
     fn of_formulas(steps: &[Step], mut formulas: Vec<Node>, taken: &NameSet) -> Self {
         share_reciprocals(&mut formulas);
         extract_pairs(&mut formulas);
@@ -103,12 +112,21 @@ impl Program {
             sharing.step(step, &mut remaining);
         }
         let outputs = remaining.map(|formula| sharing.rewrite(formula)).collect();
+        let mut names = sharing.taken;
         Self {
             bindings: sharing.bindings,
             outputs,
         }
         .mapped(&|node| node.opened().polished())
         .pruned()
+        .few(&mut names)
+    }
+
+    /// With few shared values, called by a letter and an index where no name says what they are.
+    fn few(self, names: &mut NameSet) -> Self {
+        let is_shared = |name: &Symbol| usize::from(name.index) >= FIRST_INDEX;
+        let few = with_few_shared(self, is_shared).pruned();
+        named(few, names, is_shared)
     }
 
     /// Without lines whose results nothing uses.
@@ -124,7 +142,7 @@ impl Program {
         }
     }
 
-    fn mapped(mut self, f: &impl Fn(&Node) -> Node) -> Self {
+    pub(super) fn mapped(mut self, f: &impl Fn(&Node) -> Node) -> Self {
         let map = |node: &mut Node| *node = f(node);
         for binding in &mut self.bindings {
             match binding {
@@ -299,7 +317,9 @@ impl Sharing {
     }
 
     fn bind(&mut self, formula: usize, value: Node) -> Node {
-        let name = self.fresh(&describe(&value));
+        self.count += 1;
+        let name = format!("shared{}", self.count);
+        let name = Symbol::new(Role::Intermediate, FIRST_INDEX + self.count, &name);
         let symbol = Node::Symbol(name.clone());
         self.names.insert(formula, symbol.clone());
         self.bindings.push(Binding::Value { name, value });

@@ -1,76 +1,12 @@
-//! Names in emitted code: telling ones for shared terms, none used twice, none that Rust or the emitted code reserves.
+//! Names for the values of formulas: telling ones, none used twice, none that Rust reserves.
 
-use super::formula::Node;
-use crate::derived::Derived;
-use crate::expr::{Function, Rational, Role, Symbol};
+use super::Node;
+use crate::expr::{Function, Rational};
 use num_traits::{One, ToPrimitive};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Longest name made from a formula; longer formulas are named after the first symbols in them.
 const LONGEST: usize = 36;
-
-/// Names that every kernel and `build` may use: their arguments, the constants, and what is imported.
-const RESERVED: &[&str] = &[
-    "q",
-    "phi",
-    "v",
-    "p",
-    "rate",
-    "target",
-    "speeds",
-    "h",
-    "zero",
-    "one",
-    "pi",
-    "relations",
-    "relation",
-    "values",
-    "sum",
-    "rotation",
-    "nearest_rotation",
-    "start",
-    "moved",
-    "tangent",
-    "tangent_there",
-    "from_rows",
-    "self",
-    "core",
-    "hamel",
-    "std",
-    "alloc",
-];
-
-/// Names of types in emitted files, which a joint must not take.
-const RESERVED_TYPES: &[&str] = &[
-    "Arc",
-    "AnyJoint",
-    "Joint",
-    "JointEntry",
-    "Limit",
-    "Patterns",
-    "Pose",
-    "ParameterError",
-    "ParameterInfo",
-    "Scalar",
-    "SMatrix",
-    "SVector",
-    "Self",
-    "Structure",
-    "Structures",
-    "VelocityFrame",
-    "T",
-    "Clone",
-    "Copy",
-    "Debug",
-    "PartialEq",
-    "Option",
-    "Some",
-    "None",
-    "Result",
-    "Ok",
-    "Err",
-    "Iterator",
-];
 
 /// The names that are taken.
 #[derive(Clone, Debug, Default)]
@@ -81,8 +17,14 @@ pub struct NameSet {
 }
 
 impl NameSet {
-    fn is_free(&self, name: &str) -> bool {
+    /// Whether nothing has this name yet.
+    pub fn is_free(&self, name: &str) -> bool {
         !self.taken.contains(name)
+    }
+
+    /// Takes all of these names.
+    pub(super) fn reserve(&mut self, names: impl IntoIterator<Item = String>) {
+        self.taken.extend(names);
     }
 
     /// Takes a name: the one wished for, or that one with a number where it is taken or is a keyword.
@@ -119,135 +61,12 @@ fn identifier(wish: &str) -> String {
     }
 }
 
-/// What is added to the name of a symbol whose own is taken.
-fn role_name(role: Role) -> &'static str {
-    match role {
-        Role::Parameter | Role::Constant => "parameter",
-        Role::Coordinate => "coordinate",
-        Role::Target => "target",
-        Role::Local => "local",
-        Role::Velocity => "velocity",
-        Role::Speed => "speed",
-        Role::Momentum => "momentum",
-        Role::Wrench => "wrench",
-        Role::Inertia => "inertia",
-        Role::Intermediate => "value",
-    }
-}
-
-/// The identifiers of a joint's symbols in every kernel.
-#[derive(Clone, Debug)]
-pub struct Names {
-    by_symbol: BTreeMap<Symbol, String>,
-    taken: NameSet,
-}
-
-impl Names {
-    /// Names for the parameters and for the arguments of all kernels.
-    pub fn new(derived: &Derived) -> Self {
-        let mut names = Self::reserved();
-        let arguments = &derived.arguments;
-        names.claim_coordinates(&arguments.configuration);
-        let parameters = derived
-            .spec
-            .parameters
-            .iter()
-            .map(|parameter| &parameter.symbol);
-        let others = [
-            &arguments.target,
-            &arguments.local,
-            &arguments.velocity,
-            &arguments.speeds,
-            &arguments.momentum,
-            &arguments.wrench,
-        ];
-        parameters
-            .chain(others.into_iter().flatten())
-            .for_each(|symbol| names.claim(symbol));
-        names
-    }
-
-    /// Names of the parameters in `build`, where nothing else has a name but its argument and the constants.
-    pub fn of_parameters(derived: &Derived) -> Self {
-        let mut names = Self::reserved();
-        let parameters = derived.spec.parameters.iter();
-        parameters.for_each(|parameter| names.claim(&parameter.symbol));
-        names
-    }
-
-    fn reserved() -> Self {
-        let mut taken = NameSet::default();
-        let reserved = RESERVED.iter().map(|name| (*name).to_owned());
-        taken.taken.extend(reserved.chain(number_words()));
-        Self {
-            by_symbol: BTreeMap::new(),
-            taken,
-        }
-    }
-
-    /// A single coordinate called `q` may shadow the argument that it is read from.
-    fn claim_coordinates(&mut self, coordinates: &[Symbol]) {
-        for symbol in coordinates {
-            match symbol.name.as_ref() == "q" {
-                true => _ = self.by_symbol.insert(symbol.clone(), "q".to_owned()),
-                false => self.claim(symbol),
-            }
-        }
-    }
-
-    /// Gives a symbol its name.
-    pub fn claim(&mut self, symbol: &Symbol) {
-        if !self.by_symbol.contains_key(symbol) {
-            let name = match self.taken.is_free(&symbol.name) {
-                true => self.taken.claim(&symbol.name),
-                false => self
-                    .taken
-                    .claim(&format!("{}_{}", symbol.name, role_name(symbol.role))),
-            };
-            self.by_symbol.insert(symbol.clone(), name);
-        }
-    }
-
-    /// Gives a symbol a name that is already its own.
-    pub fn adopt(&mut self, symbol: &Symbol) {
-        self.by_symbol
-            .entry(symbol.clone())
-            .or_insert_with(|| symbol.name.to_string());
-    }
-
-    /// The name of a symbol.
-    pub fn get<'a>(&'a self, symbol: &'a Symbol) -> &'a str {
-        self.by_symbol
-            .get(symbol)
-            .map_or(&symbol.name, String::as_str)
-    }
-
-    /// All names that are taken.
-    pub fn taken(&self) -> &NameSet {
-        &self.taken
-    }
-}
-
-/// The name of a joint's type: `planar_euclidean` is `PlanarEuclidean`.
-pub fn type_name(joint: &str) -> String {
-    let capital = |word: &str| {
-        let mut letters = word.chars();
-        let first = letters.next().map(|letter| letter.to_ascii_uppercase());
-        first.into_iter().chain(letters).collect::<String>()
-    };
-    let name: String = joint.split('_').map(capital).collect();
-    match RESERVED_TYPES.contains(&name.as_str()) {
-        true => format!("{name}Joint"),
-        false => name,
-    }
-}
-
 const WORDS: [&str; 13] = [
     "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",
     "eleven", "twelve",
 ];
 
-fn number_words() -> impl Iterator<Item = String> {
+pub(super) fn number_words() -> impl Iterator<Item = String> {
     WORDS
         .iter()
         .chain(&["half", "third", "quarter"])

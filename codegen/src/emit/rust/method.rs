@@ -1,88 +1,21 @@
 //! One kernel as a method of the trait `Joint`.
 
-use super::comment::comment;
+use super::collect_identifiers;
 use super::numeric;
-use super::origin::Origins;
 use super::result;
-use super::signature::{Argument, Signature};
 use super::tokens::{Writer, ident};
-use crate::derived::{self, Derived, Kernel, KernelKind, Primitive};
-use crate::emit::formula::{Binding, Counts, Program};
-use crate::emit::names::Names;
+use crate::derived::{self, Primitive, Shape};
+use crate::emit::method::{Argument, Method, Output, Signature};
 use crate::expr::{Role, Symbol};
+use crate::formula::Binding;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 /// Up to this many scalars are read one by one where an argument has more.
 const FEW: usize = 3;
 
-/// A kernel, ready to be written.
-pub struct Method<'a> {
-    derived: &'a Derived,
-    kernel: &'a Kernel,
-    signature: Signature,
-    names: Names,
-    program: Arc<Program>,
-    used: BTreeSet<Symbol>,
-}
-
-/// Name of the method of a kernel.
-pub fn method_name(derived: &Derived, kernel: &Kernel) -> &'static str {
-    Signature::new(kernel, derived.shape).name
-}
-
-impl<'a> Method<'a> {
-    /// Factors and names what the kernel computes.
-    pub fn new(derived: &'a Derived, kernel: &'a Kernel, names: &Names) -> Self {
-        let mut names = names.clone();
-        let bound = kernel.steps.iter().flat_map(derived::Step::bound);
-        bound.for_each(|symbol| names.claim(symbol));
-        let program = derived.program(kernel);
-        program
-            .bindings
-            .iter()
-            .flat_map(Binding::names)
-            .for_each(|symbol| names.adopt(symbol));
-        let signature = Signature::new(kernel, derived.shape);
-        let used = program.symbols();
-        Self {
-            derived,
-            kernel,
-            signature,
-            names,
-            program,
-            used,
-        }
-    }
-
-    /// Name of the method.
-    pub fn name(&self) -> &'static str {
-        self.signature.name
-    }
-
-    /// What it computes.
-    pub fn program(&self) -> &Program {
-        &self.program
-    }
-
-    /// The operations of the emitted method.
-    pub fn counts(&self) -> Counts {
-        let mut counts = Counts::of_program(&self.program);
-        let relations = self.program.outputs.len();
-        if self.kernel.kind == KernelKind::Residual && relations > 0 {
-            counts += Counts {
-                additions: relations,
-                multiplications: relations,
-                fused: relations,
-                divisions: 0,
-                calls: 1,
-            };
-        }
-        counts
-    }
-
+impl Method<'_> {
     /// The method, with its documentation.
     pub fn tokens(&self, docs: &TokenStream) -> TokenStream {
         let whole = self.returned_argument();
@@ -93,8 +26,9 @@ impl<'a> Method<'a> {
             }
             None => self.body(),
         };
+        let read = identifiers(&body);
         let arguments = self.signature.arguments.iter().map(|&argument| {
-            let is_read = whole.map_or_else(|| self.reads(argument), |whole| whole == argument);
+            let is_read = read.contains(argument.name());
             let name = ident(&format!(
                 "{}{}",
                 if is_read { "" } else { "_" },
@@ -111,8 +45,8 @@ impl<'a> Method<'a> {
 
     /// The argument that is returned as it stands, if the kernel does just that.
     fn returned_argument(&self) -> Option<Argument> {
-        self.whole_argument()
-            .filter(|_| self.kernel.method == derived::Method::Formula)
+        let is_formula = self.kernel.method == derived::Method::Formula && self.calls.is_none();
+        self.whole_argument().filter(|_| is_formula)
     }
 
     /// The argument that the formulas are, if they are just that.
@@ -128,26 +62,13 @@ impl<'a> Method<'a> {
                 && output.rows() == symbols.len()
                 && output.entries().iter().zip(symbols).all(same)
         };
-        let returns_vector = matches!(self.signature.output, super::signature::Output::Vector(_));
+        let returns_vector = matches!(self.signature.output, Output::Vector(_));
         self.signature
             .arguments
             .iter()
             .find(is_it)
             .copied()
             .filter(|_| returns_vector)
-    }
-
-    fn reads(&self, argument: Argument) -> bool {
-        let calls = self.kernel.method != derived::Method::Formula;
-        // What calls the runtime hands its arguments on.
-        calls || self.reads_scalars(argument)
-    }
-
-    fn reads_scalars(&self, argument: Argument) -> bool {
-        argument
-            .symbols(&self.derived.arguments)
-            .iter()
-            .any(|symbol| self.used.contains(symbol))
     }
 
     fn body(&self) -> TokenStream {
@@ -190,35 +111,23 @@ impl<'a> Method<'a> {
             .arguments
             .iter()
             .map(|argument| self.read(*argument));
+        let lines = self.calls.as_ref().map(|calls| calls.lines(&writer));
         let bindings = self.bindings(&writer);
-        let result = result::tokens(&writer, self.kernel, &self.signature, &self.program.outputs);
+        let outputs = &self.program.outputs;
+        let result = match &self.calls {
+            Some(calls) => calls.result(&writer, outputs),
+            None => result::tokens(&writer, self.kernel, &self.signature, outputs),
+        };
         let constants = writer.constants();
-        quote! { #(#parameters)* #(#arguments)* #constants #bindings #result }
+        quote! { #(#parameters)* #(#arguments)* #lines #constants #bindings #result }
     }
 
-    /// The lines before the result; above those that compute functions of one statement, where it stands in the spec.
+    /// The lines before the result.
     fn bindings(&self, writer: &Writer<'_>) -> TokenStream {
-        let bindings = &self.program.bindings;
-        let origins = Origins::new(self.derived, self.kernel.kind);
-        let origins = origins.of(bindings);
-        let lines = bindings.iter().enumerate().map(|(i, binding)| {
-            let line = self.binding(writer, binding);
-            let begins = i == 0 || origins[i - 1] != origins[i];
-            match origins[i].filter(|_| begins) {
-                Some(origin) => {
-                    let group = bindings[i..].iter().zip(&origins[i..]);
-                    let group = group.take_while(|(_, other)| **other == Some(origin));
-                    let names: Vec<&str> = group
-                        .flat_map(|(binding, _)| binding.names())
-                        .map(|name| self.names.get(name))
-                        .collect();
-                    let comment = comment(&format!("{origin}: {}", names.join(", ")));
-                    quote! { #comment #line }
-                }
-                None => line,
-            }
-        });
-        lines.collect()
+        let bindings = self.program.bindings.iter();
+        bindings
+            .map(|binding| self.binding(writer, binding))
+            .collect()
     }
 
     /// Reads from an argument the scalars that are used.
@@ -291,7 +200,13 @@ impl<'a> Method<'a> {
     }
 }
 
-/// The symbols that a kernel's lines bind.
+/// Every identifier in the tokens.
+fn identifiers(tokens: &TokenStream) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    collect_identifiers(tokens.clone(), &mut found);
+    found
+}
+
 /// A call of the runtime; `names` are its results, row by row.
 fn call(primitive: Primitive, argument: &TokenStream, names: &[TokenStream]) -> TokenStream {
     match primitive {
@@ -314,6 +229,29 @@ fn call(primitive: Primitive, argument: &TokenStream, names: &[TokenStream]) -> 
             quote! {
                 let rotation = nearest_rotation(&#argument);
                 let [#(#columns),*]: [[T; 3]; 3] = rotation.into();
+            }
+        }
+    }
+}
+
+impl Signature {
+    /// The type that the method returns.
+    pub fn output_type(&self, shape: Shape) -> TokenStream {
+        let size = Literal::usize_unsuffixed;
+        match self.output {
+            Output::Pose => quote! { Pose<T> },
+            Output::Scalar => quote! { T },
+            Output::Vector(rows) => {
+                let rows = size(rows);
+                quote! { SVector<T, #rows> }
+            }
+            Output::Matrix(rows, columns) => {
+                let (rows, columns) = (size(rows), size(columns));
+                quote! { SMatrix<T, #rows, #columns> }
+            }
+            Output::Slices(rows, columns) => {
+                let (rows, columns, count) = (size(rows), size(columns), size(shape.freedoms));
+                quote! { [SMatrix<T, #rows, #columns>; #count] }
             }
         }
     }

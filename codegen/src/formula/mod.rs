@@ -7,12 +7,15 @@ mod count;
 mod divisor;
 mod exponential;
 mod factor;
+mod few;
 mod fused;
+pub mod names;
 mod numbered;
 mod pairs;
 mod reciprocal;
 mod shapes;
 mod share;
+mod symbols;
 #[cfg(test)]
 mod tests;
 
@@ -20,6 +23,7 @@ pub use count::Counts;
 pub use factor::factored;
 pub use fused::Chain;
 pub use share::{Binding, Program};
+pub use symbols::Names;
 
 use crate::expr::{Function, Rational, Symbol};
 use num_traits::{One, Zero};

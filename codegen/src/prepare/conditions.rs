@@ -2,26 +2,26 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::domain::Domain;
-use crate::model::{Declared, JointSpec, Locus, Requirement};
+use crate::model::{ConfigurationSpace, Declared, Locus, Requirement};
 use crate::spec::code;
 
 /// An error for each exception that holds nowhere, or at home for some parameters, and for each requirement that is always or never true.
-pub fn wrong_conditions(spec: &JointSpec) -> Vec<Diagnostic> {
-    let without_loci = JointSpec {
+pub fn wrong(space: &ConfigurationSpace) -> Vec<Diagnostic> {
+    let without_loci = ConfigurationSpace {
         loci: vec![],
-        ..spec.clone()
+        ..space.clone()
     };
-    let loci = spec.loci.iter();
+    let loci = space.loci.iter();
     let of_loci = loci.filter_map(|locus| wrong_locus(locus, &without_loci));
-    let requirements = spec.requirements.iter().enumerate();
+    let requirements = space.requirements.iter().enumerate();
     let of_requirements = requirements.filter_map(|(n, requirement)| {
-        let before = &spec.requirements[..n];
+        let before = &space.requirements[..n];
         wrong_requirement(requirement, before, &without_loci)
     });
     of_loci.chain(of_requirements).collect()
 }
 
-fn wrong_locus(locus: &Declared<Locus>, without_loci: &JointSpec) -> Option<Diagnostic> {
+fn wrong_locus(locus: &Declared<Locus>, without_loci: &ConfigurationSpace) -> Option<Diagnostic> {
     let error = |message: &str| Diagnostic::new(code::LOCUS, locus.span.clone(), message);
     let (domain, function) = (Domain::new(without_loci), &locus.value.function);
     if let Some(certificate) = domain.nonzero(function) {
@@ -48,13 +48,13 @@ fn wrong_locus(locus: &Declared<Locus>, without_loci: &JointSpec) -> Option<Diag
 fn wrong_requirement(
     requirement: &Declared<Requirement>,
     before: &[Declared<Requirement>],
-    spec: &JointSpec,
+    space: &ConfigurationSpace,
 ) -> Option<Diagnostic> {
     let error =
         |message: &str| Diagnostic::new(code::REQUIREMENT, requirement.span.clone(), message);
-    let given = |requirements: &[Declared<Requirement>]| JointSpec {
+    let given = |requirements: &[Declared<Requirement>]| ConfigurationSpace {
         requirements: requirements.to_vec(),
-        ..spec.clone()
+        ..space.clone()
     };
     let value = &requirement.value.value;
     if Domain::new(&given(&[])).is_positive(value) {

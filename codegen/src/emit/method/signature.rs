@@ -1,9 +1,7 @@
-//! The signatures of the trait's methods.
+//! The signatures of the trait's methods, and what they mean.
 
 use crate::derived::{Arguments, Kernel, KernelKind, Shape};
 use crate::expr::Symbol;
-use proc_macro2::{Literal, TokenStream};
-use quote::quote;
 
 /// An argument of a kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,9 +126,6 @@ impl Signature {
             ),
             KernelKind::Retract => ("retract", vec![Configuration, Local], Vector(n)),
             KernelKind::Local => ("local", vec![Configuration, Target], Vector(k)),
-            KernelKind::RetractTangent => {
-                ("retract_tangent", vec![Configuration, Local], Matrix(n, k))
-            }
             KernelKind::RetractDifferential => (
                 "retract_differential",
                 vec![Configuration, Local],
@@ -144,7 +139,6 @@ impl Signature {
             KernelKind::Project => ("project", q(), Vector(n)),
             KernelKind::Residual => ("residual", q(), Scalar),
             KernelKind::Relations => ("relations", q(), Vector(relations)),
-            KernelKind::RelationGradient => ("relation_gradient", q(), Matrix(relations, n)),
             KernelKind::Singularity => ("singularity", q(), Scalar),
             KernelKind::BiasAcceleration => {
                 ("bias_acceleration", vec![Configuration, Speeds], Vector(6))
@@ -161,25 +155,52 @@ impl Signature {
             output,
         }
     }
+}
 
-    /// The type that the method returns.
-    pub fn output_type(&self, shape: Shape) -> TokenStream {
-        let size = Literal::usize_unsuffixed;
-        match self.output {
-            Output::Pose => quote! { Pose<T> },
-            Output::Scalar => quote! { T },
-            Output::Vector(rows) => {
-                let rows = size(rows);
-                quote! { SVector<T, #rows> }
-            }
-            Output::Matrix(rows, columns) => {
-                let (rows, columns) = (size(rows), size(columns));
-                quote! { SMatrix<T, #rows, #columns> }
-            }
-            Output::Slices(rows, columns) => {
-                let (rows, columns, count) = (size(rows), size(columns), size(shape.freedoms));
-                quote! { [SMatrix<T, #rows, #columns>; #count] }
-            }
+/// What a kernel maps to what.
+pub fn meaning(kind: KernelKind) -> &'static str {
+    match kind {
+        KernelKind::Home => "The home configuration.",
+        KernelKind::Pose => "H(Q): child coordinates to parent coordinates.",
+        KernelKind::TwistMap => {
+            "X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1)."
+        }
+        KernelKind::TwistMapChild => "X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.",
+        KernelKind::TwistMapChildGradient => {
+            "∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k."
+        }
+        KernelKind::VelocityMap => "S₀(Q): ϕ̇ to v at ϕ = 0 (23).",
+        KernelKind::VelocityMapInverse => "S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.",
+        KernelKind::VelocityMapGradient => "∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.",
+        KernelKind::Gamma => "Σ_k γ_k v_k (17): stands on the left of (24).",
+        KernelKind::J22 => "J22(Q, p) (28): stands on the right of (27).",
+        KernelKind::Constraint => "A(Q) with Aᵀ v = 0 (Definition 2).",
+        KernelKind::SpeedBasis => "S̄(Q): speeds v̄ to v (Definition 2, (15)).",
+        KernelKind::SpeedBasisGradient => "∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.",
+        KernelKind::ConfigurationRate => "Q̇(Q, v) (31): the rates of the stored scalars.",
+        KernelKind::Retract => {
+            "Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration."
+        }
+        KernelKind::Local => "The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.",
+        KernelKind::RetractDifferential => {
+            "D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D."
+        }
+        KernelKind::RetractDifferentialInverse => {
+            "ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π."
+        }
+        KernelKind::Project => "The configuration on the manifold that is nearest to `q`.",
+        KernelKind::Residual => {
+            "Root of the sum of squares of the manifold's relations: 0 on the manifold."
+        }
+        KernelKind::Relations => "The relations of the manifold: 0 on it.",
+        KernelKind::Singularity => {
+            "Least absolute value of the functions whose zeros the joint must stay away from."
+        }
+        KernelKind::BiasAcceleration => {
+            "c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame."
+        }
+        KernelKind::BiasMomentum => {
+            "(d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame."
         }
     }
 }

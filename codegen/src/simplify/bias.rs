@@ -1,0 +1,136 @@
+//! `c = Ẋ̄^c v̄` and `Ẋ̄^cᵀ h`, in the way that takes fewest operations.
+
+use super::kernels::{LONG, least_work, terms, with_lines};
+use super::words::Words;
+use crate::expand::{Expansion, Steps, speed_map};
+use crate::expr::{Expr, Symbol};
+use crate::kernel::{Kernel, KernelKind, Method, Step, Structure};
+use crate::matrix::Matrix;
+use crate::prepare::Prepared;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Both kernels; `map` is X̄^c = X^c S̄ in words.
+pub fn kernels(
+    joint: &Prepared,
+    expansion: &Expansion,
+    words: &Words<'_>,
+    map: &Matrix,
+) -> Vec<Kernel> {
+    let maker = Maker { joint, expansion };
+    let few = words.functions_alone();
+    let speed_map = speed_map(joint, expansion);
+    let is_long = terms(std::slice::from_ref(&speed_map)) > LONG / 2;
+    let kernels = maker.by_slices(words, map, Entries::Lines);
+    let kernels = kernels.into_iter().enumerate();
+    let least = kernels.map(|(n, kernel)| {
+        let others: [&dyn Fn() -> Kernel; 3] = [
+            &|| maker.by_slices(words, map, Entries::InPlace)[n].clone(),
+            &|| maker.by_coordinates(&few)[n].clone(),
+            &|| maker.by_slices(&few, &speed_map, Entries::InPlace)[n].clone(),
+        ];
+        let tried = if is_long { &others[..1] } else { &others[..] };
+        least_work(kernel, tried)
+    });
+    least.collect()
+}
+
+/// Where the entries of Ẋ̄^c stand.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Entries {
+    /// As lines of their own.
+    Lines,
+    /// In the sums with v̄ and h, which may be shorter multiplied out.
+    InPlace,
+}
+
+struct Maker<'a> {
+    joint: &'a Prepared,
+    expansion: &'a Expansion,
+}
+
+impl Maker<'_> {
+    /// By the chain rule through the stored scalars, with their rates as lines.
+    fn by_coordinates(&self, words: &Words<'_>) -> [Kernel; 2] {
+        let map = speed_map(self.joint, self.expansion);
+        let mut steps = Steps::default();
+        let rates = self.coordinate_rates(&map, words, &mut steps);
+        let along = |symbol: &Symbol| rates.get(symbol).cloned().unwrap_or_default();
+        let rate = map.map(|entry| words.shorten(&entry.along(&along)));
+        self.both(&rate, words, &steps.finish())
+    }
+
+    /// By slices: `Ẋ̄^c = Σ_k ∂X̄^c/∂ϕ_k ϕ̇_k`.
+    fn by_slices(&self, words: &Words<'_>, map: &Matrix, entries: Entries) -> [Kernel; 2] {
+        let mut words = words.clone();
+        let map = words.shorten_each(map);
+        let local = self.local_rates(&words);
+        let zero = Matrix::zeros(map.rows(), map.columns());
+        let rate = (0..self.expansion.shape.freedoms).fold(zero, |sum, k| {
+            let slice = words.along_each(&map, k);
+            sum.plus(&slice.scale(local.at(k, 0)))
+        });
+        let rate = words.shorten_each(&rate);
+        let mut steps = Steps::default();
+        let rate = match entries {
+            Entries::Lines => steps.bind_matrix("rate", &rate),
+            Entries::InPlace => rate,
+        };
+        self.both(&rate, &words, &steps.finish())
+    }
+
+    /// `ϕ̇ = S₀⁻¹ S̄ v̄`.
+    fn local_rates(&self, words: &Words<'_>) -> Matrix {
+        let basis = &self.expansion.nonholonomic.speed_basis;
+        let inverse = &self.expansion.velocity_map_inverse;
+        let speeds = Matrix::symbols(&self.expansion.arguments.speeds);
+        words.shorten_each(&words.shorten_each(&inverse.times(basis)).times(&speeds))
+    }
+
+    /// `Q̇ = Σ_k δ_k ϕ̇_k` of the stored scalars that occur in a matrix.
+    fn coordinate_rates(
+        &self,
+        matrix: &Matrix,
+        words: &Words<'_>,
+        steps: &mut Steps,
+    ) -> BTreeMap<Symbol, Expr> {
+        let occurring: BTreeSet<Symbol> = matrix.entries().iter().flat_map(Expr::symbols).collect();
+        let rates = self.expansion.motion.tangent();
+        let rates = words.shorten_each(&rates.times(&self.local_rates(words)));
+        let coordinates = self.expansion.arguments.configuration.iter();
+        let moving = coordinates
+            .zip(rates.entries())
+            .filter(|(symbol, rate)| occurring.contains(*symbol) && !rate.is_zero());
+        let bound = moving.map(|(symbol, rate)| {
+            let name = format!("{}_rate", symbol.name);
+            (symbol.clone(), steps.bind(&name, rate.clone()))
+        });
+        bound.collect()
+    }
+
+    fn both(&self, rate: &Matrix, words: &Words<'_>, steps: &[Step]) -> [Kernel; 2] {
+        let arguments = &self.expansion.arguments;
+        let speeds = Matrix::symbols(&arguments.speeds);
+        let wrench = Matrix::symbols(&arguments.wrench);
+        let of_speeds = rate.times(&speeds);
+        let of_wrench = rate.transpose().times(&wrench);
+        [
+            (KernelKind::BiasAcceleration, of_speeds),
+            (KernelKind::BiasMomentum, of_wrench),
+        ]
+        .map(|(kind, value)| {
+            let structure = Structure::of(std::slice::from_ref(&value));
+            let steps = match structure {
+                Structure::Zero => vec![],
+                _ => steps.to_vec(),
+            };
+            let kernel = Kernel {
+                kind,
+                steps,
+                outputs: vec![value],
+                method: Method::Formula,
+                structure,
+            };
+            with_lines(words, kernel)
+        })
+    }
+}

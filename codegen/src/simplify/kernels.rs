@@ -1,0 +1,244 @@
+//! The kernels of a joint in the words of its author.
+
+use super::twists;
+use super::words::{Words, opened};
+use crate::expand::{self, Expansion};
+use crate::expr::{Expr, Symbol, budget};
+use crate::formula::names::NameSet;
+use crate::formula::{Counts, Program};
+use crate::kernel::{Kernel, KernelKind, Method, Step, Word};
+use crate::manifold::weight;
+use crate::matrix::Matrix;
+use crate::prepare::Prepared;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Kernels of which every entry is shortened.
+const OF_CONFIGURATION: [KernelKind; 9] = [
+    KernelKind::Pose,
+    KernelKind::TwistMap,
+    KernelKind::TwistMapChild,
+    KernelKind::VelocityMap,
+    KernelKind::VelocityMapInverse,
+    KernelKind::Constraint,
+    KernelKind::SpeedBasis,
+    KernelKind::VelocityMapGradient,
+    KernelKind::ConfigurationRate,
+];
+
+/// The kernels with what they compute in few operations, and under the names that the spec gives.
+pub fn in_words(
+    joint: &Prepared,
+    expansion: &Expansion,
+    kernels: Vec<Kernel>,
+) -> (Vec<Kernel>, Vec<Word>) {
+    let mut words = Words::new(joint, &expansion.motion);
+    if !words.are_used() {
+        return (as_derived(joint, expansion, kernels, &words), vec![]);
+    }
+    let twists = twists::of_pose(joint, expansion, &mut words);
+    let shortened = kernels.into_iter().map(|mut kernel| {
+        if let Some(outputs) = declared(joint, kernel.kind) {
+            kernel.outputs = as_declared(&words, &outputs);
+            return kernel;
+        }
+        match twists.of(kernel.kind) {
+            Some(map) => twists::shorter(&words, kernel, map),
+            None => base(&words, kernel),
+        }
+    });
+    let mut named: Vec<Kernel> = shortened.collect();
+    let [child, basis] = [KernelKind::TwistMapChild, KernelKind::SpeedBasis];
+    let speed_map = output(&named, child).times(&output(&named, basis));
+    for (of, gradient) in GRADIENTS {
+        let map = output(&named, of);
+        if let Some(target) = named.iter_mut().find(|kernel| kernel.kind == gradient) {
+            *target = shortest_gradient(&mut words, &map, target);
+        }
+    }
+    let is_gradient = |kind| GRADIENTS.iter().any(|(_, gradient)| *gradient == kind);
+    let finished = named
+        .into_iter()
+        .map(|kernel| match is_gradient(kernel.kind) {
+            true => kernel,
+            false => with_lines(&words, kernel),
+        });
+    let mut kernels: Vec<Kernel> = finished.collect();
+    kernels.extend(super::bias::kernels(joint, expansion, &words, &speed_map));
+    kernels.sort_by_key(|kernel| kernel.kind);
+    let used = kernels.iter().flat_map(|kernel| &kernel.steps);
+    let used: BTreeSet<&Symbol> = used.flat_map(Step::bound).collect();
+    let words = words.words().iter();
+    let words = words.filter(|word| used.contains(&word.symbol)).cloned();
+    let words = words.collect();
+    (kernels, words)
+}
+
+/// The kernels as they were derived, with c and its dual.
+fn as_derived(
+    joint: &Prepared,
+    expansion: &Expansion,
+    mut kernels: Vec<Kernel>,
+    words: &Words<'_>,
+) -> Vec<Kernel> {
+    let map = expand::speed_map(joint, expansion);
+    kernels.extend(super::bias::kernels(joint, expansion, words, &map));
+    kernels.sort_by_key(|kernel| kernel.kind);
+    kernels
+}
+
+/// Derivatives, and what they are of.
+const GRADIENTS: [(KernelKind, KernelKind); 2] = [
+    (KernelKind::TwistMapChild, KernelKind::TwistMapChildGradient),
+    (KernelKind::SpeedBasis, KernelKind::SpeedBasisGradient),
+];
+
+/// The slices of a gradient: by the chain rule through the words of the map, or as they were derived.
+fn shortest_gradient(words: &mut Words<'_>, map: &Matrix, kernel: &Kernel) -> Kernel {
+    let mut by_chain_rule = kernel.clone();
+    for (k, slice) in by_chain_rule.outputs.iter_mut().enumerate() {
+        if !slice.is_zero() {
+            let moved = words.along_each(map, k);
+            let mut moved = moved.entries().iter();
+            // What is known to vanish does so whatever the names.
+            *slice = slice.map(|entry| match (entry.is_zero(), moved.next()) {
+                (false, Some(moved)) => moved.clone(),
+                _ => Expr::zero(),
+            });
+        }
+    }
+    let few = words.functions_alone();
+    let shortened = |words: &Words<'_>| {
+        let mut kernel = kernel.clone();
+        let short = kernel.outputs.iter().map(|slice| words.shorten_each(slice));
+        kernel.outputs = short.collect();
+        with_lines(words, kernel)
+    };
+    let first = with_lines(words, by_chain_rule);
+    match terms(&kernel.outputs) > LONG {
+        true => first,
+        false => least_work(first, &[&|| shortened(words), &|| shortened(&few)]),
+    }
+}
+
+/// Terms beyond which another way to write a kernel is not tried: it would hardly be shorter, and takes long to find.
+pub(super) const LONG: usize = 120;
+
+/// All terms of matrices, multiplied out.
+pub(super) fn terms(matrices: &[Matrix]) -> usize {
+    let entries = matrices.iter().flat_map(Matrix::entries);
+    entries.map(|entry| opened(entry).terms().len()).sum()
+}
+
+/// Most term operations for another way to write a kernel.
+const ALTERNATIVE: u64 = 300_000;
+
+/// The kernel, or one of the other ways to write it where that takes less work; a way that is long to find is not taken.
+pub(super) fn least_work(first: Kernel, others: &[&dyn Fn() -> Kernel]) -> Kernel {
+    let work = |kernel: &Kernel| {
+        let program = Program::new(&kernel.steps, &kernel.outputs, &NameSet::default());
+        Counts::of_program(&program).work()
+    };
+    let mut best = (work(&first), first);
+    for other in others {
+        if let Ok(other) = budget::scope(ALTERNATIVE, other) {
+            let own = work(&other);
+            if own < best.0 {
+                best = (own, other);
+            }
+        }
+    }
+    best.1
+}
+
+fn output(kernels: &[Kernel], kind: KernelKind) -> Matrix {
+    let kernel = kernels.iter().find(|kernel| kernel.kind == kind);
+    kernel
+        .and_then(|kernel| kernel.outputs.first().cloned())
+        .unwrap_or_else(|| Matrix::zeros(0, 0))
+}
+
+/// A kernel that follows from the configuration alone, shortened; others as they are.
+pub(super) fn base(words: &Words<'_>, mut kernel: Kernel) -> Kernel {
+    if kernel.method == Method::Formula && OF_CONFIGURATION.contains(&kernel.kind) {
+        let short = kernel.outputs.iter().map(|m| words.shorten_each(m));
+        kernel.outputs = short.collect();
+    }
+    kernel
+}
+
+/// As the author writes it, unless there is a form that is clearly shorter.
+fn as_declared(words: &Words<'_>, outputs: &[Matrix]) -> Vec<Matrix> {
+    let entry = |entry: &Expr| {
+        let short = words.shorten(entry);
+        match weight(&short) + 1 < weight(entry) {
+            true => short,
+            false => entry.clone(),
+        }
+    };
+    outputs.iter().map(|output| output.map(entry)).collect()
+}
+
+/// The matrices that the spec declares of a kernel, in the names that it uses.
+fn declared(joint: &Prepared, kind: KernelKind) -> Option<Vec<Matrix>> {
+    let worded = &joint.spec.worded;
+    match kind {
+        KernelKind::Pose => {
+            let pose = worded.pose.clone()?;
+            Some(vec![pose.rotation, pose.translation])
+        }
+        KernelKind::TwistMap => Some(vec![worded.twist_map.clone()?]),
+        KernelKind::Constraint => Some(vec![worded.constraint.clone()?]),
+        KernelKind::SpeedBasis => Some(vec![worded.speed_basis.clone()?]),
+        _ => None,
+    }
+}
+
+/// The kernel with a line for each word that it uses; derivatives that are used once stand in their place.
+pub(super) fn with_lines(words: &Words<'_>, mut kernel: Kernel) -> Kernel {
+    let mut lines: Vec<Word> = vec![];
+    for word in words.words().iter().rev() {
+        let uses = uses(&word.symbol, &kernel, &lines);
+        if uses == 0 {
+            continue;
+        }
+        if word.is_derivative() && uses == 1 {
+            let value = BTreeMap::from([(word.symbol.clone(), word.value.clone())]);
+            put_in(&mut kernel, &mut lines, &value);
+            continue;
+        }
+        lines.push(word.clone());
+    }
+    let lines = lines.into_iter().rev();
+    let lines = lines.map(|word| Step::Let(word.symbol, word.value));
+    kernel.steps = lines.chain(kernel.steps).collect();
+    kernel
+}
+
+fn uses(symbol: &Symbol, kernel: &Kernel, lines: &[Word]) -> usize {
+    let outputs = kernel.outputs.iter().flat_map(Matrix::entries);
+    let steps = kernel.steps.iter().flat_map(|step| match step {
+        Step::Let(_, value) => vec![value],
+        Step::Call { argument, .. } => argument.entries().iter().collect(),
+    });
+    let all = outputs
+        .chain(steps)
+        .chain(lines.iter().map(|word| &word.value));
+    all.filter(|entry| entry.symbols().contains(symbol)).count()
+}
+
+fn put_in(kernel: &mut Kernel, lines: &mut [Word], value: &BTreeMap<Symbol, Expr>) {
+    for output in &mut kernel.outputs {
+        *output = output.map(|entry| entry.substitute(value));
+    }
+    for step in &mut kernel.steps {
+        match step {
+            Step::Let(_, bound) => *bound = bound.substitute(value),
+            Step::Call { argument, .. } => {
+                *argument = argument.map(|entry| entry.substitute(value));
+            }
+        }
+    }
+    for word in lines {
+        word.value = word.value.substitute(value);
+    }
+}

@@ -1,0 +1,53 @@
+//! Forms that adding multiples of relations must find.
+
+use crate::expr::{Expr, Role, Symbol};
+use crate::manifold::{Kind, Manifold};
+
+fn shortened(expression: &Expr, relations: &[Expr]) -> Expr {
+    let functions = expression.related_functions();
+    let given = relations.iter().map(|relation| (None, relation));
+    super::shortened(expression, &functions, given)
+}
+
+fn rotation() -> (Vec<Expr>, impl Fn(usize, usize) -> Expr) {
+    let manifold = Manifold::new(&[("R".to_owned(), Kind::So3)]);
+    let coordinates = manifold.coordinates();
+    let entry = move |i: usize, j: usize| Expr::symbol(&coordinates[3 * i + j - 4]);
+    (manifold.relations(), entry)
+}
+
+#[test]
+fn a_minor_is_an_entry_with_any_factor_and_beside_other_terms() {
+    let (relations, r) = rotation();
+    let x = Expr::symbol(&Symbol::new(Role::Velocity, 0, "x"));
+    let minor = &(&r(1, 1) * &r(2, 2)) - &(&r(1, 2) * &r(2, 1));
+    let other = &x * &r(2, 3);
+    let sum = &(&minor * &(&x * &r(3, 1))) + &other;
+    let expected = &(&r(3, 3) * &(&x * &r(3, 1))) + &other;
+    assert_eq!(shortened(&sum, &relations), expected);
+}
+
+#[test]
+fn quotients_of_a_root_come_on_one_denominator() {
+    let (relations, r) = rotation();
+    let root = (&Expr::one() - &r(3, 3).square()).sqrt();
+    let quotient = root.recip().expect("a root of a sum is not zero");
+    let sum = &(&r(3, 3).square() * &quotient) + &root;
+    assert_eq!(shortened(&sum, &relations), quotient);
+}
+
+#[test]
+fn sines_and_cosines_of_one_angle_add_up() {
+    let x = Expr::symbol(&Symbol::new(Role::Coordinate, 0, "x"));
+    let sum = &Expr::one() - &x.cos().square();
+    assert_eq!(shortened(&sum, &[]), x.sin().square());
+}
+
+#[test]
+fn nothing_is_divided_by_that_was_not() {
+    let x = Expr::symbol(&Symbol::new(Role::Coordinate, 0, "x"));
+    let y = Expr::symbol(&Symbol::new(Role::Coordinate, 1, "y"));
+    let relation = &(&x * &y) - &Expr::one();
+    let product = &x * &y.square();
+    assert_eq!(shortened(&product, &[relation]), y);
+}

@@ -1,0 +1,357 @@
+//! [`AnyJoint`] for every [`Joint`] and scalar: sizes are checked here, once a call, and what is done is done on arrays.
+
+use super::kernels::{kernels, passed_on};
+use super::slices::{Store, array, array_mut, nan, vector};
+use super::{AnyJoint, FiniteMapError, Layout, Sizes};
+use crate::joint::{Joint, Products, Structures, VelocityFrame};
+use crate::scalar::{Extended, Native, Scalar};
+use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
+use crate::steps::{
+    ChartDerivatives, Field, Motion, Pivot, PivotFailure, Placement, Steps, Variation,
+};
+use alloc::sync::Arc;
+use nalgebra::{Matrix3, SVector, Vector6};
+
+/// The error of a finite map unless there are `size` values, all finite.
+fn check_finite<T: Scalar<Mask = bool>>(
+    joint: &'static str,
+    map: &'static str,
+    values: &[T],
+    size: usize,
+) -> Result<(), FiniteMapError> {
+    let infinity = T::from_f64(f64::INFINITY);
+    let is_finite = |value: &T| (-infinity).less(*value) && value.less(infinity);
+    match values.len() == size && values.iter().all(is_finite) {
+        true => Ok(()),
+        false => Err(FiniteMapError { joint, map }),
+    }
+}
+
+impl<T, J, const N: usize, const K: usize, const S: usize, const C: usize> AnyJoint<T>
+    for (J, Sizes<N, K, S, C>)
+where
+    T: Scalar<Mask = bool>,
+    J: Joint<N, K, S, C>,
+{
+    fn extended(self: Arc<Self>) -> Arc<dyn AnyJoint<Extended>> {
+        self
+    }
+
+    fn name(&self) -> &'static str {
+        J::NAME
+    }
+
+    fn layout(&self) -> Layout {
+        Layout {
+            configuration: N,
+            freedoms: K,
+            speeds: S,
+            constraints: C,
+        }
+    }
+
+    fn structures(&self) -> Structures {
+        J::STRUCTURES
+    }
+
+    fn velocity_frame(&self) -> VelocityFrame {
+        J::VELOCITY_FRAME
+    }
+
+    fn coordinates(&self) -> &'static [&'static str] {
+        const { &J::COORDINATES }
+    }
+
+    fn freedoms(&self) -> &'static [&'static str] {
+        const { &J::FREEDOMS }
+    }
+
+    fn speeds(&self) -> &'static [&'static str] {
+        const { &J::SPEEDS }
+    }
+
+    fn imperceptible(&self) -> &'static [[f64; 10]] {
+        J::IMPERCEPTIBLE
+    }
+
+    fn singularities(&self) -> &'static [&'static str] {
+        J::SINGULARITIES
+    }
+
+    fn parameters(&self, visit: &mut dyn FnMut(&'static str, f64)) {
+        for (name, value) in self.0.parameters() {
+            visit(name, value);
+        }
+    }
+
+    kernels!(passed_on);
+
+    fn pose(&self, q: &[T]) -> Pose<T> {
+        self.0.pose(&vector(q))
+    }
+
+    fn residual(&self, q: &[T]) -> T {
+        self.0.residual(&vector(q))
+    }
+
+    fn singularity(&self, q: &[T]) -> T {
+        self.0.singularity(&vector(q))
+    }
+
+    fn bias_acceleration(&self, q: &[T], speeds: &[T]) -> Vector6<T> {
+        self.0.bias_acceleration(&vector(q), &vector(speeds))
+    }
+
+    fn local(&self, q: &[T], target: &[T], phi: &mut [T]) -> Result<(), FiniteMapError> {
+        self.0.local(&vector(q), &vector(target)).store(phi);
+        check_finite(J::NAME, "local coordinates", phi, K)
+    }
+
+    fn project(&self, q: &mut [T]) -> Result<(), FiniteMapError> {
+        self.0.project(&vector(q)).store(q);
+        check_finite(J::NAME, "projection", q, N)
+    }
+
+    fn local_rate(&self, q: &[T], phi: &[T], moved: &[T], speeds: &[T], out: &mut [T]) {
+        let (joint, structures) = (&self.0, J::STRUCTURES);
+        let moved = vector(moved);
+        let velocity: SVector<T, K> = match structures.speed_basis.is_identity() {
+            true => vector(speeds),
+            false => joint.speed_basis(&moved) * vector::<T, S>(speeds),
+        };
+        let rate = match structures.velocity_map.is_identity() {
+            true => velocity,
+            false => joint.velocity_map_inverse(&moved) * velocity,
+        };
+        let local_rate = match structures.retract_differential.is_identity() {
+            true => rate,
+            false => joint.retract_differential_inverse(&vector(q), &vector(phi), &rate),
+        };
+        local_rate.store(out);
+    }
+
+    fn reduce_efforts(&self, q: &[T], efforts: &[T], out: &mut [T]) {
+        let efforts = vector::<T, K>(efforts);
+        match J::STRUCTURES.speed_basis.is_identity() {
+            true => efforts.store(out),
+            false => self.0.speed_basis(&vector(q)).tr_mul(&efforts).store(out),
+        }
+    }
+
+    fn differentiate(&self, base: &[T], phi: &[T], speeds: &[T], out: &mut ChartDerivatives<'_, T>)
+    where
+        T: Native,
+    {
+        let field = Field {
+            joint: &self.0,
+            base: vector(base),
+            phi: vector(phi),
+            speeds: vector(speeds),
+        };
+        field.fill(out);
+    }
+
+    fn spring_slope(&self, q: &[T], rest: &[T], stiffness: &[T], out: &mut [T])
+    where
+        T: Native,
+    {
+        Steps(&self.0)
+            .spring_slope((&vector(q), &vector(rest)), stiffness)
+            .store(out);
+    }
+
+    fn turn_slope(&self, q: &[T], rest: &Matrix3<T>, stiffness: T, out: &mut [T])
+    where
+        T: Native,
+    {
+        Steps(&self.0)
+            .turn_slope(&vector(q), rest, stiffness)
+            .store(out);
+    }
+
+    fn rotor_slopes(
+        &self,
+        q: &[T],
+        velocity: &[T],
+        inertia: &[T],
+        by_local: &mut [T],
+        by_velocity: &mut [T],
+    ) where
+        T: Native,
+    {
+        let (velocity, inertia) = (vector(velocity), vector(inertia));
+        let slopes = Steps(&self.0).rotor_slopes(&vector(q), &velocity, &inertia);
+        slopes[0].store(by_local);
+        slopes[1].store(by_velocity);
+    }
+
+    fn parts(&self) -> (bool, bool) {
+        Steps::<J, N, K, S, C>::parts()
+    }
+
+    fn column_parts(&self, speed: usize) -> (bool, bool) {
+        match speed < S {
+            true => Steps::<J, N, K, S, C>::column_parts(speed),
+            false => (false, false),
+        }
+    }
+
+    fn place(&self, q: &[T], joint_frame: &Pose<T>, parent: &Placement<T>, own: &mut Placement<T>)
+    where
+        T: Native,
+    {
+        *own = Steps(&self.0).child(&vector(q), joint_frame, parent);
+    }
+
+    fn stand(
+        &self,
+        q: &[T],
+        joint_frame: &Pose<T>,
+        parent: &Placement<T>,
+        own: &mut Placement<T>,
+        columns: &mut [Vector6<T>],
+    ) where
+        T: Native,
+    {
+        let q = vector(q);
+        *own = Steps(&self.0).child(&q, joint_frame, parent);
+        match array_mut(columns) {
+            Some(columns) => *columns = Steps(&self.0).columns(&q, &own.rotation),
+            None => columns.fill(Vector6::repeat(nan())),
+        }
+    }
+
+    fn speed_map(&self, q: &[T], columns: &mut [Vector6<T>])
+    where
+        T: Native,
+    {
+        match array_mut(columns) {
+            Some(columns) => *columns = Steps(&self.0).columns(&vector(q), &Matrix3::identity()),
+            None => columns.fill(Vector6::repeat(nan())),
+        }
+    }
+
+    fn advance(
+        &self,
+        (q, speeds, accelerations): (&[T], &[T], &[T]),
+        joint_frame: &Pose<T>,
+        parent: &Motion<T>,
+        own: &mut Motion<T>,
+        columns: &mut [Vector6<T>],
+    ) {
+        let arrays = (array(q), array(speeds), array_mut(columns));
+        let (Some(q), Some(speeds), Some(own_columns)) = arrays else {
+            *own = Motion::unknown();
+            return columns.fill(Vector6::repeat(nan()));
+        };
+        let state = (&SVector::from(*q), &SVector::from(*speeds));
+        *own = Steps(&self.0).advance(state, joint_frame, parent, own_columns);
+        if !accelerations.is_empty() {
+            let accelerations = vector(accelerations);
+            own.rate = Steps::<J, N, K, S, C>::add_columns(&own.rate, own_columns, &accelerations);
+        }
+    }
+
+    fn articulate(
+        &self,
+        inertia: &mut ArticulatedInertia<T>,
+        columns: &[Vector6<T>],
+        armature: &[T],
+        pivots: &mut [Pivot<T>],
+    ) -> Result<(), PivotFailure<T>>
+    where
+        T: Native,
+    {
+        let (Some(columns), Some(pivots)) = (array(columns), array_mut(pivots)) else {
+            return Err(PivotFailure::unknown());
+        };
+        Steps::<J, N, K, S, C>::inertia(inertia, columns, armature, pivots)
+    }
+
+    fn reduce(
+        &self,
+        wrench: &mut Vector6<T>,
+        columns: &[Vector6<T>],
+        pivots: &[Pivot<T>],
+        forces: &[T],
+        loads: &mut [T],
+    ) where
+        T: Native,
+    {
+        let arrays = (
+            array(columns),
+            array(pivots),
+            array(forces),
+            array_mut(loads),
+        );
+        let (Some(columns), Some(pivots), Some(forces), Some(loads)) = arrays else {
+            *wrench = Vector6::repeat(nan());
+            return loads.fill(nan());
+        };
+        *wrench = Steps::<J, N, K, S, C>::wrench(wrench, columns, pivots, forces, loads);
+    }
+
+    fn resolve(
+        &self,
+        motion: &mut Vector6<T>,
+        columns: &[Vector6<T>],
+        pivots: &[Pivot<T>],
+        loads: &[T],
+        rates: &mut [T],
+    ) where
+        T: Native,
+    {
+        let arrays = (
+            array(columns),
+            array(pivots),
+            array(loads),
+            array_mut(rates),
+        );
+        let (Some(columns), Some(pivots), Some(loads), Some(rates)) = arrays else {
+            *motion = Vector6::repeat(nan());
+            return rates.fill(nan());
+        };
+        *motion = Steps::<J, N, K, S, C>::motion(motion, columns, pivots, loads, rates);
+    }
+
+    fn momenta(&self, inertia: &SpatialInertia<T>, columns: &[Vector6<T>], out: &mut [Vector6<T>])
+    where
+        T: Native,
+    {
+        let (Some(columns), Some(own)) = (array::<_, S>(columns), array_mut::<_, S>(out)) else {
+            return out.fill(Vector6::repeat(nan()));
+        };
+        for j in 0..S {
+            own[j] = Steps::<J, N, K, S, C>::momentum(inertia, j, &columns[j]);
+        }
+    }
+
+    fn gather(&self, wrench: &Vector6<T>, columns: &[Vector6<T>], out: &mut [T]) {
+        let (Some(columns), Some(own)) = (array::<_, S>(columns), array_mut::<_, S>(out)) else {
+            return out.fill(nan());
+        };
+        for j in 0..S {
+            own[j] = Steps::<J, N, K, S, C>::power(j, &columns[j], wrench);
+        }
+    }
+
+    fn vary(
+        &self,
+        (q, speeds, accelerations): (&[T], &[T], &[T]),
+        motions: (&Motion<T>, &Motion<T>),
+        columns: &[Vector6<T>],
+        out: &mut [Variation<T>],
+    ) where
+        T: Native,
+    {
+        let (Some(columns), Some(own)) = (array(columns), array_mut(out)) else {
+            return out.fill(Variation::unknown());
+        };
+        let accelerations = match accelerations.is_empty() {
+            true => SVector::zeros(),
+            false => vector(accelerations),
+        };
+        let state = (&vector(q), &vector(speeds), &accelerations);
+        Steps(&self.0).variations(state, motions, columns, own);
+    }
+}

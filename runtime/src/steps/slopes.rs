@@ -1,0 +1,82 @@
+//! How the efforts of elements at one joint change with its configuration and velocity.
+//!
+//! Springs on a manifold differentiate Φ twice, and rotors the kernel of γ: dual numbers through the joint's own kernels do it exactly.
+
+use super::Steps;
+use super::directions::{along, columns, constant, derivative};
+use crate::erased::nan;
+use crate::joint::Joint;
+use crate::scalar::{Dual, Scalar};
+use crate::spatial::vee;
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+
+impl<J, const N: usize, const K: usize, const S: usize, const C: usize> Steps<'_, J, N, K, S, C>
+where
+    J: Joint<N, K, S, C>,
+{
+    /// `∂τ/∂ϕ` at `q` of a [`JointSpring`](crate::elements::JointSpring) with this `rest` configuration and stiffness, by rows.
+    pub(crate) fn spring_slope<T: Scalar>(
+        &self,
+        (q, rest): (&SVector<T, N>, &SVector<T, N>),
+        stiffness: &[T],
+    ) -> SMatrix<T, K, K> {
+        if stiffness.len() != K * K {
+            return SMatrix::repeat(nan());
+        }
+        let rest = constant(rest);
+        let stiffness = SMatrix::<T, K, K>::from_row_slice(stiffness).map(Dual::constant);
+        self.slope(q, |q| {
+            let phi = self.0.local(&rest, q);
+            let mut rates = self.0.velocity_map_inverse(q);
+            for j in 0..K {
+                let rate = rates.column(j).into_owned();
+                rates.set_column(j, &self.0.retract_differential_inverse(&rest, &phi, &rate));
+            }
+            -rates.tr_mul(&(stiffness * phi))
+        })
+    }
+
+    /// `∂τ/∂ϕ` at `q` of a [`RotationSpring`](crate::elements::RotationSpring) with this `rest` rotation and stiffness.
+    pub(crate) fn turn_slope<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        rest: &Matrix3<T>,
+        stiffness: T,
+    ) -> SMatrix<T, K, K> {
+        let back = rest.transpose().map(Dual::constant);
+        self.slope(q, |q| {
+            let turn = self.0.pose(q).rotation * back;
+            let moment: Vector3<Dual<T>> = vee(&turn) * Dual::constant(-stiffness);
+            self.0.twist_map(q).fixed_rows::<3>(0).tr_mul(&moment)
+        })
+    }
+
+    /// The derivatives in ϕ and in v of `Σ_k γ_k v_k (a v)`, the velocity term of rotors with inertias a.
+    pub(crate) fn rotor_slopes<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        velocity: &SVector<T, K>,
+        inertia: &SVector<T, K>,
+    ) -> [SMatrix<T, K, K>; 2] {
+        let (velocity, inertia) = (constant(velocity), constant(inertia));
+        let force = |q: &SVector<Dual<T>, N>, v: &SVector<Dual<T>, K>| {
+            self.0.gamma(q, v) * v.component_mul(&inertia)
+        };
+        let by_local = self.slope(q, |q| force(q, &velocity));
+        let q = constant(q);
+        [
+            by_local,
+            columns(|k| derivative(&force(&q, &(velocity + along(k))))),
+        ]
+    }
+
+    /// `∂f/∂ϕ` of a function of the configuration.
+    fn slope<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        f: impl Fn(&SVector<Dual<T>, N>) -> SVector<Dual<T>, K>,
+    ) -> SMatrix<T, K, K> {
+        let q = constant(q);
+        columns(|k| derivative(&f(&self.0.retract(&q, &along(k)))))
+    }
+}
