@@ -123,7 +123,7 @@ impl<'a> At<'a> {
         let Some(kernel) = self.kernel_of(kind) else {
             return vec![];
         };
-        let mut entries = values.program(&self.derived.program(kernel)).into_iter();
+        let mut entries = values.program(self.derived.program(kernel)).into_iter();
         let shapes = kernel.outputs.iter().map(Matrix::shape);
         let grids = shapes.map(|(rows, columns)| {
             Grid::new(

@@ -12,7 +12,7 @@ pub const WORTH_WRITING: usize = 2;
 
 /// Whether the runtime's products serve instead of the formula of this kernel of c or its dual.
 pub fn is_by_products(derived: &Derived, kernel: &Kernel) -> bool {
-    let own = Counts::of_program(&derived.program(kernel));
+    let own = Counts::of_program(derived.program(kernel));
     let products = operations(derived, kernel.kind);
     products.work() <= WORTH_WRITING * own.work()
 }
