@@ -224,4 +224,8 @@ fn types_and_numbers_have_names() {
         ["half", "three_halves", "two", "three_quarters"]
     );
     assert_eq!([ratio(27, 1), ratio(3, 7)], ["number_27", "ratio_3_7"]);
+    assert_eq!(
+        [ratio(177, 10_000), ratio(61, 5), ratio(1, 10_000_000)],
+        ["number_0_0177", "number_12_2", "ratio_1_10000000"]
+    );
 }

@@ -167,6 +167,19 @@ impl Rational {
         }
     }
 
+    /// As a number with one to six decimals: `0.0177`, `-12.5`; none where more are needed.
+    pub fn decimal(&self) -> Option<String> {
+        (1..=6).find_map(|decimals: usize| {
+            let scaled = self.numer() * BigInt::from(10_u64.pow(decimals as u32));
+            let (digits, rest) = scaled.div_rem(&self.denom());
+            let digits = digits.abs().to_string();
+            let digits = format!("{digits:0>width$}", width = decimals + 1);
+            let (whole, part) = digits.split_at(digits.len() - decimals);
+            let sign = if self.is_negative() { "-" } else { "" };
+            rest.is_zero().then(|| format!("{sign}{whole}.{part}"))
+        })
+    }
+
     /// −1, 0 or 1.
     #[must_use]
     pub fn signum(&self) -> Self {

@@ -78,7 +78,7 @@ pub fn is_number_word(name: &str) -> bool {
     number_words().any(|word| word == name)
 }
 
-/// The name of a positive constant: `two`, `half`, `three_quarters`, `number_27`, `ratio_3_7`.
+/// The name of a positive constant: `two`, `half`, `three_quarters`, `number_27`, `number_0_0177`, `ratio_3_7`.
 pub fn number_name(value: &Rational) -> String {
     let word = |n: &num_bigint::BigInt| {
         n.to_usize()
@@ -100,10 +100,13 @@ pub fn number_name(value: &Rational) -> String {
         (Some(part), _, true) => part.to_owned(),
         (Some("half"), Some(count), false) => format!("{count}_halves"),
         (Some(part), Some(count), false) => format!("{count}_{part}s"),
-        _ => short(
-            "ratio",
-            &[value.numer().to_string(), denominator.to_string()],
-        ),
+        _ => match value.decimal() {
+            Some(decimal) => format!("number_{}", decimal.replace('.', "_")),
+            None => short(
+                "ratio",
+                &[value.numer().to_string(), denominator.to_string()],
+            ),
+        },
     }
 }
 

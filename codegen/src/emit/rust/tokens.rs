@@ -280,14 +280,14 @@ fn pairs<'a>(chain: &Chain<'a>) -> Option<Vec<Pair<'a>>> {
     Some(pairs)
 }
 
-/// A positive rational as a literal, or as the quotient of two where that alone says what it is.
+/// A positive rational as a literal, or as the quotient of two where it has no short one.
 fn number_literal(value: &Rational) -> TokenStream {
     let exact = |n: &BigInt| n.bits() <= 53;
     let (above, below) = (value.numer(), value.denom());
     let is_dyadic = below
         .trailing_zeros()
         .is_some_and(|zeros| below == BigInt::one() << zeros);
-    if exact(&above) && exact(&below) && !is_dyadic {
+    if exact(&above) && exact(&below) && !is_dyadic && value.decimal().is_none() {
         let (above, below) = (float(above.to_f64()), float(below.to_f64()));
         return quote! { #above / #below };
     }

@@ -57,3 +57,13 @@ fn small_and_big_numbers_compute_alike() {
         }
     }
 }
+
+#[test]
+fn short_decimals_are_found() {
+    let decimal = |above: i64, below: i64| Rational::new(above.into(), below.into()).decimal();
+    assert_eq!(decimal(177, 10_000).as_deref(), Some("0.0177"));
+    assert_eq!(decimal(-25, 2).as_deref(), Some("-12.5"));
+    assert_eq!(decimal(3, 1).as_deref(), Some("3.0"));
+    assert_eq!(decimal(1, 1_000_000).as_deref(), Some("0.000001"));
+    assert_eq!([decimal(1, 3), decimal(1, 10_000_000)], [None, None]);
+}

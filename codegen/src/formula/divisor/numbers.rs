@@ -1,8 +1,12 @@
 //! Coefficients by number: each distinct rational is kept once, and each pair is compared once.
 
 use crate::expr::Rational;
+use num_bigint::BigInt;
 use num_traits::One;
 use rustc_hash::FxHashMap;
+
+/// Two integers up to this stand for their ratio: `5 x + 3 y` reads better than a multiple of `x + 0.6 y`.
+const LARGEST_PART: u32 = 12;
 
 /// The number of 1.
 pub const ONE: u32 = 0;
@@ -20,7 +24,7 @@ pub struct Numbers {
 /// Two coefficients as multiples of a common content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pair {
-    /// Both divided by the content: integers without a common divisor, the first of them positive.
+    /// Both divided by the content, by their ratio alone: integers without a common divisor where these are short, otherwise one of them is ±1. The first is positive.
     pub parts: [u32; 2],
     /// The content.
     pub content: u32,
@@ -62,8 +66,7 @@ impl Numbers {
             return *known;
         }
         let [first, second] = [a, b].map(|number| self.value(number).clone());
-        // Both are multiples of the content by the numerator and the denominator of their ratio.
-        let content = &first / Rational::from_integer((&first / &second).abs().numer());
+        let content = &first / scale(&(&first / &second).abs());
         let pair = Pair {
             parts: [
                 self.number(&(first / &content)),
@@ -73,5 +76,18 @@ impl Numbers {
         };
         self.pairs.insert([a, b], pair);
         pair
+    }
+}
+
+/// The first of two parts of this ratio.
+fn scale(ratio: &Rational) -> Rational {
+    let (above, below) = (ratio.numer(), ratio.denom());
+    let is_short = |part: &BigInt| *part <= LARGEST_PART.into();
+    if above.is_one() || below.is_one() || is_short(&above) && is_short(&below) {
+        return Rational::from_integer(above);
+    }
+    match ratio.decimal() {
+        Some(_) => ratio.clone(),
+        None => Rational::one(),
     }
 }
