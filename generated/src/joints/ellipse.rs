@@ -188,7 +188,7 @@ impl Joint<2, 1, 1, 0> for Ellipse {
     }
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    /// 1 slices of 6×1. Operations: 2 additions, 14 multiplications (1 of each fused), 2 divisions, 1 function call.
+    /// 1 slice of 6×1. Operations: 2 additions, 14 multiplications (1 of each fused), 2 divisions, 1 function call.
     /// From line 14 `basis`, line 15 `velocity`, line 16 `let`, line 17 `let`, line 18 `let`, line 19 `let`, line 20 `H`.
     fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, 2>) -> [SMatrix<T, 6, 1>; 1] {
         let a = T::from_f64(self.a);

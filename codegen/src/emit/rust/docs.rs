@@ -169,7 +169,9 @@ fn shape_of(derived: &Derived, kernel: &Kernel) -> String {
         Output::Vector(rows) => format!("{rows}-vector"),
         Output::Matrix(rows, columns) => format!("{rows}×{columns}"),
         Output::Slices(rows, columns) => {
-            format!("{} slices of {rows}×{columns}", derived.shape.freedoms)
+            let count = derived.shape.freedoms;
+            let slices = if count == 1 { "slice" } else { "slices" };
+            format!("{count} {slices} of {rows}×{columns}")
         }
     };
     let units = units_of(derived, kernel.kind);
