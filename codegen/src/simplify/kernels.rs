@@ -134,9 +134,11 @@ const ALTERNATIVE: u64 = 300_000;
 
 /// The kernel, or one of the other ways to write it where that takes less work; a way that is long to find is not taken.
 pub(super) fn least_work(first: Kernel, others: &[&dyn Fn() -> Kernel]) -> Kernel {
+    // Where the work is the same, fewer operations are: what is not written as a multiply–add here may be one in a scene.
     let work = |kernel: &Kernel| {
         let program = Program::new(&kernel.steps, &kernel.outputs, &NameSet::default());
-        Counts::of_program(&program).work()
+        let counts = Counts::of_program(&program);
+        (counts.work(), counts.total())
     };
     let mut best = (work(&first), first);
     for other in others {
