@@ -138,12 +138,22 @@ impl Interval {
     /// By a function that grows.
     fn growing(&self, function: impl Fn(&Precise) -> Precise) -> Self {
         match self.is_bounded() {
-            true => Self {
-                low: -&above(&-&self.low, |x| -&function(&-x)),
-                high: above(&self.high, function),
-            },
+            true => {
+                let low = around(&self.low, &function);
+                match self.is_point() {
+                    true => low,
+                    false => Self {
+                        low: low.low,
+                        high: around(&self.high, &function).high,
+                    },
+                }
+            }
             false => Self::whole(self.bits()),
         }
+    }
+
+    fn is_point(&self) -> bool {
+        self.low.compare(&self.high) == Some(std::cmp::Ordering::Equal)
     }
 
     /// Cut to what a function is known to take.
@@ -250,11 +260,11 @@ impl Interval {
         if !(first.abs() < LARGEST_TURNS && last.abs() < LARGEST_TURNS) || last - first > 2.0 {
             return all();
         }
-        let at = |x: &Precise| Self {
-            low: -&above(x, |x| -&function(x)),
-            high: above(x, &function),
+        let a = around(&self.low, &function);
+        let b = match self.is_point() {
+            true => a.clone(),
+            false => around(&self.high, &function),
         };
-        let (a, b) = (at(&self.low), at(&self.high));
         let mut value = Self {
             low: smaller(a.low, b.low),
             high: larger(a.high, b.high),
@@ -418,12 +428,16 @@ fn product(a: &Precise, b: &Precise, end: End) -> Precise {
     }
 }
 
-/// A number above the value of a function at x, which it rounds to nearest; what it gives as 0 may be a number that is too small for it.
-fn above(x: &Precise, function: impl Fn(&Precise) -> Precise) -> Precise {
+/// Numbers below and above the value of a function at x, which it rounds to nearest; what it gives as 0 may be a number that is too small
+/// for it.
+fn around(x: &Precise, function: impl Fn(&Precise) -> Precise) -> Interval {
     let value = function(x);
     match value.is_zero() && !x.is_zero() {
-        true => Precise::above_underflow(value.bits()),
-        false => up(&value),
+        true => {
+            let smallest = Precise::above_underflow(value.bits());
+            Interval::between(-&smallest, smallest)
+        }
+        false => Interval::outward(value.clone(), value),
     }
 }
 
