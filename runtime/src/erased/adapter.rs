@@ -200,7 +200,10 @@ where
     where
         T: Native,
     {
-        *own = Steps(&self.0).child(&vector(q), joint_frame, parent);
+        *own = match array(q) {
+            Some(q) => Steps(&self.0).child(&SVector::from(*q), joint_frame, parent),
+            None => Placement::unknown(),
+        };
     }
 
     fn stand(
@@ -213,12 +216,13 @@ where
     ) where
         T: Native,
     {
-        let q = vector(q);
+        let (Some(q), Some(own_columns)) = (array(q), array_mut(columns)) else {
+            *own = Placement::unknown();
+            return columns.fill(Vector6::repeat(nan()));
+        };
+        let q = SVector::from(*q);
         *own = Steps(&self.0).child(&q, joint_frame, parent);
-        match array_mut(columns) {
-            Some(columns) => *columns = Steps(&self.0).columns(&q, &own.rotation),
-            None => columns.fill(Vector6::repeat(nan())),
-        }
+        *own_columns = Steps(&self.0).columns(&q, &own.rotation);
     }
 
     fn speed_map(&self, q: &[T], columns: &mut [Vector6<T>])

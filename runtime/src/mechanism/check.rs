@@ -175,9 +175,39 @@ impl Mechanism {
         values: &[f64],
     ) -> Result<(), StateError> {
         check_size(WHOLE, quantity, space.size(self), values.len())?;
-        if all_finite(values) {
-            return Ok(());
+        self.check_vectors(&[(quantity, space, values)])
+    }
+
+    /// Whether vectors of all joints, of the right sizes, are finite.
+    #[inline(always)]
+    pub(crate) fn check_vectors(
+        &self,
+        vectors: &[(&'static str, Space, &[f64])],
+    ) -> Result<(), StateError> {
+        let mut finite = true;
+        for (.., values) in vectors {
+            finite &= all_finite(values);
         }
+        match finite {
+            true => Ok(()),
+            false => self.not_finite(vectors),
+        }
+    }
+
+    /// The first entry of these vectors that is not finite.
+    #[cold]
+    fn not_finite(&self, vectors: &[(&'static str, Space, &[f64])]) -> Result<(), StateError> {
+        let mut vectors = vectors.iter();
+        vectors
+            .try_for_each(|&(quantity, space, values)| self.check_entries(quantity, space, values))
+    }
+
+    fn check_entries(
+        &self,
+        quantity: &'static str,
+        space: Space,
+        values: &[f64],
+    ) -> Result<(), StateError> {
         self.bodies.iter().try_for_each(|body| {
             let own = &values[space.range(&body.ranges)];
             body.check_finite(quantity, space.names(body.joint()), own)
@@ -185,6 +215,7 @@ impl Mechanism {
     }
 
     /// Whether room for results has the right size.
+    #[inline]
     pub(crate) fn check_room(
         &self,
         quantity: &'static str,
@@ -205,14 +236,25 @@ impl Mechanism {
 
     /// Whether results at (q, v̄) are finite: `what` says what they are. Where they are not, the first joint with a kernel that is not, else
     /// the first that has such a result.
+    #[inline]
     pub(crate) fn check_finite(
         &self,
         (q, speeds): (&[f64], &[f64]),
         results: &[(&'static str, Space, &[f64])],
     ) -> Result<(), StateError> {
-        if results.iter().all(|(.., values)| all_finite(values)) {
-            return Ok(());
+        match results.iter().all(|(.., values)| all_finite(values)) {
+            true => Ok(()),
+            false => self.no_result((q, speeds), results),
         }
+    }
+
+    /// What results at (q, v̄) that are not finite come from.
+    #[cold]
+    fn no_result(
+        &self,
+        (q, speeds): (&[f64], &[f64]),
+        results: &[(&'static str, Space, &[f64])],
+    ) -> Result<(), StateError> {
         if let Some(cause) = self.no_value(q, speeds) {
             return Err(cause);
         }

@@ -130,10 +130,32 @@ implement_scalar!(
 );
 implement_scalar!(f32,);
 
-/// Whether all are finite. Without a way out before the end, so that several are compared at once.
+/// Whether all are finite: `x − x` is 0 then, and NaN otherwise. Without a way out before the end, so that compilers compare several at once.
 #[cfg(feature = "alloc")]
+#[inline(always)]
 pub(crate) fn all_finite(values: &[f64]) -> bool {
-    values
-        .iter()
-        .fold(true, |all, value| all & value.is_finite())
+    let bits = |value: &f64| (value - value).to_bits();
+    values.iter().fold(0, |all, value| all | bits(value)) == 0
+}
+
+#[cfg(all(test, feature = "alloc"))]
+mod tests {
+    use super::all_finite;
+
+    #[test]
+    fn one_value_that_is_not_finite_is_seen_wherever_it_stands() {
+        for length in 0..35 {
+            let values: alloc::vec::Vec<f64> = (0..length)
+                .map(|i| -f64::MAX / 2_f64.powi(61 * i))
+                .collect();
+            assert!(all_finite(&values));
+            for at in 0..values.len() {
+                for broken in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                    let mut values = values.clone();
+                    values[at] = broken;
+                    assert!(!all_finite(&values), "{broken} at {at} of {length}");
+                }
+            }
+        }
+    }
 }

@@ -22,11 +22,18 @@ impl Recursive {
         accelerations: &[f64],
         efforts: &mut [f64],
     ) -> Result<(), StateError> {
-        self.check(q, &[("speeds", speeds), ("accelerations", accelerations)])?;
         self.check_room("efforts", efforts)?;
-        self.advance(q, speeds, Some(accelerations));
-        self.gather_needed(q, speeds, efforts);
-        self.add_armature(accelerations, efforts);
+        let inputs = [
+            ("configuration", Space::Configuration, q),
+            ("speeds", Space::Speeds, speeds),
+            ("accelerations", Space::Speeds, accelerations),
+        ];
+        self.with_inputs(&inputs, |dynamics| {
+            dynamics.advance(q, speeds, Some(accelerations));
+            dynamics.gather_needed(q, speeds, efforts);
+            dynamics.add_armature(accelerations, efforts);
+            Ok::<_, StateError>(())
+        })?;
         let found = [("effort", Space::Speeds, &*efforts)];
         self.mechanism.check_finite((q, speeds), &found)
     }
@@ -41,10 +48,16 @@ impl Recursive {
         speeds: &[f64],
         efforts: &mut [f64],
     ) -> Result<(), StateError> {
-        self.check(q, &[("speeds", speeds)])?;
         self.check_room("efforts", efforts)?;
-        self.advance(q, speeds, None);
-        self.gather_needed(q, speeds, efforts);
+        let inputs = [
+            ("configuration", Space::Configuration, q),
+            ("speeds", Space::Speeds, speeds),
+        ];
+        self.with_inputs(&inputs, |dynamics| {
+            dynamics.advance(q, speeds, None);
+            dynamics.gather_needed(q, speeds, efforts);
+            Ok::<_, StateError>(())
+        })?;
         let found = [("effort", Space::Speeds, &*efforts)];
         self.mechanism.check_finite((q, speeds), &found)
     }

@@ -175,14 +175,16 @@ impl Recursive {
     /// # Errors
     /// When `q` has the wrong size, or `mass` belongs to a mechanism of another size.
     pub fn mass_matrix(&mut self, q: &[f64], mass: &mut MassMatrix) -> Result<(), StateError> {
-        self.check(q, &[])?;
         self.check_mass(mass)?;
         if core::mem::take(&mut mass.full) {
             mass.rows.fill(0.0);
         }
-        self.stand(q);
-        self.compose();
-        self.fill_rows(&mut mass.rows);
+        self.with_inputs(&[("configuration", Space::Configuration, q)], |dynamics| {
+            dynamics.stand(q);
+            dynamics.compose();
+            dynamics.fill_rows(&mut mass.rows);
+            Ok::<_, StateError>(())
+        })?;
         for link in &self.links {
             for (speed, armature) in link.speeds.clone().zip(&link.armature) {
                 mass.rows[speed * mass.size + speed] += armature;

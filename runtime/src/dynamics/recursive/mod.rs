@@ -139,9 +139,26 @@ impl Recursive {
     /// # Errors
     /// When `q` has the wrong size, or is not finite.
     pub fn set_configuration(&mut self, q: &[f64]) -> Result<(), StateError> {
-        self.check(q, &[])?;
-        self.place(q);
-        Ok(())
+        self.with_inputs(&[("configuration", Space::Configuration, q)], |dynamics| {
+            dynamics.place(q);
+            Ok(())
+        })
+    }
+
+    /// `task` with vectors of the right sizes. That they are finite is checked after it: by then they are in the cache, while a look at all of
+    /// them beforehand would wait for memory.
+    fn with_inputs<E: From<StateError>>(
+        &mut self,
+        inputs: &[(&'static str, Space, &[f64])],
+        task: impl FnOnce(&mut Self) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut sized = inputs.iter();
+        sized.try_for_each(|&(quantity, space, values)| {
+            self.mechanism.check_room(quantity, space, values)
+        })?;
+        let done = task(self);
+        self.mechanism.check_vectors(inputs)?;
+        done
     }
 
     /// Whether `q` and vectors with one entry a speed have their sizes, and are finite.
@@ -348,15 +365,21 @@ impl Dynamics for Recursive {
         efforts: &[f64],
         rates: &mut [f64],
     ) -> Result<(), DynamicsError> {
-        self.check(q, &[("speeds", speeds)])?;
         self.check_room("rates", rates)?;
-        self.check_efforts(q, speeds, efforts)?;
-        self.finite(
-            (q, speeds),
-            ["acceleration"],
-            [rates],
-            |dynamics, [rates]| dynamics.solve_accelerations(q, speeds, efforts, rates),
-        )
+        self.mechanism
+            .check_room("efforts", Space::Freedoms, efforts)?;
+        let inputs = [
+            ("configuration", Space::Configuration, q),
+            ("speeds", Space::Speeds, speeds),
+        ];
+        self.with_inputs(&inputs, |dynamics| {
+            let names = ["acceleration"];
+            dynamics.finite((q, speeds), names, [rates], |dynamics, [rates]| {
+                let done = dynamics.solve_accelerations(q, speeds, efforts, rates);
+                dynamics.check_efforts(q, speeds, efforts)?;
+                done
+            })
+        })
     }
 
     fn momenta(
