@@ -55,11 +55,13 @@ pub const fn assert_kernel_interface(version: u32) {
 }
 
 /// The matrix with the given rows, as emitted kernels write it.
+#[inline(always)]
 pub fn from_rows<T: Scalar, const R: usize, const C: usize>(rows: [[T; C]; R]) -> SMatrix<T, R, C> {
     SMatrix::from_fn(|i, j| rows[i][j])
 }
 
 /// The matrix with the given rows at their numbers, and zeros elsewhere, as emitted kernels write it.
+#[inline(always)]
 pub fn rows_at<T: Scalar, const R: usize, const C: usize, const W: usize>(
     rows: [(usize, [T; C]); W],
 ) -> SMatrix<T, R, C> {

@@ -74,23 +74,54 @@ impl<const K: usize, const S: usize> Patterns<K, S> {
 
     /// The pattern of `X^c S̄`, by rows.
     pub const fn speed_columns(&self) -> [[Entry; S]; 6] {
-        let mut columns = [[Entry::Zero; S]; 6];
-        let mut i = 0;
-        while i < 6 {
-            let mut j = 0;
-            while j < S {
-                let mut k = 0;
-                while k < K {
-                    let term = product(self.twist_map_child[i][k], self.speed_basis[k][j]);
-                    columns[i][j] = sum(columns[i][j], term);
-                    k += 1;
-                }
-                j += 1;
-            }
-            i += 1;
-        }
-        columns
+        add_product(
+            [[Entry::Zero; S]; 6],
+            &self.twist_map_child,
+            &self.speed_basis,
+        )
     }
+
+    /// The patterns of the slices of `∂(X^c S̄)/∂ϕ`, by rows.
+    pub const fn speed_map_gradient(&self) -> [[[Entry; S]; 6]; K] {
+        let mut slices = [[[Entry::Zero; S]; 6]; K];
+        let mut k = 0;
+        while k < K {
+            slices[k] = add_product(
+                slices[k],
+                &self.twist_map_child_gradient[k],
+                &self.speed_basis,
+            );
+            slices[k] = add_product(
+                slices[k],
+                &self.twist_map_child,
+                &self.speed_basis_gradient[k],
+            );
+            k += 1;
+        }
+        slices
+    }
+}
+
+/// The pattern of a sum and a product more.
+const fn add_product<const R: usize, const M: usize, const C: usize>(
+    mut all: [[Entry; C]; R],
+    a: &[[Entry; M]; R],
+    b: &[[Entry; C]; M],
+) -> [[Entry; C]; R] {
+    let mut i = 0;
+    while i < R {
+        let mut j = 0;
+        while j < C {
+            let mut m = 0;
+            while m < M {
+                all[i][j] = sum(all[i][j], product(a[i][m], b[m][j]));
+                m += 1;
+            }
+            j += 1;
+        }
+        i += 1;
+    }
+    all
 }
 
 const fn identity<const R: usize, const C: usize>() -> [[Entry; C]; R] {

@@ -22,6 +22,31 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         }
     }
 
+    /// ∂X̄^c/∂ϕ; slice k is the derivative along ϕ_k.
+    #[inline]
+    fn speed_map_gradient<T: Scalar>(&self, q: &SVector<T, N>) -> [SMatrix<T, 6, S>; K] {
+        let patterns = const { &Self::PATTERNS };
+        let mut gradient = [SMatrix::zeros(); K];
+        if Self::STRUCTURES.speed_map.is_constant() {
+            return gradient;
+        }
+        if !Self::STRUCTURES.twist_map_child_gradient.is_zero() {
+            let (slices, basis) = (self.twist_map_child_gradient(q), self.speed_basis(q));
+            for k in 0..K {
+                let slice = (&slices[k], &patterns.twist_map_child_gradient[k]);
+                add_product(&mut gradient[k], slice, (&basis, &patterns.speed_basis));
+            }
+        }
+        if !Self::STRUCTURES.speed_basis_gradient.is_zero() {
+            let (map, slices) = (self.twist_map_child(q), self.speed_basis_gradient(q));
+            for k in 0..K {
+                let slice = (&slices[k], &patterns.speed_basis_gradient[k]);
+                add_product(&mut gradient[k], (&map, &patterns.twist_map_child), slice);
+            }
+        }
+        gradient
+    }
+
     /// ∂(X̄^c v̄)/∂ϕ at fixed v̄; column k is the derivative along ϕ_k.
     #[inline]
     fn twist_gradient<T: Scalar>(
@@ -29,27 +54,19 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         q: &SVector<T, N>,
         speeds: &SVector<T, S>,
     ) -> SMatrix<T, 6, K> {
-        let patterns = const { &Self::PATTERNS };
-        let mut gradient = SMatrix::zeros();
-        if Self::STRUCTURES.speed_map.is_constant() {
-            return gradient;
-        }
-        if !Self::STRUCTURES.twist_map_child_gradient.is_zero() {
-            let velocity = times(&self.speed_basis(q), &patterns.speed_basis, speeds);
-            let slices = self.twist_map_child_gradient(q);
-            for (k, slice) in slices.iter().enumerate() {
-                let pattern = &patterns.twist_map_child_gradient[k];
-                gradient.set_column(k, &times(slice, pattern, &velocity));
-            }
-        }
-        if !Self::STRUCTURES.speed_basis_gradient.is_zero() {
-            let map = self.twist_map_child(q);
-            let slices = self.speed_basis_gradient(q);
-            for (k, slice) in slices.iter().enumerate() {
-                let moved = times(slice, &patterns.speed_basis_gradient[k], speeds);
-                let mut column = gradient.column_mut(k);
-                column += times(&map, &patterns.twist_map_child, &moved);
-            }
+        Self::twist_gradient_by_slices(&self.speed_map_gradient(q), speeds)
+    }
+
+    /// The same from [`Products::speed_map_gradient`].
+    #[inline]
+    fn twist_gradient_by_slices<T: Scalar>(
+        slices: &[SMatrix<T, 6, S>; K],
+        speeds: &SVector<T, S>,
+    ) -> SMatrix<T, 6, K> {
+        let pattern = const { &Self::PATTERNS.speed_map_gradient() };
+        let mut gradient = SMatrix::<T, _, K>::zeros();
+        for k in 0..K {
+            gradient.set_column(k, &times(&slices[k], &pattern[k], speeds));
         }
         gradient
     }
@@ -58,30 +75,11 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
     /// [`Products::twist_gradient`].
     #[inline]
     fn effort_gradient<T: Scalar>(&self, q: &SVector<T, N>, h: &SVector<T, 6>) -> SMatrix<T, S, K> {
-        let patterns = const { &Self::PATTERNS };
-        let mut gradient = SMatrix::zeros();
-        if Self::STRUCTURES.speed_map.is_constant() {
-            return gradient;
-        }
-        if !Self::STRUCTURES.twist_map_child_gradient.is_zero() {
-            let basis = self.speed_basis(q);
-            let slices = self.twist_map_child_gradient(q);
-            for (k, slice) in slices.iter().enumerate() {
-                let pattern = &patterns.twist_map_child_gradient[k];
-                let efforts = transposed_times(slice, pattern, h);
-                let reduced = transposed_times(&basis, &patterns.speed_basis, &efforts);
-                gradient.set_column(k, &reduced);
-            }
-        }
-        if !Self::STRUCTURES.speed_basis_gradient.is_zero() {
-            let map = self.twist_map_child(q);
-            let efforts = transposed_times(&map, &patterns.twist_map_child, h);
-            let slices = self.speed_basis_gradient(q);
-            for (k, slice) in slices.iter().enumerate() {
-                let pattern = &patterns.speed_basis_gradient[k];
-                let mut column = gradient.column_mut(k);
-                column += transposed_times(slice, pattern, &efforts);
-            }
+        let pattern = const { &Self::PATTERNS.speed_map_gradient() };
+        let slices = self.speed_map_gradient(q);
+        let mut gradient = SMatrix::<T, _, K>::zeros();
+        for k in 0..K {
+            gradient.set_column(k, &transposed_times(&slices[k], &pattern[k], h));
         }
         gradient
     }
@@ -93,23 +91,21 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         q: &SVector<T, N>,
         speeds: &SVector<T, S>,
     ) -> SMatrix<T, 6, S> {
-        if Self::STRUCTURES.speed_map.is_constant() {
-            return SMatrix::zeros();
-        }
-        let patterns = const { &Self::PATTERNS };
-        let basis = self.speed_basis(q);
         let local = local_rates(self, q) * speeds;
-        let mut rate = SMatrix::zeros();
-        if !Self::STRUCTURES.twist_map_child_gradient.is_zero() {
-            let slices = self.twist_map_child_gradient(q);
-            rate += combined(&slices, &patterns.twist_map_child_gradient, &local) * basis;
-        }
-        if !Self::STRUCTURES.speed_basis_gradient.is_zero() {
-            let slices = self.speed_basis_gradient(q);
-            let of_basis = combined(&slices, &patterns.speed_basis_gradient, &local);
-            rate += self.twist_map_child(q) * of_basis;
-        }
-        rate
+        Self::twist_map_rate_by_slices(&self.speed_map_gradient(q), &local)
+    }
+
+    /// The same from [`Products::speed_map_gradient`] and ϕ̇.
+    #[inline]
+    fn twist_map_rate_by_slices<T: Scalar>(
+        slices: &[SMatrix<T, 6, S>; K],
+        local: &SVector<T, K>,
+    ) -> SMatrix<T, 6, S> {
+        combined(
+            slices,
+            const { &Self::PATTERNS.speed_map_gradient() },
+            local,
+        )
     }
 
     /// `c = Ẋ̄^c v̄ = Σ_k (∂X^c_k S̄ v̄ + X^c ∂S̄_k v̄) ϕ̇_k` in the child frame: [`Joint::bias_acceleration`] where a joint has no formula of
@@ -202,7 +198,21 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         q: &SVector<T, N>,
         speeds: &SVector<T, S>,
     ) -> SMatrix<T, 6, S> {
-        self.twist_map_rate(q, speeds) + self.twist_gradient(q, speeds) * local_rates(self, q)
+        let slices = self.speed_map_gradient(q);
+        let of_twist = Self::twist_gradient_by_slices(&slices, speeds);
+        self.bias_acceleration_slope_by_slices((q, speeds), &slices, &of_twist)
+    }
+
+    /// The same from [`Products::speed_map_gradient`] and [`Products::twist_gradient`].
+    #[inline]
+    fn bias_acceleration_slope_by_slices<T: Scalar>(
+        &self,
+        (q, speeds): (&SVector<T, N>, &SVector<T, S>),
+        slices: &[SMatrix<T, 6, S>; K],
+        of_twist: &SMatrix<T, 6, K>,
+    ) -> SMatrix<T, 6, S> {
+        let local = local_rates(self, q);
+        Self::twist_map_rate_by_slices(slices, &(local * speeds)) + of_twist * local
     }
 
     /// ∂(Ẋ̄^cᵀ h)/∂v̄ at fixed h, of [`Joint::bias_momentum`]: `∂(X̄^cᵀ h)/∂ϕ S₀⁻¹ S̄`.
@@ -351,6 +361,27 @@ fn turned_back<T: Scalar, const R: usize, const C: usize, const K: usize>(
         }
     }
     sum
+}
+
+/// `sum + A B` without what the patterns of A and B know to be 0 or 1.
+#[inline(always)]
+fn add_product<T: Scalar, const R: usize, const M: usize, const C: usize>(
+    sum: &mut SMatrix<T, R, C>,
+    (a, of_a): (&SMatrix<T, R, M>, &[[Entry; M]; R]),
+    (b, of_b): (&SMatrix<T, M, C>, &[[Entry; C]; M]),
+) {
+    for i in 0..R {
+        for m in 0..M {
+            for j in 0..C {
+                let entry = &mut sum[(i, j)];
+                match of_a[i][m] {
+                    Entry::Zero => {}
+                    Entry::One => *entry = accumulated(*entry, of_b[m][j], b[(m, j)], T::one()),
+                    Entry::Other => *entry = accumulated(*entry, of_b[m][j], b[(m, j)], a[(i, m)]),
+                }
+            }
+        }
+    }
 }
 
 /// `M x` without what `pattern` knows to be 0 or 1.

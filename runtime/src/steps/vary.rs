@@ -99,32 +99,47 @@ where
                 }
             }
         }
-        if !structures.speed_map.is_constant() {
-            let of_twist = self.0.twist_gradient(q, speeds);
-            let mut of_rate = self.0.twist_gradient(q, accelerations);
-            if !structures.bias_acceleration.is_constant() {
-                of_rate += self.0.bias_acceleration_gradient(q, speeds);
-            }
-            for (b, variation) in out.iter_mut().enumerate() {
-                let own_drift = turn_out(&placement.rotation, &of_twist.column(b).into_owned());
-                variation.drift += own_drift;
-                variation.rate += bracket_product(&own.twist, &own_drift)
-                    + turn_out(&placement.rotation, &of_rate.column(b).into_owned());
-            }
-        }
         for variation in out.iter_mut() {
-            variation.rate += bracket_product(&carried, &variation.drift);
             variation.speed_rate = Vector6::zeros();
         }
         let both = own.twist + carried;
         for (a, column) in columns.iter().enumerate() {
             out[a].speed_rate = Self::bracket_of_column(a, &both, column);
         }
+        if !structures.speed_map.is_constant() {
+            self.vary_map((q, speeds, accelerations), own, out);
+        }
+        for variation in out.iter_mut() {
+            variation.rate += bracket_product(&carried, &variation.drift);
+        }
+    }
+
+    /// What the change of X̄ with ϕ adds to the variations.
+    #[inline(always)]
+    fn vary_map<T: Scalar>(
+        &self,
+        (q, speeds, accelerations): (&SVector<T, N>, &SVector<T, S>, &SVector<T, S>),
+        own: &Motion<T>,
+        out: &mut [Variation<T>; K],
+    ) {
+        let (joint, structures) = (self.0, J::STRUCTURES);
+        let rotation = &own.placement.rotation;
+        let slices = joint.speed_map_gradient(q);
+        let of_twist = J::twist_gradient_by_slices(&slices, speeds);
+        let mut of_rate = J::twist_gradient_by_slices(&slices, accelerations);
+        if !structures.bias_acceleration.is_constant() {
+            of_rate += joint.bias_acceleration_gradient(q, speeds);
+        }
+        for (b, variation) in out.iter_mut().enumerate() {
+            let drift = turn_out(rotation, &of_twist.column(b).into_owned());
+            variation.drift += drift;
+            variation.rate += bracket_product(&own.twist, &drift)
+                + turn_out(rotation, &of_rate.column(b).into_owned());
+        }
         if !structures.bias_acceleration.is_zero() {
-            let slope = self.0.bias_acceleration_slope(q, speeds);
+            let slope = joint.bias_acceleration_slope_by_slices((q, speeds), &slices, &of_twist);
             for (a, variation) in out.iter_mut().enumerate().take(S) {
-                variation.speed_rate +=
-                    turn_out(&placement.rotation, &slope.column(a).into_owned());
+                variation.speed_rate += turn_out(rotation, &slope.column(a).into_owned());
             }
         }
     }
