@@ -71,11 +71,11 @@ impl Joint<9, 3, 3, 0> for Ball {
         ..Structures::GENERAL
     };
     const PATTERNS: Patterns<3, 3> = Patterns::new(["xxx", "xxx", "xxx"], "000", ["xxx", "xxx", "xxx", "000", "000", "000"])
-    .twist_map_child_gradient(&[
-        (0, ["000", "xxx", "xxx", "000", "000", "000"]),
-        (1, ["xxx", "000", "xxx", "000", "000", "000"]),
-        (2, ["xxx", "xxx", "000", "000", "000", "000"]),
-    ]);
+        .twist_map_child_gradient(&[
+            (0, ["000", "xxx", "xxx", "000", "000", "000"]),
+            (1, ["xxx", "000", "xxx", "000", "000", "000"]),
+            (2, ["xxx", "xxx", "000", "000", "000", "000"]),
+        ]);
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 

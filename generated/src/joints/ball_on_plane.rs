@@ -103,7 +103,8 @@ impl Joint<11, 5, 3, 2> for BallOnPlane {
         (0, ["00000", "xxx00", "xxx00", "00000", "000xx", "000xx"]),
         (1, ["xxx00", "00000", "xxx00", "000xx", "00000", "000xx"]),
         (2, ["xxx00", "xxx00", "00000", "000xx", "000xx", "00000"]),
-    ]);
+    ])
+    .bias_gradient("xxx00");
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
 

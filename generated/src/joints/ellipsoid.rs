@@ -89,11 +89,11 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         ..Structures::GENERAL
     };
     const PATTERNS: Patterns<3, 3> = Patterns::new(["xxx", "xxx", "xxx"], "xxx", ["100", "010", "001", "xx0", "xx0", "000"])
-    .twist_map_child_gradient(&[
-        (0, ["000", "000", "000", "xx0", "xx0", "000"]),
-        (1, ["000", "000", "000", "xx0", "xx0", "000"]),
-        (2, ["000", "000", "000", "xx0", "xx0", "000"]),
-    ]);
+        .twist_map_child_gradient(&[
+            (0, ["000", "000", "000", "xx0", "xx0", "000"]),
+            (1, ["000", "000", "000", "xx0", "xx0", "000"]),
+            (2, ["000", "000", "000", "xx0", "xx0", "000"]),
+        ]);
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
 
@@ -187,8 +187,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let a_squared = a * a;
         let b_squared = b * b;
         let c_squared = c * c;
-        let support = dot([a_squared * q13, b_squared * q23, c_squared * q33], [q13, q23, q33])
-        .sqrt();
+        let support = dot([a_squared * q13, b_squared * q23, c_squared * q33], [q13, q23, q33]).sqrt();
         let t1 = b_squared * q22;
         let t2 = c_squared * q32;
         let inverse_support = one / support;
@@ -226,8 +225,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
         let a_squared = a * a;
         let b_squared = b * b;
         let c_squared = c * c;
-        let support = dot([a_squared * q13, b_squared * q23, c_squared * q33], [q13, q23, q33])
-        .sqrt();
+        let support = dot([a_squared * q13, b_squared * q23, c_squared * q33], [q13, q23, q33]).sqrt();
         let inverse_support = one / support;
         let d_support_d_tilt_x = -dot([a_squared * q12, b_squared * q22, c_squared * q32], [q13, q23, q33]) * inverse_support;
         let t1 = a_squared * q11;

@@ -105,7 +105,8 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
         (0, ["000", "000", "000", "xxx", "xxx"]),
         (1, ["000", "000", "000", "xxx", "xxx"]),
         (2, ["000", "000", "000", "xx0", "xx0"]),
-    ]);
+    ])
+    .bias_gradient("xxx00");
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &["1 - R[3, 3] * R[3, 3] = 0"];
 

@@ -68,9 +68,10 @@ impl Joint<3, 3, 3, 0> for Gimbal {
         ..Structures::TRIVIAL
     };
     const PATTERNS: Patterns<3, 3> = Patterns::new(["xxx", "xxx", "xxx"], "000", ["x01", "xx0", "xx0", "000", "000", "000"])
-    .twist_map_child_gradient(
-        &[(1, ["x00", "x00", "x00", "000", "000", "000"]), (2, ["000", "xx0", "xx0", "000", "000", "000"])],
-    );
+        .twist_map_child_gradient(
+            &[(1, ["x00", "x00", "x00", "000", "000", "000"]), (2, ["000", "xx0", "xx0", "000", "000", "000"])],
+        )
+        .bias_gradient("0xx");
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &["cos(pitch) = 0"];
 

@@ -27,6 +27,8 @@ pub struct Patterns<const K: usize, const S: usize> {
     pub twist_map_child_gradient: [[[Entry; K]; 6]; K],
     /// The slices of ∂S̄/∂ϕ, by rows.
     pub speed_basis_gradient: [[[Entry; S]; K]; K],
+    /// The columns of ∂c/∂ϕ, and those of its dual.
+    pub bias_gradient: [Entry; K],
 }
 
 impl<const K: usize, const S: usize> Patterns<K, S> {
@@ -38,6 +40,7 @@ impl<const K: usize, const S: usize> Patterns<K, S> {
         speed_basis: [[Entry::Other; S]; K],
         twist_map_child_gradient: [[[Entry::Other; K]; 6]; K],
         speed_basis_gradient: [[[Entry::Other; S]; K]; K],
+        bias_gradient: [Entry::Other; K],
     };
 
     /// The pattern of a holonomic joint whose X^c is constant, from rows of the signs `0`, `1` and `x` for anything else: S̄ is the
@@ -51,6 +54,7 @@ impl<const K: usize, const S: usize> Patterns<K, S> {
             speed_basis: identity(),
             twist_map_child_gradient: [[[Entry::Zero; K]; 6]; K],
             speed_basis_gradient: [[[Entry::Zero; S]; K]; K],
+            bias_gradient: [Entry::Other; K],
         }
     }
 
@@ -69,6 +73,13 @@ impl<const K: usize, const S: usize> Patterns<K, S> {
     /// With the slices of ∂S̄/∂ϕ that are not zero, each with its number.
     pub const fn speed_basis_gradient(mut self, slices: &[(usize, [&str; K])]) -> Self {
         self.speed_basis_gradient = self::slices(slices);
+        self
+    }
+
+    /// With columns of ∂c/∂ϕ and of that of its dual that are zero.
+    pub const fn bias_gradient(mut self, columns: &str) -> Self {
+        let [columns] = entries([columns]);
+        self.bias_gradient = columns;
         self
     }
 

@@ -277,7 +277,7 @@ where
     }
 }
 
-/// The derivatives of a function of Q along each ϕ_k at ϕ = 0, which moves Q with `Q̇(Q, S₀ e_k)`.
+/// The derivatives of c or its dual along each ϕ_k at ϕ = 0, which moves Q with `Q̇(Q, S₀ e_k)`.
 #[inline(always)]
 fn along_each<
     T,
@@ -298,6 +298,9 @@ where
 {
     let velocities = joint.velocity_map(q);
     let column = |k: usize| {
+        if J::PATTERNS.bias_gradient[k] == Entry::Zero {
+            return SVector::zeros();
+        }
         let rate = joint.configuration_rate(q, &velocities.column(k).into_owned());
         function(&q.zip_map(&rate, Dual::new)).map(|entry| entry.derivative)
     };

@@ -134,6 +134,7 @@ implement_scalar!(f32,);
 #[cfg(feature = "alloc")]
 #[inline(always)]
 pub(crate) fn all_finite(values: &[f64]) -> bool {
+    #[expect(clippy::eq_op, reason = "0 where the value is finite, NaN elsewhere")]
     let bits = |value: &f64| (value - value).to_bits();
     values.iter().fold(0, |all, value| all | bits(value)) == 0
 }

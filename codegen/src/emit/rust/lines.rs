@@ -111,10 +111,8 @@ fn continued(lines: &mut Vec<String>, i: usize) {
     let mut last = i;
     while let Some(next) = lines.get(last + 1) {
         let text = next.trim_start().to_owned();
-        let space = match text.chars().next() {
-            Some('.') if !text.starts_with("..") => "",
-            Some('*' | '+' | '-' | '/') if text[1..].starts_with(' ') => " ",
-            _ => return,
+        let Some(space) = going_on(&text) else {
+            return;
         };
         let joined = format!("{}{space}{text}", lines[last]);
         if indent(next) != level + LEVEL || width(&joined) > WIDTH {
@@ -165,6 +163,32 @@ fn bracketed(lines: &mut Vec<String>, i: usize) {
     );
     if width(&joined) <= WIDTH {
         lines.splice(i..=end, [joined]);
+        moved_in(lines, i);
+    }
+}
+
+/// Moves the methods and operators that go on below the line `i` one level in, where they stand below a bracket that has become that line.
+fn moved_in(lines: &mut [String], i: usize) {
+    let level = indent(&lines[i]);
+    let mut at = i + 1;
+    while let Some(next) = lines.get(at) {
+        if indent(next) != level || going_on(next.trim_start()).is_none() {
+            return;
+        }
+        let end = closing(lines, at).unwrap_or(at);
+        for line in &mut lines[at..=end] {
+            line.insert_str(0, &" ".repeat(LEVEL));
+        }
+        at = end + 1;
+    }
+}
+
+/// What stands between an expression and the method or operator that this line goes on with.
+fn going_on(text: &str) -> Option<&'static str> {
+    match text.chars().next() {
+        Some('.') if !text.starts_with("..") => Some(""),
+        Some('*' | '+' | '-' | '/') if text[1..].starts_with(' ') => Some(" "),
+        _ => None,
     }
 }
 
@@ -218,6 +242,15 @@ mod tests {
         assert_eq!(
             joined(text),
             "    let a = b.mul_add(c, d.mul_add(e, f)).sqrt();\n"
+        );
+        let product = format!(
+            "    let {} = dot(\n        a,\n        b,\n    )\n    .sqrt()\n    * c;\n",
+            "n".repeat(105)
+        );
+        assert!(
+            joined(&product).ends_with(" = dot(a, b)\n        .sqrt()\n        * c;\n"),
+            "{}",
+            joined(&product)
         );
         let pattern = "    let [a, b,\n    ]: [T; 2] = (*q)\n        .into();\n";
         assert_eq!(joined(pattern), "    let [a, b]: [T; 2] = (*q).into();\n");

@@ -2,11 +2,12 @@
 
 use super::joint::sizes;
 use super::tokens::ident;
-use crate::derived::{Derived, KernelKind};
-use crate::expr::Expr;
+use crate::derived::{Derived, Kernel, KernelKind};
+use crate::expr::{Expr, Symbol};
 use crate::matrix::Matrix;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
+use std::collections::BTreeSet;
 
 /// The constant `PATTERNS`.
 pub fn tokens(derived: &Derived) -> TokenStream {
@@ -34,10 +35,38 @@ pub fn tokens(derived: &Derived) -> TokenStream {
         KernelKind::TwistMapChildGradient,
     );
     let of_basis = gradient("speed_basis_gradient", KernelKind::SpeedBasisGradient);
+    let of_bias = bias_gradient(derived).map(|columns| quote! { .bias_gradient(#columns) });
     quote! {
         const PATTERNS: Patterns<#k, #s> =
-            Patterns::new([#(#rotation),*], #translation, [#(#twist_map),*]) #basis #of_map #of_basis;
+            Patterns::new([#(#rotation),*], #translation, [#(#twist_map),*]) #basis #of_map #of_basis #of_bias;
     }
+}
+
+/// The columns of ∂c/∂ϕ and of that of its dual, where some are known to be 0: ϕ_k moves no scalar that c is made of.
+fn bias_gradient(derived: &Derived) -> Option<String> {
+    let kinds = [KernelKind::BiasAcceleration, KernelKind::BiasMomentum];
+    let kernels = kinds.into_iter().filter_map(|kind| derived.kernel(kind));
+    let results: Vec<Matrix> = kernels.flat_map(Kernel::expanded).collect();
+    let entries = results.iter().flat_map(Matrix::entries);
+    let symbols: BTreeSet<Symbol> = entries.flat_map(Expr::symbols).collect();
+    let arguments = &derived.arguments;
+    let is_needed = |symbol: &&Symbol| symbols.contains(*symbol);
+    arguments.configuration.iter().find(is_needed)?;
+    let rates = value(derived, KernelKind::ConfigurationRate, 0)?;
+    let map = value(derived, KernelKind::VelocityMap, 0);
+    let moves = |k: usize, rate: &Expr| {
+        let velocities = arguments.velocity.iter().enumerate();
+        let mut velocities =
+            velocities.filter(|(j, _)| map.is_none_or(|map| !map.at(*j, k).is_zero()));
+        velocities.any(|(_, velocity)| rate.symbols().contains(velocity))
+    };
+    let sign = |k: usize| {
+        let mut rates = arguments.configuration.iter().zip(rates.entries());
+        let is_moved = rates.any(|(symbol, rate)| is_needed(&symbol) && moves(k, rate));
+        if is_moved { 'x' } else { '0' }
+    };
+    let columns: String = (0..derived.shape.freedoms).map(sign).collect();
+    columns.contains('0').then_some(columns)
 }
 
 /// What `Patterns::new` says of S̄.
