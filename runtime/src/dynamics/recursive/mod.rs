@@ -137,7 +137,7 @@ impl Recursive {
     /// Places all frames: what the other readings of one configuration start from.
     ///
     /// # Errors
-    /// When `q` has the wrong size, or is not finite.
+    /// When `q` has the wrong size, or is not finite; the frames of such a `q` have no value.
     pub fn set_configuration(&mut self, q: &[f64]) -> Result<(), StateError> {
         self.with_inputs(&[("configuration", Space::Configuration, q)], |dynamics| {
             dynamics.place(q);
@@ -388,14 +388,17 @@ impl Dynamics for Recursive {
         speeds: &[f64],
         momenta: &mut [f64],
     ) -> Result<(), DynamicsError> {
-        self.check(q, &[("speeds", speeds)])?;
         self.check_room("momenta", momenta)?;
-        self.finite(
-            (q, speeds),
-            ["momentum"],
-            [momenta],
-            |dynamics, [momenta]| dynamics.weigh_momenta(q, speeds, momenta),
-        )
+        let inputs = [
+            ("configuration", Space::Configuration, q),
+            ("speeds", Space::Speeds, speeds),
+        ];
+        self.with_inputs(&inputs, |dynamics| {
+            let names = ["momentum"];
+            dynamics.finite((q, speeds), names, [momenta], |dynamics, [momenta]| {
+                dynamics.weigh_momenta(q, speeds, momenta)
+            })
+        })
     }
 
     fn speeds(
@@ -404,10 +407,16 @@ impl Dynamics for Recursive {
         momenta: &[f64],
         speeds: &mut [f64],
     ) -> Result<(), DynamicsError> {
-        self.check(q, &[("momenta", momenta)])?;
         self.check_room("speeds", speeds)?;
-        self.finite((q, RESTING), ["speed"], [speeds], |dynamics, [speeds]| {
-            dynamics.solve_speeds(q, momenta, speeds)
+        let inputs = [
+            ("configuration", Space::Configuration, q),
+            ("momenta", Space::Speeds, momenta),
+        ];
+        self.with_inputs(&inputs, |dynamics| {
+            let names = ["speed"];
+            dynamics.finite((q, RESTING), names, [speeds], |dynamics, [speeds]| {
+                dynamics.solve_speeds(q, momenta, speeds)
+            })
         })
     }
 
