@@ -8,7 +8,7 @@ use super::typeset::{Equation, Mark, Math};
 use crate::derived::{Derived, Kernel, KernelKind, Step, Word};
 use crate::expr::{Expr, Symbol};
 use crate::matrix::Matrix;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Up to so many derivatives along ϕ_k are shown one by one; more are summed up in one matrix.
 const FEW: usize = 3;
@@ -58,7 +58,13 @@ fn names(derived: &Derived, notation: &Notation, kernels: &[KernelKind]) -> Opti
         .iter()
         .filter_map(of)
         .flat_map(|kernel| &kernel.steps);
-    let used: BTreeSet<&Symbol> = steps.flat_map(Step::bound).collect();
+    let mut used: BTreeSet<Symbol> = steps.flat_map(Step::bound).cloned().collect();
+    // Those that stand in the values of others come before them.
+    for word in derived.words.iter().rev() {
+        if used.contains(&word.symbol) {
+            used.extend(word.value.symbols());
+        }
+    }
     let words = derived.words.iter();
     let words = words.filter(|word| used.contains(&word.symbol));
     let equation = |word: &Word| Equation {
@@ -266,7 +272,7 @@ fn whole_equations(
         let equation = notation.equation_within(name.clone(), matrix, &mut room)?;
         Some(vec![equation])
     };
-    match (kernel.kind, kernel.outputs.as_slice()) {
+    match (kernel.kind, in_words(derived, kernel).as_slice()) {
         (_, []) => Some(vec![]),
         (KernelKind::Pose, [rotation, translation]) => one(&homogeneous(rotation, translation)),
         (KernelKind::VelocityMapGradient | KernelKind::SpeedBasisGradient, slices) => {
@@ -275,6 +281,22 @@ fn whole_equations(
         (_, [only]) => one(only),
         _ => Some(vec![]),
     }
+}
+
+/// The kernel's values with its lines in their places, but for those that are names of the spec.
+fn in_words(derived: &Derived, kernel: &Kernel) -> Vec<Matrix> {
+    let mut values: BTreeMap<Symbol, Expr> = BTreeMap::new();
+    for step in &kernel.steps {
+        if let Step::Let(symbol, value) = step
+            && !shared::is_word(derived, symbol)
+        {
+            values.insert(symbol.clone(), value.substitute(&values));
+        }
+    }
+    let outputs = kernel.outputs.iter();
+    outputs
+        .map(|output| output.map(|entry| entry.substitute(&values)))
+        .collect()
 }
 
 /// Slice by slice where they are few; else one matrix linear in ϕ, the coefficients of which are the slices.

@@ -65,6 +65,7 @@ pub fn equations(
     )
 }
 
-fn is_word(derived: &Derived, name: &Symbol) -> bool {
+/// Whether a line of a kernel is a name of the spec, or a derivative of one.
+pub fn is_word(derived: &Derived, name: &Symbol) -> bool {
     derived.words.iter().any(|word| word.symbol == *name)
 }

@@ -2,15 +2,16 @@
 
 use super::letters::latex_name;
 use super::{Mark, Math};
-use num_traits::One;
 
 pub(super) fn written(math: &Math) -> String {
     match math {
         Math::Row(parts) => parts.iter().map(written).collect(),
         Math::Letter(letter) => self::letter(*letter),
         Math::Word(word) => format!(r"\mathrm{{{}}}", word.replace('_', r"\_")),
-        Math::Number(value) if value.denom().is_one() => value.to_string(),
-        Math::Number(value) => format!(r"\tfrac{{{}}}{{{}}}", value.numer(), value.denom()),
+        Math::Number(value) => match super::digits(value) {
+            Some(digits) => digits,
+            None => format!(r"\tfrac{{{}}}{{{}}}", value.numer(), value.denom()),
+        },
         Math::Sign(sign) => self::sign(*sign),
         Math::Minus => "-".into(),
         Math::Space => r"\,".into(),

@@ -1,7 +1,6 @@
 //! Formulas as MathML Core: elements that browsers draw without help.
 
 use super::{Mark, Math};
-use num_traits::One;
 
 /// The formula in display style.
 pub(super) fn block(math: &Math) -> String {
@@ -15,12 +14,14 @@ pub(super) fn written(math: &Math) -> String {
         Math::Letter(letter @ ('∂' | '′')) => operator(*letter, ""),
         Math::Letter(letter) => format!("<mi>{letter}</mi>"),
         Math::Word(word) => format!("<mi mathvariant=\"normal\">{}</mi>", escaped(word)),
-        Math::Number(value) if value.denom().is_one() => format!("<mn>{value}</mn>"),
-        Math::Number(value) => format!(
-            "<mfrac displaystyle=\"false\"><mn>{}</mn><mn>{}</mn></mfrac>",
-            value.numer(),
-            value.denom()
-        ),
+        Math::Number(value) => match super::digits(value) {
+            Some(digits) => format!("<mn>{digits}</mn>"),
+            None => format!(
+                "<mfrac displaystyle=\"false\"><mn>{}</mn><mn>{}</mn></mfrac>",
+                value.numer(),
+                value.denom()
+            ),
+        },
         Math::Sign(',') => operator(',', " separator=\"true\""),
         Math::Sign(sign) => operator(*sign, " form=\"infix\""),
         Math::Minus => operator('−', " form=\"prefix\""),

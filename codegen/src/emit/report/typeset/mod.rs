@@ -13,6 +13,7 @@ pub use compose::composed;
 pub use letters::named;
 
 use crate::expr::Rational;
+use num_traits::One;
 
 /// A formula on paper: what stands beside, above and below what. Parentheses that only a line of text needs are the text writer's.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,6 +48,18 @@ pub enum Math {
     Group(Box<Math>),
     /// Number of columns, and entries row by row.
     Matrix(usize, Vec<Math>),
+}
+
+/// Denominators up to this are written as such, others as decimals where these are short.
+const LARGEST_DENOMINATOR: u32 = 12;
+
+/// How a number is written in digits alone: an integer, or a decimal that says more than its fraction.
+fn digits(value: &Rational) -> Option<String> {
+    match value.denom() {
+        one if one.is_one() => Some(value.to_string()),
+        below if below <= LARGEST_DENOMINATOR.into() => None,
+        _ => value.decimal(),
+    }
 }
 
 /// A mark above a letter.

@@ -1,7 +1,7 @@
 //! Expressions that are easily set wrongly, in all three forms.
 
 use super::{Math, composed, named};
-use crate::expr::{Expr, Role, Symbol};
+use crate::expr::{Expr, Rational, Role, Symbol};
 use crate::formula::factored;
 
 fn symbol(name: &str) -> Expr {
@@ -112,4 +112,13 @@ fn indices_and_marks_stay_apart() {
     assert_eq!(inverse.latex(), "{S}_{0}^{-1}");
     assert_eq!(named("x_dot").text(), "x_dot");
     assert_eq!(named("l12").latex(), "{l}_{12}");
+}
+
+#[test]
+fn short_decimals_are_written_as_such() {
+    let number = |above: i64, below: i64| Math::Number(Rational::new(above.into(), below.into()));
+    let [decimal, fraction, third] = [number(177, 10_000), number(5, 12), number(1, 3000)];
+    assert_eq!([decimal.text(), decimal.latex()], ["0.0177", "0.0177"]);
+    assert_eq!(decimal.mathml(), "<mn>0.0177</mn>");
+    assert_eq!([fraction.text(), third.text()], ["(5/12)", "(1/3000)"]);
 }

@@ -3,7 +3,6 @@
 use super::{Equation, Mark, Math};
 use crate::emit::report::layout;
 use crate::expr::Rational;
-use num_traits::One;
 
 /// `left = right`, the right side aligned over several lines where it is a matrix.
 pub(super) fn equation(equation: &Equation) -> String {
@@ -117,7 +116,6 @@ fn number(value: &Rational) -> String {
     let is = |(above, below): (i32, i32)| *value == Rational::new(above.into(), below.into());
     match known.iter().find(|(fraction, _)| is(*fraction)) {
         Some((_, text)) => (*text).to_owned(),
-        None if value.denom().is_one() => value.to_string(),
-        None => format!("({value})"),
+        None => super::digits(value).unwrap_or_else(|| format!("({value})")),
     }
 }
