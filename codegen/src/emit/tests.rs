@@ -229,3 +229,30 @@ fn types_and_numbers_have_names() {
         ["number_0_0177", "number_12_2", "ratio_1_10000000"]
     );
 }
+
+#[test]
+fn factors_that_differ_in_capitals_have_names_of_their_own() {
+    let text = emitted(
+        "hamel = 1; joint two_cases { config R: S1, r: R2; basis turn of so2; velocity in child;
+           H = pose(rot_z(R), [r.x, r.y, 0]); }",
+    );
+    for what in ["moved", "rate", "local"] {
+        let list = format!("stacked(&[r_{what}.as_slice(), r_{what}_2.as_slice()])");
+        assert!(text.contains(&list), "{list}\n{text}");
+    }
+}
+
+/// Near R₃₃ = 1 the difference 1 − R₃₃² has lost the digits that the sum has.
+#[test]
+fn sums_of_squares_do_not_become_differences() {
+    let text = emitted(
+        "hamel = 1; joint small_tilt(w: m > 0) { config R: SO3, p: R2; basis wx, wy, wz of so3; velocity in child;
+           let tilt2 = R[1,3]*R[1,3] + R[2,3]*R[2,3]; let f = sqrt(w*w + tilt2); H = pose(R, [p.x, p.y, 0]);
+           S_bar = [I(3); R[1,3]/f, 0, 0; 0, R[2,3]/f, f]; speeds wx, wy, wz; }",
+    );
+    assert!(
+        text.contains("let tilt2 = dot([r_q13, r_q23], [r_q13, r_q23]);"),
+        "{text}"
+    );
+    assert!(!text.contains("r_q33.mul_add(-r_q33, one)"), "{text}");
+}

@@ -2,7 +2,7 @@
 
 use super::shortened;
 use crate::expand::Motion;
-use crate::expr::{Application, Atom, Expr, Function, Role, Symbol, budget};
+use crate::expr::{Application, Atom, Expr, Function, Monomial, Role, Symbol, budget};
 use crate::kernel::Word;
 use crate::manifold::{Ideal, weight};
 use crate::matrix::Matrix;
@@ -227,6 +227,10 @@ impl<'a> Words<'a> {
         let plain = self.unnamed(&opened(expression));
         let short =
             budget::scope(LIMIT, || self.shortest(&plain)).unwrap_or_else(|_| plain.clone());
+        // A difference loses the digits of a sum of squares that is small: 1 − R₃₃² near R₃₃ = 1.
+        if adds_squares(&plain) && !adds_squares(&short) {
+            return self.named(&plain);
+        }
         let is_same = || budget::scope(LIMIT, || self.is_same(&short, &plain)).unwrap_or(false);
         match short != plain && is_same() {
             true => self.named(&short),
@@ -325,6 +329,14 @@ fn single_function(value: &Expr) -> Option<Atom> {
         }
         _ => None,
     }
+}
+
+/// Whether no term cancels another: one term, or several of one sign and of even powers.
+fn adds_squares(expression: &Expr) -> bool {
+    let is_square = |monomial: &Monomial| monomial.factors().all(|(_, power)| power % 2 == 0);
+    let signs: BTreeSet<bool> = expression.terms().map(|(_, c)| c.is_negative()).collect();
+    let mut monomials = expression.terms().map(|(monomial, _)| monomial);
+    expression.terms().len() <= 1 || signs.len() == 1 && monomials.all(is_square)
 }
 
 /// The expression without sums that are kept together.

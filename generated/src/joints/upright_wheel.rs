@@ -94,7 +94,8 @@ impl Joint<7, 4, 2, 2> for UprightWheel {
         ["x000", "0001", "x000", "0x00", "0010", "0x00"],
     )
     .speed_basis(["10", "0x", "00", "01"])
-    .twist_map_child_gradient(&[(3, ["x000", "0000", "x000", "0x00", "0000", "0x00"])]).bias_gradient("000x");
+    .twist_map_child_gradient(&[(3, ["x000", "0000", "x000", "0x00", "0000", "0x00"])])
+    .bias_gradient("000x");
     const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
 

@@ -1463,10 +1463,10 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], tau: &[T; 96]) -> 
     let link_2_seen_by_parent_22 = q[17].mul_add(tau[5], q[16].mul_add(tau[4], q[15] * tau[3]));
     let link_2_seen_by_parent_23 = ((-q[14])
         .mul_add(link_2_seen_by_parent_3, (-q[13]).mul_add(link_2_seen_by_parent_2, q[12] * link_2_seen_by_parent)))
-            .mul_add(n(-0.2), q[11].mul_add(tau[5], q[10].mul_add(tau[4], q[9] * tau[3])));
+        .mul_add(n(-0.2), q[11].mul_add(tau[5], q[10].mul_add(tau[4], q[9] * tau[3])));
     let link_2_seen_by_parent_24 = (-((-q[11])
         .mul_add(link_2_seen_by_parent_3, (-q[10]).mul_add(link_2_seen_by_parent_2, q[9] * link_2_seen_by_parent))))
-            .mul_add(n(-0.2), q[14].mul_add(tau[5], q[13].mul_add(tau[4], q[12] * tau[3])));
+        .mul_add(n(-0.2), q[14].mul_add(tau[5], q[13].mul_add(tau[4], q[12] * tau[3])));
     // link_1: carried (8 additions)
     let link_1_carried = link_2_seen_by_parent_15 + n(2.5200000000000014);
     // link_1: articulated inertia (16 additions, 31 multiplications, 3 divisions)
@@ -4227,7 +4227,8 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
     let link_32_acceleration_15 = link_32_acceleration_5 - link_32_acceleration_12;
     // link_32: force (14 additions, 19 multiplications)
     let link_32_force = (q[287]
-        .mul_add(link_32_acceleration_3, q[284].mul_add(link_32_acceleration_2, q[281] * link_32_acceleration))).mul_add(
+        .mul_add(link_32_acceleration_3, q[284].mul_add(link_32_acceleration_2, q[281] * link_32_acceleration)))
+        .mul_add(
             n(0.004),
             (q[285].mul_add(
                 link_32_acceleration_3,
@@ -5037,12 +5038,10 @@ pub fn inverse_dynamics<T: Scalar>(q: &[T; 288], v: &[T; 96], a: &[T; 96]) -> [T
             ),
         ),
     );
-    let link_2_effort_7 = (-((-q[13])
-        .mul_add(link_2_effort_5, q[14].mul_add(link_2_effort_6, q[12] * link_2_effort_4))))
-            .mul_add(n(0.2), q[11].mul_add(link_2_effort_3, q[10].mul_add(link_2_effort_2, q[9] * link_2_effort)));
-    let link_2_effort_8 = ((-q[10])
-        .mul_add(link_2_effort_5, q[11].mul_add(link_2_effort_6, q[9] * link_2_effort_4)))
-            .mul_add(n(0.2), q[14].mul_add(link_2_effort_3, q[13].mul_add(link_2_effort_2, q[12] * link_2_effort)));
+    let link_2_effort_7 = (-((-q[13]).mul_add(link_2_effort_5, q[14].mul_add(link_2_effort_6, q[12] * link_2_effort_4))))
+        .mul_add(n(0.2), q[11].mul_add(link_2_effort_3, q[10].mul_add(link_2_effort_2, q[9] * link_2_effort)));
+    let link_2_effort_8 = ((-q[10]).mul_add(link_2_effort_5, q[11].mul_add(link_2_effort_6, q[9] * link_2_effort_4)))
+        .mul_add(n(0.2), q[14].mul_add(link_2_effort_3, q[13].mul_add(link_2_effort_2, q[12] * link_2_effort)));
     [
         link_1_force_2 + link_2_effort_7,
         (-q[8]).mul_add(n(0.039240000000000004), (-q[6]).mul_add(n(24.721200000000014), link_1_force + link_2_effort_8)),

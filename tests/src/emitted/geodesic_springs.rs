@@ -132,7 +132,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     );
     let lower_force_3 = (-((-lower_joint_13)
         .mul_add(lower_acceleration_4, lower_joint_15.mul_add(lower_acceleration_5, lower_joint_11 * lower_acceleration_3))))
-            .mul_add(n(0.25), lower_acceleration_6.mul_add(n(0.0725), lower_acceleration_2 * n(0.0825)));
+        .mul_add(n(0.25), lower_acceleration_6.mul_add(n(0.0725), lower_acceleration_2 * n(0.0825)));
     let lower_force_4 = (lower_acceleration_2 + lower_acceleration_6) * n(0.25);
     let lower_force_5 = (lower_acceleration - lower_acceleration_7) * n(0.25);
     let lower_force_6 = (lower_rate_y.mul_add(lower_rate_y, lower_rate_x * lower_rate_x)) * n(0.25);
@@ -145,10 +145,10 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
         .mul_add(lower_force, (-lower_joint_21).mul_add(lower_force_3, lower_joint_15 * lower_force_2));
     let lower_effort_4 = ((-lower_joint_25)
         .mul_add(lower_force_6, lower_joint_19.mul_add(lower_force_5, lower_joint_13 * lower_force_4)))
-            .mul_add(n(0.6), lower_effort);
+        .mul_add(n(0.6), lower_effort);
     let lower_effort_5 = (-((-lower_joint_23)
         .mul_add(lower_force_6, (-lower_joint_17).mul_add(lower_force_5, lower_joint_11 * lower_force_4))))
-            .mul_add(n(0.6), lower_effort_2);
+        .mul_add(n(0.6), lower_effort_2);
     // lower: composite inertia (45 additions, 90 multiplications)
     let lower_composite_inertia = lower_joint_11 * n(0.0825);
     let lower_composite_inertia_2 = lower_joint_16 * n(0.165);
@@ -181,7 +181,8 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
         lower_joint_21.mul_add(lower_composite_inertia_10, lower_joint_15 * lower_composite_inertia_9),
     );
     let lower_composite_inertia_16 = (-((-lower_joint_19)
-        .mul_add(lower_composite_inertia_13, lower_joint_13 * lower_composite_inertia_12))).mul_add(
+        .mul_add(lower_composite_inertia_13, lower_joint_13 * lower_composite_inertia_12)))
+        .mul_add(
             n(0.6),
             (-lower_joint_17).mul_add(
                 lower_composite_inertia_10,
@@ -198,7 +199,8 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
         lower_joint_21.mul_add(lower_composite_inertia_18, lower_joint_15 * lower_composite_inertia_17),
     );
     let lower_composite_inertia_23 = (-((-lower_joint_19)
-        .mul_add(lower_composite_inertia_21, lower_joint_13 * lower_composite_inertia_20))).mul_add(
+        .mul_add(lower_composite_inertia_21, lower_joint_13 * lower_composite_inertia_20)))
+        .mul_add(
             n(0.6),
             (-lower_joint_23).mul_add(
                 lower_composite_inertia_19,
@@ -318,7 +320,8 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_spring_11 = (-lower_joint_23).mul_add(lower_spring[0], lower_spring[2] * lower_spring_7);
     let lower_spring_12 = lower_spring[1].mul_add(lower_spring_7, lower_joint_17 * lower_spring[0]);
     let lower_spring_13 = (lower_spring[2]
-        .mul_add(lower_spring[2], lower_spring[1].mul_add(lower_spring[1], lower_spring[0] * lower_spring[0]))).dexp_inverse(0);
+        .mul_add(lower_spring[2], lower_spring[1].mul_add(lower_spring[1], lower_spring[0] * lower_spring[0])))
+        .dexp_inverse(0);
     let lower_spring_14 = (-lower_spring_13).mul_add(
         lower_spring[2].mul_add(lower_spring_11, lower_spring[1] * lower_spring_12),
         lower_spring_10.mul_add(n(0.5), lower_spring_7),
@@ -385,23 +388,20 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 13], v: &[T; 6], tau: &[T; 6]) -> [T;
     let lower_factor_4 = (-lower_composite_inertia_22).mul_add(lower_factor_2, lower_composite_inertia_15);
     let lower_factor_5 = (-lower_composite_inertia_24).mul_add(
         lower_factor_2,
-        (lower_joint_17
-            .mul_add(lower_composite_inertia_13, lower_joint_11 * lower_composite_inertia_12))
-                .mul_add(n(0.6), lower_composite_inertia_14),
+        (lower_joint_17.mul_add(lower_composite_inertia_13, lower_joint_11 * lower_composite_inertia_12))
+            .mul_add(n(0.6), lower_composite_inertia_14),
     );
     let lower_factor_6 = (-lower_composite_inertia_23).mul_add(lower_factor_2, lower_composite_inertia_16);
     let lower_factor_7 = lower_composite_inertia_8 * lower_factor;
     let lower_factor_8 = (-lower_composite_inertia_24).mul_add(
         lower_factor_7,
-        (-((-lower_joint_17)
-            .mul_add(lower_composite_inertia_5, lower_joint_11 * lower_composite_inertia_4)))
-                .mul_add(n(0.6), lower_composite_inertia_7),
+        (-((-lower_joint_17).mul_add(lower_composite_inertia_5, lower_joint_11 * lower_composite_inertia_4)))
+            .mul_add(n(0.6), lower_composite_inertia_7),
     );
     let lower_factor_9 = (-lower_composite_inertia_23).mul_add(
         lower_factor_7,
-        (lower_joint_19
-            .mul_add(lower_composite_inertia_5, lower_joint_13 * lower_composite_inertia_4))
-                .mul_add(n(0.6), lower_composite_inertia_6),
+        (lower_joint_19.mul_add(lower_composite_inertia_5, lower_joint_13 * lower_composite_inertia_4))
+            .mul_add(n(0.6), lower_composite_inertia_6),
     );
     let lower_factor_10 = lower_composite_inertia_22 * lower_factor;
     let lower_factor_11 = lower_composite_inertia_24 * lower_factor;
@@ -594,7 +594,8 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
         lower_joint_21.mul_add(lower_composite_inertia_10, lower_joint_15 * lower_composite_inertia_9),
     );
     let lower_composite_inertia_16 = (-((-lower_joint_19)
-        .mul_add(lower_composite_inertia_13, lower_joint_13 * lower_composite_inertia_12))).mul_add(
+        .mul_add(lower_composite_inertia_13, lower_joint_13 * lower_composite_inertia_12)))
+        .mul_add(
             n(0.6),
             (-lower_joint_17).mul_add(
                 lower_composite_inertia_10,
@@ -611,7 +612,8 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
         lower_joint_21.mul_add(lower_composite_inertia_18, lower_joint_15 * lower_composite_inertia_17),
     );
     let lower_composite_inertia_23 = (-((-lower_joint_19)
-        .mul_add(lower_composite_inertia_21, lower_joint_13 * lower_composite_inertia_20))).mul_add(
+        .mul_add(lower_composite_inertia_21, lower_joint_13 * lower_composite_inertia_20)))
+        .mul_add(
             n(0.6),
             (-lower_joint_23).mul_add(
                 lower_composite_inertia_19,
@@ -669,23 +671,20 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_factor_4 = (-lower_composite_inertia_22).mul_add(lower_factor_2, lower_composite_inertia_15);
     let lower_factor_5 = (-lower_composite_inertia_24).mul_add(
         lower_factor_2,
-        (lower_joint_17
-            .mul_add(lower_composite_inertia_13, lower_joint_11 * lower_composite_inertia_12))
-                .mul_add(n(0.6), lower_composite_inertia_14),
+        (lower_joint_17.mul_add(lower_composite_inertia_13, lower_joint_11 * lower_composite_inertia_12))
+            .mul_add(n(0.6), lower_composite_inertia_14),
     );
     let lower_factor_6 = (-lower_composite_inertia_23).mul_add(lower_factor_2, lower_composite_inertia_16);
     let lower_factor_7 = lower_composite_inertia_8 * lower_factor;
     let lower_factor_8 = (-lower_composite_inertia_24).mul_add(
         lower_factor_7,
-        (-((-lower_joint_17)
-            .mul_add(lower_composite_inertia_5, lower_joint_11 * lower_composite_inertia_4)))
-                .mul_add(n(0.6), lower_composite_inertia_7),
+        (-((-lower_joint_17).mul_add(lower_composite_inertia_5, lower_joint_11 * lower_composite_inertia_4)))
+            .mul_add(n(0.6), lower_composite_inertia_7),
     );
     let lower_factor_9 = (-lower_composite_inertia_23).mul_add(
         lower_factor_7,
-        (lower_joint_19
-            .mul_add(lower_composite_inertia_5, lower_joint_13 * lower_composite_inertia_4))
-                .mul_add(n(0.6), lower_composite_inertia_6),
+        (lower_joint_19.mul_add(lower_composite_inertia_5, lower_joint_13 * lower_composite_inertia_4))
+            .mul_add(n(0.6), lower_composite_inertia_6),
     );
     let lower_factor_10 = lower_composite_inertia_22 * lower_factor;
     let lower_factor_11 = lower_composite_inertia_24 * lower_factor;
@@ -859,7 +858,8 @@ pub fn momentum_rates<T: Scalar>(q: &[T; 13], p: &[T; 6], tau: &[T; 6]) -> [[T; 
     let lower_spring_11 = (-lower_joint_23).mul_add(lower_spring[0], lower_spring[2] * lower_spring_7);
     let lower_spring_12 = lower_spring[1].mul_add(lower_spring_7, lower_joint_17 * lower_spring[0]);
     let lower_spring_13 = (lower_spring[2]
-        .mul_add(lower_spring[2], lower_spring[1].mul_add(lower_spring[1], lower_spring[0] * lower_spring[0]))).dexp_inverse(0);
+        .mul_add(lower_spring[2], lower_spring[1].mul_add(lower_spring[1], lower_spring[0] * lower_spring[0])))
+        .dexp_inverse(0);
     let lower_spring_14 = (-lower_spring_13).mul_add(
         lower_spring[2].mul_add(lower_spring_11, lower_spring[1] * lower_spring_12),
         lower_spring_10.mul_add(n(0.5), lower_spring_7),
@@ -1137,7 +1137,8 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
         lower_joint_21.mul_add(lower_composite_inertia_10, lower_joint_15 * lower_composite_inertia_9),
     );
     let lower_composite_inertia_16 = (-((-lower_joint_19)
-        .mul_add(lower_composite_inertia_13, lower_joint_13 * lower_composite_inertia_12))).mul_add(
+        .mul_add(lower_composite_inertia_13, lower_joint_13 * lower_composite_inertia_12)))
+        .mul_add(
             n(0.6),
             (-lower_joint_17).mul_add(
                 lower_composite_inertia_10,
@@ -1154,7 +1155,8 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
         lower_joint_21.mul_add(lower_composite_inertia_18, lower_joint_15 * lower_composite_inertia_17),
     );
     let lower_composite_inertia_23 = (-((-lower_joint_19)
-        .mul_add(lower_composite_inertia_21, lower_joint_13 * lower_composite_inertia_20))).mul_add(
+        .mul_add(lower_composite_inertia_21, lower_joint_13 * lower_composite_inertia_20)))
+        .mul_add(
             n(0.6),
             (-lower_joint_23).mul_add(
                 lower_composite_inertia_19,
@@ -1212,23 +1214,20 @@ pub fn hamiltonian<T: Scalar>(q: &[T; 13], p: &[T; 6]) -> [T; 1] {
     let lower_factor_4 = (-lower_composite_inertia_22).mul_add(lower_factor_2, lower_composite_inertia_15);
     let lower_factor_5 = (-lower_composite_inertia_24).mul_add(
         lower_factor_2,
-        (lower_joint_17
-            .mul_add(lower_composite_inertia_13, lower_joint_11 * lower_composite_inertia_12))
-                .mul_add(n(0.6), lower_composite_inertia_14),
+        (lower_joint_17.mul_add(lower_composite_inertia_13, lower_joint_11 * lower_composite_inertia_12))
+            .mul_add(n(0.6), lower_composite_inertia_14),
     );
     let lower_factor_6 = (-lower_composite_inertia_23).mul_add(lower_factor_2, lower_composite_inertia_16);
     let lower_factor_7 = lower_composite_inertia_8 * lower_factor;
     let lower_factor_8 = (-lower_composite_inertia_24).mul_add(
         lower_factor_7,
-        (-((-lower_joint_17)
-            .mul_add(lower_composite_inertia_5, lower_joint_11 * lower_composite_inertia_4)))
-                .mul_add(n(0.6), lower_composite_inertia_7),
+        (-((-lower_joint_17).mul_add(lower_composite_inertia_5, lower_joint_11 * lower_composite_inertia_4)))
+            .mul_add(n(0.6), lower_composite_inertia_7),
     );
     let lower_factor_9 = (-lower_composite_inertia_23).mul_add(
         lower_factor_7,
-        (lower_joint_19
-            .mul_add(lower_composite_inertia_5, lower_joint_13 * lower_composite_inertia_4))
-                .mul_add(n(0.6), lower_composite_inertia_6),
+        (lower_joint_19.mul_add(lower_composite_inertia_5, lower_joint_13 * lower_composite_inertia_4))
+            .mul_add(n(0.6), lower_composite_inertia_6),
     );
     let lower_factor_10 = lower_composite_inertia_22 * lower_factor;
     let lower_factor_11 = lower_composite_inertia_24 * lower_factor;

@@ -105,7 +105,7 @@ pub fn forward_dynamics<T: Scalar>(q: &[T; 9], v: &[T; 6], tau: &[T; 6]) -> [T; 
     let back_effort = board_constraint_7
         * (((-board_constraint_6)
             .mul_add(back_constraint_2, (-board_constraint_5).mul_add(front_constraint_2, board_acceleration_2)))
-                .mul_add(n(7.800000000000001), -tau[2]));
+            .mul_add(n(7.800000000000001), -tau[2]));
     let back_effort_2 = (-board_constraint_4).mul_add(
         (tau[3] - back_constraint_3).mul_add(n(0.05), board_effort - tau[0]),
         board_acceleration.mul_add(n(7.800000000000001), tau[1] - back_effort),

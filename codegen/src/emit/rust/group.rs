@@ -4,6 +4,7 @@ use super::tokens::{Writer, ident};
 use crate::derived::KernelKind;
 use crate::emit::method::group::{Basis, Calls, Part, module};
 use crate::formula::Node;
+use crate::formula::names::NameSet;
 use crate::manifold::Kind;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
@@ -109,7 +110,11 @@ impl Calls<'_> {
         if let [only] = self.parts.as_slice() {
             return value(only);
         }
-        let names: Vec<Ident> = self.parts.iter().map(|part| part.named(name)).collect();
+        // Names of factors may differ in capitals alone.
+        let mut taken = NameSet::default();
+        let names = self.parts.iter();
+        let names = names.map(|part| ident(&taken.claim(&part.wish(name))));
+        let names: Vec<Ident> = names.collect();
         let values = self.parts.iter().map(value);
         quote! { #(let #names = #values;)* stacked(&[#(#names.as_slice()),*]) }
     }
@@ -201,8 +206,8 @@ impl Part<'_> {
         }
     }
 
-    /// A name for something of this factor: `r_moved`.
-    fn named(&self, what: &str) -> Ident {
-        ident(&format!("{}_{what}", self.factor.name.to_ascii_lowercase()))
+    /// The name wished for something of this factor: `r_moved`.
+    fn wish(&self, what: &str) -> String {
+        format!("{}_{what}", self.factor.name.to_ascii_lowercase())
     }
 }

@@ -167,8 +167,12 @@ fn bracketed(lines: &mut Vec<String>, i: usize) {
     }
 }
 
-/// Moves the methods and operators that go on below the line `i` one level in, where they stand below a bracket that has become that line.
+/// Moves the methods and operators that go on below the line `i` one level in, where they stand below a bracket that has become that line. Those
+/// below a method or operator stand as it does.
 fn moved_in(lines: &mut [String], i: usize) {
+    if going_on(lines[i].trim_start()).is_some() {
+        return;
+    }
     let level = indent(&lines[i]);
     let mut at = i + 1;
     while let Some(next) = lines.get(at) {
