@@ -93,7 +93,7 @@ fn with_shared(node: &Node, all: &BTreeMap<Node, Shared>) -> Node {
         Some(Shared::Reciprocal) => ((**above).clone(), Node::one()),
         Some(Shared::Factors(common)) => {
             let common: Vec<Node> = common.iter().map(|part| with_shared(part, all)).collect();
-            (without(factors(above), &common), product(common))
+            (without(factors(above), &common), Node::of_factors(common))
         }
     };
     let shared = quotient(shared);
@@ -115,13 +115,5 @@ fn without(factors: &[Node], taken: &[Node]) -> Node {
             rest.remove(at);
         }
     }
-    product(rest)
-}
-
-fn product(mut factors: Vec<Node>) -> Node {
-    match factors.len() {
-        0 => Node::one(),
-        1 => factors.remove(0),
-        _ => Node::Product(factors),
-    }
+    Node::of_factors(rest)
 }
