@@ -50,9 +50,10 @@ pub struct Derived {
 pub(crate) fn programs(
     spec: &JointSpec,
     arguments: &Arguments,
+    words: &[Word],
     kernels: &[Kernel],
 ) -> BTreeMap<KernelKind, Program> {
-    let names = Names::new(&spec.parameters, arguments);
+    let names = Names::new(&spec.parameters, arguments, words);
     let program = |kernel: &Kernel| {
         let program = Program::in_names(&kernel.steps, &kernel.outputs, names.clone());
         (kernel.kind, program)
@@ -74,7 +75,7 @@ impl Derived {
 
     /// The names of its symbols in every kernel.
     pub(crate) fn names(&self) -> Names {
-        Names::new(&self.spec.parameters, &self.arguments)
+        Names::new(&self.spec.parameters, &self.arguments, &self.words)
     }
 
     /// Puts a kernel in the place of that of its kind, with its formulas.

@@ -86,7 +86,7 @@ fn derive_spec(spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
     }
     budget::begin(task::FORMULAS);
     kernels.iter().for_each(spend_on_formulas);
-    let programs = programs(&joint.spec, &expansion.arguments, &kernels);
+    let programs = programs(&joint.spec, &expansion.arguments, &words, &kernels);
     let ideal = joint.space.manifold.ideal();
     Ok(Derived {
         shape: expansion.shape,

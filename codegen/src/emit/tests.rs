@@ -226,7 +226,12 @@ fn types_and_numbers_have_names() {
     assert_eq!([ratio(27, 1), ratio(3, 7)], ["number_27", "ratio_3_7"]);
     assert_eq!(
         [ratio(177, 10_000), ratio(61, 5), ratio(1, 10_000_000)],
-        ["number_0_0177", "number_12_2", "ratio_1_10000000"]
+        ["number_0_0177", "number_12_2", "ratio_1_1e7"]
+    );
+    let whole = |n: i64| number_name(&Rational::from(n));
+    assert_eq!(
+        [whole(100_000_000), whole(1200), whole(i64::MAX)],
+        ["number_1e8", "number_1200", "constant"]
     );
 }
 
@@ -239,6 +244,32 @@ fn factors_that_differ_in_capitals_have_names_of_their_own() {
     for what in ["moved", "rate", "local"] {
         let list = format!("stacked(&[r_{what}.as_slice(), r_{what}_2.as_slice()])");
         assert!(text.contains(&list), "{list}\n{text}");
+    }
+}
+
+/// A name of the author means his value in every kernel, also in those that do without it.
+#[test]
+fn a_name_of_the_spec_has_one_value_in_all_kernels() {
+    let text = emitted(
+        "hamel = 1; joint one_name(k: m > 0) {
+           config x: R1, y: R1; let inverse_k = 2 + x*x; let y_squared = 2 + cos(x);
+           let number_0_7 = 3 + x*y;
+           H = trans_x(k*x) * trans_y(k*y) * trans_z((inverse_k*y*y + y_squared)/k) * rot_z(0.7*x*x + y*y/k + number_0_7); }",
+    );
+    for (name, values) in [
+        ("inverse_k", ["x.mul_add(x, two);", "two + x_squared;", "2 + x*x;"]),
+        ("y_squared", ["two + cos_x;", "x.cos() + two;", "2 + cos(x);"]),
+        ("number_0_7", ["x.mul_add(y, three);", "three + x_y;", "3 + x*y;"]),
+    ] {
+        let line = format!("let {name} = ");
+        let found: Vec<&str> = text
+            .lines()
+            .filter_map(|text| text.trim().strip_prefix(&*line))
+            .collect();
+        assert!(
+            !found.is_empty() && found.iter().all(|found| values.contains(found)),
+            "{name}: {found:?}"
+        );
     }
 }
 

@@ -78,43 +78,53 @@ pub fn is_number_word(name: &str) -> bool {
     number_words().any(|word| word == name)
 }
 
-/// The name of a positive constant: `two`, `half`, `three_quarters`, `number_27`, `number_0_0177`, `ratio_3_7`.
+/// The name of a positive constant: `two`, `half`, `three_quarters`, `number_27`, `number_3e8`, `number_0_0177`, `ratio_3_7`.
+///
+/// A number of more than [`MOST_DIGITS`] digits is a `constant`: its value stands beside the name.
 pub fn number_name(value: &Rational) -> String {
     let word = |n: &num_bigint::BigInt| {
         n.to_usize()
             .and_then(|n| WORDS.get(n))
             .map(|word| (*word).to_owned())
     };
-    let denominator = value.denom();
-    if denominator.is_one() {
-        return word(&value.numer())
-            .unwrap_or_else(|| short("number", &[value.numer().to_string()]));
+    let (above, below) = (value.numer(), value.denom());
+    if below.is_one() {
+        return word(&above).unwrap_or_else(|| written("number", &[digits(&above.to_string())]));
     }
-    let part = match denominator.to_u8() {
+    let part = match below.to_u8() {
         Some(2) => Some("half"),
         Some(3) => Some("third"),
         Some(4) => Some("quarter"),
         _ => None,
     };
-    match (part, word(&value.numer()), value.numer().is_one()) {
+    match (part, word(&above), above.is_one()) {
         (Some(part), _, true) => part.to_owned(),
         (Some("half"), Some(count), false) => format!("{count}_halves"),
         (Some(part), Some(count), false) => format!("{count}_{part}s"),
         _ => match value.decimal() {
-            Some(decimal) => format!("number_{}", decimal.replace('.', "_")),
-            None => short(
-                "ratio",
-                &[value.numer().to_string(), denominator.to_string()],
-            ),
+            Some(decimal) => written("number", &[decimal.replace('.', "_")]),
+            None => written("ratio", &[above, below].map(|n| digits(&n.to_string()))),
         },
     }
 }
 
-/// Long numbers are cut: the value stands beside the name.
-fn short(prefix: &str, numbers: &[String]) -> String {
-    let cut = |number: &String| number.chars().take(8).collect::<String>();
-    let parts: Vec<String> = numbers.iter().map(cut).collect();
-    format!("{prefix}_{}", parts.join("_"))
+/// Most digits of a number that its name spells.
+const MOST_DIGITS: usize = 17;
+
+fn written(prefix: &str, numbers: &[String]) -> String {
+    match numbers.iter().all(|number| number.len() <= MOST_DIGITS) {
+        true => format!("{prefix}_{}", numbers.join("_")),
+        false => "constant".to_owned(),
+    }
+}
+
+/// The digits of a whole number, four zeros or more at its end as a power of ten.
+fn digits(number: &str) -> String {
+    let leading = number.trim_end_matches('0');
+    match number.len() - leading.len() {
+        0..=3 => number.to_owned(),
+        zeros => format!("{leading}e{zeros}"),
+    }
 }
 
 /// A name for the value of a formula, made from what it is: `x_squared`, `q12_minus_q21`, `lead_over_pi`.

@@ -2,7 +2,7 @@
 
 use super::names::{NameSet, number_words};
 use crate::expr::{Role, Symbol};
-use crate::kernel::Arguments;
+use crate::kernel::{Arguments, Word};
 use crate::model::Parameter;
 use std::collections::BTreeMap;
 
@@ -70,8 +70,8 @@ pub struct Names {
 }
 
 impl Names {
-    /// Names for the parameters and for the arguments of all kernels.
-    pub fn new(parameters: &[Parameter], arguments: &Arguments) -> Self {
+    /// Names for the parameters, for the arguments of all kernels and for the `let`s of the spec, so that a name means one value in all of them.
+    pub fn new(parameters: &[Parameter], arguments: &Arguments, words: &[Word]) -> Self {
         let mut names = Self::reserved();
         names.claim_coordinates(&arguments.configuration);
         let parameters = parameters.iter().map(|parameter| &parameter.symbol);
@@ -85,6 +85,7 @@ impl Names {
         ];
         parameters
             .chain(others.into_iter().flatten())
+            .chain(words.iter().map(|word| &word.symbol))
             .for_each(|symbol| names.claim(symbol));
         names
     }

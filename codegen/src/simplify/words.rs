@@ -9,6 +9,7 @@ use crate::matrix::Matrix;
 use crate::prepare::Prepared;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
 
 /// First index of the symbols made here, above those of `let`s.
 const FIRST_INDEX: usize = 0x6000;
@@ -23,6 +24,9 @@ pub struct Words<'a> {
     motion: &'a Motion,
     freedoms: Vec<&'a str>,
     words: Vec<Word>,
+    /// The number of each derivative, by what it is of and along which freedoms; shared between copies, so that a symbol means one value
+    /// in every kernel.
+    numbers: Rc<RefCell<BTreeMap<(String, Vec<usize>), usize>>>,
     /// Functions that are words themselves.
     functions: BTreeMap<Atom, Symbol>,
     /// Word and direction to the derivative.
@@ -45,6 +49,7 @@ impl<'a> Words<'a> {
             motion,
             freedoms: freedoms.map(|freedom| freedom.name.as_str()).collect(),
             words: vec![],
+            numbers: Rc::default(),
             functions: BTreeMap::new(),
             derivatives: BTreeMap::new(),
             definitions: vec![],
@@ -62,7 +67,9 @@ impl<'a> Words<'a> {
 
     /// These words, of which only those that are functions are looked for.
     pub fn functions_alone(&self) -> Self {
+        let declared = self.words.iter().filter(|word| !word.is_derivative());
         Self {
+            words: declared.cloned().collect(),
             definitions: vec![],
             derivatives: BTreeMap::new(),
             found: RefCell::default(),
@@ -95,10 +102,17 @@ impl<'a> Words<'a> {
     }
 
     fn add(&mut self, base: &str, along: Vec<usize>, value: Expr) -> Symbol {
-        let name = self.name(base, &along);
-        let symbol = Symbol::new(Role::Intermediate, FIRST_INDEX + self.words.len(), &name);
+        let number = self.number(base, &along);
+        let symbol = Symbol::new(Role::Intermediate, number, &self.name(base, &along));
         self.push(symbol.clone(), base, along, value);
         symbol
+    }
+
+    fn number(&self, base: &str, along: &[usize]) -> usize {
+        let mut numbers = self.numbers.borrow_mut();
+        let next = FIRST_INDEX + numbers.len();
+        let key = (base.to_owned(), along.to_vec());
+        *numbers.entry(key).or_insert(next)
     }
 
     fn push(&mut self, symbol: Symbol, base: &str, along: Vec<usize>, value: Expr) {

@@ -52,10 +52,14 @@ impl<'a> Writer<'a> {
     fn number(&self, value: &Rational) -> Ident {
         let make = || {
             let name = number_name(value);
+            let mut taken = self.taken.borrow_mut();
             // Single words are reserved for numbers; composed names may meet a name of the joint.
+            let reads_on = !taken.is_free(&name) && name.ends_with(|c: char| c.is_ascii_digit());
             ident(&match is_number_word(&name) {
                 true => name,
-                false => self.taken.borrow_mut().claim(&name),
+                // An index would read as further digits.
+                false if reads_on => taken.claim("constant"),
+                false => taken.claim(&name),
             })
         };
         self.numbers
