@@ -123,6 +123,14 @@ impl Step {
             Self::Call { outputs, .. } => outputs,
         }
     }
+
+    /// How many expressions it evaluates.
+    pub fn formulas(&self) -> usize {
+        match self {
+            Self::Let(..) => 1,
+            Self::Call { argument, .. } => argument.entries().len(),
+        }
+    }
 }
 
 /// How a kernel gets its value.

@@ -247,28 +247,31 @@ fn factors_that_differ_in_capitals_have_names_of_their_own() {
     }
 }
 
-/// A name of the author means his value in every kernel, also in those that do without it.
+/// A name that the spec gives means that value in every kernel, also in those that do without it.
 #[test]
 fn a_name_of_the_spec_has_one_value_in_all_kernels() {
     let text = emitted(
-        "hamel = 1; joint one_name(k: m > 0) {
-           config x: R1, y: R1; let inverse_k = 2 + x*x; let y_squared = 2 + cos(x);
-           let number_0_7 = 3 + x*y;
-           H = trans_x(k*x) * trans_y(k*y) * trans_z((inverse_k*y*y + y_squared)/k) * rot_z(0.7*x*x + y*y/k + number_0_7); }",
+        "hamel = 1; joint angle_names(angle: rad, arm: m > 0) { config u: R1, w: R1;
+           let cos_angle2 = sin(u + w + angle) * arm; let inverse_arm = cos(u - w) * sin(2 * u);
+           let sin_w = sin(u - 2*w);
+           H = rot_z(u) * trans([cos_angle2, w*arm + cos(w), w + u]) * trans_x(sin_w + inverse_arm) * rot_x(w/arm + u/arm); }",
     );
-    for (name, values) in [
-        ("inverse_k", ["x.mul_add(x, two);", "two + x_squared;", "2 + x*x;"]),
-        ("y_squared", ["two + cos_x;", "x.cos() + two;", "2 + cos(x);"]),
-        ("number_0_7", ["x.mul_add(y, three);", "three + x_y;", "3 + x*y;"]),
+    let code = text.split_once("impl Joint").expect("a joint").1;
+    let code = code.split_once("pub const SPEC").expect("a spec").0;
+    for (name, beginning) in [
+        ("cos_angle2", "let cos_angle2 = arm * "),
+        ("inverse_arm", "let inverse_arm = two * "),
+        ("sin_w", "let (sin_w, "),
     ] {
-        let line = format!("let {name} = ");
-        let found: Vec<&str> = text
-            .lines()
-            .filter_map(|text| text.trim().strip_prefix(&*line))
-            .collect();
+        let bound = |line: &&str| {
+            let left = line.split(" = ").next().unwrap_or_default();
+            let mut words = left.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+            line.starts_with("let ") && words.any(|word| word == name)
+        };
+        let lines: Vec<&str> = code.lines().map(str::trim).filter(bound).collect();
         assert!(
-            !found.is_empty() && found.iter().all(|found| values.contains(found)),
-            "{name}: {found:?}"
+            !lines.is_empty() && lines.iter().all(|line| line.starts_with(beginning)),
+            "{name}: {lines:#?}"
         );
     }
 }

@@ -107,7 +107,9 @@ impl Program {
         share_reciprocals(&mut formulas);
         extract_pairs(&mut formulas);
         let mut sharing = Sharing::new(taken.clone());
-        let mut remaining = sharing.numbered(&formulas).into_iter();
+        let numbers = sharing.numbered(&formulas);
+        sharing.name_functions(steps, &numbers);
+        let mut remaining = numbers.into_iter();
         for step in steps {
             sharing.step(step, &mut remaining);
         }
@@ -191,6 +193,8 @@ struct Sharing {
     shapes: Shapes,
     /// What stands for a formula: the name that it is bound to, or what a name merely repeats.
     names: FxHashMap<usize, Node>,
+    /// The sines and cosines that lines of the derivation name.
+    named_functions: FxHashMap<usize, Symbol>,
     taken: NameSet,
     bindings: Vec<Binding>,
     count: usize,
@@ -201,6 +205,7 @@ impl Sharing {
         Self {
             shapes: Shapes::default(),
             names: FxHashMap::default(),
+            named_functions: FxHashMap::default(),
             taken,
             bindings: vec![],
             count: 0,
@@ -218,6 +223,21 @@ impl Sharing {
         numbers.collect()
     }
 
+    /// A line that names a sine or a cosine names it also where both are bound together.
+    fn name_functions(&mut self, steps: &[Step], formulas: &[usize]) {
+        let mut place = 0;
+        for step in steps {
+            let formula = formulas.get(place).copied();
+            if let (Step::Let(name, _), Some(formula)) = (step, formula)
+                && self.angle(formula).is_some()
+            {
+                let named = self.named_functions.entry(formula);
+                named.or_insert_with(|| name.clone());
+            }
+            place += step.formulas();
+        }
+    }
+
     fn step(&mut self, step: &Step, formulas: &mut impl Iterator<Item = usize>) {
         match step {
             Step::Let(name, _) => {
@@ -228,13 +248,10 @@ impl Sharing {
                 self.define(name, formula, value);
             }
             Step::Call {
-                primitive,
-                argument,
-                outputs,
+                primitive, outputs, ..
             } => {
-                let count = argument.entries().len();
                 let argument = formulas
-                    .take(count)
+                    .take(step.formulas())
                     .map(|formula| self.rewrite(formula))
                     .collect();
                 self.bindings.push(Binding::Call {
@@ -250,7 +267,9 @@ impl Sharing {
     fn define(&mut self, name: &Symbol, formula: usize, value: Node) {
         if matches!(value, Node::Symbol(_) | Node::Number(_)) {
             let number = self.shapes.number(&Node::Symbol(name.clone()));
-            self.names.insert(number, value);
+            if value != Node::Symbol(name.clone()) {
+                self.names.insert(number, value);
+            }
             return;
         }
         if self.shapes.is_operation(formula) {
@@ -340,7 +359,8 @@ impl Sharing {
         let text = describe(&value);
         let name = |sharing: &mut Self, function: Function, prefix: &str| {
             let call = sharing.shapes.known(&Shape::Call(function, vec![angle]))?;
-            let symbol = sharing.fresh(&format!("{prefix}_{text}"));
+            let named = sharing.named_functions.get(&call).cloned();
+            let symbol = named.unwrap_or_else(|| sharing.fresh(&format!("{prefix}_{text}")));
             sharing.names.insert(call, Node::Symbol(symbol.clone()));
             Some(symbol)
         };

@@ -70,12 +70,14 @@ fn form_error(name: &Name, form: Form) -> Option<Diagnostic> {
     let error = Diagnostic::new(code::FORM, name.span.clone(), message)
         .label("this name is taken over into Rust");
     let suggestion = snake_case(text);
-    Some(
-        match (form == Form::Snake || !tidy) && !suggestion.is_empty() && suggestion != text {
-            true => error.help(format!("write `{suggestion}`")),
-            false => error.help("begin with an ASCII letter"),
-        },
-    )
+    let is_other = !suggestion.is_empty() && suggestion != text;
+    Some(match (form == Form::Snake || !tidy) && is_other {
+        true if is_rust_keyword(&suggestion) => error.help(format!(
+            "choose another name: `{suggestion}` is a keyword of Rust"
+        )),
+        true => error.help(format!("write `{suggestion}`")),
+        false => error.help("begin with an ASCII letter"),
+    })
 }
 
 fn snake_case(text: &str) -> String {

@@ -471,12 +471,12 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
         let one = T::one();
         let lean = r_q33.mul_add(-r_q33, one).sqrt();
         let inverse_lean = one / lean;
-        let d_lean_d_wx_value = r_q32 * inverse_lean * r_q33;
+        let d_lean_d_wx = r_q32 * inverse_lean * r_q33;
         let t1 = r_q31 * inverse_lean;
-        let d_lean_d_wy_value = -t1 * r_q33;
+        let d_lean_d_wy = -t1 * r_q33;
         let t2 = radius * inverse_lean;
         let t3 = t2 * speed_wz;
-        let t4 = dot([speed_wx, speed_wy], [d_lean_d_wx_value, d_lean_d_wy_value]);
+        let t4 = dot([speed_wx, speed_wy], [d_lean_d_wx, d_lean_d_wy]);
         let t5 = dot([r_q31, r_q33, r_q32 * inverse_lean], [speed_wz, -speed_wx, t4]);
         let t6 = dot([t1, r_q33, r_q32], [-t4, -speed_wy, speed_wz]);
         SVector::from([zero, zero, zero, t3 * t5, t3 * t6, -t2 * dot([speed_wx, speed_wy], [t5, t6])])
@@ -493,12 +493,12 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
         let one = T::one();
         let lean = r_q33.mul_add(-r_q33, one).sqrt();
         let inverse_lean = one / lean;
-        let d_lean_d_wx_value = r_q32 * inverse_lean * r_q33;
+        let d_lean_d_wx = r_q32 * inverse_lean * r_q33;
         let t1 = r_q31 * inverse_lean;
-        let d_lean_d_wy_value = -t1 * r_q33;
+        let d_lean_d_wy = -t1 * r_q33;
         let t2 = radius * inverse_lean;
         let t3 = t2 * h6;
-        let t4 = dot([speed_wx, speed_wy], [d_lean_d_wx_value, d_lean_d_wy_value]);
+        let t4 = dot([speed_wx, speed_wy], [d_lean_d_wx, d_lean_d_wy]);
         let t5 = dot([r_q31, r_q33, r_q32 * inverse_lean], [speed_wz, -speed_wx, t4]);
         let t6 = dot([r_q33, t1, r_q32], [-speed_wy, -t4, speed_wz]);
         SVector::from([-t3 * t5, -t3 * t6, t2 * dot([h4, h5], [t5, t6])])

@@ -39,16 +39,16 @@ impl<'s, 'e, 'a> Scope<'s, 'e, 'a> {
     pub fn claim(&mut self, name: &Name, form: Form, owner: &str) {
         match names::check(name, form, FUNCTIONS) {
             Some(error) => self.evaluator.report(error),
-            None => self.claim_text(&name.text, &name.span, owner),
+            None => _ = self.claim_text(&name.text, &name.span, owner),
         }
     }
 
-    /// Claims a name that is made from one of the spec.
-    pub fn claim_text(&mut self, text: &str, span: &Range<usize>, owner: &str) {
+    /// Claims a name that is made from one of the spec; false where it is taken.
+    pub fn claim_text(&mut self, text: &str, span: &Range<usize>, owner: &str) -> bool {
         let Some((first, place)) = self.claimed.get(text) else {
             self.claimed
                 .insert(text.to_owned(), (owner.to_owned(), span.clone()));
-            return;
+            return true;
         };
         let message = format!("`{text}`, {owner}, is already {first}");
         let error = Diagnostic::new(code::DUPLICATE_NAME, span.clone(), message)
@@ -58,6 +58,7 @@ impl<'s, 'e, 'a> Scope<'s, 'e, 'a> {
             line(self.source, place)
         ));
         self.evaluator.report(error.help("choose another name"));
+        false
     }
 
     pub fn parameters(&mut self, parameters: &[Parameter]) -> Vec<model::Parameter> {
@@ -100,14 +101,21 @@ impl<'s, 'e, 'a> Scope<'s, 'e, 'a> {
             self.evaluator.define(&name.text, Some(value_of(factor)));
         }
         for ((name, _), factor) in names.iter().zip(factors) {
-            let owner = format!("a stored scalar of `{}`", name.text);
-            for symbol in &factor.coordinates {
-                if *symbol.name != *name.text {
-                    self.claim_text(&symbol.name, &name.span, &owner);
-                }
-                self.claim_text(&format!("{}_target", symbol.name), &name.span, &owner);
-            }
+            self.claim_scalars(name, factor);
         }
+    }
+
+    /// The stored scalars of a factor, and those of the configuration that ϕ leads to; the first that is taken stands for all.
+    fn claim_scalars(&mut self, name: &Name, factor: &Factor) {
+        let owner = format!("a stored scalar of `{}`", name.text);
+        let of_target = format!("a stored scalar of a target of `{}`", name.text);
+        let span = &name.span;
+        let mut symbols = factor.coordinates.iter();
+        _ = symbols.all(|symbol| {
+            let is_factor = *symbol.name == *name.text;
+            (is_factor || self.claim_text(&symbol.name, span, &owner))
+                && self.claim_text(&format!("{}_target", symbol.name), span, &of_target)
+        });
     }
 
     /// `let`s in order: each sees those above it.

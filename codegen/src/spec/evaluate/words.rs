@@ -9,14 +9,24 @@ use std::collections::BTreeSet;
 const FIRST_INDEX: usize = 0x4000;
 
 /// The names so far.
-#[derive(Default)]
 pub(in super::super) struct Words {
     named: Vec<Named>,
     /// Those that no `let` gives, by index.
     automatic: BTreeSet<u16>,
+    /// What the spec itself gives a name.
+    taken: BTreeSet<String>,
 }
 
 impl Words {
+    /// No names yet; those that are made keep clear of `taken`.
+    pub fn new(taken: BTreeSet<String>) -> Self {
+        Self {
+            named: vec![],
+            automatic: BTreeSet::new(),
+            taken,
+        }
+    }
+
     /// The names, each with its value in those before it.
     pub fn finish(self) -> Vec<Named> {
         self.named
@@ -67,15 +77,22 @@ impl Words {
         if let Some(known) = self.named.iter().find(|named| named.value == value) {
             return Expr::symbol(&known.symbol);
         }
-        let alike = |named: &&Named| named.symbol.name.starts_with(name);
-        let name = match self.named.iter().filter(alike).count() {
-            0 => name.to_owned(),
-            count => format!("{name}{}", count + 1),
-        };
+        let name = self.free(name);
         let itself = self.bind(&name, value);
         let index = itself.as_symbol().map(|symbol| symbol.index);
         self.automatic.extend(index);
         itself
+    }
+
+    /// `angle`, `angle2`, …: the first that nothing else is called.
+    fn free(&self, name: &str) -> String {
+        let is_free = |name: &String| {
+            let mut named = self.named.iter();
+            !self.taken.contains(name) && named.all(|named| *named.symbol.name != **name)
+        };
+        let others = (2..).map(|n| format!("{name}{n}"));
+        let mut candidates = std::iter::once(name.to_owned()).chain(others);
+        candidates.find(is_free).unwrap_or_default()
     }
 
     /// Sums whose sine or cosine is taken: kept as they are, so that nothing is multiplied out.
