@@ -30,10 +30,11 @@
 
 mod patterns;
 mod products;
+mod slices;
 mod structure;
 
 pub use patterns::{Entry, Patterns};
-pub use products::Products;
+pub use products::{FirstOrder, Products};
 pub use structure::{Structure, Structures};
 
 use crate::scalar::Scalar;

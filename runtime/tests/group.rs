@@ -21,7 +21,7 @@ macro_rules! check_group {
                 let v = numbers::<$k>(1.0, seed + 1);
                 let lift = |x: f64| Dual::constant(x);
                 let along = v.map(|x| Dual::new(0.0, x));
-                let slope = $group::times_exp(&base.map(lift), &along).map(|x| x.derivative);
+                let slope = $group::times_exp(&base.map(lift), &along).map(|x| x.derivative());
                 assert!(($group::rate(&base, &v) - slope).norm() < TOLERANCE);
                 for size in [1e-9, 1e-3, 0.5, 1.5] {
                     let phi = numbers::<$k>(size, seed + 3);
@@ -74,7 +74,7 @@ macro_rules! check_differential {
                     let column = differential.column(k).into_owned();
                     let turned = column.map(|x| Dual::new(0.0, x));
                     let right = $group::times_exp(&moved.map(|x| lift(&x)), &turned);
-                    let gap = left.map(|x| x.derivative) - right.map(|x| x.derivative);
+                    let gap = left.map(|x| x.derivative()) - right.map(|x| x.derivative());
                     assert!(gap.norm() < 10.0 * TOLERANCE, "{gap}");
                     let back = $group::differential_inverse(&phi, &column);
                     let unit = SVector::<f64, $k>::ith(k, 1.0);

@@ -71,14 +71,18 @@ impl<const N: usize> QuasiTerms<N> {
                 .try_inverse()
                 .ok_or(QuasiError::SingularVelocityMap)?,
             velocity_map_gradient: array::from_fn(|k| {
-                system.velocity_map(&along(k)).map(|entry| entry.derivative)
+                system
+                    .velocity_map(&along(k))
+                    .map(|entry| entry.derivative())
             }),
             mass_matrix: system.mass_matrix(q),
             mass_matrix_gradient: array::from_fn(|k| {
-                system.mass_matrix(&along(k)).map(|entry| entry.derivative)
+                system
+                    .mass_matrix(&along(k))
+                    .map(|entry| entry.derivative())
             }),
             potential: system.potential(q),
-            potential_gradient: SVector::from_fn(|k, _| system.potential(&along(k)).derivative),
+            potential_gradient: SVector::from_fn(|k, _| system.potential(&along(k)).derivative()),
         })
     }
 

@@ -28,7 +28,7 @@ fn with_jacobian<T: Scalar, const N: usize, const K: usize>(
         x[k] = Dual::variable(x[k].value);
         map(&x)
     });
-    let jacobian = SMatrix::from_fn(|i, k| columns[k][i].derivative);
+    let jacobian = SMatrix::from_fn(|i, k| columns[k][i].derivative());
     let first = columns.first().copied();
     let moved = first.unwrap_or_else(|| map(&x.map(Dual::constant)));
     (moved.map(|entry| entry.value), jacobian)

@@ -155,7 +155,13 @@ fn derivatives_of_local_are_exact() {
     let t = Dual::new(Dual::variable(0.6), Dual::constant(1.0));
     let q = base().map(|entry| Dual::constant(Dual::constant(entry)));
     let (expected, found) = (path(t), cayley_local(&q, &cayley(&q, &path(t))));
-    let parts = |x: Dual<Dual<f64>>| [x.value.value, x.derivative.value, x.derivative.derivative];
+    let parts = |x: Dual<Dual<f64>>| {
+        [
+            x.value.value,
+            x.derivative().value,
+            x.derivative().derivative(),
+        ]
+    };
     for (expected, found) in expected.iter().zip(&found) {
         for (expected, found) in parts(*expected).into_iter().zip(parts(*found)) {
             // Second derivatives of a product of nine numbers below 3.
@@ -178,7 +184,7 @@ fn derivatives_of_local_are_those_of_its_values() {
     let speed = (target(t + step) - target(t - step)) / (2.0 * step);
     let q = base().map(Dual::constant);
     let moving = SVector::from_fn(|i, _| Dual::new(target(t)[i], speed[i]));
-    let derivative = cayley_local(&q, &moving).map(|entry| entry.derivative);
+    let derivative = cayley_local(&q, &moving).map(|entry| entry.derivative());
     // Truncation step² and rounding eps/step, with factors below 10.
     assert!(largest(&(derivative - difference)) < 1e-7);
 }
@@ -271,7 +277,7 @@ fn projection_works_in_other_scalars() {
         Dual::constant(0.2),
         Dual::constant(0.35),
     );
-    let derivative = on_ellipsoid(&moving).map(|entry| entry.derivative);
+    let derivative = on_ellipsoid(&moving).map(|entry| entry.derivative());
     let at = |t: f64| on_ellipsoid(&Vector3::new(1.3 + t, 0.2, 0.35));
     let difference = (at(1e-4) - at(-1e-4)) / 2e-4;
     // Truncation 1e-8, rounding eps/step 1e-12.

@@ -91,26 +91,22 @@ impl<const K: usize, const S: usize> Patterns<K, S> {
             &self.speed_basis,
         )
     }
+}
 
-    /// The patterns of the slices of `∂(X^c S̄)/∂ϕ`, by rows.
-    pub const fn speed_map_gradient(&self) -> [[[Entry; S]; 6]; K] {
-        let mut slices = [[[Entry::Zero; S]; 6]; K];
-        let mut k = 0;
-        while k < K {
-            slices[k] = add_product(
-                slices[k],
-                &self.twist_map_child_gradient[k],
-                &self.speed_basis,
-            );
-            slices[k] = add_product(
-                slices[k],
-                &self.twist_map_child,
-                &self.speed_basis_gradient[k],
-            );
-            k += 1;
+/// The pattern of a sum of matrices with any factors.
+pub const fn any<const R: usize, const C: usize, const K: usize>(
+    slices: &[[[Entry; C]; R]; K],
+) -> [[Entry; C]; R] {
+    let mut all = [[Entry::Zero; C]; R];
+    let mut n = 0;
+    while n < K * R * C {
+        let (k, i, j) = (n / (R * C), n / C % R, n % C);
+        if !matches!(slices[k][i][j], Entry::Zero) {
+            all[i][j] = Entry::Other;
         }
-        slices
+        n += 1;
     }
+    all
 }
 
 /// The pattern of a sum and a product more.

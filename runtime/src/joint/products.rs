@@ -1,12 +1,38 @@
 //! What the derivatives of the dynamics need of a joint beyond its kernels: [`Products`] of them, the same for every joint.
 //!
-//! With X̄^c = X^c S̄, its slices are `∂X̄^c/∂ϕ_k = ∂X^c_k S̄ + X^c ∂S̄_k`, and ϕ̇ = S₀⁻¹ S̄ v̄. Slices and entries that the joint's
+//! With X̄^c = X^c S̄, its derivatives are `∂X̄^c/∂ϕ_k = ∂X^c_k S̄ + X^c ∂S̄_k`, and ϕ̇ = S₀⁻¹ S̄ v̄. Slices and entries that the joint's
 //! [`Patterns`](super::Patterns) know to be 0 are left out when this is compiled for a joint. Second derivatives are first ones of the
 //! kernels of c and its dual, by automatic differentiation along each ϕ_k.
 
-use super::{Entry, Joint};
+use super::patterns::any;
+use super::slices::{
+    add_moved, add_product, combined, times, transposed_times, turned, turned_back,
+};
+use super::{Entry, Joint, Structure};
 use crate::scalar::{Dual, Scalar};
 use nalgebra::{SMatrix, SVector};
+
+/// The derivatives of a column of `$rows` entries along each ϕ_k, as many at once as there are, but at most three: more would be kept in
+/// memory.
+macro_rules! gradient {
+    ($joint:ident, $q:ident, $rows:tt, |$moved:ident| $value:expr) => {
+        match const { moving(&Self::PATTERNS.bias_gradient) } {
+            0 => SMatrix::zeros(),
+            1 => along_each::<T, Self, N, K, S, C, $rows, 1>($joint, $q, |$moved| $value),
+            2 => along_each::<T, Self, N, K, S, C, $rows, 2>($joint, $q, |$moved| $value),
+            _ => along_each::<T, Self, N, K, S, C, $rows, 3>($joint, $q, |$moved| $value),
+        }
+    };
+}
+
+/// X^c, S̄ and their derivatives at one Q. What the joint's structures make needless is 0: X^c where S̄ is constant.
+#[derive(Clone, Copy, Debug)]
+pub struct FirstOrder<T, const K: usize, const S: usize> {
+    map: SMatrix<T, 6, K>,
+    map_slices: [SMatrix<T, 6, K>; K],
+    basis: SMatrix<T, K, S>,
+    basis_slices: [SMatrix<T, K, S>; K],
+}
 
 /// Products of a joint's kernels and their derivatives, at ϕ = 0. Shapes, units and frames are those of [`Joint`].
 pub trait Products<const N: usize, const K: usize, const S: usize, const C: usize>:
@@ -22,29 +48,29 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         }
     }
 
-    /// ∂X̄^c/∂ϕ; slice k is the derivative along ϕ_k.
+    /// What the products below are made of, at one Q.
     #[inline]
-    fn speed_map_gradient<T: Scalar>(&self, q: &SVector<T, N>) -> [SMatrix<T, 6, S>; K] {
-        let patterns = const { &Self::PATTERNS };
-        let mut gradient = [SMatrix::zeros(); K];
-        if Self::STRUCTURES.speed_map.is_constant() {
-            return gradient;
+    fn first_order<T: Scalar>(&self, q: &SVector<T, N>) -> FirstOrder<T, K, S> {
+        let structures = Self::STRUCTURES;
+        let (moves, turns) = (
+            !structures.twist_map_child_gradient.is_zero(),
+            !structures.speed_basis_gradient.is_zero(),
+        );
+        FirstOrder {
+            map: match turns {
+                true => self.twist_map_child(q),
+                false => SMatrix::zeros(),
+            },
+            map_slices: match moves {
+                true => self.twist_map_child_gradient(q),
+                false => [SMatrix::zeros(); K],
+            },
+            basis: self.speed_basis(q),
+            basis_slices: match turns {
+                true => self.speed_basis_gradient(q),
+                false => [SMatrix::zeros(); K],
+            },
         }
-        if !Self::STRUCTURES.twist_map_child_gradient.is_zero() {
-            let (slices, basis) = (self.twist_map_child_gradient(q), self.speed_basis(q));
-            for k in 0..K {
-                let slice = (&slices[k], &patterns.twist_map_child_gradient[k]);
-                add_product(&mut gradient[k], slice, (&basis, &patterns.speed_basis));
-            }
-        }
-        if !Self::STRUCTURES.speed_basis_gradient.is_zero() {
-            let (map, slices) = (self.twist_map_child(q), self.speed_basis_gradient(q));
-            for k in 0..K {
-                let slice = (&slices[k], &patterns.speed_basis_gradient[k]);
-                add_product(&mut gradient[k], (&map, &patterns.twist_map_child), slice);
-            }
-        }
-        gradient
     }
 
     /// ∂(X̄^c v̄)/∂ϕ at fixed v̄; column k is the derivative along ϕ_k.
@@ -54,32 +80,44 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         q: &SVector<T, N>,
         speeds: &SVector<T, S>,
     ) -> SMatrix<T, 6, K> {
-        Self::twist_gradient_by_slices(&self.speed_map_gradient(q), speeds)
+        Self::twist_gradient_at(&self.first_order(q), speeds)
     }
 
-    /// The same from [`Products::speed_map_gradient`].
+    /// The same where the first order is known: column k is `∂X^c_k S̄ v̄ + X^c ∂S̄_k v̄`.
     #[inline]
-    fn twist_gradient_by_slices<T: Scalar>(
-        slices: &[SMatrix<T, 6, S>; K],
+    fn twist_gradient_at<T: Scalar>(
+        first: &FirstOrder<T, K, S>,
         speeds: &SVector<T, S>,
     ) -> SMatrix<T, 6, K> {
-        let pattern = const { &Self::PATTERNS.speed_map_gradient() };
-        let mut gradient = SMatrix::<T, _, K>::zeros();
+        let patterns = const { &Self::PATTERNS };
+        let velocity = times(&first.basis, &patterns.speed_basis, speeds);
+        let mut gradient = SMatrix::<T, 6, K>::zeros();
         for k in 0..K {
-            gradient.set_column(k, &times(&slices[k], &pattern[k], speeds));
+            let pattern = &patterns.twist_map_child_gradient[k];
+            let mut column = times(&first.map_slices[k], pattern, &velocity);
+            let map = (&first.map, &patterns.twist_map_child);
+            let slice = (&first.basis_slices[k], &patterns.speed_basis_gradient[k]);
+            add_moved(&mut column, map, slice, speeds);
+            gradient.set_column(k, &column);
         }
         gradient
     }
 
-    /// ∂(X̄^cᵀ h)/∂ϕ for a wrench or momentum `h` (moment; linear) that is fixed in the child frame: the dual of
-    /// [`Products::twist_gradient`].
+    /// ∂(X̄^cᵀ h)/∂ϕ for a wrench or momentum `h` (moment; linear) that is fixed in the child frame, the dual of
+    /// [`Products::twist_gradient`]: column k is `S̄ᵀ ∂X^c_kᵀ h + ∂S̄_kᵀ X^cᵀ h`.
     #[inline]
     fn effort_gradient<T: Scalar>(&self, q: &SVector<T, N>, h: &SVector<T, 6>) -> SMatrix<T, S, K> {
-        let pattern = const { &Self::PATTERNS.speed_map_gradient() };
-        let slices = self.speed_map_gradient(q);
-        let mut gradient = SMatrix::<T, _, K>::zeros();
+        let patterns = const { &Self::PATTERNS };
+        let first = self.first_order(q);
+        let moved = transposed_times(&first.map, &patterns.twist_map_child, h);
+        let mut gradient = SMatrix::<T, S, K>::zeros();
         for k in 0..K {
-            gradient.set_column(k, &transposed_times(&slices[k], &pattern[k], h));
+            let pattern = &patterns.twist_map_child_gradient[k];
+            let efforts = transposed_times(&first.map_slices[k], pattern, h);
+            let of_basis = &patterns.speed_basis_gradient[k];
+            let column = transposed_times(&first.basis, &patterns.speed_basis, &efforts)
+                + transposed_times(&first.basis_slices[k], of_basis, &moved);
+            gradient.set_column(k, &column);
         }
         gradient
     }
@@ -91,21 +129,39 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         q: &SVector<T, N>,
         speeds: &SVector<T, S>,
     ) -> SMatrix<T, 6, S> {
-        let local = local_rates(self, q) * speeds;
-        Self::twist_map_rate_by_slices(&self.speed_map_gradient(q), &local)
+        let first = self.first_order(q);
+        let local = self.local_rates(q, &first.basis);
+        let local = times(
+            &local,
+            const { &local_pattern::<Self, N, K, S, C>() },
+            speeds,
+        );
+        Self::twist_map_rate_at(&first, &local)
     }
 
-    /// The same from [`Products::speed_map_gradient`] and ϕ̇.
+    /// The same where the first order and ϕ̇ are known: `(Σ_k ∂X^c_k ϕ̇_k) S̄ + X^c Σ_k ∂S̄_k ϕ̇_k`.
     #[inline]
-    fn twist_map_rate_by_slices<T: Scalar>(
-        slices: &[SMatrix<T, 6, S>; K],
+    fn twist_map_rate_at<T: Scalar>(
+        first: &FirstOrder<T, K, S>,
         local: &SVector<T, K>,
     ) -> SMatrix<T, 6, S> {
-        combined(
-            slices,
-            const { &Self::PATTERNS.speed_map_gradient() },
-            local,
-        )
+        let patterns = const { &Self::PATTERNS };
+        let (of_map, of_basis) = const {
+            (
+                any(&Self::PATTERNS.twist_map_child_gradient),
+                any(&Self::PATTERNS.speed_basis_gradient),
+            )
+        };
+        let slices = &patterns.twist_map_child_gradient;
+        let of_slices = combined(&first.map_slices, slices, local);
+        let slices = &patterns.speed_basis_gradient;
+        let of_bases = combined(&first.basis_slices, slices, local);
+        let mut rate = SMatrix::zeros();
+        let basis = (&first.basis, &patterns.speed_basis);
+        add_product(&mut rate, (&of_slices, &of_map), basis);
+        let map = (&first.map, &patterns.twist_map_child);
+        add_product(&mut rate, map, (&of_bases, &of_basis));
+        rate
     }
 
     /// `c = Ẋ̄^c v̄ = Σ_k (∂X^c_k S̄ v̄ + X^c ∂S̄_k v̄) ϕ̇_k` in the child frame: [`Joint::bias_acceleration`] where a joint has no formula of
@@ -191,6 +247,19 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         }
     }
 
+    /// `S₀⁻¹ S̄`, v̄ to ϕ̇, where S̄ is known.
+    #[inline]
+    fn local_rates<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        basis: &SMatrix<T, K, S>,
+    ) -> SMatrix<T, K, S> {
+        match Self::STRUCTURES.velocity_map.is_identity() {
+            true => *basis,
+            false => self.velocity_map_inverse(q) * basis,
+        }
+    }
+
     /// ∂c/∂v̄ of [`Joint::bias_acceleration`]: `Ẋ̄^c + ∂(X̄^c v̄)/∂ϕ S₀⁻¹ S̄`.
     #[inline]
     fn bias_acceleration_slope<T: Scalar>(
@@ -198,21 +267,25 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         q: &SVector<T, N>,
         speeds: &SVector<T, S>,
     ) -> SMatrix<T, 6, S> {
-        let slices = self.speed_map_gradient(q);
-        let of_twist = Self::twist_gradient_by_slices(&slices, speeds);
-        self.bias_acceleration_slope_by_slices((q, speeds), &slices, &of_twist)
+        let first = self.first_order(q);
+        let of_twist = Self::twist_gradient_at(&first, speeds);
+        self.bias_acceleration_slope_at((q, speeds), &first, &of_twist)
     }
 
-    /// The same from [`Products::speed_map_gradient`] and [`Products::twist_gradient`].
+    /// The same where the first order and [`Products::twist_gradient`] are known.
     #[inline]
-    fn bias_acceleration_slope_by_slices<T: Scalar>(
+    fn bias_acceleration_slope_at<T: Scalar>(
         &self,
         (q, speeds): (&SVector<T, N>, &SVector<T, S>),
-        slices: &[SMatrix<T, 6, S>; K],
+        first: &FirstOrder<T, K, S>,
         of_twist: &SMatrix<T, 6, K>,
     ) -> SMatrix<T, 6, S> {
-        let local = local_rates(self, q);
-        Self::twist_map_rate_by_slices(slices, &(local * speeds)) + of_twist * local
+        let pattern = const { &local_pattern::<Self, N, K, S, C>() };
+        let local = self.local_rates(q, &first.basis);
+        let mut slope = Self::twist_map_rate_at(first, &times(&local, pattern, speeds));
+        let full = [[Entry::Other; K]; 6];
+        add_product(&mut slope, (of_twist, &full), (&local, pattern));
+        slope
     }
 
     /// ∂(Ẋ̄^cᵀ h)/∂v̄ at fixed h, of [`Joint::bias_momentum`]: `∂(X̄^cᵀ h)/∂ϕ S₀⁻¹ S̄`.
@@ -222,7 +295,13 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         q: &SVector<T, N>,
         h: &SVector<T, 6>,
     ) -> SMatrix<T, S, S> {
-        self.effort_gradient(q, h) * local_rates(self, q)
+        let pattern = const { &local_pattern::<Self, N, K, S, C>() };
+        let local = self.local_rates(q, &self.speed_basis(q));
+        let mut slope = SMatrix::zeros();
+        let full = [[Entry::Other; K]; S];
+        let gradient = self.effort_gradient(q, h);
+        add_product(&mut slope, (&gradient, &full), (&local, pattern));
+        slope
     }
 
     /// ∂c/∂ϕ at fixed v̄, of [`Joint::bias_acceleration`].
@@ -235,8 +314,8 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         if Self::STRUCTURES.bias_acceleration.is_constant() {
             return SMatrix::zeros();
         }
-        let speeds = speeds.map(Dual::constant);
-        along_each(self, q, |q| self.bias_acceleration(q, &speeds))
+        gradient!(self, q, 6, |q| self
+            .bias_acceleration(q, &speeds.map(Dual::constant)))
     }
 
     /// ∂(Ẋ̄^cᵀ h)/∂ϕ at fixed v̄ and h, of [`Joint::bias_momentum`].
@@ -250,8 +329,11 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         if Self::STRUCTURES.bias_momentum.is_constant() {
             return SMatrix::zeros();
         }
-        let (speeds, h) = (speeds.map(Dual::constant), h.map(Dual::constant));
-        along_each(self, q, |q| self.bias_momentum(q, &speeds, &h))
+        gradient!(self, q, S, |q| self.bias_momentum(
+            q,
+            &speeds.map(Dual::constant),
+            &h.map(Dual::constant)
+        ))
     }
 }
 
@@ -260,24 +342,31 @@ impl<J, const N: usize, const K: usize, const S: usize, const C: usize> Products
 {
 }
 
-/// S₀⁻¹ S̄: v̄ to ϕ̇.
-#[inline(always)]
-fn local_rates<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
-    joint: &J,
-    q: &SVector<T, N>,
-) -> SMatrix<T, K, S>
+/// The pattern of `S₀⁻¹ S̄`.
+const fn local_pattern<J, const N: usize, const K: usize, const S: usize, const C: usize>()
+-> [[Entry; S]; K]
 where
-    T: Scalar,
     J: Joint<N, K, S, C>,
 {
-    let basis = joint.speed_basis(q);
-    match J::STRUCTURES.velocity_map.is_identity() {
-        true => basis,
-        false => joint.velocity_map_inverse(q) * basis,
+    match J::STRUCTURES.velocity_map {
+        Structure::Identity => J::PATTERNS.speed_basis,
+        _ => [[Entry::Other; S]; K],
     }
 }
 
-/// The derivatives of c or its dual along each ϕ_k at ϕ = 0, which moves Q with `Q̇(Q, S₀ e_k)`.
+/// How many of the entries are not known to be 0.
+const fn moving<const K: usize>(entries: &[Entry; K]) -> usize {
+    let (mut count, mut k) = (0, 0);
+    while k < K {
+        if !matches!(entries[k], Entry::Zero) {
+            count += 1;
+        }
+        k += 1;
+    }
+    count
+}
+
+/// The derivatives of c or its dual along each ϕ_k at ϕ = 0, which moves Q with `Q̇(Q, S₀ e_k)`; `D` of them at once.
 #[inline(always)]
 fn along_each<
     T,
@@ -287,144 +376,35 @@ fn along_each<
     const S: usize,
     const C: usize,
     const R: usize,
+    const D: usize,
 >(
     joint: &J,
     q: &SVector<T, N>,
-    function: impl Fn(&SVector<Dual<T>, N>) -> SVector<Dual<T>, R>,
+    function: impl Fn(&SVector<Dual<T, D>, N>) -> SVector<Dual<T, D>, R>,
 ) -> SMatrix<T, R, K>
 where
     T: Scalar,
     J: Joint<N, K, S, C>,
 {
+    let mut gradient = SMatrix::<T, R, K>::zeros();
     let velocities = joint.velocity_map(q);
-    let column = |k: usize| {
-        if J::PATTERNS.bias_gradient[k] == Entry::Zero {
-            return SVector::zeros();
+    let mut moving = (0..K).filter(|&k| J::PATTERNS.bias_gradient[k] != Entry::Zero);
+    while let Some(first) = moving.next() {
+        let mut directions = [first; D];
+        for direction in &mut directions[1..] {
+            *direction = moving.next().unwrap_or(first);
         }
-        let rate = joint.configuration_rate(q, &velocities.column(k).into_owned());
-        function(&q.zip_map(&rate, Dual::new)).map(|entry| entry.derivative)
-    };
-    SMatrix::from_columns(&core::array::from_fn::<_, K, _>(column))
-}
-
-/// `Σ_k M_k x_k` without what `patterns` know to be 0 or 1.
-#[inline(always)]
-fn combined<T: Scalar, const R: usize, const C: usize, const K: usize>(
-    slices: &[SMatrix<T, R, C>; K],
-    patterns: &[[[Entry; C]; R]; K],
-    x: &SVector<T, K>,
-) -> SMatrix<T, R, C> {
-    let mut sum = SMatrix::zeros();
-    for k in 0..K {
-        for i in 0..R {
-            for j in 0..C {
-                let known = patterns[k][i][j];
-                sum[(i, j)] = accumulated(sum[(i, j)], known, slices[k][(i, j)], x[k]);
+        let mut moved = q.map(Dual::constant);
+        for (d, &k) in directions.iter().enumerate() {
+            let rate = joint.configuration_rate(q, &velocities.column(k).into_owned());
+            for (entry, rate) in moved.iter_mut().zip(&rate) {
+                entry.derivatives[d] = *rate;
             }
         }
-    }
-    sum
-}
-
-/// `Σ_k M_k x y_k` without what `patterns` know to be 0 or 1.
-#[inline(always)]
-fn turned<T: Scalar, const R: usize, const C: usize, const K: usize>(
-    slices: &[SMatrix<T, R, C>; K],
-    patterns: &[[[Entry; C]; R]; K],
-    y: &SVector<T, K>,
-    x: &SVector<T, C>,
-) -> SVector<T, R> {
-    let mut sum = SVector::zeros();
-    for k in 0..K {
-        let column = times(&slices[k], &patterns[k], x);
-        for i in 0..R {
-            if patterns[k][i].iter().any(|entry| *entry != Entry::Zero) {
-                sum[i] = column[i].mul_add(y[k], sum[i]);
-            }
+        let value = function(&moved);
+        for (d, &k) in directions.iter().enumerate() {
+            gradient.set_column(k, &value.map(|entry| entry.derivatives[d]));
         }
     }
-    sum
-}
-
-/// `Σ_k M_kᵀ x y_k` without what `patterns` know to be 0 or 1.
-#[inline(always)]
-fn turned_back<T: Scalar, const R: usize, const C: usize, const K: usize>(
-    slices: &[SMatrix<T, R, C>; K],
-    patterns: &[[[Entry; C]; R]; K],
-    y: &SVector<T, K>,
-    x: &SVector<T, R>,
-) -> SVector<T, C> {
-    let mut sum = SVector::zeros();
-    for k in 0..K {
-        let column = transposed_times(&slices[k], &patterns[k], x);
-        for j in 0..C {
-            if patterns[k].iter().any(|row| row[j] != Entry::Zero) {
-                sum[j] = column[j].mul_add(y[k], sum[j]);
-            }
-        }
-    }
-    sum
-}
-
-/// `sum + A B` without what the patterns of A and B know to be 0 or 1.
-#[inline(always)]
-fn add_product<T: Scalar, const R: usize, const M: usize, const C: usize>(
-    sum: &mut SMatrix<T, R, C>,
-    (a, of_a): (&SMatrix<T, R, M>, &[[Entry; M]; R]),
-    (b, of_b): (&SMatrix<T, M, C>, &[[Entry; C]; M]),
-) {
-    for i in 0..R {
-        for m in 0..M {
-            for j in 0..C {
-                let entry = &mut sum[(i, j)];
-                match of_a[i][m] {
-                    Entry::Zero => {}
-                    Entry::One => *entry = accumulated(*entry, of_b[m][j], b[(m, j)], T::one()),
-                    Entry::Other => *entry = accumulated(*entry, of_b[m][j], b[(m, j)], a[(i, m)]),
-                }
-            }
-        }
-    }
-}
-
-/// `M x` without what `pattern` knows to be 0 or 1.
-#[inline(always)]
-fn times<T: Scalar, const R: usize, const C: usize>(
-    matrix: &SMatrix<T, R, C>,
-    pattern: &[[Entry; C]; R],
-    x: &SVector<T, C>,
-) -> SVector<T, R> {
-    let mut product = SVector::zeros();
-    for i in 0..R {
-        for j in 0..C {
-            product[i] = accumulated(product[i], pattern[i][j], matrix[(i, j)], x[j]);
-        }
-    }
-    product
-}
-
-/// `Mᵀ x` without what `pattern` of M knows to be 0 or 1.
-#[inline(always)]
-fn transposed_times<T: Scalar, const R: usize, const C: usize>(
-    matrix: &SMatrix<T, R, C>,
-    pattern: &[[Entry; C]; R],
-    x: &SVector<T, R>,
-) -> SVector<T, C> {
-    let mut product = SVector::zeros();
-    for j in 0..C {
-        for i in 0..R {
-            product[j] = accumulated(product[j], pattern[i][j], matrix[(i, j)], x[i]);
-        }
-    }
-    product
-}
-
-/// `sum + entry x`.
-#[inline(always)]
-fn accumulated<T: Scalar>(sum: T, pattern: Entry, entry: T, x: T) -> T {
-    match pattern {
-        Entry::Zero => sum,
-        Entry::One => sum + x,
-        Entry::Other => entry.mul_add(x, sum),
-    }
+    gradient
 }

@@ -168,6 +168,7 @@ impl Body {
 
 impl Mechanism {
     /// Whether a vector of all joints has the right size and is finite; `quantity` says what it is.
+    #[inline]
     pub(crate) fn check_vector(
         &self,
         quantity: &'static str,
@@ -175,34 +176,15 @@ impl Mechanism {
         values: &[f64],
     ) -> Result<(), StateError> {
         check_size(WHOLE, quantity, space.size(self), values.len())?;
-        self.check_vectors(&[(quantity, space, values)])
-    }
-
-    /// Whether vectors of all joints, of the right sizes, are finite.
-    #[inline(always)]
-    pub(crate) fn check_vectors(
-        &self,
-        vectors: &[(&'static str, Space, &[f64])],
-    ) -> Result<(), StateError> {
-        let mut finite = true;
-        for (.., values) in vectors {
-            finite &= all_finite(values);
-        }
-        match finite {
+        match all_finite(values) {
             true => Ok(()),
-            false => self.not_finite(vectors),
+            false => self.not_finite(quantity, space, values),
         }
     }
 
-    /// The first entry of these vectors that is not finite.
+    /// The first entry that is not finite.
     #[cold]
-    fn not_finite(&self, vectors: &[(&'static str, Space, &[f64])]) -> Result<(), StateError> {
-        let mut vectors = vectors.iter();
-        vectors
-            .try_for_each(|&(quantity, space, values)| self.check_entries(quantity, space, values))
-    }
-
-    fn check_entries(
+    fn not_finite(
         &self,
         quantity: &'static str,
         space: Space,

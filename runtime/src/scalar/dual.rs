@@ -1,82 +1,108 @@
-//! Dual numbers: a value and its derivative along one direction. Nest them for higher derivatives.
+//! Dual numbers: a value and its derivatives along one or several directions. Nest them for higher derivatives.
 
 use super::Scalar;
 use crate::spatial::vee;
+use core::array::from_fn;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use nalgebra::{Matrix3, Vector3};
 use num_traits::{One, Zero};
 
-/// `value + derivative · ε` with `ε² = 0`.
+/// `value + Σ_d derivatives_d ε_d` with `ε_d ε_e = 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dual<T> {
+pub struct Dual<T, const D: usize = 1> {
     /// The value.
     pub value: T,
-    /// The derivative along the seeded direction.
-    pub derivative: T,
+    /// The derivative along each of the seeded directions.
+    pub derivatives: [T; D],
 }
 
 impl<T: Scalar> Dual<T> {
-    /// A number with the given value and derivative.
+    /// A number with the given value and derivative along one direction.
     pub const fn new(value: T, derivative: T) -> Self {
-        Self { value, derivative }
-    }
-
-    /// A number that does not vary.
-    pub fn constant(value: T) -> Self {
-        Self::new(value, T::zero())
+        Self {
+            value,
+            derivatives: [derivative],
+        }
     }
 
     /// The number along which is differentiated: its derivative is 1.
     pub fn variable(value: T) -> Self {
         Self::new(value, T::one())
     }
+
+    /// The derivative along the only direction.
+    pub const fn derivative(&self) -> T {
+        self.derivatives[0]
+    }
 }
 
-impl<T: Scalar> Add for Dual<T> {
+impl<T: Scalar, const D: usize> Dual<T, D> {
+    /// A number that does not vary.
+    pub fn constant(value: T) -> Self {
+        Self::each(value, |_| T::zero())
+    }
+
+    /// A number whose derivative along direction `d` is `derivative(d)`.
+    pub fn each(value: T, derivative: impl FnMut(usize) -> T) -> Self {
+        Self {
+            value,
+            derivatives: from_fn(derivative),
+        }
+    }
+
+    /// The function's value where its derivative is `slope`.
+    fn chain(self, value: T, slope: T) -> Self {
+        Self::each(value, |d| slope * self.derivatives[d])
+    }
+}
+
+impl<T: Scalar, const D: usize> Add for Dual<T, D> {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        Self::new(self.value + other.value, self.derivative + other.derivative)
+        Self::each(self.value + other.value, |d| {
+            self.derivatives[d] + other.derivatives[d]
+        })
     }
 }
 
-impl<T: Scalar> Sub for Dual<T> {
+impl<T: Scalar, const D: usize> Sub for Dual<T, D> {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
-        Self::new(self.value - other.value, self.derivative - other.derivative)
+        Self::each(self.value - other.value, |d| {
+            self.derivatives[d] - other.derivatives[d]
+        })
     }
 }
 
-impl<T: Scalar> Mul for Dual<T> {
+impl<T: Scalar, const D: usize> Mul for Dual<T, D> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        Self::new(
-            self.value * other.value,
-            self.derivative * other.value + self.value * other.derivative,
-        )
+        Self::each(self.value * other.value, |d| {
+            self.derivatives[d] * other.value + self.value * other.derivatives[d]
+        })
     }
 }
 
-impl<T: Scalar> Div for Dual<T> {
+impl<T: Scalar, const D: usize> Div for Dual<T, D> {
     type Output = Self;
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
-        Self::new(
-            value,
-            (self.derivative - value * other.derivative) / other.value,
-        )
+        Self::each(value, |d| {
+            (self.derivatives[d] - value * other.derivatives[d]) / other.value
+        })
     }
 }
 
-impl<T: Scalar> Neg for Dual<T> {
+impl<T: Scalar, const D: usize> Neg for Dual<T, D> {
     type Output = Self;
     fn neg(self) -> Self {
-        Self::new(-self.value, -self.derivative)
+        Self::each(-self.value, |d| -self.derivatives[d])
     }
 }
 
 macro_rules! implement_assignment {
     ($($trait:ident, $method:ident, $operator:tt;)*) => {$(
-        impl<T: Scalar> $trait for Dual<T> {
+        impl<T: Scalar, const D: usize> $trait for Dual<T, D> {
             fn $method(&mut self, other: Self) {
                 *self = *self $operator other;
             }
@@ -91,32 +117,39 @@ implement_assignment! {
     DivAssign, div_assign, /;
 }
 
-impl<T: Scalar> Zero for Dual<T> {
+impl<T: Scalar, const D: usize> Zero for Dual<T, D> {
     fn zero() -> Self {
         Self::constant(T::zero())
     }
 
     fn is_zero(&self) -> bool {
-        self.value.is_zero() && self.derivative.is_zero()
+        self.value.is_zero() && self.derivatives.iter().all(T::is_zero)
     }
 }
 
-impl<T: Scalar> One for Dual<T> {
+impl<T: Scalar, const D: usize> One for Dual<T, D> {
     fn one() -> Self {
         Self::constant(T::one())
     }
 }
 
 /// The rotation vector r of a rotation that turns with ω in its own axes: its rate is `dexp⁻¹_r ω`, which is
-/// `ω + ½ r × ω + G(r²) r × (r × ω)`.
-fn turning<T: Scalar>(r: Vector3<T>, omega: Vector3<T>) -> Vector3<Dual<T>> {
-    let turn = r.cross(&omega);
+/// `ω + ½ r × ω + G(r²) r × (r × ω)`; one ω for each direction.
+fn turning<T: Scalar, const D: usize>(
+    r: Vector3<T>,
+    omega: impl Fn(usize) -> Vector3<T>,
+) -> Vector3<Dual<T, D>> {
     let square = r.x * r.x + r.y * r.y + r.z * r.z;
-    let derivative = omega + turn * T::from_f64(0.5) + r.cross(&turn) * square.dexp_inverse(0);
-    Vector3::from_fn(|i, _| Dual::new(r[i], derivative[i]))
+    let factor = square.dexp_inverse(0);
+    let rates: [Vector3<T>; D] = from_fn(|d| {
+        let omega = omega(d);
+        let turn = r.cross(&omega);
+        omega + turn * T::from_f64(0.5) + r.cross(&turn) * factor
+    });
+    Vector3::from_fn(|i, _| Dual::each(r[i], |d| rates[d][i]))
 }
 
-impl<T: Scalar> Scalar for Dual<T> {
+impl<T: Scalar, const D: usize> Scalar for Dual<T, D> {
     type Mask = T::Mask;
 
     fn from_f64(value: f64) -> Self {
@@ -128,68 +161,65 @@ impl<T: Scalar> Scalar for Dual<T> {
     }
 
     fn mul_add(self, factor: Self, addend: Self) -> Self {
-        let product = self.derivative.mul_add(factor.value, addend.derivative);
-        Self::new(
-            self.value.mul_add(factor.value, addend.value),
-            self.value.mul_add(factor.derivative, product),
-        )
+        Self::each(self.value.mul_add(factor.value, addend.value), |d| {
+            let product = self.derivatives[d].mul_add(factor.value, addend.derivatives[d]);
+            self.value.mul_add(factor.derivatives[d], product)
+        })
     }
 
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
-        Self::new(root, self.derivative / (root + root))
+        Self::each(root, |d| self.derivatives[d] / (root + root))
     }
 
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = self.value.sin_cos();
-        (
-            Self::new(sin, cos * self.derivative),
-            Self::new(cos, -(sin * self.derivative)),
-        )
+        (self.chain(sin, cos), self.chain(cos, -sin))
     }
 
     fn atan2(self, x: Self) -> Self {
         let square = x.value * x.value + self.value * self.value;
-        let area = x.value * self.derivative - self.value * x.derivative;
-        Self::new(self.value.atan2(x.value), area / square)
+        Self::each(self.value.atan2(x.value), |d| {
+            let area = x.value * self.derivatives[d] - self.value * x.derivatives[d];
+            area / square
+        })
     }
 
     fn exp(self) -> Self {
         let value = self.value.exp();
-        Self::new(value, value * self.derivative)
+        self.chain(value, value)
     }
 
     fn ln(self) -> Self {
-        Self::new(self.value.ln(), self.derivative / self.value)
+        Self::each(self.value.ln(), |d| self.derivatives[d] / self.value)
     }
 
     fn ln_1p(self) -> Self {
-        Self::new(
-            self.value.ln_1p(),
-            self.derivative / (T::one() + self.value),
-        )
+        Self::each(self.value.ln_1p(), |d| {
+            self.derivatives[d] / (T::one() + self.value)
+        })
     }
 
     fn sinh(self) -> Self {
-        Self::new(self.value.sinh(), self.value.cosh() * self.derivative)
+        self.chain(self.value.sinh(), self.value.cosh())
     }
 
     fn cosh(self) -> Self {
-        Self::new(self.value.cosh(), self.value.sinh() * self.derivative)
+        self.chain(self.value.cosh(), self.value.sinh())
     }
 
     fn sech(self) -> Self {
         let value = self.value.sech();
-        Self::new(value, -(self.value.tanh() * value * self.derivative))
+        self.chain(value, -(self.value.tanh() * value))
     }
 
     fn tanh(self) -> Self {
         let sech = self.value.sech();
-        Self::new(self.value.tanh(), sech * sech * self.derivative)
+        self.chain(self.value.tanh(), sech * sech)
     }
 
     fn ln_cosh(self) -> Self {
-        Self::new(self.value.ln_cosh(), self.value.tanh() * self.derivative)
+        self.chain(self.value.ln_cosh(), self.value.tanh())
     }
 
     fn stumpff(self, order: usize) -> Self {
@@ -199,37 +229,35 @@ impl<T: Scalar> Scalar for Dual<T> {
             T::from_f64(order as f64) * self.value.stumpff(order + 2)
                 - self.value.stumpff(order + 1)
         };
-        Self::new(
-            self.value.stumpff(order),
-            T::from_f64(0.5) * slope * self.derivative,
-        )
+        self.chain(self.value.stumpff(order), T::from_f64(0.5) * slope)
     }
 
     fn dexp_inverse(self, derivative: usize) -> Self {
-        Self::new(
+        self.chain(
             self.value.dexp_inverse(derivative),
-            self.value.dexp_inverse(derivative + 1) * self.derivative,
+            self.value.dexp_inverse(derivative + 1),
         )
     }
 
     fn rotation_vector(rotation: &Matrix3<Self>) -> Vector3<Self> {
         let value = rotation.map(|entry| entry.value);
-        let rate = rotation.map(|entry| entry.derivative);
-        let omega = vee(&(value.transpose() * rate));
-        turning(T::rotation_vector(&value), omega)
+        turning(T::rotation_vector(&value), |d| {
+            let rate = rotation.map(|entry| entry.derivatives[d]);
+            vee(&(value.transpose() * rate))
+        })
     }
 
     fn quaternion_vector(quaternion: [Self; 4]) -> Vector3<Self> {
         let [w, x, y, z] = quaternion.map(|entry| entry.value);
-        let [dw, dx, dy, dz] = quaternion.map(|entry| entry.derivative);
-        let (v, dv) = (Vector3::new(x, y, z), Vector3::new(dx, dy, dz));
-        // ω = 2 vec(q̄ q̇) / |q|².
-        let turn = dv * w - v * dw - v.cross(&dv);
+        let v = Vector3::new(x, y, z);
         let square = w * w + x * x + y * y + z * z;
-        turning(
-            T::quaternion_vector([w, x, y, z]),
-            turn * (T::from_f64(2.0) / square),
-        )
+        let scale = T::from_f64(2.0) / square;
+        turning(T::quaternion_vector([w, x, y, z]), |d| {
+            let [dw, dx, dy, dz] = quaternion.map(|entry| entry.derivatives[d]);
+            let dv = Vector3::new(dx, dy, dz);
+            // ω = 2 vec(q̄ q̇) / |q|².
+            (dv * w - v * dw - v.cross(&dv)) * scale
+        })
     }
 
     fn less(self, other: Self) -> Self::Mask {
@@ -237,9 +265,8 @@ impl<T: Scalar> Scalar for Dual<T> {
     }
 
     fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self {
-        Self::new(
-            T::select(mask, if_true.value, if_false.value),
-            T::select(mask, if_true.derivative, if_false.derivative),
-        )
+        Self::each(T::select(mask, if_true.value, if_false.value), |d| {
+            T::select(mask, if_true.derivatives[d], if_false.derivatives[d])
+        })
     }
 }

@@ -11,13 +11,13 @@ pub(super) fn constant<T: Scalar, const R: usize>(vector: &SVector<T, R>) -> SVe
 /// The infinitesimal along axis `k`.
 pub(super) fn along<T: Scalar, const K: usize>(k: usize) -> SVector<Dual<T>, K> {
     let mut axis = SVector::repeat(Dual::constant(T::zero()));
-    axis[k].derivative = T::one();
+    axis[k] = Dual::variable(T::zero());
     axis
 }
 
 /// What stands beside the infinitesimal.
 pub(super) fn derivative<T: Scalar, const R: usize>(vector: &SVector<Dual<T>, R>) -> SVector<T, R> {
-    vector.map(|entry| entry.derivative)
+    vector.map(|entry| entry.derivative())
 }
 
 /// The matrix of these columns.

@@ -124,9 +124,9 @@ where
     ) {
         let (joint, structures) = (self.0, J::STRUCTURES);
         let rotation = &own.placement.rotation;
-        let slices = joint.speed_map_gradient(q);
-        let of_twist = J::twist_gradient_by_slices(&slices, speeds);
-        let mut of_rate = J::twist_gradient_by_slices(&slices, accelerations);
+        let first = joint.first_order(q);
+        let of_twist = J::twist_gradient_at(&first, speeds);
+        let mut of_rate = J::twist_gradient_at(&first, accelerations);
         if !structures.bias_acceleration.is_constant() {
             of_rate += joint.bias_acceleration_gradient(q, speeds);
         }
@@ -137,7 +137,7 @@ where
                 + turn_out(rotation, &of_rate.column(b).into_owned());
         }
         if !structures.bias_acceleration.is_zero() {
-            let slope = joint.bias_acceleration_slope_by_slices((q, speeds), &slices, &of_twist);
+            let slope = joint.bias_acceleration_slope_at((q, speeds), &first, &of_twist);
             for (a, variation) in out.iter_mut().enumerate().take(S) {
                 variation.speed_rate += turn_out(rotation, &slope.column(a).into_owned());
             }

@@ -55,7 +55,7 @@ impl<D> Derived<D> {
             let pose = self.0.pose(&moved);
             let (rotation, rate) = (
                 pose.rotation.map(|entry| entry.value),
-                pose.rotation.map(|entry| entry.derivative),
+                pose.rotation.map(|entry| entry.derivative()),
             );
             let omega = vee(&(rate * rotation.transpose()));
             let origin = pose.translation.map(|entry| entry.value);

@@ -22,7 +22,7 @@ pub fn constant<T: Scalar, const D: usize>(numbers: &SVector<T, D>) -> SVector<D
 pub fn slope<T: Scalar, const R: usize, const C: usize>(
     m: &SMatrix<Dual<T>, R, C>,
 ) -> SMatrix<T, R, C> {
-    m.map(|entry| entry.derivative)
+    m.map(|entry| entry.derivative())
 }
 
 /// `matrix⁻¹ side` by elimination without pivoting: the matrices here are positive or near the identity.

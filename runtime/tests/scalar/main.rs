@@ -11,7 +11,7 @@ use tables::{DEXP_INVERSE, STUMPFF};
 fn derivatives(function: impl Fn(Dual<Dual<f64>>) -> Dual<Dual<f64>>, x: f64) -> (f64, f64) {
     let seed = Dual::new(Dual::variable(x), Dual::constant(1.0));
     let result = function(seed);
-    (result.value.derivative, result.derivative.derivative)
+    (result.value.derivative(), result.derivative().derivative())
 }
 
 fn close(found: f64, expected: f64, tolerance: f64) {
@@ -27,7 +27,7 @@ fn close(found: f64, expected: f64, tolerance: f64) {
 #[test]
 fn stumpff_functions_are_accurate() {
     for &(s, order, expected) in STUMPFF {
-        let slope = Dual::variable(s).stumpff(order).derivative;
+        let slope = Dual::variable(s).stumpff(order).derivative();
         let unit = f64::EPSILON * (expected.abs() + (s * slope).abs());
         let error = (s.stumpff(order) - expected).abs() / unit;
         assert!(error <= 2.0, "c_{order}({s:e}): {error} units");
@@ -237,9 +237,9 @@ fn quaternion_vector_is_differentiated() {
             let found = Dual::quaternion_vector([quarter.stumpff(0) * length, x, y, z]);
             for i in 0..3 {
                 // A few roundings of entries of order 1, of second differences of order 10.
-                assert!((found[i].value.derivative - direction[i]).abs() < 1e-14);
-                assert!((found[i].derivative.value - direction[i]).abs() < 1e-14);
-                assert!(found[i].derivative.derivative.abs() < 1e-12);
+                assert!((found[i].value.derivative() - direction[i]).abs() < 1e-14);
+                assert!((found[i].derivative().value - direction[i]).abs() < 1e-14);
+                assert!(found[i].derivative().derivative().abs() < 1e-12);
             }
         }
     }
@@ -257,9 +257,9 @@ fn rotation_vector_is_differentiated() {
             let found = so3::log(&so3::exp(&along));
             for i in 0..3 {
                 // Near π the logarithm amplifies second differences by up to G/(2π−θ): an order of magnitude.
-                assert!((found[i].value.derivative - direction[i]).abs() < 2e-14);
-                assert!((found[i].derivative.value - direction[i]).abs() < 2e-14);
-                assert!(found[i].derivative.derivative.abs() < 1e-12);
+                assert!((found[i].value.derivative() - direction[i]).abs() < 2e-14);
+                assert!((found[i].derivative().value - direction[i]).abs() < 2e-14);
+                assert!(found[i].derivative().derivative().abs() < 1e-12);
             }
         }
     }
@@ -273,7 +273,7 @@ fn left_jacobian_is_the_differential_of_exp() {
             let (r, rate) = (axis * angle, Vector3::new(-0.5, 0.7, 0.1));
             let rotation = so3::exp(&Vector3::from_fn(|i, _| Dual::new(r[i], rate[i])));
             let value = rotation.map(|entry| entry.value);
-            let slope = rotation.map(|entry| entry.derivative);
+            let slope = rotation.map(|entry| entry.derivative());
             let jacobian = so3::left_jacobian(&r);
             let error = slope - hat(&(jacobian * rate)) * value;
             assert!(

@@ -128,7 +128,7 @@ fn lanes_and_dual_numbers_are_those_of_doubles_far_from_the_step() {
                 assert_eq!((lanes, duals), (own[i], own[i]), "{place}, width {width}");
             }
             // The derivative of X^c is what the kernel of its derivative gives.
-            let slope = duals[0].map(|entry| entry.derivative);
+            let slope = duals[0].map(|entry| entry.derivative());
             let size = (1.0 + 2.0 / width) * (1.0 + 2.0 / width);
             let error = (slope - own[1]).amax();
             assert!(

@@ -244,7 +244,9 @@ where
         for (kernel, expected) in derivatives(&at) {
             let numbers = found.iter().find(|(name, _)| *name == kernel);
             for (number, expected) in numbers.iter().flat_map(|(_, n)| n).zip(&expected) {
-                worst.meet(kernel, number.derivative, expected, &|| format!("{case:?}"));
+                worst.meet(kernel, number.derivative(), expected, &|| {
+                    format!("{case:?}")
+                });
             }
         }
     });

@@ -103,7 +103,7 @@ impl Expected {
         let mut state = self.form.state(&case.q, &case.speeds, &case.efforts);
         state.q = q;
         for (speed, rate) in state.speeds.iter_mut().zip(speed_rate) {
-            speed.derivative = *rate;
+            speed.derivatives = [*rate];
         }
         derivatives(&self.form.momentum_rates(&state))
     }

@@ -73,7 +73,7 @@ pub fn bare_and_equipped(
 
 /// The infinitesimal parts.
 pub fn derivatives(values: &[Dual<f64>]) -> Vec<f64> {
-    values.iter().map(|value| value.derivative).collect()
+    values.iter().map(|value| value.derivative()).collect()
 }
 
 /// The parts without infinitesimals.
@@ -89,7 +89,7 @@ pub fn constants(values: &[f64]) -> Vec<Dual<f64>> {
 /// `values` with the infinitesimal at one place.
 pub fn seeded(values: &[f64], place: usize) -> Vec<Dual<f64>> {
     let mut seeded = constants(values);
-    seeded[place].derivative = 1.0;
+    seeded[place].derivatives = [1.0];
     seeded
 }
 

@@ -27,7 +27,7 @@ pub(super) fn values<T: Scalar, const R: usize, const M: usize>(
 pub(super) fn slopes<T: Scalar, const R: usize, const M: usize>(
     m: &SMatrix<Dual<T>, R, M>,
 ) -> SMatrix<T, R, M> {
-    m.map(|entry| entry.derivative)
+    m.map(|entry| entry.derivative())
 }
 
 /// `vee(Ḣ H⁻¹)`: angular part first.

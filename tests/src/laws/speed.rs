@@ -79,7 +79,7 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
                         law,
                         J::NAME,
                         &got,
-                        &SVector::<f64, 1>::new(expected.derivative),
+                        &SVector::<f64, 1>::new(expected.derivative()),
                     );
                 }
             };

@@ -86,8 +86,8 @@ fn rate(pose: &Pose<Dual<f64>>) -> Vector6<Dual<f64>> {
     let values = |pose: &Pose<Dual<f64>>| {
         (
             pose.rotation.map(|entry| entry.value),
-            pose.rotation.map(|entry| entry.derivative),
-            pose.translation.map(|entry| entry.derivative),
+            pose.rotation.map(|entry| entry.derivative()),
+            pose.translation.map(|entry| entry.derivative()),
         )
     };
     let (rotation, turn, slide) = values(pose);
@@ -117,7 +117,7 @@ fn gradients_are_those_of_dual_numbers() {
                 let moved = form.moved(&case.q, k);
                 let (pose, own) = form.frame((&moved, &v), body, &fixed);
                 let way = seen(axes, &pose, &rate(&pose)).map(|entry| entry.value);
-                let change = seen(axes, &pose, &own).map(|entry| entry.derivative);
+                let change = seen(axes, &pose, &own).map(|entry| entry.derivative());
                 expected[0].set_column(k, &way);
                 expected[1].set_column(k, &change);
             }

@@ -34,7 +34,10 @@ fn agrees(name: &str, of: impl Fn(Sym) -> Sym, dual: impl Fn(Dual<f64>) -> Dual<
     ] {
         let expected = dual(Dual::variable(x));
         let found = function.evaluate(|_| vec![x]);
-        for (found, expected) in found.into_iter().zip([expected.value, expected.derivative]) {
+        for (found, expected) in found
+            .into_iter()
+            .zip([expected.value, expected.derivative()])
+        {
             let same = found.to_bits() == expected.to_bits();
             // A few roundings in another order.
             let near = (found - expected).abs() <= 8.0 * f64::EPSILON * expected.abs();

@@ -105,7 +105,7 @@ fn doubles_are_within_a_few_units() {
             let place = format!("{:?}({x:e})", known.function);
             let found = of(known.function, Dual::variable(x));
             value.meet(ulps(found.value, &exact(known.function, x)), &place);
-            slope.meet(ulps(found.derivative, &(known.slope)(x)), &place);
+            slope.meet(ulps(found.derivative(), &(known.slope)(x)), &place);
             assert_eq!(found.value.to_bits(), of(known.function, x).to_bits());
         }
         value.assert_within(BOUND);

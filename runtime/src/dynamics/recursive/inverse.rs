@@ -23,17 +23,16 @@ impl Recursive {
         efforts: &mut [f64],
     ) -> Result<(), StateError> {
         self.check_room("efforts", efforts)?;
-        let inputs = [
-            ("configuration", Space::Configuration, q),
-            ("speeds", Space::Speeds, speeds),
-            ("accelerations", Space::Speeds, accelerations),
-        ];
-        self.with_inputs(&inputs, |dynamics| {
-            dynamics.advance(q, speeds, Some(accelerations));
-            dynamics.gather_needed(q, speeds, efforts);
-            dynamics.add_armature(accelerations, efforts);
-            Ok::<_, StateError>(())
-        })?;
+        self.with_inputs(
+            q,
+            &[("speeds", speeds), ("accelerations", accelerations)],
+            |dynamics| {
+                dynamics.advance(q, speeds, Some(accelerations));
+                dynamics.gather_needed(q, speeds, efforts);
+                dynamics.add_armature(accelerations, efforts);
+                Ok::<_, StateError>(())
+            },
+        )?;
         let found = [("effort", Space::Speeds, &*efforts)];
         self.mechanism.check_finite((q, speeds), &found)
     }
@@ -49,11 +48,7 @@ impl Recursive {
         efforts: &mut [f64],
     ) -> Result<(), StateError> {
         self.check_room("efforts", efforts)?;
-        let inputs = [
-            ("configuration", Space::Configuration, q),
-            ("speeds", Space::Speeds, speeds),
-        ];
-        self.with_inputs(&inputs, |dynamics| {
+        self.with_inputs(q, &[("speeds", speeds)], |dynamics| {
             dynamics.advance(q, speeds, None);
             dynamics.gather_needed(q, speeds, efforts);
             Ok::<_, StateError>(())

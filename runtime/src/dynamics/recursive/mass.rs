@@ -179,7 +179,7 @@ impl Recursive {
         if core::mem::take(&mut mass.full) {
             mass.rows.fill(0.0);
         }
-        self.with_inputs(&[("configuration", Space::Configuration, q)], |dynamics| {
+        self.with_inputs(q, &[], |dynamics| {
             dynamics.stand(q);
             dynamics.compose();
             dynamics.fill_rows(&mut mass.rows);

@@ -139,25 +139,28 @@ impl Recursive {
     /// # Errors
     /// When `q` has the wrong size, or is not finite; the frames of such a `q` have no value.
     pub fn set_configuration(&mut self, q: &[f64]) -> Result<(), StateError> {
-        self.with_inputs(&[("configuration", Space::Configuration, q)], |dynamics| {
+        self.with_inputs(q, &[], |dynamics| {
             dynamics.place(q);
             Ok(())
         })
     }
 
-    /// `task` with vectors of the right sizes. That they are finite is checked after it: by then they are in the cache, while a look at all of
-    /// them beforehand would wait for memory.
+    /// `task` with `q` and vectors with one entry a speed. That they have their sizes is checked before it, that they are finite after it: by
+    /// then they are in the cache, while a look at all of them beforehand would wait for memory.
+    #[inline]
     fn with_inputs<E: From<StateError>>(
         &mut self,
-        inputs: &[(&'static str, Space, &[f64])],
+        q: &[f64],
+        vectors: &[(&'static str, &[f64])],
         task: impl FnOnce(&mut Self) -> Result<(), E>,
     ) -> Result<(), E> {
-        let mut sized = inputs.iter();
-        sized.try_for_each(|&(quantity, space, values)| {
-            self.mechanism.check_room(quantity, space, values)
-        })?;
+        self.mechanism
+            .check_room("configuration", Space::Configuration, q)?;
+        for (quantity, own) in vectors {
+            self.check_room(quantity, own)?;
+        }
         let done = task(self);
-        self.mechanism.check_vectors(inputs)?;
+        self.check(q, vectors)?;
         done
     }
 
@@ -368,11 +371,7 @@ impl Dynamics for Recursive {
         self.check_room("rates", rates)?;
         self.mechanism
             .check_room("efforts", Space::Freedoms, efforts)?;
-        let inputs = [
-            ("configuration", Space::Configuration, q),
-            ("speeds", Space::Speeds, speeds),
-        ];
-        self.with_inputs(&inputs, |dynamics| {
+        self.with_inputs(q, &[("speeds", speeds)], |dynamics| {
             let names = ["acceleration"];
             dynamics.finite((q, speeds), names, [rates], |dynamics, [rates]| {
                 let done = dynamics.solve_accelerations(q, speeds, efforts, rates);
@@ -389,11 +388,7 @@ impl Dynamics for Recursive {
         momenta: &mut [f64],
     ) -> Result<(), DynamicsError> {
         self.check_room("momenta", momenta)?;
-        let inputs = [
-            ("configuration", Space::Configuration, q),
-            ("speeds", Space::Speeds, speeds),
-        ];
-        self.with_inputs(&inputs, |dynamics| {
+        self.with_inputs(q, &[("speeds", speeds)], |dynamics| {
             let names = ["momentum"];
             dynamics.finite((q, speeds), names, [momenta], |dynamics, [momenta]| {
                 dynamics.weigh_momenta(q, speeds, momenta)
@@ -408,11 +403,7 @@ impl Dynamics for Recursive {
         speeds: &mut [f64],
     ) -> Result<(), DynamicsError> {
         self.check_room("speeds", speeds)?;
-        let inputs = [
-            ("configuration", Space::Configuration, q),
-            ("momenta", Space::Speeds, momenta),
-        ];
-        self.with_inputs(&inputs, |dynamics| {
+        self.with_inputs(q, &[("momenta", momenta)], |dynamics| {
             let names = ["speed"];
             dynamics.finite((q, RESTING), names, [speeds], |dynamics, [speeds]| {
                 dynamics.solve_speeds(q, momenta, speeds)

@@ -75,7 +75,7 @@ impl<'a> Oracle<'a> {
         let slips = tree.form.power_rates((q, v, &self.rates), wrenches);
         side.extend(derivatives(&slips).iter().map(|slip| -slip));
         for (speed, effort) in &self.driven {
-            side[*speed] = tau[*effort].derivative;
+            side[*speed] = tau[*effort].derivative();
         }
         let solved = self.whole.clone().lu().solve(&DVector::from_vec(side));
         let solved = solved.expect("regular");
@@ -92,7 +92,7 @@ impl<'a> Oracle<'a> {
         let slips = derivatives(&tree.form.powers(q, &v, wrenches));
         let follow = self.system.follow(&slips);
         for (speed, follow) in self.system.dependent().iter().zip(&follow) {
-            v[*speed].derivative = *follow;
+            v[*speed].derivatives = [*follow];
         }
         v
     }
