@@ -17,6 +17,9 @@ const FIRST_INDEX: usize = 0x6000;
 /// Most term operations for shortening one expression.
 const LIMIT: u64 = 20_000;
 
+/// Derivatives, by what they are of and along which freedoms, to their numbers.
+type Numbers = BTreeMap<(String, Vec<usize>), usize>;
+
 /// The words of a joint.
 #[derive(Clone)]
 pub struct Words<'a> {
@@ -24,9 +27,8 @@ pub struct Words<'a> {
     motion: &'a Motion,
     freedoms: Vec<&'a str>,
     words: Vec<Word>,
-    /// The number of each derivative, by what it is of and along which freedoms; shared between copies, so that a symbol means one value
-    /// in every kernel.
-    numbers: Rc<RefCell<BTreeMap<(String, Vec<usize>), usize>>>,
+    /// Shared between copies, so that a symbol means one value in every kernel.
+    numbers: Rc<RefCell<Numbers>>,
     /// Functions that are words themselves.
     functions: BTreeMap<Atom, Symbol>,
     /// Word and direction to the derivative.

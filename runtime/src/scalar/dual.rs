@@ -50,6 +50,16 @@ impl<T: Scalar, const D: usize> Dual<T, D> {
         }
     }
 
+    /// Direction `d` of a product.
+    fn product_rule(&self, other: &Self, d: usize) -> T {
+        self.derivatives[d] * other.value + self.value * other.derivatives[d]
+    }
+
+    /// Direction `d` of a quotient of this value.
+    fn quotient_rule(&self, other: &Self, value: T, d: usize) -> T {
+        (self.derivatives[d] - value * other.derivatives[d]) / other.value
+    }
+
     /// The function's value where its derivative is `slope`.
     fn chain(self, value: T, slope: T) -> Self {
         Self::each(value, |d| slope * self.derivatives[d])
@@ -77,9 +87,7 @@ impl<T: Scalar, const D: usize> Sub for Dual<T, D> {
 impl<T: Scalar, const D: usize> Mul for Dual<T, D> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        Self::each(self.value * other.value, |d| {
-            self.derivatives[d] * other.value + self.value * other.derivatives[d]
-        })
+        Self::each(self.value * other.value, |d| self.product_rule(&other, d))
     }
 }
 
@@ -87,9 +95,7 @@ impl<T: Scalar, const D: usize> Div for Dual<T, D> {
     type Output = Self;
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
-        Self::each(value, |d| {
-            (self.derivatives[d] - value * other.derivatives[d]) / other.value
-        })
+        Self::each(value, |d| self.quotient_rule(&other, value, d))
     }
 }
 
