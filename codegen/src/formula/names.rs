@@ -80,7 +80,7 @@ pub fn is_number_word(name: &str) -> bool {
 
 /// The name of a positive constant: `two`, `half`, `three_quarters`, `number_27`, `number_3e8`, `number_0_0177`, `ratio_3_7`.
 ///
-/// A number of more than [`MOST_DIGITS`] digits is a `constant`: its value stands beside the name.
+/// A number of more than 17 digits is a `constant`: its value stands beside the name.
 pub fn number_name(value: &Rational) -> String {
     let word = |n: &num_bigint::BigInt| {
         n.to_usize()
