@@ -5,8 +5,8 @@ use crate::input::Input;
 use crate::output::{self, Failure};
 use clap::ValueEnum;
 use hamel::registry::JointRegistry;
-use hamel_codegen::scene::functions::Kind;
-use hamel_codegen::scene::{Build, Error, Language, explain};
+use hamel_compiler::functions::Kind;
+use hamel_compiler::{Build, Error, Language, explain};
 use std::fs::File;
 use std::path::PathBuf;
 

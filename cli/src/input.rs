@@ -2,7 +2,7 @@
 
 use crate::output::Failure;
 use hamel::registry::JointRegistry;
-use hamel_codegen::scene::Build;
+use hamel_compiler::Build;
 use hamel_scene::{Scene, SceneDescription, read_file, urdf};
 use std::path::Path;
 
@@ -70,7 +70,7 @@ impl Input {
             Some(options) => urdf::read(&self.text, &self.name, options)?.scene,
             None => Scene::from_toml(&self.text, &self.name)?,
         };
-        let build = hamel_codegen::scene_of(&self.label, description);
+        let build = hamel_compiler::scene_of(&self.label, description);
         Ok(build.library(hamel_joints::specs()))
     }
 }

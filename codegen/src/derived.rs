@@ -74,7 +74,7 @@ impl Derived {
     }
 
     /// The names of its symbols in every kernel.
-    pub(crate) fn names(&self) -> Names {
+    pub fn names(&self) -> Names {
         Names::new(&self.spec.parameters, &self.arguments, &self.words)
     }
 

@@ -22,8 +22,6 @@ mod pipeline;
 pub mod precise;
 pub mod prepare;
 pub mod prove;
-#[cfg(feature = "scene")]
-pub mod scene;
 mod simplify;
 pub mod source;
 pub mod spec;
@@ -31,5 +29,3 @@ pub mod text;
 
 pub use build::{Build, BuildError, GENERATE_VARIABLE};
 pub use pipeline::{WORK_LIMIT, derive};
-#[cfg(feature = "scene")]
-pub use scene::{scene, scene_of};

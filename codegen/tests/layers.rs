@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// From what knows nothing to what knows all. `derive` calls the steps parse, prepare, expand, prove, simplify; `build` and `scene` use what it gives.
-const ORDER: [&str; 29] = [
+/// From what knows nothing to what knows all. `derive` calls the steps parse, prepare, expand, prove, simplify; `build` uses what it gives.
+const ORDER: [&str; 28] = [
     "text",
     "diagnostic",
     "source",
@@ -34,7 +34,6 @@ const ORDER: [&str; 29] = [
     "emit::page",
     "emit",
     "build",
-    "scene",
 ];
 
 /// Names of the crate's root, and the layers that they come from.

@@ -9,8 +9,8 @@
 //! printed. A function of more operations than the limit (30000) is left out; of a model that has none left, or that the compiler refuses, the
 //! program says `skip` and why.
 
-use hamel_codegen::scene::emit::{self, Function};
-use hamel_codegen::scene::functions::{Kind, Loops, compile};
+use hamel_compiler::emit::{self, Function};
+use hamel_compiler::functions::{Kind, Loops, compile};
 use hamel_tests::compiled;
 use hamel_tests::peers::Model;
 use std::error::Error;

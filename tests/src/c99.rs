@@ -3,8 +3,8 @@
 //! The program reads the number of a function and its arguments as doubles from its input, and answers with the results; so values cross
 //! bit by bit.
 
-use hamel_codegen::scene::emit::{Function, c99};
-use hamel_codegen::scene::model::Model;
+use hamel_compiler::emit::{Function, c99};
+use hamel_compiler::model::Model;
 use std::fmt::Write as _;
 use std::io::{BufReader, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};

@@ -7,11 +7,11 @@ use hamel::elements::{
 };
 use hamel::mechanism::{Body as TreeBody, Mechanism};
 use hamel::nalgebra::{DMatrix, Vector3};
-use hamel_codegen::scene::JointType;
-use hamel_codegen::scene::functions::{Kind, Loops, compile_with};
-use hamel_codegen::scene::graph::Argument;
-use hamel_codegen::scene::model::{Body, Coupling, Elements, Model};
-use hamel_codegen::scene::prune::{Pruning, prune};
+use hamel_compiler::JointType;
+use hamel_compiler::functions::{Kind, Loops, compile_with};
+use hamel_compiler::graph::Argument;
+use hamel_compiler::model::{Body, Coupling, Elements, Model};
+use hamel_compiler::prune::{Pruning, prune};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::cell::RefCell;

@@ -3,7 +3,7 @@
 use super::child::{self, Ended};
 use super::temporary;
 use crate::output::Failure;
-use hamel_codegen::scene::Module;
+use hamel_compiler::Module;
 use std::ffi::OsString;
 use std::fmt;
 use std::path::{Path, PathBuf};

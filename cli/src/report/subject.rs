@@ -9,7 +9,7 @@ use crate::compiled::{self, Compiler, Equations, compiled};
 use crate::output::Failure;
 use hamel::dynamics::Dynamics;
 use hamel::registry::JointRegistry;
-use hamel_codegen::scene::functions::Kind;
+use hamel_compiler::functions::Kind;
 use hamel_scene::{Diagnostics, Scene, SceneDescription};
 use itertools::Itertools;
 
@@ -122,7 +122,7 @@ impl Subject {
             .copied()
             .unique_by(|kind| kind.name())
             .collect();
-        let build = hamel_codegen::scene_of(self.name, self.description.clone());
+        let build = hamel_compiler::scene_of(self.name, self.description.clone());
         let build = build.library(hamel_joints::specs());
         compiled(build, self.name, &kinds, compiler, scene)
     }

@@ -45,7 +45,7 @@ pub fn measured<T>(work: impl FnOnce() -> T) -> (T, u64) {
 }
 
 /// Names what is worked on from here, unless the budget is spent: what spent it keeps its name.
-pub(crate) fn begin(task: &'static str) {
+pub fn begin(task: &'static str) {
     if !is_exhausted() {
         TASK.set(task);
     }

@@ -18,7 +18,7 @@ pub use ball::{Ball, with_precision};
 pub use point::{Point, dimensions};
 
 use hamel_codegen::derived::Derived;
-use hamel_codegen::scene::JointType;
+use hamel_compiler::JointType;
 use laws::{At, Domain, Residual};
 
 /// Bits of the precisions that are tried one after the other.

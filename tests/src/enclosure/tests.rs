@@ -4,7 +4,7 @@ use super::{Point, Verdict, judge, judge_products};
 use hamel_codegen::derived::{Derived, KernelKind};
 use hamel_codegen::expr::Expr;
 use hamel_codegen::matrix::Matrix;
-use hamel_codegen::scene::JointType;
+use hamel_compiler::JointType;
 
 /// Kernels that no law here evaluates: finite maps beside Φ, home, and what tells how far a configuration is from where it belongs.
 const UNJUDGED: [KernelKind; 8] = [

@@ -1,7 +1,7 @@
 //! Modules of a build script, which has no compiled joints to simulate with: what is not a finite number is refused with the element that makes it.
 
-use hamel_codegen::scene::functions::Kind;
-use hamel_codegen::scene::{Error, Language, scene_of};
+use hamel_compiler::functions::Kind;
+use hamel_compiler::{Error, Language, scene_of};
 use hamel_scene::{Scene, SceneDescription};
 
 fn described(text: &str) -> SceneDescription {

@@ -2,8 +2,8 @@
 
 use hamel::scalar::{Dual, Scalar};
 use hamel_codegen::expr::Function as Known;
-use hamel_codegen::scene::emit::Function;
-use hamel_codegen::scene::graph::{Argument, Slopes, Sym, call, call_two, record};
+use hamel_compiler::emit::Function;
+use hamel_compiler::graph::{Argument, Slopes, Sym, call, call_two, record};
 
 /// Value and slope of a function of one number, as the lines of a compiled scene compute them.
 fn on_graph(of: impl Fn(Sym) -> Sym) -> Function {

@@ -1,6 +1,6 @@
 //! Compiles the forward dynamics of every scene with a reference, and a function that finds them by name.
 
-use hamel_codegen::scene::functions::Kind;
+use hamel_compiler::functions::Kind;
 use std::error::Error;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -37,8 +37,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 const SMALL: usize = 15;
 
 /// The module of one scene, with derivatives where methods take them.
-fn module(scene: &Path, name: &str) -> Result<String, hamel_codegen::scene::Error> {
-    let build = hamel_codegen::scene(scene).library(hamel_joints::specs());
+fn module(scene: &Path, name: &str) -> Result<String, hamel_compiler::Error> {
+    let build = hamel_compiler::scene(scene).library(hamel_joints::specs());
     let [_, _, speeds] = build.model()?.sizes();
     let mut kinds = vec![Kind::ForwardDynamics];
     if speeds <= SMALL {

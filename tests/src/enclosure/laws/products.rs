@@ -5,7 +5,7 @@ use super::super::jet::Jet;
 use super::{At, FIRST, Residual};
 use hamel_codegen::derived::KernelKind;
 use hamel_codegen::expr::Symbol;
-use hamel_codegen::scene::{JointType, Product};
+use hamel_compiler::{JointType, Product};
 
 impl At<'_> {
     /// The residuals of all products.

@@ -6,7 +6,7 @@ use super::{
 use hamel::dynamics::{
     Dynamics, ForwardDerivatives, InverseDerivatives, MassMatrix, Recursive, Sensitivity,
 };
-use hamel_codegen::scene::functions::{Kind, Loops, compile};
+use hamel_compiler::functions::{Kind, Loops, compile};
 use hamel_tests::{compiled, random, scenes};
 use std::sync::Arc;
 

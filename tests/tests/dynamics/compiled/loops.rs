@@ -1,7 +1,7 @@
 //! Loops over like bodies, as they are written.
 
-use hamel_codegen::scene::emit::{Lowered, lines::Line};
-use hamel_codegen::scene::functions::{Kind, Loops, compile};
+use hamel_compiler::emit::{Lowered, lines::Line};
+use hamel_compiler::functions::{Kind, Loops, compile};
 use hamel_tests::{compiled, random};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

@@ -4,7 +4,7 @@ use hamel::dynamics::{MassMatrix, Recursive};
 use hamel::mechanism::{BodySpec, Mechanism};
 use hamel::nalgebra::{Matrix3, Vector3};
 use hamel::spatial::{MassProperties, Pose};
-use hamel_codegen::scene::functions::{Kind, Loops};
+use hamel_compiler::functions::{Kind, Loops};
 use hamel_tests::compiled;
 use std::sync::Arc;
 

@@ -1,0 +1,178 @@
+//! A module of functions in C99: a source that needs nothing but `<math.h>`, and its header.
+//!
+//! Templates lay the texts out (`compiler/templates`); what they are filled with is made here, operation by operation as in Rust. Sums of
+//! products are multiply–adds, fused only where the target does that in hardware. Sines and cosines are those of the C library, one by one:
+//! the polynomials of the Rust runtime pay where a compiler vectorises them across angles, which ISO C has no means to ask for.
+
+mod breaks;
+mod formula;
+mod helpers;
+mod layout;
+mod statement;
+
+use super::{Function, Lowered, argument_size, identifier, identifiers};
+use crate::graph::Argument;
+use crate::model::Model;
+use breaks::broken;
+use formula::value;
+use hamel_codegen::text::one_line;
+use helpers::Used;
+use serde::Serialize;
+use statement::{Array, Statement};
+use tera::{Context, Tera};
+
+const TEMPLATES: [(&str, &str); 4] = [
+    ("module.h", include_str!("../../../templates/module.h.tera")),
+    ("module.c", include_str!("../../../templates/module.c.tera")),
+    (
+        "helpers.c",
+        include_str!("../../../templates/helpers.c.tera"),
+    ),
+    ("line.c", include_str!("../../../templates/line.c.tera")),
+];
+
+/// Names that lines must not take: arguments, what the functions bind themselves, helpers, and what `<math.h>` defines.
+const RESERVED: [&str; 26] = [
+    "q",
+    "v",
+    "p",
+    "tau",
+    "a",
+    "i",
+    "sines",
+    "cosines",
+    "results",
+    "numbers",
+    "places",
+    "mul_add",
+    "stumpff",
+    "stumpff_direct",
+    "inverse_factorials",
+    "dexp_inverse",
+    "cotangent",
+    "pole_tails",
+    "power",
+    "powers",
+    "rotation_vector",
+    "quaternion_vector",
+    "nearest_rotation",
+    "double_t",
+    "float_t",
+    "math_errhandling",
+];
+
+/// The texts of a module.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Texts {
+    /// The functions.
+    pub source: String,
+    /// Their prototypes, sizes and layouts.
+    pub header: String,
+}
+
+/// The module `name` that holds `functions` of the model: its functions begin with the name, its header is `NAME.h`. `label` names the scene's
+/// file.
+///
+/// # Errors
+/// A fault in a template, which is part of this crate.
+pub fn module(
+    model: &Model,
+    functions: &[Function],
+    label: &str,
+    name: &str,
+) -> tera::TeraResult<Texts> {
+    let bodies = identifiers(model);
+    let lowered = functions
+        .iter()
+        .map(|function| Lowered::new(function, &bodies, &RESERVED));
+    let lowered: Vec<Lowered> = lowered.collect();
+    let mut used = Used::default();
+    lowered.iter().for_each(|lowered| used.note(lowered));
+    let prefix = identifier(name, "scene");
+    let macros = prefix.to_uppercase();
+    let written = functions.iter().zip(&lowered);
+    let written: Vec<Written> = written
+        .map(|(function, lowered)| Written::new(function, lowered, &macros))
+        .collect();
+
+    let mut context = Context::new();
+    let [configuration, freedoms, speeds] = model.sizes();
+    context.insert("label", &one_line(label));
+    context.insert("scene", &one_line(&model.name));
+    context.insert("name", name);
+    context.insert("prefix", &prefix);
+    context.insert("macros", &macros);
+    context.insert("configuration", &configuration);
+    context.insert("freedoms", &freedoms);
+    context.insert("speeds", &speeds);
+    context.insert("bodies", &layout::layout(model));
+    context.insert("functions", &written);
+    context.insert("used", &used.helpers());
+    let mut tera = Tera::new();
+    tera.add_raw_templates(TEMPLATES)?;
+    Ok(Texts {
+        source: broken(&tera.render("module.c", &context)?),
+        header: broken(&tera.render("module.h", &context)?),
+    })
+}
+
+/// A function as the templates see it.
+#[derive(Serialize)]
+struct Written {
+    name: &'static str,
+    summary: String,
+    operations: String,
+    /// Declarations of its parameters, in order.
+    parameters: Vec<String>,
+    /// Parameters that it does not read.
+    unused: Vec<&'static str>,
+    /// How many results there are, and in rows of what length.
+    count: usize,
+    columns: usize,
+    /// Arrays of the rows that blocks leave.
+    arrays: Vec<Array>,
+    lines: Vec<Statement>,
+    /// Results that no line assigns.
+    outputs: Vec<String>,
+}
+
+impl Written {
+    fn new(function: &Function, lowered: &Lowered, macros: &str) -> Self {
+        let mut used = Used::default();
+        used.note(lowered);
+        let count = function.outputs.len();
+        let arguments = function.arguments.iter();
+        let parameters = arguments.clone().map(|&(argument, size)| {
+            let name = argument.name();
+            // An array without entries is no C.
+            match size {
+                0 => format!("const double *{name}"),
+                _ => format!("const double {name}[{macros}_{}]", size_macro(argument)),
+            }
+        });
+        let results = match count {
+            0 => "double *results".to_owned(),
+            count => format!("double results[{count}]"),
+        };
+        let unused = arguments.filter(|(argument, _)| !used.reads(*argument));
+        let unused = unused.map(|(argument, _)| argument.name());
+        let outputs = lowered.outputs.iter().flatten().map(value);
+        Self {
+            name: function.name,
+            summary: one_line(&function.summary),
+            operations: function.operations().to_string(),
+            parameters: parameters.chain([results]).collect(),
+            unused: unused.chain((count == 0).then_some("results")).collect(),
+            count,
+            columns: function.columns,
+            arrays: statement::arrays(lowered),
+            lines: statement::statements(&lowered.lines, &used),
+            outputs: outputs.collect(),
+        }
+    }
+}
+
+/// The macro of the header that is the size of an argument.
+fn size_macro(argument: Argument) -> &'static str {
+    argument_size(argument, ["CONFIGURATION", "FREEDOMS", "SPEEDS"])
+}

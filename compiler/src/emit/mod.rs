@@ -1,0 +1,145 @@
+//! The graph as source text.
+//!
+//! [`Lowered`] is what every target language writes: lines in order, each a name for a value, under a heading for each part of a body's
+//! equations, and loops of such lines. It holds no decision of a language: names are ASCII identifiers, sums and products are as they are
+//! computed.
+
+pub mod c99;
+mod evaluate;
+pub mod lines;
+mod looped;
+mod lower;
+mod rust;
+mod straight;
+
+pub use rust::module;
+
+use super::alike::Plan;
+use super::graph::{Argument, Graph, Operations, Value};
+use super::model::Model;
+use hamel_codegen::formula::names::NameSet;
+use lines::{Formula, Line};
+use std::collections::BTreeMap;
+
+/// One function to be written.
+#[derive(Clone, Debug)]
+pub struct Function {
+    /// Its name.
+    pub name: &'static str,
+    /// What it computes, in a sentence.
+    pub summary: String,
+    /// What it reads, in order, with their sizes.
+    pub arguments: Vec<(Argument, usize)>,
+    /// What computes it.
+    pub graph: Graph,
+    /// Its results; rows of equal length where they are a matrix.
+    pub outputs: Vec<Value>,
+    /// Columns of the result: 1 for a vector.
+    pub columns: usize,
+    /// Its like parts, where they are looped over.
+    pub plan: Option<Plan>,
+}
+
+impl Function {
+    /// Its operations.
+    pub fn operations(&self) -> Operations {
+        Operations::of(&self.graph, &self.outputs)
+    }
+
+    /// Operations that are written, where those of loops stand once.
+    pub fn written(&self) -> usize {
+        match &self.plan {
+            Some(plan) => plan.written(&self.graph),
+            None => self.operations().flops(),
+        }
+    }
+}
+
+/// A function in lines.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lowered {
+    /// The lines.
+    pub lines: Vec<Line>,
+    /// Arrays of the rows that blocks leave: how many rows of which length.
+    pub arrays: BTreeMap<usize, usize>,
+    /// Its results, where no line assigns them.
+    pub outputs: Option<Vec<Formula>>,
+}
+
+impl Lowered {
+    /// The lines of a function; `bodies` are the names of the sections, `reserved` must not be used.
+    pub fn new(function: &Function, bodies: &[String], reserved: &[&str]) -> Self {
+        let mut names = NameSet::default();
+        for name in reserved {
+            names.claim(name);
+        }
+        match &function.plan {
+            None => straight::lowered(function, bodies, &mut names),
+            Some(plan) => {
+                for width in plan.arrays.keys() {
+                    names.claim(&array(*width));
+                }
+                looped::lowered(function, plan, bodies, &mut names)
+            }
+        }
+    }
+}
+
+/// Name of the array of rows of a length.
+fn array(width: usize) -> String {
+    format!("rows_of_{width}")
+}
+
+/// Names of the bodies as parts of identifiers.
+fn identifiers(model: &Model) -> Vec<String> {
+    let bodies = model.bodies.iter();
+    bodies.map(|body| identifier(&body.name, "body")).collect()
+}
+
+/// A name as the first part of an identifier, ASCII and in lower case; `kind` stands before it where it does not begin with a letter.
+fn identifier(name: &str, kind: &str) -> String {
+    let plain = name.chars().map(|c| {
+        if c.is_ascii_alphanumeric() {
+            c.to_ascii_lowercase()
+        } else {
+            '_'
+        }
+    });
+    let plain: String = plain.collect();
+    match plain.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        true => plain,
+        false => format!("{kind}_{plain}"),
+    }
+}
+
+/// Names in a comment: long lists by their ends.
+fn list(names: &[String]) -> String {
+    match names {
+        [first, second, .., last] if names.len() > 4 => {
+            format!("{first}, {second}, … {last} ({} bodies)", names.len())
+        }
+        names => names.join(", "),
+    }
+}
+
+/// That of three things which belongs to the argument: of Q, of τ, and of v̄, p̄ and v̄̇.
+pub fn argument_size<T>(argument: Argument, [configuration, freedoms, speeds]: [T; 3]) -> T {
+    match argument {
+        Argument::Configuration => configuration,
+        Argument::Efforts => freedoms,
+        Argument::Speeds | Argument::Momenta | Argument::Accelerations => speeds,
+    }
+}
+
+impl Argument {
+    /// Its name in emitted code.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Configuration => "q",
+            Self::Speeds => "v",
+            Self::Momenta => "p",
+            Self::Efforts => "tau",
+            Self::Accelerations => "a",
+        }
+    }
+}

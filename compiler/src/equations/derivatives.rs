@@ -1,0 +1,244 @@
+//! Derivatives of inverse dynamics with respect to local coordinates ϕ (at ϕ = 0) and speeds.
+//!
+//! A unit of ϕ or of a speed of joint k changes the wrench that body i below it takes by `−ad_Zᵀ f_i + N_i W + B_i U` ([`Variation`],
+//! [`Coriolis`]). With N, B and F summed over each subtree, for joints j above k
+//!
+//! ```text
+//! ∂τ̄_j/∂x_k = X̄_jᵀ (N_k W + B_k U − ad_Zᵀ F_k)
+//! ∂τ̄_k/∂x_k = X̄_kᵀ (N_k W + B_k U) + ∂X̄ᵀ F_k
+//! ∂τ̄_k/∂x_j = W_jᵀ (N_k X̄_k) + U_jᵀ (B_kᵀ X̄_k)
+//! ```
+//!
+//! which is O(n · depth), as the tree computes them. What elements and rotors exert is differentiated on the graph ([`Slopes`]).
+
+use super::variation::Variation;
+use super::{Tree, number, wrench_to_parent};
+use crate::graph::{Argument, Slopes, Sym, section};
+use crate::spatial::{Coriolis, Rigid, Step, Vec3, Wrench, dot};
+use num_traits::{One, Zero};
+
+/// A row a speed; a column a freedom, then a column a speed.
+pub(super) type Rows = Vec<Vec<Sym>>;
+
+/// A body and all that hangs on it.
+#[derive(Clone)]
+struct Carried {
+    inertia: Rigid,
+    coriolis: Coriolis,
+    wrench: Wrench,
+}
+
+/// What a joint's own units and speeds show to the joints above it.
+struct Shown {
+    /// `N W + B U − ad_Zᵀ F` of each variation.
+    raised: Vec<Wrench>,
+    /// `N X̄` and the angular part of `Bᵀ X̄` of each speed.
+    momenta: Vec<(Wrench, Vec3)>,
+}
+
+impl Tree<'_> {
+    /// `∂τ̄/∂ϕ` and `∂τ̄/∂v̄` of inverse dynamics at v̄̇, the argument: rows of both, one after the other.
+    pub fn inverse_derivatives(&self) -> Vec<Sym> {
+        let count = self.model.sizes()[2];
+        let rates = (0..count).map(|i| Sym::input(Argument::Accelerations, i));
+        let rates: Vec<Sym> = rates.collect();
+        self.needed_slopes(&rates, None).concat()
+    }
+
+    /// The derivatives of what v̄̇ takes beside the efforts of the argument and what acts on the mechanism.
+    pub(super) fn needed_slopes(&self, rates: &[Sym], efforts: Option<Argument>) -> Rows {
+        let mut rows = self.rigid_slopes(rates);
+        let exerted = Slopes::new(self.exerted(efforts));
+        for (place, column) in self.along_state(&exerted).into_iter().enumerate() {
+            for (row, entry) in rows.iter_mut().zip(column) {
+                row[place] -= entry;
+            }
+        }
+        rows
+    }
+
+    /// The generalised forces of the efforts of the argument, elements, dampers and rotors.
+    fn exerted(&self, argument: Option<Argument>) -> Vec<Sym> {
+        let mut exerted = self.efforts_of(self.external(), None);
+        for (index, body) in self.bodies.iter().enumerate() {
+            let efforts = self.efforts(index, argument);
+            for (place, effort) in body.share.speeds.clone().zip(efforts) {
+                exerted[place] += effort;
+            }
+        }
+        exerted
+    }
+
+    /// Columns of derivatives in all ϕ, then in all speeds.
+    pub(super) fn along_state(&self, values: &Slopes) -> Vec<Vec<Sym>> {
+        let mut columns = vec![];
+        for (index, body) in self.bodies.iter().enumerate() {
+            section(number(index), "slope");
+            let places = &body.share.configuration;
+            for moved in self.joint_at(index, &[]).configuration_slopes() {
+                columns.push(values.along(|argument, place| match argument {
+                    Argument::Configuration if places.contains(&place) => {
+                        moved[place - places.start]
+                    }
+                    _ => Sym::zero(),
+                }));
+            }
+        }
+        for (index, body) in self.bodies.iter().enumerate() {
+            section(number(index), "slope");
+            for speed in body.share.speeds.clone() {
+                columns.push(
+                    values.along(|argument, place| {
+                        unit(argument == Argument::Speeds && place == speed)
+                    }),
+                );
+            }
+        }
+        columns
+    }
+
+    /// The derivatives of what moving the bodies takes.
+    fn rigid_slopes(&self, rates: &[Sym]) -> Rows {
+        let [_, freedoms, speeds] = self.model.sizes();
+        let mut rows = vec![vec![Sym::zero(); freedoms + speeds]; speeds];
+        let motions = self.moved(rates);
+        let variations: Vec<Vec<Variation>> = motions
+            .iter()
+            .enumerate()
+            .map(|(index, motion)| {
+                section(number(index), "variation");
+                self.variations(index, motion, rates)
+            })
+            .collect();
+        let bodies = motions.iter().zip(&self.links);
+        let mut carried: Vec<Carried> = bodies
+            .map(|(motion, link)| {
+                let inertia = link.inertia.on_graph();
+                Carried {
+                    coriolis: Coriolis::of(&inertia, &motion.twist),
+                    inertia,
+                    wrench: motion.wrench.clone(),
+                }
+            })
+            .collect();
+        for index in (0..self.bodies.len()).rev() {
+            section(number(index), "slope");
+            let own = carried[index].clone();
+            self.climb(index, &own, &variations, &mut rows);
+            if let Some(parent) = self.bodies[index].parent {
+                carried[parent] = carried[parent].plus(&own.to_parent(&self.bodies[index].steps));
+            }
+        }
+        rows
+    }
+
+    /// Rows and columns of one joint against itself and those above it.
+    fn climb(
+        &self,
+        index: usize,
+        carried: &Carried,
+        variations: &[Vec<Variation>],
+        rows: &mut Rows,
+    ) {
+        let body = &self.bodies[index];
+        let own = &variations[index];
+        let mut raised: Vec<Wrench> = own.iter().map(|own| carried.raised(own)).collect();
+        let gradient = self.joint_at(index, &[]).effort_gradient(&carried.wrench);
+        for (b, (&place, raised)) in self.places(index).iter().zip(&raised).enumerate() {
+            for (j, speed) in body.share.speeds.clone().enumerate() {
+                let turned = gradient.get(j).and_then(|row| row.get(b).copied());
+                rows[speed][place] = body.columns[j].dot(raised) + turned.unwrap_or_else(Sym::zero);
+            }
+        }
+        for (raised, own) in raised.iter_mut().zip(own) {
+            let along = own.local.bracket_dual(&carried.wrench);
+            *raised = raised.plus(&along.times(-Sym::one()));
+        }
+        let columns = body.columns.iter();
+        let mut shown = Shown {
+            raised,
+            momenta: columns
+                .map(|x| (carried.inertia.of(x), carried.coriolis.apply_transposed(x)))
+                .collect(),
+        };
+        let mut below = index;
+        while let Some(parent) = self.bodies[below].parent {
+            shown.carry(&self.bodies[below].steps);
+            self.meet((index, parent), &shown, &variations[parent], rows);
+            below = parent;
+        }
+    }
+
+    /// The columns of a joint's own units: of its local coordinates, then of its speeds.
+    fn places(&self, index: usize) -> Vec<usize> {
+        let share = &self.bodies[index].share;
+        let freedoms = self.model.sizes()[1];
+        let speeds = share.speeds.clone().map(|speed| freedoms + speed);
+        share.freedoms.clone().chain(speeds).collect()
+    }
+
+    /// One joint against one above it, in whose frame `shown` is.
+    fn meet(
+        &self,
+        (own, above): (usize, usize),
+        shown: &Shown,
+        variations: &[Variation],
+        rows: &mut Rows,
+    ) {
+        let (body, carrier) = (&self.bodies[own], &self.bodies[above]);
+        for (place, raised) in self.places(own).into_iter().zip(&shown.raised) {
+            for (column, speed) in carrier.columns.iter().zip(carrier.share.speeds.clone()) {
+                rows[speed][place] = column.dot(raised);
+            }
+        }
+        for (place, variation) in self.places(above).into_iter().zip(variations) {
+            for ((momentum, transposed), speed) in
+                shown.momenta.iter().zip(body.share.speeds.clone())
+            {
+                rows[speed][place] =
+                    variation.rate.dot(momentum) + dot(&variation.drift.angular, transposed);
+            }
+        }
+    }
+}
+
+impl Carried {
+    fn plus(&self, other: &Self) -> Self {
+        Self {
+            inertia: self.inertia.plus(&other.inertia),
+            coriolis: self.coriolis.plus(&other.coriolis),
+            wrench: self.wrench.plus(&other.wrench),
+        }
+    }
+
+    fn to_parent(&self, steps: &[Step]) -> Self {
+        Self {
+            inertia: self.inertia.to_parent(steps),
+            coriolis: self.coriolis.to_parent(steps),
+            wrench: wrench_to_parent(steps, &self.wrench),
+        }
+    }
+
+    /// What one unit more of something changes of the wrench, beside carrying it along.
+    fn raised(&self, variation: &Variation) -> Wrench {
+        let faster = self.coriolis.apply(&variation.drift.angular);
+        self.inertia.of(&variation.rate).plus(&faster)
+    }
+}
+
+impl Shown {
+    fn carry(&mut self, steps: &[Step]) {
+        for raised in &mut self.raised {
+            *raised = wrench_to_parent(steps, raised);
+        }
+        for (momentum, transposed) in &mut self.momenta {
+            *momentum = wrench_to_parent(steps, momentum);
+            *transposed = super::to_parent(steps, transposed);
+        }
+    }
+}
+
+/// 1 where it is so.
+pub(super) fn unit(is_so: bool) -> Sym {
+    if is_so { Sym::one() } else { Sym::zero() }
+}

@@ -1,0 +1,144 @@
+//! Systems of equations on the graph, solved without a choice that would depend on numbers.
+
+use crate::graph::Sym;
+use num_traits::Zero;
+
+/// The largest system that is solved by its adjugate: a choice of pivots would need numbers.
+const LARGEST: usize = 3;
+
+/// What is left of a system.
+struct Rest {
+    rows: Vec<usize>,
+    columns: Vec<usize>,
+}
+
+impl Rest {
+    /// A row with one unknown, or with `of_columns` an unknown of one row: row and column.
+    fn single(&self, matrix: &[Vec<Sym>], of_columns: bool) -> Option<(usize, usize)> {
+        let entries = |i: usize, j: usize| match of_columns {
+            false => (i, j),
+            true => (j, i),
+        };
+        let (lines, others) = match of_columns {
+            false => (&self.rows, &self.columns),
+            true => (&self.columns, &self.rows),
+        };
+        lines.iter().find_map(|&line| {
+            let places = others.iter().map(|&other| entries(line, other));
+            let mut filled = places.filter(|&(i, j)| !matrix[i][j].is_zero());
+            let first = filled.next()?;
+            filled.next().is_none().then_some(first)
+        })
+    }
+
+    fn without(&mut self, (row, column): (usize, usize)) {
+        self.rows.retain(|&i| i != row);
+        self.columns.retain(|&j| j != column);
+    }
+}
+
+/// `X` with `matrix · X = right`, both by rows: by substitution as far as that goes, and at most three unknowns together; `None` where
+/// more are left.
+pub fn square(matrix: &[Vec<Sym>], right: &[Vec<Sym>]) -> Option<Vec<Vec<Sym>>> {
+    let size = matrix.len();
+    let width = right.first().map_or(0, Vec::len);
+    let mut right = right.to_vec();
+    let mut solution = vec![vec![Sym::zero(); width]; size];
+    let mut rest = Rest {
+        rows: (0..size).collect(),
+        columns: (0..size).collect(),
+    };
+    let mut postponed: Vec<(usize, usize, Vec<usize>)> = vec![];
+    loop {
+        if let Some((row, column)) = rest.single(matrix, false) {
+            rest.without((row, column));
+            solution[column] = over(&right[row], matrix[row][column]);
+            for &other in &rest.rows {
+                subtract(&mut right[other], matrix[other][column], &solution[column]);
+            }
+        } else if let Some((row, column)) = rest.single(matrix, true) {
+            rest.without((row, column));
+            postponed.push((row, column, rest.columns.clone()));
+        } else {
+            break;
+        }
+    }
+    together(matrix, &right, &rest, &mut solution)?;
+    for (row, column, others) in postponed.into_iter().rev() {
+        for other in others {
+            let known = solution[other].clone();
+            subtract(&mut right[row], matrix[row][other], &known);
+        }
+        solution[column] = over(&right[row], matrix[row][column]);
+    }
+    Some(solution)
+}
+
+fn over(row: &[Sym], divisor: Sym) -> Vec<Sym> {
+    row.iter().map(|&entry| entry / divisor).collect()
+}
+
+fn subtract(row: &mut [Sym], factor: Sym, other: &[Sym]) {
+    for (entry, &other) in row.iter_mut().zip(other) {
+        *entry -= factor * other;
+    }
+}
+
+/// Solves what is left by the adjugate.
+fn together(
+    matrix: &[Vec<Sym>],
+    right: &[Vec<Sym>],
+    rest: &Rest,
+    solution: &mut [Vec<Sym>],
+) -> Option<()> {
+    let size = rest.rows.len();
+    if size > LARGEST {
+        return None;
+    }
+    let at = |i: usize, j: usize| matrix[rest.rows[i % size]][rest.columns[j % size]];
+    // Cyclic indices make the signs of 3×3 minors come out by themselves.
+    let cofactor = |i: usize, j: usize| match (size, i == j) {
+        (1, _) => Sym::Number(1.0),
+        (2, true) => at(i + 1, j + 1),
+        (2, false) => -at(i + 1, j + 1),
+        _ => at(i + 1, j + 1) * at(i + 2, j + 2) - at(i + 1, j + 2) * at(i + 2, j + 1),
+    };
+    if size == 0 {
+        return Some(());
+    }
+    let determinant: Sym = (0..size).map(|j| at(0, j) * cofactor(0, j)).sum();
+    let inverse = Sym::Number(1.0) / determinant;
+    for (j, &column) in rest.columns.iter().enumerate() {
+        let weights: Vec<Sym> = (0..size).map(|i| cofactor(i, j) * inverse).collect();
+        let entry = |k: usize| {
+            let terms = weights.iter().zip(&rest.rows);
+            terms.map(|(&weight, &row)| weight * right[row][k]).sum()
+        };
+        solution[column] = (0..solution[column].len()).map(entry).collect();
+    }
+    Some(())
+}
+
+/// `M⁻¹ x` of a symmetric positive definite matrix, as `L D Lᵀ`.
+pub fn definite(mut matrix: Vec<Vec<Sym>>, mut x: Vec<Sym>) -> Vec<Sym> {
+    let size = x.len();
+    let mut inverses = vec![Sym::zero(); size];
+    for k in 0..size {
+        inverses[k] = Sym::Number(1.0) / matrix[k][k];
+        let column: Vec<Sym> = matrix.iter().map(|row| row[k]).collect();
+        for i in k + 1..size {
+            let factor = column[i] * inverses[k];
+            let row = matrix[i][k + 1..=i].iter_mut();
+            for (entry, &other) in row.zip(&column[k + 1..]) {
+                *entry -= factor * other;
+            }
+            let less = factor * x[k];
+            x[i] -= less;
+        }
+    }
+    for k in (0..size).rev() {
+        let carried: Sym = (k + 1..size).map(|i| matrix[i][k] * x[i]).sum();
+        x[k] = (x[k] - carried) * inverses[k];
+    }
+    x
+}

@@ -1,0 +1,100 @@
+//! What one unit of each local coordinate and of each speed of a joint changes of the motion of all that it carries.
+
+use super::{Tree, carried, number};
+use crate::graph::{Sym, section};
+use crate::spatial::{Twist, Wrench};
+
+/// Every body that the joint carries then has `δV = ad_Z V + U` and `δV̇ = ad_Z V̇ + ad_U V + W`: it is moved along by Z, and U and W are
+/// the same for all of them; in the frame of the joint's body.
+pub(super) struct Variation {
+    /// Z, the twist of ϕ̇; 0 for a speed.
+    pub(super) local: Twist,
+    /// U: `ad_{V_λ} Z + ∂X̄ v̄`, or a column of X̄.
+    pub(super) drift: Twist,
+    /// W: `ad_{V̇_λ} Z + ad_{V_λ} U + ad_V ∂X̄ v̄ + ∂(X̄ v̄̇ + c)`, or `ad_{V + V_λ} X̄ + ∂c/∂v̄`.
+    pub(super) rate: Twist,
+}
+
+/// How a body moves, in its frame.
+pub(super) struct Motion {
+    /// V.
+    pub(super) twist: Twist,
+    /// V̇, with the acceleration of the world that stands for gravity.
+    pub(super) rate: Twist,
+    /// V of the parent.
+    carried: Twist,
+    /// V̇ of the parent.
+    carried_rate: Twist,
+    /// What it takes to move it so.
+    pub(super) wrench: Wrench,
+}
+
+impl Tree<'_> {
+    /// The motions of all bodies at v̄̇.
+    pub(super) fn moved(&self, rates: &[Sym]) -> Vec<Motion> {
+        let (spins, linear) = self.accelerations(Some(rates), &self.ground());
+        let ground = Twist {
+            linear: self.ground(),
+            ..Twist::zero()
+        };
+        let mut motions: Vec<Motion> = vec![];
+        for (index, body) in self.bodies.iter().enumerate() {
+            section(number(index), "motion");
+            let parent = body.parent.map(|parent| &motions[parent]);
+            let from = parent.map_or((Twist::zero(), ground.clone()), |parent| {
+                (parent.twist.clone(), parent.rate.clone())
+            });
+            let base = carried(&body.steps, &from.0);
+            let twist = base.plus(&body.velocity);
+            let inertia = self.links[index].inertia.on_graph();
+            motions.push(Motion {
+                rate: spins[index].rate(&linear[index], &twist.linear),
+                twist,
+                carried: base,
+                carried_rate: carried(&body.steps, &from.1),
+                wrench: spins[index].wrench(&inertia, &linear[index]),
+            });
+        }
+        motions
+    }
+
+    /// The variations of a body's joint: those of its local coordinates, then those of its speeds.
+    pub(super) fn variations(
+        &self,
+        index: usize,
+        motion: &Motion,
+        rates: &[Sym],
+    ) -> Vec<Variation> {
+        let body = &self.bodies[index];
+        let joint = self.joint_at(index, &body.speeds);
+        let Motion {
+            twist,
+            carried,
+            carried_rate,
+            ..
+        } = motion;
+        let of_twist = joint.twist_gradient(&body.speeds);
+        let of_rate = joint.twist_gradient(&rates[body.share.speeds.clone()]);
+        let of_bias = joint.bias_gradient();
+        let local = |(b, z): (usize, Twist)| {
+            let drift = carried.bracket(&z).plus(&of_twist[b]);
+            let rate = carried_rate.bracket(&z).plus(&carried.bracket(&drift));
+            let own = twist.bracket(&of_twist[b]);
+            Variation {
+                rate: rate.plus(&own).plus(&of_rate[b]).plus(&of_bias[b]),
+                local: z,
+                drift,
+            }
+        };
+        let both = twist.plus(carried);
+        let speed = |(column, slope): (&Twist, Twist)| Variation {
+            local: Twist::zero(),
+            drift: column.clone(),
+            rate: both.bracket(column).plus(&slope),
+        };
+        let locals = joint.local_twist_map().into_iter().enumerate().map(local);
+        let locals: Vec<Variation> = locals.collect();
+        let speeds = body.columns.iter().zip(joint.bias_slope());
+        locals.into_iter().chain(speeds.map(speed)).collect()
+    }
+}
