@@ -110,7 +110,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     const PATTERNS: Patterns<K, S>;
     /// Basis of the spatial inertias in the child frame that the joint cannot feel (N_X):
     /// `[m, mc_x, mc_y, mc_z, Ixx, Iyy, Izz, Ixy, Ixz, Iyz]`, inertia about the frame origin.
-    const IMPERCEPTIBLE: &'static [[f64; 10]];
+    const UNIDENTIFIABLE: &'static [[f64; 10]];
 
     /// The functions of Q that [`Joint::singularity`] takes the least absolute value of, as the spec writes them: H, X, Φ, A
     /// or S̄ lose their meaning or their rank where one of them is 0. Empty for a joint that is global.

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::equipment::{driven, equipped, losses, springs};
+use common::actuation::{driven, equipped, losses, springs};
 use common::random::Random;
 use common::readings::{assert_same, readings};
 use common::trees::{configuration, trees};

@@ -9,7 +9,6 @@ mod elimination;
 pub(crate) mod finite;
 mod general;
 mod hamel;
-mod imperceptible;
 mod kernels;
 mod motion;
 mod nonholonomic;
@@ -17,6 +16,7 @@ mod numbers;
 pub(crate) mod rank;
 mod steps;
 pub(crate) mod task;
+mod unidentifiable;
 mod velocity;
 
 pub use dimension::Confinement;
@@ -67,7 +67,7 @@ pub struct Expansion {
     /// A, S̄ and ∂S̄/∂ϕ.
     pub nonholonomic: Nonholonomic,
     /// N_X.
-    pub imperceptible: Vec<[crate::expr::Rational; 10]>,
+    pub unidentifiable: Vec<[crate::expr::Rational; 10]>,
 }
 
 /// Expands a joint.spec.
@@ -121,7 +121,7 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
             speeds: nonholonomic.speed_basis.columns(),
             constraints: nonholonomic.constraint.columns(),
         },
-        imperceptible: imperceptible::imperceptible(&twist_map_child, &jacobian.child, ideal),
+        unidentifiable: unidentifiable::unidentifiable(&twist_map_child, &jacobian.child, ideal),
         arguments,
         exponential,
         motion,

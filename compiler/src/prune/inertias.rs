@@ -1,6 +1,6 @@
 //! Inertias that joints do not feel move to the parent, from the leaves to the root; what arrives at the world is dropped.
 //!
-//! N_X is spanned in the joint's child frame (`Derived::imperceptible`). Subtracting its elements makes as many of the ten parameters of a
+//! N_X is spanned in the joint's child frame (`Derived::unidentifiable`). Subtracting its elements makes as many of the ten parameters of a
 //! body 0 as it has dimensions. N is constant also in the parent frame, so it may be read at home.
 
 use super::{Fixed, Link, Placed};
@@ -49,7 +49,7 @@ fn basis(body: &Body, to_link: &Pose<f64>) -> Vec<[f64; 10]> {
     };
     body.joint
         .derived
-        .imperceptible
+        .unidentifiable
         .iter()
         .map(element)
         .collect()

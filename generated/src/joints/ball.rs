@@ -76,7 +76,7 @@ impl Joint<9, 3, 3, 0> for Ball {
             (1, ["xxx", "000", "xxx", "000", "000", "000"]),
             (2, ["xxx", "xxx", "000", "000", "000", "000"]),
         ]);
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
     /// The home configuration.

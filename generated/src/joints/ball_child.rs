@@ -67,7 +67,7 @@ impl Joint<9, 3, 3, 0> for BallChild {
         ..Structures::TRIVIAL
     };
     const PATTERNS: Patterns<3, 3> = Patterns::new(["xxx", "xxx", "xxx"], "000", ["100", "010", "001", "000", "000", "000"]);
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
     /// The home configuration.

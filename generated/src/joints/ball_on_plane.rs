@@ -105,7 +105,7 @@ impl Joint<11, 5, 3, 2> for BallOnPlane {
         (2, ["xxx00", "xxx00", "00000", "000xx", "000xx", "00000"]),
     ])
     .bias_gradient("xxx00");
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {

@@ -78,7 +78,7 @@ impl Joint<4, 3, 3, 0> for BallQuaternion {
             (1, ["xxx", "000", "xxx", "000", "000", "000"]),
             (2, ["xxx", "xxx", "000", "000", "000", "000"]),
         ]);
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
     /// The home configuration.

@@ -81,7 +81,7 @@ impl Joint<6, 3, 2, 1> for Cart {
     };
     const PATTERNS: Patterns<3, 2> = Patterns::new(["xx0", "xx0", "001"], "xx0", ["000", "000", "100", "010", "001", "000"])
         .speed_basis(["10", "01", "00"]);
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
     /// The home configuration.

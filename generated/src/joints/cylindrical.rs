@@ -57,7 +57,7 @@ impl Joint<2, 2, 2, 0> for Cylindrical {
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Declared;
     const STRUCTURES: Structures = Structures::TRIVIAL;
     const PATTERNS: Patterns<2, 2> = Patterns::new(["xx0", "xx0", "001"], "00x", ["00", "00", "10", "00", "00", "01"]);
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
     /// The home configuration.

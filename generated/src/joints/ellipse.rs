@@ -95,7 +95,7 @@ impl Joint<2, 1, 1, 0> for Ellipse {
     };
     const PATTERNS: Patterns<1, 1> = Patterns::new(["xx0", "xx0", "001"], "xx0", ["0", "0", "x", "x", "0", "0"])
         .twist_map_child_gradient(&[(0, ["0", "0", "x", "x", "0", "0"])]);
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {

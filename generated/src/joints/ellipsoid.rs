@@ -94,7 +94,7 @@ impl Joint<9, 3, 3, 0> for Ellipsoid {
             (1, ["000", "000", "000", "xx0", "xx0", "000"]),
             (2, ["000", "000", "000", "xx0", "xx0", "000"]),
         ]);
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {

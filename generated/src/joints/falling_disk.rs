@@ -107,7 +107,7 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
         (2, ["000", "000", "000", "xx0", "xx0"]),
     ])
     .bias_gradient("xxx00");
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &["1 - R[3, 3] * R[3, 3] = 0"];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {

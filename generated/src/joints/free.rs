@@ -86,7 +86,7 @@ impl Joint<12, 6, 6, 0> for Free {
         "xxx",
         ["100000", "010000", "001000", "000100", "000010", "000001"],
     );
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
 
     /// The home configuration.

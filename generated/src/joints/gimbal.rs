@@ -72,7 +72,7 @@ impl Joint<3, 3, 3, 0> for Gimbal {
             &[(1, ["x00", "x00", "x00", "000", "000", "000"]), (2, ["000", "xx0", "xx0", "000", "000", "000"])],
         )
         .bias_gradient("0xx");
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &["cos(pitch) = 0"];
 
     /// The home configuration.

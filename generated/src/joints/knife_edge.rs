@@ -74,7 +74,7 @@ impl Joint<3, 3, 2, 1> for KnifeEdge {
         .speed_basis(["10", "0x", "0x"])
         .twist_map_child_gradient(&[(0, ["000", "000", "000", "0xx", "0xx", "000"])])
         .speed_basis_gradient(&[(0, ["00", "0x", "0x"])]);
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
     /// The home configuration.

@@ -75,7 +75,7 @@ impl Joint<6, 3, 3, 0> for Planar {
         ..Structures::TRIVIAL
     };
     const PATTERNS: Patterns<3, 3> = Patterns::new(["xx0", "xx0", "001"], "xx0", ["000", "000", "100", "010", "001", "000"]);
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
     /// The home configuration.

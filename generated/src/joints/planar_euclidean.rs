@@ -71,7 +71,7 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     const PATTERNS: Patterns<3, 3> = Patterns::new(["xx0", "xx0", "001"], "xx0", ["000", "000", "100", "0xx", "0xx", "000"])
         .twist_map_child_gradient(&[(0, ["000", "000", "000", "0xx", "0xx", "000"])])
         .bias_gradient("x00");
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
     /// The home configuration.

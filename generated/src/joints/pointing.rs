@@ -73,7 +73,7 @@ impl Joint<9, 3, 2, 1> for Pointing {
     };
     const PATTERNS: Patterns<3, 2> = Patterns::new(["xxx", "xxx", "xxx"], "000", ["100", "010", "001", "000", "000", "000"])
         .speed_basis(["10", "01", "00"]);
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
     /// The home configuration.

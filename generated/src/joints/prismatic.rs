@@ -57,7 +57,7 @@ impl Joint<1, 1, 1, 0> for Prismatic {
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Declared;
     const STRUCTURES: Structures = Structures::TRIVIAL;
     const PATTERNS: Patterns<1, 1> = Patterns::new(["100", "010", "001"], "00x", ["0", "0", "0", "0", "0", "1"]);
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[
         [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0],

@@ -58,7 +58,7 @@ impl Joint<1, 1, 1, 0> for Revolute {
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Declared;
     const STRUCTURES: Structures = Structures::TRIVIAL;
     const PATTERNS: Patterns<1, 1> = Patterns::new(["xx0", "xx0", "001"], "000", ["0", "0", "1", "0", "0", "0"]);
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[
         [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],

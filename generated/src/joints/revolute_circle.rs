@@ -63,7 +63,7 @@ impl Joint<2, 1, 1, 0> for RevoluteCircle {
         ..Structures::TRIVIAL
     };
     const PATTERNS: Patterns<1, 1> = Patterns::new(["xx0", "xx0", "001"], "000", ["0", "0", "1", "0", "0", "0"]);
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[
         [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],

@@ -67,7 +67,7 @@ impl Joint<1, 1, 1, 0> for Screw {
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Declared;
     const STRUCTURES: Structures = Structures::TRIVIAL;
     const PATTERNS: Patterns<1, 1> = Patterns::new(["xx0", "xx0", "001"], "00x", ["0", "0", "1", "0", "0", "x"]);
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {

@@ -86,7 +86,7 @@ impl Joint<4, 2, 2, 0> for Torus {
     const PATTERNS: Patterns<2, 2> = Patterns::new(["xxx", "xxx", "x0x"], "xxx", ["x0", "01", "x0", "0x", "x0", "00"])
         .twist_map_child_gradient(&[(1, ["x0", "00", "x0", "00", "x0", "00"])])
         .bias_gradient("0x");
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {

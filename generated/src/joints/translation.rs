@@ -57,7 +57,7 @@ impl Joint<3, 3, 3, 0> for Translation {
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Declared;
     const STRUCTURES: Structures = Structures::TRIVIAL;
     const PATTERNS: Patterns<3, 3> = Patterns::new(["100", "010", "001"], "xxx", ["000", "000", "000", "100", "010", "001"]);
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[
         [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0],

@@ -71,7 +71,7 @@ impl Joint<2, 2, 2, 0> for Universal {
     const PATTERNS: Patterns<2, 2> = Patterns::new(["x0x", "xxx", "xxx"], "000", ["x0", "01", "x0", "00", "00", "00"])
         .twist_map_child_gradient(&[(1, ["x0", "00", "x0", "00", "00", "00"])])
         .bias_gradient("0x");
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
 
     /// The home configuration.

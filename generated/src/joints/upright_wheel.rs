@@ -96,7 +96,7 @@ impl Joint<7, 4, 2, 2> for UprightWheel {
     .speed_basis(["10", "0x", "00", "01"])
     .twist_map_child_gradient(&[(3, ["x000", "0000", "x000", "0x00", "0000", "0x00"])])
     .bias_gradient("000x");
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {

@@ -70,8 +70,8 @@ where
         const { &J::SPEEDS }
     }
 
-    fn imperceptible(&self) -> &'static [[f64; 10]] {
-        J::IMPERCEPTIBLE
+    fn unidentifiable(&self) -> &'static [[f64; 10]] {
+        J::UNIDENTIFIABLE
     }
 
     fn singularities(&self) -> &'static [&'static str] {

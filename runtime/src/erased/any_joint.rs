@@ -38,8 +38,8 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     fn freedoms(&self) -> &'static [&'static str];
     /// Names of the speeds.
     fn speeds(&self) -> &'static [&'static str];
-    /// Basis of the inertias that the joint cannot feel, [`Joint::IMPERCEPTIBLE`].
-    fn imperceptible(&self) -> &'static [[f64; 10]];
+    /// Basis of the inertias that the joint cannot feel, [`Joint::UNIDENTIFIABLE`].
+    fn unidentifiable(&self) -> &'static [[f64; 10]];
     /// The functions whose zeros the joint must stay away from, [`Joint::SINGULARITIES`].
     fn singularities(&self) -> &'static [&'static str];
     /// Hands each parameter's name and value to `visit`.

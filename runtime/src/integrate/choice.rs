@@ -1,6 +1,6 @@
 //! Which method suits a mechanism: by how fast the motions about its first state are, with and without its springs and dampers, and by first steps.
 
-use super::{IntegrateError, Method, Mode, Scheme, Spectrum, State, trial};
+use super::{IntegrateError, Method, Mode, Scheme, Spectrum, State, step_probe};
 use crate::mechanism::Mechanism;
 use alloc::format;
 use alloc::string::String;
@@ -221,7 +221,7 @@ impl Wanted {
         }
         let first = |scheme| {
             let method = Method::controlled(scheme, self.tolerance);
-            trial::step(mechanism, state, self.span, method)
+            step_probe::step(mechanism, state, self.span, method)
         };
         let own = first(Scheme::Exponential).unwrap_or(0.0);
         // How far the work of one of its steps leads without it.

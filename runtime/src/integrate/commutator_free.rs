@@ -6,7 +6,7 @@
 
 use super::StepFailure;
 use super::flow::{Flow, Rates, multiply, widest};
-use super::standing::{Standing, add};
+use super::step_state::{StepState, add};
 use super::stepper::{Span, Stepper};
 use crate::mechanism::Body;
 use alloc::vec;
@@ -67,7 +67,7 @@ impl CommutatorFree {
     /// Moves to the end of a path.
     fn follow(
         &mut self,
-        standing: &mut Standing,
+        step_state: &mut StepState,
         flow: &Flow<'_>,
         step: f64,
         path: &[[f64; 4]],
@@ -76,7 +76,7 @@ impl CommutatorFree {
         self.phi.fill(0.0);
         for (index, body) in flow.mechanism.bodies().iter().enumerate() {
             if self.flows[index] && outcome.is_ok() {
-                outcome = self.compose(body, standing, step, path);
+                outcome = self.compose(body, step_state, step, path);
             }
         }
         outcome?;
@@ -87,7 +87,7 @@ impl CommutatorFree {
             ..
         } = self;
         let weights = total(path);
-        standing.move_by(flow, |first, phi, y| {
+        step_state.move_by(flow, |first, phi, y| {
             let rates = core::iter::once(first).chain(&*stages);
             for (weight, rates) in weights.iter().zip(rates) {
                 add(y, step * weight, &rates.y);
@@ -108,7 +108,7 @@ impl CommutatorFree {
     fn compose(
         &mut self,
         body: &Body,
-        standing: &Standing,
+        step_state: &StepState,
         step: f64,
         path: &[[f64; 4]],
     ) -> Result<(), StepFailure> {
@@ -117,7 +117,7 @@ impl CommutatorFree {
         let near = &mut self.near[..ranges.configuration.len()];
         let far = &mut self.far[..near.len()];
         let part = &mut self.part[..own.len()];
-        near.copy_from_slice(body.configuration(&standing.configuration));
+        near.copy_from_slice(body.configuration(&step_state.configuration));
         for weights in path {
             part.fill(0.0);
             for (weight, rates) in weights.iter().zip(&self.local_rates) {
@@ -126,12 +126,12 @@ impl CommutatorFree {
             joint.retract(near, part, far);
             near.copy_from_slice(far);
         }
-        let found = joint.local(body.configuration(&standing.base), near, part);
+        let found = joint.local(body.configuration(&step_state.base), near, part);
         found.map_err(|cause| body.finite_map(cause))?;
         for ((moved, phi), before) in self.phi[own.clone()]
             .iter_mut()
             .zip(part)
-            .zip(&standing.offset[own])
+            .zip(&step_state.offset[own])
         {
             *moved = *phi - before;
         }
@@ -139,15 +139,15 @@ impl CommutatorFree {
     }
 
     /// `S₀⁻¹ v = D ϕ̇` of all joints at stage i, from the rates in ϕ.
-    fn localize(&mut self, standing: &Standing, flow: &Flow<'_>, i: usize) {
+    fn localize(&mut self, step_state: &StepState, flow: &Flow<'_>, i: usize) {
         let (rates, phi) = match i {
-            0 => (&standing.rates, &standing.offset),
-            _ => (&self.stages[i - 1], &standing.phi),
+            0 => (&step_state.rates, &step_state.offset),
+            _ => (&self.stages[i - 1], &step_state.phi),
         };
         for body in flow.mechanism.bodies() {
             let own = body.ranges().freedoms.clone();
             let differential = &mut self.differential[..own.len() * own.len()];
-            let base = body.configuration(&standing.base);
+            let base = body.configuration(&step_state.base);
             body.joint()
                 .retract_differential(base, &phi[own.clone()], differential);
             let into = &mut self.local_rates[i][own.clone()];
@@ -159,23 +159,23 @@ impl CommutatorFree {
 impl Stepper for CommutatorFree {
     fn attempt(
         &mut self,
-        standing: &mut Standing,
+        step_state: &mut StepState,
         flow: &mut Flow<'_>,
         Span { time, step }: Span,
     ) -> Result<(), StepFailure> {
-        self.localize(standing, flow, 0);
+        self.localize(step_state, flow, 0);
         for i in 1..NODES.len() {
-            self.follow(standing, flow, step, PATHS[i - 1])?;
+            self.follow(step_state, flow, step, PATHS[i - 1])?;
             let at = time + step * NODES[i];
-            standing.evaluate_there(flow, at, self.stages[i - 1].parts())?;
-            self.localize(standing, flow, i);
+            step_state.evaluate_there(flow, at, self.stages[i - 1].parts())?;
+            self.localize(step_state, flow, i);
         }
-        self.follow(standing, flow, step, PATHS[3])
+        self.follow(step_state, flow, step, PATHS[3])
     }
 
     fn error(
         &mut self,
-        _standing: &mut Standing,
+        _step_state: &mut StepState,
         _flow: &mut Flow<'_>,
         _span: Span,
         _tolerance: f64,

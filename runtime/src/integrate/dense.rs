@@ -13,7 +13,7 @@
 use super::StepFailure;
 use super::flow::{Flow, Rates, retract};
 use super::lobatto::{self, Lobatto, MOST_DEGREE};
-use super::standing::{Standing, add};
+use super::step_state::{StepState, add};
 use super::stepper::{Span, StagePolynomial};
 use alloc::vec;
 use alloc::vec::Vec;
@@ -93,25 +93,25 @@ impl Dense {
         }
     }
 
-    /// A step over `span` is about to be accepted from where `standing` is.
-    pub(super) fn begin(&mut self, standing: &Standing, span: Span) {
+    /// A step over `span` is about to be accepted from where `step_state` is.
+    pub(super) fn begin(&mut self, step_state: &StepState, span: Span) {
         self.span = span;
-        self.base.copy_from_slice(&standing.base);
-        join(1.0, &standing.offset, &standing.y, &mut self.start);
-        let Rates { phi, y, .. } = &standing.rates;
+        self.base.copy_from_slice(&step_state.base);
+        join(1.0, &step_state.offset, &step_state.y, &mut self.start);
+        let Rates { phi, y, .. } = &step_state.rates;
         join(span.step, phi, y, &mut self.first);
     }
 
     /// It has been accepted, and ends at time `end`: now the cubic stands.
-    pub(super) fn finish(&mut self, standing: &Standing, flow: &mut Flow<'_>, end: f64) {
+    pub(super) fn finish(&mut self, step_state: &StepState, flow: &mut Flow<'_>, end: f64) {
         self.end = end;
-        join(1.0, &standing.phi, &standing.y, &mut self.change);
+        join(1.0, &step_state.phi, &step_state.y, &mut self.change);
         add(&mut self.change, -1.0, &self.start);
         // Rates of joints that have got new base points belong to other charts.
-        self.rates.speeds.copy_from_slice(standing.speeds());
-        let q = &standing.configuration;
-        flow.recentre(q, &self.base, &standing.phi, &mut self.rates);
-        let y = &standing.rates.y;
+        self.rates.speeds.copy_from_slice(step_state.speeds());
+        let q = &step_state.configuration;
+        flow.recentre(q, &self.base, &step_state.phi, &mut self.rates);
+        let y = &step_state.rates.y;
         join(self.span.step, &self.rates.phi, y, &mut self.last);
         self.set_cubic();
         self.is_raised = false;

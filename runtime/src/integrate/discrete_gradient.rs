@@ -11,9 +11,9 @@
 //! that rounding does not add up.
 
 use super::StepFailure;
+use super::compensation::add_exactly;
 use super::flow::{Flow, Rates, multiply, retract};
-use super::residue::add_exactly;
-use super::standing::{Standing, add};
+use super::step_state::{StepState, add};
 use super::stepper::Span;
 use crate::dynamics::Recursive;
 use crate::mechanism::Body;
@@ -42,7 +42,7 @@ pub(super) struct Correction {
     /// Energy at the state as it shall be: what it was at first, and the work done since, J; NaN before the first step.
     energy: f64,
     /// What it is too coarse to hold.
-    residue: f64,
+    compensation: f64,
     /// Work of the step being tried, J.
     work: f64,
     /// Kinetic energy half-way, J.
@@ -84,7 +84,7 @@ impl Correction {
             is_in_force: false,
             is_settled: false,
             energy: f64::NAN,
-            residue: 0.0,
+            compensation: 0.0,
             work: 0.0,
             kinetic: 0.0,
             change: speeds.clone(),
@@ -109,11 +109,11 @@ impl Correction {
     /// A step is about to be tried.
     pub(super) fn begin(
         &mut self,
-        standing: &Standing,
+        step_state: &StepState,
         flow: &mut Flow<'_>,
     ) -> Result<(), StepFailure> {
         if self.energy.is_nan() {
-            self.energy = flow.energy(&standing.configuration, &standing.y)?;
+            self.energy = flow.energy(&step_state.configuration, &step_state.y)?;
         }
         (self.is_in_force, self.is_settled) = (false, false);
         Ok(())
@@ -131,19 +131,19 @@ impl Correction {
 
     /// The step just tried is taken.
     pub(super) fn accept(&mut self) {
-        (self.energy, self.residue) = add_exactly(self.energy, self.work + self.residue);
+        (self.energy, self.compensation) = add_exactly(self.energy, self.work + self.compensation);
     }
 
-    /// Corrects `rates` half-way, where `standing` has come to by `increment` (ϕ, then p̄).
+    /// Corrects `rates` half-way, where `step_state` has come to by `increment` (ϕ, then p̄).
     pub(super) fn apply(
         &mut self,
-        standing: &Standing,
+        step_state: &StepState,
         flow: &mut Flow<'_>,
         span: Span,
         increment: &[f64],
         rates: &mut Rates,
     ) -> Result<(), StepFailure> {
-        let (turned, pushed) = increment.split_at(standing.offset.len());
+        let (turned, pushed) = increment.split_at(step_state.offset.len());
         self.middle.copy_from_slice(flow.configuration());
         self.change.fill(0.0);
         add(&mut self.change, 2.0, pushed);
@@ -153,16 +153,16 @@ impl Correction {
         self.work = span.step * self.power(flow);
         self.dynamics
             .composite_momenta(&self.middle, &rates.speeds, &mut self.composites);
-        let twice = standing
+        let twice = step_state
             .next_y
             .iter()
             .zip(&rates.speeds)
             .map(|(p, v)| p * v);
         self.kinetic = 0.5 * twice.sum::<f64>();
         if self.is_in_force {
-            self.adjust(standing, flow, turned)?;
+            self.adjust(step_state, flow, turned)?;
         }
-        self.move_by_structure(standing, flow, span.step);
+        self.move_by_structure(step_state, flow, span.step);
         add(&mut rates.phi, self.lambda, &self.moved.phi);
         add(&mut rates.y, self.lambda, &self.moved.y);
         Ok(())
@@ -171,15 +171,15 @@ impl Correction {
     /// λ by what the energy at the end lacks, as it now is.
     fn adjust(
         &mut self,
-        standing: &Standing,
+        step_state: &StepState,
         flow: &mut Flow<'_>,
         turned: &[f64],
     ) -> Result<(), StepFailure> {
-        self.phi.copy_from_slice(&standing.offset);
+        self.phi.copy_from_slice(&step_state.offset);
         add(&mut self.phi, 2.0, turned);
-        self.momenta.copy_from_slice(&standing.y);
+        self.momenta.copy_from_slice(&step_state.y);
         add(&mut self.momenta, 1.0, &self.change);
-        retract(&flow.mechanism, &standing.base, &self.phi, &mut self.end);
+        retract(&flow.mechanism, &step_state.base, &self.phi, &mut self.end);
         let found = flow.energy(&self.end, &self.momenta)?;
         if !found.is_finite() {
             let at = (&*self.end, &*self.speeds);
@@ -187,7 +187,7 @@ impl Correction {
         }
         let own = self.change.iter().zip(&self.faster);
         let carried = 2.0 * self.kinetic + own.map(|(p, v)| p * v).sum::<f64>();
-        let error = (found - self.energy) - (self.work + self.residue);
+        let error = (found - self.energy) - (self.work + self.compensation);
         let rounding = ROUNDING * (found.abs() + self.kinetic);
         self.is_settled = error.abs() <= rounding || carried.abs() <= rounding;
         if !self.is_settled {
@@ -215,17 +215,17 @@ impl Correction {
     }
 
     /// `(T, J̄22) M̄⁻¹Δp̄` and `−p̄/h`.
-    fn move_by_structure(&mut self, standing: &Standing, flow: &mut Flow<'_>, step: f64) {
-        let (base, phi) = (&standing.base, &standing.phi);
+    fn move_by_structure(&mut self, step_state: &StepState, flow: &mut Flow<'_>, step: f64) {
+        let (base, phi) = (&step_state.base, &step_state.phi);
         flow.local_rates(base, phi, &self.faster, &mut self.moved.phi);
         for (index, body) in flow.mechanism.bodies().iter().enumerate() {
             let own = body.ranges().speeds.clone();
-            let momenta = (&standing.next_y[own.clone()], &self.composites[index]);
+            let momenta = (&step_state.next_y[own.clone()], &self.composites[index]);
             let (faster, out) = (&self.faster[own.clone()], &mut self.moved.y[own]);
             let structure = self.matrices.structure(body, &self.middle, momenta);
             multiply(structure, faster, out);
         }
-        add(&mut self.moved.y, -1.0 / step, &standing.next_y);
+        add(&mut self.moved.y, -1.0 / step, &step_state.next_y);
     }
 }
 

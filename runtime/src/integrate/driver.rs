@@ -1,12 +1,12 @@
 //! From the initial time to the last, by accepted steps, over the sample times.
 
 use super::approach::Watch;
-use super::between::Between;
 use super::clock::Clock;
 use super::control::Controller;
 use super::flow::Flow;
 use super::options::{Control, least_step};
-use super::standing::Standing;
+use super::outputs::Outputs;
+use super::step_state::StepState;
 use super::stepper::{self, Span, Stepper};
 use super::{
     Crossing, Event, Form, Inputs, IntegrateError, Method, Near, Observer, Options, Sampling,
@@ -49,7 +49,7 @@ impl Hold {
 /// An integration under way.
 pub(super) struct Driver<'a> {
     pub(super) flow: Flow<'a>,
-    pub(super) standing: Standing,
+    pub(super) step_state: StepState,
     pub(super) stepper: Box<dyn Stepper>,
     pub(super) options: &'a Options,
     hold: Option<Hold>,
@@ -60,7 +60,7 @@ pub(super) struct Driver<'a> {
     pub(super) crossings: Vec<Crossing>,
     watch: Watch,
     /// What is wanted between the ends of steps, if anything is.
-    pub(super) between: Option<Between<'a>>,
+    pub(super) outputs: Option<Outputs<'a>>,
     /// Where something within a step has ended the integration.
     pub(super) end: Option<State>,
 }
@@ -87,16 +87,16 @@ impl<'a> Driver<'a> {
         if period.is_some() {
             flow.hold(time, &initial.configuration, &initial.speeds);
         }
-        let begun = Standing::new(&mut flow, time, &initial.configuration, &initial.speeds)
-            .and_then(|standing| {
+        let begun = StepState::new(&mut flow, time, &initial.configuration, &initial.speeds)
+            .and_then(|step_state| {
                 let mechanism = &flow.mechanism;
                 // Rates may be finite where squares of speeds are not.
-                mechanism.check_energy(&standing.configuration, standing.speeds())?;
+                mechanism.check_energy(&step_state.configuration, step_state.speeds())?;
                 let order = options.method.scheme().order();
-                let between = Between::new(sampling, events, order, (&flow, &standing, time))?;
-                Ok((standing, between))
+                let outputs = Outputs::new(sampling, events, order, (&flow, &step_state, time))?;
+                Ok((step_state, outputs))
             });
-        let (standing, between) = begun.map_err(|cause| IntegrateError::AtState {
+        let (step_state, outputs) = begun.map_err(|cause| IntegrateError::AtState {
             time,
             cause: Box::new(cause),
             near: watch.nearest_at(&flow.mechanism, time, &initial.configuration),
@@ -106,7 +106,7 @@ impl<'a> Driver<'a> {
             watch,
             stepper: stepper::new(options.method.scheme(), tolerance, &flow),
             flow,
-            standing,
+            step_state,
             options,
             hold: period.map(|period| Hold {
                 start: time,
@@ -118,7 +118,7 @@ impl<'a> Driver<'a> {
             statistics: Statistics::default(),
             samples: Vec::with_capacity(options.samples.len()),
             crossings: Vec::new(),
-            between,
+            outputs,
             end: None,
         })
     }
@@ -167,7 +167,7 @@ impl<'a> Driver<'a> {
     fn first_step(&mut self, tolerance: f64, order: u32) -> Result<f64, IntegrateError> {
         let span = self.options.t_end - self.start;
         let change = 0.3 * Float::powf(tolerance, 1.0 / f64::from(order));
-        let pace = self.standing.pace(&mut self.flow);
+        let pace = self.step_state.pace(&mut self.flow);
         let pace = pace.map_err(|cause| self.at_state(cause))?;
         // A hundredth of the shortest spans is nothing: these are one step.
         Ok((change / pace).min(0.01 * span).max(f64::MIN_POSITIVE))
@@ -176,9 +176,9 @@ impl<'a> Driver<'a> {
     /// The next sample time, or the end, or the next instant for new inputs.
     fn target(&self) -> f64 {
         let is_dense = self
-            .between
+            .outputs
             .as_ref()
-            .is_some_and(|between| between.sampling == Sampling::Dense);
+            .is_some_and(|outputs| outputs.sampling == Sampling::Dense);
         let sample = self.options.samples.get(self.samples.len()).copied();
         let sample = sample.filter(|_| !is_dense);
         let target = sample.unwrap_or(self.options.t_end);
@@ -225,11 +225,11 @@ impl<'a> Driver<'a> {
         };
         let Self {
             stepper,
-            standing,
+            step_state,
             flow,
             ..
         } = self;
-        let outcome = stepper.attempt(standing, flow, span);
+        let outcome = stepper.attempt(step_state, flow, span);
         let Some(Control {
             tolerance,
             max_step,
@@ -242,7 +242,7 @@ impl<'a> Driver<'a> {
             pacing.step = step * pacing.controller.reject(None);
             return Err(cause);
         }
-        let (error, joint) = match stepper.error(standing, flow, span, tolerance) {
+        let (error, joint) = match stepper.error(step_state, flow, span, tolerance) {
             Ok(found) => found,
             Err(cause) => {
                 pacing.step = step * pacing.controller.reject(None);
@@ -310,7 +310,7 @@ impl<'a> Driver<'a> {
         self.leave(span);
         let accepted = self
             .stepper
-            .accept(&mut self.standing, &mut self.flow, time, span);
+            .accept(&mut self.step_state, &mut self.flow, time, span);
         accepted.map_err(|cause| self.at_state(cause))?;
         self.statistics.steps += 1;
         // Before the inputs change: what lies within the step moved under those that were held.
@@ -328,9 +328,9 @@ impl<'a> Driver<'a> {
             return Ok(());
         };
         hold.count += 1;
-        let (q, speeds) = (&self.standing.configuration, self.standing.speeds());
+        let (q, speeds) = (&self.step_state.configuration, self.step_state.speeds());
         self.flow.hold(time, q, speeds);
-        self.standing.evaluate(&mut self.flow, time)
+        self.step_state.evaluate(&mut self.flow, time)
     }
 
     fn at_state(&self, cause: StepFailure) -> IntegrateError {
@@ -343,7 +343,7 @@ impl<'a> Driver<'a> {
 
     /// The joint that is nearest to a singular set of its own.
     fn near(&self) -> Near {
-        let q = &self.standing.configuration;
+        let q = &self.step_state.configuration;
         self.watch
             .nearest_at(&self.flow.mechanism, self.clock.time(), q)
     }
@@ -352,7 +352,7 @@ impl<'a> Driver<'a> {
     fn report(&mut self, observer: &mut Observer<'_>) -> bool {
         let time = self.clock.time();
         self.watch
-            .see(&self.flow.mechanism, time, &self.standing.configuration);
+            .see(&self.flow.mechanism, time, &self.step_state.configuration);
         let mut sample = None;
         while self.options.samples.get(self.samples.len()) == Some(&self.clock.time()) {
             sample = Some(self.samples.len());
@@ -361,9 +361,9 @@ impl<'a> Driver<'a> {
         let step = Step {
             time: self.clock.time(),
             number: self.statistics.steps,
-            configuration: &self.standing.configuration,
-            speeds: self.standing.speeds(),
-            momenta: (self.flow.form == Form::Hamiltonian).then_some(&*self.standing.y),
+            configuration: &self.step_state.configuration,
+            speeds: self.step_state.speeds(),
+            momenta: (self.flow.form == Form::Hamiltonian).then_some(&*self.step_state.y),
             sample,
             is_within: false,
         };
@@ -373,8 +373,8 @@ impl<'a> Driver<'a> {
     fn state(&self) -> State {
         State {
             time: self.clock.time(),
-            configuration: self.standing.configuration.clone(),
-            speeds: self.standing.speeds().to_vec(),
+            configuration: self.step_state.configuration.clone(),
+            speeds: self.step_state.speeds().to_vec(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::flow::Flow;
 use super::stages::{Stages, Terms, terms};
-use super::standing::Standing;
+use super::step_state::StepState;
 use super::stepper::{Span, Stepper};
 use super::{Estimate, StepFailure, Tableau};
 use alloc::vec::Vec;
@@ -50,7 +50,7 @@ impl Explicit {
 impl Stepper for Explicit {
     fn attempt(
         &mut self,
-        standing: &mut Standing,
+        step_state: &mut StepState,
         flow: &mut Flow<'_>,
         Span { time, step }: Span,
     ) -> Result<(), StepFailure> {
@@ -61,20 +61,20 @@ impl Stepper for Explicit {
             stages,
             ..
         } = self;
-        stages.begin(&standing.rates);
+        stages.begin(&step_state.rates);
         for (i, path) in paths.iter().enumerate().skip(1) {
-            standing.move_by_increment(flow, stages.sum(step, path))?;
-            standing.evaluate_there(flow, time + step * tableau.nodes[i], stages.room(i))?;
+            step_state.move_by_increment(flow, stages.sum(step, path))?;
+            step_state.evaluate_there(flow, time + step * tableau.nodes[i], stages.room(i))?;
         }
         if tableau.first_same_as_last {
             return Ok(());
         }
-        standing.move_by_increment(flow, stages.sum(step, end))
+        step_state.move_by_increment(flow, stages.sum(step, end))
     }
 
     fn error(
         &mut self,
-        standing: &mut Standing,
+        step_state: &mut StepState,
         flow: &mut Flow<'_>,
         Span { step, .. }: Span,
         tolerance: f64,
@@ -84,8 +84,8 @@ impl Stepper for Explicit {
         } = self;
         let mut largest = |weights: &Terms| {
             let errors = stages.sum_beyond_rounding(step, weights);
-            standing.set_errors(1.0 / tolerance, errors);
-            standing.largest_error(flow, Some(stages.last_speeds()))
+            step_state.set_errors(1.0 / tolerance, errors);
+            step_state.largest_error(flow, Some(stages.last_speeds()))
         };
         match estimate {
             Combined::None => Ok((0.0, 0)),
@@ -100,13 +100,13 @@ impl Stepper for Explicit {
 
     fn accept(
         &mut self,
-        standing: &mut Standing,
+        step_state: &mut StepState,
         flow: &mut Flow<'_>,
         time: f64,
         _span: Span,
     ) -> Result<(), StepFailure> {
         let is_same = self.tableau.first_same_as_last;
-        standing.accept(flow, time, is_same.then(|| self.stages.last()))
+        step_state.accept(flow, time, is_same.then(|| self.stages.last()))
     }
 
     fn order(&self) -> u32 {

@@ -9,7 +9,7 @@ use super::StepFailure;
 use super::flow::{Flow, Rates};
 use super::jacobian::Jacobian;
 use super::phi::Phi;
-use super::standing::{Standing, add};
+use super::step_state::{StepState, add};
 use super::stepper::{Solves, Span, Stepper};
 use alloc::vec;
 use alloc::vec::Vec;
@@ -61,15 +61,15 @@ impl Exponential {
     /// f, its derivative in time, and φ of hJ.
     fn linearize(
         &mut self,
-        standing: &Standing,
+        step_state: &StepState,
         flow: &mut Flow<'_>,
         span: Span,
     ) -> Result<(), StepFailure> {
         let Span { time, step } = span;
         if self.at != time {
-            store(&standing.rates, &mut self.first);
-            self.differentiate_in_time(standing, flow, span)?;
-            self.jacobian.evaluate(standing, flow, time)?;
+            store(&step_state.rates, &mut self.first);
+            self.differentiate_in_time(step_state, flow, span)?;
+            self.jacobian.evaluate(step_state, flow, time)?;
             self.solves.jacobians += 1;
             self.at = time;
         }
@@ -110,7 +110,7 @@ impl Exponential {
     /// of f adds less than 1e-12 of it to the result of a step, and what the difference leaves out is 1e-6 of what the method does.
     fn differentiate_in_time(
         &mut self,
-        standing: &Standing,
+        step_state: &StepState,
         flow: &mut Flow<'_>,
         Span { time, step }: Span,
     ) -> Result<(), StepFailure> {
@@ -126,9 +126,9 @@ impl Exponential {
         for (instant, weight) in [(first, 2.0), (first + later, -0.5)] {
             flow.evaluate(
                 instant,
-                &standing.base,
-                &standing.offset,
-                &standing.y,
+                &step_state.base,
+                &step_state.offset,
+                &step_state.y,
                 self.rates.parts(),
             )?;
             let rates = self.rates.phi.iter().chain(&self.rates.y);
@@ -140,19 +140,19 @@ impl Exponential {
     }
 
     /// Moves to the increment.
-    fn move_on(&self, standing: &mut Standing, flow: &Flow<'_>) -> Result<(), StepFailure> {
-        standing.move_by_increment(flow, &self.increment)
+    fn move_on(&self, step_state: &mut StepState, flow: &Flow<'_>) -> Result<(), StepFailure> {
+        step_state.move_by_increment(flow, &self.increment)
     }
 
-    /// D of a stage at `time`, where `standing` has come to after `later` seconds: `f − f₀ − J Z − later · ∂f/∂t`.
+    /// D of a stage at `time`, where `step_state` has come to after `later` seconds: `f − f₀ − J Z − later · ∂f/∂t`.
     fn remain(
         &mut self,
         stage: usize,
-        standing: &Standing,
+        step_state: &StepState,
         flow: &mut Flow<'_>,
         Span { time, step: later }: Span,
     ) -> Result<(), StepFailure> {
-        standing.evaluate_there(flow, time + later, self.rates.parts())?;
+        step_state.evaluate_there(flow, time + later, self.rates.parts())?;
         let remainder = &mut self.remainders[stage];
         store(&self.rates, remainder);
         add(remainder, -1.0, &self.first);
@@ -169,22 +169,22 @@ impl Exponential {
 impl Stepper for Exponential {
     fn attempt(
         &mut self,
-        standing: &mut Standing,
+        step_state: &mut StepState,
         flow: &mut Flow<'_>,
         span: Span,
     ) -> Result<(), StepFailure> {
-        self.linearize(standing, flow, span)?;
+        self.linearize(step_state, flow, span)?;
         let Span { time, step } = span;
         let (phi, first, drift) = (&self.phi, &self.first, &self.drift);
         self.increment.fill(0.0);
         phi.add(true, 1, 0.5 * step, first, &mut self.increment);
         phi.add(true, 2, 0.25 * step * step, drift, &mut self.increment);
-        self.move_on(standing, flow)?;
+        self.move_on(step_state, flow)?;
         let half = Span {
             time,
             step: 0.5 * step,
         };
-        self.remain(0, standing, flow, half)?;
+        self.remain(0, step_state, flow, half)?;
 
         let Self {
             phi,
@@ -200,8 +200,8 @@ impl Stepper for Exponential {
         add(combined, 1.0, &remainders[0]);
         phi.add(false, 1, step, combined, increment);
         phi.add(false, 2, step * step, drift, increment);
-        self.move_on(standing, flow)?;
-        self.remain(1, standing, flow, span)?;
+        self.move_on(step_state, flow)?;
+        self.remain(1, step_state, flow, span)?;
 
         let Self {
             phi,
@@ -226,18 +226,18 @@ impl Stepper for Exponential {
         error.fill(0.0);
         phi.add(false, 4, step, combined, error);
         add(increment, 1.0, error);
-        self.move_on(standing, flow)
+        self.move_on(step_state, flow)
     }
 
     fn error(
         &mut self,
-        standing: &mut Standing,
+        step_state: &mut StepState,
         flow: &mut Flow<'_>,
         _span: Span,
         tolerance: f64,
     ) -> Result<(f64, usize), StepFailure> {
-        standing.set_errors(1.0 / tolerance, &self.error);
-        standing.largest_error(flow, Some(&self.rates.speeds))
+        step_state.set_errors(1.0 / tolerance, &self.error);
+        step_state.largest_error(flow, Some(&self.rates.speeds))
     }
 
     fn order(&self) -> u32 {

@@ -1,7 +1,7 @@
 //! The vector field in (ϕ, y) around a base point, for both forms.
 
 use super::StepFailure;
-use super::standing::add;
+use super::step_state::add;
 use super::{Form, Inputs};
 use crate::dynamics::{Dynamics, DynamicsError};
 use crate::mechanism::{CONSTRAINT_TOLERANCE, Mechanism, Space};

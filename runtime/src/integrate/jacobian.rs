@@ -7,7 +7,7 @@
 use super::StepFailure;
 use super::flow::{Flow, Rates};
 use super::linear::{Change, Charts, Equations};
-use super::standing::Standing;
+use super::step_state::StepState;
 use crate::dynamics::{DynamicsError, Sensitivity};
 use crate::mechanism::StateError;
 use crate::scalar::all_finite;
@@ -76,12 +76,12 @@ impl Jacobian {
     /// Evaluates it at the state.
     pub(super) fn evaluate(
         &mut self,
-        standing: &Standing,
+        step_state: &StepState,
         flow: &mut Flow<'_>,
         time: f64,
     ) -> Result<(), StepFailure> {
         if let Some(analytic) = &mut self.analytic {
-            match analytic.evaluate(standing, flow, time) {
+            match analytic.evaluate(step_state, flow, time) {
                 Ok(()) => {
                     analytic.store(&mut self.entries);
                     return self.check_finite(flow);
@@ -90,7 +90,7 @@ impl Jacobian {
                 Err(cause) => return Err(cause.into()),
             }
         }
-        self.take_differences(standing, flow, time)?;
+        self.take_differences(step_state, flow, time)?;
         self.check_finite(flow)
     }
 
@@ -110,12 +110,12 @@ impl Jacobian {
 
     fn take_differences(
         &mut self,
-        standing: &Standing,
+        step_state: &StepState,
         flow: &mut Flow<'_>,
         time: f64,
     ) -> Result<(), StepFailure> {
-        let freedoms = standing.offset.len();
-        let (mut phi, mut y) = (standing.offset.clone(), standing.y.clone());
+        let freedoms = step_state.offset.len();
+        let (mut phi, mut y) = (step_state.offset.clone(), step_state.y.clone());
         for j in 0..self.size {
             let entry = match j.checked_sub(freedoms) {
                 None => &mut phi[j],
@@ -125,13 +125,13 @@ impl Jacobian {
             // Half the digits, as for any difference of first order.
             *entry += num_traits::Float::sqrt(f64::EPSILON) * before.abs().max(1.0);
             let step = *entry - before;
-            flow.evaluate(time, &standing.base, &phi, &y, self.rates.parts())?;
+            flow.evaluate(time, &step_state.base, &phi, &y, self.rates.parts())?;
             match j.checked_sub(freedoms) {
                 None => phi[j] = before,
                 Some(speed) => y[speed] = before,
             }
             let there = self.rates.phi.iter().chain(&self.rates.y);
-            let here = standing.rates.phi.iter().chain(&standing.rates.y);
+            let here = step_state.rates.phi.iter().chain(&step_state.rates.y);
             for (i, (there, here)) in there.zip(here).enumerate() {
                 self.entries[i * self.size + j] = (there - here) / step;
             }
@@ -170,17 +170,21 @@ impl Analytic {
 
     fn evaluate(
         &mut self,
-        standing: &Standing,
+        step_state: &StepState,
         flow: &mut Flow<'_>,
         time: f64,
     ) -> Result<(), DynamicsError> {
-        let (q, speeds) = (&standing.configuration, &standing.rates.speeds);
+        let (q, speeds) = (&step_state.configuration, &step_state.rates.speeds);
         flow.efforts(time, q, speeds, &mut self.efforts);
-        let at = (&q[..], &standing.y[..], &self.efforts[..]);
+        let at = (&q[..], &step_state.y[..], &self.efforts[..]);
         self.equations
             .evaluate(flow.dynamics(), at, &mut self.rates)?;
-        self.charts
-            .set(&flow.mechanism, &standing.base, &standing.offset, speeds);
+        self.charts.set(
+            &flow.mechanism,
+            &step_state.base,
+            &step_state.offset,
+            speeds,
+        );
         let Change { phi, y } = &self.units;
         self.charts.localize(phi, &mut self.local);
         self.equations

@@ -66,7 +66,7 @@ impl Lobatto {
             .iter()
             .chain(&self.weights[middle + 1..]);
         for (slope, weight) in others.zip(weights) {
-            super::standing::add(own, -weight, slope);
+            super::step_state::add(own, -weight, slope);
         }
         for entry in own {
             *entry /= self.weights[middle];

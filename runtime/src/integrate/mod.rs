@@ -17,11 +17,11 @@
 //! | long runs | [`Scheme::Gauss3`], or [`Scheme::DiscreteGradient`] where the balance of energy shall hold to rounding |
 
 mod approach;
-mod between;
 mod choice;
 mod clock;
 mod collocation;
 mod commutator_free;
+mod compensation;
 mod control;
 mod dense;
 mod discrete_gradient;
@@ -29,6 +29,7 @@ mod dop853;
 mod driver;
 mod error;
 mod event;
+mod event_location;
 mod explicit;
 mod exponential;
 mod flow;
@@ -36,18 +37,17 @@ mod integration;
 mod jacobian;
 mod linear;
 mod lobatto;
-mod lookout;
 mod options;
+mod outputs;
 mod phi;
-mod residue;
 mod root;
 mod solution;
 mod spectrum;
 mod stages;
-mod standing;
+mod step_probe;
+mod step_state;
 mod stepper;
 mod tableau;
-mod trial;
 mod turns;
 mod verner;
 

@@ -2,7 +2,7 @@
 
 use super::flow::Flow;
 use super::jacobian::Jacobian;
-use super::standing::Standing;
+use super::step_state::StepState;
 use super::{Form, IntegrateError, State, StepFailure};
 use crate::dynamics::Recursive;
 use crate::eigen::{balance, eigenvalues};
@@ -144,9 +144,9 @@ fn linearized(mechanism: &Arc<Mechanism>, state: &State) -> Result<DMatrix<f64>,
     let mut dynamics = Recursive::new(Arc::clone(mechanism));
     let mut flow = Flow::new(&mut dynamics, None, Form::Lagrangian);
     let (q, speeds) = (&state.configuration, &state.speeds);
-    let standing = Standing::new(&mut flow, state.time, q, speeds)?;
+    let step_state = StepState::new(&mut flow, state.time, q, speeds)?;
     let mut jacobian = Jacobian::new(&flow);
-    jacobian.evaluate(&standing, &mut flow, state.time)?;
+    jacobian.evaluate(&step_state, &mut flow, state.time)?;
     let size = jacobian.size();
     Ok(DMatrix::from_row_slice(size, size, jacobian.entries()))
 }

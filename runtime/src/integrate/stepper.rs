@@ -5,7 +5,7 @@ use super::commutator_free::CommutatorFree;
 use super::explicit::Explicit;
 use super::exponential::Exponential;
 use super::flow::Flow;
-use super::standing::{Standing, add};
+use super::step_state::{StepState, add};
 use super::{Scheme, StepFailure};
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -19,10 +19,10 @@ pub(super) struct Span {
 
 /// A scheme at work on one mechanism.
 pub(super) trait Stepper {
-    /// Tries a step over `span` from the state; `standing` comes to its end, its state stays as it is.
+    /// Tries a step over `span` from the state; `step_state` comes to its end, its state stays as it is.
     fn attempt(
         &mut self,
-        standing: &mut Standing,
+        step_state: &mut StepState,
         flow: &mut Flow<'_>,
         span: Span,
     ) -> Result<(), StepFailure>;
@@ -30,7 +30,7 @@ pub(super) trait Stepper {
     /// Error of the step just tried over the tolerance, and the joint that has it.
     fn error(
         &mut self,
-        standing: &mut Standing,
+        step_state: &mut StepState,
         flow: &mut Flow<'_>,
         span: Span,
         tolerance: f64,
@@ -39,12 +39,12 @@ pub(super) trait Stepper {
     /// Makes the end of the step just tried the state, at `time`, which is the end of `span` but for rounding.
     fn accept(
         &mut self,
-        standing: &mut Standing,
+        step_state: &mut StepState,
         flow: &mut Flow<'_>,
         time: f64,
         _span: Span,
     ) -> Result<(), StepFailure> {
-        standing.accept(flow, time, None)
+        step_state.accept(flow, time, None)
     }
 
     /// The power of the step with which its estimated error falls.

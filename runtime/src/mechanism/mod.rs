@@ -3,10 +3,10 @@
 //! State lives with the caller, as slices: a configuration `q` (all joints' Q, one after the other), and speeds v̄ or
 //! momenta p̄. [`Body::ranges`] tells where a joint's share lies.
 
+mod actuation;
 mod body;
 mod build;
 mod check;
-mod equipment;
 mod error;
 mod frame;
 mod initial;
@@ -14,10 +14,10 @@ mod kinematics;
 mod reach;
 mod rigid;
 
+pub use actuation::dependent_columns;
 pub use body::{Body, BodySpec, Ranges};
 pub use check::CONFIGURATION_TOLERANCE;
 pub(crate) use check::{Space, WHOLE, check_size};
-pub use equipment::dependent_columns;
 pub use error::{Loci, MechanismError, StateError};
 pub use frame::{FrameFault, NamedFrame};
 pub use initial::CONSTRAINT_TOLERANCE;
@@ -36,7 +36,7 @@ pub struct Mechanism {
     gravity: Vector3<f64>,
     bodies: Vec<Body>,
     layout: Layout,
-    equipment: equipment::Equipment,
+    actuation: actuation::Actuation,
     frames: Vec<NamedFrame>,
 }
 
@@ -55,7 +55,7 @@ impl Mechanism {
             gravity,
             bodies,
             layout,
-            equipment: equipment::Equipment::default(),
+            actuation: actuation::Actuation::default(),
             frames: Vec::new(),
         })
     }

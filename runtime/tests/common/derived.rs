@@ -163,7 +163,7 @@ where
         speed_map: Structure::General,
     };
     const PATTERNS: Patterns<K, S> = Patterns::DENSE;
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = &[];
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = D::SINGULARITIES;
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {

@@ -1,9 +1,9 @@
 //! Joints and mechanisms that the tests of this crate share.
 #![allow(dead_code, reason = "each test file uses its own part of this module")]
 
+pub mod actuation;
 pub mod derived;
 pub mod dual;
-pub mod equipment;
 pub mod joints;
 pub mod polar;
 pub mod random;

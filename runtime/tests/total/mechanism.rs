@@ -164,7 +164,7 @@ fn states_of_other_sizes_or_not_finite_are_errors() {
 }
 
 #[test]
-fn equipment_of_other_sizes_or_not_finite_is_an_error() {
+fn actuation_of_other_sizes_or_not_finite_is_an_error() {
     let mechanism = bare();
     for bad in wrong(1) {
         refused((*mechanism).clone().with_armature(3, &bad));

@@ -21,7 +21,7 @@ where
     const VELOCITY_FRAME: VelocityFrame = J::VELOCITY_FRAME;
     const STRUCTURES: Structures = J::STRUCTURES;
     const PATTERNS: Patterns<K, S> = J::PATTERNS;
-    const IMPERCEPTIBLE: &'static [[f64; 10]] = J::IMPERCEPTIBLE;
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = J::UNIDENTIFIABLE;
     const SINGULARITIES: &'static [&'static str] = J::SINGULARITIES;
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {

@@ -21,7 +21,7 @@ impl Expected {
     /// M̄ of a case, column by column.
     pub fn new(equipped: &Equipped) -> Self {
         let case = &equipped.case;
-        let form = DualForm::of(&case.mechanism, equipped.equipment.clone(), equipped.lookup);
+        let form = DualForm::of(&case.mechanism, equipped.actuation.clone(), equipped.lookup);
         let rows = case.speeds.len();
         let (q, rest) = (constants(&case.q), constants(&vec![0.0; rows]));
         let column = |j: usize| {

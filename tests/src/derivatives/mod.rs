@@ -4,7 +4,7 @@ mod dual;
 mod expected;
 mod laws;
 
-pub use dual::{DualForm, DualState, Equipment, Kernels, Lookup, behind, library_kernels, of};
+pub use dual::{Actuation, DualForm, DualState, Kernels, Lookup, behind, library_kernels, of};
 pub use expected::Expected;
 pub use laws::{energies, forward_dynamics, inverse_dynamics, port_hamiltonian_form};
 
@@ -21,26 +21,26 @@ pub struct Equipped {
     /// The case, its mechanism equipped.
     pub case: Case,
     /// What it carries.
-    pub equipment: Equipment,
+    pub actuation: Actuation,
     /// Where the kernels of its joints are found.
     pub lookup: Lookup,
 }
 
 impl Equipped {
     /// A case on joints of the library, whose mechanism carries the equipment already.
-    pub fn new(case: Case, equipment: Equipment) -> Self {
+    pub fn new(case: Case, actuation: Actuation) -> Self {
         Self {
             case,
-            equipment,
+            actuation,
             lookup: library_kernels,
         }
     }
 
     /// A case with elements of all kinds and rotors at every joint.
     pub fn fully(case: Case) -> Self {
-        let equipment = Equipment::random(&case.mechanism, &case.q, case.seed);
-        let mechanism = equipment.equip(&case.mechanism);
-        Self::new(Case { mechanism, ..case }, equipment)
+        let actuation = Actuation::random(&case.mechanism, &case.q, case.seed);
+        let mechanism = actuation.equip(&case.mechanism);
+        Self::new(Case { mechanism, ..case }, actuation)
     }
 
     /// The same on joints of another crate.
@@ -67,7 +67,7 @@ pub fn bare_and_equipped(
     bare: impl Iterator<Item = Case>,
     equipped: impl Iterator<Item = Case>,
 ) -> Vec<Equipped> {
-    let bare = bare.map(|case| Equipped::new(case, Equipment::default()));
+    let bare = bare.map(|case| Equipped::new(case, Actuation::default()));
     bare.chain(equipped.map(Equipped::fully)).collect()
 }
 

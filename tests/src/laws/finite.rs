@@ -52,9 +52,9 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
     }
 
     /// N_X: no force, no inertia felt.
-    pub(super) fn imperceptible_laws(&self, phi: &SVector<f64, K>) {
+    pub(super) fn unidentifiable_laws(&self, phi: &SVector<f64, K>) {
         let other = self.joint.retract(&self.q, phi);
-        for parameters in J::IMPERCEPTIBLE {
+        for parameters in J::UNIDENTIFIABLE {
             let n = spatial_inertia(parameters);
             close(
                 "N X^c = 0",

@@ -78,7 +78,7 @@ pub fn check_within<
         at.velocity_laws(&vector(&mut random, 2.0), &vector(&mut random, 2.0));
         at.speed_laws(&vector(&mut random, 2.0), &vector(&mut random, 2.0));
         at.manifold_laws(&vector(&mut random, 1e-6));
-        at.imperceptible_laws(&vector(&mut random, 1.0));
+        at.unidentifiable_laws(&vector(&mut random, 1.0));
         at.singular_sets();
         for phi in at.sizes(&vector(&mut random, 1.0), reach) {
             at.finite_laws(&phi, &vector(&mut random, 2.0));

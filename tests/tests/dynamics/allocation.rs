@@ -13,7 +13,7 @@ use hamel::integrate::{
 use hamel::mechanism::NamedFrame;
 use hamel::nalgebra::{Vector3, Vector6};
 use hamel::spatial::Pose;
-use hamel_tests::derivatives::Equipment;
+use hamel_tests::derivatives::Actuation;
 use hamel_tests::random::{Case, cases, library};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -79,8 +79,8 @@ fn frames_do_not_allocate() {
 fn elements_do_not_allocate() {
     let mut counts = Counts::default();
     for case in trees() {
-        let equipment = Equipment::random(&case.mechanism, &case.q, case.seed);
-        let mechanism = equipment.equip(&case.mechanism);
+        let actuation = Actuation::random(&case.mechanism, &case.q, case.seed);
+        let mechanism = actuation.equip(&case.mechanism);
         let (q, v, tau) = (&case.q[..], &case.speeds[..], &case.efforts[..]);
         let mut dynamics = Recursive::new(Arc::clone(&mechanism));
         let mut inverse = InverseDerivatives::new(&mechanism);

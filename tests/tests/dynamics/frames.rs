@@ -6,7 +6,7 @@ use hamel::mechanism::{Mechanism, MechanismError, NamedFrame, StateError};
 use hamel::nalgebra::{DMatrix, DVector, Matrix6, Vector3, Vector6};
 use hamel::scalar::Dual;
 use hamel::spatial::{Pose, SpatialInertia, so3, vee};
-use hamel_tests::derivatives::{DualForm, Equipment};
+use hamel_tests::derivatives::{Actuation, DualForm};
 use hamel_tests::differences::{STEP, derivative, moved};
 use hamel_tests::figures::{Largest, difference, size};
 use hamel_tests::random::{Case, cases, chain, configuration, library, numbers};
@@ -101,7 +101,7 @@ fn gradients_are_those_of_dual_numbers() {
     let mut worst = ["displacements under ϕ", "∂(J v̄)/∂ϕ"].map(Largest::new);
     for case in all() {
         let (body, fixed) = fixed(&case.mechanism);
-        let form = DualForm::new(&case.mechanism, Equipment::default());
+        let form = DualForm::new(&case.mechanism, Actuation::default());
         let freedoms = case.efforts.len();
         let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
         let readings = dynamics.readings(&case.q, &case.speeds).expect("sizes fit");
@@ -217,9 +217,9 @@ fn mobility(case: &Case, axes: Frame) -> Matrix6<f64> {
 fn operational_mobility_is_the_response_to_wrenches() {
     let mut worst = Largest::new("J M̄⁻¹ Jᵀ");
     for case in all() {
-        let equipment = Equipment::random(&case.mechanism, &case.q, case.seed);
+        let actuation = Actuation::random(&case.mechanism, &case.q, case.seed);
         let rotors = Case {
-            mechanism: equipment.equip(&case.mechanism),
+            mechanism: actuation.equip(&case.mechanism),
             ..case.clone()
         };
         for case in [case, rotors] {

@@ -4,7 +4,7 @@ use allocation_counter::measure;
 use hamel::dynamics::{Dynamics, Recursive, Refined};
 use hamel::mechanism::Mechanism;
 use hamel_scene::Scene;
-use hamel_tests::derivatives::Equipment;
+use hamel_tests::derivatives::Actuation;
 use hamel_tests::figures::{Largest, difference, size};
 use hamel_tests::newton::{STATE, World, real};
 use hamel_tests::random::{Case, cases, library};
@@ -36,8 +36,8 @@ fn rates(dynamics: &mut dyn Dynamics, case: &Case, momenta: &[f64]) -> [Vec<f64>
 fn refined_rates_are_those_of_doubles() {
     let mut worst = ["accelerations", "speeds", "momentum rates"].map(Largest::new);
     for case in cases(&library(), LARGEST, TREES) {
-        let equipment = Equipment::random(&case.mechanism, &case.q, case.seed);
-        let equipped = equipment.equip(&case.mechanism);
+        let actuation = Actuation::random(&case.mechanism, &case.q, case.seed);
+        let equipped = actuation.equip(&case.mechanism);
         for mechanism in [&case.mechanism, &equipped] {
             let mut doubles = Recursive::new(Arc::clone(mechanism));
             let mut refined = Refined::new(Arc::clone(mechanism));

@@ -68,7 +68,7 @@ pub struct Report {
     /// Measured errors of the kernels, where figures were given.
     pub accuracy: Vec<AccuracyRow>,
     /// The inertias that the joint cannot feel: `Ixx + Iyy`.
-    pub imperceptible: Vec<String>,
+    pub unidentifiable: Vec<String>,
     /// Text of the spec.
     pub spec: String,
 }
@@ -111,7 +111,7 @@ impl Report {
             finite: finite::rows(derived),
             accuracy: vec![],
             counts: vec![],
-            imperceptible: tables::imperceptible(derived),
+            unidentifiable: tables::unidentifiable(derived),
             spec: spec.source.clone(),
         }
     }

@@ -173,8 +173,8 @@ const INERTIA: [&str; 10] = [
 ];
 
 /// Each element of the basis of N_X as a sum of parameters of an inertia.
-pub(super) fn imperceptible(derived: &Derived) -> Vec<String> {
-    derived.imperceptible.iter().map(combination).collect()
+pub(super) fn unidentifiable(derived: &Derived) -> Vec<String> {
+    derived.unidentifiable.iter().map(combination).collect()
 }
 
 fn combination(weights: &[Rational; 10]) -> String {

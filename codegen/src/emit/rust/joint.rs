@@ -168,7 +168,7 @@ fn constants(derived: &Derived) -> TokenStream {
     });
     let structures = structures(derived);
     let patterns = patterns::tokens(derived);
-    let inertias = derived.imperceptible.iter().map(inertia);
+    let inertias = derived.unidentifiable.iter().map(inertia);
     let loci = derived.space.loci.iter().map(|locus| &locus.value.text);
     quote! {
         const NAME: &'static str = #name;
@@ -178,7 +178,7 @@ fn constants(derived: &Derived) -> TokenStream {
         const VELOCITY_FRAME: VelocityFrame = VelocityFrame::#frame;
         const STRUCTURES: Structures = #structures;
         #patterns
-        const IMPERCEPTIBLE: &'static [[f64; 10]] = &[#(#inertias),*];
+        const UNIDENTIFIABLE: &'static [[f64; 10]] = &[#(#inertias),*];
         const SINGULARITIES: &'static [&'static str] = &[#(#loci),*];
     }
 }

@@ -3,8 +3,8 @@
 //! Index patterns follow the paper, with its errata set right: (26) contracts momentum with the rows of S and velocity with
 //! S⁻¹; after (36), `p = M S̄ M̄⁻¹ p̄`. Cost grows with the cube of the number of freedoms, and matrices are allocated.
 
+mod actuation;
 mod coupling;
-mod equipment;
 mod expansion;
 mod factor;
 mod holonomic;
@@ -15,9 +15,9 @@ pub use expansion::Expansion;
 
 use super::{Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, Recursive};
 use crate::mechanism::{Mechanism, Space, StateError};
+use actuation::{ElementForces, driven, driven_freedoms};
 use alloc::sync::Arc;
 use alloc::vec;
-use equipment::{ElementForces, driven, driven_freedoms};
 use nalgebra::DVector;
 
 /// The reference form of a mechanism's dynamics.

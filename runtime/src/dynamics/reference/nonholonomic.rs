@@ -2,7 +2,7 @@
 //!
 //! Where every S̄ is the identity, these are the equations of Theorem 2.
 
-use super::equipment::hold;
+use super::actuation::hold;
 use super::factor::factor;
 use super::holonomic::{combine, fitted, from_columns};
 use super::{DynamicsError, Expansion};

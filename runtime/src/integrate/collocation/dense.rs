@@ -5,7 +5,7 @@ use super::modes::{Line, Mode, modes};
 use crate::integrate::StepFailure;
 use crate::integrate::flow::Flow;
 use crate::integrate::jacobian::Jacobian;
-use crate::integrate::standing::Standing;
+use crate::integrate::step_state::StepState;
 use crate::lu::Lu;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -94,11 +94,11 @@ impl Dense {
     /// J at the state.
     pub(super) fn evaluate(
         &mut self,
-        standing: &Standing,
+        step_state: &StepState,
         flow: &mut Flow<'_>,
         time: f64,
     ) -> Result<(), StepFailure> {
-        self.jacobian.evaluate(standing, flow, time)
+        self.jacobian.evaluate(step_state, flow, time)
     }
 
     /// Factorises for steps of `step`; how many matrices.

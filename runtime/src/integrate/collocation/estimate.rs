@@ -3,12 +3,12 @@
 use super::Collocation;
 use crate::integrate::StepFailure;
 use crate::integrate::flow::Flow;
-use crate::integrate::standing::{Standing, add};
+use crate::integrate::step_state::{StepState, add};
 use num_traits::Float;
 
 impl Collocation {
-    /// `h f + Σ e_i Z_i` with the f of the probe, filtered, into the errors of `standing`.
-    pub(super) fn estimate(&mut self, standing: &mut Standing, step: f64, tolerance: f64) {
+    /// `h f + Σ e_i Z_i` with the f of the probe, filtered, into the errors of `step_state`.
+    pub(super) fn estimate(&mut self, step_state: &mut StepState, step: f64, tolerance: f64) {
         let (Some(newton), Some(weights)) = (&mut self.newton, self.method.estimate) else {
             return;
         };
@@ -20,16 +20,16 @@ impl Collocation {
             add(estimate, *weight, increment);
         }
         newton.filter(estimate);
-        standing.set_errors(1.0 / tolerance, estimate);
+        step_state.set_errors(1.0 / tolerance, estimate);
     }
 
     pub(super) fn judge(
         &self,
-        standing: &mut Standing,
+        step_state: &mut StepState,
         flow: &mut Flow<'_>,
     ) -> Result<(f64, usize), StepFailure> {
         let last = self.stages.last().map(|rates| &*rates.speeds);
-        standing.largest_error(flow, last)
+        step_state.largest_error(flow, last)
     }
 }
 

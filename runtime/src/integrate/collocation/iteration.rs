@@ -4,7 +4,7 @@ use super::{Before, Collocation, SLOW};
 use crate::integrate::StepFailure;
 use crate::integrate::discrete_gradient::Correction;
 use crate::integrate::flow::Flow;
-use crate::integrate::standing::{Standing, add};
+use crate::integrate::step_state::{StepState, add};
 use crate::integrate::stepper::Span;
 use crate::mechanism::StateError;
 use alloc::vec::Vec;
@@ -31,7 +31,7 @@ const SHRINKS: f64 = 0.8;
 
 impl Collocation {
     /// Increments to begin with.
-    fn guess(&mut self, standing: &Standing, step: f64) {
+    fn guess(&mut self, step_state: &StepState, step: f64) {
         let ratio = step / self.before.step;
         for (increment, node) in self.increments.iter_mut().zip(self.method.nodes) {
             if self.before.step > 0.0 {
@@ -44,7 +44,7 @@ impl Collocation {
                 } else {
                     step * node
                 };
-                for (part, rates) in [(phi, &standing.rates.phi), (y, &standing.rates.y)] {
+                for (part, rates) in [(phi, &step_state.rates.phi), (y, &step_state.rates.y)] {
                     part.fill(0.0);
                     add(part, weight, rates);
                 }
@@ -55,27 +55,27 @@ impl Collocation {
     /// Iterates until the increments stand.
     pub(super) fn iterate(
         &mut self,
-        standing: &mut Standing,
+        step_state: &mut StepState,
         flow: &mut Flow<'_>,
         span: Span,
     ) -> Result<(), StepFailure> {
         if let Some(newton) = &mut self.newton {
-            newton.prepare(standing, flow, span, &mut self.solves)?;
+            newton.prepare(step_state, flow, span, &mut self.solves)?;
         }
         if let Some(correction) = &mut self.correction {
-            correction.begin(standing, flow)?;
+            correction.begin(step_state, flow)?;
         }
-        self.guess(standing, span.step);
+        self.guess(step_state, span.step);
         let (mut last, mut least, mut idle) = (f64::INFINITY, f64::INFINITY, 0);
         for _ in 0..MOST_ITERATIONS {
             self.solves.iterations += 1;
-            self.evaluate(standing, flow, span)?;
+            self.evaluate(step_state, flow, span)?;
             self.take_residuals(span.step);
             if let Some(newton) = &mut self.newton {
                 newton.solve(&mut self.changes);
             }
             let [size, whole] =
-                [&self.changes, &self.increments].map(|all| self.largest(all, standing));
+                [&self.changes, &self.increments].map(|all| self.largest(all, step_state));
             if let Some(correction) = &mut self.correction {
                 correction.see(size, whole);
             }
@@ -104,7 +104,7 @@ impl Collocation {
             }
             last = size;
         }
-        Err(self.no_convergence(standing, flow))
+        Err(self.no_convergence(step_state, flow))
     }
 
     /// Whether the change just made was the last one needed.
@@ -155,17 +155,17 @@ impl Collocation {
     /// F at all stages.
     fn evaluate(
         &mut self,
-        standing: &mut Standing,
+        step_state: &mut StepState,
         flow: &mut Flow<'_>,
         span: Span,
     ) -> Result<(), StepFailure> {
         let Span { time, step } = span;
         let stages = self.stages.iter_mut().zip(&self.increments);
         for ((rates, increment), node) in stages.zip(self.method.nodes) {
-            standing.move_by_increment(flow, increment)?;
-            standing.evaluate_there(flow, time + step * node, rates.parts())?;
+            step_state.move_by_increment(flow, increment)?;
+            step_state.evaluate_there(flow, time + step * node, rates.parts())?;
             if let Some(correction) = &mut self.correction {
-                correction.apply(standing, flow, span, increment, rates)?;
+                correction.apply(step_state, flow, span, increment, rates)?;
             }
         }
         Ok(())
@@ -188,10 +188,10 @@ impl Collocation {
     fn sizes<'a>(
         &'a self,
         change: &'a [f64],
-        standing: &'a Standing,
+        step_state: &'a StepState,
     ) -> impl Iterator<Item = f64> + 'a {
         let (phi, y) = change.split_at(self.freedoms);
-        let units = self.units.iter().zip(&standing.rates.speeds);
+        let units = self.units.iter().zip(&step_state.rates.speeds);
         let rates = y
             .iter()
             .zip(units)
@@ -200,10 +200,10 @@ impl Collocation {
     }
 
     /// The largest size of changes or increments; NaN where one is.
-    fn largest(&self, changes: &[Vec<f64>], standing: &Standing) -> f64 {
+    fn largest(&self, changes: &[Vec<f64>], step_state: &StepState) -> f64 {
         let sizes = changes
             .iter()
-            .flat_map(|change| self.sizes(change, standing));
+            .flat_map(|change| self.sizes(change, step_state));
         // A NaN stays.
         sizes.fold(0.0, |most, size| match size > most || size.is_nan() {
             true => size,
@@ -212,10 +212,10 @@ impl Collocation {
     }
 
     /// The joint that changed most in the last iteration.
-    fn no_convergence(&self, standing: &Standing, flow: &Flow<'_>) -> StepFailure {
+    fn no_convergence(&self, step_state: &StepState, flow: &Flow<'_>) -> StepFailure {
         let mut worst = (0, 0.0);
         for change in &self.changes {
-            for (row, size) in self.sizes(change, standing).enumerate() {
+            for (row, size) in self.sizes(change, step_state).enumerate() {
                 if !size.is_finite() {
                     return StepFailure::State(StateError::NoValue {
                         joint: flow.row_name(row),

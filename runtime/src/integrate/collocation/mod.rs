@@ -17,7 +17,7 @@ pub(super) use coefficients::{Coefficients, GAUSS_2, GAUSS_3, MIDPOINT, RADAU_5}
 use super::StepFailure;
 use super::discrete_gradient::Correction;
 use super::flow::{Flow, Rates};
-use super::standing::{Standing, add};
+use super::step_state::{StepState, add};
 use super::stepper::{Solves, Span, StagePolynomial, Stepper};
 use alloc::vec;
 use alloc::vec::Vec;
@@ -104,7 +104,7 @@ impl Collocation {
     /// Moves to the end of the step.
     fn finish(
         &self,
-        standing: &mut Standing,
+        step_state: &mut StepState,
         flow: &Flow<'_>,
         step: f64,
     ) -> Result<(), StepFailure> {
@@ -117,10 +117,10 @@ impl Collocation {
         if self.newton.is_some() {
             // F of a stiff mechanism is its increments' rounding, many times over.
             let terms = ends.iter().zip(&self.increments);
-            return standing
+            return step_state
                 .move_by_increments(flow, terms.map(|(weight, own)| (*weight, own.as_slice())));
         }
-        standing.move_by(flow, |_, phi, y| {
+        step_state.move_by(flow, |_, phi, y| {
             for ((weight, rest), rates) in weights.iter().zip(*rests).zip(&self.stages) {
                 for part in [rest, weight] {
                     rates.add_to(step * part, phi, y);
@@ -140,18 +140,18 @@ impl Collocation {
 impl Stepper for Collocation {
     fn attempt(
         &mut self,
-        standing: &mut Standing,
+        step_state: &mut StepState,
         flow: &mut Flow<'_>,
         span: Span,
     ) -> Result<(), StepFailure> {
         if self.units.is_empty() {
-            self.units = flow.units(&standing.configuration)?;
+            self.units = flow.units(&step_state.configuration)?;
         }
         loop {
             self.contraction = 0.0;
-            let outcome = self.iterate(standing, flow, span);
+            let outcome = self.iterate(step_state, flow, span);
             let Err(cause) = outcome else {
-                return self.finish(standing, flow, span.step);
+                return self.finish(step_state, flow, span.step);
             };
             let extrapolates = core::mem::replace(&mut self.before.step, 0.0) > 0.0;
             match &mut self.newton {
@@ -168,30 +168,30 @@ impl Stepper for Collocation {
 
     fn error(
         &mut self,
-        standing: &mut Standing,
+        step_state: &mut StepState,
         flow: &mut Flow<'_>,
         span: Span,
         tolerance: f64,
     ) -> Result<(f64, usize), StepFailure> {
         let tolerance = of_estimate(tolerance);
-        self.probe.copy_from(&standing.rates);
-        self.estimate(standing, span.step, tolerance);
-        let found = self.judge(standing, flow)?;
+        self.probe.copy_from(&step_state.rates);
+        self.estimate(step_state, span.step, tolerance);
+        let found = self.judge(step_state, flow)?;
         if found.0 <= 1.0 {
             return Ok(found);
         }
         // Where the first estimate is of what is stiff alone, the second is not.
         let (phi, y) = self.estimate.split_at_mut(self.freedoms);
-        add(phi, 1.0, &standing.offset);
-        add(y, 1.0, &standing.y);
-        flow.evaluate(span.time, &standing.base, phi, y, self.probe.parts())?;
-        self.estimate(standing, span.step, tolerance);
-        self.judge(standing, flow)
+        add(phi, 1.0, &step_state.offset);
+        add(y, 1.0, &step_state.y);
+        flow.evaluate(span.time, &step_state.base, phi, y, self.probe.parts())?;
+        self.estimate(step_state, span.step, tolerance);
+        self.judge(step_state, flow)
     }
 
     fn accept(
         &mut self,
-        standing: &mut Standing,
+        step_state: &mut StepState,
         flow: &mut Flow<'_>,
         time: f64,
         span: Span,
@@ -203,10 +203,10 @@ impl Stepper for Collocation {
         if let Some(correction) = &mut self.correction {
             correction.accept();
         }
-        let moves = standing.moves;
-        standing.accept(flow, time, None)?;
+        let moves = step_state.moves;
+        step_state.accept(flow, time, None)?;
         core::mem::swap(&mut self.increments, &mut self.before.increments);
-        self.before.step = if standing.moves == moves {
+        self.before.step = if step_state.moves == moves {
             span.step
         } else {
             0.0

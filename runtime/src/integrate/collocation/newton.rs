@@ -7,7 +7,7 @@ use super::coefficients::Coefficients;
 use super::dense::Dense;
 use super::tree::Tree;
 use crate::integrate::flow::Flow;
-use crate::integrate::standing::Standing;
+use crate::integrate::step_state::StepState;
 use crate::integrate::stepper::{Solves, Span};
 use crate::integrate::{Form, StepFailure};
 use alloc::boxed::Box;
@@ -68,7 +68,7 @@ impl Newton {
     /// Evaluates and factorises what the step over `span` needs.
     pub(super) fn prepare(
         &mut self,
-        standing: &Standing,
+        step_state: &StepState,
         flow: &mut Flow<'_>,
         Span { time, step }: Span,
         solves: &mut Solves,
@@ -77,13 +77,13 @@ impl Newton {
             // Also where they cannot be evaluated: there is nothing newer to try.
             self.is_fresh = true;
             if let System::Tree(tree) = &mut self.system {
-                tree.evaluate(standing);
+                tree.evaluate(step_state);
                 if tree.leaves_out() && flow.mechanism.layout().speeds < LARGE_COUPLED {
                     self.system = System::Dense(Box::new(Dense::new(self.method, flow)));
                 }
             }
             if let System::Dense(dense) = &mut self.system {
-                dense.evaluate(standing, flow, time)?;
+                dense.evaluate(step_state, flow, time)?;
             }
             solves.jacobians += 1;
             (self.stale, self.step) = (false, f64::NAN);
@@ -93,7 +93,7 @@ impl Newton {
         }
         self.step = f64::NAN;
         solves.factorizations += match &mut self.system {
-            System::Tree(tree) => tree.factorize(step, standing)?,
+            System::Tree(tree) => tree.factorize(step, step_state)?,
             System::Dense(dense) => dense.factorize(flow, step)?,
         };
         self.step = step;

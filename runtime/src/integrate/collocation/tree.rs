@@ -10,7 +10,7 @@ use crate::dynamics::{Dynamics, LoadedMass, Recursive};
 use crate::elements::JointSlopes;
 use crate::integrate::flow::{Flow, multiply};
 use crate::integrate::linear::Charts;
-use crate::integrate::standing::{Standing, add};
+use crate::integrate::step_state::{StepState, add};
 use crate::integrate::{Form, StepFailure};
 use crate::mechanism::Ranges;
 use crate::steps::Variation;
@@ -127,13 +127,13 @@ impl Tree {
     }
 
     /// Evaluates K, C, D and B at the state.
-    pub(super) fn evaluate(&mut self, standing: &Standing) {
-        let (q, speeds) = (&standing.configuration, &standing.rates.speeds);
+    pub(super) fn evaluate(&mut self, step_state: &StepState) {
+        let (q, speeds) = (&step_state.configuration, &step_state.rates.speeds);
         self.dynamics
             .stand_loaded(q, speeds, &mut self.variations, &mut self.slopes);
         let mechanism = self.dynamics.mechanism();
         self.charts
-            .set(mechanism, &standing.base, &standing.offset, speeds);
+            .set(mechanism, &step_state.base, &step_state.offset, speeds);
         for (index, block) in self.blocks.iter_mut().enumerate() {
             let body = &mechanism.bodies()[index];
             let (freedoms, count) = (body.ranges().freedoms.len(), body.ranges().speeds.len());
@@ -154,7 +154,7 @@ impl Tree {
     pub(super) fn factorize(
         &mut self,
         step: f64,
-        standing: &Standing,
+        step_state: &StepState,
     ) -> Result<usize, StepFailure> {
         let Self {
             dynamics,
@@ -175,7 +175,7 @@ impl Tree {
             };
             let factorized = dynamics.factorize_loaded(load, &mut factors.mass);
             factorized.map_err(|cause| {
-                let (q, speeds) = (&standing.configuration, &standing.rates.speeds);
+                let (q, speeds) = (&step_state.configuration, &step_state.rates.speeds);
                 dynamics.mechanism().first_cause(cause, q, speeds)
             })?;
         }

@@ -2,10 +2,10 @@
 //!
 //! Of a joint only H, X^c, S̄, c and Ẋ̄ᵀh enter, as functions of Q; none of the kernels that hold derivatives.
 
-mod equipment;
+mod actuation;
 mod kernels;
 
-pub use equipment::Equipment;
+pub use actuation::Actuation;
 pub use kernels::{Kernels, Lookup, behind, library_kernels, of};
 
 use hamel::mechanism::Mechanism;
@@ -33,7 +33,7 @@ struct Body {
 pub struct DualForm {
     bodies: Vec<Body>,
     gravity: Vector3<D>,
-    equipment: Equipment,
+    actuation: Actuation,
 }
 
 /// A state in dual numbers.
@@ -55,13 +55,13 @@ fn lifted(pose: &Pose<f64>) -> Pose<D> {
 }
 
 impl DualForm {
-    /// A mechanism on joints of the library that carries the given equipment.
-    pub fn new(mechanism: &Arc<Mechanism>, equipment: Equipment) -> Self {
-        Self::of(mechanism, equipment, library_kernels)
+    /// A mechanism on joints of the library that carries what the description names.
+    pub fn new(mechanism: &Arc<Mechanism>, actuation: Actuation) -> Self {
+        Self::of(mechanism, actuation, library_kernels)
     }
 
     /// A mechanism on joints whose kernels are found elsewhere.
-    pub fn of(mechanism: &Arc<Mechanism>, equipment: Equipment, lookup: Lookup) -> Self {
+    pub fn of(mechanism: &Arc<Mechanism>, actuation: Actuation, lookup: Lookup) -> Self {
         let bodies = mechanism.bodies();
         let body = |body: &hamel::mechanism::Body| {
             let above = body
@@ -92,7 +92,7 @@ impl DualForm {
         Self {
             bodies: bodies.iter().map(body).collect(),
             gravity: mechanism.gravity().map(Dual::constant),
-            equipment,
+            actuation,
         }
     }
 
@@ -137,9 +137,9 @@ impl DualForm {
                 *effort = column.dot(wrench);
             }
         }
-        self.equipment.add_rotors(accelerations, &mut efforts);
+        self.actuation.add_rotors(accelerations, &mut efforts);
         if falls {
-            let acting = self.equipment.forces(self, q, speeds);
+            let acting = self.actuation.forces(self, q, speeds);
             for (effort, force) in efforts.iter_mut().zip(acting) {
                 *effort -= force;
             }
@@ -217,7 +217,7 @@ impl DualForm {
                 *rate += column.dot(&turned) + more;
             }
         }
-        for (rate, force) in rates.iter_mut().zip(self.equipment.forces(self, q, speeds)) {
+        for (rate, force) in rates.iter_mut().zip(self.actuation.forces(self, q, speeds)) {
             *rate += force;
         }
         rates

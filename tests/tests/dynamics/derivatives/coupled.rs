@@ -6,7 +6,7 @@ use hamel::dynamics::{
 use hamel::elements::{Drive, Law, PointConstraint};
 use hamel::mechanism::Mechanism;
 use hamel::nalgebra::{DMatrix, Vector3};
-use hamel_tests::derivatives::{Equipment, Equipped, matrix};
+use hamel_tests::derivatives::{Actuation, Equipped, matrix};
 use hamel_tests::differences::{STEP, derivative, moved};
 use hamel_tests::figures::{Largest, difference, size};
 use hamel_tests::random::{Case, cases, library, numbers};
@@ -36,10 +36,10 @@ pub fn equipped() -> Vec<Equipped> {
 fn coupled(case: Case) -> Option<Equipped> {
     let mut random = ChaCha8Rng::seed_from_u64(case.seed);
     let Equipped {
-        case, equipment, ..
+        case, actuation, ..
     } = match case.seed.is_multiple_of(2) {
         true => Equipped::fully(case),
-        false => Equipped::new(case, Equipment::default()),
+        false => Equipped::new(case, Actuation::default()),
     };
     let mut mechanism = (*case.mechanism).clone();
     let count = mechanism.bodies().len();
@@ -66,7 +66,7 @@ fn coupled(case: Case) -> Option<Equipped> {
         speeds,
         ..case
     };
-    Some(Equipped::new(case, equipment))
+    Some(Equipped::new(case, actuation))
 }
 
 fn driven(mechanism: Mechanism, body: usize) -> Mechanism {

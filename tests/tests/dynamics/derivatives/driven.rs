@@ -5,7 +5,7 @@ use hamel::dynamics::{ForwardDerivatives, HamiltonianDerivatives, Recursive};
 use hamel::elements::{Drive, Law};
 use hamel::nalgebra::{DMatrix, DVector};
 use hamel_tests::derivatives::{
-    BOUND, Equipment, Equipped, Expected, constants, derivatives, matrix, relative,
+    Actuation, BOUND, Equipped, Expected, constants, derivatives, matrix, relative,
 };
 use hamel_tests::figures::Largest;
 use hamel_tests::random::{Case, cases, library};
@@ -14,11 +14,11 @@ use std::sync::Arc;
 /// Every third joint driven; half of the cases with elements.
 fn all() -> Vec<Equipped> {
     let equipped = |case: Case| {
-        let mut equipment = Equipment::default();
+        let mut actuation = Actuation::default();
         if case.seed.is_multiple_of(2) {
-            equipment = Equipment::random(&case.mechanism, &case.q, case.seed);
+            actuation = Actuation::random(&case.mechanism, &case.q, case.seed);
         }
-        let mechanism = equipment.equip(&case.mechanism);
+        let mechanism = actuation.equip(&case.mechanism);
         let drive = |body: usize| Drive {
             name: format!("drive {body}"),
             body,
@@ -29,7 +29,7 @@ fn all() -> Vec<Equipped> {
         let mechanism = (*mechanism).clone().with_drives(drives.collect());
         let mechanism = Arc::new(mechanism.expect("they fit"));
         let case = Case { mechanism, ..case };
-        Equipped::new(case, equipment)
+        Equipped::new(case, actuation)
     };
     cases(&library(), 12, 48).map(equipped).collect()
 }

@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 /// What a mechanism carries besides its bodies; nothing by default.
 #[derive(Clone, Debug, Default)]
-pub struct Equipment {
+pub struct Actuation {
     springs: Vec<JointSpring>,
     turns: Vec<RotationSpring>,
     dampers: Vec<JointDamper>,
@@ -55,7 +55,7 @@ fn rest(owner: &Body, q: &[f64], mut near: Vec<f64>) -> Vec<f64> {
     }
 }
 
-impl Equipment {
+impl Actuation {
     /// Everything at every body, of order 1.
     pub fn random(mechanism: &Mechanism, q: &[f64], seed: u64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);

@@ -22,7 +22,7 @@ pub(super) struct Found {
 }
 
 /// What is known of the events' functions.
-pub(super) struct Lookout<'a> {
+pub(super) struct EventLocation<'a> {
     pub(super) events: Vec<Event<'a>>,
     /// The last value of each that was not 0; 0 where there has been none.
     sides: Vec<f64>,
@@ -32,7 +32,7 @@ pub(super) struct Lookout<'a> {
     pub(super) found: Vec<Found>,
 }
 
-impl<'a> Lookout<'a> {
+impl<'a> EventLocation<'a> {
     pub(super) fn new(events: Vec<Event<'a>>) -> Self {
         Self {
             sides: vec![0.0; events.len()],

@@ -1,8 +1,8 @@
 //! Where a step begins, and where the step being tried ends: what all schemes share.
 
 use super::StepFailure;
+use super::compensation::{Compensation, add_exactly};
 use super::flow::{Flow, Rates, RatesMut, retract};
-use super::residue::{Residue, add_exactly};
 use super::turns::Turns;
 use alloc::sync::Arc;
 use alloc::vec;
@@ -13,7 +13,7 @@ use alloc::vec::Vec;
 const FAR: f64 = 0.5;
 
 /// The state at the last accepted step, and the end of the one being tried.
-pub(super) struct Standing {
+pub(super) struct StepState {
     /// Q at the state: `Φ(base, offset)`.
     pub(super) configuration: Vec<f64>,
     /// y at the state.
@@ -29,8 +29,8 @@ pub(super) struct Standing {
     /// y there.
     pub(super) next_y: Vec<f64>,
     /// What ϕ and y are too coarse to hold.
-    residue: Residue,
-    next_residue: Residue,
+    compensation: Compensation,
+    next_compensation: Compensation,
     /// Estimated errors of ϕ and y, and what that of y amounts to in v̄.
     errors: Rates,
     /// How far each joint turns from its base point.
@@ -39,7 +39,7 @@ pub(super) struct Standing {
     pub(super) moves: usize,
 }
 
-impl Standing {
+impl StepState {
     pub(super) fn new(
         flow: &mut Flow<'_>,
         time: f64,
@@ -52,23 +52,23 @@ impl Standing {
         flow.mechanism.prescribe_speeds(time, &mut speeds);
         let y = flow.initial(configuration, &speeds)?;
         let freedoms = flow.mechanism.layout().freedoms;
-        let mut standing = Self {
+        let mut step_state = Self {
             configuration: configuration.to_vec(),
             base: configuration.to_vec(),
             offset: vec![0.0; freedoms],
             rates: flow.new_rates(),
             phi: vec![0.0; freedoms],
             next_y: y.clone(),
-            residue: Residue::new(&flow.mechanism),
-            next_residue: Residue::new(&flow.mechanism),
+            compensation: Compensation::new(&flow.mechanism),
+            next_compensation: Compensation::new(&flow.mechanism),
             errors: flow.new_rates(),
             turns: Turns::new(&flow.mechanism),
             moves: 0,
             y,
         };
-        standing.evaluate(flow, time)?;
-        standing.turns.set(&flow.mechanism, configuration);
-        Ok(standing)
+        step_state.evaluate(flow, time)?;
+        step_state.turns.set(&flow.mechanism, configuration);
+        Ok(step_state)
     }
 
     /// v̄ at the state.
@@ -98,9 +98,9 @@ impl Standing {
         flow: &Flow<'_>,
         add: impl FnOnce(&Rates, &mut [f64], &mut [f64]),
     ) -> Result<(), StepFailure> {
-        let Residue { phi, y } = &mut self.next_residue;
-        phi.copy_from_slice(&self.residue.phi);
-        y.copy_from_slice(&self.residue.y);
+        let Compensation { phi, y } = &mut self.next_compensation;
+        phi.copy_from_slice(&self.compensation.phi);
+        y.copy_from_slice(&self.compensation.y);
         add(&self.rates, phi, y);
         add_all_exactly(&self.offset, &mut self.phi, phi);
         add_all_exactly(&self.y, &mut self.next_y, y);
@@ -114,7 +114,7 @@ impl Standing {
         increment: &[f64],
     ) -> Result<(), StepFailure> {
         let (turned, pushed) = increment.split_at(self.offset.len());
-        let (rest, lost) = (&self.residue, &mut self.next_residue);
+        let (rest, lost) = (&self.compensation, &mut self.next_compensation);
         let parts = [
             (
                 &self.offset,
@@ -207,7 +207,7 @@ impl Standing {
         time: f64,
         last: Option<(&[f64], &[f64])>,
     ) -> Result<(), StepFailure> {
-        core::mem::swap(&mut self.residue, &mut self.next_residue);
+        core::mem::swap(&mut self.compensation, &mut self.next_compensation);
         core::mem::swap(&mut self.y, &mut self.next_y);
         self.offset.copy_from_slice(&self.phi);
         retract(
@@ -222,7 +222,7 @@ impl Standing {
         let drives = flow.mechanism.drives();
         for drive in drives {
             let own = flow.mechanism.bodies()[drive.body].ranges().speeds.clone();
-            self.residue.y[own].fill(0.0);
+            self.compensation.y[own].fill(0.0);
         }
         // Prescribed speeds are what their laws say, not what steps have made of them.
         flow.mechanism.prescribe_speeds(time, &mut self.y);
@@ -254,7 +254,7 @@ impl Standing {
             let projected = body.joint().project(new);
             projected.map_err(|cause| body.finite_map(cause))?;
             let phi = &mut self.offset[freedoms.clone()];
-            self.residue.keep(body, old, new, phi);
+            self.compensation.keep(body, old, new, phi);
             old.copy_from_slice(new);
             phi.fill(0.0);
             moved = true;
@@ -266,7 +266,7 @@ impl Standing {
         Ok(())
     }
 
-    /// Largest rate at the state, as [`Standing::largest_error`] measures it, 1/s.
+    /// Largest rate at the state, as [`StepState::largest_error`] measures it, 1/s.
     pub(super) fn pace(&mut self, flow: &mut Flow<'_>) -> Result<f64, StepFailure> {
         let (rates, accelerations) = (&self.rates, &mut self.errors.speeds);
         flow.speeds_of(&self.configuration, &rates.y, accelerations)?;

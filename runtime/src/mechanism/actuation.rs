@@ -12,7 +12,7 @@ use nalgebra::DMatrix;
 
 /// Elements, rotor inertias and drives of a mechanism.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Equipment {
+pub(super) struct Actuation {
     elements: Vec<Arc<dyn Element>>,
     /// One entry a freedom; empty where there is none.
     armature: Vec<f64>,
@@ -47,7 +47,7 @@ impl Mechanism {
             .iter()
             .filter_map(|element| element.check(&self).err());
         refuse(failures)?;
-        self.equipment.elements = elements;
+        self.actuation.elements = elements;
         Ok(self)
     }
 
@@ -90,10 +90,10 @@ impl Mechanism {
                 reason: "is nonholonomic: only a holonomic joint can have an armature",
             }));
         }
-        if self.equipment.armature.is_empty() {
-            self.equipment.armature = vec![0.0; self.layout.freedoms];
+        if self.actuation.armature.is_empty() {
+            self.actuation.armature = vec![0.0; self.layout.freedoms];
         }
-        self.equipment.armature[freedoms].copy_from_slice(inertia);
+        self.actuation.armature[freedoms].copy_from_slice(inertia);
         Ok(self)
     }
 
@@ -104,7 +104,7 @@ impl Mechanism {
     pub fn with_drives(mut self, drives: Vec<Drive>) -> Result<Self, Vec<MechanismError>> {
         let mut driven = vec![false; self.bodies.len()];
         let mut dependent = vec![false; self.layout.speeds];
-        for &speed in &self.equipment.dependent {
+        for &speed in &self.actuation.dependent {
             dependent[speed] = true;
         }
         let failures = drives.iter().filter_map(|drive| {
@@ -130,8 +130,8 @@ impl Mechanism {
             drive.check(&self).err().or(twice).or(bound)
         });
         refuse(failures)?;
-        self.equipment.drives = drives;
-        self.equipment.driven = driven;
+        self.actuation.drives = drives;
+        self.actuation.driven = driven;
         Ok(self)
     }
 
@@ -155,17 +155,17 @@ impl Mechanism {
         }
         self.check_configuration(q)
             .map_err(|cause| vec![MechanismError::Configuration(cause)])?;
-        self.equipment.constraints = constraints;
-        self.equipment.dependent.clear();
+        self.actuation.constraints = constraints;
+        self.actuation.dependent.clear();
         let matrix = Recursive::new(Arc::new(self.clone())).constraint_matrix(q);
         let mut driven = vec![false; self.layout.speeds];
-        for drive in &self.equipment.drives {
+        for drive in &self.actuation.drives {
             driven[self.bodies[drive.body].ranges.speeds.clone()].fill(true);
         }
         let found = dependent_columns(matrix, |speed| driven[speed]);
-        self.equipment.dependent = found.map_err(|rows| {
+        self.actuation.dependent = found.map_err(|rows| {
             let refused = rows.into_iter().map(|(row, ratio)| {
-                let constraint = self.equipment.constraints[row].name.clone();
+                let constraint = self.actuation.constraints[row].name.clone();
                 MechanismError::DependentConstraint {
                     constraint,
                     ratio,
@@ -179,23 +179,23 @@ impl Mechanism {
 
     /// Constraints that couple joints.
     pub fn constraints(&self) -> &[PointConstraint] {
-        &self.equipment.constraints
+        &self.actuation.constraints
     }
 
     /// The speeds that constraints make depend on the others, one a constraint.
     pub fn dependent_speeds(&self) -> &[usize] {
-        &self.equipment.dependent
+        &self.actuation.dependent
     }
 
     /// What acts on the mechanism besides gravity and inputs.
     pub fn elements(&self) -> &[Arc<dyn Element>] {
-        &self.equipment.elements
+        &self.actuation.elements
     }
 
     /// Rotor inertias of the joint under `body`, one entry a freedom; empty where it has none, and where there is no such body.
     pub fn armature(&self, body: usize) -> &[f64] {
         let freedoms = self.bodies.get(body).map(|own| own.ranges.freedoms.clone());
-        let own = freedoms.and_then(|freedoms| self.equipment.armature.get(freedoms));
+        let own = freedoms.and_then(|freedoms| self.actuation.armature.get(freedoms));
         let own = own.unwrap_or(&[]);
         match own.iter().all(|a| *a == 0.0) {
             true => &[],
@@ -205,12 +205,12 @@ impl Mechanism {
 
     /// Joints whose motion is prescribed.
     pub fn drives(&self) -> &[Drive] {
-        &self.equipment.drives
+        &self.actuation.drives
     }
 
     /// Whether the motion of the joint under `body` is prescribed.
     pub fn is_driven(&self, body: usize) -> bool {
-        self.equipment
+        self.actuation
             .driven
             .get(body)
             .is_some_and(|&driven| driven)
@@ -238,7 +238,7 @@ impl Mechanism {
 
     /// [`Mechanism::set_driven_speeds`] into speeds of the right size.
     pub(crate) fn prescribe_speeds(&self, t: f64, speeds: &mut [f64]) {
-        for drive in &self.equipment.drives {
+        for drive in &self.actuation.drives {
             let own = &mut speeds[self.bodies[drive.body].ranges.speeds.clone()];
             for (speed, law) in own.iter_mut().zip(&drive.laws) {
                 *speed = law.velocity(t);
@@ -248,7 +248,7 @@ impl Mechanism {
 
     /// [`Mechanism::set_driven_accelerations`] into efforts of the right size.
     pub(crate) fn prescribe_accelerations(&self, t: f64, efforts: &mut [f64]) {
-        for drive in &self.equipment.drives {
+        for drive in &self.actuation.drives {
             let own = &mut efforts[self.bodies[drive.body].ranges.freedoms.clone()];
             for (effort, law) in own.iter_mut().zip(&drive.laws) {
                 *effort = law.acceleration(t);

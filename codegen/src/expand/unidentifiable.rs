@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 ///
 /// `child` is X^c, `twists` the twists by ϕ̇ in the child frame. What holds only at special parameter values does not count. Conditions
 /// are met one after the other, so that the first ones, which are short, leave little for the others.
-pub fn imperceptible(child: &Matrix, twists: &Matrix, ideal: &Ideal) -> Vec<[Rational; 10]> {
+pub fn unidentifiable(child: &Matrix, twists: &Matrix, ideal: &Ideal) -> Vec<[Rational; 10]> {
     let whole: Vec<[Rational; 10]> = (0..10).map(unit).collect();
     let columns = (0..child.columns()).map(|j| Matrix::column_vector(child.column(j)));
     // Forces before moments: they hold mass and first moment alone.

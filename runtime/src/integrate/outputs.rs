@@ -3,17 +3,17 @@
 use super::dense::{Dense, Instant};
 use super::driver::Driver;
 use super::event::Event;
+use super::event_location::{EventLocation, Found};
 use super::flow::Flow;
-use super::lookout::{Found, Lookout};
-use super::standing::Standing;
+use super::step_state::StepState;
 use super::stepper::{Span, Stepper};
 use super::{Crossing, Form, Observer, Sampling, State, Step, StepFailure};
 use alloc::vec::Vec;
 
 /// The dense output, and who wants it.
-pub(super) struct Between<'a> {
+pub(super) struct Outputs<'a> {
     pub(super) dense: Dense,
-    lookout: Lookout<'a>,
+    location: EventLocation<'a>,
     pub(super) sampling: Sampling,
 }
 
@@ -23,22 +23,22 @@ enum Due {
     Crossing(Found),
 }
 
-impl<'a> Between<'a> {
+impl<'a> Outputs<'a> {
     /// Nothing where nothing is asked for.
     pub(super) fn new(
         sampling: Sampling,
         events: Vec<Event<'a>>,
         order: u32,
-        (flow, standing, time): (&Flow<'_>, &Standing, f64),
+        (flow, step_state, time): (&Flow<'_>, &StepState, f64),
     ) -> Result<Option<Self>, StepFailure> {
         if sampling == Sampling::Landing && events.is_empty() {
             return Ok(None);
         }
-        let mut lookout = Lookout::new(events);
-        lookout.begin(time, &standing.configuration, standing.speeds())?;
+        let mut location = EventLocation::new(events);
+        location.begin(time, &step_state.configuration, step_state.speeds())?;
         Ok(Some(Self {
             dense: Dense::new(order, flow),
-            lookout,
+            location,
             sampling,
         }))
     }
@@ -46,20 +46,20 @@ impl<'a> Between<'a> {
     /// Makes ready what is due in the step just accepted, which ends at `time`; whether anything is.
     fn prepare(
         &mut self,
-        standing: &Standing,
+        step_state: &StepState,
         flow: &mut Flow<'_>,
         stepper: &dyn Stepper,
         (time, has_sample): (f64, bool),
     ) -> Result<bool, StepFailure> {
-        self.dense.finish(standing, flow, time);
-        let end = (time, &*standing.configuration, standing.speeds());
-        let seen = self.lookout.glance(&mut self.dense, flow, end)?;
+        self.dense.finish(step_state, flow, time);
+        let end = (time, &*step_state.configuration, step_state.speeds());
+        let seen = self.location.glance(&mut self.dense, flow, end)?;
         if !seen && !has_sample {
             return Ok(false);
         }
         self.dense.raise(flow, stepper.stage_polynomial())?;
         if seen {
-            self.lookout.locate(&mut self.dense, flow)?;
+            self.location.locate(&mut self.dense, flow)?;
         }
         Ok(true)
     }
@@ -67,7 +67,7 @@ impl<'a> Between<'a> {
     /// What comes next, after `passed` crossings; `sample` is the time of the next sample within the step.
     fn next(&self, passed: usize, sample: Option<f64>) -> Option<Due> {
         let sample = sample.map(|time| self.dense.part(time));
-        let crossing = self.lookout.found.get(passed);
+        let crossing = self.location.found.get(passed);
         match (sample, crossing) {
             (Some(part), Some(found)) if found.part < part => Some(Due::Crossing(*found)),
             (Some(part), _) => Some(Due::Sample { part }),
@@ -87,40 +87,40 @@ fn state_of(instant: Instant<'_>) -> State {
 impl Driver<'_> {
     /// A step over `span` is about to be accepted.
     pub(super) fn leave(&mut self, span: Span) {
-        if let Some(between) = &mut self.between {
-            between.dense.begin(&self.standing, span);
+        if let Some(outputs) = &mut self.outputs {
+            outputs.dense.begin(&self.step_state, span);
         }
     }
 
     /// Shows and records what lies within the step just accepted, up to what ends the integration.
     pub(super) fn pass(&mut self, observer: &mut Observer<'_>) -> Result<(), StepFailure> {
-        let Some(mut between) = self.between.take() else {
+        let Some(mut outputs) = self.outputs.take() else {
             return Ok(());
         };
-        let outcome = self.pass_over(&mut between, observer);
-        between.lookout.move_on();
-        self.between = Some(between);
+        let outcome = self.pass_over(&mut outputs, observer);
+        outputs.location.move_on();
+        self.outputs = Some(outputs);
         outcome
     }
 
     fn pass_over(
         &mut self,
-        between: &mut Between<'_>,
+        outputs: &mut Outputs<'_>,
         observer: &mut Observer<'_>,
     ) -> Result<(), StepFailure> {
-        let at = (self.clock.time(), self.sample_within(between).is_some());
+        let at = (self.clock.time(), self.sample_within(outputs).is_some());
         let (flow, stepper) = (&mut self.flow, &*self.stepper);
-        if !between.prepare(&self.standing, flow, stepper, at)? {
+        if !outputs.prepare(&self.step_state, flow, stepper, at)? {
             return Ok(());
         }
         let mut passed = 0;
         while self.end.is_none() {
-            match between.next(passed, self.sample_within(between)) {
+            match outputs.next(passed, self.sample_within(outputs)) {
                 None => break,
-                Some(Due::Sample { part }) => self.sample(between, part, observer)?,
+                Some(Due::Sample { part }) => self.sample(outputs, part, observer)?,
                 Some(Due::Crossing(found)) => {
                     passed += 1;
-                    self.record(between, found)?;
+                    self.record(outputs, found)?;
                 }
             }
         }
@@ -128,21 +128,21 @@ impl Driver<'_> {
     }
 
     /// The next sample, where it lies within the step and is not to be landed on.
-    fn sample_within(&self, between: &Between<'_>) -> Option<f64> {
+    fn sample_within(&self, outputs: &Outputs<'_>) -> Option<f64> {
         let time = self.options.samples.get(self.samples.len()).copied()?;
-        let lies_within = between.sampling == Sampling::Dense && time < self.clock.time();
+        let lies_within = outputs.sampling == Sampling::Dense && time < self.clock.time();
         lies_within.then_some(time)
     }
 
     fn sample(
         &mut self,
-        between: &mut Between<'_>,
+        outputs: &mut Outputs<'_>,
         part: f64,
         observer: &mut Observer<'_>,
     ) -> Result<(), StepFailure> {
         let index = self.samples.len();
         let time = self.options.samples[index];
-        let instant = between.dense.at(&mut self.flow, part)?;
+        let instant = outputs.dense.at(&mut self.flow, part)?;
         let state = State {
             time,
             ..state_of(instant)
@@ -163,9 +163,9 @@ impl Driver<'_> {
         Ok(())
     }
 
-    fn record(&mut self, between: &mut Between<'_>, found: Found) -> Result<(), StepFailure> {
-        let state = state_of(between.dense.at(&mut self.flow, found.part)?);
-        let event = &between.lookout.events[found.event];
+    fn record(&mut self, outputs: &mut Outputs<'_>, found: Found) -> Result<(), StepFailure> {
+        let state = state_of(outputs.dense.at(&mut self.flow, found.part)?);
+        let event = &outputs.location.events[found.event];
         if event.stops {
             self.end = Some(state.clone());
         }

@@ -8,16 +8,16 @@ use crate::mechanism::{Body, Mechanism};
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// The exact state is that of `Φ(base, ϕ + residue.phi)` and `y + residue.y`.
+/// The exact state is that of `Φ(base, ϕ + compensation.phi)` and `y + compensation.y`.
 #[derive(Clone, Debug)]
-pub(super) struct Residue {
+pub(super) struct Compensation {
     /// One entry a freedom.
     pub(super) phi: Vec<f64>,
     /// One entry a speed.
     pub(super) y: Vec<f64>,
 }
 
-impl Residue {
+impl Compensation {
     /// Nothing left over.
     pub(super) fn new(mechanism: &Mechanism) -> Self {
         let layout = mechanism.layout();
