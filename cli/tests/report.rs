@@ -70,8 +70,8 @@ fn a_report_measures_each_curve_once() {
     // A last line that was cut short is measured anew, and spoils nothing.
     fs::write(folder.join("work.csv"), &work[..work.len() - 40]).expect("the file is there");
     report(&folder, &[]);
-    let mended = fs::read_to_string(folder.join("work.csv")).expect("a file");
-    assert_eq!(mended.lines().count(), work.lines().count());
+    let restored = fs::read_to_string(folder.join("work.csv")).expect("a file");
+    assert_eq!(restored.lines().count(), work.lines().count());
     // What another machine has measured stays, and is measured here anew; the page shows it where there is nothing else.
     let machine = rows[0]
         .rsplit('"')

@@ -122,8 +122,8 @@ impl<R: Row> Store<R> {
     }
 }
 
-/// Takes rows out of a file, which is kept as it was beside it as `NAME.1.csv`, or with the next number that is free: what takes their place can be stopped and
-/// gone on with as if they had never been.
+/// Takes rows out of a file. The file as it was is kept beside it as `NAME.1.csv`, or with the next number that is free. The rows are measured again, and
+/// that can be stopped and resumed like any measurement.
 ///
 /// # Errors
 /// Files that cannot be read or written.

@@ -14,7 +14,7 @@ use hamel_scene::Arithmetic;
 pub fn equations(args: &Args, plan: &Plan) -> Result<Equations, Failure> {
     if plan.settings.arithmetic != Arithmetic::Doubles {
         return Err(Failure::Options(
-            "compiled equations are reckoned in doubles, and the scene asks for others: with `--compiled` say `--arithmetic doubles`".into(),
+            "compiled equations are evaluated in doubles, and the scene asks for others: with `--compiled` say `--arithmetic doubles`".into(),
         ));
     }
     let compiler = Compiler::find()?;

@@ -16,7 +16,7 @@ struct Pivot {
     later: Vec<Sym>,
 }
 
-/// Where the velocity-dependent forces are reckoned.
+/// Where the velocity-dependent forces are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bias {
     /// In the same recursion.

@@ -31,7 +31,7 @@ impl Tree<'_> {
         wrenches
     }
 
-    /// A spring is reckoned at the last body that carries both of its ends: what is between that and the root does not move it.
+    /// The force of a spring is applied at the last body that carries both of its ends: what is between that and the root does not move it.
     fn add_spring(&self, spring: &BodySpring, wrenches: &mut [Wrench]) {
         let [from, to] = self.ends(spring);
         let (between, rate) = (to.place - from.place, to.velocity - from.velocity);

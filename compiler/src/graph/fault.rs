@@ -16,7 +16,7 @@ const LEAST_DIVISOR: f64 = 5.6e-309;
 /// What left the numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// What was being reckoned, where it is no part of a body: a spring, a constraint.
+    /// What was being computed, where it is no part of a body: a spring, a constraint.
     pub element: Option<String>,
     /// The section of the code, otherwise: the number of its body.
     pub section: u32,

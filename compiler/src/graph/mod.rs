@@ -134,7 +134,7 @@ pub struct Graph {
     signed: bool,
     section: u32,
     topic: &'static str,
-    /// What is being reckoned, where it is no part of a body.
+    /// What is being computed, where it is no part of a body.
     element: Option<String>,
     /// What left the numbers.
     faults: Vec<Fault>,

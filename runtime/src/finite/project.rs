@@ -45,7 +45,7 @@ impl<T: Scalar, const N: usize, const R: usize> Equations<T, N, R> {
         let mut directions = gradient.transpose();
         for j in 0..R {
             let length = norm(&directions.column(j).into_owned());
-            // A relation without gradient cannot be mended, but it is still checked.
+            // A relation without gradient cannot be corrected, but it is still checked.
             let divisor = T::select(T::zero().less(length), length, T::one());
             values[j] /= divisor;
             directions

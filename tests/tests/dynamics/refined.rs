@@ -81,7 +81,10 @@ fn heavy_bodies_on_light_ones_lose_nothing() {
     let doubles = error(&mut Recursive::new(Arc::clone(mechanism)));
     let refined = error(&mut Refined::new(Arc::clone(mechanism)));
     println!("doubles {doubles:e}, refined {refined:e}");
-    assert!(doubles > 1e-12, "nothing is lost that could be mended");
+    assert!(
+        doubles > 1e-12,
+        "nothing is lost that refinement could restore"
+    );
     // Initial attitudes are rounded to doubles in the one and not in the other: rates depend on them by factors of ten or so.
     assert!(refined < 64.0 * f64::EPSILON, "{refined:e}");
 }

@@ -121,7 +121,7 @@ impl Collocation {
             None if stalled => true,
             None => match &self.correction {
                 None => contraction < 0.5 && left < 0.05 * f64::EPSILON,
-                // Work was reckoned before this change, and adds up.
+                // Work was counted before this change, and adds up.
                 Some(correction) => {
                     correction.is_settled() && size < 4.0 * f64::EPSILON * whole.min(1.0)
                 }

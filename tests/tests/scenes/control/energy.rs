@@ -87,7 +87,7 @@ fn a_stiff_port_brings_the_pendulum_upright() {
     );
     assert!(last(&readings, 0).abs() < 1e-9 && readings[0].1[0] > 50.0);
     for pair in readings.windows(2) {
-        // The energy of up to 100 J is reckoned to 1e-13 of it, and steps keep it to 1e-10.
+        // The energy of up to 100 J is computed to 1e-13 of it, and steps keep it to 1e-10.
         assert!(pair[1].1[0] <= pair[0].1[0] + 1e-8, "{pair:?}");
     }
     let rotation = scene.mechanism.bodies()[0]

@@ -1,7 +1,7 @@
 //! The recursive form with residuals in 106 bits: exact where doubles cancel, and slower, up to a hundred times an evaluation.
 //!
 //! A light body that carries a heavy one, or a long chain, has a mass matrix of a large condition c, and the recursion in doubles finds
-//! accelerations to c roundings. Here they are mended (J. H. Wilkinson, *Rounding Errors in Algebraic Processes*, 1963, §3.6): inverse dynamics in
+//! accelerations to c roundings. Here they are improved by iterative refinement (J. H. Wilkinson, *Rounding Errors in Algebraic Processes*, 1963, §3.6): inverse dynamics in
 //! extended numbers tells what the accelerations at hand leave of the efforts, the factors at hand what to add. Each round gains as many digits as the
 //! first result had, so that the last one is what exact arithmetic would round to.
 //!
@@ -105,7 +105,7 @@ impl Refined {
         }
     }
 
-    /// v̄ of p̄, mended, with the twists of the tree to match.
+    /// v̄ of p̄ by iterative refinement, with the twists of the tree to match.
     fn refined_speeds(
         &mut self,
         q: &[f64],
