@@ -247,6 +247,26 @@ fn factors_that_differ_in_capitals_have_names_of_their_own() {
     }
 }
 
+/// `angle_2` and `angle2` would both be written with an index, a parameter `v1` like a velocity.
+#[test]
+fn names_that_would_be_written_alike_are_not() {
+    let joint = derived(
+        "hamel = 1; joint alike(angle: rad, v1: m > 0) { config u: R1, w: R1; let angle_2 = cos(u - w) * sin(2*u);
+           H = rot_z(u) * trans([v1*sin(u + w + angle), 0, w*v1]) * trans_x(angle_2*v1); }",
+    );
+    let text = explain_text(&joint, &Accuracy::default()).expect("the template holds");
+    let defined: Vec<&str> = text
+        .lines()
+        .filter_map(|line| line.split_once(" = "))
+        .map(|(left, _)| left.trim())
+        .filter(|left| left.starts_with("angle"))
+        .collect();
+    assert!(defined.contains(&"angle_2"), "{defined:?}");
+    let distinct: std::collections::BTreeSet<&&str> = defined.iter().collect();
+    assert_eq!(distinct.len(), defined.len(), "{defined:?}");
+    assert!(text.contains("w v1") || text.contains("v1 w"), "{text}");
+}
+
 /// A name that the spec gives means that value in every kernel, also in those that do without it.
 #[test]
 fn a_name_of_the_spec_has_one_value_in_all_kernels() {

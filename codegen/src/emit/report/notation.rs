@@ -44,19 +44,32 @@ impl Notation {
                 by_symbol.insert(symbol.clone(), name);
             }
         }
-        for parameter in &derived.spec.parameters {
-            by_symbol.insert(parameter.symbol.clone(), named(&parameter.symbol.name));
-        }
         let mut notation = Self { by_symbol };
+        for parameter in &derived.spec.parameters {
+            let name = notation.unused(&parameter.symbol.name);
+            notation.name(&parameter.symbol, name);
+        }
+        let mut bases = BTreeMap::new();
         for word in &derived.words {
-            notation.name_word(word, &arguments.local);
+            let base = bases.entry(&word.base);
+            let base = base.or_insert_with(|| notation.unused(&word.base)).clone();
+            notation.name_word(word, base, &arguments.local);
         }
         notation
     }
 
+    /// A name as mathematicians write it, or letter by letter where another is written so: `angle_2` beside `angle2`.
+    fn unused(&self, name: &str) -> Math {
+        let set = named(name);
+        match self.by_symbol.values().any(|known| *known == set) {
+            true => Math::Word(name.to_owned()),
+            false => set,
+        }
+    }
+
     /// A derivative is set as one: `∂lean/∂ϕ₁`.
-    fn name_word(&mut self, word: &Word, locals: &[Symbol]) {
-        let name = word.along.iter().fold(named(&word.base), |name, &k| {
+    fn name_word(&mut self, word: &Word, base: Math, locals: &[Symbol]) {
+        let name = word.along.iter().fold(base, |name, &k| {
             let name = match name {
                 Math::Partial(..) => name.grouped(),
                 name => name,
