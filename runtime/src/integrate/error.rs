@@ -135,7 +135,7 @@ pub enum IntegrateError {
     },
     /// A sample time out of order or out of range.
     #[error(
-        "sample {index} is at {} s: sample times ascend, and this one must lie outputs {} s and {} s",
+        "sample {index} is at {} s: sample times ascend, and this one must lie between {} s and {} s",
         Number(*.time), Number(*.earliest), Number(*.end)
     )]
     Sample {

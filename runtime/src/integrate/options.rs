@@ -211,7 +211,7 @@ impl Control {
             "tolerance",
             self.tolerance,
             allowed.contains(&self.tolerance),
-            "outputs 1e-16 and 0.1",
+            "between 1e-16 and 0.1",
         )?;
         require("max_step", self.max_step, self.max_step > 0.0, "positive")?;
         let first = self.first_step.unwrap_or(1.0);
