@@ -57,7 +57,7 @@ fn phases(source: &str, name: &str) -> [Duration; 4] {
     times[1] = timed.lap().saturating_sub(times[0]);
     match derived {
         Ok(joint) => {
-            let written = emit::rust::file(&joint, name);
+            let written = emit::rust::file(&joint, name, &emit::rust::Runtime::default());
             times[2] = timed.lap();
             let page = emit::page(&joint, name, &emit::Accuracy::default());
             times[3] = timed.lap();

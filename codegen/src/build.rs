@@ -22,7 +22,7 @@ use crate::derive;
 use crate::derived::Derived;
 use crate::emit::files::Files;
 use crate::emit::report::Accuracy;
-use crate::emit::rust::{Index, index};
+use crate::emit::rust::{Index, Runtime, index};
 use crate::source;
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -37,6 +37,7 @@ pub const GENERATE_VARIABLE: &str = "HAMEL_GENERATE";
 pub struct Build {
     specs: PathBuf,
     accuracy: Option<PathBuf>,
+    runtime: String,
     target: Target,
 }
 
@@ -60,6 +61,7 @@ impl Build {
         Self {
             specs: "joints".into(),
             accuracy: None,
+            runtime: "::hamel".into(),
             target: Target::Single(None),
         }
     }
@@ -83,6 +85,14 @@ impl Build {
     #[must_use]
     pub fn accuracy(mut self, file: impl Into<PathBuf>) -> Self {
         self.accuracy = Some(file.into());
+        self
+    }
+
+    /// The path of the runtime in the emitted code, `::hamel` unless set: `hamel_runtime` in a crate that depends on the runtime alone, or a module
+    /// that re-exports it.
+    #[must_use]
+    pub fn runtime(mut self, path: impl Into<String>) -> Self {
+        self.runtime = path.into();
         self
     }
 
@@ -117,13 +127,21 @@ impl Build {
     /// Writes, or where `check` says so only compares a library with what is there.
     fn generate(&self, check: bool) -> Result<(), BuildError> {
         watch(&self.specs);
+        let runtime = self.runtime.parse().map_err(BuildError::Runtime)?;
         let joints = self.derive_all()?;
         match &self.target {
-            Target::Single(folder) => self.write_single(joints, folder.as_deref()),
+            Target::Single(folder) => self.write_single(joints, folder.as_deref(), &runtime),
             Target::Library { modules, pages } => {
                 println!("cargo::rerun-if-env-changed={GENERATE_VARIABLE}");
                 let accuracy = self.read_accuracy()?;
-                library::generate(joints, &self.label(), (modules, pages), &accuracy, check)
+                library::generate(
+                    joints,
+                    &self.label(),
+                    (modules, pages),
+                    &accuracy,
+                    &runtime,
+                    check,
+                )
             }
         }
     }
@@ -184,6 +202,7 @@ impl Build {
         &self,
         joints: Vec<(String, Derived)>,
         folder: Option<&Path>,
+        runtime: &Runtime,
     ) -> Result<(), BuildError> {
         let out_dir = || {
             std::env::var_os("OUT_DIR")
@@ -193,7 +212,10 @@ impl Build {
         let folder = folder.map_or_else(out_dir, |folder| Ok(folder.to_owned()))?;
         let joints: Vec<Derived> = joints.into_iter().map(|(_, joint)| joint).collect();
         let mut files = Files::default();
-        files.insert("joints.rs", index(&joints, &self.label(), Index::Nested)?);
+        files.insert(
+            "joints.rs",
+            index(&joints, &self.label(), Index::Nested, runtime)?,
+        );
         files.write(&folder)?;
         Ok(())
     }

@@ -23,7 +23,8 @@ fn every_held_out_joint_works() {
     assert!(specs.len() >= 20, "{} specs", specs.len());
     for (file, source) in specs {
         let joint = derive(&source, &file).unwrap_or_else(|errors| panic!("{errors}"));
-        emit::rust::file(&joint, &file).unwrap_or_else(|error| panic!("{file}: {error}"));
+        emit::rust::file(&joint, &file, &emit::rust::Runtime::default())
+            .unwrap_or_else(|error| panic!("{file}: {error}"));
         emit::page(&joint, &file, &emit::Accuracy::default())
             .unwrap_or_else(|error| panic!("{file}: {error}"));
     }

@@ -36,7 +36,8 @@ fn stated_operations_are_those_of_the_code() {
     let mut kernels = 0;
     for source in library().iter().map(String::as_str).chain(HARDER) {
         let derived = derive(source, "test").unwrap_or_else(|errors| panic!("{errors}"));
-        let text = emit::rust::file(&derived, "test.joint").expect("the emitted tokens are Rust");
+        let text = emit::rust::file(&derived, "test.joint", &emit::rust::Runtime::default())
+            .expect("the emitted tokens are Rust");
         let file = syn::parse_file(&text).expect("the emitted text is Rust");
         for method in methods(&file) {
             let Some(stated) = stated(method).filter(|_| !calls_group(&method.block)) else {

@@ -66,7 +66,8 @@ fn components_without_a_value_are_refused_without_an_exception() {
         " { config p: R2; relation p.x * p.y = 1; home = [1, 1]; local a;
             Phi = [p.x * exp(phi.a), p.y * exp(-phi.a)]; H = trans_x(log(p.x)); }",
     );
-    let rust = emit::rust::file(&joint, "test.joint").expect("it can be written");
+    let rust = emit::rust::file(&joint, "test.joint", &emit::rust::Runtime::default())
+        .expect("it can be written");
     assert!(rust.contains(r#"const SINGULARITIES: &'static [&'static str] = &["p.x = 0"];"#));
     assert!(rust.contains("least_absolute_beside([p1], [p1])"));
 }
@@ -105,7 +106,8 @@ fn a_claim_that_is_not_proved_says_so_everywhere() {
     let page = emit::page::page(&joint, "test.joint", &Accuracy::default()).expect("a page");
     let words = format!("checked at {} points, not proved", met.points);
     assert!(page.contains(&words), "{page}");
-    let rust = emit::rust::file(&joint, "test.joint").expect("it can be written");
+    let rust = emit::rust::file(&joint, "test.joint", &emit::rust::Runtime::default())
+        .expect("it can be written");
     assert!(rust.contains("not proved"), "the docs of the joint say so");
 }
 

@@ -341,7 +341,12 @@ fn a_joint_that_lives_on_one_side_says_so() {
         let statement = claim
             .map(|claim| claim.statement.clone())
             .unwrap_or_default();
-        let text = hamel_codegen::emit::rust::file(&joint, "test.joint").expect("code");
+        let text = hamel_codegen::emit::rust::file(
+            &joint,
+            "test.joint",
+            &hamel_codegen::emit::rust::Runtime::default(),
+        )
+        .expect("code");
         (
             statement.contains("on the side of home"),
             text.contains("least_absolute_beside([x], [x])"),

@@ -1,7 +1,7 @@
 //! The joint library of Hamel.
 //!
 //! Each module of [`joints`] is generated from a spec file and holds one joint: its type, its kernels as an
-//! implementation of [`hamel::joint::Joint`], the claims that were proved of it, and its registry entry.
+//! implementation of [`hamel_runtime::joint::Joint`], the claims that were proved of it, and its registry entry.
 //! [`registry`] hands all of them to a scene loader by name; [`for_each_joint!`] hands their types to a macro, so that a test
 //! suite covers a new spec by itself. Nothing under `src/joints` is written by hand.
 #![no_std]
@@ -13,7 +13,7 @@ pub mod joints;
 pub use joints::*;
 
 #[cfg(feature = "alloc")]
-use hamel::registry::JointRegistry;
+use hamel_runtime::registry::JointRegistry;
 
 /// A registry of every joint of the library.
 #[cfg(feature = "alloc")]

@@ -47,7 +47,7 @@ pub const KERNEL_INTERFACE: u32 = 6;
 
 /// Fails to compile where generated code and runtime differ in the [`Joint`] trait.
 ///
-/// Generated files contain `const _: () = hamel::joint::assert_kernel_interface(6);`.
+/// Generated files contain `const _: () = hamel_runtime::joint::assert_kernel_interface(6);`.
 pub const fn assert_kernel_interface(version: u32) {
     assert!(
         version == KERNEL_INTERFACE,

@@ -14,13 +14,8 @@ extern crate alloc;
 
 pub use nalgebra;
 
-pub mod compiled;
-#[cfg(feature = "alloc")]
-pub mod control;
 #[cfg(feature = "alloc")]
 pub mod dynamics;
-#[cfg(feature = "alloc")]
-mod eigen;
 #[cfg(feature = "alloc")]
 pub mod elements;
 #[cfg(feature = "alloc")]
@@ -30,11 +25,9 @@ pub mod erased;
 pub mod erased;
 pub mod finite;
 pub mod group;
-#[cfg(feature = "alloc")]
-pub mod integrate;
 pub mod joint;
 #[cfg(feature = "alloc")]
-mod lu;
+pub mod lu;
 #[cfg(feature = "alloc")]
 pub mod mechanism;
 pub mod registry;

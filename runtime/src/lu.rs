@@ -6,7 +6,7 @@ use nalgebra::ComplexField;
 
 /// `P A = L U` of a matrix of fixed size, real or complex.
 #[derive(Clone, Debug)]
-pub(crate) struct Lu<T> {
+pub struct Lu<T> {
     size: usize,
     /// By rows; L below the diagonal.
     entries: Vec<T>,
@@ -15,7 +15,8 @@ pub(crate) struct Lu<T> {
 }
 
 impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
-    pub(crate) fn new(size: usize) -> Self {
+    /// Room for the factors of a `size`×`size` matrix.
+    pub fn new(size: usize) -> Self {
         Self {
             size,
             entries: vec![T::zero(); size * size],
@@ -25,7 +26,7 @@ impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
     }
 
     /// Factorises the matrix of the given entries; the row and the ratio of its pivot to the largest where that is at most `limit`.
-    pub(crate) fn factorize(
+    pub fn factorize(
         &mut self,
         entry: impl Fn(usize, usize) -> T,
         limit: f64,
@@ -77,7 +78,7 @@ impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
     }
 
     /// `A⁻¹ x` in place.
-    pub(crate) fn solve(&mut self, x: &mut [T]) {
+    pub fn solve(&mut self, x: &mut [T]) {
         let n = self.size;
         for i in 0..n {
             self.scratch[i] = x[self.rows[i]];

@@ -2,9 +2,10 @@
 //! unrolls short ones alone.
 
 /// `body` for `i` from 0 to a constant count; from the hundred and twenty-ninth turn on it is a loop.
+#[macro_export]
 macro_rules! unrolled {
     ($i:ident in $count:ident $body:block) => {
-        $crate::unrolled::unrolled! { @ $i $count $body
+        $crate::unrolled! { @ $i $count $body
             0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36 37 38 39
             40 41 42 43 44 45 46 47 48 49 50 51 52 53 54 55 56 57 58 59 60 61 62 63 64 65 66 67 68 69 70 71 72 73 74 75 76
             77 78 79 80 81 82 83 84 85 86 87 88 89 90 91 92 93 94 95 96 97 98 99 100 101 102 103 104 105 106 107 108 109
@@ -24,5 +25,3 @@ macro_rules! unrolled {
         for $i in 128..$count $body
     };
 }
-
-pub(crate) use unrolled;

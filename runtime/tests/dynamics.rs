@@ -5,9 +5,9 @@ mod common;
 use common::random::Random;
 use common::trees::{configuration, trees};
 use common::{joints, trees as support};
-use hamel::dynamics::{Dynamics, DynamicsError, Recursive, Reference};
-use hamel::mechanism::Mechanism;
-use hamel::spatial::{MassProperties, Pose};
+use hamel_runtime::dynamics::{Dynamics, DynamicsError, Recursive, Reference};
+use hamel_runtime::mechanism::Mechanism;
+use hamel_runtime::spatial::{MassProperties, Pose};
 use nalgebra::{DVector, Matrix3, Vector3};
 use std::sync::Arc;
 

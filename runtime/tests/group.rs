@@ -1,8 +1,8 @@
 //! Groups against each other and against finite differences: exp and log, the differential and its inverse, projection and residual.
 
-use hamel::group::{s1, s3, se2, se3, so2, so3};
-use hamel::nalgebra::{SMatrix, SVector};
-use hamel::scalar::Dual;
+use hamel_runtime::group::{s1, s3, se2, se3, so2, so3};
+use hamel_runtime::nalgebra::{SMatrix, SVector};
+use hamel_runtime::scalar::Dual;
 
 /// Rounding of a dozen operations on numbers of size 1.
 const TOLERANCE: f64 = 1e-14;

@@ -1,9 +1,9 @@
 //! SIMD lanes give, bit by bit, what `f64` gives in each of them; with the feature `wide`.
 #![cfg(feature = "wide")]
 
-use hamel::finite::{inverse, least_squares, local, project};
-use hamel::scalar::{F64x4, Scalar};
-use hamel::spatial::so3;
+use hamel_runtime::finite::{inverse, least_squares, local, project};
+use hamel_runtime::scalar::{F64x4, Scalar};
+use hamel_runtime::spatial::so3;
 use nalgebra::{SMatrix, SVector, Vector2, Vector3};
 
 /// Arguments whose lanes take different branches.

@@ -5,11 +5,11 @@ mod common;
 use common::joints;
 use common::random::Random;
 use common::trees::{GRAVITY, body, configuration, mass, pose, tree, trees};
-use hamel::mechanism::{Mechanism, MechanismError, StateError};
-use hamel::spatial::{MassProperties, Pose, so3};
+use hamel_runtime::mechanism::{Mechanism, MechanismError, StateError};
+use hamel_runtime::spatial::{MassProperties, Pose, so3};
 use nalgebra::{Vector3, Vector6};
 
-fn single(joint: std::sync::Arc<dyn hamel::erased::AnyJoint>) -> Mechanism {
+fn single(joint: std::sync::Arc<dyn hamel_runtime::erased::AnyJoint>) -> Mechanism {
     let body = body(
         "body",
         None,
@@ -117,7 +117,8 @@ fn kinematics_are_consistent() {
             assert!((slope - state.velocity_com).amax() < 1e-7);
             let slope =
                 (ahead.bodies[i].pose.rotation - behind.bodies[i].pose.rotation) / (2.0 * step);
-            let spin = state.pose.rotation * hamel::spatial::hat(&state.angular_velocity_body());
+            let spin =
+                state.pose.rotation * hamel_runtime::spatial::hat(&state.angular_velocity_body());
             assert!((slope - spin).amax() < 1e-7);
             let world = state.pose.rotation * state.angular_velocity_body();
             assert_eq!(state.angular_velocity_world(), world);
@@ -242,7 +243,7 @@ fn twists_become_velocities() {
         .configuration_from_pose(0, &Pose::from_rotation(rotation))
         .expect("a rotation");
     let angular = random.vector::<3>();
-    let twist = hamel::spatial::join(&angular, &Vector3::zeros());
+    let twist = hamel_runtime::spatial::join(&angular, &Vector3::zeros());
     let velocity = mechanism
         .velocity_from_twist(0, &q, &twist)
         .expect("a rotation");

@@ -1,8 +1,8 @@
 //! Theorem 1 on systems whose equations are known otherwise.
 
-use hamel::dynamics::quasi::{QuasiError, QuasiSystem, QuasiTerms};
-use hamel::joint::from_rows;
-use hamel::scalar::Scalar;
+use hamel_runtime::dynamics::quasi::{QuasiError, QuasiSystem, QuasiTerms};
+use hamel_runtime::joint::from_rows;
+use hamel_runtime::scalar::Scalar;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector2, Vector3};
 
 /// A rigid body about its centre of mass in ZYX Euler angles, v its angular velocity in body axes.

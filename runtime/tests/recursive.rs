@@ -5,8 +5,8 @@ mod common;
 use common::random::Random;
 use common::readings::assert_same;
 use common::trees::{configuration, slender_trees, trees};
-use hamel::dynamics::{Dynamics, MassMatrix, Recursive, Reference};
-use hamel::mechanism::Mechanism;
+use hamel_runtime::dynamics::{Dynamics, MassMatrix, Recursive, Reference};
+use hamel_runtime::mechanism::Mechanism;
 use nalgebra::DVector;
 use std::sync::Arc;
 

@@ -3,9 +3,9 @@
 mod common;
 
 use common::joints;
-use hamel::erased::AnyJoint;
-use hamel::joint::{KERNEL_INTERFACE, assert_kernel_interface};
-use hamel::registry::{
+use hamel_runtime::erased::AnyJoint;
+use hamel_runtime::joint::{KERNEL_INTERFACE, assert_kernel_interface};
+use hamel_runtime::registry::{
     DuplicateJoint, JointEntry, JointRegistry, Limit, ParameterError, ParameterInfo,
     check_parameters, check_requirement,
 };
@@ -157,7 +157,7 @@ fn ball_joint_has_the_matrices_of_the_paper() {
     }
     let mut j22 = [0.0; 9];
     joint.j22(&q, &[1.0, 2.0, 3.0], &mut j22);
-    let expected = -hamel::spatial::hat(&nalgebra::Vector3::new(1.0, 2.0, 3.0));
+    let expected = -hamel_runtime::spatial::hat(&nalgebra::Vector3::new(1.0, 2.0, 3.0));
     for (found, expected) in j22.iter().zip(expected.iter()) {
         assert!((found - expected).abs() < 1e-14);
     }

@@ -4,7 +4,7 @@ mod common;
 
 use common::random::Random;
 use common::trees::{mass, pose};
-use hamel::spatial::{
+use hamel_runtime::spatial::{
     MassError, MassProperties, Pose, PoseError, SpatialInertia, bracket, bracket_dual_product,
     bracket_product, hat, join, se3, so3, split, vee,
 };

@@ -3,7 +3,7 @@
 use crate::diagnostic::Diagnostics;
 use crate::emit::files::FileError;
 use crate::emit::report::AccuracyError;
-use crate::emit::rust::WriteError;
+use crate::emit::rust::{RuntimeError, WriteError};
 use crate::text::visible;
 use std::fmt::{Debug, Display, Formatter};
 use std::path::{Path, PathBuf};
@@ -36,6 +36,8 @@ pub enum BuildError {
         /// What is wrong with it.
         error: AccuracyError,
     },
+    /// The path of the runtime is none.
+    Runtime(RuntimeError),
     /// There is no `OUT_DIR`: not called from a build script, and no folder was given.
     NoOutDir,
 }
@@ -99,6 +101,7 @@ impl Display for BuildError {
             Self::Unwritten(error) => write!(f, "{error}"),
             Self::Page(error) => write!(f, "cannot make a page: {error}"),
             Self::Accuracy { path, error } => write!(f, "{}: {error}", path.display()),
+            Self::Runtime(error) => write!(f, "{error}"),
             Self::NoOutDir => f.write_str(
                 "OUT_DIR is not set: call this from a build script, or give a folder with out_dir",
             ),

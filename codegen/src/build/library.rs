@@ -4,7 +4,7 @@ use super::{BuildError, parallel, watch};
 use crate::derived::Derived;
 use crate::emit::files::Files;
 use crate::emit::report::Accuracy;
-use crate::emit::rust::{Index, file, index};
+use crate::emit::rust::{Index, Runtime, file, index};
 use crate::emit::{drawing_file, overview, page};
 use std::path::Path;
 
@@ -17,6 +17,7 @@ pub(super) fn generate(
     label: &str,
     (modules, pages): (&Path, &Path),
     accuracy: &Accuracy,
+    runtime: &Runtime,
     check: bool,
 ) -> Result<(), BuildError> {
     let here = Path::new(".");
@@ -25,7 +26,7 @@ pub(super) fn generate(
         .filter(|parent| !parent.as_os_str().is_empty());
     let above = parent.unwrap_or(here);
     let written = parallel::map(joints, |(label, joint)| {
-        let own = of_joint(&joint, &label, accuracy);
+        let own = of_joint(&joint, &label, accuracy, runtime);
         (joint, own)
     });
     let (mut joints, mut own_sources, mut own_pages) = (vec![], Files::default(), Files::default());
@@ -35,7 +36,7 @@ pub(super) fn generate(
         own_sources.texts.extend(source.texts);
         own_pages.texts.extend(page.texts);
     }
-    own_sources.insert("mod.rs", index(&joints, label, Index::Files)?);
+    own_sources.insert("mod.rs", index(&joints, label, Index::Files, runtime)?);
     let folders = [
         (own_sources, modules),
         (own_pages, pages),
@@ -72,10 +73,11 @@ fn of_joint(
     joint: &Derived,
     label: &str,
     accuracy: &Accuracy,
+    runtime: &Runtime,
 ) -> Result<(Files, Files), BuildError> {
     let name = &joint.spec.name.value;
     let (mut source, mut pages) = (Files::default(), Files::default());
-    source.insert(format!("{name}.rs"), file(joint, label)?);
+    source.insert(format!("{name}.rs"), file(joint, label, runtime)?);
     pages.insert(format!("{name}.md"), page(joint, label, accuracy)?);
     if let Some(drawing) = drawing_file(joint, label) {
         pages.insert(format!("{name}.svg"), drawing);

@@ -1,6 +1,6 @@
 //! What is emitted from whole specs: parses, is the same each time, reads as the paper does, and survives odd names.
 
-use super::rust::{Index, file, index};
+use super::rust::{Index, Runtime, file, index};
 use super::types::type_name;
 use super::{Accuracy, Report, explain_text, page};
 use crate::derive;
@@ -40,7 +40,7 @@ fn derived(source: &str) -> Derived {
 }
 
 fn emitted(source: &str) -> String {
-    file(&derived(source), "joint-specs/test.joint").expect("the emitted tokens are Rust")
+    file(&derived(source), "joint-specs/test.joint", &Runtime::default()).expect("the emitted tokens are Rust")
 }
 
 #[test]
@@ -135,7 +135,8 @@ joint cone(slope: 1 > 0) {
 #[test]
 fn modules_in_one_file_keep_blank_lines_and_the_text_of_their_spec() {
     let joints = [derived(BALL), derived(ELBOW)];
-    let text = index(&joints, "joints", Index::Nested).expect("the emitted tokens are Rust");
+    let text = index(&joints, "joints", Index::Nested, &Runtime::default())
+        .expect("the emitted tokens are Rust");
     assert!(text.contains("        }\n\n        /// X(Q)"), "{text}");
     assert!(text.contains(&format!("r#\"{BALL}\"#")), "{text}");
 }
@@ -201,13 +202,15 @@ fn a_joint_explains_itself() {
 #[test]
 fn the_index_lists_joints_in_alphabetic_order() {
     let joints = [derived(ODD), derived(BALL)];
-    let files = index(&joints, "joint-specs", Index::Files).expect("the emitted tokens are Rust");
+    let files = index(&joints, "joint-specs", Index::Files, &Runtime::default())
+        .expect("the emitted tokens are Rust");
     assert!(
         files.find("pub mod ball;") < files.find("pub mod pose;"),
         "{files}"
     );
     assert!(files.contains("macro_rules! for_each_joint"), "{files}");
-    let nested = index(&joints, "joints", Index::Nested).expect("the emitted tokens are Rust");
+    let nested = index(&joints, "joints", Index::Nested, &Runtime::default())
+        .expect("the emitted tokens are Rust");
     assert!(
         nested.find("pub mod ball {") < nested.find("pub mod pose {"),
         "{nested}"

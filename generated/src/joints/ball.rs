@@ -41,16 +41,16 @@
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::group::so3;
-use ::hamel::joint::{
+use ::hamel_runtime::group::so3;
+use ::hamel_runtime::joint::{
     Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
 };
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::JointEntry;
-use ::hamel::scalar::Scalar;
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::JointEntry;
+use ::hamel_runtime::scalar::Scalar;
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Ball joint: three rotations about the common origin of both frames (Examples 1 and 5).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -273,8 +273,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Ball joint: three rotations about the common origin of both frames (Examples 1 and 5).",
     parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("ball", &[], values)?;
-        Ok(::hamel::erased::erase(Ball))
+        ::hamel_runtime::registry::check_parameters("ball", &[], values)?;
+        Ok(::hamel_runtime::erased::erase(Ball))
     },
 };
 

@@ -38,14 +38,16 @@
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::group::so3;
-use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::JointEntry;
-use ::hamel::scalar::Scalar;
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::group::so3;
+use ::hamel_runtime::joint::{
+    Joint, Patterns, Structure, Structures, VelocityFrame, from_rows,
+};
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::JointEntry;
+use ::hamel_runtime::scalar::Scalar;
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Ball joint with its velocity in child axes: what a gyroscope on the child measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -214,8 +216,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Ball joint with its velocity in child axes: what a gyroscope on the child measures.",
     parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("ball_child", &[], values)?;
-        Ok(::hamel::erased::erase(BallChild))
+        ::hamel_runtime::registry::check_parameters("ball_child", &[], values)?;
+        Ok(::hamel_runtime::erased::erase(BallChild))
     },
 };
 

@@ -54,16 +54,16 @@
 //! - `constraint_rank`: rank A = k − k̄ (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::group::{part, put, put_block, real, so3, stacked};
-use ::hamel::joint::{
+use ::hamel_runtime::group::{part, put, put_block, real, so3, stacked};
+use ::hamel_runtime::joint::{
     Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
 };
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo};
-use ::hamel::scalar::{Scalar, dot};
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::{JointEntry, ParameterInfo};
+use ::hamel_runtime::scalar::{Scalar, dot};
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Ball rolling without slipping on the plane z = 0 of the parent; it may spin about the vertical (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -445,8 +445,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Ball rolling without slipping on the plane z = 0 of the parent; it may spin about the vertical (nonholonomic).",
     parameters: &PARAMETERS,
     build: |values| {
-        let [radius] = ::hamel::registry::check_parameters("ball_on_plane", &PARAMETERS, values)?;
-        Ok(::hamel::erased::erase(BallOnPlane::new(radius)))
+        let [radius] = ::hamel_runtime::registry::check_parameters("ball_on_plane", &PARAMETERS, values)?;
+        Ok(::hamel_runtime::erased::erase(BallOnPlane::new(radius)))
     },
 };
 

@@ -43,16 +43,16 @@
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `fibres`: Q and −Q have one pose: a double cover (certificate)
 
-use ::hamel::group::s3;
-use ::hamel::joint::{
+use ::hamel_runtime::group::s3;
+use ::hamel_runtime::joint::{
     Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
 };
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::JointEntry;
-use ::hamel::scalar::{Scalar, dot};
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::JointEntry;
+use ::hamel_runtime::scalar::{Scalar, dot};
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Ball joint on unit quaternions: four stored scalars instead of nine.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -373,8 +373,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Ball joint on unit quaternions: four stored scalars instead of nine.",
     parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("ball_quaternion", &[], values)?;
-        Ok(::hamel::erased::erase(BallQuaternion))
+        ::hamel_runtime::registry::check_parameters("ball_quaternion", &[], values)?;
+        Ok(::hamel_runtime::erased::erase(BallQuaternion))
     },
 };
 

@@ -48,16 +48,16 @@
 //! - `constraint_rank`: rank A = k − k̄ (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::group::se2;
-use ::hamel::joint::{
+use ::hamel_runtime::group::se2;
+use ::hamel_runtime::joint::{
     Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
 };
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::JointEntry;
-use ::hamel::scalar::Scalar;
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::JointEntry;
+use ::hamel_runtime::scalar::Scalar;
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Cart: a planar joint that rolls and turns, sideways velocity forbidden (Examples 3 and 6; nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -249,8 +249,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Cart: a planar joint that rolls and turns, sideways velocity forbidden (Examples 3 and 6; nonholonomic).",
     parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("cart", &[], values)?;
-        Ok(::hamel::erased::erase(Cart))
+        ::hamel_runtime::registry::check_parameters("cart", &[], values)?;
+        Ok(::hamel_runtime::erased::erase(Cart))
     },
 };
 

@@ -37,13 +37,13 @@
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) (certificate)
 //! - `fibres`: one pose has one Q up to full turns of theta (certificate)
 
-use ::hamel::joint::{Joint, Patterns, Structures, VelocityFrame, from_rows};
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::JointEntry;
-use ::hamel::scalar::Scalar;
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::joint::{Joint, Patterns, Structures, VelocityFrame, from_rows};
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::JointEntry;
+use ::hamel_runtime::scalar::Scalar;
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Cylindrical joint: a turn about and a slide along the common z axis of both frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -127,8 +127,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Cylindrical joint: a turn about and a slide along the common z axis of both frames.",
     parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("cylindrical", &[], values)?;
-        Ok(::hamel::erased::erase(Cylindrical))
+        ::hamel_runtime::registry::check_parameters("cylindrical", &[], values)?;
+        Ok(::hamel_runtime::erased::erase(Cylindrical))
     },
 };
 

@@ -51,16 +51,16 @@
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::group::s1;
-use ::hamel::joint::{
+use ::hamel_runtime::group::s1;
+use ::hamel_runtime::joint::{
     Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
 };
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo};
-use ::hamel::scalar::{Scalar, dot};
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::{JointEntry, ParameterInfo};
+use ::hamel_runtime::scalar::{Scalar, dot};
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Joint on a curve: the child's origin moves on an ellipse in the plane z = 0 of the parent, its x axis along the tangent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -249,8 +249,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Joint on a curve: the child's origin moves on an ellipse in the plane z = 0 of the parent, its x axis along the tangent.",
     parameters: &PARAMETERS,
     build: |values| {
-        let [a, b] = ::hamel::registry::check_parameters("ellipse", &PARAMETERS, values)?;
-        Ok(::hamel::erased::erase(Ellipse::new(a, b)))
+        let [a, b] = ::hamel_runtime::registry::check_parameters("ellipse", &PARAMETERS, values)?;
+        Ok(::hamel_runtime::erased::erase(Ellipse::new(a, b)))
     },
 };
 

@@ -45,16 +45,16 @@
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::group::so3;
-use ::hamel::joint::{
+use ::hamel_runtime::group::so3;
+use ::hamel_runtime::joint::{
     Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
 };
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo};
-use ::hamel::scalar::{Scalar, dot};
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::{JointEntry, ParameterInfo};
+use ::hamel_runtime::scalar::{Scalar, dot};
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Joint on an ellipsoid with spin about the normal: the child's origin moves on the surface, its z axis along the outward normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -372,8 +372,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Joint on an ellipsoid with spin about the normal: the child's origin moves on the surface, its z axis along the outward normal.",
     parameters: &PARAMETERS,
     build: |values| {
-        let [a, b, c] = ::hamel::registry::check_parameters("ellipsoid", &PARAMETERS, values)?;
-        Ok(::hamel::erased::erase(Ellipsoid::new(a, b, c)))
+        let [a, b, c] = ::hamel_runtime::registry::check_parameters("ellipsoid", &PARAMETERS, values)?;
+        Ok(::hamel_runtime::erased::erase(Ellipsoid::new(a, b, c)))
     },
 };
 

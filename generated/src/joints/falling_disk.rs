@@ -51,16 +51,16 @@
 //! - `constraint_rank`: rank A = k − k̄ where -R\[3, 3]*R\[3, 3] + 1 ≠ 0 (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::group::{part, put, put_block, real, so3, stacked};
-use ::hamel::joint::{
+use ::hamel_runtime::group::{part, put, put_block, real, so3, stacked};
+use ::hamel_runtime::joint::{
     Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
 };
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo};
-use ::hamel::scalar::{Scalar, dot};
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::{JointEntry, ParameterInfo};
+use ::hamel_runtime::scalar::{Scalar, dot};
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Falling disk (rolling coin): a thin disk that rolls without slipping on the plane z = 0 of the parent and may lean (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -457,7 +457,7 @@ impl Joint<11, 5, 3, 2> for FallingDisk {
     fn singularity<T: Scalar>(&self, q: &SVector<T, 11>) -> T {
         let r_q33 = q[8];
         let one = T::one();
-        ::hamel::finite::least_absolute([r_q33.mul_add(-r_q33, one)])
+        ::hamel_runtime::finite::least_absolute([r_q33.mul_add(-r_q33, one)])
     }
 
     /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
@@ -513,8 +513,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Falling disk (rolling coin): a thin disk that rolls without slipping on the plane z = 0 of the parent and may lean (nonholonomic).",
     parameters: &PARAMETERS,
     build: |values| {
-        let [radius] = ::hamel::registry::check_parameters("falling_disk", &PARAMETERS, values)?;
-        Ok(::hamel::erased::erase(FallingDisk::new(radius)))
+        let [radius] = ::hamel_runtime::registry::check_parameters("falling_disk", &PARAMETERS, values)?;
+        Ok(::hamel_runtime::erased::erase(FallingDisk::new(radius)))
     },
 };
 

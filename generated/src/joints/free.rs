@@ -47,16 +47,16 @@
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::group::se3;
-use ::hamel::joint::{
+use ::hamel_runtime::group::se3;
+use ::hamel_runtime::joint::{
     Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
 };
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::JointEntry;
-use ::hamel::scalar::Scalar;
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::JointEntry;
+use ::hamel_runtime::scalar::Scalar;
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Free joint: all six motions of the child relative to the parent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -256,8 +256,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Free joint: all six motions of the child relative to the parent.",
     parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("free", &[], values)?;
-        Ok(::hamel::erased::erase(Free))
+        ::hamel_runtime::registry::check_parameters("free", &[], values)?;
+        Ok(::hamel_runtime::erased::erase(Free))
     },
 };
 

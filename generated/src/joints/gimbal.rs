@@ -38,15 +38,15 @@
 //! - `twist_map_child`: X^c = Ad_{H⁻¹} X (normal form)
 //! - `twist_map_rank`: rank X = k where cos(pitch) ≠ 0 (certificate)
 
-use ::hamel::joint::{
+use ::hamel_runtime::joint::{
     Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
 };
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::JointEntry;
-use ::hamel::scalar::Scalar;
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::JointEntry;
+use ::hamel_runtime::scalar::Scalar;
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Gimbal: three turns about z, y′ and x″ by yaw, pitch and roll; the Euler angles that a ball joint does without.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -188,7 +188,7 @@ impl Joint<3, 3, 3, 0> for Gimbal {
     fn singularity<T: Scalar>(&self, q: &SVector<T, 3>) -> T {
         let pitch = q[1];
         let (_, cos_pitch) = pitch.sin_cos();
-        ::hamel::finite::least_absolute([cos_pitch])
+        ::hamel_runtime::finite::least_absolute([cos_pitch])
     }
 }
 
@@ -198,8 +198,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Gimbal: three turns about z, y′ and x″ by yaw, pitch and roll; the Euler angles that a ball joint does without.",
     parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("gimbal", &[], values)?;
-        Ok(::hamel::erased::erase(Gimbal))
+        ::hamel_runtime::registry::check_parameters("gimbal", &[], values)?;
+        Ok(::hamel_runtime::erased::erase(Gimbal))
     },
 };
 

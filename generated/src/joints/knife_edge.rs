@@ -42,15 +42,15 @@
 //! - `constraint_rank`: rank A = k − k̄ (certificate)
 //! - `fibres`: one pose has one Q up to full turns of theta (certificate)
 
-use ::hamel::joint::{
+use ::hamel_runtime::joint::{
     Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
 };
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::JointEntry;
-use ::hamel::scalar::Scalar;
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::JointEntry;
+use ::hamel_runtime::scalar::Scalar;
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Knife edge (ice skate) in Euclidean coordinates: turns about its contact point and glides along its x axis (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -202,8 +202,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Knife edge (ice skate) in Euclidean coordinates: turns about its contact point and glides along its x axis (nonholonomic).",
     parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("knife_edge", &[], values)?;
-        Ok(::hamel::erased::erase(KnifeEdge))
+        ::hamel_runtime::registry::check_parameters("knife_edge", &[], values)?;
+        Ok(::hamel_runtime::erased::erase(KnifeEdge))
     },
 };
 

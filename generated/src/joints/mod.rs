@@ -54,7 +54,7 @@ pub use self::universal::Universal;
 pub use self::upright_wheel::UprightWheel;
 
 /// Registry entries of all joints, in alphabetic order.
-pub const ENTRIES: &[::hamel::registry::JointEntry] = &[
+pub const ENTRIES: &[::hamel_runtime::registry::JointEntry] = &[
     self::ball::ENTRY,
     self::ball_child::ENTRY,
     self::ball_on_plane::ENTRY,

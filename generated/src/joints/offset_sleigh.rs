@@ -46,16 +46,16 @@
 //! - `constraint_rank`: rank A = k − k̄ (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::group::se2;
-use ::hamel::joint::{
+use ::hamel_runtime::group::se2;
+use ::hamel_runtime::joint::{
     Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
 };
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterError, ParameterInfo};
-use ::hamel::scalar::Scalar;
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::{JointEntry, ParameterError, ParameterInfo};
+use ::hamel_runtime::scalar::Scalar;
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Sleigh with an offset edge (Chaplygin): a planar body whose knife edge is ahead of its origin (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -265,7 +265,7 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Sleigh with an offset edge (Chaplygin): a planar body whose knife edge is ahead of its origin (nonholonomic).",
     parameters: &PARAMETERS,
     build: |values| {
-        let [offset] = ::hamel::registry::check_parameters("offset_sleigh", &PARAMETERS, values)?;
+        let [offset] = ::hamel_runtime::registry::check_parameters("offset_sleigh", &PARAMETERS, values)?;
         if offset == 0.0 {
             return Err(ParameterError::OutOfRange {
                 joint: "offset_sleigh",
@@ -274,7 +274,7 @@ pub const ENTRY: JointEntry = JointEntry {
                 requirement: "other than 0",
             });
         }
-        Ok(::hamel::erased::erase(OffsetSleigh::new(offset)))
+        Ok(::hamel_runtime::erased::erase(OffsetSleigh::new(offset)))
     },
 };
 

@@ -44,16 +44,16 @@
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::group::se2;
-use ::hamel::joint::{
+use ::hamel_runtime::group::se2;
+use ::hamel_runtime::joint::{
     Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
 };
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::JointEntry;
-use ::hamel::scalar::Scalar;
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::JointEntry;
+use ::hamel_runtime::scalar::Scalar;
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Planar joint: the child turns about z and slides in the plane z = 0 of the parent (Example 2).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -225,8 +225,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Planar joint: the child turns about z and slides in the plane z = 0 of the parent (Example 2).",
     parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("planar", &[], values)?;
-        Ok(::hamel::erased::erase(Planar))
+        ::hamel_runtime::registry::check_parameters("planar", &[], values)?;
+        Ok(::hamel_runtime::erased::erase(Planar))
     },
 };
 

@@ -39,15 +39,15 @@
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `fibres`: one pose has one Q up to full turns of theta (certificate)
 
-use ::hamel::joint::{
+use ::hamel_runtime::joint::{
     Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
 };
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::JointEntry;
-use ::hamel::scalar::Scalar;
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::JointEntry;
+use ::hamel_runtime::scalar::Scalar;
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Planar joint in the Euclidean set of coordinates (closing note of Example 2).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -168,8 +168,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Planar joint in the Euclidean set of coordinates (closing note of Example 2).",
     parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("planar_euclidean", &[], values)?;
-        Ok(::hamel::erased::erase(PlanarEuclidean))
+        ::hamel_runtime::registry::check_parameters("planar_euclidean", &[], values)?;
+        Ok(::hamel_runtime::erased::erase(PlanarEuclidean))
     },
 };
 

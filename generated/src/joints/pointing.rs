@@ -42,14 +42,16 @@
 //! - `constraint_rank`: rank A = k − k̄ (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::group::so3;
-use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::JointEntry;
-use ::hamel::scalar::Scalar;
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::group::so3;
+use ::hamel_runtime::joint::{
+    Joint, Patterns, Structure, Structures, VelocityFrame, from_rows,
+};
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::JointEntry;
+use ::hamel_runtime::scalar::Scalar;
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Pointing joint: the child's z axis points anywhere, and the child does not spin about it (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -238,8 +240,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Pointing joint: the child's z axis points anywhere, and the child does not spin about it (nonholonomic).",
     parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("pointing", &[], values)?;
-        Ok(::hamel::erased::erase(Pointing))
+        ::hamel_runtime::registry::check_parameters("pointing", &[], values)?;
+        Ok(::hamel_runtime::erased::erase(Pointing))
     },
 };
 

@@ -37,13 +37,13 @@
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::joint::{Joint, Patterns, Structures, VelocityFrame, from_rows};
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::JointEntry;
-use ::hamel::scalar::Scalar;
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::joint::{Joint, Patterns, Structures, VelocityFrame, from_rows};
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::JointEntry;
+use ::hamel_runtime::scalar::Scalar;
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Prismatic joint: one displacement along the common z axis of both frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -132,8 +132,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Prismatic joint: one displacement along the common z axis of both frames.",
     parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("prismatic", &[], values)?;
-        Ok(::hamel::erased::erase(Prismatic))
+        ::hamel_runtime::registry::check_parameters("prismatic", &[], values)?;
+        Ok(::hamel_runtime::erased::erase(Prismatic))
     },
 };
 

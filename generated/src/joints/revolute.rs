@@ -38,13 +38,13 @@
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) (certificate)
 //! - `fibres`: one pose has one Q up to full turns of q (certificate)
 
-use ::hamel::joint::{Joint, Patterns, Structures, VelocityFrame, from_rows};
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::JointEntry;
-use ::hamel::scalar::Scalar;
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::joint::{Joint, Patterns, Structures, VelocityFrame, from_rows};
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::JointEntry;
+use ::hamel_runtime::scalar::Scalar;
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Revolute joint: one turn about the common z axis of both frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -132,8 +132,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Revolute joint: one turn about the common z axis of both frames.",
     parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("revolute", &[], values)?;
-        Ok(::hamel::erased::erase(Revolute))
+        ::hamel_runtime::registry::check_parameters("revolute", &[], values)?;
+        Ok(::hamel_runtime::erased::erase(Revolute))
     },
 };
 

@@ -38,14 +38,16 @@
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::group::s1;
-use ::hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame, from_rows};
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::JointEntry;
-use ::hamel::scalar::Scalar;
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::group::s1;
+use ::hamel_runtime::joint::{
+    Joint, Patterns, Structure, Structures, VelocityFrame, from_rows,
+};
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::JointEntry;
+use ::hamel_runtime::scalar::Scalar;
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Revolute joint on the circle: one turn about the common z axis of both frames, without trigonometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -152,8 +154,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Revolute joint on the circle: one turn about the common z axis of both frames, without trigonometry.",
     parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("revolute_circle", &[], values)?;
-        Ok(::hamel::erased::erase(RevoluteCircle))
+        ::hamel_runtime::registry::check_parameters("revolute_circle", &[], values)?;
+        Ok(::hamel_runtime::erased::erase(RevoluteCircle))
     },
 };
 

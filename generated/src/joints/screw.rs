@@ -37,13 +37,13 @@
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::joint::{Joint, Patterns, Structures, VelocityFrame, from_rows};
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterError, ParameterInfo};
-use ::hamel::scalar::Scalar;
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::joint::{Joint, Patterns, Structures, VelocityFrame, from_rows};
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::{JointEntry, ParameterError, ParameterInfo};
+use ::hamel_runtime::scalar::Scalar;
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Screw joint: a turn about the common z axis of both frames that advances along it, right-handed for a positive lead.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -152,7 +152,7 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Screw joint: a turn about the common z axis of both frames that advances along it, right-handed for a positive lead.",
     parameters: &PARAMETERS,
     build: |values| {
-        let [lead] = ::hamel::registry::check_parameters("screw", &PARAMETERS, values)?;
+        let [lead] = ::hamel_runtime::registry::check_parameters("screw", &PARAMETERS, values)?;
         if lead == 0.0 {
             return Err(ParameterError::OutOfRange {
                 joint: "screw",
@@ -161,7 +161,7 @@ pub const ENTRY: JointEntry = JointEntry {
                 requirement: "other than 0",
             });
         }
-        Ok(::hamel::erased::erase(Screw::new(lead)))
+        Ok(::hamel_runtime::erased::erase(Screw::new(lead)))
     },
 };
 

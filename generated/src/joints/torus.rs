@@ -39,16 +39,16 @@
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::group::{part, put, s1, stacked};
-use ::hamel::joint::{
+use ::hamel_runtime::group::{part, put, s1, stacked};
+use ::hamel_runtime::joint::{
     Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
 };
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo};
-use ::hamel::scalar::Scalar;
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::{JointEntry, ParameterInfo};
+use ::hamel_runtime::scalar::Scalar;
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Joint on a torus: the child's origin moves on a torus about the parent's z axis, its z axis along the outward normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -206,9 +206,9 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Joint on a torus: the child's origin moves on a torus about the parent's z axis, its z axis along the outward normal.",
     parameters: &PARAMETERS,
     build: |values| {
-        let [outer, inner] = ::hamel::registry::check_parameters("torus", &PARAMETERS, values)?;
-        ::hamel::registry::check_requirement("torus", "outer > inner", outer - inner, &PARAMETERS, values)?;
-        Ok(::hamel::erased::erase(Torus::new(outer, inner)))
+        let [outer, inner] = ::hamel_runtime::registry::check_parameters("torus", &PARAMETERS, values)?;
+        ::hamel_runtime::registry::check_requirement("torus", "outer > inner", outer - inner, &PARAMETERS, values)?;
+        Ok(::hamel_runtime::erased::erase(Torus::new(outer, inner)))
     },
 };
 

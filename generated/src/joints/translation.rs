@@ -37,13 +37,13 @@
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) (certificate)
 //! - `fibres`: one pose has one Q (certificate)
 
-use ::hamel::joint::{Joint, Patterns, Structures, VelocityFrame, from_rows};
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::JointEntry;
-use ::hamel::scalar::Scalar;
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::joint::{Joint, Patterns, Structures, VelocityFrame, from_rows};
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::JointEntry;
+use ::hamel_runtime::scalar::Scalar;
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Translation joint: the child slides in all three directions and does not turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -145,8 +145,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Translation joint: the child slides in all three directions and does not turn.",
     parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("translation", &[], values)?;
-        Ok(::hamel::erased::erase(Translation))
+        ::hamel_runtime::registry::check_parameters("translation", &[], values)?;
+        Ok(::hamel_runtime::erased::erase(Translation))
     },
 };
 

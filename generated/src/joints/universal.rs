@@ -39,15 +39,15 @@
 //! - `twist_map_rank`: rank X = k (certificate)
 //! - `fibres`: one pose has one Q up to full turns of first, second (certificate)
 
-use ::hamel::joint::{
+use ::hamel_runtime::joint::{
     Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
 };
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::JointEntry;
-use ::hamel::scalar::Scalar;
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::JointEntry;
+use ::hamel_runtime::scalar::Scalar;
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Universal joint (Cardan, Hooke): a turn about the parent's x axis, then one about the child's y axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -159,8 +159,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Universal joint (Cardan, Hooke): a turn about the parent's x axis, then one about the child's y axis.",
     parameters: &[],
     build: |values| {
-        ::hamel::registry::check_parameters("universal", &[], values)?;
-        Ok(::hamel::erased::erase(Universal))
+        ::hamel_runtime::registry::check_parameters("universal", &[], values)?;
+        Ok(::hamel_runtime::erased::erase(Universal))
     },
 };
 

@@ -49,16 +49,16 @@
 //! - `constraint_rank`: rank A = k − k̄ (certificate)
 //! - `fibres`: one pose has one Q up to full turns of roll (certificate)
 
-use ::hamel::group::{part, put, put_block, real, se2, stacked};
-use ::hamel::joint::{
+use ::hamel_runtime::group::{part, put, put_block, real, se2, stacked};
+use ::hamel_runtime::joint::{
     Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
 };
-use ::hamel::nalgebra::{SMatrix, SVector};
-use ::hamel::registry::{JointEntry, ParameterInfo};
-use ::hamel::scalar::{Scalar, dot};
-use ::hamel::spatial::Pose;
+use ::hamel_runtime::nalgebra::{SMatrix, SVector};
+use ::hamel_runtime::registry::{JointEntry, ParameterInfo};
+use ::hamel_runtime::scalar::{Scalar, dot};
+use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
 
 /// Upright wheel (vertical disk): rolls without slipping on the plane z = 0 of the parent and turns about the vertical (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -323,8 +323,8 @@ pub const ENTRY: JointEntry = JointEntry {
     summary: "Upright wheel (vertical disk): rolls without slipping on the plane z = 0 of the parent and turns about the vertical (nonholonomic).",
     parameters: &PARAMETERS,
     build: |values| {
-        let [radius] = ::hamel::registry::check_parameters("upright_wheel", &PARAMETERS, values)?;
-        Ok(::hamel::erased::erase(UprightWheel::new(radius)))
+        let [radius] = ::hamel_runtime::registry::check_parameters("upright_wheel", &PARAMETERS, values)?;
+        Ok(::hamel_runtime::erased::erase(UprightWheel::new(radius)))
     },
 };
 

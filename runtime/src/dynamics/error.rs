@@ -107,12 +107,7 @@ impl DynamicsError {
 
 impl Mechanism {
     /// The error itself; where something that is not finite made it, the first joint with a kernel that is not at (q, v̄).
-    pub(crate) fn first_cause(
-        &self,
-        error: DynamicsError,
-        q: &[f64],
-        speeds: &[f64],
-    ) -> DynamicsError {
+    pub fn first_cause(&self, error: DynamicsError, q: &[f64], speeds: &[f64]) -> DynamicsError {
         if !error.is_of_no_value() {
             return error;
         }

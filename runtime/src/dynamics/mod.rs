@@ -13,7 +13,7 @@ pub mod recursive;
 pub mod reference;
 
 pub use error::DynamicsError;
-pub(crate) use recursive::LoadedMass;
+pub use recursive::LoadedMass;
 pub use recursive::{
     ForwardDerivatives, Frame, FrameReadings, HamiltonianDerivatives, InverseDerivatives,
     MassMatrix, Readings, Recursive, Refined, Sensitivity,

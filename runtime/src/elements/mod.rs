@@ -18,10 +18,11 @@ pub use constraint::PointConstraint;
 pub use drive::{Drive, Law};
 pub use error::ElementError;
 pub use joint::{JointDamper, JointEffort};
+pub use slopes::JointSlopes;
+pub(crate) use slopes::Target;
 pub use slopes::{End, PointForce, Slope, Slopes};
-pub(crate) use slopes::{JointSlopes, Target};
 pub use spring::{JointSpring, RotationSpring};
-pub(crate) use view::MotionList;
+pub use view::MotionList;
 pub use view::{Action, Motions, View};
 
 use crate::mechanism::Mechanism;

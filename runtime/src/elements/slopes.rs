@@ -47,7 +47,7 @@ pub(crate) enum Target<'a> {
 
 /// How each joint's own generalised forces change with its own ϕ and v̄.
 #[derive(Clone, Debug)]
-pub(crate) struct JointSlopes {
+pub struct JointSlopes {
     joints: Vec<OwnSlopes>,
     /// The joint of each freedom and of each speed.
     of_freedom: Vec<usize>,
@@ -66,7 +66,8 @@ struct OwnSlopes {
 }
 
 impl JointSlopes {
-    pub(crate) fn new(mechanism: &Mechanism) -> Self {
+    /// Zeros, of a mechanism.
+    pub fn new(mechanism: &Mechanism) -> Self {
         let (mut of_freedom, mut of_speed) = (Vec::new(), Vec::new());
         let bodies = mechanism.bodies().iter().enumerate();
         let joints = bodies.map(|(index, body)| {
@@ -89,7 +90,7 @@ impl JointSlopes {
     }
 
     /// Whether anything was left out: forces of a joint that change with another's motion.
-    pub(crate) const fn leaves_out(&self) -> bool {
+    pub const fn leaves_out(&self) -> bool {
         self.couples
     }
 
@@ -102,7 +103,7 @@ impl JointSlopes {
     }
 
     /// `∂/∂ϕ` (S×K) and `∂/∂v̄` (S×S) of one joint's forces, column by column.
-    pub(crate) fn of(&self, joint: usize) -> (&[f64], &[f64]) {
+    pub fn of(&self, joint: usize) -> (&[f64], &[f64]) {
         let own = &self.joints[joint];
         (&own.by_local, &own.by_speeds)
     }

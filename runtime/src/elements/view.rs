@@ -19,7 +19,7 @@ pub trait Motions {
 
 /// Placements and twists in a list of their own.
 #[derive(Clone, Debug)]
-pub(crate) struct MotionList(pub(crate) Vec<(Placement<f64>, Vector6<f64>)>);
+pub struct MotionList(pub Vec<(Placement<f64>, Vector6<f64>)>);
 
 impl Motions for MotionList {
     fn placement(&self, body: usize) -> Option<&Placement<f64>> {
@@ -56,6 +56,21 @@ impl Debug for View<'_> {
 }
 
 impl<'a> View<'a> {
+    /// A mechanism at Q and v̄, with where its bodies are and how they move.
+    pub const fn new(
+        mechanism: &'a Mechanism,
+        configuration: &'a [f64],
+        speeds: &'a [f64],
+        motions: &'a dyn Motions,
+    ) -> Self {
+        Self {
+            mechanism,
+            configuration,
+            speeds,
+            motions,
+        }
+    }
+
     fn body(&self, body: usize) -> Option<&'a Body> {
         self.mechanism.bodies().get(body)
     }
@@ -152,7 +167,12 @@ pub struct Action<'a> {
     pub(crate) efforts: &'a mut [f64],
 }
 
-impl Action<'_> {
+impl<'a> Action<'a> {
+    /// Into a wrench for each body, and an entry of τ for each freedom.
+    pub const fn new(wrenches: &'a mut [Vector6<f64>], efforts: &'a mut [f64]) -> Self {
+        Self { wrenches, efforts }
+    }
+
     /// Adds efforts of the joint under a body, one entry a freedom.
     pub fn add_effort(&mut self, view: &View<'_>, body: usize, effort: &[f64]) {
         let range = view.body(body).map(|body| body.ranges().freedoms.clone());

@@ -237,7 +237,7 @@ impl Mechanism {
     }
 
     /// [`Mechanism::set_driven_speeds`] into speeds of the right size.
-    pub(crate) fn prescribe_speeds(&self, t: f64, speeds: &mut [f64]) {
+    pub fn prescribe_speeds(&self, t: f64, speeds: &mut [f64]) {
         for drive in &self.actuation.drives {
             let own = &mut speeds[self.bodies[drive.body].ranges.speeds.clone()];
             for (speed, law) in own.iter_mut().zip(&drive.laws) {
@@ -247,7 +247,7 @@ impl Mechanism {
     }
 
     /// [`Mechanism::set_driven_accelerations`] into efforts of the right size.
-    pub(crate) fn prescribe_accelerations(&self, t: f64, efforts: &mut [f64]) {
+    pub fn prescribe_accelerations(&self, t: f64, efforts: &mut [f64]) {
         for drive in &self.actuation.drives {
             let own = &mut efforts[self.bodies[drive.body].ranges.freedoms.clone()];
             for (effort, law) in own.iter_mut().zip(&drive.laws) {

@@ -10,10 +10,10 @@ use core::ops::Range;
 pub const CONFIGURATION_TOLERANCE: f64 = 1e-9;
 
 /// The owner of vectors that hold all joints' shares.
-pub(crate) const WHOLE: &str = "the mechanism";
+pub const WHOLE: &str = "the mechanism";
 
 /// A vector's size against what it must be; `element` owns it.
-pub(crate) fn check_size(
+pub fn check_size(
     element: &str,
     quantity: &'static str,
     expected: usize,
@@ -32,7 +32,7 @@ pub(crate) fn check_size(
 
 /// What a vector of all joints has an entry for.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Space {
+pub enum Space {
     /// Each stored scalar of Q.
     Configuration,
     /// Each freedom: v, ϕ, τ.
@@ -72,7 +72,7 @@ impl Space {
 
 impl Body {
     /// The joint's own failure, with its name in the mechanism.
-    pub(crate) fn finite_map(&self, cause: FiniteMapError) -> StateError {
+    pub fn finite_map(&self, cause: FiniteMapError) -> StateError {
         let joint = self.joint_name().into();
         StateError::FiniteMap { joint, cause }
     }
@@ -158,7 +158,7 @@ impl Body {
     }
 
     /// Says that something of the joint is not finite.
-    pub(crate) fn without_value(&self, what: &'static str) -> StateError {
+    pub fn without_value(&self, what: &'static str) -> StateError {
         StateError::NoValue {
             joint: self.joint_name().into(),
             what,
@@ -169,7 +169,7 @@ impl Body {
 impl Mechanism {
     /// Whether a vector of all joints has the right size and is finite; `quantity` says what it is.
     #[inline]
-    pub(crate) fn check_vector(
+    pub fn check_vector(
         &self,
         quantity: &'static str,
         space: Space,
@@ -198,7 +198,7 @@ impl Mechanism {
 
     /// Whether room for results has the right size.
     #[inline]
-    pub(crate) fn check_room(
+    pub fn check_room(
         &self,
         quantity: &'static str,
         space: Space,
@@ -219,7 +219,7 @@ impl Mechanism {
     /// Whether results at (q, v̄) are finite: `what` says what they are. Where they are not, the first joint with a kernel that is not, else
     /// the first that has such a result.
     #[inline]
-    pub(crate) fn check_finite(
+    pub fn check_finite(
         &self,
         (q, speeds): (&[f64], &[f64]),
         results: &[(&'static str, Space, &[f64])],
@@ -254,7 +254,7 @@ impl Mechanism {
     }
 
     /// Whether Q and the pose of every joint are finite at `q`.
-    pub(crate) fn check_poses(&self, q: &[f64]) -> Result<(), StateError> {
+    pub fn check_poses(&self, q: &[f64]) -> Result<(), StateError> {
         self.check_vector("configuration", Space::Configuration, q)?;
         self.bodies.iter().try_for_each(|body| {
             match body.joint().pose(body.configuration(q)).is_finite() {

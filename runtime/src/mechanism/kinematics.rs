@@ -154,7 +154,7 @@ impl Mechanism {
     }
 
     /// Why the energy at (q, v̄) is not finite: a kernel of a joint, or else where the energy of a body is not.
-    pub(crate) fn infinite_energy(&self, (q, speeds): (&[f64], &[f64])) -> StateError {
+    pub fn infinite_energy(&self, (q, speeds): (&[f64], &[f64])) -> StateError {
         let of_kernel = self.no_value(q, speeds);
         of_kernel.unwrap_or_else(|| {
             let states = self.body_states(q, speeds);

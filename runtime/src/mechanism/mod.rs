@@ -17,7 +17,7 @@ mod rigid;
 pub use actuation::dependent_columns;
 pub use body::{Body, BodySpec, Ranges};
 pub use check::CONFIGURATION_TOLERANCE;
-pub(crate) use check::{Space, WHOLE, check_size};
+pub use check::{Space, WHOLE, check_size};
 pub use error::{Loci, MechanismError, StateError};
 pub use frame::{FrameFault, NamedFrame};
 pub use initial::CONSTRAINT_TOLERANCE;

@@ -133,7 +133,7 @@ implement_scalar!(f32,);
 /// Whether all are finite: `x − x` is 0 then, and NaN otherwise. Without a way out before the end, so that compilers compare several at once.
 #[cfg(feature = "alloc")]
 #[inline(always)]
-pub(crate) fn all_finite(values: &[f64]) -> bool {
+pub fn all_finite(values: &[f64]) -> bool {
     #[expect(clippy::eq_op, reason = "0 where the value is finite, NaN elsewhere")]
     let bits = |value: &f64| (value - value).to_bits();
     values.iter().fold(0, |all, value| all | bits(value)) == 0

@@ -5,7 +5,7 @@
 //! selection, sines and cosines; the other functions are those of `f64`, and a loop with them is not vectorised.
 
 use super::{Scalar, batch, rotation};
-use crate::unrolled::unrolled;
+use crate::unrolled;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use nalgebra::{Matrix3, Vector3};
 use num_traits::{Float, One, Zero};

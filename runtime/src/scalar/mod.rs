@@ -18,7 +18,7 @@ mod series;
 pub use dual::Dual;
 pub use extended::Extended;
 #[cfg(feature = "alloc")]
-pub(crate) use float::all_finite;
+pub use float::all_finite;
 pub use lane::Lane;
 #[cfg(feature = "wide")]
 pub use lanes::{F64x4, F64x8, Mask4, Mask8};

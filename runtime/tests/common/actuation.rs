@@ -1,11 +1,11 @@
 //! What acts on a mechanism: elements of every kind, rotors, drives.
 
 use super::random::Random;
-use hamel::elements::{
+use hamel_runtime::elements::{
     BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointSpring, Law,
     RotationSpring, WrenchAxes,
 };
-use hamel::mechanism::Mechanism;
+use hamel_runtime::mechanism::Mechanism;
 use nalgebra::Matrix3;
 use std::sync::Arc;
 

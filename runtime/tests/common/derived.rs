@@ -4,9 +4,9 @@
 
 use super::dual::{along, constant, slope, solve, unit};
 use core::array;
-use hamel::joint::{Joint, Patterns, Structure, Structures, VelocityFrame};
-use hamel::scalar::{Dual, Scalar};
-use hamel::spatial::{Pose, join, vee};
+use hamel_runtime::joint::{Joint, Patterns, Structure, Structures, VelocityFrame};
+use hamel_runtime::scalar::{Dual, Scalar};
+use hamel_runtime::spatial::{Pose, join, vee};
 use nalgebra::{SMatrix, SVector, Vector6};
 
 /// What the author of a joint declares.
@@ -31,7 +31,7 @@ pub trait Declared<const N: usize, const K: usize, const S: usize, const C: usiz
     fn project<T: Scalar>(&self, q: &SVector<T, N>) -> SVector<T, N>;
     fn residual<T: Scalar>(&self, q: &SVector<T, N>) -> T;
     fn singularity<T: Scalar>(&self, _q: &SVector<T, N>) -> T {
-        hamel::finite::least_absolute([])
+        hamel_runtime::finite::least_absolute([])
     }
 }
 

@@ -1,6 +1,6 @@
 //! Vectors and matrices of dual numbers.
 
-use hamel::scalar::{Dual, Scalar};
+use hamel_runtime::scalar::{Dual, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// `numbers` moved along `direction`, as the first-order part of a dual number.

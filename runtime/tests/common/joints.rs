@@ -1,10 +1,10 @@
 //! Six joints by hand: a path joint, two Lie groups in either velocity frame, a declared X, and two nonholonomic ones.
 
 use super::derived::{Declared, Derived};
-use hamel::erased::{AnyJoint, erase};
-use hamel::joint::{VelocityFrame, from_rows};
-use hamel::scalar::Scalar;
-use hamel::spatial::{Pose, so3};
+use hamel_runtime::erased::{AnyJoint, erase};
+use hamel_runtime::joint::{VelocityFrame, from_rows};
+use hamel_runtime::scalar::Scalar;
+use hamel_runtime::spatial::{Pose, so3};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use std::sync::Arc;
 
@@ -163,7 +163,7 @@ fn plane_retract<T: Scalar>(q: &SVector<T, 6>, phi: &SVector<T, 3>) -> SVector<T
 }
 
 fn plane_local<T: Scalar>(q: &SVector<T, 6>, target: &SVector<T, 6>) -> SVector<T, 3> {
-    let twist = hamel::spatial::se3::log(&(plane_pose(q).inverse() * plane_pose(target)));
+    let twist = hamel_runtime::spatial::se3::log(&(plane_pose(q).inverse() * plane_pose(target)));
     Vector3::new(twist[2], twist[3], twist[4])
 }
 

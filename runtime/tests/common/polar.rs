@@ -1,11 +1,11 @@
 //! A point in the plane in polar coordinates (r, θ): a joint that loses a freedom where r = 0.
 
 use super::derived::{Declared, Derived};
-use hamel::erased::{AnyJoint, erase};
-use hamel::finite::least_absolute;
-use hamel::joint::{VelocityFrame, from_rows};
-use hamel::scalar::Scalar;
-use hamel::spatial::Pose;
+use hamel_runtime::erased::{AnyJoint, erase};
+use hamel_runtime::finite::least_absolute;
+use hamel_runtime::joint::{VelocityFrame, from_rows};
+use hamel_runtime::scalar::Scalar;
+use hamel_runtime::spatial::Pose;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector2, Vector3};
 use std::sync::Arc;
 

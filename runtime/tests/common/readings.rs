@@ -1,6 +1,6 @@
 //! All that a form of the dynamics says of one state, for comparing it with another form.
 
-use hamel::dynamics::Dynamics;
+use hamel_runtime::dynamics::Dynamics;
 use nalgebra::DVector;
 
 /// The largest difference is below `rounding` times the largest entry, or times 1 where that is less.

@@ -2,9 +2,9 @@
 
 use super::joints;
 use super::random::Random;
-use hamel::erased::AnyJoint;
-use hamel::mechanism::{BodySpec, Mechanism};
-use hamel::spatial::{MassProperties, Pose, so3};
+use hamel_runtime::erased::AnyJoint;
+use hamel_runtime::mechanism::{BodySpec, Mechanism};
+use hamel_runtime::spatial::{MassProperties, Pose, so3};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 

@@ -1,10 +1,10 @@
 //! A slider that ends at 1 m: one of its kernels has no value beyond, as where a root, a quotient or an exponential of a spec has none.
 
 use super::derived::{Declared, Derived};
-use hamel::erased::{AnyJoint, erase};
-use hamel::joint::VelocityFrame;
-use hamel::scalar::Scalar;
-use hamel::spatial::Pose;
+use hamel_runtime::erased::{AnyJoint, erase};
+use hamel_runtime::joint::VelocityFrame;
+use hamel_runtime::scalar::Scalar;
+use hamel_runtime::spatial::Pose;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use std::sync::Arc;
 

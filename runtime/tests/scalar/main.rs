@@ -2,8 +2,8 @@
 
 mod tables;
 
-use hamel::scalar::{Dual, Scalar};
-use hamel::spatial::{hat, so3};
+use hamel_runtime::scalar::{Dual, Scalar};
+use hamel_runtime::spatial::{hat, so3};
 use nalgebra::{Matrix3, Vector3};
 use tables::{DEXP_INVERSE, STUMPFF};
 

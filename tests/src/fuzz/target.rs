@@ -48,7 +48,7 @@ pub fn pipeline(text: &str) -> Outcome {
             Ok(joint) => joint,
             Err(errors) => return refused(text, &errors),
         };
-        let written = emit::rust::file(&joint, &file).map(|_| ());
+        let written = emit::rust::file(&joint, &file, &emit::rust::Runtime::default()).map(|_| ());
         let page = emit::page(&joint, &file, &emit::Accuracy::default()).map(|_| ());
         match (written, page) {
             (Ok(()), Ok(())) => Outcome::Accepted,

@@ -3,7 +3,7 @@
 use super::example;
 use super::joint::sizes;
 use super::tokens::ident;
-use super::{WriteError, docs, header, nested, text, type_ident};
+use super::{Runtime, WriteError, docs, header, nested, text, type_ident};
 use crate::derived::Derived;
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
@@ -21,7 +21,12 @@ pub enum Index {
 ///
 /// # Errors
 /// As [`super::file`]; and where no parameters meet the requirements of a joint that `for_each_joint!` is to build.
-pub fn index(joints: &[Derived], label: &str, layout: Index) -> Result<String, WriteError> {
+pub fn index(
+    joints: &[Derived],
+    label: &str,
+    layout: Index,
+    runtime: &Runtime,
+) -> Result<String, WriteError> {
     let mut joints: Vec<&Derived> = joints.iter().collect();
     joints.sort_by(|a, b| a.spec.name.value.cmp(&b.spec.name.value));
     let modules: Vec<Ident> = joints
@@ -52,7 +57,11 @@ pub fn index(joints: &[Derived], label: &str, layout: Index) -> Result<String, W
         pub const SPECS: &[(&::core::primitive::str, &::core::primitive::str)] = &[#((#names, self::#modules::SPEC)),*];
         #macros
     };
-    text("the index of all joints", &header(label), tokens)
+    text(
+        "the index of all joints",
+        &header(label),
+        runtime.placed(tokens),
+    )
 }
 
 /// The macro that hands every joint to another macro.

@@ -13,6 +13,7 @@ mod method;
 mod numeric;
 mod patterns;
 mod result;
+mod runtime;
 mod spacing;
 #[cfg(test)]
 mod tests;
@@ -20,6 +21,7 @@ mod tokens;
 
 pub use comment::comment;
 pub use index::{Index, index};
+pub use runtime::{Runtime, RuntimeError};
 
 use super::header;
 use super::types::type_name;
@@ -36,8 +38,8 @@ pub const KERNEL_INTERFACE: u32 = 6;
 ///
 /// # Errors
 /// Tokens that are no Rust: a fault of this crate, reported with the name of the joint.
-pub fn file(derived: &Derived, label: &str) -> Result<String, WriteError> {
-    let items = items(derived);
+pub fn file(derived: &Derived, label: &str, runtime: &Runtime) -> Result<String, WriteError> {
+    let items = runtime.placed(items(derived));
     text(&derived.spec.name.value, &header(label), items)
 }
 

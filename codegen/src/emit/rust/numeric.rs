@@ -56,11 +56,11 @@ pub fn sentence(kernel: &Kernel) -> Option<&'static str> {
     match (kernel.method, kernel.kind) {
         (Method::Formula, _) => None,
         (Method::Newton, KernelKind::Local) => Some(
-            "By Newton's method from ϕ = 0, in at most [`LOCAL_ITERATIONS`](::hamel::finite::LOCAL_ITERATIONS); NaN where it \
+            "By Newton's method from ϕ = 0, in at most `finite::LOCAL_ITERATIONS` steps; NaN where it \
              does not converge.",
         ),
         (Method::Newton, KernelKind::Project) => Some(
-            "By Newton's method, in at most [`PROJECT_ITERATIONS`](::hamel::finite::PROJECT_ITERATIONS); NaN where it does \
+            "By Newton's method, in at most `finite::PROJECT_ITERATIONS` steps; NaN where it does \
              not converge.",
         ),
         _ => Some("By a least-squares solve with ∂Φ/∂ϕ at (Q, ϕ) and at (Q′, 0)."),

@@ -2,7 +2,7 @@
 //!
 //! The joints are derived from specs with closed forms and patched, so that these tests need no derivation of other maps.
 
-use super::{Index, file, imports, index};
+use super::{Index, Runtime, file, imports, index};
 use crate::derive;
 use crate::derived::{Derived, Kernel, KernelKind, Method, Structure};
 use crate::emit::types::type_name;
@@ -32,7 +32,7 @@ fn derived(source: &str) -> Derived {
 }
 
 fn emitted(derived: &Derived) -> String {
-    let text = file(derived, "joint-specs/test.joint").expect("the emitted tokens are Rust");
+    let text = file(derived, "joint-specs/test.joint", &Runtime::default()).expect("the emitted tokens are Rust");
     // Without line breaks: what matters is what is called.
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
@@ -156,7 +156,7 @@ fn pages_and_the_index_take_kernels_without_formulas() {
     );
     explain_text(&ball, &Accuracy::default()).expect("the template holds");
     page(&ball, "joint-specs/test.joint", &Accuracy::default()).expect("the template holds");
-    index(&[ball], "joint-specs", Index::Nested).expect("the emitted tokens are Rust");
+    index(&[ball], "joint-specs", Index::Nested, &Runtime::default()).expect("the emitted tokens are Rust");
 }
 
 fn declared<T>(value: T) -> Declared<T> {

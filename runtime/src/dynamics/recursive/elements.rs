@@ -88,7 +88,7 @@ impl Recursive {
     }
 
     /// The power of all elements at the placements and twists of the nodes, W.
-    pub(crate) fn element_power_here(&self, q: &[f64], speeds: &[f64]) -> f64 {
+    pub fn element_power_here(&self, q: &[f64], speeds: &[f64]) -> f64 {
         self.over_elements(q, speeds, |element, view| element.power(view))
     }
 

@@ -85,12 +85,7 @@ impl Recursive {
     }
 
     /// The momentum of all that hangs on each joint, at its child frame and in child axes, at `q` and v̄ = `speeds`.
-    pub(crate) fn composite_momenta(
-        &mut self,
-        q: &[f64],
-        speeds: &[f64],
-        momenta: &mut [Vector6<f64>],
-    ) {
+    pub fn composite_momenta(&mut self, q: &[f64], speeds: &[f64], momenta: &mut [Vector6<f64>]) {
         self.weigh(q);
         self.set_twists(speeds);
         self.set_momenta();

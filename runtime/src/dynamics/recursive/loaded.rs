@@ -16,7 +16,7 @@ use nalgebra::Vector6;
 
 /// The factors of M̄ + W, and room for solving with them.
 #[derive(Clone, Debug)]
-pub(crate) struct LoadedMass {
+pub struct LoadedMass {
     /// Y, one column a speed.
     yields: Vec<Vector6<f64>>,
     /// LDLᵀ of each joint's block, S×S row by row: D on the diagonal, L below.
@@ -27,7 +27,8 @@ pub(crate) struct LoadedMass {
 }
 
 impl LoadedMass {
-    pub(crate) fn new(mechanism: &Mechanism) -> Self {
+    /// Room for the factors of a mechanism.
+    pub fn new(mechanism: &Mechanism) -> Self {
         let count = mechanism.bodies().len();
         let size = |body: &crate::mechanism::Body| body.ranges().speeds.len();
         let bodies = mechanism.bodies().iter();
@@ -45,7 +46,7 @@ impl LoadedMass {
 
 impl Recursive {
     /// Places the mechanism at (q, v̄), for all that follows here; how each joint's forces change with its own motion into `slopes`.
-    pub(crate) fn stand_loaded(
+    pub fn stand_loaded(
         &mut self,
         q: &[f64],
         speeds: &[f64],
@@ -65,7 +66,7 @@ impl Recursive {
     ///
     /// # Errors
     /// The first pivot that is not positive.
-    pub(crate) fn factorize_loaded(
+    pub fn factorize_loaded(
         &self,
         load: impl Fn(usize, usize, usize) -> f64,
         out: &mut LoadedMass,
@@ -126,7 +127,7 @@ impl Recursive {
     }
 
     /// `(M̄ + W)⁻¹ x` in place; 0 for the speeds of driven joints.
-    pub(crate) fn solve_loaded(&self, factors: &mut LoadedMass, x: &mut [f64]) {
+    pub fn solve_loaded(&self, factors: &mut LoadedMass, x: &mut [f64]) {
         factors.wrenches.fill(Vector6::zeros());
         for index in (0..self.links.len()).rev() {
             let link = &self.links[index];

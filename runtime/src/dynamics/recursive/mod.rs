@@ -31,7 +31,7 @@ pub use derivatives::{
     ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives, Sensitivity,
 };
 pub use frames::FrameReadings;
-pub(crate) use loaded::LoadedMass;
+pub use loaded::LoadedMass;
 pub use mass::MassMatrix;
 pub use readings::{Frame, Readings};
 pub use refined::Refined;

@@ -137,7 +137,7 @@ impl ForwardDerivatives {
     ///
     /// # Errors
     /// Rows for another mechanism.
-    pub(crate) fn read(&mut self, rows: &[f64]) -> Result<(), DynamicsError> {
+    pub fn read(&mut self, rows: &[f64]) -> Result<(), DynamicsError> {
         let own = [&self.by_local, &self.by_speeds, &self.by_efforts];
         let completed = self.completed_speeds().into_iter().flatten();
         let widths = own.into_iter().chain(completed).map(Sensitivity::columns);

@@ -83,7 +83,7 @@ impl InverseDerivatives {
     }
 
     /// How one effort changes as all of ϕ and v̄ grow alike.
-    pub(crate) fn sum_of_row(&self, row: usize) -> f64 {
+    pub fn sum_of_row(&self, row: usize) -> f64 {
         let of = |part: &Sensitivity| -> f64 {
             let columns = 0..part.columns();
             columns.map(|column| part.entry(row, column)).sum()
@@ -95,7 +95,7 @@ impl InverseDerivatives {
     ///
     /// # Errors
     /// Rows for another mechanism.
-    pub(crate) fn read(&mut self, rows: &[f64]) -> Result<(), DynamicsError> {
+    pub fn read(&mut self, rows: &[f64]) -> Result<(), DynamicsError> {
         let width = self.by_local.columns() + self.by_speeds.columns();
         if rows.len() != self.by_local.rows() * width {
             return Err(DynamicsError::ForeignResults);

@@ -66,7 +66,8 @@ pub struct Sensitivity {
 }
 
 impl Sensitivity {
-    pub(crate) fn new(rows: usize, columns: usize) -> Self {
+    /// Zeros.
+    pub fn new(rows: usize, columns: usize) -> Self {
         Self {
             rows,
             columns,
@@ -104,7 +105,7 @@ impl Sensitivity {
     }
 
     /// All entries, row by row.
-    pub(crate) fn entries_mut(&mut self) -> &mut [f64] {
+    pub fn entries_mut(&mut self) -> &mut [f64] {
         &mut self.entries
     }
 
@@ -152,7 +153,7 @@ impl Sensitivity {
     }
 
     /// Adds `left right`.
-    pub(crate) fn add_product(&mut self, left: &Self, right: &Self) {
+    pub fn add_product(&mut self, left: &Self, right: &Self) {
         product::add_product(left, right, self);
     }
 

@@ -1,0 +1,276 @@
+//! Eight states at a time: a loop over states whose body is one straight-line function, which the compiler vectorises for each level of
+//! instructions.
+//!
+//! The source is the one that serves single states, in the scalar [`Lane`]. What the loop computes for a state depends on that state alone, so
+//! that neither the number of states nor their order shows in any result. Levels with fused multiply–adds and those without
+//! differ by rounding.
+
+use super::instructions::{Instructions, Plain, Work};
+use super::layout::{Lanes, Quantities, States};
+use super::transpose::{apart, side_by_side};
+use core::hint::black_box;
+use core::marker::PhantomData;
+use core::slice;
+#[cfg(all(feature = "levels", target_arch = "x86_64"))]
+use fearless_simd::Level as Detected;
+use hamel_runtime::scalar::{Lane, Scalar};
+use hamel_runtime::unrolled;
+
+/// States that go through together; a number that is no multiple of it is filled up with copies of the last state.
+pub const LANES: usize = 8;
+
+/// A function of one state for any scalar: Q, v̄ and inputs in, as many results as speeds. Its code must be inlined into `value`.
+pub trait OfState<const Q: usize, const V: usize, const U: usize> {
+    /// The results.
+    fn value<T: Scalar>(q: &[T; Q], v: &[T; V], u: &[T; U]) -> [T; V];
+}
+
+/// A function of many states at a level that the machine has; whether all results are finite.
+pub type ManyStates = fn(Level, States<'_>) -> bool;
+
+/// SIMD instructions, from the fewest to the most. The default is the best that the machine has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Level {
+    /// What the program is built for.
+    Baseline,
+    /// x86-64 with AVX2 and FMA: four doubles a register.
+    Avx2,
+    /// x86-64 with the AVX-512 of Ice Lake and later: eight doubles a register.
+    Avx512,
+}
+
+impl Level {
+    /// All levels.
+    pub const ALL: [Self; 3] = [Self::Baseline, Self::Avx2, Self::Avx512];
+
+    /// Whether this machine has it. Without the feature `levels` it is the baseline alone.
+    pub fn is_available(self) -> bool {
+        match self {
+            Self::Baseline => true,
+            #[cfg(all(feature = "levels", target_arch = "x86_64"))]
+            Self::Avx2 => Detected::new().as_avx2().is_some(),
+            #[cfg(all(feature = "levels", target_arch = "x86_64"))]
+            Self::Avx512 => Detected::new().as_avx512().is_some(),
+            #[cfg(not(all(feature = "levels", target_arch = "x86_64")))]
+            _ => false,
+        }
+    }
+}
+
+impl Default for Level {
+    fn default() -> Self {
+        let mut available = Self::ALL.into_iter().filter(|level| level.is_available());
+        available.next_back().unwrap_or(Self::Baseline)
+    }
+}
+
+/// `F` of as many states as there are whole rows of in all quantities, eight at a time; whether all results are finite. What a machine does not have is
+/// done at the baseline.
+///
+/// Modules that are compiled with lanes hold this function of theirs: see [`Equations`](super::Equations).
+pub fn many_states<F, const Q: usize, const V: usize, const U: usize>(
+    level: Level,
+    states: States<'_>,
+) -> bool
+where
+    F: OfState<Q, V, U>,
+{
+    #[cfg(all(feature = "levels", target_arch = "x86_64"))]
+    match level {
+        Level::Baseline => {}
+        Level::Avx2 => {
+            if let Some(simd) = Detected::new().as_avx2() {
+                return at::<Loop<F, true>, Q, V, U>(simd, states);
+            }
+        }
+        Level::Avx512 => {
+            if let Some(simd) = Detected::new().as_avx512() {
+                return at::<Loop<F, true>, Q, V, U>(simd, states);
+            }
+        }
+    }
+    // There is but one.
+    #[cfg(not(all(feature = "levels", target_arch = "x86_64")))]
+    let _ = level;
+    at::<Loop<F, { cfg!(target_feature = "fma") }>, Q, V, U>(Plain, states)
+}
+
+/// The same by instructions that the machine has.
+fn at<E, const Q: usize, const V: usize, const U: usize>(
+    simd: impl Instructions,
+    states: States<'_>,
+) -> bool
+where
+    E: OfEight<Q, V, U>,
+{
+    match states {
+        States::SideBySide(of) => simd.run(Groups::<E, Q, V, U>(whole(of), PhantomData)),
+        States::Rows(of) => rows::<E, Q, V, U>(simd, whole(of)),
+    }
+}
+
+/// Whole rows of what a function takes and leaves.
+struct Whole<'a, N, const Q: usize, const V: usize, const U: usize> {
+    q: &'a [[N; Q]],
+    v: &'a [[N; V]],
+    u: &'a [[N; U]],
+    results: &'a mut [[N; V]],
+}
+
+/// As many whole rows as all quantities have.
+fn whole<N, const Q: usize, const V: usize, const U: usize>(
+    of: Quantities<'_, N>,
+) -> Whole<'_, N, Q, V, U> {
+    let (q, v, u) = (of.q.as_chunks().0, of.v.as_chunks().0, of.u.as_chunks().0);
+    let results = of.results.as_chunks_mut().0;
+    let count = results.len().min(q.len()).min(v.len()).min(u.len());
+    Whole {
+        q: &q[..count],
+        v: &v[..count],
+        u: &u[..count],
+        results: &mut results[..count],
+    }
+}
+
+/// States in rows: eight at a time side by side, and back.
+fn rows<E, const Q: usize, const V: usize, const U: usize>(
+    simd: impl Instructions,
+    rows: Whole<'_, f64, Q, V, U>,
+) -> bool
+where
+    E: OfEight<Q, V, U>,
+{
+    let (mut q, mut v, mut u) = ([Lanes::ZERO; Q], [Lanes::ZERO; V], [Lanes::ZERO; U]);
+    let mut results = [Lanes::ZERO; V];
+    let mut finite = true;
+    for start in (0..rows.results.len()).step_by(LANES) {
+        simd.run(Gather {
+            simd,
+            from: (&rows, start),
+            to: (&mut q, &mut v, &mut u),
+        });
+        let group = Whole {
+            q: slice::from_ref(&q),
+            v: slice::from_ref(&v),
+            u: slice::from_ref(&u),
+            results: slice::from_mut(&mut results),
+        };
+        finite &= simd.run(Groups::<E, Q, V, U>(group, PhantomData));
+        simd.run(Scatter(simd, &results, &mut rows.results[start..]));
+    }
+    finite
+}
+
+/// Eight rows of all arguments from one on, to side by side.
+struct Gather<'a, S, const Q: usize, const V: usize, const U: usize> {
+    simd: S,
+    from: (&'a Whole<'a, f64, Q, V, U>, usize),
+    to: (&'a mut [Lanes; Q], &'a mut [Lanes; V], &'a mut [Lanes; U]),
+}
+
+impl<S, const Q: usize, const V: usize, const U: usize> Work for Gather<'_, S, Q, V, U>
+where
+    S: Instructions,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let (rows, start) = self.from;
+        side_by_side(self.simd, rows.q, start, self.to.0);
+        side_by_side(self.simd, rows.v, start, self.to.1);
+        side_by_side(self.simd, rows.u, start, self.to.2);
+    }
+}
+
+/// What is side by side, to rows.
+struct Scatter<'a, S, const N: usize>(S, &'a [Lanes; N], &'a mut [[f64; N]]);
+
+impl<S: Instructions, const N: usize> Work for Scatter<'_, S, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        apart(self.0, self.1, self.2);
+    }
+}
+
+/// `E` of states that lie side by side; whether all results are finite.
+struct Groups<'a, E, const Q: usize, const V: usize, const U: usize>(
+    Whole<'a, Lanes, Q, V, U>,
+    PhantomData<E>,
+);
+
+impl<E, const Q: usize, const V: usize, const U: usize> Work for Groups<'_, E, Q, V, U>
+where
+    E: OfEight<Q, V, U>,
+{
+    type Output = bool;
+
+    #[inline(always)]
+    fn run(self) -> bool {
+        let Whole { q, v, u, results } = self.0;
+        // A whole cache line on the stack aligns the frame, and with it what registers do not hold: without it each such load and store of eight doubles
+        // would touch two lines, but for one place of the stack in four.
+        black_box(Lanes::ZERO);
+        // What x − x adds up to: 0, or NaN. Asked here, where the results still are at hand; reading them again takes a tenth of inverse dynamics.
+        let mut differences = [0.0; LANES];
+        for (group, results) in results.iter_mut().enumerate() {
+            E::eight(&q[group], &v[group], &u[group], results);
+            for entry in results {
+                for (sum, x) in differences.iter_mut().zip(entry.0) {
+                    #[expect(clippy::eq_op, reason = "not zero where x is not finite")]
+                    let difference = x - x;
+                    *sum += difference;
+                }
+            }
+        }
+        differences.iter().all(|&sum| sum == 0.0)
+    }
+}
+
+/// A function of eight states.
+///
+/// Callers take it as a parameter, so that it is LLVM that inlines it: it then knows that results overlap no argument, without which it does not vectorise the
+/// loop. The Rust compiler, which inlines what it knows, forgets that.
+trait OfEight<const Q: usize, const V: usize, const U: usize> {
+    /// The results.
+    fn eight(q: &[Lanes; Q], v: &[Lanes; V], u: &[Lanes; U], results: &mut [Lanes; V]);
+}
+
+/// `F` in a loop over states, which is vectorised.
+///
+/// Rows would do in place of lanes side by side, but longer ones keep the compiler from it.
+struct Loop<F, const FUSED: bool>(PhantomData<F>);
+
+impl<F, const FUSED: bool, const Q: usize, const V: usize, const U: usize> OfEight<Q, V, U>
+    for Loop<F, FUSED>
+where
+    F: OfState<Q, V, U>,
+{
+    #[inline(always)]
+    fn eight(q: &[Lanes; Q], v: &[Lanes; V], u: &[Lanes; U], results: &mut [Lanes; V]) {
+        for lane in 0..LANES {
+            // Read and written here, not by helpers: what these read, once they are inlined, LLVM may no longer know to be apart from the results.
+            let mut state = (
+                [Lane::<FUSED>(0.0); Q],
+                [Lane::<FUSED>(0.0); V],
+                [Lane::<FUSED>(0.0); U],
+            );
+            unrolled!(i in Q {
+                state.0[i] = Lane(q[i].0[lane]);
+            });
+            unrolled!(i in V {
+                state.1[i] = Lane(v[i].0[lane]);
+            });
+            unrolled!(i in U {
+                state.2[i] = Lane(u[i].0[lane]);
+            });
+            let value = F::value(&state.0, &state.1, &state.2);
+            unrolled!(i in V {
+                results[i].0[lane] = value[i].0;
+            });
+        }
+    }
+}

@@ -1,0 +1,538 @@
+//! Compiled equations of a mechanism, with the tree for what they do not hold.
+
+use super::Equations;
+use alloc::string::String;
+use alloc::sync::Arc;
+use alloc::vec;
+use hamel_runtime::dynamics::{
+    Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives,
+    Recursive,
+};
+use hamel_runtime::mechanism::{Mechanism, Space, StateError};
+use hamel_runtime::scalar::all_finite;
+
+/// A module that does not belong to a mechanism.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CompiledError {
+    /// Sizes differ.
+    #[error(
+        "the equations compiled for `{scene}` have {found} {quantity}, the mechanism has {expected}: compile its scene again"
+    )]
+    Size {
+        /// The scene that was compiled.
+        scene: &'static str,
+        /// What differs.
+        quantity: &'static str,
+        /// Of the mechanism.
+        expected: usize,
+        /// Of the module.
+        found: usize,
+    },
+    /// Rates differ.
+    #[error(
+        "the equations compiled for `{scene}` are those of another mechanism: {place}, `{speed}` of joint `{joint}` has the rate \
+         {found:e}, not {expected:e}; compile its scene again"
+    )]
+    Other {
+        /// The scene that was compiled.
+        scene: &'static str,
+        /// Where they were compared.
+        place: &'static str,
+        /// The joint.
+        joint: String,
+        /// The speed.
+        speed: &'static str,
+        /// By the mechanism.
+        expected: f64,
+        /// By the module.
+        found: f64,
+    },
+    /// The mechanism itself has no rates wherever they were to be compared.
+    #[error(
+        "the equations compiled for `{scene}` cannot be compared with those of the mechanism, which have no value {place}, nor near home: {cause}"
+    )]
+    NoValue {
+        /// The scene that was compiled.
+        scene: &'static str,
+        /// Where they were to be compared first.
+        place: &'static str,
+        /// Why they have none there.
+        cause: DynamicsError,
+    },
+}
+
+/// Why two forms do not agree at one configuration.
+enum Unlike {
+    /// Rates differ.
+    Rate {
+        /// Which of the entries of v̄ it belongs to.
+        entry: usize,
+        expected: f64,
+        found: f64,
+    },
+    /// The tree has no value there.
+    NoValue(DynamicsError),
+}
+
+impl From<DynamicsError> for Unlike {
+    fn from(cause: DynamicsError) -> Self {
+        Self::NoValue(cause)
+    }
+}
+
+/// How many configurations near home are tried where home has no value.
+const NEAR_HOME: usize = 4;
+
+/// How far rates may differ, relative to the largest: what conditioning leaves of doubles in the worst of tested robots
+/// is 1e-8; another mass or length shows in the leading digits.
+const AGREEMENT: f64 = 1e-6;
+
+/// Compiled equations of a mechanism: what the module does not have, the tree computes.
+#[derive(Clone, Debug)]
+pub struct Compiled {
+    equations: &'static Equations,
+    tree: Recursive,
+    /// τ of the inputs, and none.
+    inputs: [vec::Vec<f64>; 2],
+    /// Rows of derivatives of forward dynamics.
+    rows: vec::Vec<f64>,
+}
+
+impl Compiled {
+    /// The equations for `mechanism`, compared with its own at home; where home has no value, near it.
+    ///
+    /// # Errors
+    /// A module of another mechanism; a mechanism without a value there.
+    pub fn new(
+        mechanism: Arc<Mechanism>,
+        equations: &'static Equations,
+    ) -> Result<Self, CompiledError> {
+        Self::sized(mechanism, equations)?.compared(None)
+    }
+
+    /// The same, compared at the configuration `q` first, where a motion begins: home may be a place where the mechanism has no value.
+    ///
+    /// # Errors
+    /// Those of [`Compiled::new`].
+    pub fn starting_at(
+        mechanism: Arc<Mechanism>,
+        equations: &'static Equations,
+        q: &[f64],
+    ) -> Result<Self, CompiledError> {
+        Self::sized(mechanism, equations)?.compared(Some(q))
+    }
+
+    /// Equations that have the sizes of `mechanism`.
+    fn sized(
+        mechanism: Arc<Mechanism>,
+        equations: &'static Equations,
+    ) -> Result<Self, CompiledError> {
+        let layout = mechanism.layout();
+        let sizes = [
+            (
+                "stored scalars",
+                layout.configuration,
+                equations.configuration,
+            ),
+            ("freedoms", layout.freedoms, equations.freedoms),
+            ("speeds", layout.speeds, equations.speeds),
+        ];
+        for (quantity, expected, found) in sizes {
+            if expected != found {
+                return Err(CompiledError::Size {
+                    scene: equations.scene,
+                    quantity,
+                    expected,
+                    found,
+                });
+            }
+        }
+        Ok(Self {
+            equations,
+            rows: vec![0.0; ForwardDerivatives::entries(&mechanism)],
+            tree: Recursive::new(mechanism),
+            inputs: core::array::from_fn(|_| vec![0.0; equations.freedoms]),
+        })
+    }
+
+    /// Holds both forms against each other at the first place where the tree has a value.
+    fn compared(mut self, start: Option<&[f64]>) -> Result<Self, CompiledError> {
+        let mechanism = Arc::clone(self.tree.mechanism());
+        let start = start.map(|q| ("where the motion begins", q.to_vec()));
+        let home = ("at home", mechanism.home());
+        let near = (1..=NEAR_HOME).filter_map(|round| near_home(&mechanism, round));
+        let near = near.map(|q| ("near home", q));
+        let mut first = None;
+        for (place, q) in start.into_iter().chain([home]).chain(near) {
+            match self.compare(&q) {
+                Ok(()) => return Ok(self),
+                Err(Unlike::Rate {
+                    entry,
+                    expected,
+                    found,
+                }) => return Err(self.other(place, entry, expected, found)),
+                Err(Unlike::NoValue(cause)) => {
+                    first.get_or_insert((place, cause));
+                }
+            }
+        }
+        match first {
+            None => Ok(self),
+            Some((place, cause)) => Err(CompiledError::NoValue {
+                scene: self.equations.scene,
+                place,
+                cause,
+            }),
+        }
+    }
+
+    /// Holds the rates of both forms at `q` against each other, with speeds, momenta and efforts that differ among themselves.
+    fn compare(&mut self, q: &[f64]) -> Result<(), Unlike> {
+        let numbers = |count: usize| (0..count).map(|i| 0.1 + 0.01 * i as f64).collect();
+        let mut speeds: vec::Vec<f64> = numbers(self.equations.speeds);
+        let efforts: vec::Vec<f64> = numbers(self.equations.freedoms);
+        self.tree.complete_speeds(q, &mut speeds)?;
+        let mut expected = vec![0.0; speeds.len()];
+        let mut found = expected.clone();
+        if let Some(forward) = self.equations.forward_dynamics {
+            self.tree
+                .accelerations(q, &speeds, &efforts, &mut expected)?;
+            forward(q, &speeds, &efforts, &mut found);
+            Self::close(&found, &expected)?;
+        }
+        self.compare_derivatives(q, &speeds, &efforts)?;
+        self.compare_momenta(q, &mut speeds, &efforts)
+    }
+
+    /// The same of the port-Hamiltonian form.
+    fn compare_momenta(
+        &mut self,
+        q: &[f64],
+        speeds: &mut [f64],
+        efforts: &[f64],
+    ) -> Result<(), Unlike> {
+        let Equations {
+            momenta: by_speeds,
+            speeds_from_momenta: by_momenta,
+            momentum_rates,
+            ..
+        } = *self.equations;
+        let [mut momenta, mut found, mut expected] = [(); 3].map(|()| vec![0.0; speeds.len()]);
+        self.tree.momenta(q, speeds, &mut momenta)?;
+        if let Some(map) = by_speeds {
+            map(q, speeds, &mut found);
+            Self::close(&found, &momenta)?;
+        }
+        if let Some(map) = by_momenta {
+            self.tree.speeds(q, &momenta, &mut expected)?;
+            map(q, &momenta, &mut found);
+            Self::close(&found, &expected)?;
+        }
+        if let Some(momentum_rates) = momentum_rates {
+            let mut given = |_: &[f64], tau: &mut [f64]| tau.copy_from_slice(efforts);
+            self.tree
+                .momentum_rates(q, &momenta, &mut given, speeds, &mut expected)?;
+            momentum_rates(q, &momenta, efforts, speeds, &mut found);
+            Self::close(&found, &expected)?;
+        }
+        Ok(())
+    }
+
+    /// The same of the derivatives: of forward dynamics the rates that come with them, of inverse dynamics how efforts change as all of ϕ and v̄ grow alike.
+    fn compare_derivatives(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        inputs: &[f64],
+    ) -> Result<(), Unlike> {
+        let mechanism = Arc::clone(self.tree.mechanism());
+        if self.equations.forward_dynamics_derivatives.is_some() {
+            let mut found = ForwardDerivatives::new(&mechanism);
+            let mut expected = vec![0.0; speeds.len()];
+            self.tree.accelerations(q, speeds, inputs, &mut expected)?;
+            self.forward_dynamics_derivatives(q, speeds, inputs, &mut found)?;
+            Self::close(found.rates(), &expected)?;
+        }
+        if self.equations.inverse_dynamics_derivatives.is_some() {
+            let [mut found, mut expected] = [(); 2].map(|()| InverseDerivatives::new(&mechanism));
+            self.tree
+                .inverse_dynamics_derivatives(q, speeds, speeds, &mut expected)?;
+            self.inverse_dynamics_derivatives(q, speeds, speeds, &mut found)?;
+            // Beside the efforts themselves, so that what is 0 but for rounding is nothing.
+            let mut efforts = vec![0.0; speeds.len()];
+            let given = self.tree.inverse_dynamics(q, speeds, speeds, &mut efforts);
+            given.map_err(DynamicsError::from)?;
+            let changed = |by: &InverseDerivatives| -> vec::Vec<f64> {
+                let rows = efforts.iter().enumerate();
+                rows.map(|(row, effort)| effort + by.sum_of_row(row))
+                    .collect()
+            };
+            Self::close(&changed(&found), &changed(&expected))?;
+        }
+        Ok(())
+    }
+
+    fn close(found: &[f64], expected: &[f64]) -> Result<(), Unlike> {
+        let largest = expected
+            .iter()
+            .fold(0.0_f64, |most, rate| most.max(rate.abs()));
+        let differs = |(found, expected): (&f64, &f64)| {
+            let agrees = (found - expected).abs() <= AGREEMENT * largest;
+            // So that NaN differs.
+            !agrees
+        };
+        match found.iter().zip(expected).position(differs) {
+            None => Ok(()),
+            Some(entry) => Err(Unlike::Rate {
+                entry,
+                expected: expected[entry],
+                found: found[entry],
+            }),
+        }
+    }
+
+    fn other(&self, place: &'static str, entry: usize, expected: f64, found: f64) -> CompiledError {
+        let bodies = self.tree.mechanism().bodies().iter();
+        let mut named = bodies
+            .filter(|body| body.ranges().speeds.contains(&entry))
+            .map(|body| {
+                let own = entry - body.ranges().speeds.start;
+                let speed = body.joint().speeds().get(own).copied();
+                (String::from(body.joint_name()), speed.unwrap_or_default())
+            });
+        let (joint, speed) = named.next().unwrap_or_default();
+        CompiledError::Other {
+            scene: self.equations.scene,
+            place,
+            joint,
+            speed,
+            expected,
+            found,
+        }
+    }
+
+    /// The derivatives of inverse dynamics in ϕ and v̄ at (q, v̄, v̄̇) into `out`, as [`Recursive::inverse_dynamics_derivatives`] has them.
+    ///
+    /// # Errors
+    /// A wrong size; results that were made for another mechanism; something that acts on the mechanism whose derivatives are not known.
+    pub fn inverse_dynamics_derivatives(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        accelerations: &[f64],
+        out: &mut InverseDerivatives,
+    ) -> Result<(), DynamicsError> {
+        if let Some(inverse) = self.equations.inverse_dynamics_derivatives {
+            self.check(q, [("speeds", speeds), ("accelerations", accelerations)])?;
+            let count = speeds.len() * (self.equations.freedoms + speeds.len());
+            let rows = &mut self.rows[..count];
+            inverse(q, speeds, accelerations, rows);
+            if all_finite(rows) {
+                return out.read(rows);
+            }
+        }
+        self.tree
+            .inverse_dynamics_derivatives(q, speeds, accelerations, out)
+    }
+
+    /// Whether `q` and vectors with one entry a speed have their sizes, and are finite.
+    fn check<const N: usize>(
+        &self,
+        q: &[f64],
+        vectors: [(&'static str, &[f64]); N],
+    ) -> Result<(), StateError> {
+        let mechanism = self.tree.mechanism();
+        mechanism.check_vector("configuration", Space::Configuration, q)?;
+        let mut vectors = vectors.into_iter();
+        vectors.try_for_each(|(quantity, own)| mechanism.check_vector(quantity, Space::Speeds, own))
+    }
+
+    /// Whether `room` for results has one entry a speed.
+    fn check_room(&self, quantity: &'static str, room: &[f64]) -> Result<(), StateError> {
+        let mechanism = self.tree.mechanism();
+        mechanism.check_room(quantity, Space::Speeds, room)
+    }
+
+    /// Whether τ has one entry a freedom, and is finite.
+    fn check_efforts(&self, efforts: &[f64]) -> Result<(), StateError> {
+        let mechanism = self.tree.mechanism();
+        mechanism.check_vector("efforts", Space::Freedoms, efforts)
+    }
+
+    /// `p̄̇ += S̄ᵀτ`: they are affine in τ, which depends on the v̄ that come with them.
+    fn add_inputs(&self, q: &[f64], rates: &mut [f64]) {
+        for (index, body) in self.tree.mechanism().bodies().iter().enumerate() {
+            let ranges = body.ranges();
+            let mut reduced = [0.0; 6];
+            let reduced = &mut reduced[..ranges.speeds.len()];
+            let tau = &self.inputs[0][ranges.freedoms.clone()];
+            if self.tree.mechanism().is_driven(index) {
+                rates[ranges.speeds.clone()].copy_from_slice(&tau[..ranges.speeds.len()]);
+                continue;
+            }
+            body.joint()
+                .reduce_efforts(body.configuration(q), tau, reduced);
+            for (rate, effort) in rates[ranges.speeds.clone()].iter_mut().zip(&*reduced) {
+                *rate += effort;
+            }
+        }
+    }
+}
+
+/// A configuration near home, another one in each round; none where a joint does not get there.
+fn near_home(mechanism: &Mechanism, round: usize) -> Option<vec::Vec<f64>> {
+    // Multiples of the golden section lie without pattern, so that no joint stands as another does.
+    let part = |freedom: usize| (0.618_034 * (freedom + round * 17) as f64) % 1.0;
+    let mut near = mechanism.home();
+    for (index, body) in mechanism.bodies().iter().enumerate() {
+        let ranges = body.ranges();
+        let phi: vec::Vec<f64> = ranges
+            .freedoms
+            .clone()
+            .map(|i| 0.1 + 0.2 * part(i))
+            .collect();
+        let moved = mechanism.configuration_from_local(index, &phi).ok()?;
+        near[ranges.configuration.clone()].copy_from_slice(&moved);
+    }
+    Some(near)
+}
+
+impl Dynamics for Compiled {
+    fn mechanism(&self) -> &Arc<Mechanism> {
+        self.tree.mechanism()
+    }
+
+    fn complete_speeds(&mut self, q: &[f64], speeds: &mut [f64]) -> Result<(), DynamicsError> {
+        self.tree.complete_speeds(q, speeds)
+    }
+
+    fn accelerations(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &[f64],
+        rates: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        let Some(forward) = self.equations.forward_dynamics else {
+            return self.tree.accelerations(q, speeds, efforts, rates);
+        };
+        self.check(q, [("speeds", speeds)])?;
+        self.check_efforts(efforts)?;
+        self.check_room("rates", rates)?;
+        forward(q, speeds, efforts, rates);
+        if all_finite(rates) {
+            return Ok(());
+        }
+        // The tree says which joint it is, and why.
+        self.tree.accelerations(q, speeds, efforts, rates)
+    }
+
+    fn momenta(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        momenta: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        let Some(map) = self.equations.momenta else {
+            return self.tree.momenta(q, speeds, momenta);
+        };
+        self.check(q, [("speeds", speeds)])?;
+        self.check_room("momenta", momenta)?;
+        map(q, speeds, momenta);
+        if all_finite(momenta) {
+            return Ok(());
+        }
+        self.tree.momenta(q, speeds, momenta)
+    }
+
+    fn speeds(
+        &mut self,
+        q: &[f64],
+        momenta: &[f64],
+        speeds: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        let Some(map) = self.equations.speeds_from_momenta else {
+            return self.tree.speeds(q, momenta, speeds);
+        };
+        self.check(q, [("momenta", momenta)])?;
+        self.check_room("speeds", speeds)?;
+        map(q, momenta, speeds);
+        if all_finite(speeds) {
+            return Ok(());
+        }
+        self.tree.speeds(q, momenta, speeds)
+    }
+
+    fn momentum_rates(
+        &mut self,
+        q: &[f64],
+        momenta: &[f64],
+        efforts: &mut dyn FnMut(&[f64], &mut [f64]),
+        speeds: &mut [f64],
+        rates: &mut [f64],
+    ) -> Result<(), DynamicsError> {
+        let Some(momentum_rates) = self.equations.momentum_rates else {
+            return self.tree.momentum_rates(q, momenta, efforts, speeds, rates);
+        };
+        self.check(q, [("momenta", momenta)])?;
+        self.check_room("speeds", speeds)?;
+        self.check_room("rates", rates)?;
+        let [inputs, none] = &mut self.inputs;
+        momentum_rates(q, momenta, none, speeds, rates);
+        if !(all_finite(speeds) && all_finite(rates)) {
+            return self.tree.momentum_rates(q, momenta, efforts, speeds, rates);
+        }
+        inputs.fill(0.0);
+        efforts(speeds, inputs);
+        self.check_efforts(&self.inputs[0])?;
+        let [inputs, _] = &self.inputs;
+        match self.tree.mechanism().constraints() {
+            [] => self.add_inputs(q, rates),
+            // What inputs make of dependent speeds falls to others: the module knows how.
+            _ => momentum_rates(q, momenta, inputs, speeds, rates),
+        }
+        Ok(())
+    }
+
+    fn hamiltonian(&mut self, q: &[f64], momenta: &[f64]) -> Result<f64, DynamicsError> {
+        let Some(hamiltonian) = self.equations.hamiltonian else {
+            return self.tree.hamiltonian(q, momenta);
+        };
+        self.check(q, [("momenta", momenta)])?;
+        let energy = hamiltonian(q, momenta);
+        match energy.is_finite() {
+            true => Ok(energy),
+            false => self.tree.hamiltonian(q, momenta),
+        }
+    }
+
+    fn forward_dynamics_derivatives(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &[f64],
+        out: &mut ForwardDerivatives,
+    ) -> Result<(), DynamicsError> {
+        if let Some(forward) = self.equations.forward_dynamics_derivatives {
+            self.check(q, [("speeds", speeds)])?;
+            self.check_efforts(efforts)?;
+            forward(q, speeds, efforts, &mut self.rows);
+            if all_finite(&self.rows) {
+                return out.read(&self.rows);
+            }
+        }
+        // The tree says which joint it is, and why.
+        self.tree
+            .forward_dynamics_derivatives(q, speeds, efforts, out)
+    }
+
+    fn hamiltonian_derivatives(
+        &mut self,
+        q: &[f64],
+        momenta: &[f64],
+        efforts: &[f64],
+        out: &mut HamiltonianDerivatives,
+    ) -> Result<(), DynamicsError> {
+        self.tree.hamiltonian_derivatives(q, momenta, efforts, out)
+    }
+}

@@ -1,0 +1,152 @@
+//! Springs and states of joints, as a scene gives them, with the numbers that the joint's own kernels make of them.
+
+use super::graph::{Sym, record};
+use super::joint::Joint;
+use super::model::Elements;
+use super::products::JointType;
+use hamel_codegen::derived::{KernelKind, Method};
+use hamel_runtime::elements::{JointSpring, RotationSpring};
+use hamel_runtime::mechanism::CONFIGURATION_TOLERANCE;
+use hamel_scene::{BodyDescription, Position, SpringEnergy};
+use nalgebra::{DMatrix, DVector, Matrix3};
+
+/// A joint of a scene whose type and parameters are known.
+pub struct Held<'a> {
+    /// What of it is asked for, in messages.
+    pub what: &'static str,
+    /// Index of its body.
+    pub index: usize,
+    /// Its body.
+    pub body: &'a BodyDescription,
+    /// Its type.
+    pub joint: &'a JointType,
+    /// Values of the type's parameters.
+    pub parameters: &'a [f64],
+}
+
+impl Held<'_> {
+    /// Puts the joint's spring among the elements, if it has one.
+    ///
+    /// # Errors
+    /// A spring that does not fit the joint, or that is not compiled.
+    pub fn add_spring(&self, elements: &mut Elements) -> Result<(), String> {
+        let Some(spring) = &self.body.forces.spring else {
+            return Ok(());
+        };
+        let name = format!("spring of joint `{}`", self.body.joint.name.value);
+        let (body, rest) = (self.index, &spring.value.rest);
+        let stiffness = match &spring.value.energy {
+            SpringEnergy::Trace(stiffness) => {
+                elements.rotation_springs.push(RotationSpring {
+                    name,
+                    body,
+                    stiffness: *stiffness,
+                    rest: self.rest_rotation(rest)?,
+                });
+                return Ok(());
+            }
+            SpringEnergy::Diagonal(numbers) => numbers
+                .spread(self.joint.derived.shape.freedoms)
+                .map(|numbers| DMatrix::from_diagonal(&DVector::from_vec(numbers))),
+            SpringEnergy::Full(matrix) => Some(matrix.clone()),
+        };
+        let size = self.joint.derived.shape.freedoms;
+        let fits = |matrix: &DMatrix<f64>| matrix.shape() == (size, size);
+        let stiffness = stiffness
+            .filter(fits)
+            .ok_or_else(|| self.refused(&format!("stiffness must have {size} number(s)")))?;
+        for kind in [KernelKind::Local, KernelKind::RetractDifferentialInverse] {
+            self.in_closed_form(kind)?;
+        }
+        elements.joint_springs.push(JointSpring {
+            name,
+            body,
+            stiffness: stiffness.transpose().as_slice().to_vec(),
+            rest: self.rest(rest)?,
+        });
+        Ok(())
+    }
+
+    fn refused(&self, reason: &str) -> String {
+        format!(
+            "{} of joint `{}`: {reason}",
+            self.what, self.body.joint.name.value
+        )
+    }
+
+    /// Whether a kernel is a formula: what iterates is not compiled.
+    fn in_closed_form(&self, kind: KernelKind) -> Result<(), String> {
+        let kernel = self.joint.derived.kernel(kind);
+        match kernel.is_some_and(|kernel| kernel.method == Method::Formula) {
+            true => Ok(()),
+            false => {
+                let kind = &self.body.joint.kind.value;
+                Err(self.refused(&format!(
+                    "the local coordinates of `{kind}` have no closed form, and springs in them are not compiled"
+                )))
+            }
+        }
+    }
+
+    /// The rotation of the joint at rest.
+    fn rest_rotation(&self, rest: &Position) -> Result<Matrix3<f64>, String> {
+        if let Position::Pose(pose) = rest {
+            return Ok(pose.value.rotation);
+        }
+        let rest = self.rest(rest)?;
+        let rotation = self.at(&rest, |joint| joint.rotation().iter().copied().collect());
+        Ok(Matrix3::from_column_slice(&self.numbers(rotation)?))
+    }
+
+    /// The Q of a spring's rest, or of time 0.
+    ///
+    /// # Errors
+    /// Numbers that do not fit the joint; a pose.
+    pub fn rest(&self, rest: &Position) -> Result<Vec<f64>, String> {
+        let home = || self.numbers(self.at(&[], |joint| joint.home()));
+        match rest {
+            Position::Home => home(),
+            Position::Configuration(given) => self.projected(&given.value),
+            Position::Phi(phi) => {
+                let size = self.joint.derived.shape.freedoms;
+                if phi.value.len() != size {
+                    return Err(self.refused(&format!("`phi` must have {size} number(s)")));
+                }
+                let phi: Vec<Sym> = phi.value.iter().copied().map(Sym::from).collect();
+                self.numbers(self.at(&home()?, |joint| joint.retract(&phi)))
+            }
+            Position::Pose(_) => Err(self.refused(
+                "to find the configuration of a pose takes iterations: give `configuration` or `phi`",
+            )),
+        }
+    }
+
+    /// A configuration given outright, freed of its rounding.
+    fn projected(&self, given: &[f64]) -> Result<Vec<f64>, String> {
+        let size = self.joint.derived.shape.configuration;
+        if given.len() != size {
+            return Err(self.refused(&format!("`configuration` must have {size} number(s)")));
+        }
+        self.in_closed_form(KernelKind::Project)?;
+        let projected = self.numbers(self.at(given, |joint| joint.project()))?;
+        let away = given.iter().zip(&projected).map(|(a, b)| (a - b).abs());
+        match away.fold(0.0, f64::max) {
+            away if away <= CONFIGURATION_TOLERANCE => Ok(projected),
+            away => Err(self.refused(&format!(
+                "it is off the joint's manifold by {away:e}, more than {CONFIGURATION_TOLERANCE:e}"
+            ))),
+        }
+    }
+
+    /// What the joint's kernels make of a configuration in numbers.
+    fn at(&self, q: &[f64], read: impl FnOnce(&Joint<'_>) -> Vec<Sym>) -> Vec<Sym> {
+        let q: Vec<Sym> = q.iter().copied().map(Sym::from).collect();
+        record(|| read(&Joint::new(self.joint, self.parameters, &q, &[]))).0
+    }
+
+    fn numbers(&self, values: Vec<Sym>) -> Result<Vec<f64>, String> {
+        let finite = |value: Sym| value.number().filter(|number| number.is_finite());
+        let numbers: Option<Vec<f64>> = values.into_iter().map(finite).collect();
+        numbers.ok_or_else(|| self.refused("it is not finite"))
+    }
+}

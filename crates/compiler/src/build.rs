@@ -1,0 +1,390 @@
+//! For build scripts: a scene as a module of equations in `OUT_DIR`.
+//!
+//! ```no_run
+//! fn main() -> Result<(), Box<dyn std::error::Error>> {
+//!     hamel_compiler::scene("arm.toml").specs("joints").compile()?;
+//!     Ok(())
+//! }
+//! ```
+//!
+//! and in the crate `mod arm { include!(concat!(env!("OUT_DIR"), "/arm.rs")); }`. With [`Language::C99`] it is `arm.c` and `arm.h`, for the crate `cc`.
+
+use super::check;
+use super::describe::Refused;
+use super::emit;
+use super::functions::{self, Kind, Loops, TooLong};
+use super::model::Model;
+use super::products::JointType;
+use hamel_codegen::derived::Derived;
+use hamel_codegen::emit::rust::WriteError;
+use hamel_codegen::expr::budget::Exhausted;
+use hamel_codegen::source;
+use hamel_codegen::text::is_visible;
+use hamel_scene::{Scene, SceneDescription, urdf};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+/// What a module is written in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Language {
+    /// Functions generic over the runtime's scalars.
+    #[default]
+    Rust,
+    /// C as of 1999, in doubles: a source that needs `<math.h>` alone, and a header.
+    C99,
+}
+
+impl Language {
+    /// The ending of a module's file.
+    pub const fn ending(self) -> &'static str {
+        match self {
+            Self::Rust => "rs",
+            Self::C99 => "c",
+        }
+    }
+}
+
+/// Where a scene is said.
+#[derive(Clone, Debug)]
+enum Source {
+    /// In a file.
+    File(PathBuf),
+    /// By the program itself, under a name.
+    Described(String, Box<SceneDescription>),
+}
+
+impl Source {
+    /// The file, or the name where there is none.
+    fn path(&self) -> &Path {
+        match self {
+            Self::File(path) => path,
+            Self::Described(name, _) => Path::new(name),
+        }
+    }
+}
+
+/// Compiles a scene in a build script.
+#[derive(Clone, Debug)]
+pub struct Build {
+    source: Source,
+    name: Option<String>,
+    language: Language,
+    folders: Vec<PathBuf>,
+    texts: BTreeMap<String, String>,
+    functions: Option<Vec<Kind>>,
+    floating_base: bool,
+    lanes: bool,
+}
+
+/// A module of equations.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Module {
+    /// Its text.
+    pub text: String,
+    /// In C, its header: prototypes, sizes and layouts.
+    pub header: Option<String>,
+    /// Functions that it does not have, where nobody asked for them by name.
+    pub left_out: Vec<TooLong>,
+}
+
+/// Why a scene is not compiled.
+#[derive(Debug)]
+pub enum Error {
+    /// A file cannot be read or written, or `OUT_DIR` is not set.
+    File(PathBuf, std::io::Error),
+    /// Mistakes in the scene.
+    Scene(Box<hamel_scene::Diagnostics>),
+    /// Mistakes in a spec.
+    Spec(Box<hamel_codegen::diagnostic::Diagnostics>),
+    /// A joint type of which products of kernels take more work than a spec may.
+    Work(String, Exhausted),
+    /// What the scene has and the compiler does not write.
+    Refused(Refused),
+    /// A function that was asked for and would be too long.
+    TooLong(TooLong),
+    /// Emitted tokens that are no Rust.
+    Write(WriteError),
+    /// A fault in a template, which is part of this crate.
+    Template(tera::Error),
+    /// A name under which C cannot include a header.
+    Name(String),
+    /// Lanes are of modules in Rust.
+    Lanes,
+}
+
+impl std::fmt::Display for Error {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::File(path, error) => write!(f, "{}: {error}", path.display()),
+            Self::Scene(errors) => write!(f, "{errors}"),
+            Self::Spec(errors) => write!(f, "{errors}"),
+            Self::Work(joint, Exhausted { limit, task }) => {
+                write!(f, "joint type `{joint}`: {task}: more than {limit} term operations")
+            }
+            Self::Refused(refused) => write!(f, "{refused}"),
+            Self::TooLong(long) => write!(f, "{long}"),
+            Self::Write(error) => write!(f, "{error}"),
+            Self::Template(error) => write!(f, "{error}"),
+            Self::Name(name) => write!(
+                f,
+                "the module is named {name:?}, and C cannot include `{name}.h`: quotes, backslashes, ends of lines, bytes that are not UTF-8 and characters that are not seen must not be in a name"
+            ),
+            Self::Lanes => f.write_str(
+                "lanes are of modules in Rust, whose functions are generic over scalars: a module in C takes one state at a time",
+            ),
+        }
+    }
+}
+
+impl std::error::Error for Error {}
+
+/// Compiles the scene file (TOML) or robot (URDF) at `path`, relative to the crate's manifest, with the functions of
+/// [`Kind::BY_DEFAULT`] that are not too long.
+pub fn scene(path: impl Into<PathBuf>) -> Build {
+    Build::new(Source::File(path.into()))
+}
+
+/// As [`scene`], with a scene that the program has in its memory, and a name for it.
+pub fn scene_of(name: impl Into<String>, description: SceneDescription) -> Build {
+    Build::new(Source::Described(name.into(), Box::new(description)))
+}
+
+impl Build {
+    fn new(source: Source) -> Self {
+        Self {
+            source,
+            name: None,
+            language: Language::default(),
+            folders: vec![],
+            texts: BTreeMap::new(),
+            functions: None,
+            floating_base: false,
+            lanes: false,
+        }
+    }
+
+    /// A folder of specs in which joint types are looked up, relative to the crate's manifest.
+    #[must_use]
+    pub fn specs(mut self, folder: impl Into<PathBuf>) -> Self {
+        self.folders.push(folder.into());
+        self
+    }
+
+    /// Names and texts of specs in which joint types are looked up: those of the library are `hamel_joints::specs()`.
+    #[must_use]
+    pub fn library<'a>(mut self, specs: impl IntoIterator<Item = (&'a str, &'a str)>) -> Self {
+        let owned = specs
+            .into_iter()
+            .map(|(name, text)| (name.to_owned(), text.to_owned()));
+        self.texts.extend(owned);
+        self
+    }
+
+    /// What the module is written in; without this Rust.
+    #[must_use]
+    pub fn language(mut self, language: Language) -> Self {
+        self.language = language;
+        self
+    }
+
+    /// The module's name, with which its files and, in C, its functions and macros begin; without this the scene's file name.
+    #[must_use]
+    pub fn name(mut self, name: impl Into<String>) -> Self {
+        self.name = Some(name.into());
+        self
+    }
+
+    /// The functions to be written; without this those of [`Kind::BY_DEFAULT`] that are not too long.
+    #[must_use]
+    pub fn functions(mut self, functions: impl IntoIterator<Item = Kind>) -> Self {
+        self.functions = Some(functions.into_iter().collect());
+        self
+    }
+
+    /// Lets the root link of a robot in URDF move freely.
+    #[must_use]
+    pub fn floating_base(mut self) -> Self {
+        self.floating_base = true;
+        self
+    }
+
+    /// Lets forward and inverse dynamics take many states at a time (`hamel_compiled::Batch`), in SIMD lanes. They are compiled once for each level of
+    /// instructions, which takes the Rust compiler its time.
+    #[must_use]
+    pub fn lanes(mut self) -> Self {
+        self.lanes = true;
+        self
+    }
+
+    /// Writes the module into `OUT_DIR`, under its name with the ending `.rs`, or `.c` and `.h`. Prints the instructions to cargo that make
+    /// it run again when the scene or a spec changes.
+    ///
+    /// # Errors
+    /// All mistakes of the scene; joint types without a spec; what the compiler does not write; files that cannot be read or written.
+    pub fn compile(&self) -> Result<(), Error> {
+        let path = self.source.path();
+        let name = path.file_name().unwrap_or_default();
+        let out = std::env::var_os("OUT_DIR")
+            .map(PathBuf::from)
+            .ok_or_else(|| {
+                let reason = "it is not set: call this from a build script";
+                Error::File("OUT_DIR".into(), std::io::Error::other(reason))
+            })?;
+        if let Source::File(path) = &self.source {
+            println!("cargo::rerun-if-changed={}", path.display());
+        }
+        for folder in &self.folders {
+            println!("cargo::rerun-if-changed={}", folder.display());
+        }
+        let module = self.module(&name.to_string_lossy())?;
+        for left_out in module.left_out {
+            println!("cargo::warning={}: {left_out}", path.display());
+        }
+        let target = out.join(format!("{}.{}", self.module_name(), self.language.ending()));
+        if let Some(header) = &module.header {
+            write(&target.with_extension("h"), header)?;
+        }
+        write(&target, &module.text)
+    }
+
+    fn module_name(&self) -> String {
+        let stem = || self.source.path().file_stem().unwrap_or_default();
+        let named = self.name.clone();
+        named.unwrap_or_else(|| stem().to_string_lossy().into_owned())
+    }
+
+    /// The module as text; `label` names the scene in its first line.
+    ///
+    /// # Errors
+    /// Those of [`Build::compile`].
+    pub fn module(&self, label: &str) -> Result<Module, Error> {
+        let model = self.model()?;
+        let kinds = self.functions.as_deref().unwrap_or(&Kind::BY_DEFAULT);
+        let (mut functions, mut left_out) = (vec![], vec![]);
+        let mut reasons: Vec<String> = vec![];
+        for &kind in kinds {
+            match functions::compile(&model, kind, self.loops(kind)) {
+                Ok(chosen) => {
+                    let found = check::of_function(&model, &chosen.function).into_iter();
+                    let new = found.filter(|reason| !reasons.contains(reason));
+                    reasons.extend(new.collect::<Vec<_>>());
+                    functions.push(chosen.function);
+                }
+                Err(long) if self.functions.is_none() => left_out.push(long),
+                Err(long) => return Err(Error::TooLong(long)),
+            }
+        }
+        if !reasons.is_empty() {
+            let scene = model.name;
+            return Err(Error::Refused(Refused { scene, reasons }));
+        }
+        let (text, header) = self.texts(&model, &functions, label)?;
+        Ok(Module {
+            text,
+            header,
+            left_out,
+        })
+    }
+
+    /// The module's text, and its header if it has one.
+    fn texts(
+        &self,
+        model: &Model,
+        functions: &[emit::Function],
+        label: &str,
+    ) -> Result<(String, Option<String>), Error> {
+        match self.language {
+            Language::Rust => {
+                let text = emit::module(model, functions, label, self.lanes);
+                Ok((text.map_err(Error::Write)?, None))
+            }
+            Language::C99 if self.lanes => Err(Error::Lanes),
+            Language::C99 => {
+                let name = self.module_name();
+                if name.contains(['"', '\\', '\n', '\t']) || !is_visible(&name) {
+                    return Err(Error::Name(name));
+                }
+                let texts = emit::c99::module(model, functions, label, &name);
+                let texts = texts.map_err(Error::Template)?;
+                Ok((texts.source, Some(texts.header)))
+            }
+        }
+    }
+
+    /// A loop over states must be the innermost one to become SIMD code.
+    fn loops(&self, kind: Kind) -> Loops {
+        match self.lanes && kind.is_batched() {
+            true => Loops::Never,
+            false => Loops::Long,
+        }
+    }
+
+    /// What is compiled.
+    ///
+    /// # Errors
+    /// Those of [`Build::compile`], but for writing.
+    pub fn model(&self) -> Result<Model, Error> {
+        let description = self.description()?;
+        let kinds: std::collections::BTreeSet<&str> = description
+            .bodies
+            .iter()
+            .map(|body| body.joint.kind.value.as_str())
+            .collect();
+        let mut joints = BTreeMap::new();
+        for kind in kinds {
+            if let Some(derived) = self.derive(kind)? {
+                let joint = JointType::new(derived);
+                let joint = joint.map_err(|error| Error::Work(kind.to_owned(), error))?;
+                joints.insert(kind.to_owned(), Rc::new(joint));
+            }
+        }
+        Model::new(&description, |kind| joints.get(kind).cloned()).map_err(Error::Refused)
+    }
+
+    fn description(&self) -> Result<SceneDescription, Error> {
+        let failed = |errors| Error::Scene(Box::new(errors));
+        let path = match &self.source {
+            Source::File(path) => path,
+            Source::Described(_, description) => return Ok((**description).clone()),
+        };
+        let ending = path.extension().unwrap_or_default();
+        if ending.eq_ignore_ascii_case("urdf") {
+            let options = urdf::Options {
+                floating_base: self.floating_base,
+                ..urdf::Options::default()
+            };
+            return urdf::load(path, &options)
+                .map(|import| import.scene)
+                .map_err(failed);
+        }
+        let text = read(path)?;
+        Scene::from_toml(&text, &path.display().to_string()).map_err(failed)
+    }
+
+    /// A joint type, from the first place that has its spec.
+    fn derive(&self, kind: &str) -> Result<Option<Derived>, Error> {
+        let file = format!("{kind}.joint");
+        let places = self.folders.iter().map(|folder| folder.join(&file));
+        let text = match places.into_iter().find(|path| path.exists()) {
+            Some(path) => Some(read(&path)?),
+            None => self.texts.get(kind).cloned(),
+        };
+        let derive = |text: String| {
+            hamel_codegen::derive(&text, &file).map_err(|errors| Error::Spec(Box::new(errors)))
+        };
+        text.map(derive).transpose()
+    }
+}
+
+/// Writes a text where the file does not hold it yet.
+fn write(path: &Path, text: &str) -> Result<(), Error> {
+    if std::fs::read_to_string(path).is_ok_and(|known| known == text) {
+        return Ok(());
+    }
+    std::fs::write(path, text).map_err(|error| Error::File(path.to_owned(), error))
+}
+
+fn read(path: &Path) -> Result<String, Error> {
+    source::read(path).map_err(|error| Error::File(path.to_owned(), error))
+}

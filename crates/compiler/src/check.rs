@@ -1,0 +1,74 @@
+//! What a scene and a model are refused for before any equation is written, and what is found in those that are.
+
+use super::emit::Function;
+use super::graph::{Cause, Fault};
+use super::model::Model;
+use hamel_runtime::mechanism::{RigidBody, check_bodies};
+use hamel_scene::{BodyDescription, SceneDescription};
+
+/// What is wrong with the bodies of a scene, in the words of the mechanism, and with what hangs on them.
+pub(super) fn of_scene(scene: &SceneDescription) -> Vec<String> {
+    let bodies: Vec<RigidBody<'_>> = scene.bodies.iter().map(rigid).collect();
+    let wrong = check_bodies(&scene.gravity, &bodies);
+    let mut reasons: Vec<String> = wrong.iter().map(ToString::to_string).collect();
+    reasons.extend(of_indices(scene));
+    reasons
+}
+
+/// A body as its mechanism is made from it, but for the joint.
+fn rigid(body: &BodyDescription) -> RigidBody<'_> {
+    RigidBody {
+        name: &body.name.value,
+        parent: body.parent,
+        placement: &body.at,
+        child_placement: &body.body_at,
+        mass: &body.mass,
+    }
+}
+
+/// Bodies that are named by their index and are not there.
+fn of_indices(scene: &SceneDescription) -> Vec<String> {
+    let count = scene.bodies.len();
+    let springs = scene
+        .springs
+        .iter()
+        .enumerate()
+        .flat_map(|(index, spring)| {
+            let ends = [spring.from.body, spring.to.body].into_iter().flatten();
+            ends.map(move |body| (format!("spring {}", index + 1), body))
+        });
+    let wrenches = scene.wrenches.iter().enumerate();
+    let wrenches = wrenches.map(|(index, wrench)| (format!("wrench {}", index + 1), wrench.body));
+    let constraints = scene.constraints.iter();
+    let constraints = constraints.map(|own| (format!("constraint `{}`", own.name.value), own.body));
+    let all = springs.chain(wrenches).chain(constraints);
+    let missing = all.filter(|(_, body)| *body >= count);
+    missing
+        .map(|(element, body)| {
+            format!("{element}: there is no body of index {body}, the scene has {count}")
+        })
+        .collect()
+}
+
+/// What is not a number in a function that is to be written, each with the element that makes it.
+pub(super) fn of_function(model: &Model, function: &Function) -> Vec<String> {
+    let faults = function.graph.faults(&function.outputs);
+    let mut reasons: Vec<String> = faults.iter().map(|fault| told(model, fault)).collect();
+    reasons.dedup();
+    reasons
+}
+
+fn told(model: &Model, fault: &Fault) -> String {
+    let body = usize::try_from(fault.section)
+        .ok()
+        .and_then(|index| model.bodies.get(index));
+    match (&fault.cause, &fault.element, body) {
+        (Cause::Inertia(words), ..) => words.clone(),
+        (cause, Some(element), _) => format!("{element} {cause}"),
+        (cause, None, Some(body)) => format!(
+            "body `{}` (joint `{}`): its {} {cause}",
+            body.name, body.joint_name, fault.topic
+        ),
+        (cause, None, None) => format!("the scene {cause}"),
+    }
+}

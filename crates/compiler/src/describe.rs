@@ -1,0 +1,200 @@
+//! From what a scene file says to what is compiled, with all that cannot be compiled named at once.
+
+use super::acting::Held;
+use super::check;
+use super::model::{Body, Coupling, Elements, Model};
+use super::products::JointType;
+use hamel_runtime::elements::{BodySpring, BodyWrench, WrenchAxes};
+use hamel_scene::{BodyDescription, PointSpring, SceneDescription, WrenchDescription};
+use std::rc::Rc;
+
+/// Why a scene cannot be compiled: one line for each reason.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refused {
+    /// The scene.
+    pub scene: String,
+    /// The reasons, each with the element that it is about.
+    pub reasons: Vec<String>,
+}
+
+impl std::fmt::Display for Refused {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "the scene `{}` cannot be compiled:", self.scene)?;
+        self.reasons
+            .iter()
+            .try_for_each(|reason| write!(f, "\n  {reason}"))
+    }
+}
+
+impl std::error::Error for Refused {}
+
+impl Model {
+    /// The model of a scene; `joints` finds a joint type by its name.
+    ///
+    /// # Errors
+    /// Joint types that are not found, parameters that do not fit them, and what the scene has that the compiler does not write.
+    pub fn new(
+        scene: &SceneDescription,
+        joints: impl Fn(&str) -> Option<Rc<JointType>>,
+    ) -> Result<Self, Refused> {
+        let refused = |reasons| Refused {
+            scene: scene.name.clone(),
+            reasons,
+        };
+        let mut reasons = check::of_scene(scene);
+        if !reasons.is_empty() {
+            return Err(refused(reasons));
+        }
+        let mut elements = Elements {
+            springs: scene.springs.iter().enumerate().map(spring).collect(),
+            wrenches: scene.wrenches.iter().enumerate().map(wrench).collect(),
+            ..Elements::default()
+        };
+        let bodies = scene.bodies.iter().enumerate();
+        let bodies: Vec<Option<Body>> = bodies
+            .map(|(index, body)| {
+                let kind = &body.joint.kind.value;
+                let Some(joint) = joints(kind) else {
+                    let name = &body.joint.name.value;
+                    reasons.push(format!(
+                        "joint `{name}`: there is no spec of the joint type `{kind}`"
+                    ));
+                    return None;
+                };
+                let compiled = compiled(body, joint).and_then(|compiled| {
+                    let held = Held {
+                        what: "spring",
+                        index,
+                        body,
+                        joint: &compiled.joint,
+                        parameters: &compiled.parameters,
+                    };
+                    let added = held.add_spring(&mut elements);
+                    added.map(|()| compiled).map_err(|reason| vec![reason])
+                });
+                compiled.map_err(|more| reasons.extend(more)).ok()
+            })
+            .collect();
+        let Some(bodies) = bodies.into_iter().collect::<Option<Vec<Body>>>() else {
+            return Err(refused(reasons));
+        };
+        if !reasons.is_empty() {
+            return Err(refused(reasons));
+        }
+        let mut model = Self {
+            name: scene.name.clone(),
+            gravity: scene.gravity,
+            bodies,
+            elements,
+            coupling: Coupling::default(),
+        };
+        model.couple(scene).map_err(refused)?;
+        Ok(model)
+    }
+}
+
+fn spring((index, spring): (usize, &PointSpring)) -> BodySpring {
+    BodySpring {
+        name: format!("spring {}", index + 1),
+        bodies: [spring.from.body, spring.to.body],
+        points: [spring.from.point, spring.to.point],
+        stiffness: spring.stiffness,
+        damping: spring.damping,
+        length: spring.length,
+    }
+}
+
+fn wrench((index, wrench): (usize, &WrenchDescription)) -> BodyWrench {
+    BodyWrench {
+        name: format!("wrench {}", index + 1),
+        body: wrench.body,
+        point: wrench.point,
+        force: wrench.force,
+        moment: wrench.moment,
+        axes: match wrench.axes {
+            hamel_scene::WrenchAxes::World => WrenchAxes::World,
+            hamel_scene::WrenchAxes::Body => WrenchAxes::Body,
+        },
+    }
+}
+
+fn compiled(body: &BodyDescription, joint: Rc<JointType>) -> Result<Body, Vec<String>> {
+    let name = &body.joint.name.value;
+    let mut reasons = vec![];
+    let forces = &body.forces;
+    let freedoms = joint.derived.shape.freedoms;
+    let mut spread = |what: &str, given: Option<&hamel_scene::PerFreedom>| {
+        let numbers = given.map_or(Some(vec![]), |given| given.spread(freedoms));
+        numbers.unwrap_or_else(|| {
+            reasons.push(format!(
+                "joint `{name}`: {what} must have {freedoms} number(s)"
+            ));
+            vec![]
+        })
+    };
+    let damping = spread("damping", forces.damping.as_ref().map(|found| &found.value));
+    let armature = spread(
+        "armature",
+        forces.armature.as_ref().map(|found| &found.value),
+    );
+    let effort = forces
+        .effort
+        .as_ref()
+        .map_or(vec![], |found| found.value.clone());
+    if joint.derived.shape.constraints > 0 && armature.iter().any(|&rotor| rotor != 0.0) {
+        reasons.push(format!(
+            "joint `{name}`: a nonholonomic joint such as `{}` can have no armature",
+            body.joint.kind.value
+        ));
+    }
+    let parameters = parameters(body, &joint, &mut reasons);
+    match reasons.is_empty() {
+        false => Err(reasons),
+        true => Ok(Body {
+            name: body.name.value.clone(),
+            joint_name: name.clone(),
+            parent: body.parent,
+            joint,
+            parameters,
+            placement: body.at,
+            child_placement: body.body_at,
+            mass: body.mass,
+            armature,
+            damping,
+            effort,
+            driven: forces.motion.is_some(),
+        }),
+    }
+}
+
+/// The values of a joint's parameters in the order of its spec.
+fn parameters(body: &BodyDescription, joint: &JointType, reasons: &mut Vec<String>) -> Vec<f64> {
+    let name = &body.joint.name.value;
+    let known: Vec<&str> = joint
+        .derived
+        .spec
+        .parameters
+        .iter()
+        .map(|known| &*known.symbol.name)
+        .collect();
+    for (given, _) in &body.joint.parameters {
+        if !known.contains(&given.value.as_str()) {
+            reasons.push(format!(
+                "joint `{name}`: its type has no parameter `{}`",
+                given.value
+            ));
+        }
+    }
+    let value = |known: &&str| {
+        let given = body
+            .joint
+            .parameters
+            .iter()
+            .find(|(given, _)| given.value == **known);
+        given.map(|(_, value)| *value).or_else(|| {
+            reasons.push(format!("joint `{name}`: parameter `{known}` is missing"));
+            None
+        })
+    };
+    known.iter().filter_map(value).collect()
+}

@@ -1,0 +1,153 @@
+//! What springs and rotors at joints exert.
+
+use super::{Tree, number};
+use crate::graph::{Sym, about, section};
+use crate::joint::Joint;
+use crate::spatial::{Mat3, Twist, Vec3, Wrench, dot, product};
+use hamel_runtime::elements::{JointSpring, RotationSpring};
+
+/// A spring at a joint.
+struct Stretch<'a> {
+    /// The joint at rest.
+    rest: Joint<'a>,
+    /// ϕ.
+    phi: Vec<Sym>,
+    /// Kϕ.
+    load: Vec<Sym>,
+}
+
+impl Tree<'_> {
+    /// The efforts of the springs at a body's joint, one a freedom; none where it has no spring.
+    pub(super) fn spring_efforts(&self, index: usize) -> Vec<Sym> {
+        let elements = &self.model.elements;
+        let springs = elements.joint_springs.iter();
+        let springs = springs.filter(|spring| spring.body == index);
+        let turned = elements.rotation_springs.iter();
+        let turned = turned.filter(|spring| spring.body == index);
+        let each = springs
+            .map(|spring| about(&spring.name, || self.joint_spring(index, spring)))
+            .chain(
+                turned.map(|spring| about(&spring.name, || self.rotation_spring(index, spring))),
+            );
+        let add =
+            |sum: Vec<Sym>, next: Vec<Sym>| sum.into_iter().zip(next).map(|(a, b)| a + b).collect();
+        each.reduce(add).unwrap_or_default()
+    }
+
+    /// Energy of the springs at joints and between points.
+    pub(super) fn spring_energy(&self) -> Sym {
+        let elements = &self.model.elements;
+        let half = Sym::from(0.5);
+        let joints = elements.joint_springs.iter().map(|spring| {
+            section(number(spring.body), "spring");
+            about(&spring.name, || {
+                let Stretch { phi, load, .. } = self.stretch(spring);
+                phi.iter().zip(&load).map(|(&x, &l)| x * l).sum::<Sym>() * half
+            })
+        });
+        let turned = elements.rotation_springs.iter().map(|spring| {
+            section(number(spring.body), "spring");
+            let back = spring.rest.transpose().map(Sym::from);
+            let joint = self.joint_at(spring.body, &[]);
+            // (3 − tr R)/2 loses digits near rest; ¼ |R − 1|² is the same and keeps them.
+            let away = product(&joint.rotation(), &back) - Mat3::identity();
+            let squares = away.iter().map(|&entry| entry * entry);
+            squares.sum::<Sym>() * Sym::from(0.25 * spring.stiffness)
+        });
+        let points = elements
+            .springs
+            .iter()
+            .map(|spring| about(&spring.name, || self.point_spring_energy(spring)));
+        joints.chain(turned).chain(points).sum()
+    }
+
+    /// ϕ of a spring and Kϕ.
+    fn stretch(&self, spring: &JointSpring) -> Stretch<'_> {
+        let q = self.coordinates(spring.body);
+        let body = &self.model.bodies[spring.body];
+        let rest: Vec<Sym> = spring.rest.iter().copied().map(Sym::from).collect();
+        let rest = Joint::new(&body.joint, &body.parameters, &rest, &[]);
+        let phi = rest.local(&q);
+        let rows = spring.stiffness.chunks(phi.len().max(1));
+        let load = rows.map(|row| weighted(row, &phi)).collect();
+        Stretch { rest, phi, load }
+    }
+
+    /// `τ = −S₀⁻ᵀ D⁻ᵀ K ϕ`.
+    fn joint_spring(&self, index: usize, spring: &JointSpring) -> Vec<Sym> {
+        let joint = self.joint_at(index, &[]);
+        let Stretch { rest, phi, load } = self.stretch(spring);
+        let rates = joint.velocity_map_inverse();
+        let effort = |column: &Vec<Sym>| {
+            let rate = rest.retract_differential_inverse(&phi, column);
+            -rate
+                .iter()
+                .zip(&load)
+                .map(|(&rate, &load)| rate * load)
+                .sum::<Sym>()
+        };
+        rates.iter().map(effort).collect()
+    }
+
+    /// `−k vee(½(R − Rᵀ))` on the rotation R from rest, by X or by X^c, whichever depends less on the configuration.
+    fn rotation_spring(&self, index: usize, spring: &RotationSpring) -> Vec<Sym> {
+        let joint = self.joint_at(index, &[]);
+        let rotation = joint.rotation();
+        let back = spring.rest.transpose().map(Sym::from);
+        let (parent, child) = (joint.freedoms_in_parent(), joint.freedoms());
+        let known = |columns: &[Twist]| {
+            columns
+                .iter()
+                .flat_map(|column| column.angular.iter())
+                .all(|entry| entry.number().is_some())
+        };
+        let (columns, turn) = match known(&child) && !known(&parent) {
+            true => (child, product(&back, &rotation)),
+            false => (parent, product(&rotation, &back)),
+        };
+        let half = Sym::from(-0.5 * spring.stiffness);
+        let moment = axial(&turn) * half;
+        columns
+            .iter()
+            .map(|column| dot(&column.angular, &moment))
+            .collect()
+    }
+
+    /// `Σ_k γ_k v_k (a v)` of the rotors at a body's joint, one a freedom: what their turning takes where velocities do not commute.
+    pub(super) fn rotor_forces(&self, index: usize) -> Vec<Sym> {
+        if !self.has_armature(index) {
+            return vec![];
+        }
+        let speeds = &self.bodies[index].speeds;
+        let armature = &self.model.bodies[index].armature;
+        let momenta = armature.iter().zip(speeds);
+        let momenta: Vec<Sym> = momenta.map(|(&a, &v)| Sym::from(a) * v).collect();
+        let joint = self.joint_at(index, &[]);
+        let force = |row: &Vec<Sym>| row.iter().zip(&momenta).map(|(&g, &p)| g * p).sum();
+        joint.gamma(speeds).iter().map(force).collect()
+    }
+
+    /// `Ẋ̄ᵀ h` of a body's joint, one a speed.
+    pub(super) fn bias_momentum(&self, index: usize, momentum: &Wrench) -> Vec<Sym> {
+        let speeds = &self.bodies[index].speeds;
+        self.joint_at(index, speeds).bias_momentum(momentum)
+    }
+}
+
+/// `Σ numbers · values`.
+fn weighted(numbers: &[f64], values: &[Sym]) -> Sym {
+    numbers
+        .iter()
+        .zip(values)
+        .map(|(&number, &value)| Sym::from(number) * value)
+        .sum()
+}
+
+/// The vector a with `a~ = M − Mᵀ`.
+fn axial(m: &Mat3) -> Vec3 {
+    Vec3::new(
+        m[(2, 1)] - m[(1, 2)],
+        m[(0, 2)] - m[(2, 0)],
+        m[(1, 0)] - m[(0, 1)],
+    )
+}

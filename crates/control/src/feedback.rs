@@ -1,0 +1,41 @@
+//! A controller between an integrator and a mechanism.
+
+use super::{ControlError, Controller};
+
+/// Hands a controller to an integrator as [`Inputs`](hamel_integrate::Inputs), and keeps what it could not do.
+///
+/// Inputs have no way to say that they fail. Where the controller does, efforts are NaN, which ends the integration, and
+/// [`Feedback::failure`] says why.
+#[derive(Debug)]
+pub struct Feedback<'a> {
+    controller: &'a mut dyn Controller,
+    failure: Option<(f64, ControlError)>,
+}
+
+impl<'a> Feedback<'a> {
+    /// Feedback by `controller`.
+    pub fn new(controller: &'a mut dyn Controller) -> Self {
+        Self {
+            controller,
+            failure: None,
+        }
+    }
+
+    /// τ into `efforts` at `time`, `q` and v̄.
+    pub fn fill(&mut self, time: f64, q: &[f64], speeds: &[f64], efforts: &mut [f64]) {
+        if let Err(cause) = self.controller.efforts(time, q, speeds, efforts) {
+            efforts.fill(f64::NAN);
+            self.failure.get_or_insert((time, cause));
+        }
+    }
+
+    /// The controller itself.
+    pub fn controller(&mut self) -> &mut dyn Controller {
+        self.controller
+    }
+
+    /// The first failure, and its time (s); step control may have gone round it since.
+    pub const fn failure(&self) -> Option<&(f64, ControlError)> {
+        self.failure.as_ref()
+    }
+}

@@ -1,0 +1,107 @@
+//! How near a motion comes to the sets on which a joint loses its meaning.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::fmt::{Display, Formatter, Result};
+use hamel_runtime::mechanism::{Body, Loci, Mechanism};
+use hamel_runtime::shown::Number;
+
+/// How near a joint comes to a set that it must stay away from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Approach {
+    /// The joint.
+    pub joint: String,
+    /// The functions that vanish there, as the spec writes them.
+    pub loci: Loci,
+    /// Their least absolute value at the initial state and after each accepted step.
+    pub value: f64,
+    /// When, s.
+    pub time: f64,
+}
+
+impl Display for Approach {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        let (joint, value, time) = (&self.joint, self.value, Number(self.time));
+        write!(
+            f,
+            "joint `{joint}`: {} comes to {value:e} at {time} s",
+            self.loci
+        )
+    }
+}
+
+/// Where a failed step began, of the joints that have singular sets: nothing, or the one that is nearest to its own.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Near(pub Option<Approach>);
+
+impl Display for Near {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        let Some(Approach {
+            joint, loci, value, ..
+        }) = &self.0
+        else {
+            return Ok(());
+        };
+        write!(
+            f,
+            "; joint `{joint}` is singular where {loci} is 0, and it is {value:e} there"
+        )
+    }
+}
+
+/// Watches all joints that have singular sets.
+#[derive(Debug)]
+pub(super) struct Watch {
+    /// Index of the body, and its joint's nearest approach so far.
+    nearest: Vec<(usize, Approach)>,
+}
+
+impl Watch {
+    pub(super) fn new(mechanism: &Mechanism) -> Self {
+        let bodies = mechanism.bodies().iter().enumerate();
+        let watched = bodies.filter(|(_, body)| !body.joint().singularities().is_empty());
+        let far = |(index, body): (usize, &Body)| (index, approach(body, f64::INFINITY, 0.0));
+        Self {
+            nearest: watched.map(far).collect(),
+        }
+    }
+
+    /// Takes note of a configuration.
+    pub(super) fn see(&mut self, mechanism: &Mechanism, time: f64, q: &[f64]) {
+        for (index, nearest) in &mut self.nearest {
+            let value = value_at(&mechanism.bodies()[*index], q);
+            if value < nearest.value {
+                (nearest.value, nearest.time) = (value, time);
+            }
+        }
+    }
+
+    /// The joint that is nearest to its singular set at `q`.
+    pub(super) fn nearest_at(&self, mechanism: &Mechanism, time: f64, q: &[f64]) -> Near {
+        let here = self.nearest.iter().map(|(index, _)| {
+            let body = &mechanism.bodies()[*index];
+            approach(body, value_at(body, q), time)
+        });
+        Near(here.min_by(|a, b| a.value.total_cmp(&b.value)))
+    }
+
+    pub(super) fn finish(self) -> Vec<Approach> {
+        self.nearest
+            .into_iter()
+            .map(|(_, nearest)| nearest)
+            .collect()
+    }
+}
+
+fn value_at(body: &Body, q: &[f64]) -> f64 {
+    body.joint().singularity(body.configuration(q))
+}
+
+fn approach(body: &Body, value: f64, time: f64) -> Approach {
+    Approach {
+        joint: body.joint_name().into(),
+        loci: Loci(body.joint().singularities()),
+        value,
+        time,
+    }
+}

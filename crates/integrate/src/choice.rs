@@ -1,0 +1,246 @@
+//! Which method suits a mechanism: by how fast the motions about its first state are, with and without its springs and dampers, and by first steps.
+
+use super::{IntegrateError, Method, Mode, Scheme, Spectrum, State, step_probe};
+use alloc::format;
+use alloc::string::String;
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+use hamel_runtime::mechanism::Mechanism;
+use num_traits::Float;
+
+/// Rates so many times those of the mechanism without its elements are fast.
+const FAST: f64 = 30.0;
+
+/// Explicit methods are left where they would take so many times the work: estimates of work before a motion are no better.
+const PREFERENCE: f64 = 3.0;
+
+/// The product of step and rate up to which an explicit method is stable: Dormand and Prince's, on the real axis.
+const STABLE: f64 = 3.3;
+
+/// Steps of an explicit method that take the work of one of Radau IIA or of the exponential method, for a few freedoms.
+const IMPLICIT: f64 = 10.0;
+
+/// Tolerances below which Dormand and Prince's methods of order 5 and of order 8 take more work than the next higher order. Measured on chain_2, chain_8,
+/// falling_disk, free_generic, heavy_top, plate_cart_arm_tilted and top_slow of `hamel report`: order 8 takes 0.43 to 0.92 of the evaluations
+/// of order 5 at 1e-6, on all seven; 0.53 to 1.11 at 1e-5, with run times about alike; as many or more at 1e-4 on six.
+const ORDER_8: f64 = 3e-6;
+const ORDER_9: f64 = 1e-12;
+
+/// The most speeds for which the exponential method is tried: its first steps take a second or so there, and each that it saves costs as much as hundreds.
+const MOST_TRIED: usize = 32;
+
+/// What is asked of an integration.
+#[derive(Clone, Copy, Debug)]
+pub struct Wanted {
+    /// Tolerance of a step, as [`super::Control::tolerance`].
+    pub tolerance: f64,
+    /// How long the motion is, s.
+    pub span: f64,
+    /// Whether there are inputs that follow the state, prescribed motions, constraints that couple joints, dense output or events: the exponential
+    /// method does not go with them.
+    pub is_bound: bool,
+}
+
+/// A method, and why it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    /// The method; it has step control.
+    pub scheme: Scheme,
+    /// Why, in words.
+    pub reason: String,
+}
+
+impl Choice {
+    /// The method that takes the least work for `mechanism` from `state` on, as far as the first state and the first steps tell.
+    ///
+    /// Without springs, dampers and other elements a mechanism moves as fast as gravity and its own speeds make it: an explicit method whose order
+    /// suits the tolerance. With them, rates more than thirty times those are fast: where explicit methods would be held to steps far
+    /// shorter than the motion, Radau IIA takes over if the fastest are damped, whatever else swings that its steps resolve; the exponential
+    /// method if they are not, and first steps of both show that it pays. A motion that grows leaves the state that its rate is that of, and is followed.
+    ///
+    /// # Errors
+    /// A state that the equations of motion cannot be evaluated at.
+    pub fn new(
+        mechanism: &Arc<Mechanism>,
+        state: &State,
+        wanted: Wanted,
+    ) -> Result<Self, IntegrateError> {
+        if mechanism.elements().is_empty() {
+            return Ok(wanted.explicit("no springs or dampers, so that nothing is stiff"));
+        }
+        let bare = (**mechanism).clone().with_elements(Vec::new());
+        let Ok(bare) = bare.map(Arc::new) else {
+            return Ok(wanted.explicit("its elements cannot be left out"));
+        };
+        let (Some(all), Some(bare)) =
+            (Spectrum::at(mechanism, state)?, Spectrum::at(&bare, state)?)
+        else {
+            let reason = match mechanism.layout().speeds {
+                count if count > Spectrum::MOST_SPEEDS => format!(
+                    "{count} speeds are too many to look for what is stiff, which is done up to {}",
+                    Spectrum::MOST_SPEEDS
+                ),
+                _ => "rates at the first state are too far apart to look for what is stiff".into(),
+            };
+            return Ok(wanted.explicit(&reason));
+        };
+        let slow = bare.modes().first().map_or(0.0, Mode::rate);
+        let slow = slow.max(wanted.span.recip());
+        let Some(modes) = Stiff::new(&all, slow) else {
+            let rate = all.modes().first().map_or(0.0, Mode::rate);
+            return Ok(wanted.explicit(&format!(
+                "no rate is far above that of the motion (fastest {rate:.3e} 1/s)"
+            )));
+        };
+        Ok(wanted.choose(mechanism, state, &modes))
+    }
+}
+
+/// What is stiff about a state.
+struct Stiff<'a> {
+    spectrum: &'a Spectrum,
+    fastest: &'a Mode,
+    /// The fastest that is not damped, of those that are far above the motion.
+    lasting: Option<&'a Mode>,
+    /// The rate of the motion, with that of its slower modes, 1/s.
+    slow: f64,
+}
+
+impl<'a> Stiff<'a> {
+    /// `None` where no rate is far above `slow`.
+    fn new(spectrum: &'a Spectrum, slow: f64) -> Option<Self> {
+        let is_fast = |mode: &&Mode| mode.rate() > FAST * slow;
+        let modes = spectrum.modes();
+        let count = modes.iter().take_while(is_fast).count();
+        let (fast, others) = modes.split_at(count);
+        Some(Self {
+            spectrum,
+            fastest: fast.first()?,
+            lasting: fast.iter().find(|mode| !mode.is_damped()),
+            slow: slow.max(others.first().map_or(0.0, Mode::rate)),
+        })
+    }
+
+    /// A mode in words.
+    fn told(&self, mode: &Mode) -> String {
+        let what = match mode {
+            mode if mode.is_damped() => "damped motion",
+            mode if mode.is_growing() => "growing motion",
+            _ => "oscillation",
+        };
+        let (rate, joint) = (mode.rate(), self.spectrum.joint(mode));
+        let times = rate / self.slow;
+        format!(
+            "{what} at joint `{joint}` with a rate of {rate:.3e} 1/s, {times:.1e} times that of the motion"
+        )
+    }
+}
+
+impl Wanted {
+    /// The explicit method for the tolerance.
+    fn explicit(&self, why: &str) -> Choice {
+        let (scheme, order) = self.pair();
+        Choice {
+            scheme,
+            reason: format!("{why}; {order} for a tolerance of {:e}", self.tolerance),
+        }
+    }
+
+    fn pair(&self) -> (Scheme, &'static str) {
+        match self.tolerance {
+            tolerance if tolerance >= ORDER_8 => (Scheme::DormandPrince, "order 5"),
+            tolerance if tolerance >= ORDER_9 => (Scheme::DormandPrince8, "order 8"),
+            _ => (Scheme::Verner9, "order 9"),
+        }
+    }
+
+    /// By what is stiff.
+    fn choose(&self, mechanism: &Arc<Mechanism>, state: &State, stiff: &Stiff<'_>) -> Choice {
+        let implicit = self.implicit(stiff);
+        let why = match stiff.lasting {
+            None => format!(
+                "{}, which costs less to follow than to solve for",
+                stiff.told(stiff.fastest)
+            ),
+            Some(mode) => match self.exponential(mechanism, state, (stiff, mode)) {
+                Ok(choice) => return choice,
+                Err(why) => format!("{}: {why}", stiff.told(mode)),
+            },
+        };
+        implicit.unwrap_or_else(|| self.explicit(&why))
+    }
+
+    /// Steps of a method of order p that follows motions of a rate.
+    fn steps(&self, rate: f64, order: i32) -> f64 {
+        0.5 * self.span * rate * Float::powf(self.tolerance, -1.0 / f64::from(order))
+    }
+
+    /// Work of Radau IIA, in steps of an explicit method. Its steps follow what is not damped.
+    fn implicit_work(&self, stiff: &Stiff<'_>) -> f64 {
+        self.steps(stiff.lasting.map_or(stiff.slow, Mode::rate), 5) * IMPLICIT
+    }
+
+    /// Radau IIA, where what is damped would hold explicit methods to far more work.
+    fn implicit(&self, stiff: &Stiff<'_>) -> Option<Choice> {
+        let step = STABLE / stiff.fastest.rate();
+        let pays =
+            stiff.fastest.is_damped() && self.span / step > PREFERENCE * self.implicit_work(stiff);
+        let what = stiff.told(stiff.fastest);
+        pays.then(|| Choice {
+            scheme: Scheme::Radau5,
+            reason: format!("{what}, which would hold explicit methods to steps of {step:.1e} s"),
+        })
+    }
+
+    /// The exponential method for an oscillation, or why it is followed instead.
+    fn exponential(
+        &self,
+        mechanism: &Arc<Mechanism>,
+        state: &State,
+        (stiff, mode): (&Stiff<'_>, &Mode),
+    ) -> Result<Choice, String> {
+        if mode.is_growing() {
+            return Err("followed, as it soon leaves the state that its rate is that of".into());
+        }
+        if self.is_bound {
+            return Err("followed, as the exponential method goes with no inputs, prescribed motions, coupled joints, dense output or events".into());
+        }
+        let speeds = stiff.spectrum.speeds();
+        if speeds > MOST_TRIED {
+            return Err(format!(
+                "followed, as the exponential method is for {MOST_TRIED} speeds at most, and there are {speeds}"
+            ));
+        }
+        let speeds = speeds as f64;
+        // Functions of a matrix of 2n rows against n bodies.
+        let work = IMPLICIT + 0.5 * speeds * speeds;
+        let held = self.span * stiff.fastest.rate() / STABLE;
+        let followed = self.steps(mode.rate(), 8).max(held);
+        if followed <= PREFERENCE * self.steps(stiff.slow, 4) * work {
+            return Err("it costs less to follow than to solve for".into());
+        }
+        let first = |scheme| {
+            let method = Method::controlled(scheme, self.tolerance);
+            step_probe::step(mechanism, state, self.span, method)
+        };
+        let own = first(Scheme::Exponential).unwrap_or(0.0);
+        // How far the work of one of its steps leads without it.
+        let other = work
+            * match self.implicit(stiff) {
+                Some(_) => self.span / self.implicit_work(stiff),
+                None => first(self.pair().0).unwrap_or(0.0),
+            };
+        if own <= other {
+            return Err(format!(
+                "followed, as the springs are not linear enough for the exponential method: its first steps are {own:.1e} s, and the work of each leads other methods {other:.1e} s further"
+            ));
+        }
+        Ok(Choice {
+            scheme: Scheme::Exponential,
+            reason: format!(
+                "{}, which the exponential method takes exactly",
+                stiff.told(mode)
+            ),
+        })
+    }
+}

@@ -1,0 +1,380 @@
+//! From the initial time to the last, by accepted steps, over the sample times.
+
+use super::approach::Watch;
+use super::clock::Clock;
+use super::control::Controller;
+use super::flow::Flow;
+use super::options::{Control, least_step};
+use super::outputs::Outputs;
+use super::step_state::StepState;
+use super::stepper::{self, Span, Stepper};
+use super::{
+    Crossing, Event, Form, Inputs, IntegrateError, Method, Near, Observer, Options, Sampling,
+    Solution, State, Statistics, Step, StepFailure,
+};
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+use hamel_runtime::dynamics::Dynamics;
+use num_traits::Float;
+
+/// A remainder that exceeds a fixed step by less than this is taken as that step: it is rounding of the step count.
+const FIXED_STRETCH: f64 = 1.0 + 1e-9;
+
+/// A remainder that exceeds a controlled step by less than this is taken at once: it saves a sliver of a step.
+const CONTROLLED_STRETCH: f64 = 1.01;
+
+/// An instant for new inputs that is nearer to a sample than this part of the period falls on it: the rest is rounding.
+const SAME_INSTANT: f64 = 1e-9;
+
+/// When inputs that are held are taken anew.
+struct Hold {
+    start: f64,
+    period: f64,
+    /// How many times they have been.
+    count: u64,
+}
+
+impl Hold {
+    /// The next instant.
+    fn next(&self) -> f64 {
+        self.start + self.period * self.count as f64
+    }
+
+    /// Whether the next instant is `time`, but for rounding.
+    fn falls_on(&self, time: f64) -> bool {
+        (self.next() - time).abs() <= SAME_INSTANT * self.period
+    }
+}
+
+/// An integration under way.
+pub(super) struct Driver<'a> {
+    pub(super) flow: Flow<'a>,
+    pub(super) step_state: StepState,
+    pub(super) stepper: Box<dyn Stepper>,
+    pub(super) options: &'a Options,
+    hold: Option<Hold>,
+    pub(super) clock: Clock,
+    start: f64,
+    pub(super) statistics: Statistics,
+    pub(super) samples: Vec<State>,
+    pub(super) crossings: Vec<Crossing>,
+    watch: Watch,
+    /// What is wanted between the ends of steps, if anything is.
+    pub(super) outputs: Option<Outputs<'a>>,
+    /// Where something within a step has ended the integration.
+    pub(super) end: Option<State>,
+}
+
+/// How the next step is chosen.
+struct Pacing {
+    /// The step to try where no sample time is in the way.
+    step: f64,
+    controller: Controller,
+}
+
+impl<'a> Driver<'a> {
+    pub(super) fn new(
+        dynamics: &'a mut dyn Dynamics,
+        initial: &State,
+        options: &'a Options,
+        period: Option<f64>,
+        inputs: Option<&'a mut Inputs<'a>>,
+        (sampling, events): (Sampling, Vec<Event<'a>>),
+    ) -> Result<Self, IntegrateError> {
+        let mut flow = Flow::new(dynamics, inputs, options.form);
+        let watch = Watch::new(&flow.mechanism);
+        let time = initial.time;
+        if period.is_some() {
+            flow.hold(time, &initial.configuration, &initial.speeds);
+        }
+        let begun = StepState::new(&mut flow, time, &initial.configuration, &initial.speeds)
+            .and_then(|step_state| {
+                let mechanism = &flow.mechanism;
+                // Rates may be finite where squares of speeds are not.
+                mechanism.check_energy(&step_state.configuration, step_state.speeds())?;
+                let order = options.method.scheme().order();
+                let outputs = Outputs::new(sampling, events, order, (&flow, &step_state, time))?;
+                Ok((step_state, outputs))
+            });
+        let (step_state, outputs) = begun.map_err(|cause| IntegrateError::AtState {
+            time,
+            cause: Box::new(cause),
+            near: watch.nearest_at(&flow.mechanism, time, &initial.configuration),
+        })?;
+        let tolerance = options.method.control().map(|control| control.tolerance);
+        Ok(Self {
+            watch,
+            stepper: stepper::new(options.method.scheme(), tolerance, &flow),
+            flow,
+            step_state,
+            options,
+            hold: period.map(|period| Hold {
+                start: time,
+                period,
+                count: 1,
+            }),
+            clock: Clock::new(time),
+            start: time,
+            statistics: Statistics::default(),
+            samples: Vec::with_capacity(options.samples.len()),
+            crossings: Vec::new(),
+            outputs,
+            end: None,
+        })
+    }
+
+    /// Steps until the end, or until the observer breaks.
+    pub(super) fn run(mut self, observer: &mut Observer<'_>) -> Result<Solution, IntegrateError> {
+        let mut pacing = self.pacing()?;
+        let mut stopped = self.report(observer);
+        while !stopped && self.clock.time() < self.options.t_end {
+            self.advance(&mut pacing, observer)?;
+            stopped = self.end.is_some() || self.report(observer);
+        }
+        let solves = self.stepper.solves();
+        self.statistics.evaluations = self.flow.evaluations;
+        self.statistics.iterations = solves.iterations;
+        self.statistics.jacobians = solves.jacobians;
+        self.statistics.factorizations = solves.factorizations;
+        Ok(Solution {
+            state: self.end.take().unwrap_or_else(|| self.state()),
+            samples: self.samples,
+            events: self.crossings,
+            statistics: self.statistics,
+            approaches: self.watch.finish(),
+            stopped,
+        })
+    }
+
+    fn pacing(&mut self) -> Result<Pacing, IntegrateError> {
+        let order = self.stepper.order();
+        let step = match self.options.method {
+            Method::Fixed { dt, .. } => dt,
+            Method::Controlled { control, .. } => {
+                let first = control
+                    .first_step
+                    .map_or_else(|| self.first_step(control.tolerance, order), Ok);
+                first?.min(control.max_step)
+            }
+        };
+        Ok(Pacing {
+            step,
+            controller: Controller::new(order),
+        })
+    }
+
+    /// A step over which the state changes by about `tolerance^(1/order)`.
+    fn first_step(&mut self, tolerance: f64, order: u32) -> Result<f64, IntegrateError> {
+        let span = self.options.t_end - self.start;
+        let change = 0.3 * Float::powf(tolerance, 1.0 / f64::from(order));
+        let pace = self.step_state.pace(&mut self.flow);
+        let pace = pace.map_err(|cause| self.at_state(cause))?;
+        // A hundredth of the shortest spans is nothing: these are one step.
+        Ok((change / pace).min(0.01 * span).max(f64::MIN_POSITIVE))
+    }
+
+    /// The next sample time, or the end, or the next instant for new inputs.
+    fn target(&self) -> f64 {
+        let is_dense = self
+            .outputs
+            .as_ref()
+            .is_some_and(|outputs| outputs.sampling == Sampling::Dense);
+        let sample = self.options.samples.get(self.samples.len()).copied();
+        let sample = sample.filter(|_| !is_dense);
+        let target = sample.unwrap_or(self.options.t_end);
+        match &self.hold {
+            Some(hold) if !hold.falls_on(target) => target.min(hold.next()),
+            _ => target,
+        }
+    }
+
+    /// One accepted step.
+    fn advance(
+        &mut self,
+        pacing: &mut Pacing,
+        observer: &mut Observer<'_>,
+    ) -> Result<(), IntegrateError> {
+        loop {
+            let (step, lands) = self.choose_step(pacing.step);
+            let attempt = self.attempt(pacing, step);
+            let Err(cause) = attempt else {
+                return self.accept(step, lands, observer);
+            };
+            self.statistics.rejected += 1;
+            self.refuse(pacing, step, cause)?;
+        }
+    }
+
+    /// The step to try, and whether it ends on the target.
+    fn choose_step(&self, step: f64) -> (f64, bool) {
+        let remaining = self.clock.until(self.target());
+        match self.options.method {
+            Method::Fixed { .. } if remaining <= step * FIXED_STRETCH => (remaining, true),
+            Method::Fixed { .. } => (step, false),
+            _ if remaining <= step * CONTROLLED_STRETCH => (remaining, true),
+            // Two equal steps rather than a full one and a sliver.
+            _ if remaining < 2.0 * step => (0.5 * remaining, false),
+            _ => (step, false),
+        }
+    }
+
+    fn attempt(&mut self, pacing: &mut Pacing, step: f64) -> Result<(), StepFailure> {
+        let span = Span {
+            time: self.clock.time(),
+            step,
+        };
+        let Self {
+            stepper,
+            step_state,
+            flow,
+            ..
+        } = self;
+        let outcome = stepper.attempt(step_state, flow, span);
+        let Some(Control {
+            tolerance,
+            max_step,
+            ..
+        }) = self.options.method.control()
+        else {
+            return outcome;
+        };
+        if let Err(cause) = outcome {
+            pacing.step = step * pacing.controller.reject(None);
+            return Err(cause);
+        }
+        let (error, joint) = match stepper.error(step_state, flow, span, tolerance) {
+            Ok(found) => found,
+            Err(cause) => {
+                pacing.step = step * pacing.controller.reject(None);
+                return Err(cause);
+            }
+        };
+        if error.is_nan() || error > 1.0 {
+            pacing.step = step * pacing.controller.reject(Some(error));
+            return Err(self.inaccurate(joint, error));
+        }
+        let next = step * pacing.controller.accept(error);
+        // A step that was cut short to land says nothing against the step that was meant.
+        let cut = step < pacing.step;
+        pacing.step = if cut { next.max(pacing.step) } else { next }.min(max_step);
+        Ok(())
+    }
+
+    fn inaccurate(&self, joint: usize, ratio: f64) -> StepFailure {
+        StepFailure::Inaccurate {
+            joint: self.flow.joint_name(joint),
+            ratio,
+        }
+    }
+
+    /// Ends the integration where no smaller step can help.
+    fn refuse(&self, pacing: &Pacing, step: f64, cause: StepFailure) -> Result<(), IntegrateError> {
+        let (time, cause, near) = (self.clock.time(), Box::new(cause), self.near());
+        if matches!(self.options.method, Method::Fixed { .. }) {
+            return Err(IntegrateError::Step {
+                time,
+                step,
+                cause,
+                near,
+            });
+        }
+        // From where time does not move on; at time 0, where it always does, by what is nothing of the span.
+        let span = self.options.t_end - self.start;
+        let limit = least_step(time, f64::EPSILON * span);
+        if pacing.step > limit {
+            return Ok(());
+        }
+        Err(IntegrateError::StepUnderflow {
+            time,
+            step: pacing.step,
+            limit,
+            cause,
+            near,
+        })
+    }
+
+    fn accept(
+        &mut self,
+        step: f64,
+        lands: bool,
+        observer: &mut Observer<'_>,
+    ) -> Result<(), IntegrateError> {
+        let start = self.clock.time();
+        if lands {
+            self.clock = Clock::new(self.target());
+        } else {
+            self.clock.advance(step);
+        }
+        let time = self.clock.time();
+        let span = Span { time: start, step };
+        self.leave(span);
+        let accepted = self
+            .stepper
+            .accept(&mut self.step_state, &mut self.flow, time, span);
+        accepted.map_err(|cause| self.at_state(cause))?;
+        self.statistics.steps += 1;
+        // Before the inputs change: what lies within the step moved under those that were held.
+        let passed = self.pass(observer);
+        let renewed = passed.and_then(|()| match self.end {
+            Some(_) => Ok(()),
+            None => self.renew_inputs(time),
+        });
+        renewed.map_err(|cause| self.at_state(cause))
+    }
+
+    /// Takes new inputs where it is time for them, and the rates that they make.
+    fn renew_inputs(&mut self, time: f64) -> Result<(), StepFailure> {
+        let Some(hold) = self.hold.as_mut().filter(|hold| hold.falls_on(time)) else {
+            return Ok(());
+        };
+        hold.count += 1;
+        let (q, speeds) = (&self.step_state.configuration, self.step_state.speeds());
+        self.flow.hold(time, q, speeds);
+        self.step_state.evaluate(&mut self.flow, time)
+    }
+
+    fn at_state(&self, cause: StepFailure) -> IntegrateError {
+        IntegrateError::AtState {
+            time: self.clock.time(),
+            cause: Box::new(cause),
+            near: self.near(),
+        }
+    }
+
+    /// The joint that is nearest to a singular set of its own.
+    fn near(&self) -> Near {
+        let q = &self.step_state.configuration;
+        self.watch
+            .nearest_at(&self.flow.mechanism, self.clock.time(), q)
+    }
+
+    /// Records the samples that fall on this time and shows the state; whether to stop.
+    fn report(&mut self, observer: &mut Observer<'_>) -> bool {
+        let time = self.clock.time();
+        self.watch
+            .see(&self.flow.mechanism, time, &self.step_state.configuration);
+        let mut sample = None;
+        while self.options.samples.get(self.samples.len()) == Some(&self.clock.time()) {
+            sample = Some(self.samples.len());
+            self.samples.push(self.state());
+        }
+        let step = Step {
+            time: self.clock.time(),
+            number: self.statistics.steps,
+            configuration: &self.step_state.configuration,
+            speeds: self.step_state.speeds(),
+            momenta: (self.flow.form == Form::Hamiltonian).then_some(&*self.step_state.y),
+            sample,
+            is_within: false,
+        };
+        observer(&step).is_break()
+    }
+
+    fn state(&self) -> State {
+        State {
+            time: self.clock.time(),
+            configuration: self.step_state.configuration.clone(),
+            speeds: self.step_state.speeds().to_vec(),
+        }
+    }
+}

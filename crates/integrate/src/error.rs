@@ -1,0 +1,190 @@
+//! Why an integration ends before its time.
+
+use super::Near;
+use alloc::boxed::Box;
+use alloc::string::String;
+use hamel_runtime::dynamics::DynamicsError;
+use hamel_runtime::mechanism::StateError;
+use hamel_runtime::shown::Number;
+
+/// Why a step cannot be taken, or is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StepFailure {
+    /// The length of a step that is asked for.
+    #[error("the step is {step} s long: it must be positive and finite", step = Number(*.step))]
+    Length {
+        /// The length, s.
+        step: f64,
+    },
+    /// The embedded error estimate exceeds the tolerance.
+    #[error("the error of joint `{joint}` is {ratio:e} times the tolerance")]
+    Inaccurate {
+        /// The joint with the largest error.
+        joint: String,
+        /// Its error over the tolerance.
+        ratio: f64,
+    },
+    /// A joint turns too far for one step.
+    #[error("joint `{joint}` turns by {angle} rad within the step, more than pi", angle = Number(*.angle))]
+    Turn {
+        /// The joint.
+        joint: String,
+        /// Its rotation.
+        angle: f64,
+    },
+    /// The equations of an implicit step are not solved.
+    #[error(
+        "the iteration of the implicit step does not converge: joint `{joint}` still changes by {change:e}, each change is {contraction:.2} times the last"
+    )]
+    NoConvergence {
+        /// The joint that changes most.
+        joint: String,
+        /// Its last change: rad or m, or a speed's as a part of max(1, |v̄|).
+        change: f64,
+        /// The last change over the one before.
+        contraction: f64,
+    },
+    /// The matrix of the iteration of an implicit step is singular.
+    #[error("the matrix of the implicit step is singular or not finite at joint `{joint}`")]
+    SingularIteration {
+        /// The joint.
+        joint: String,
+    },
+    /// The function of an event is NaN or infinite.
+    #[error("the function of event `{event}` is {value}: it must be finite", value = Number(*.value))]
+    Event {
+        /// The event.
+        event: String,
+        /// Its value.
+        value: f64,
+    },
+    /// The coefficients of an explicit method are none.
+    #[error("the method {reason}")]
+    Tableau {
+        /// What is wrong with them.
+        reason: String,
+    },
+    /// The state reached is not finite, or cannot be brought back to its manifold.
+    #[error(transparent)]
+    State(#[from] StateError),
+    /// The equations of motion cannot be evaluated.
+    #[error(transparent)]
+    Dynamics(DynamicsError),
+}
+
+impl From<DynamicsError> for StepFailure {
+    fn from(cause: DynamicsError) -> Self {
+        match cause {
+            DynamicsError::State(cause) => Self::State(cause),
+            cause => Self::Dynamics(cause),
+        }
+    }
+}
+
+/// What to do about a step of fixed size, where its length can be the reason.
+fn advice(cause: &StepFailure) -> &'static str {
+    match cause {
+        StepFailure::Turn { .. }
+        | StepFailure::NoConvergence { .. }
+        | StepFailure::SingularIteration { .. }
+        | StepFailure::State(_) => "; take a smaller dt",
+        StepFailure::Length { .. }
+        | StepFailure::Inaccurate { .. }
+        | StepFailure::Event { .. }
+        | StepFailure::Tableau { .. }
+        | StepFailure::Dynamics(_) => "",
+    }
+}
+
+/// Why an integration ends before its time.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum IntegrateError {
+    /// An option out of range.
+    #[error("{option} is {value}: it must be {requirement}", value = Number(*.value))]
+    Option {
+        /// The option.
+        option: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        requirement: &'static str,
+    },
+    /// Step control for a scheme that cannot tell its error.
+    #[error(
+        "the method `{scheme}` does not estimate its error: give it a step dt instead of a tolerance"
+    )]
+    NoEstimate {
+        /// The scheme.
+        scheme: &'static str,
+    },
+    /// A scheme that the mechanism or the form is not made for.
+    #[error("the method `{scheme}` {reason}")]
+    Scheme {
+        /// The scheme.
+        scheme: &'static str,
+        /// What it takes, and what it was given.
+        reason: String,
+    },
+    /// The end lies before the start.
+    #[error("t_end is {} s: it lies before the initial time {} s", Number(*.end), Number(*.start))]
+    TimeOrder {
+        /// Initial time.
+        start: f64,
+        /// Time at which to end.
+        end: f64,
+    },
+    /// A sample time out of order or out of range.
+    #[error(
+        "sample {index} is at {} s: sample times ascend, and this one must lie between {} s and {} s",
+        Number(*.time), Number(*.earliest), Number(*.end)
+    )]
+    Sample {
+        /// Its index.
+        index: usize,
+        /// The time.
+        time: f64,
+        /// Initial time, or the sample before.
+        earliest: f64,
+        /// Time at which to end.
+        end: f64,
+    },
+    /// The initial state is refused.
+    #[error("initial state: {0}")]
+    Initial(#[from] StateError),
+    /// The equations of motion fail at a state that was reached, so that no step size can mend it.
+    #[error("at {} s: {cause}{near}", Number(*.time))]
+    AtState {
+        /// When.
+        time: f64,
+        /// Why.
+        cause: Box<StepFailure>,
+        /// The joint that is nearest to a singular set of its own there, if one has any.
+        near: Near,
+    },
+    /// A step of fixed size fails.
+    #[error("the step of {step:e} s at {} s fails: {cause}{near}{}", Number(*.time), advice(.cause))]
+    Step {
+        /// When.
+        time: f64,
+        /// The step.
+        step: f64,
+        /// Why.
+        cause: Box<StepFailure>,
+        /// The joint that is nearest to a singular set of its own there, if one has any.
+        near: Near,
+    },
+    /// Step control has come to steps that time cannot resolve.
+    #[error("the step has shrunk to {step:e} s at {} s, the limit is {limit:e} s: {cause}{near}", Number(*.time))]
+    StepUnderflow {
+        /// When.
+        time: f64,
+        /// The step.
+        step: f64,
+        /// Smallest step.
+        limit: f64,
+        /// Why the last attempt was refused.
+        cause: Box<StepFailure>,
+        /// The joint that is nearest to a singular set of its own there, if one has any.
+        near: Near,
+    },
+}

@@ -1,0 +1,175 @@
+//! What acts at joints and on bodies, given to the mechanism.
+
+use super::forces::{Acting, Spring, Stiffness};
+use crate::description::{BodyDescription, SceneDescription};
+use crate::forces::{PointSpring, WrenchAxes, WrenchDescription};
+use hamel_runtime::dynamics::{Dynamics, DynamicsError, Recursive};
+use hamel_runtime::elements::{
+    BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointSpring, PointConstraint,
+    RotationSpring,
+};
+use hamel_runtime::mechanism::{Mechanism, MechanismError, NamedFrame};
+use std::sync::Arc;
+
+/// The mechanism with its elements, rotors, drives and named frames; `acting` goes with the bodies of `description`.
+pub(super) fn equip(
+    mut mechanism: Mechanism,
+    description: &SceneDescription,
+    acting: &[Acting],
+) -> Result<Mechanism, Vec<MechanismError>> {
+    let elements = elements(&mechanism, description, acting);
+    let drives = drives(description, acting);
+    for (body, acting) in acting.iter().enumerate() {
+        if !acting.armature.is_empty() {
+            let with_rotor = mechanism.with_armature(body, &acting.armature);
+            mechanism = with_rotor.map_err(|error| vec![error])?;
+        }
+    }
+    let frames = description.frames.iter().map(|frame| NamedFrame {
+        name: frame.name.value.clone(),
+        body: frame.body,
+        at: frame.at,
+    });
+    mechanism
+        .with_elements(elements)?
+        .with_drives(drives)?
+        .with_frames(frames.collect())
+}
+
+/// The mechanism with the constraints that couple its joints, independent at `q`.
+pub(super) fn couple(
+    mechanism: Mechanism,
+    description: &SceneDescription,
+    q: &[f64],
+) -> Result<Mechanism, Vec<MechanismError>> {
+    if description.constraints.is_empty() {
+        return Ok(mechanism);
+    }
+    let constraints = description.constraints.iter();
+    let constraints = constraints.map(|constraint| PointConstraint {
+        name: constraint.name.value.clone(),
+        body: constraint.body,
+        point: constraint.point,
+        direction: constraint.direction,
+    });
+    mechanism.with_constraints(constraints.collect(), q)
+}
+
+/// The speeds of joints that constraints make depend on others, where the scene leaves them at rest.
+///
+/// A scene that gives such a speed is taken at its word: whoever simulates checks it.
+pub(super) fn complete(
+    mechanism: &Arc<Mechanism>,
+    q: &[f64],
+    speeds: &mut [f64],
+) -> Result<(), DynamicsError> {
+    let dependent = mechanism.dependent_speeds();
+    if dependent.is_empty() || dependent.iter().any(|&speed| speeds[speed] != 0.0) {
+        return Ok(());
+    }
+    Recursive::new(Arc::clone(mechanism)).complete_speeds(q, speeds)
+}
+
+fn elements(
+    mechanism: &Mechanism,
+    description: &SceneDescription,
+    acting: &[Acting],
+) -> Vec<Arc<dyn Element>> {
+    let mut elements: Vec<Arc<dyn Element>> = Vec::new();
+    for (body, (owner, acting)) in description.bodies.iter().zip(acting).enumerate() {
+        at_joint(mechanism, body, owner, acting, &mut elements);
+    }
+    for (index, spring) in description.springs.iter().enumerate() {
+        elements.push(Arc::new(point_spring(index, spring)));
+    }
+    for (index, wrench) in description.wrenches.iter().enumerate() {
+        elements.push(Arc::new(body_wrench(index, wrench)));
+    }
+    elements
+}
+
+fn at_joint(
+    mechanism: &Mechanism,
+    body: usize,
+    owner: &BodyDescription,
+    acting: &Acting,
+    elements: &mut Vec<Arc<dyn Element>>,
+) {
+    let joint = &owner.joint.name.value;
+    if let Some(spring) = &acting.spring {
+        elements.push(joint_spring(mechanism, body, joint, spring));
+    }
+    if !acting.damping.is_empty() {
+        elements.push(Arc::new(JointDamper {
+            name: format!("damping of joint `{joint}`"),
+            body,
+            coefficients: acting.damping.clone(),
+        }));
+    }
+    if !acting.effort.is_empty() {
+        elements.push(Arc::new(JointEffort {
+            name: format!("effort of joint `{joint}`"),
+            body,
+            efforts: acting.effort.clone(),
+        }));
+    }
+}
+
+fn joint_spring(
+    mechanism: &Mechanism,
+    body: usize,
+    joint: &str,
+    spring: &Spring,
+) -> Arc<dyn Element> {
+    let name = format!("spring of joint `{joint}`");
+    match &spring.stiffness {
+        Stiffness::Log(matrix) => Arc::new(JointSpring {
+            name,
+            body,
+            stiffness: matrix.transpose().as_slice().to_vec(),
+            rest: spring.rest.clone(),
+        }),
+        Stiffness::Trace(stiffness) => Arc::new(RotationSpring {
+            name,
+            body,
+            stiffness: *stiffness,
+            rest: mechanism.bodies()[body].joint().pose(&spring.rest).rotation,
+        }),
+    }
+}
+
+fn point_spring(index: usize, spring: &PointSpring) -> BodySpring {
+    BodySpring {
+        name: format!("spring {}", index + 1),
+        bodies: [spring.from.body, spring.to.body],
+        points: [spring.from.point, spring.to.point],
+        stiffness: spring.stiffness,
+        damping: spring.damping,
+        length: spring.length,
+    }
+}
+
+fn body_wrench(index: usize, wrench: &WrenchDescription) -> BodyWrench {
+    BodyWrench {
+        name: format!("wrench {}", index + 1),
+        body: wrench.body,
+        point: wrench.point,
+        force: wrench.force,
+        moment: wrench.moment,
+        axes: match wrench.axes {
+            WrenchAxes::World => hamel_runtime::elements::WrenchAxes::World,
+            WrenchAxes::Body => hamel_runtime::elements::WrenchAxes::Body,
+        },
+    }
+}
+
+fn drives(description: &SceneDescription, acting: &[Acting]) -> Vec<Drive> {
+    let joints = description.bodies.iter().zip(acting).enumerate();
+    let driven = joints.filter(|(_, (_, acting))| !acting.motion.is_empty());
+    let drives = driven.map(|(body, (owner, acting))| Drive {
+        name: format!("motion of joint `{}`", owner.joint.name.value),
+        body,
+        laws: acting.motion.clone(),
+    });
+    drives.collect()
+}

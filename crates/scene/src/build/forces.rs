@@ -1,0 +1,163 @@
+//! What acts at joints and on bodies, on its way into the mechanism.
+
+use super::state::Stand;
+use crate::description::{InitialDescription, Motion};
+use crate::diagnostics::Diagnostic;
+use crate::forces::{JointForces, JointSpring, PerFreedom, SpringEnergy};
+use crate::read::Sink;
+use crate::source::{Located, Span};
+use hamel_runtime::elements::Law;
+use nalgebra::{DMatrix, DVector};
+
+/// What acts at one joint, in numbers that fit it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Acting {
+    /// Spring.
+    pub(crate) spring: Option<Spring>,
+    /// Damping, one number a freedom; empty without.
+    pub(crate) damping: Vec<f64>,
+    /// Armature, one number a freedom; empty without.
+    pub(crate) armature: Vec<f64>,
+    /// Constant efforts τ, one a freedom; empty without.
+    pub(crate) effort: Vec<f64>,
+    /// Prescribed speeds, one law a speed; empty without.
+    pub(crate) motion: Vec<Law>,
+}
+
+/// A spring at a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Spring {
+    /// Configuration at which it is at rest, on the joint's manifold.
+    pub(crate) rest: Vec<f64>,
+    /// Its stiffness.
+    pub(crate) stiffness: Stiffness,
+}
+
+/// Stiffness of a spring at a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Stiffness {
+    /// K of the energy `½ ϕᵀKϕ`.
+    Log(DMatrix<f64>),
+    /// k of the energy `k (3 − tr R)/2`.
+    Trace(f64),
+}
+
+/// Fits what acts to the joint on the stand; every error is noted.
+pub(super) fn acting(
+    stand: &Stand,
+    initial: &InitialDescription,
+    forces: &JointForces,
+    sink: &mut Sink,
+) -> Option<Acting> {
+    let errors_before = sink.len();
+    let mut noted = |error: Diagnostic| sink.push(error);
+    let damping = spread(stand, "damping", forces.damping.as_ref());
+    let armature = armature(stand, forces.armature.as_ref());
+    let effort = effort(stand, forces.effort.as_ref());
+    let spring = forces.spring.as_ref().map(|found| spring(stand, found));
+    let motion = motion(stand, initial, forces.motion.as_ref());
+    let acting = Acting {
+        damping: damping.map_err(&mut noted).unwrap_or_default(),
+        armature: armature.map_err(&mut noted).unwrap_or_default(),
+        effort: effort.map_err(&mut noted).unwrap_or_default(),
+        spring: spring.transpose().map_err(&mut noted).unwrap_or_default(),
+        motion: motion.map_err(&mut noted).unwrap_or_default(),
+    };
+    (sink.len() == errors_before).then_some(acting)
+}
+
+fn spread(
+    stand: &Stand,
+    key: &str,
+    numbers: Option<&Located<PerFreedom>>,
+) -> Result<Vec<f64>, Diagnostic> {
+    match numbers {
+        None => Ok(Vec::new()),
+        Some(numbers) => each(stand, key, &numbers.value, &numbers.span),
+    }
+}
+
+/// Armatures turn with v; the inertia that a nonholonomic joint feels of one depends on its S̄, and is not simulated.
+fn armature(stand: &Stand, numbers: Option<&Located<PerFreedom>>) -> Result<Vec<f64>, Diagnostic> {
+    match numbers {
+        Some(numbers) if stand.joint.layout().constraints > 0 => {
+            let (name, kind) = (&stand.name, stand.joint.name());
+            let message = format!(
+                "joint `{name}`: a nonholonomic joint such as `{kind}` can have no armature"
+            );
+            Err(Diagnostic::new(numbers.span.clone(), message))
+        }
+        numbers => spread(stand, "armature", numbers),
+    }
+}
+
+/// One number a freedom.
+fn each(
+    stand: &Stand,
+    key: &str,
+    numbers: &PerFreedom,
+    span: &Span,
+) -> Result<Vec<f64>, Diagnostic> {
+    let freedoms = stand.joint.freedoms();
+    if let PerFreedom::Each(numbers) = numbers {
+        stand.check_count(key, numbers.len(), span, freedoms)?;
+    }
+    Ok(numbers.spread(freedoms.len()).unwrap_or_default())
+}
+
+fn effort(stand: &Stand, effort: Option<&Located<Vec<f64>>>) -> Result<Vec<f64>, Diagnostic> {
+    let Some(effort) = effort else {
+        return Ok(Vec::new());
+    };
+    let freedoms = stand.joint.freedoms();
+    stand.check_count("effort", effort.value.len(), &effort.span, freedoms)?;
+    Ok(effort.value.clone())
+}
+
+fn spring(stand: &Stand, spring: &Located<JointSpring>) -> Result<Spring, Diagnostic> {
+    let freedoms = stand.joint.freedoms();
+    let key = "spring.stiffness";
+    let stiffness = match &spring.value.energy {
+        SpringEnergy::Trace(_) if !stand.turns() => {
+            let message = format!(
+                "joint `{}`: a spring of kind \"trace\" acts on the rotation, and the joint does not turn",
+                stand.name
+            );
+            return Err(Diagnostic::new(spring.span.clone(), message));
+        }
+        SpringEnergy::Trace(stiffness) => Stiffness::Trace(*stiffness),
+        SpringEnergy::Diagonal(numbers) => {
+            let numbers = each(stand, key, numbers, &spring.span)?;
+            Stiffness::Log(DMatrix::from_diagonal(&DVector::from_vec(numbers)))
+        }
+        SpringEnergy::Full(matrix) => {
+            stand.check_count(key, matrix.nrows(), &spring.span, freedoms)?;
+            Stiffness::Log(matrix.clone())
+        }
+    };
+    Ok(Spring {
+        rest: stand.configuration(&spring.value.rest)?,
+        stiffness,
+    })
+}
+
+fn motion(
+    stand: &Stand,
+    initial: &InitialDescription,
+    motion: Option<&Located<Vec<Law>>>,
+) -> Result<Vec<Law>, Diagnostic> {
+    let Some(motion) = motion else {
+        return Ok(Vec::new());
+    };
+    let speeds = stand.joint.speeds();
+    stand.check_count("motion.speeds", motion.value.len(), &motion.span, speeds)?;
+    if initial.motion != Motion::Rest {
+        let message = format!(
+            "joint `{}`: its motion is prescribed, and so are its speeds at time 0",
+            stand.name
+        );
+        let error = Diagnostic::new(motion.span.clone(), message);
+        return Err(error.help("leave `velocity`, `speeds` and `twist` out of its `initial`"));
+    }
+    Ok(motion.value.clone())
+}

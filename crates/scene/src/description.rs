@@ -1,0 +1,166 @@
+//! What a scene file says, checked as far as that goes without knowing the joints.
+
+use crate::control::ControllerDescription;
+use crate::event::EventDescription;
+use crate::forces::{
+    ConstraintDescription, FrameDescription, JointForces, PointSpring, WrenchDescription,
+};
+use crate::settings::Settings;
+use crate::shape::ShapeDescription;
+use crate::source::{Located, Span};
+use hamel_runtime::spatial::{MassProperties, Pose};
+use nalgebra::{Vector3, Vector6};
+
+/// A scene whose text is sound by itself; [`SceneDescription::build`] adds the joints.
+#[derive(Clone, Debug)]
+pub struct SceneDescription {
+    /// Name of the scene.
+    pub name: String,
+    /// What the scene shows; may be empty.
+    pub description: String,
+    /// Acceleration of gravity in world axes, m/s².
+    pub gravity: Vector3<f64>,
+    /// The bodies, each after its parent.
+    pub bodies: Vec<BodyDescription>,
+    /// Named frames.
+    pub frames: Vec<FrameDescription>,
+    /// Springs between points.
+    pub springs: Vec<PointSpring>,
+    /// Constant wrenches on bodies.
+    pub wrenches: Vec<WrenchDescription>,
+    /// Forbidden velocities of points.
+    pub constraints: Vec<ConstraintDescription>,
+    /// What is to be noticed on the way.
+    pub events: Vec<EventDescription>,
+    /// What stands for bodies in pictures.
+    pub shapes: Vec<ShapeDescription>,
+    /// What controls the mechanism, if anything does.
+    pub controller: Option<ControllerDescription>,
+    /// Simulation settings.
+    pub settings: Settings,
+    pub(crate) source: Source,
+}
+
+impl SceneDescription {
+    /// A scene without anything in it.
+    pub(crate) fn empty(source: Source) -> Self {
+        Self {
+            name: String::new(),
+            description: String::new(),
+            gravity: Vector3::zeros(),
+            bodies: Vec::new(),
+            frames: Vec::new(),
+            springs: Vec::new(),
+            wrenches: Vec::new(),
+            constraints: Vec::new(),
+            events: Vec::new(),
+            shapes: Vec::new(),
+            controller: None,
+            settings: Settings::default(),
+            source,
+        }
+    }
+}
+
+/// A source text and what messages call it.
+#[derive(Clone, Debug)]
+pub(crate) struct Source {
+    /// What messages call the text.
+    pub(crate) name: String,
+    /// The text itself.
+    pub(crate) text: String,
+}
+
+/// One body and the joint that it hangs on.
+#[derive(Clone, Debug)]
+pub struct BodyDescription {
+    /// Name, unique in the scene.
+    pub name: Located<String>,
+    /// Index of the parent body in [`SceneDescription::bodies`]; `None` is the world.
+    pub parent: Option<usize>,
+    /// Mass, centre of mass and inertia.
+    pub mass: MassProperties,
+    /// The joint.
+    pub joint: JointDescription,
+    /// The joint's parent frame in the parent body's frame.
+    pub at: Pose<f64>,
+    /// The body's frame in the joint's child frame.
+    pub body_at: Pose<f64>,
+    /// State at time 0.
+    pub initial: InitialDescription,
+    /// What acts at the joint.
+    pub forces: JointForces,
+}
+
+/// A joint by name, with its parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointDescription {
+    /// Name of the joint, unique in the scene; the body's name where the file gives none.
+    pub name: Located<String>,
+    /// Name of the joint's type, looked up in the registry.
+    pub kind: Located<String>,
+    /// Parameters of the type, in the order of the file.
+    pub parameters: Vec<(Located<String>, f64)>,
+    /// Where the joint stands in the file.
+    pub span: Span,
+}
+
+/// State of one joint at time 0.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InitialDescription {
+    /// Where the joint stands.
+    pub position: Position,
+    /// How it moves.
+    pub motion: Motion,
+}
+
+/// Configuration of one joint at time 0.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Position {
+    /// The joint type's home.
+    #[default]
+    Home,
+    /// The stored scalars of Q, matrices row by row.
+    Configuration(Located<Vec<f64>>),
+    /// Local coordinates ϕ from home.
+    Phi(Located<Vec<f64>>),
+    /// Pose of the joint's child frame in its parent frame.
+    Pose(Located<Pose<f64>>),
+}
+
+/// Velocity of one joint at time 0.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Motion {
+    /// Every speed is 0.
+    #[default]
+    Rest,
+    /// All freedoms v, which must satisfy the joint's constraint.
+    Velocity(Located<Vec<f64>>),
+    /// Speeds v̄.
+    Speeds(Located<Vec<f64>>),
+    /// Twist of the joint's child frame relative to its parent frame.
+    Twist(Located<TwistDescription>),
+}
+
+/// A twist and the axes in which it is read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TwistDescription {
+    /// Angular velocity, rad/s, above linear velocity, m/s.
+    pub twist: Vector6<f64>,
+    /// The frame of both parts.
+    pub frame: TwistFrame,
+}
+
+/// The frame in which a relative twist is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TwistFrame {
+    /// The joint's child frame: vee(H⁻¹ Ḣ); the linear part is the velocity of the child frame's origin.
+    Child,
+    /// The joint's parent frame: vee(Ḣ H⁻¹); the linear part belongs to the point at the parent frame's origin.
+    Parent,
+}
+
+impl TwistFrame {
+    /// Names of both frames, as scene files write them.
+    pub const NAMES: [&'static str; 2] = ["child", "parent"];
+}

@@ -1,0 +1,160 @@
+//! What acts at joints and on bodies, and what is forbidden to bodies, as a scene file says it.
+
+use crate::description::Position;
+use crate::source::Located;
+use hamel_runtime::elements::Law;
+use hamel_runtime::spatial::Pose;
+use nalgebra::{DMatrix, Vector3};
+
+/// What acts at one joint.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct JointForces {
+    /// Spring towards a configuration.
+    pub spring: Option<Located<JointSpring>>,
+    /// Viscous damping c: the effort −c v.
+    pub damping: Option<Located<PerFreedom>>,
+    /// Inertia of what turns with the joint, such as a rotor: added to the diagonal of the joint's own block of M.
+    pub armature: Option<Located<PerFreedom>>,
+    /// Constant efforts τ, one a freedom.
+    pub effort: Option<Located<Vec<f64>>>,
+    /// Prescribed motion.
+    pub motion: Option<Located<Vec<Law>>>,
+}
+
+impl JointForces {
+    /// Whether nothing acts.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// Numbers of at least 0, one a freedom.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PerFreedom {
+    /// The same for every freedom.
+    All(f64),
+    /// One for each.
+    Each(Vec<f64>),
+}
+
+impl PerFreedom {
+    /// The numbers for a joint of `freedoms`; `None` where the size is another.
+    pub fn spread(&self, freedoms: usize) -> Option<Vec<f64>> {
+        match self {
+            Self::All(number) => Some(vec![*number; freedoms]),
+            Self::Each(numbers) => (numbers.len() == freedoms).then(|| numbers.clone()),
+        }
+    }
+}
+
+/// A spring at a joint, at rest at one of its configurations.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointSpring {
+    /// Configuration at which it is at rest.
+    pub rest: Position,
+    /// Its energy.
+    pub energy: SpringEnergy,
+}
+
+/// Energy of a spring at a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SpringEnergy {
+    /// `½ ϕᵀKϕ`, with ϕ the local coordinates of Q from the rest; one stiffness for every freedom, or a diagonal.
+    Diagonal(PerFreedom),
+    /// The same with a full matrix K, symmetric and positive semidefinite.
+    Full(DMatrix<f64>),
+    /// `k (3 − tr R)/2`, R the rotation of the joint's pose relative to that at rest: smooth also at half a turn.
+    Trace(f64),
+}
+
+/// A point of a body, or of the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyPoint {
+    /// Index of the body in the description; `None` is the world.
+    pub body: Option<usize>,
+    /// The point in the body frame, m.
+    pub point: Vector3<f64>,
+}
+
+/// A named frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameDescription {
+    /// Name, unique among frames and bodies.
+    pub name: Located<String>,
+    /// Index of the body that carries it; `None` is the world.
+    pub body: Option<usize>,
+    /// Its pose in the body frame.
+    pub at: Pose<f64>,
+}
+
+/// A spring with a damper between two points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointSpring {
+    /// One end.
+    pub from: BodyPoint,
+    /// The other end.
+    pub to: BodyPoint,
+    /// Stiffness, N/m.
+    pub stiffness: f64,
+    /// Damping along the line of the points, N s/m.
+    pub damping: f64,
+    /// Length at rest, m.
+    pub length: f64,
+}
+
+/// A constant force and moment on a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrenchDescription {
+    /// Index of the body.
+    pub body: usize,
+    /// Where the force acts, in the body frame, m.
+    pub point: Vector3<f64>,
+    /// Force, N.
+    pub force: Vector3<f64>,
+    /// Moment, N m.
+    pub moment: Vector3<f64>,
+    /// Axes of force and moment.
+    pub axes: WrenchAxes,
+}
+
+/// Axes in which a wrench is constant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WrenchAxes {
+    /// Those of the world.
+    World,
+    /// Those of the body: the wrench turns with it.
+    Body,
+}
+
+impl WrenchAxes {
+    /// Names of both, as scene files write them.
+    pub const NAMES: [&'static str; 2] = ["world", "body"];
+}
+
+/// A velocity that a point of a body may not have: `dᵀ v_P = 0`, with the world velocity of the point and d fixed in the body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConstraintDescription {
+    /// Name, unique among constraints.
+    pub name: Located<String>,
+    /// Index of the body.
+    pub body: usize,
+    /// The point P in the body frame, m.
+    pub point: Vector3<f64>,
+    /// The direction d in body axes, of length 1.
+    pub direction: Vector3<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::PerFreedom;
+
+    #[test]
+    fn one_number_stands_for_all_freedoms() {
+        assert_eq!(PerFreedom::All(0.5).spread(3), Some(vec![0.5; 3]));
+        assert_eq!(
+            PerFreedom::Each(vec![1.0, 2.0]).spread(2),
+            Some(vec![1.0, 2.0])
+        );
+        assert_eq!(PerFreedom::Each(vec![1.0, 2.0]).spread(3), None);
+    }
+}

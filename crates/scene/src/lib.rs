@@ -1,0 +1,47 @@
+//! Scene files of Hamel: a mechanism, its initial state, what acts on it and how to simulate it, in TOML; and robots in
+//! [URDF](urdf).
+//!
+//! A file is read in two steps. [`Scene::from_toml`] reads what the text says by itself and gives a
+//! [`SceneDescription`]; [`SceneDescription::build`] looks the joints up in a [`JointRegistry`](hamel_runtime::registry::JointRegistry),
+//! solves for their initial state and gives a [`Scene`]. [`Scene::load`] does both, and then reports the errors of both
+//! steps together. Errors are [`Diagnostics`]: all mistakes of a file, each with the line it stands on.
+
+mod build;
+mod control;
+mod description;
+mod diagnostics;
+mod event;
+mod forces;
+mod notice;
+mod parse;
+mod read;
+mod scene;
+mod settings;
+mod shape;
+mod source;
+mod start;
+mod suggest;
+pub mod text;
+pub mod urdf;
+mod write;
+
+pub use control::{
+    Control, ControllerDescription, GoalDescription, LawDescription, PortDescription,
+    ReferenceDescription, RegulatorDescription,
+};
+pub use description::{
+    BodyDescription, InitialDescription, JointDescription, Motion, Position, SceneDescription,
+    TwistDescription, TwistFrame,
+};
+pub use diagnostics::{Diagnostic, Diagnostics};
+pub use event::{EventDescription, PointAlong, Quantity, QuantityDescription, SceneEvent};
+pub use forces::{
+    BodyPoint, ConstraintDescription, FrameDescription, JointForces, JointSpring, PerFreedom,
+    PointSpring, SpringEnergy, WrenchAxes, WrenchDescription,
+};
+pub use notice::{Notice, Severity};
+pub use scene::{Scene, read_file};
+pub use settings::{Arithmetic, Settings};
+pub use shape::{Geometry, ShapeDescription};
+pub use source::{Located, Span};
+pub use start::StartError;

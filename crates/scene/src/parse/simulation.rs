@@ -1,0 +1,91 @@
+//! The `[simulation]` table.
+
+use crate::diagnostics::Diagnostic;
+use crate::read::{Fields, Sink};
+use crate::settings::{
+    ARITHMETIC_NAMES, FORM_NAMES, METHOD_NAMES, SAMPLING_NAMES, Settings, arithmetic_named,
+    form_named, sampling_named,
+};
+use hamel_integrate::{Control, Method, Scheme};
+use hamel_runtime::shown::Number;
+
+/// Reads the settings; the defaults where the table or a key of it is absent or in error.
+pub(super) fn settings(fields: &mut Fields<'_>, sink: &mut Sink) -> Settings {
+    let Some(mut table) = fields
+        .optional("simulation")
+        .and_then(|simulation| simulation.table(sink))
+    else {
+        return Settings::default();
+    };
+    let defaults = Settings::default();
+    let t_end = not_negative(&mut table, "t_end", sink).unwrap_or(defaults.t_end);
+    let (method, chooses) = method(&mut table, sink).unwrap_or((defaults.method, false));
+    let settings = Settings {
+        t_end,
+        method,
+        chooses,
+        form: table
+            .optional("form")
+            .and_then(|form| form.choice(&FORM_NAMES, sink))
+            .and_then(form_named)
+            .unwrap_or(defaults.form),
+        arithmetic: table
+            .optional("arithmetic")
+            .and_then(|arithmetic| arithmetic.choice(&ARITHMETIC_NAMES, sink))
+            .and_then(arithmetic_named)
+            .unwrap_or(defaults.arithmetic),
+        sample_step: positive(&mut table, "sample_step", sink).unwrap_or(defaults.sample_step),
+        sampling: table
+            .optional("sampling")
+            .and_then(|sampling| sampling.choice(&SAMPLING_NAMES, sink))
+            .and_then(sampling_named)
+            .unwrap_or(defaults.sampling),
+    };
+    table.finish(sink);
+    settings
+}
+
+/// The method, named or implied by the accuracy given, and whether it is left open.
+fn method(table: &mut Fields<'_>, sink: &mut Sink) -> Option<(Method, bool)> {
+    let name = table
+        .optional("method")
+        .and_then(|method| method.choice(&METHOD_NAMES, sink));
+    let dt = positive(table, "dt", sink);
+    let tol = tolerance(table, sink);
+    let scheme = name.and_then(Scheme::named);
+    table.at_most_one(&["dt", "tol"], sink);
+    let chooses = name == Some(Settings::AUTO);
+    match Settings::method_of(scheme, dt, tol) {
+        Some(method) if !(chooses && dt.is_some()) => return Some((method, chooses)),
+        _ => {}
+    }
+    let (key, other) = if chooses {
+        ("dt", "tol")
+    } else {
+        ("tol", "dt")
+    };
+    let value = table.optional(key)?;
+    let (path, name) = (value.path(), name.unwrap_or_default());
+    let message = format!("{path} means nothing to the method `{name}`");
+    let label = format!("its accuracy is `{other}`");
+    sink.push(Diagnostic::new(value.span(), message).label(label));
+    None
+}
+
+fn positive(table: &mut Fields<'_>, key: &'static str, sink: &mut Sink) -> Option<f64> {
+    let value = table.optional(key)?;
+    let number = value.number_within(|number| number > 0.0, "above 0", sink)?;
+    Some(number.value)
+}
+
+fn tolerance(table: &mut Fields<'_>, sink: &mut Sink) -> Option<f64> {
+    let (least, largest) = (Control::LEAST_TOLERANCE, Control::LARGEST_TOLERANCE);
+    let limit = format!("between {:?} and {:?}", Number(least), Number(largest));
+    let holds = |number| (least..=largest).contains(&number);
+    let number = table.optional("tol")?.number_within(holds, &limit, sink)?;
+    Some(number.value)
+}
+
+fn not_negative(table: &mut Fields<'_>, key: &'static str, sink: &mut Sink) -> Option<f64> {
+    Some(table.optional(key)?.not_negative(sink)?.value)
+}

@@ -1,0 +1,45 @@
+//! Shapes that stand for bodies in pictures; they have no effect on the motion.
+
+use hamel_runtime::spatial::Pose;
+use nalgebra::Vector3;
+
+/// A simple shape fixed to a body, or to the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShapeDescription {
+    /// Index of the body that carries it; `None` is the world.
+    pub body: Option<usize>,
+    /// Pose of the shape's own frame in the body frame.
+    pub at: Pose<f64>,
+    /// What it is.
+    pub geometry: Geometry,
+    /// Red, green and blue, each from 0 to 255; `None` leaves the choice to whoever draws it.
+    pub color: Option<[u8; 3]>,
+}
+
+/// A shape about the origin of its own frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Geometry {
+    /// A box with sides along x, y and z, m.
+    Box(Vector3<f64>),
+    /// A sphere of that radius, m.
+    Sphere(f64),
+    /// A cylinder about z.
+    Cylinder {
+        /// m.
+        radius: f64,
+        /// From end to end, m.
+        length: f64,
+    },
+    /// A cylinder about z that ends in hemispheres.
+    Capsule {
+        /// m.
+        radius: f64,
+        /// Of the cylinder, without the hemispheres, m.
+        length: f64,
+    },
+}
+
+impl Geometry {
+    /// Names of the shapes, as scene files write them.
+    pub const NAMES: [&'static str; 4] = ["box", "sphere", "cylinder", "capsule"];
+}

@@ -1,0 +1,237 @@
+//! Where a joint stands and how it moves, and what else a file says of it.
+
+use super::document::{attribute, child, number, numbers, place, vector};
+use super::robot::{Joint, JointType, Robot};
+use crate::diagnostics::Diagnostic;
+use crate::notice::Notices;
+use crate::parse::rotation;
+use crate::read::Sink;
+use crate::source::Located;
+use hamel_runtime::shown::Number;
+use hamel_runtime::spatial::Pose;
+use nalgebra::{Matrix3, Vector3, Vector4};
+use roxmltree::Node;
+
+/// What a file says of a joint beyond its motion. None of it but `damping` is simulated.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct JointFacts {
+    /// Name of the joint.
+    pub name: String,
+    /// The `<limit>` element.
+    pub limits: Option<Limits>,
+    /// The `<mimic>` element: `multiplier · q + offset` of another joint.
+    pub mimic: Option<Mimic>,
+    /// Viscous damping, N m s/rad or N s/m.
+    pub damping: f64,
+    /// Dry friction, N m or N.
+    pub friction: f64,
+}
+
+impl JointFacts {
+    /// What is not simulated of it, a line each.
+    pub(super) fn lines(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        if let Some(limits) = &self.limits {
+            lines.extend(limits.line());
+        }
+        if let Some(Mimic {
+            joint,
+            multiplier,
+            offset,
+        }) = &self.mimic
+        {
+            lines.push(format!(
+                "mimics `{joint}`: {:?} times its position, and {:?}",
+                Number(*multiplier),
+                Number(*offset)
+            ));
+        }
+        if self.friction != 0.0 {
+            lines.push(format!("dry friction {:?}", Number(self.friction)));
+        }
+        lines
+    }
+}
+
+impl Limits {
+    fn line(&self) -> Option<String> {
+        let position = self
+            .position
+            .map(|[lower, upper]| format!("position {:?} to {:?}", Number(lower), Number(upper)));
+        let velocity = self
+            .velocity
+            .map(|velocity| format!("velocity {:?}", Number(velocity)));
+        let effort = self
+            .effort
+            .map(|effort| format!("effort {:?}", Number(effort)));
+        let parts: Vec<String> = [position, velocity, effort].into_iter().flatten().collect();
+        (!parts.is_empty()).then(|| format!("limits: {}", parts.join(", ")))
+    }
+}
+
+/// Limits of a joint: rad or m, rad/s or m/s, N m or N.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limits {
+    /// Least and largest position.
+    pub position: Option<[f64; 2]>,
+    /// Largest velocity.
+    pub velocity: Option<f64>,
+    /// Largest effort.
+    pub effort: Option<f64>,
+}
+
+/// A joint that follows another.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mimic {
+    /// The joint that it follows.
+    pub joint: String,
+    /// Its motion per motion of the other.
+    pub multiplier: f64,
+    /// Its position where the other is at 0.
+    pub offset: f64,
+}
+
+/// The rotation that turns z onto the joint's axis; the identity where the joint has none.
+pub(super) fn axis(joint: &Joint<'_, '_>, sink: &mut Sink) -> Option<Matrix3<f64>> {
+    if !joint.kind.has_axis() {
+        return Some(Matrix3::identity());
+    }
+    // The default of URDF.
+    let axis = vector(joint.node, "axis", "xyz").map_or(Vector3::x(), Vector3::from);
+    let axis = Located::new(axis, place(joint.node, "axis", "xyz"));
+    rotation::from_axis(&format!("joint `{}`: its axis", joint.name), axis, sink)
+}
+
+/// The pose that an `<origin>` inside `node` says; the identity without one.
+pub(super) fn origin(
+    owner: &str,
+    node: Node<'_, '_>,
+    version: (u32, u32),
+    sink: &mut Sink,
+) -> Option<Pose<f64>> {
+    let or_zero =
+        |name: &str| vector(node, "origin", name).map_or_else(Vector3::zeros, Vector3::from);
+    let rotation = match attribute(node, "origin", "quat_xyzw") {
+        Some(text) => quaternion(owner, text, node, version, sink)?,
+        None => {
+            let rpy = Located::new(or_zero("rpy"), place(node, "origin", "rpy"));
+            rotation::from_roll_pitch_yaw(&format!("{owner}: `rpy`"), rpy, sink)?
+        }
+    };
+    Some(Pose::new(rotation, or_zero("xyz")))
+}
+
+/// The rotation of a `quat_xyzw`, whose text has been found to be four numbers.
+fn quaternion(
+    owner: &str,
+    text: &str,
+    node: Node<'_, '_>,
+    version: (u32, u32),
+    sink: &mut Sink,
+) -> Option<Matrix3<f64>> {
+    let span = place(node, "origin", "quat_xyzw");
+    let turned_twice = child(node, "origin").is_some_and(|origin| origin.has_attribute("rpy"));
+    let refused = match (turned_twice, version >= (1, 1)) {
+        (true, _) => Some("`rpy` and `quat_xyzw` exclude each other"),
+        (_, false) => Some("`quat_xyzw` needs `version=\"1.1\"` of <robot>"),
+        _ => None,
+    };
+    if let Some(why) = refused {
+        let message = format!("{owner}: in <origin>, {why}");
+        sink.push(Diagnostic::new(span, message));
+        return None;
+    }
+    let [x, y, z, w] = numbers(text)?;
+    let wxyz = Located::new(Vector4::new(w, x, y, z), span);
+    rotation::from_any_quaternion(&format!("{owner}: `quat_xyzw`"), wxyz, sink)
+}
+
+/// What the file says of the joint beyond its motion.
+pub(super) fn facts(joint: &Joint<'_, '_>, version: (u32, u32)) -> JointFacts {
+    let node = joint.node;
+    let has_limits = child(node, "limit").is_some();
+    let mimic = attribute(node, "mimic", "joint").map(|followed| Mimic {
+        joint: followed.to_owned(),
+        multiplier: number(node, "mimic", "multiplier").unwrap_or(1.0),
+        offset: number(node, "mimic", "offset").unwrap_or(0.0),
+    });
+    JointFacts {
+        name: joint.name.to_owned(),
+        limits: has_limits.then(|| limits(joint, version)),
+        mimic,
+        damping: number(node, "dynamics", "damping").unwrap_or(0.0),
+        friction: number(node, "dynamics", "friction").unwrap_or(0.0),
+    }
+}
+
+/// The `<limit>` element. An end that it does not say is at 0, and since version 1.2 nowhere.
+fn limits(joint: &Joint<'_, '_>, version: (u32, u32)) -> Limits {
+    let limit = |name: &str| number(joint.node, "limit", name);
+    let ends = [limit("lower"), limit("upper")];
+    let is_limited = ends.iter().any(Option::is_some) && joint.kind != JointType::Continuous;
+    let open = if version < (1, 2) { 0.0 } else { f64::INFINITY };
+    let [lower, upper] = ends;
+    Limits {
+        position: is_limited.then(|| [lower.unwrap_or(-open), upper.unwrap_or(open)]),
+        velocity: limit("velocity"),
+        effort: limit("effort"),
+    }
+}
+
+/// Tells what of a moving joint is not simulated, and what URDF leaves open.
+pub(super) fn tell(
+    joint: &Joint<'_, '_>,
+    robot: &Robot<'_, '_>,
+    facts: &JointFacts,
+    notices: &mut Notices,
+) {
+    let limits = facts.limits.as_ref();
+    let follows =
+        |mimic: &Mimic| mimic.joint != joint.name && robot.joint_names.contains(&*mimic.joint);
+    let mimic = facts.mimic.as_ref().map(follows);
+    let has = |name: &str| child(joint.node, name).is_some();
+    let owner = format!("joint `{}`", joint.name);
+    // What moves otherwise than the file says.
+    for (holds, message) in [
+        (
+            limits.is_some_and(|limits| limits.position.is_some()),
+            "limits of position are not simulated: the joint moves past them",
+        ),
+        (
+            mimic == Some(true),
+            "mimic joints are not coupled: the joint moves by itself",
+        ),
+        (
+            mimic == Some(false),
+            "mimic joints follow no other joint of the robot: the joint moves by itself",
+        ),
+        (facts.friction != 0.0, "dry friction is not simulated"),
+    ] {
+        if holds {
+            notices.warn(message, &owner);
+        }
+    }
+    for (holds, message) in [
+        (
+            limits.is_some_and(|limits| limits.velocity.is_some() || limits.effort.is_some()),
+            "limits of velocity and effort are not simulated",
+        ),
+        (
+            has("safety_controller"),
+            "safety controllers are not simulated",
+        ),
+        (has("calibration"), "calibrations are not read"),
+        (
+            joint.kind == JointType::Planar,
+            "URDF does not say whether a planar joint turns: it turns about its axis and slides across it",
+        ),
+        (
+            joint.kind.has_axis() && !has("axis"),
+            "the axis is not given: it is x, the default of URDF",
+        ),
+    ] {
+        if holds {
+            notices.add(message, &owner);
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! What the links of each body weigh together, and whether that can move.
+
+use super::document::place;
+use super::mass::{is_nothing, sum};
+use super::robot::Robot;
+use crate::description::BodyDescription;
+use crate::diagnostics::Diagnostic;
+use crate::notice::Notices;
+use crate::read::Sink;
+use hamel_runtime::spatial::{MassError, MassProperties};
+
+/// A link as a part of a body.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    /// The link, as a place in the file.
+    pub(super) link: usize,
+    /// Its mass properties in the body frame.
+    pub(super) mass: MassProperties,
+}
+
+/// Adds up the parts of each body, and checks the sums.
+pub(super) fn settle(
+    robot: &Robot<'_, '_>,
+    bodies: &mut [BodyDescription],
+    parts: &[Vec<Part>],
+    notices: &mut Notices,
+    sink: &mut Sink,
+) {
+    for (body, parts) in bodies.iter_mut().zip(parts) {
+        let masses: Vec<MassProperties> = parts.iter().map(|part| part.mass).collect();
+        body.mass = sum(&masses);
+        match body.mass.check() {
+            Err(error) => sink.push(refusal(robot, body, parts, &error)),
+            Ok(()) => tell_odd(robot, parts, notices),
+        }
+    }
+}
+
+fn refusal(
+    robot: &Robot<'_, '_>,
+    body: &BodyDescription,
+    parts: &[Part],
+    error: &MassError,
+) -> Diagnostic {
+    let culprit = parts.iter().find(|part| part.mass.check().is_err());
+    let link = culprit.or(parts.first()).map_or(0, |part| part.link);
+    let message = format!("link `{}`: {error}", robot.links[link].name);
+    let refusal = Diagnostic::new(place(robot.links[link].node, "inertial", ""), message);
+    match parts.len() {
+        1 => refusal,
+        count => refusal.help(format!(
+            "this is the sum over the {count} links that fixed joints join to body `{}`",
+            body.name.value
+        )),
+    }
+}
+
+/// A link that no rigid body could be by itself may still be part of one that is.
+fn tell_odd(robot: &Robot<'_, '_>, parts: &[Part], notices: &mut Notices) {
+    let message =
+        "no rigid body has such an inertia, but the body that the link is part of is sound";
+    for part in parts.iter().filter(|part| part.mass.check().is_err()) {
+        let name = robot.links[part.link].name;
+        notices.add(message, format!("link `{name}`"));
+    }
+}
+
+/// Refuses bodies that move without mass on them or on what hangs on them: M would be singular.
+pub(super) fn refuse_massless(bodies: &[BodyDescription], sink: &mut Sink) {
+    let massive = bodies.iter().map(|body| !is_nothing(&body.mass));
+    let mut massive: Vec<bool> = massive.collect();
+    for (index, body) in bodies.iter().enumerate().rev() {
+        if let Some(parent) = body.parent.filter(|_| massive[index]) {
+            massive[parent] = true;
+        }
+    }
+    for (body, _) in bodies.iter().zip(massive).filter(|(_, massive)| !massive) {
+        let (name, joint) = (&body.name.value, &body.joint.name.value);
+        let message = format!(
+            "link `{name}` moves on joint `{joint}`, but neither it nor what hangs on it has mass: its acceleration would \
+             not be determined"
+        );
+        let error = Diagnostic::new(body.name.span.clone(), message);
+        sink.push(error.help("give the link an <inertial>, or make the joint fixed"));
+    }
+}
