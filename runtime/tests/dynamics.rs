@@ -119,7 +119,7 @@ fn theorem_3_is_the_newton_euler_recursion() {
         let mut reference = Reference::new(Arc::clone(&case.mechanism));
         let mut rates = vec![0.0; case.speeds.len()];
         reference
-            .accelerations(&case.q, &case.speeds, &case.efforts, &mut rates)
+            .forward_dynamics(&case.q, &case.speeds, &case.efforts, &mut rates)
             .expect("regular");
         let expansion = reference.expansion(&case.q).expect("sizes fit");
         let expected = expansion.speed_basis.tr_mul(&vector(&case.efforts));
@@ -263,7 +263,7 @@ fn free_planar_body_has_its_coriolis_terms() {
     let v = [1.3, -0.7, 0.9];
     let mut rates = [0.0; 3];
     Reference::new(mechanism)
-        .accelerations(&q, &v, &[0.5, 0.8, -0.6], &mut rates)
+        .forward_dynamics(&q, &v, &[0.5, 0.8, -0.6], &mut rates)
         .expect("regular");
     let expected = [0.5, 0.8 / 2.0 + v[0] * v[2], -0.6 / 2.0 - v[0] * v[1]];
     assert!(
@@ -283,7 +283,7 @@ fn massless_end_names_its_joint() {
     );
     let mechanism = Arc::new(Mechanism::new(Vector3::zeros(), vec![body]).expect("valid"));
     let error = Reference::new(mechanism)
-        .accelerations(&[0.0], &[1.0], &[0.0], &mut [0.0])
+        .forward_dynamics(&[0.0], &[1.0], &[0.0], &mut [0.0])
         .expect_err("singular");
     let DynamicsError::SingularMass { joint, speed, .. } = &error else {
         panic!("another error: {error}");
@@ -296,7 +296,7 @@ fn wrong_sizes_are_errors() {
     let mechanism = support::tree(&mut Random::new(1), &[joints::ball()]);
     let mut reference = Reference::new(Arc::clone(&mechanism));
     let error = reference
-        .accelerations(&[0.0; 8], &[0.0; 3], &[0.0; 3], &mut [0.0; 3])
+        .forward_dynamics(&[0.0; 8], &[0.0; 3], &[0.0; 3], &mut [0.0; 3])
         .expect_err("a ball has nine entries");
     assert_eq!(
         error.to_string(),

@@ -71,7 +71,7 @@ fn accelerations_and_momenta_agree() {
             |case, dynamics| {
                 let mut rates = case.zeros();
                 dynamics
-                    .accelerations(&case.q, &case.speeds, &case.efforts, &mut rates)
+                    .forward_dynamics(&case.q, &case.speeds, &case.efforts, &mut rates)
                     .expect("regular");
                 rates
             },

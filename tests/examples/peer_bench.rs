@@ -110,7 +110,7 @@ impl Loaded {
             "rnea" => dynamics.inverse_dynamics(q, v, tau, &mut self.out)?,
             "nle" => dynamics.bias_forces(q, v, &mut self.out)?,
             "crba" => dynamics.mass_matrix(q, &mut self.mass)?,
-            "aba" => dynamics.accelerations(q, v, tau, &mut self.out)?,
+            "aba" => dynamics.forward_dynamics(q, v, tau, &mut self.out)?,
             "minverse" => dynamics.inverse_mass_matrix(q, &mut self.mass)?,
             "rnea_deriv" => {
                 dynamics.inverse_dynamics_derivatives(q, v, tau, &mut self.inverse)?;

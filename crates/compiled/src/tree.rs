@@ -196,7 +196,7 @@ impl Compiled {
         let mut found = expected.clone();
         if let Some(forward) = self.equations.forward_dynamics {
             self.tree
-                .accelerations(q, &speeds, &efforts, &mut expected)?;
+                .forward_dynamics(q, &speeds, &efforts, &mut expected)?;
             forward(q, &speeds, &efforts, &mut found);
             Self::close(&found, &expected)?;
         }
@@ -249,7 +249,7 @@ impl Compiled {
         if self.equations.forward_dynamics_derivatives.is_some() {
             let mut found = ForwardDerivatives::new(&mechanism);
             let mut expected = vec![0.0; speeds.len()];
-            self.tree.accelerations(q, speeds, inputs, &mut expected)?;
+            self.tree.forward_dynamics(q, speeds, inputs, &mut expected)?;
             self.forward_dynamics_derivatives(q, speeds, inputs, &mut found)?;
             Self::close(found.rates(), &expected)?;
         }
@@ -406,7 +406,7 @@ impl Dynamics for Compiled {
         self.tree.complete_speeds(q, speeds)
     }
 
-    fn accelerations(
+    fn forward_dynamics(
         &mut self,
         q: &[f64],
         speeds: &[f64],
@@ -414,7 +414,7 @@ impl Dynamics for Compiled {
         rates: &mut [f64],
     ) -> Result<(), DynamicsError> {
         let Some(forward) = self.equations.forward_dynamics else {
-            return self.tree.accelerations(q, speeds, efforts, rates);
+            return self.tree.forward_dynamics(q, speeds, efforts, rates);
         };
         self.check(q, [("speeds", speeds)])?;
         self.check_efforts(efforts)?;
@@ -424,7 +424,7 @@ impl Dynamics for Compiled {
             return Ok(());
         }
         // The tree says which joint it is, and why.
-        self.tree.accelerations(q, speeds, efforts, rates)
+        self.tree.forward_dynamics(q, speeds, efforts, rates)
     }
 
     fn momenta(

@@ -231,7 +231,7 @@ fn held(
         }
     }
     let mut rates = rest.clone();
-    dynamics.accelerations(goal, &rest, &efforts, &mut rates)?;
+    dynamics.forward_dynamics(goal, &rest, &efforts, &mut rates)?;
     let acceleration = largest(&rates);
     match free {
         Some((body, place, force)) if acceleration.is_nan() || acceleration > AT_REST => {

@@ -264,7 +264,7 @@ impl<'a> Flow<'a> {
         self.local_rates(base, phi, &rates.speeds, &mut rates.phi);
     }
 
-    /// τ at time `time`, `q` and v̄, with the accelerations of driven joints, as [`Dynamics::accelerations`] takes them.
+    /// τ at time `time`, `q` and v̄, with the accelerations of driven joints, as [`Dynamics::forward_dynamics`] takes them.
     pub(super) fn efforts(&mut self, time: f64, q: &[f64], speeds: &[f64], efforts: &mut [f64]) {
         let held = self.held.as_deref();
         fill(&mut self.inputs, held, time, q, speeds, efforts);
@@ -317,7 +317,7 @@ impl<'a> Flow<'a> {
                 rates.speeds.copy_from_slice(y);
                 dynamics.complete_speeds(configuration, rates.speeds)?;
                 fill(rates.speeds, efforts);
-                dynamics.accelerations(configuration, rates.speeds, efforts, rates.y)
+                dynamics.forward_dynamics(configuration, rates.speeds, efforts, rates.y)
             }
             Form::Hamiltonian => {
                 let mut fill = |speeds: &[f64], out: &mut [f64]| {

@@ -100,7 +100,7 @@ fn theorem_3_in_full_is_the_recursion() {
 fn coupling_force(dynamics: &mut Recursive, case: &Case) -> Vec<f64> {
     let mut rates = vec![0.0; case.speeds.len()];
     dynamics
-        .accelerations(&case.q, &case.speeds, &case.efforts, &mut rates)
+        .forward_dynamics(&case.q, &case.speeds, &case.efforts, &mut rates)
         .expect("regular");
     let mut forces = vec![0.0; case.mechanism.constraints().len()];
     dynamics

@@ -59,7 +59,7 @@ fn inverse_dynamics_inverts_forward_dynamics() {
         let mut dynamics = Recursive::new(Arc::clone(&mechanism));
         let (mut rates, mut found) = (vec![0.0; v.len()], vec![0.0; v.len()]);
         dynamics
-            .accelerations(&q, &v, &tau, &mut rates)
+            .forward_dynamics(&q, &v, &tau, &mut rates)
             .expect("regular");
         dynamics
             .inverse_dynamics(&q, &v, &rates, &mut found)

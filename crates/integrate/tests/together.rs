@@ -93,7 +93,7 @@ fn rates_and_forces(mechanism: &Arc<Mechanism>, case: &Case, tau: &[f64]) -> (Ve
     let (q, v) = (&case.q, &case.speeds);
     let (mut rates, mut forces) = (vec![0.0; v.len()], [0.0]);
     dynamics
-        .accelerations(q, v, tau, &mut rates)
+        .forward_dynamics(q, v, tau, &mut rates)
         .expect("regular");
     dynamics
         .coupling_force(q, v, &rates, tau, &mut forces)

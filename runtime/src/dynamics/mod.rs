@@ -44,7 +44,7 @@ pub trait Dynamics {
     ///
     /// # Errors
     /// A singular mass matrix; a wrong size.
-    fn accelerations(
+    fn forward_dynamics(
         &mut self,
         q: &[f64],
         speeds: &[f64],
@@ -95,7 +95,7 @@ pub trait Dynamics {
     /// A singular mass matrix; a wrong size.
     fn hamiltonian(&mut self, q: &[f64], momenta: &[f64]) -> Result<f64, DynamicsError>;
 
-    /// v̄̇ of [`Dynamics::accelerations`] and its derivatives in local coordinates ϕ about Q, v̄ and τ into `out`, as
+    /// v̄̇ of [`Dynamics::forward_dynamics`] and its derivatives in local coordinates ϕ about Q, v̄ and τ into `out`, as
     /// [`Recursive::forward_dynamics_derivatives`] has them.
     ///
     /// # Errors

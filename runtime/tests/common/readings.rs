@@ -18,7 +18,7 @@ pub fn readings(dynamics: &mut dyn Dynamics, q: &[f64], v: &[f64], tau: &[f64]) 
     let mut all = Vec::new();
     let mut out = vec![0.0; v.len()];
     dynamics
-        .accelerations(q, v, tau, &mut out)
+        .forward_dynamics(q, v, tau, &mut out)
         .expect("regular");
     all.extend(&out);
     let mut momenta = vec![0.0; v.len()];

@@ -79,7 +79,7 @@ impl States {
     fn by_tree(&mut self, task: Task) {
         let tree = &mut self.tree;
         each(&mut self.rows, task, |q, v, u, out| match task {
-            Task::Forward => tree.accelerations(q, v, u, out).expect("it has mass"),
+            Task::Forward => tree.forward_dynamics(q, v, u, out).expect("it has mass"),
             Task::Inverse => tree.inverse_dynamics(q, v, u, out).expect("sizes fit"),
         });
     }

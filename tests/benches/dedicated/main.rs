@@ -97,7 +97,7 @@ impl Case {
             let solved = match task {
                 Task::Accelerations => {
                     self.dynamics
-                        .accelerations(q, &self.speeds, &self.efforts, rates)
+                        .forward_dynamics(q, &self.speeds, &self.efforts, rates)
                 }
                 Task::MomentumRates => self.dynamics.momentum_rates(
                     q,

@@ -77,7 +77,7 @@ impl Timed for Chain {
             let State { q, speeds, efforts } = &self.states[call % STATES];
             let dynamics = &mut self.dynamics;
             let solved = match self.task {
-                Task::Forward => dynamics.accelerations(q, speeds, efforts, &mut self.rates),
+                Task::Forward => dynamics.forward_dynamics(q, speeds, efforts, &mut self.rates),
                 Task::InverseDerivatives => {
                     dynamics.inverse_dynamics_derivatives(q, speeds, speeds, &mut self.inverse)
                 }

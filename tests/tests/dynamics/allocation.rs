@@ -124,7 +124,7 @@ fn coupled_joints_do_not_allocate() {
         let (mut rates, mut forces, mut p) = (case.rates.clone(), [0.0], v.clone());
         counts.of("equations and derivatives", || {
             dynamics.complete_speeds(q, &mut v).expect("determined");
-            let found = dynamics.accelerations(q, &v, tau, &mut rates);
+            let found = dynamics.forward_dynamics(q, &v, tau, &mut rates);
             found.expect("every body has mass");
             let found = dynamics.coupling_force(q, &v, &rates, tau, &mut forces);
             found.expect("determined");
@@ -153,7 +153,7 @@ fn equations_of_motion_do_not_allocate() {
         let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
         let (mut a, mut b) = (vec![0.0; v.len()], vec![0.0; v.len()]);
         counts.of("accelerations", || {
-            let solved = dynamics.accelerations(q, v, &case.efforts, &mut a);
+            let solved = dynamics.forward_dynamics(q, v, &case.efforts, &mut a);
             solved.expect("every body has mass");
         });
         counts.of("momenta", || {

@@ -121,7 +121,7 @@ fn a_batch_is_what_the_tree_computes() {
     let rows = q.zip(states.v.chunks(module::SPEEDS)).zip(tau).enumerate();
     for (state, ((q, v), tau)) in rows {
         let row = state * module::SPEEDS..(state + 1) * module::SPEEDS;
-        let done = tree.accelerations(q, v, tau, &mut expected);
+        let done = tree.forward_dynamics(q, v, tau, &mut expected);
         done.expect("the scene is sound");
         assert_close(&rates[row.clone()], &expected, ROUNDINGS, "rates");
         let accelerations = &states.accelerations()[row.clone()];

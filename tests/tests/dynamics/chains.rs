@@ -56,7 +56,7 @@ impl Case {
         assert_returned(&returned, &forces);
         let mut found = vec![0.0; self.speeds.len()];
         let dynamics = &mut self.dynamics;
-        let solved = dynamics.accelerations(&self.q, &self.speeds, &self.forces, &mut found);
+        let solved = dynamics.forward_dynamics(&self.q, &self.speeds, &self.forces, &mut found);
         solved.expect("every body has mass");
         relative(&found, &expected)
     }

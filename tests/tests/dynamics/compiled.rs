@@ -109,7 +109,7 @@ impl Point {
             .expect("sizes fit");
         self.agree(by, Kind::BiasForces, &[], &expected, BOUND);
 
-        tree.accelerations(q, speeds, &self.inputs, &mut expected)
+        tree.forward_dynamics(q, speeds, &self.inputs, &mut expected)
             .expect("M̄ is regular");
         let bound = of_solutions(mass);
         self.agree(by, Kind::ForwardDynamics, &self.inputs, &expected, bound);

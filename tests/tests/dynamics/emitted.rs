@@ -81,7 +81,7 @@ fn loops_give_the_values_of_the_tree() {
             panic!("the module has other sizes");
         };
         let mut expected = vec![0.0; v.len()];
-        tree.accelerations(&q, &v, &tau, &mut expected)
+        tree.forward_dynamics(&q, &v, &tau, &mut expected)
             .expect("the scene is sound");
         let found = ball_chain::forward_dynamics(chunk, speeds, inputs);
         // Conditions of M̄ of such chains are some 1e6, of which that allows a hundredth.
@@ -111,7 +111,7 @@ fn every_scalar_gives_the_accelerations_of_the_tree() {
         .map(|i| 0.3 - 0.1 * i as f64)
         .collect();
     let mut expected = vec![0.0; module::SPEEDS];
-    tree.accelerations(q, v, &tau, &mut expected)
+    tree.forward_dynamics(q, v, &tau, &mut expected)
         .expect("the scene is sound");
 
     let (q, v) = (

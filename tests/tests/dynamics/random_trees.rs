@@ -37,7 +37,7 @@ fn zeros(case: &Case) -> Vec<f64> {
 
 fn accelerations(dynamics: &mut dyn Dynamics, case: &Case) -> Vec<f64> {
     let mut rates = zeros(case);
-    let solved = dynamics.accelerations(&case.q, &case.speeds, &case.efforts, &mut rates);
+    let solved = dynamics.forward_dynamics(&case.q, &case.speeds, &case.efforts, &mut rates);
     solved.expect("every body has mass");
     rates
 }

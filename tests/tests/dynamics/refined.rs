@@ -21,7 +21,7 @@ const AGREEMENT: f64 = 1e-10;
 fn rates(dynamics: &mut dyn Dynamics, case: &Case, momenta: &[f64]) -> [Vec<f64>; 3] {
     let zeros = || vec![0.0; case.speeds.len()];
     let [mut accelerations, mut speeds, mut momentum_rates] = [zeros(), zeros(), zeros()];
-    let solved = dynamics.accelerations(&case.q, &case.speeds, &case.efforts, &mut accelerations);
+    let solved = dynamics.forward_dynamics(&case.q, &case.speeds, &case.efforts, &mut accelerations);
     solved.expect("every body has mass");
     let mut efforts = |_: &[f64], tau: &mut [f64]| tau.copy_from_slice(&case.efforts);
     let q = &case.q;
@@ -73,7 +73,7 @@ fn heavy_bodies_on_light_ones_lose_nothing() {
     let error = |dynamics: &mut dyn Dynamics| {
         let mut rates = vec![0.0; scene.speeds.len()];
         let (q, speeds) = (&scene.configuration, &scene.speeds);
-        let solved = dynamics.accelerations(q, speeds, &[0.0; 6], &mut rates);
+        let solved = dynamics.forward_dynamics(q, speeds, &[0.0; 6], &mut rates);
         solved.expect("every body has mass");
         difference(&rates[..3], &expected) / size(&expected)
     };
@@ -95,7 +95,7 @@ fn refined_rates_do_not_allocate() {
         let mut refined = Refined::new(Arc::clone(&case.mechanism));
         let mut rates = vec![0.0; case.speeds.len()];
         let count = measure(|| {
-            let solved = refined.accelerations(&case.q, &case.speeds, &case.efforts, &mut rates);
+            let solved = refined.forward_dynamics(&case.q, &case.speeds, &case.efforts, &mut rates);
             solved.expect("every body has mass");
         });
         assert_eq!(count.count_total, 0, "case {}", case.seed);

@@ -149,7 +149,7 @@ fn forward_dynamics() {
         let efforts = point.vector("tau");
         let found = point
             .dynamics
-            .accelerations(&point.q, &point.v, &efforts, &mut rates);
+            .forward_dynamics(&point.q, &point.v, &efforts, &mut rates);
         found.expect("every body has mass");
         let error = relative(&rates, &point.vector("aba_qdd_exact"));
         let allowed = BOUND.max(ROUNDINGS * f64::EPSILON * point.condition());

@@ -131,7 +131,7 @@ fn same_motion(a: &Arc<Mechanism>, b: &Arc<Mechanism>) -> Result<f64, Box<dyn Er
     let outputs = |mechanism: &Arc<Mechanism>| -> Result<[DVector<f64>; 2], Box<dyn Error>> {
         let mut dynamics = Reference::new(Arc::clone(mechanism));
         let (mut rates, mut momenta) = (speeds.clone(), speeds.clone());
-        dynamics.accelerations(&q, &speeds, &efforts, &mut rates)?;
+        dynamics.forward_dynamics(&q, &speeds, &efforts, &mut rates)?;
         dynamics.momenta(&q, &speeds, &mut momenta)?;
         Ok([rates.into(), momenta.into()])
     };

@@ -132,7 +132,7 @@ impl PathFollower {
         self.mechanism
             .prescribe_accelerations(time, &mut self.probe);
         self.dynamics
-            .accelerations(q, speeds, &self.probe, &mut self.rates)?;
+            .forward_dynamics(q, speeds, &self.probe, &mut self.rates)?;
         Ok(self.roller.own(&self.rates))
     }
 

@@ -49,10 +49,10 @@ fn every_form_refuses_other_sizes_and_what_is_not_finite() {
             let mut forward = ForwardDerivatives::new(&mechanism);
             let mut hamiltonian = HamiltonianDerivatives::new(&mechanism);
             let (mut a, mut b) = (room.clone(), room.clone());
-            assert!(dynamics.accelerations(&q, &v, &tau, &mut a).is_ok());
+            assert!(dynamics.forward_dynamics(&q, &v, &tau, &mut a).is_ok());
             assert!(dynamics.momenta(&q, &v, &mut a).is_ok());
             for bad in wrong(layout.configuration) {
-                refused(dynamics.accelerations(&bad, &v, &tau, &mut a));
+                refused(dynamics.forward_dynamics(&bad, &v, &tau, &mut a));
                 refused(dynamics.momenta(&bad, &v, &mut a));
                 refused(dynamics.speeds(&bad, &v, &mut a));
                 refused(dynamics.momentum_rates(&bad, &v, &mut given, &mut a, &mut b));
@@ -62,7 +62,7 @@ fn every_form_refuses_other_sizes_and_what_is_not_finite() {
                 refused(dynamics.complete_speeds(&bad, &mut v.clone()));
             }
             for bad in wrong(layout.speeds) {
-                refused(dynamics.accelerations(&q, &bad, &tau, &mut a));
+                refused(dynamics.forward_dynamics(&q, &bad, &tau, &mut a));
                 refused(dynamics.momenta(&q, &bad, &mut a));
                 refused(dynamics.speeds(&q, &bad, &mut a));
                 refused(dynamics.momentum_rates(&q, &bad, &mut given, &mut a, &mut b));
@@ -72,12 +72,12 @@ fn every_form_refuses_other_sizes_and_what_is_not_finite() {
                 refused(dynamics.complete_speeds(&q, &mut bad.clone()));
             }
             for bad in wrong(layout.freedoms) {
-                refused(dynamics.accelerations(&q, &v, &bad, &mut a));
+                refused(dynamics.forward_dynamics(&q, &v, &bad, &mut a));
                 refused(dynamics.forward_dynamics_derivatives(&q, &v, &bad, &mut forward));
                 refused(dynamics.hamiltonian_derivatives(&q, &v, &bad, &mut hamiltonian));
             }
             for mut bad in wrong_sizes(layout.speeds) {
-                refused(dynamics.accelerations(&q, &v, &tau, &mut bad));
+                refused(dynamics.forward_dynamics(&q, &v, &tau, &mut bad));
                 refused(dynamics.momenta(&q, &v, &mut bad));
                 refused(dynamics.speeds(&q, &v, &mut bad));
                 refused(dynamics.momentum_rates(&q, &v, &mut given, &mut bad, &mut a));
@@ -251,7 +251,7 @@ fn finite_numbers_that_come_to_infinite_ones_are_told() {
         Box::new(Refined::new(Arc::clone(&mechanism))),
     ] {
         let error = dynamics
-            .accelerations(&q, &fast, &tau, &mut room)
+            .forward_dynamics(&q, &fast, &tau, &mut room)
             .expect_err("squares of 1e200");
         assert!(error.to_string().contains("finite"), "{error}");
         assert!(!error.to_string().contains("mass matrix"), "{error}");

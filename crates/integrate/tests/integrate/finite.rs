@@ -142,7 +142,7 @@ fn forward(q: &[f64], speeds: &[f64], efforts: &[f64], rates: &mut [f64]) {
     CODE.with_borrow_mut(|code| {
         let done = code
             .as_mut()
-            .map(|code| code.accelerations(q, speeds, efforts, rates));
+            .map(|code| code.forward_dynamics(q, speeds, efforts, rates));
         if !matches!(done, Some(Ok(()))) {
             rates.fill(f64::NAN);
         }

@@ -361,7 +361,7 @@ impl Dynamics for Recursive {
         })
     }
 
-    fn accelerations(
+    fn forward_dynamics(
         &mut self,
         q: &[f64],
         speeds: &[f64],

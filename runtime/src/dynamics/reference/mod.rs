@@ -115,7 +115,7 @@ impl Dynamics for Reference {
         Ok(())
     }
 
-    fn accelerations(
+    fn forward_dynamics(
         &mut self,
         q: &[f64],
         speeds: &[f64],

@@ -85,7 +85,7 @@ fn rates(case: &Case, phi: &[f64], speeds: &[f64], efforts: &[f64]) -> Vec<f64> 
     let mut all = speeds.to_vec();
     dynamics.complete_speeds(&q, &mut all).expect("determined");
     let mut rates = vec![0.0; all.len()];
-    let found = dynamics.accelerations(&q, &all, efforts, &mut rates);
+    let found = dynamics.forward_dynamics(&q, &all, efforts, &mut rates);
     found.expect("every body has mass");
     rates
 }

@@ -37,7 +37,7 @@ fn refusal(case: &Case, mechanism: Mechanism) -> String {
     let mechanism = Arc::new(mechanism);
     let mut dynamics = Recursive::new(Arc::clone(&mechanism));
     let mut rates = case.rates.clone();
-    let moved = dynamics.accelerations(&case.q, &case.speeds, &case.efforts, &mut rates);
+    let moved = dynamics.forward_dynamics(&case.q, &case.speeds, &case.efforts, &mut rates);
     moved.expect("it moves");
     let mut out = HamiltonianDerivatives::new(&mechanism);
     let refused = dynamics.hamiltonian_derivatives(&case.q, &case.speeds, &case.efforts, &mut out);

@@ -45,7 +45,7 @@ fn acceleration_noise(scene: &Scene, reference: &mut Reference, count: u32, end:
         let wanted: Vec<f64> = reference.accelerations(time).collect();
         let solved = dynamics.inverse_dynamics(&q, &speeds, &wanted, &mut efforts);
         solved.expect("sizes fit");
-        let moved = dynamics.accelerations(&q, &speeds, &efforts, &mut found);
+        let moved = dynamics.forward_dynamics(&q, &speeds, &efforts, &mut found);
         moved.expect("every body has a mass");
         let off = found.iter().zip(&wanted).map(|(a, b)| (a - b).abs());
         noise = off.fold(noise, f64::max);

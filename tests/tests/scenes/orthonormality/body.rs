@@ -67,7 +67,7 @@ impl<const K: usize> Dynamics for OneBody<K> {
         Ok(())
     }
 
-    fn accelerations(
+    fn forward_dynamics(
         &mut self,
         q: &[f64],
         speeds: &[f64],

@@ -118,7 +118,7 @@ fn compare<const K: usize>(joint: &str) {
             let (rates, rest) = out.split_at_mut(K);
             let (momenta, rest) = rest.split_at_mut(K);
             let (speeds, momentum_rates) = rest.split_at_mut(K);
-            form.accelerations(&q, &y, &efforts, rates)
+            form.forward_dynamics(&q, &y, &efforts, rates)
                 .expect("regular");
             form.momenta(&q, &y, momenta).expect("sizes fit");
             let mut apply = |_: &[f64], tau: &mut [f64]| tau.copy_from_slice(&efforts);

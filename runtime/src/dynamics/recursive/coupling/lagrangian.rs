@@ -93,7 +93,7 @@ impl Recursive {
 
     /// λ of the constraints that couple joints into `forces`, one entry a constraint: they act on the tree with efforts `S̄ᵀ`-wise `Aλ`.
     ///
-    /// `rates` are the accelerations that [`Dynamics::accelerations`](crate::dynamics::Dynamics::accelerations) found for `efforts`. The
+    /// `rates` are the accelerations that [`Dynamics::forward_dynamics`](crate::dynamics::Dynamics::forward_dynamics) found for `efforts`. The
     /// joints' wrenches can be read afterwards, as after [`Recursive::inverse_dynamics`]: what the constraints exert is not the joints' to carry.
     ///
     /// # Errors

@@ -166,7 +166,7 @@ impl ForwardDerivatives {
 
 impl Recursive {
     /// v̄̇ at (q, v̄, τ) and its derivatives in ϕ, v̄ and τ into `out`. The first efforts of a driven joint are its accelerations, here as in
-    /// [`Dynamics::accelerations`]. Where constraints couple joints, the speeds that depend on the others follow them, as
+    /// [`Dynamics::forward_dynamics`]. Where constraints couple joints, the speeds that depend on the others follow them, as
     /// [`Dynamics::complete_speeds`] has it, in ϕ and in the others: their own rows and columns are 0. `speeds` are to obey the constraints.
     ///
     /// # Errors
@@ -181,7 +181,7 @@ impl Recursive {
     ) -> Result<(), DynamicsError> {
         self.check_differentiable(&out.responses.branches)?;
         self.check_coupled(out.coupled.as_ref().map_or(0, Coupled::room))?;
-        self.accelerations(q, speeds, efforts, &mut out.rates)?;
+        self.forward_dynamics(q, speeds, efforts, &mut out.rates)?;
         if !self.mechanism.constraints().is_empty() {
             return self.differentiate_coupled((q, speeds, efforts), out);
         }
@@ -253,7 +253,7 @@ impl Recursive {
         }
     }
 
-    /// The articulated inertia of a body before its joint gives way, after [`Recursive::accelerations`].
+    /// The articulated inertia of a body before its joint gives way, after [`Recursive::forward_dynamics`].
     pub(super) fn articulated(&self, index: usize) -> ArticulatedInertia<f64> {
         let rigid = &self.nodes[index].rigid;
         match self.links[index].carries {

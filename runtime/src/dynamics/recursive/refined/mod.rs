@@ -174,14 +174,14 @@ impl Dynamics for Refined {
         self.tree.complete_speeds(q, speeds)
     }
 
-    fn accelerations(
+    fn forward_dynamics(
         &mut self,
         q: &[f64],
         speeds: &[f64],
         efforts: &[f64],
         rates: &mut [f64],
     ) -> Result<(), DynamicsError> {
-        self.tree.accelerations(q, speeds, efforts, rates)?;
+        self.tree.forward_dynamics(q, speeds, efforts, rates)?;
         if self.is_coupled() {
             return Ok(());
         }
