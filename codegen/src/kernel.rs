@@ -217,7 +217,7 @@ pub struct Word {
     /// Its value in stored scalars, parameters and the words before it.
     pub value: Expr,
     /// The `let` or its entry: the name itself, but for derivatives.
-    pub base: String,
+    pub base: Symbol,
     /// The freedoms along which a derivative is taken, one after the other.
     pub along: Vec<usize>,
 }

@@ -40,7 +40,12 @@ fn derived(source: &str) -> Derived {
 }
 
 fn emitted(source: &str) -> String {
-    file(&derived(source), "joint-specs/test.joint", &Runtime::default()).expect("the emitted tokens are Rust")
+    file(
+        &derived(source),
+        "joint-specs/test.joint",
+        &Runtime::default(),
+    )
+    .expect("the emitted tokens are Rust")
 }
 
 #[test]

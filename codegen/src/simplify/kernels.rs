@@ -1,6 +1,7 @@
 //! The kernels of a joint in the words of its author.
 
 use super::twists;
+use super::verify::have_values_of;
 use super::words::{Words, opened};
 use crate::expand::{self, Expansion};
 use crate::expr::{Expr, Symbol, budget};
@@ -26,15 +27,31 @@ const OF_CONFIGURATION: [KernelKind; 9] = [
 ];
 
 /// The kernels with what they compute in few operations, and under the names that the spec gives.
+///
+/// Where the result has another value than what was derived, it is dropped: the kernels are then those that were derived.
 pub fn in_words(
     joint: &Prepared,
     expansion: &Expansion,
     kernels: Vec<Kernel>,
 ) -> (Vec<Kernel>, Vec<Word>) {
-    let mut words = Words::new(joint, &expansion.motion);
-    if !words.are_used() {
-        return (as_derived(joint, expansion, kernels, &words), vec![]);
+    let words = Words::new(joint, &expansion.motion);
+    if words.are_used() {
+        let (written, used) = shortened(joint, expansion, words.clone(), kernels.clone());
+        if have_values_of(&written, &kernels, joint, expansion) {
+            return (written, used);
+        }
     }
+    let words = words.without_names();
+    (as_derived(joint, expansion, kernels, &words), vec![])
+}
+
+/// The kernels in words, and the words that they use.
+fn shortened(
+    joint: &Prepared,
+    expansion: &Expansion,
+    mut words: Words<'_>,
+    kernels: Vec<Kernel>,
+) -> (Vec<Kernel>, Vec<Word>) {
     let twists = twists::of_pose(joint, expansion, &mut words);
     let shortened = kernels.into_iter().map(|mut kernel| {
         if let Some(outputs) = declared(joint, kernel.kind) {

@@ -10,6 +10,7 @@ mod kernels;
 mod laurent;
 mod search;
 mod twists;
+mod verify;
 mod words;
 
 pub use kernels::in_words;

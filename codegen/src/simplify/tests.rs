@@ -1,6 +1,8 @@
 //! Forms that adding multiples of relations must find.
 
+use super::verify;
 use crate::expr::{Expr, Role, Symbol};
+use crate::kernel::{Kernel, Method, Step};
 use crate::manifold::{Kind, Manifold};
 
 fn shortened(expression: &Expr, relations: &[Expr]) -> Expr {
@@ -50,4 +52,40 @@ fn nothing_is_divided_by_that_was_not() {
     let relation = &(&x * &y) - &Expr::one();
     let product = &x * &y.square();
     assert_eq!(shortened(&product, &[relation]), y);
+}
+
+/// A ball whose X the spec declares with a `let`.
+const NAMED: &str = "hamel = 1;
+joint slide {
+    config x: R1, y: R1;
+    let length = sqrt(1 + x * x + y * y);
+    H = trans([x, y, length]) * rot_z(2 * length);
+}";
+
+#[test]
+fn a_kernel_with_another_value_is_found() {
+    let spec = crate::spec::parse(NAMED, "slide").expect("a spec");
+    let joint = crate::prepare::Prepared::new(spec).expect("a joint");
+    let expansion = crate::expand::expand(&joint).expect("it can be expanded");
+    let derived = crate::expand::kernels(&joint, &expansion, &[]).expect("kernels");
+    let (written, words) = super::in_words(&joint, &expansion, derived.clone());
+    assert!(words.iter().any(|word| &*word.symbol.name == "length"));
+    let is_right =
+        |kernels: &[Kernel]| verify::have_values_of(kernels, &derived, &joint, &expansion);
+    assert!(is_right(&written));
+    for wrong in 0..written.len() {
+        let mut kernels = written.clone();
+        let output = &mut kernels[wrong].outputs[0];
+        let formula = kernels_of_formulas(&written[wrong]);
+        *output = output.map(|entry| entry + &Expr::one());
+        assert_eq!(is_right(&kernels), !formula, "{:?}", kernels[wrong].kind);
+    }
+}
+
+/// Whether a kernel has entries, all of them by formulas.
+fn kernels_of_formulas(kernel: &Kernel) -> bool {
+    let is_line = |step: &Step| matches!(step, Step::Let(..));
+    kernel.method == Method::Formula
+        && kernel.steps.iter().all(is_line)
+        && !kernel.outputs[0].entries().is_empty()
 }

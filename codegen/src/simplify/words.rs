@@ -18,7 +18,7 @@ const FIRST_INDEX: usize = 0x6000;
 const LIMIT: u64 = 20_000;
 
 /// Derivatives, by what they are of and along which freedoms, to their numbers.
-type Numbers = BTreeMap<(String, Vec<usize>), usize>;
+type Numbers = BTreeMap<(Symbol, Vec<usize>), usize>;
 
 /// The words of a joint.
 #[derive(Clone)]
@@ -67,6 +67,19 @@ impl<'a> Words<'a> {
         words
     }
 
+    /// No words: expressions stay as they were derived.
+    pub fn without_names(&self) -> Self {
+        Self {
+            words: vec![],
+            functions: BTreeMap::new(),
+            derivatives: BTreeMap::new(),
+            definitions: vec![],
+            found: RefCell::default(),
+            as_derived: true,
+            ..self.clone()
+        }
+    }
+
     /// These words, of which only those that are functions are looked for.
     pub fn functions_alone(&self) -> Self {
         let declared = self.words.iter().filter(|word| !word.is_derivative());
@@ -82,7 +95,7 @@ impl<'a> Words<'a> {
     /// Makes a `let` a word.
     fn declare(&mut self, symbol: &Symbol, value: &Expr) {
         let value = self.shorten(value);
-        self.push(symbol.clone(), &symbol.name.clone(), vec![], value.clone());
+        self.push(symbol.clone(), symbol, vec![], value.clone());
         match single_function(&value) {
             Some(atom) => _ = self.functions.insert(atom, symbol.clone()),
             None => self.define(symbol),
@@ -103,28 +116,28 @@ impl<'a> Words<'a> {
         self.definitions.push((symbol.clone(), &itself - &value));
     }
 
-    fn add(&mut self, base: &str, along: Vec<usize>, value: Expr) -> Symbol {
+    fn add(&mut self, base: &Symbol, along: Vec<usize>, value: Expr) -> Symbol {
         let number = self.number(base, &along);
-        let symbol = Symbol::new(Role::Intermediate, number, &self.name(base, &along));
+        let symbol = Symbol::new(Role::Intermediate, number, &self.name(&base.name, &along));
         self.push(symbol.clone(), base, along, value);
         symbol
     }
 
-    fn number(&self, base: &str, along: &[usize]) -> usize {
+    fn number(&self, base: &Symbol, along: &[usize]) -> usize {
         let mut numbers = self.numbers.borrow_mut();
         let next = FIRST_INDEX + numbers.len();
-        let key = (base.to_owned(), along.to_vec());
+        let key = (base.clone(), along.to_vec());
         *numbers.entry(key).or_insert(next)
     }
 
-    fn push(&mut self, symbol: Symbol, base: &str, along: Vec<usize>, value: Expr) {
+    fn push(&mut self, symbol: Symbol, base: &Symbol, along: Vec<usize>, value: Expr) {
         // What was short before may be shorter in the new word.
         self.found.get_mut().clear();
         self.words.push(Word {
             symbol,
             value,
             along,
-            base: base.to_owned(),
+            base: base.clone(),
         });
     }
 

@@ -249,7 +249,8 @@ impl Compiled {
         if self.equations.forward_dynamics_derivatives.is_some() {
             let mut found = ForwardDerivatives::new(&mechanism);
             let mut expected = vec![0.0; speeds.len()];
-            self.tree.forward_dynamics(q, speeds, inputs, &mut expected)?;
+            self.tree
+                .forward_dynamics(q, speeds, inputs, &mut expected)?;
             self.forward_dynamics_derivatives(q, speeds, inputs, &mut found)?;
             Self::close(found.rates(), &expected)?;
         }

@@ -1,7 +1,20 @@
-//! Rigid-body mechanisms of general joints.
+#![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 #![cfg_attr(not(feature = "std"), no_std)]
 
+#[cfg(feature = "scene")]
+mod builder;
+#[cfg(feature = "scene")]
+mod error;
+#[cfg(feature = "scene")]
+mod model;
+#[cfg(feature = "scene")]
+mod simulation;
+
+#[cfg(feature = "scene")]
+pub use builder::{Body, Builder};
+#[cfg(feature = "scene")]
+pub use error::{BodyError, Error, UnknownName};
 #[cfg(feature = "compiled")]
 pub use hamel_compiled as compiled;
 #[cfg(feature = "control")]
@@ -15,3 +28,7 @@ pub use hamel_runtime::{dynamics, elements, mechanism, steps};
 pub use hamel_runtime::{erased, finite, group, joint, nalgebra, registry, scalar, shown, spatial};
 #[cfg(feature = "scene")]
 pub use hamel_scene as scene;
+#[cfg(feature = "scene")]
+pub use model::{Model, load, load_with};
+#[cfg(feature = "scene")]
+pub use simulation::Simulation;

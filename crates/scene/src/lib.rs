@@ -7,6 +7,7 @@
 //! steps together. Errors are [`Diagnostics`]: all mistakes of a file, each with the line it stands on.
 
 mod build;
+mod choose;
 mod control;
 mod description;
 mod diagnostics;
@@ -15,12 +16,13 @@ mod forces;
 mod notice;
 mod parse;
 mod read;
+mod samples;
 mod scene;
 mod settings;
 mod shape;
 mod source;
 mod start;
-mod suggest;
+pub mod suggest;
 pub mod text;
 pub mod urdf;
 mod write;
@@ -40,6 +42,7 @@ pub use forces::{
     PointSpring, SpringEnergy, WrenchAxes, WrenchDescription,
 };
 pub use notice::{Notice, Severity};
+pub use samples::TooManySamples;
 pub use scene::{Scene, read_file};
 pub use settings::{Arithmetic, Settings};
 pub use shape::{Geometry, ShapeDescription};

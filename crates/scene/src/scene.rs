@@ -11,6 +11,7 @@ use crate::read::Sink;
 use crate::settings::Settings;
 use crate::shape::ShapeDescription;
 use crate::text;
+use crate::urdf;
 use hamel_integrate::State;
 use hamel_runtime::mechanism::Mechanism;
 use hamel_runtime::registry::JointRegistry;
@@ -133,12 +134,16 @@ impl Scene {
         describe(draft, sink, source)?.build(registry)
     }
 
-    /// The scene in the file `path`.
+    /// The scene in the file `path`, or the robot in it, where its name ends in `.urdf`: on a fixed base, at home and at rest.
     ///
     /// # Errors
     /// A file that cannot be read or is not UTF-8, and all mistakes of its text.
     pub fn load(path: impl AsRef<Path>, registry: &JointRegistry) -> Result<Self, Diagnostics> {
-        let (text, name) = read_file(path.as_ref())?;
+        let path = path.as_ref();
+        if urdf::is_named(path) {
+            return urdf::load(path, &urdf::Options::default())?.build(registry);
+        }
+        let (text, name) = read_file(path)?;
         Self::parse(&text, &name, registry)
     }
 }

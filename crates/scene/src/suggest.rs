@@ -24,7 +24,7 @@ impl Default for Suggestions {
 
 impl Suggestions {
     /// As [`nearest`], among as many of the names as there is work left for.
-    pub(crate) fn nearest<'a>(&mut self, name: &str, known: &[&'a str]) -> Option<&'a str> {
+    pub fn nearest<'a>(&mut self, name: &str, known: &[&'a str]) -> Option<&'a str> {
         let affordable = known.iter().take_while(|candidate| {
             let pairs = (name.len() + 1).saturating_mul(candidate.len() + 1);
             let left = self.left.checked_sub(pairs);
@@ -36,7 +36,7 @@ impl Suggestions {
 }
 
 /// The name among `known` that `name` most likely means, if any is near.
-pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let name = name.to_lowercase();
     let scored = known.into_iter().map(|candidate| {
         let score = strsim::jaro_winkler(&name, &candidate.to_lowercase());

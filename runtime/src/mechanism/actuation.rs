@@ -1,7 +1,7 @@
 //! What a mechanism carries besides its bodies: elements, rotor inertias, drives.
 
 use super::check::Space;
-use super::{Mechanism, MechanismError, StateError};
+use super::{Mechanism, MechanismError, MechanismErrors, StateError};
 use crate::dynamics::Recursive;
 use crate::elements::{Drive, Element, ElementError, PointConstraint};
 use alloc::format;
@@ -42,7 +42,7 @@ impl Mechanism {
     pub fn with_elements(
         mut self,
         elements: Vec<Arc<dyn Element>>,
-    ) -> Result<Self, Vec<MechanismError>> {
+    ) -> Result<Self, MechanismErrors> {
         let failures = elements
             .iter()
             .filter_map(|element| element.check(&self).err());
@@ -101,7 +101,7 @@ impl Mechanism {
     ///
     /// # Errors
     /// Every drive that does not fit; two drives of one joint; a joint whose speeds constraints already make depend on others.
-    pub fn with_drives(mut self, drives: Vec<Drive>) -> Result<Self, Vec<MechanismError>> {
+    pub fn with_drives(mut self, drives: Vec<Drive>) -> Result<Self, MechanismErrors> {
         let mut driven = vec![false; self.bodies.len()];
         let mut dependent = vec![false; self.layout.speeds];
         for &speed in &self.actuation.dependent {
@@ -146,15 +146,15 @@ impl Mechanism {
         mut self,
         constraints: Vec<PointConstraint>,
         q: &[f64],
-    ) -> Result<Self, Vec<MechanismError>> {
+    ) -> Result<Self, MechanismErrors> {
         refuse(constraints.iter().filter_map(|c| c.check(&self).err()))?;
         let speeds = self.layout.speeds;
         if speeds > MOST_COUPLED && !constraints.is_empty() {
             let limit = MOST_COUPLED;
-            return Err(vec![MechanismError::Coupled { speeds, limit }]);
+            return Err(MechanismError::Coupled { speeds, limit }.into());
         }
         self.check_configuration(q)
-            .map_err(|cause| vec![MechanismError::Configuration(cause)])?;
+            .map_err(MechanismError::Configuration)?;
         self.actuation.constraints = constraints;
         self.actuation.dependent.clear();
         let matrix = Recursive::new(Arc::new(self.clone())).constraint_matrix(q);
@@ -172,7 +172,7 @@ impl Mechanism {
                     limit: INDEPENDENCE,
                 }
             });
-            refused.collect::<Vec<_>>()
+            refused.collect::<MechanismErrors>()
         })?;
         Ok(self)
     }
@@ -257,12 +257,8 @@ impl Mechanism {
     }
 }
 
-fn refuse(failures: impl Iterator<Item = ElementError>) -> Result<(), Vec<MechanismError>> {
-    let failures: Vec<MechanismError> = failures.map(MechanismError::Element).collect();
-    match failures.is_empty() {
-        true => Ok(()),
-        false => Err(failures),
-    }
+fn refuse(failures: impl Iterator<Item = ElementError>) -> Result<(), MechanismErrors> {
+    MechanismErrors::check(failures.map(MechanismError::Element).collect())
 }
 
 /// A pivot as a share of the largest entry; 0 where all are.

@@ -5,7 +5,9 @@ use crate::erased::FiniteMapError;
 use crate::shown::Number;
 use crate::spatial::{MassError, PoseError};
 use alloc::string::String;
+use alloc::vec::Vec;
 use core::fmt::{Display, Formatter};
+use core::ops::Deref;
 
 /// The functions whose zeros a joint must stay away from, for messages: `` `f` `` or `` `f` or `g` ``.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -171,6 +173,61 @@ pub enum MechanismError {
     #[error(transparent)]
     Element(#[from] crate::elements::ElementError),
 }
+
+/// Everything that is wrong with a mechanism; never empty. A slice of [`MechanismError`], printed one a line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MechanismErrors(Vec<MechanismError>);
+
+impl MechanismErrors {
+    /// `errors`, if there are any.
+    pub(super) fn check(errors: Vec<MechanismError>) -> Result<(), Self> {
+        match errors.is_empty() {
+            true => Ok(()),
+            false => Err(Self(errors)),
+        }
+    }
+}
+
+impl From<MechanismError> for MechanismErrors {
+    fn from(error: MechanismError) -> Self {
+        Self(alloc::vec![error])
+    }
+}
+
+impl FromIterator<MechanismError> for MechanismErrors {
+    fn from_iter<I: IntoIterator<Item = MechanismError>>(errors: I) -> Self {
+        Self(errors.into_iter().collect())
+    }
+}
+
+impl Deref for MechanismErrors {
+    type Target = [MechanismError];
+
+    fn deref(&self) -> &[MechanismError] {
+        &self.0
+    }
+}
+
+impl IntoIterator for MechanismErrors {
+    type Item = MechanismError;
+    type IntoIter = alloc::vec::IntoIter<MechanismError>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.into_iter()
+    }
+}
+
+impl Display for MechanismErrors {
+    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
+        for (i, error) in self.iter().enumerate() {
+            let between = if i > 0 { "\n" } else { "" };
+            write!(f, "{between}{error}")?;
+        }
+        Ok(())
+    }
+}
+
+impl core::error::Error for MechanismErrors {}
 
 /// Why a state, or a part of one, is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

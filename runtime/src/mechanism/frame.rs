@@ -1,6 +1,6 @@
 //! Named frames: tool points, sensors, feet.
 
-use super::{Mechanism, MechanismError};
+use super::{Mechanism, MechanismError, MechanismErrors};
 use crate::spatial::{Pose, PoseError};
 use alloc::collections::BTreeMap;
 use alloc::string::String;
@@ -50,7 +50,7 @@ impl Mechanism {
     ///
     /// # Errors
     /// Everything that is wrong with the frames: a body that is not there, a placement that is no pose, a name that is taken.
-    pub fn with_frames(mut self, frames: Vec<NamedFrame>) -> Result<Self, Vec<MechanismError>> {
+    pub fn with_frames(mut self, frames: Vec<NamedFrame>) -> Result<Self, MechanismErrors> {
         let mut errors = Vec::new();
         let bodies = self.bodies.iter().enumerate();
         let bodies: BTreeMap<&str, usize> = bodies.map(|(i, body)| (body.name(), i)).collect();
@@ -69,9 +69,7 @@ impl Mechanism {
                 fault,
             }));
         }
-        if !errors.is_empty() {
-            return Err(errors);
-        }
+        MechanismErrors::check(errors)?;
         self.frames = frames;
         Ok(self)
     }

@@ -18,7 +18,7 @@ pub use actuation::dependent_columns;
 pub use body::{Body, BodySpec, Ranges};
 pub use check::CONFIGURATION_TOLERANCE;
 pub use check::{Space, WHOLE, check_size};
-pub use error::{Loci, MechanismError, StateError};
+pub use error::{Loci, MechanismError, MechanismErrors, StateError};
 pub use frame::{FrameFault, NamedFrame};
 pub use initial::CONSTRAINT_TOLERANCE;
 pub use kinematics::{BodyState, Kinematics};
@@ -45,11 +45,8 @@ impl Mechanism {
     ///
     /// # Errors
     /// Everything that is wrong with the bodies, all at once.
-    pub fn new(gravity: Vector3<f64>, bodies: Vec<BodySpec>) -> Result<Self, Vec<MechanismError>> {
-        let errors = build::check(&gravity, &bodies);
-        if !errors.is_empty() {
-            return Err(errors);
-        }
+    pub fn new(gravity: Vector3<f64>, bodies: Vec<BodySpec>) -> Result<Self, MechanismErrors> {
+        MechanismErrors::check(build::check(&gravity, &bodies))?;
         let (bodies, layout) = build::assemble(bodies);
         Ok(Self {
             gravity,

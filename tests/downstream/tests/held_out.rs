@@ -51,6 +51,7 @@ law_tests! {
     hyperbolic_cam: HyperbolicCam::new(0.7, 0.85), HalfTurn;
     mixed4: Mixed4::new(0.7, 0.85, 1.0, 1.15), HalfTurn;
     moebius: Moebius::new(0.7), HalfTurn;
+    named_root: NamedRoot, Entries(0.5);
     offset_wrist: OffsetWrist::new(0.7), HalfTurn;
     plane_tilt: PlaneTilt::new(0.7), HalfTurn;
     profile_roller: ProfileRoller::new(0.7, 0.85, 1.0), HalfTurn;

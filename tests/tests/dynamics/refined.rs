@@ -21,7 +21,8 @@ const AGREEMENT: f64 = 1e-10;
 fn rates(dynamics: &mut dyn Dynamics, case: &Case, momenta: &[f64]) -> [Vec<f64>; 3] {
     let zeros = || vec![0.0; case.speeds.len()];
     let [mut accelerations, mut speeds, mut momentum_rates] = [zeros(), zeros(), zeros()];
-    let solved = dynamics.forward_dynamics(&case.q, &case.speeds, &case.efforts, &mut accelerations);
+    let solved =
+        dynamics.forward_dynamics(&case.q, &case.speeds, &case.efforts, &mut accelerations);
     solved.expect("every body has mass");
     let mut efforts = |_: &[f64], tau: &mut [f64]| tau.copy_from_slice(&case.efforts);
     let q = &case.q;

@@ -52,7 +52,9 @@ impl Notation {
         let mut bases = BTreeMap::new();
         for word in &derived.words {
             let base = bases.entry(&word.base);
-            let base = base.or_insert_with(|| notation.unused(&word.base)).clone();
+            let base = base
+                .or_insert_with(|| notation.unused(&word.base.name))
+                .clone();
             notation.name_word(word, base, &arguments.local);
         }
         notation

@@ -32,7 +32,8 @@ fn derived(source: &str) -> Derived {
 }
 
 fn emitted(derived: &Derived) -> String {
-    let text = file(derived, "joint-specs/test.joint", &Runtime::default()).expect("the emitted tokens are Rust");
+    let text = file(derived, "joint-specs/test.joint", &Runtime::default())
+        .expect("the emitted tokens are Rust");
     // Without line breaks: what matters is what is called.
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
@@ -93,7 +94,7 @@ fn maps_without_closed_form_call_the_runtime() {
              ::hamel::finite::differential(q, phi, |q, phi| self.retract(q, phi)) }",
             "::hamel::finite::differential_inverse(q, phi, rate, |q, phi| self.retract(q, phi))",
             "::hamel::finite::project(q, 6, |q| self.relations(q))",
-            "By Newton's method from ϕ = 0, in at most [`LOCAL_ITERATIONS`]",
+            "By Newton's method from ϕ = 0, in at most `finite::LOCAL_ITERATIONS` steps",
         ],
     );
 }
@@ -156,7 +157,8 @@ fn pages_and_the_index_take_kernels_without_formulas() {
     );
     explain_text(&ball, &Accuracy::default()).expect("the template holds");
     page(&ball, "joint-specs/test.joint", &Accuracy::default()).expect("the template holds");
-    index(&[ball], "joint-specs", Index::Nested, &Runtime::default()).expect("the emitted tokens are Rust");
+    index(&[ball], "joint-specs", Index::Nested, &Runtime::default())
+        .expect("the emitted tokens are Rust");
 }
 
 fn declared<T>(value: T) -> Declared<T> {
@@ -319,4 +321,28 @@ fn variables_of_build_keep_clear_of_its_argument_and_of_constants() {
             "SomeJoint::new(values_parameter, erase, two_parameter, three_halves)",
         ],
     );
+}
+
+#[test]
+fn the_runtime_stands_where_a_build_says() {
+    let joint = derived(BALL);
+    let at = |path: &str| {
+        let runtime = path.parse().expect("a path");
+        file(&joint, "joint-specs/test.joint", &runtime).expect("the emitted tokens are Rust")
+    };
+    assert!(
+        at("::hamel") == file(&joint, "joint-specs/test.joint", &Runtime::default()).expect("Rust")
+    );
+    for (path, written) in [
+        ("hamel_runtime", "::hamel_runtime::joint"),
+        ("mechanics::hamel", "::mechanics::hamel::joint"),
+        ("crate::hamel", "use crate::hamel::joint"),
+    ] {
+        let text = at(path);
+        assert!(text.contains(written), "{path}: {text}");
+        assert!(!text.contains(" ::hamel::"), "{path}");
+    }
+    for wrong in ["", "a b", "self::hamel", "super::hamel", "a::<b>", "3"] {
+        assert!(wrong.parse::<Runtime>().is_err(), "{wrong}");
+    }
 }

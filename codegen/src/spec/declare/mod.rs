@@ -28,6 +28,7 @@ use crate::diagnostic::Diagnostic;
 use crate::expr::budget;
 use crate::manifold::Manifold;
 use crate::model::{Declared, JointSpec, PoseExpr, VelocityFrame, Worded};
+use std::collections::BTreeSet;
 
 /// The joint that the file declares; `None` where something essential is wrong. Reasons are among the errors.
 pub(super) fn joint(source: &str, file: &File, errors: &mut Vec<Diagnostic>) -> Option<JointSpec> {
@@ -78,6 +79,8 @@ struct Context<'a> {
     file: &'a File,
     statements: &'a Once<'a>,
     manifold: &'a Declared<Manifold>,
+    /// Names of parameters, factors, stored scalars, `let`s and their entries.
+    names: BTreeSet<String>,
 }
 
 fn declare(
@@ -92,11 +95,13 @@ fn declare(
     let parameters = scope.parameters(&file.parameters);
     scope.factors(statements.config, manifold.value.factors());
     scope.lets(&statements.lets);
+    let names = scope.names();
     let manifold = relations::constrained(statements, manifold, scope.evaluator);
     let context = Context {
         file,
         statements,
         manifold: &manifold,
+        names,
     };
     let home = home::home(&context, scope.evaluator);
     let declared_home = home.as_ref().map(|home| home.value.as_slice());

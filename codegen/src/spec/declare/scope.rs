@@ -12,7 +12,7 @@ use crate::expr::{Expr, Role, Symbol};
 use crate::manifold::{Factor, Kind};
 use crate::matrix::Matrix;
 use crate::model;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 /// Names claimed so far, with what they name and where.
@@ -128,8 +128,22 @@ impl<'s, 'e, 'a> Scope<'s, 'e, 'a> {
                 .evaluator
                 .bounded(&statement, &node.span, |evaluator| evaluator.value(node));
             self.claim(name, Form::Snake, "an auxiliary value");
+            self.claim_entries(name, value.as_ref());
             self.evaluator.define(&name.text, value);
         }
+    }
+
+    /// The names of the entries of a `let` that is no scalar; the first that is taken stands for all.
+    fn claim_entries(&mut self, name: &Name, value: Option<&Value>) {
+        let names = value.map(|value| value.entry_names(&name.text));
+        let mut names = names.unwrap_or_default().into_iter();
+        let owner = format!("an entry of `{}`", name.text);
+        _ = names.all(|entry| entry == name.text || self.claim_text(&entry, &name.span, &owner));
+    }
+
+    /// All names so far.
+    pub fn names(&self) -> BTreeSet<String> {
+        self.claimed.keys().cloned().collect()
     }
 }
 

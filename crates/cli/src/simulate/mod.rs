@@ -1,7 +1,6 @@
 //! `hamel simulate`: from a scene file to a trajectory.
 
 mod args;
-mod choose;
 mod compile;
 mod control;
 mod csv;
@@ -15,6 +14,7 @@ mod sample;
 mod settings;
 mod table;
 mod times;
+mod unresolved;
 
 pub use args::Args;
 pub use run::run;

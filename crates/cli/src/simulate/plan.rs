@@ -1,7 +1,7 @@
 //! What one run of `hamel simulate` is to do: the scene, the settings, the times and the files.
 
 use super::args::Args;
-use super::{choose, csv, page, parquet, settings, times};
+use super::{csv, page, parquet, settings, times};
 use crate::files::{Output, admit};
 use crate::input::Input;
 use crate::output::{Failure, tell};
@@ -51,7 +51,9 @@ impl Plan {
         }
         let mut settings = settings::overridden(&scene.settings, args)?;
         let times = if args.at.is_empty() {
-            times::regular(settings.t_end, settings.sample_step)?
+            settings.sample_times().map_err(|error| {
+                Failure::Options(format!("{error}: choose a larger --sample-step"))
+            })?
         } else {
             let given = args.t_end.map(|_| settings.t_end);
             let (times, t_end) = times::chosen(&args.at, given)?;
@@ -61,7 +63,8 @@ impl Plan {
         scene.check_start(&settings, control.as_ref())?;
         let mut reason = None;
         if settings.chooses {
-            let (method, why) = choose::choose(&scene, control.as_ref(), &settings)?;
+            let chosen = scene.choose_method(&settings, control.as_ref());
+            let (method, why) = chosen.map_err(|error| Failure::Simulation(error.to_string()))?;
             (settings.method, reason) = (method, Some(why));
         }
         let [csv, parquet, html] = outputs(args)?;

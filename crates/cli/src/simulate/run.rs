@@ -1,7 +1,6 @@
 //! The run itself: integrate, write the trajectory on the way, tell the result.
 
 use super::args::Args;
-use super::choose;
 use super::compile;
 use super::control::{Loop, Outcome};
 use super::csv::Trajectory;
@@ -12,6 +11,7 @@ use super::plan::Plan;
 use super::progress::Progress;
 use super::sample::{self, Sample};
 use super::table::Summary;
+use super::unresolved;
 use crate::interrupt::{self, Heed};
 use crate::output::{self, Failure};
 use hamel::dynamics::Dynamics;
@@ -351,7 +351,7 @@ fn print_json(plan: &Plan, run: &Run) -> Result<(), Failure> {
         form: plan.settings.form_name(),
         method: plan.settings.method.scheme().name(),
         reason: plan.reason.as_deref(),
-        unresolved: choose::unresolved(plan, run.statistics.steps, run.solution.state.time)?,
+        unresolved: unresolved::unresolved(plan, run.statistics.steps, run.solution.state.time)?,
         samples: &samples,
         events: &events,
         control: run.outcome.as_ref(),
@@ -372,7 +372,7 @@ fn print_summary(plan: &Plan, run: &Run) -> Result<(), Failure> {
         .map(kinetic)
         .try_fold(0.0, |most: f64, energy| energy.map(|e| most.max(e)));
     let most_kinetic_energy = most.map_err(|error| Failure::Simulation(error.to_string()))?;
-    let unresolved = choose::unresolved(plan, run.statistics.steps, run.solution.state.time)?;
+    let unresolved = unresolved::unresolved(plan, run.statistics.steps, run.solution.state.time)?;
     let summary = Summary {
         plan,
         equations: run.equations.as_deref(),

@@ -1,35 +1,6 @@
-//! The times at which the trajectory is sampled.
+//! The times that `--at` asks for.
 
 use crate::output::Failure;
-use hamel::shown::Number;
-
-/// More samples than this are taken for a mistake.
-const MOST_SAMPLES: f64 = 1e6;
-
-/// 0, `step`, 2 `step`, … and `t_end`.
-///
-/// # Errors
-/// More than 1e6 samples.
-pub fn regular(t_end: f64, step: f64) -> Result<Vec<f64>, Failure> {
-    let count = t_end / step;
-    if count > MOST_SAMPLES {
-        let count = match count.is_finite() {
-            true => format!("{count:.3e}"),
-            false => format!("more than {:e}", f64::MAX),
-        };
-        return Err(Failure::Options(format!(
-            "a sample each {:?} s until {:?} s makes {count} samples, and the limit is {MOST_SAMPLES:e}: \
-             choose a larger --sample-step",
-            Number(step),
-            Number(t_end)
-        )));
-    }
-    // Rounding must not add a sample just before the last one.
-    let whole = (count * (1.0 - 4.0 * f64::EPSILON)).ceil() as usize;
-    let mut times: Vec<f64> = (0..whole).map(|index| index as f64 * step).collect();
-    times.push(t_end);
-    Ok(times)
-}
 
 /// The times asked for, checked against the end of the simulation, and that end.
 ///
@@ -62,18 +33,7 @@ pub fn chosen(at: &[f64], t_end: Option<f64>) -> Result<(Vec<f64>, f64), Failure
 
 #[cfg(test)]
 mod tests {
-    use super::{chosen, regular};
-
-    #[test]
-    fn regular_times_end_at_the_end() {
-        let times = |t_end, step| regular(t_end, step).expect("few samples");
-        assert_eq!(times(1.0, 0.5), [0.0, 0.5, 1.0]);
-        assert_eq!(times(1.0, 0.4), [0.0, 0.4, 0.8, 1.0]);
-        assert_eq!(times(0.3, 0.1), [0.0, 0.1, 0.2, 0.3]);
-        assert_eq!(times(0.0, 0.1), [0.0]);
-        assert_eq!(times(4.0, 0.01).len(), 401);
-        assert!(regular(1e300, 1e-300).is_err());
-    }
+    use super::chosen;
 
     #[test]
     fn chosen_times_ascend_within_the_simulation() {

@@ -161,8 +161,9 @@ fn a_page_of_ten_seconds_of_a_humanoid_is_small() {
 #[test]
 fn texts_of_a_scene_cannot_break_its_page() {
     let scene = format!("{}/odd.toml", env!("CARGO_TARGET_TMPDIR"));
-    let text =
-        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/free_body.toml"));
+    let text = fs::read_to_string(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/free_body.toml"),
+    );
     let odd = r#"name = "</script><b>{{script}} & more""#;
     let text = text.expect("a scene").replace("name = \"free_body\"", odd);
     fs::write(&scene, text).expect("a folder for tests");

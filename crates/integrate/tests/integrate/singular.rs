@@ -7,13 +7,13 @@ use hamel_integrate::{
     Control, Form, IntegrateError, Method, Scheme, State, integrate, no_inputs, no_observer,
 };
 use hamel_runtime::dynamics::Reference;
-use hamel_runtime::mechanism::{Mechanism, MechanismError};
+use hamel_runtime::mechanism::{Mechanism, MechanismErrors};
 use hamel_runtime::spatial::{MassProperties, Pose};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
 /// A point of 1 kg without forces, in polar coordinates.
-fn free_point(home: f64) -> Result<Arc<Mechanism>, Vec<MechanismError>> {
+fn free_point(home: f64) -> Result<Arc<Mechanism>, MechanismErrors> {
     let mass = MassProperties::new(1.0, Vector3::zeros(), Matrix3::zeros()).expect("a point");
     let point = body("point", None, polar(home), Pose::identity(), mass);
     Mechanism::new(Vector3::zeros(), vec![point]).map(Arc::new)

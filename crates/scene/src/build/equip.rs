@@ -8,7 +8,7 @@ use hamel_runtime::elements::{
     BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointSpring, PointConstraint,
     RotationSpring,
 };
-use hamel_runtime::mechanism::{Mechanism, MechanismError, NamedFrame};
+use hamel_runtime::mechanism::{Mechanism, MechanismErrors, NamedFrame};
 use std::sync::Arc;
 
 /// The mechanism with its elements, rotors, drives and named frames; `acting` goes with the bodies of `description`.
@@ -16,13 +16,13 @@ pub(super) fn equip(
     mut mechanism: Mechanism,
     description: &SceneDescription,
     acting: &[Acting],
-) -> Result<Mechanism, Vec<MechanismError>> {
+) -> Result<Mechanism, MechanismErrors> {
     let elements = elements(&mechanism, description, acting);
     let drives = drives(description, acting);
     for (body, acting) in acting.iter().enumerate() {
         if !acting.armature.is_empty() {
             let with_rotor = mechanism.with_armature(body, &acting.armature);
-            mechanism = with_rotor.map_err(|error| vec![error])?;
+            mechanism = with_rotor?;
         }
     }
     let frames = description.frames.iter().map(|frame| NamedFrame {
@@ -41,7 +41,7 @@ pub(super) fn couple(
     mechanism: Mechanism,
     description: &SceneDescription,
     q: &[f64],
-) -> Result<Mechanism, Vec<MechanismError>> {
+) -> Result<Mechanism, MechanismErrors> {
     if description.constraints.is_empty() {
         return Ok(mechanism);
     }

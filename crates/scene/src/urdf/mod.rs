@@ -91,6 +91,12 @@ pub fn read(text: &str, source_name: &str, options: &Options) -> Result<Import, 
     }
 }
 
+/// Whether the file's name says that it holds a robot in URDF.
+pub fn is_named(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("urdf"))
+}
+
 /// The robot in the file `path`.
 ///
 /// # Errors

@@ -1,49 +1,16 @@
-//! The method where the scene or the command leaves it open, and the oscillations that the steps of a method pass over.
+//! The oscillations that the steps of a method pass over.
 
 use super::plan::Plan;
 use crate::output::Failure;
-use hamel::integrate::{Choice, IntegrateError, Method, Sampling, Scheme, Spectrum, Wanted};
-use hamel_scene::{Control, Scene, Settings};
+use hamel::integrate::{IntegrateError, Scheme, Spectrum};
 
 /// Steps that turn the phase of an oscillation by more than this do not follow it, rad: some six of them a period.
 const FOLLOWED: f64 = 1.0;
 
-/// The method for the first state of `scene`, with the tolerance of `settings`, and why.
-///
-/// # Errors
-/// A first state that the equations of motion cannot be evaluated at.
-pub fn choose(
-    scene: &Scene,
-    control: Option<&Control>,
-    settings: &Settings,
-) -> Result<(Method, String), Failure> {
-    let tolerance = match settings.method {
-        Method::Controlled { control, .. } => control.tolerance,
-        Method::Fixed { .. } => Settings::DEFAULT_TOL,
-    };
-    let mechanism = &scene.mechanism;
-    let is_bound = control.is_some()
-        || !mechanism.drives().is_empty()
-        || !mechanism.constraints().is_empty()
-        || !scene.events.is_empty()
-        || settings.sampling == Sampling::Dense;
-    let wanted = Wanted {
-        tolerance,
-        span: settings.t_end,
-        is_bound,
-    };
-    let choice = Choice::new(mechanism, &scene.start(), wanted).map_err(failed)?;
-    let reason = match control {
-        Some(_) => choice.reason + "; what the controller adds was not looked at",
-        None => choice.reason,
-    };
-    Ok((Method::controlled(choice.scheme, tolerance), reason))
-}
-
 /// What an implicit method has passed over in `steps` steps to the time `until`, s, by the oscillations about the first state.
 ///
 /// # Errors
-/// As [`choose`].
+/// A first state that the equations of motion cannot be evaluated at.
 pub fn unresolved(plan: &Plan, steps: usize, until: f64) -> Result<Option<String>, Failure> {
     let does = match plan.settings.method.scheme() {
         Scheme::Midpoint | Scheme::Gauss2 | Scheme::Gauss3 => "its energy stays bounded",

@@ -1,0 +1,231 @@
+//! A model from bodies that are made by hand.
+
+use crate::error::{BodyError, Error};
+use crate::model::Model;
+use hamel_joints::registry;
+use hamel_runtime::mechanism::{BodySpec, Mechanism};
+use hamel_runtime::registry::JointRegistry;
+use hamel_runtime::spatial::{MassProperties, Pose};
+use hamel_scene::suggest::nearest;
+use hamel_scene::{Scene, Settings};
+use nalgebra::{Matrix3, Vector3};
+use std::sync::Arc;
+
+/// A body with the joint that it hangs on: a rigid body of mass zero, fixed to nothing, until said otherwise.
+///
+/// Its pose in its parent is `placement · H(Q)`; a joint acts about and along the z axis of its own frame, which `placement` turns.
+#[derive(Clone, Debug)]
+pub struct Body {
+    name: String,
+    parent: Option<String>,
+    joint: String,
+    parameters: Vec<(String, f64)>,
+    placement: Pose<f64>,
+    mass: f64,
+    com: Vector3<f64>,
+    inertia: Matrix3<f64>,
+}
+
+impl Body {
+    /// A body on a joint of this type (`revolute`, `ball`, `free`, …) to the world.
+    pub fn new(name: &str, joint: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            parent: None,
+            joint: joint.to_owned(),
+            parameters: Vec::new(),
+            placement: Pose::identity(),
+            mass: 0.0,
+            com: Vector3::zeros(),
+            inertia: Matrix3::zeros(),
+        }
+    }
+
+    /// Hangs it on another body, which is given before it.
+    #[must_use]
+    pub fn on(mut self, parent: &str) -> Self {
+        self.parent = Some(parent.to_owned());
+        self
+    }
+
+    /// Gives a parameter of the joint its value, in SI units.
+    #[must_use]
+    pub fn parameter(mut self, name: &str, value: f64) -> Self {
+        self.parameters.push((name.to_owned(), value));
+        self
+    }
+
+    /// Where the joint's frame is in its parent's.
+    #[must_use]
+    pub const fn placed(mut self, pose: Pose<f64>) -> Self {
+        self.placement = pose;
+        self
+    }
+
+    /// Moves the joint's frame to a point of its parent's, m; its axes stay as they are.
+    #[must_use]
+    pub fn at(mut self, point: [f64; 3]) -> Self {
+        self.placement.translation = point.into();
+        self
+    }
+
+    /// Mass, kg, and centre of mass in the body's frame, m.
+    #[must_use]
+    pub fn mass(mut self, mass: f64, com: [f64; 3]) -> Self {
+        self.mass = mass;
+        self.com = com.into();
+        self
+    }
+
+    /// Moments of inertia about the axes of the body through its centre of mass, kg m².
+    #[must_use]
+    pub fn inertia(self, [x, y, z]: [f64; 3]) -> Self {
+        self.inertia_matrix(Matrix3::from_diagonal(&Vector3::new(x, y, z)))
+    }
+
+    /// Inertia about the centre of mass in the axes of the body, kg m²; symmetric.
+    #[must_use]
+    pub const fn inertia_matrix(mut self, inertia: Matrix3<f64>) -> Self {
+        self.inertia = inertia;
+        self
+    }
+
+    fn error(&self, reason: impl ToString) -> BodyError {
+        BodyError {
+            body: self.name.clone(),
+            reason: reason.to_string(),
+        }
+    }
+
+    /// The parameters in the order of the joint type.
+    fn values(&self, known: &[&str]) -> Result<Vec<f64>, BodyError> {
+        let is_known = |name: &str| known.contains(&name);
+        if let Some((name, _)) = self.parameters.iter().find(|(name, _)| !is_known(name)) {
+            let known = known.join("`, `");
+            let joint = &self.joint;
+            return Err(self.error(format!(
+                "joint type `{joint}` has no parameter `{name}`; it has `{known}`"
+            )));
+        }
+        let value = |name: &&str| {
+            let mut given = self.parameters.iter().filter(|(given, _)| given == name);
+            match (given.next(), given.next()) {
+                (Some(&(_, value)), None) => Ok(value),
+                (None, _) => Err(self.error(format!(
+                    "joint type `{}` needs the parameter `{name}`",
+                    self.joint
+                ))),
+                (Some(_), Some(_)) => {
+                    Err(self.error(format!("the parameter `{name}` is given twice")))
+                }
+            }
+        };
+        known.iter().map(value).collect()
+    }
+
+    fn spec(&self, before: &[Self], registry: &JointRegistry) -> Result<BodySpec, BodyError> {
+        let unknown = |kind: &str, name: &str, found: Option<&str>| {
+            let hint = found.map(|name| format!("; did you mean `{name}`?"));
+            self.error(format!("no {kind} `{name}`{}", hint.unwrap_or_default()))
+        };
+        let entry = registry.get(&self.joint).ok_or_else(|| {
+            let found = nearest(&self.joint, registry.names());
+            unknown("joint type is called", &self.joint, found)
+        })?;
+        let names: Vec<&str> = entry.parameters.iter().map(|info| info.name).collect();
+        let joint = (entry.build)(&self.values(&names)?).map_err(|error| self.error(error))?;
+        let parent = self.parent.as_deref().map(|parent| {
+            let found = before.iter().position(|body| body.name == parent);
+            found.ok_or_else(|| {
+                let names = before.iter().map(|body| body.name.as_str());
+                unknown("body before it is called", parent, nearest(parent, names))
+            })
+        });
+        let mass = MassProperties::new(self.mass, self.com, self.inertia);
+        Ok(BodySpec {
+            name: self.name.clone(),
+            joint_name: self.name.clone(),
+            parent: parent.transpose()?,
+            joint,
+            placement: self.placement,
+            child_placement: Pose::identity(),
+            mass: mass.map_err(|error| self.error(error))?,
+        })
+    }
+}
+
+/// Bodies that become a [`Model`].
+#[derive(Clone, Debug)]
+pub struct Builder {
+    gravity: Vector3<f64>,
+    bodies: Vec<Body>,
+    registry: JointRegistry,
+}
+
+impl Default for Builder {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Builder {
+    /// No bodies, joints of the library, 9.81 m/s² against z.
+    pub fn new() -> Self {
+        Self {
+            gravity: Vector3::new(0.0, 0.0, -9.81),
+            bodies: Vec::new(),
+            registry: registry(),
+        }
+    }
+
+    /// Acceleration of free fall, world axes, m/s².
+    #[must_use]
+    pub fn gravity(mut self, gravity: [f64; 3]) -> Self {
+        self.gravity = gravity.into();
+        self
+    }
+
+    /// Joint types instead of those of the library.
+    #[must_use]
+    pub fn registry(mut self, registry: JointRegistry) -> Self {
+        self.registry = registry;
+        self
+    }
+
+    /// One body more; it comes after the body that it hangs on.
+    #[must_use]
+    pub fn body(mut self, body: Body) -> Self {
+        self.bodies.push(body);
+        self
+    }
+
+    /// The model, at home and at rest. A joint is called as its body.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the bodies.
+    pub fn build(self) -> Result<Model, Error> {
+        let (mut specs, mut errors) = (Vec::new(), Vec::new());
+        for (index, body) in self.bodies.iter().enumerate() {
+            match body.spec(&self.bodies[..index], &self.registry) {
+                Ok(spec) => specs.push(spec),
+                Err(error) => errors.push(error),
+            }
+        }
+        if !errors.is_empty() {
+            return Err(Error::Bodies(errors));
+        }
+        let mechanism = Arc::new(Mechanism::new(self.gravity, specs)?);
+        Ok(Model::new(Scene {
+            name: String::from("model"),
+            description: String::new(),
+            configuration: mechanism.home(),
+            speeds: vec![0.0; mechanism.layout().speeds],
+            mechanism,
+            events: Vec::new(),
+            shapes: Vec::new(),
+            control: None,
+            settings: Settings::default(),
+            notices: Vec::new(),
+        }))
+    }
+}

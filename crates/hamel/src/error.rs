@@ -1,0 +1,104 @@
+//! What goes wrong with a model.
+
+use hamel_control::ControlError;
+use hamel_integrate::IntegrateError;
+use hamel_runtime::dynamics::DynamicsError;
+use hamel_runtime::mechanism::{MechanismErrors, StateError};
+use hamel_scene::suggest::nearest;
+use hamel_scene::{Diagnostics, TooManySamples};
+use std::fmt::{Display, Formatter};
+
+/// Why a model cannot be made, asked or moved.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// Mistakes in a scene or a robot file, each with its line.
+    #[error(transparent)]
+    Scene(#[from] Diagnostics),
+    /// Mistakes in bodies that were made by hand, one a line.
+    #[error("{}", lines(.0))]
+    Bodies(Vec<BodyError>),
+    /// Bodies that make no mechanism.
+    #[error(transparent)]
+    Mechanism(#[from] MechanismErrors),
+    /// A state of the wrong size, or with numbers that are none.
+    #[error(transparent)]
+    State(#[from] StateError),
+    /// Equations of motion without a solution.
+    #[error(transparent)]
+    Dynamics(#[from] DynamicsError),
+    /// A motion that cannot begin or go on.
+    #[error(transparent)]
+    Integrate(#[from] IntegrateError),
+    /// A controller that cannot be made, or has no efforts.
+    #[error("controller: {0}")]
+    Control(#[from] ControlError),
+    /// More samples than anybody wants.
+    #[error(transparent)]
+    Samples(#[from] TooManySamples),
+    /// A name that the model does not have.
+    #[error(transparent)]
+    Name(#[from] UnknownName),
+}
+
+/// What is wrong with a body that was made by hand.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("body `{body}`: {reason}")]
+pub struct BodyError {
+    /// The body.
+    pub body: String,
+    /// What is wrong.
+    pub reason: String,
+}
+
+/// A name that is not there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownName {
+    /// What was looked for: `joint`, `body`, `frame`.
+    pub kind: &'static str,
+    /// The name.
+    pub name: String,
+    /// The one that it most likely means.
+    pub nearest: Option<String>,
+    /// How many there are.
+    pub count: usize,
+}
+
+impl UnknownName {
+    /// `name` is none of `known`.
+    pub(crate) fn new<'a>(
+        kind: &'static str,
+        name: &str,
+        known: impl Iterator<Item = &'a str> + Clone,
+    ) -> Self {
+        Self {
+            kind,
+            name: name.to_owned(),
+            count: known.clone().count(),
+            nearest: nearest(name, known).map(str::to_owned),
+        }
+    }
+}
+
+impl Display for UnknownName {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let Self {
+            kind, name, count, ..
+        } = self;
+        write!(
+            f,
+            "there is no {kind} `{name}` among the {count} of the model"
+        )?;
+        match &self.nearest {
+            Some(nearest) => write!(f, "; did you mean `{nearest}`?"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for UnknownName {}
+
+fn lines(errors: &[BodyError]) -> String {
+    let lines: Vec<String> = errors.iter().map(BodyError::to_string).collect();
+    lines.join("\n")
+}

@@ -1,0 +1,168 @@
+//! A motion of a model, asked for step by step.
+
+use crate::error::Error;
+use hamel_control::Feedback;
+use hamel_integrate::{Event, Form, Integration, Method, Options, Solution, State};
+use hamel_scene::{Scene, Settings};
+use std::cell::RefCell;
+
+/// Efforts τ, one a degree of freedom, from time (s), Q and v̄; they are zero when it is called.
+type Inputs<'a> = Box<dyn FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a>;
+
+/// A motion that is being put together; [`Simulation::run`] moves the model.
+#[must_use = "nothing moves before `run`"]
+pub struct Simulation<'a> {
+    scene: &'a Scene,
+    settings: Settings,
+    start: State,
+    times: Option<Vec<f64>>,
+    inputs: Option<Inputs<'a>>,
+    events: Vec<Event<'a>>,
+}
+
+impl<'a> Simulation<'a> {
+    pub(crate) fn new(scene: &'a Scene) -> Self {
+        Self {
+            scene,
+            settings: scene.settings,
+            start: scene.start(),
+            times: None,
+            inputs: None,
+            events: Vec::new(),
+        }
+    }
+
+    /// From this state, instead of the initial one of the file.
+    pub fn from(mut self, state: State) -> Self {
+        self.start = state;
+        self
+    }
+
+    /// Until this time, s.
+    pub const fn until(mut self, time: f64) -> Self {
+        self.settings.t_end = time;
+        self
+    }
+
+    /// With a sample each `step` seconds, and one at the end.
+    pub fn every(mut self, step: f64) -> Self {
+        self.settings.sample_step = step;
+        self.times = None;
+        self
+    }
+
+    /// With samples at these times alone, s, ascending.
+    pub fn at(mut self, times: impl Into<Vec<f64>>) -> Self {
+        self.times = Some(times.into());
+        self
+    }
+
+    /// By this method.
+    pub const fn method(mut self, method: Method) -> Self {
+        self.settings.method = method;
+        self.settings.chooses = false;
+        self
+    }
+
+    /// By the method that the first state asks for, to this tolerance.
+    pub const fn tolerance(mut self, tolerance: f64) -> Self {
+        self.settings.method = Method::dormand_prince(tolerance);
+        self.settings.chooses = true;
+        self
+    }
+
+    /// In this form of the equations of motion.
+    pub const fn form(mut self, form: Form) -> Self {
+        self.settings.form = form;
+        self
+    }
+
+    /// With one event more than the scene has.
+    pub fn event(mut self, event: Event<'a>) -> Self {
+        self.events.push(event);
+        self
+    }
+
+    /// Under efforts τ (one a degree of freedom, N m or N) from time, Q and v̄, instead of the scene's controller; they are zero when it is called.
+    pub fn inputs(mut self, inputs: impl FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a) -> Self {
+        self.inputs = Some(Box::new(inputs));
+        self
+    }
+
+    /// Moves the model: its last state, its samples and its events.
+    ///
+    /// # Errors
+    /// A state, settings or events that are refused; a controller or equations that fail on the way.
+    pub fn run(self) -> Result<Solution, Error> {
+        let options = self.options()?;
+        let (scene, start) = (self.scene, self.start);
+        let mechanism = &scene.mechanism;
+        let mut dynamics = self.settings.arithmetic.dynamics(mechanism);
+        let control = scene.control.as_ref().filter(|_| self.inputs.is_none());
+        let mut controller = control
+            .map(|control| control.controller(mechanism, options.t_end))
+            .transpose()?;
+        let feedback = controller
+            .as_mut()
+            .map(|law| RefCell::new(Feedback::new(&mut **law)));
+        let mut motion =
+            Integration::new(&mut *dynamics, &start, &options).sampling(self.settings.sampling);
+        for event in scene.events.iter().map(|event| event.event(mechanism)) {
+            motion = motion.event(event);
+        }
+        for event in self.events {
+            motion = motion.event(event);
+        }
+        if let Some(inputs) = self.inputs {
+            motion = motion.inputs(inputs);
+        } else if let Some(feedback) = &feedback {
+            motion = motion.inputs(|time, q, speeds, efforts| {
+                feedback.borrow_mut().fill(time, q, speeds, efforts);
+            });
+        }
+        if let Some(period) = control.and_then(|control| control.period) {
+            motion = motion.held(period);
+        }
+        let ended = motion.run();
+        let failure = feedback.and_then(|feedback| feedback.borrow().failure().cloned());
+        match (ended, failure) {
+            (Ok(solution), _) => Ok(solution),
+            (Err(_), Some((_, cause))) => Err(cause.into()),
+            (Err(error), None) => Err(error.into()),
+        }
+    }
+
+    fn options(&self) -> Result<Options, Error> {
+        let mut settings = self.settings;
+        let control = self
+            .scene
+            .control
+            .as_ref()
+            .filter(|_| self.inputs.is_none());
+        if settings.chooses {
+            settings.method = self.scene.choose_method(&settings, control)?.0;
+        }
+        let samples = match &self.times {
+            Some(times) => times.clone(),
+            None => settings.sample_times()?,
+        };
+        let start = self.start.time;
+        Ok(Options {
+            form: settings.form,
+            method: settings.method,
+            t_end: settings.t_end,
+            samples: samples.into_iter().filter(|&time| time >= start).collect(),
+        })
+    }
+}
+
+impl std::fmt::Debug for Simulation<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Simulation")
+            .field("scene", &self.scene.name)
+            .field("settings", &self.settings)
+            .field("start", &self.start)
+            .field("events", &self.events)
+            .finish_non_exhaustive()
+    }
+}
