@@ -6,6 +6,10 @@ mod control;
 mod csv;
 mod json;
 mod page;
+#[cfg(feature = "parquet")]
+mod parquet;
+#[cfg(not(feature = "parquet"))]
+#[path = "../absent/parquet.rs"]
 mod parquet;
 mod plan;
 mod progress;

@@ -1,0 +1,78 @@
+//! `hamel`: simulates and compiles scenes and robots, and explains joints, from the command line.
+//!
+//! This library holds the program, so that tests can be built with all of its features. Exit code 0 means success, 1 that something went wrong (told on stderr), 2 that the command line was not understood, 130 that it was interrupted.
+
+mod cells;
+mod compile;
+mod compiled;
+mod files;
+mod import;
+mod input;
+mod interrupt;
+mod joints;
+mod output;
+#[cfg(feature = "report")]
+mod report;
+#[cfg(not(feature = "report"))]
+#[path = "absent/report.rs"]
+mod report;
+mod simulate;
+mod terminal;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// What `hamel --help` ends with.
+const FEATURES: &str = "`hamel help COMMAND` explains a command with examples.
+
+What takes long to build is left out unless `cargo` is told otherwise, `cargo run --release --features full`:
+  parquet     trajectories as Parquet, `simulate --parquet`
+  predictive  scenes whose controller is model predictive control, `kind = \"mpc\"`
+  report      `hamel report`: error against run time, with plots
+  full        all of them";
+
+/// Multibody mechanisms with holonomic and nonholonomic joints, without singularities.
+#[derive(Debug, Parser)]
+#[command(name = "hamel", version, arg_required_else_help = true)]
+#[command(after_help = FEATURES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Simulate(simulate::Args),
+    Compile(compile::Args),
+    Import(import::Args),
+    Joints(joints::Args),
+    Report(report::Args),
+}
+
+/// The program: parses the command line, does what it says, and gives the exit code.
+pub fn main() -> ExitCode {
+    interrupt::listen();
+    let registry = hamel_joints::registry();
+    let command = match Cli::try_parse() {
+        Ok(cli) => cli.command,
+        Err(answer) => {
+            terminal::answer(&answer);
+            return ExitCode::from(if answer.use_stderr() { 2 } else { 0 });
+        }
+    };
+    let result = match command {
+        Command::Simulate(args) => simulate::run(&args, &registry),
+        Command::Compile(args) => compile::run(&args, &registry),
+        Command::Import(args) => import::run(&args, &registry),
+        Command::Joints(args) => joints::run(&args),
+        Command::Report(args) => report::run(&args, &registry),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) if failure.is_broken_pipe() => ExitCode::SUCCESS,
+        Err(failure) => {
+            output::report(&failure);
+            failure.exit_code()
+        }
+    }
+}
