@@ -2,6 +2,7 @@
 
 mod args;
 mod choose;
+mod columns;
 mod compile;
 mod control;
 mod csv;
