@@ -41,14 +41,8 @@ async function opened(name, options = {}) {
 
 const timeOf = (page) => page.evaluate(() => hamel.time);
 
-/** Angle of the rotation between two rotation vectors. */
-function angleBetween(a, b) {
-  const quaternion = (r) => {
-    const angle = Math.hypot(...r);
-    const factor = angle > 1e-12 ? Math.sin(angle / 2) / angle : 0.5;
-    return [Math.cos(angle / 2), ...r.map((part) => part * factor)];
-  };
-  const [p, q] = [quaternion(a), quaternion(b)];
+/** Angle of the rotation between two unit quaternions. */
+function angleBetween(p, q) {
   const sum = (sign) => Math.hypot(...p.map((part, k) => part + sign * q[k]));
   return 4 * Math.asin(Math.min(1, Math.min(sum(1), sum(-1)) / 2));
 }
@@ -75,7 +69,7 @@ async function checkPoses(page, name) {
       const size = Math.max(1, ...place.map(Math.abs));
       const off = Math.max(...place.map((part, axis) => Math.abs(part - shown[index].com[axis])));
       position = Math.max(position, off / size);
-      attitude = Math.max(attitude, angleBetween(shown[index].rotation, wanted(["rx_rad", "ry_rad", "rz_rad"])));
+      attitude = Math.max(attitude, angleBetween(shown[index].quaternion, wanted(["qx", "qy", "qz", "qw"])));
     });
   }
   assert.ok(position <= POSITION, `${name}: positions differ from the CSV by ${position}`);

@@ -40,6 +40,37 @@ fn a_module_in_c_is_a_source_and_a_header_under_the_name_of_the_file() {
     assert!(header.contains("body `front`"), "{header}");
 }
 
+/// Who calls the functions needs nothing but the header.
+#[test]
+fn a_header_tells_units_axes_and_order_of_all_entries() {
+    let folder = folder("compile_header");
+    let header = |scene: &str, name: &str| {
+        let source = folder.join(format!("{name}.c"));
+        stdout(&["compile", scene, "-o", source.to_str().expect("text")]);
+        read(&source.with_extension("h"))
+    };
+    let cart = header("scenes/plate_cart_arm.toml", "cart");
+    for told in [
+        "q[0]: q (rad)",
+        "q[1 .. 6]: q11, q12, q13 (m), q21, q22, q23 (m)",
+        "v, p, a[1 .. 2]: turn (rad/s), forward (m/s)",
+        "tau[1 .. 3]: turn (N m), forward (N), sideways (N)",
+        "v and tau in axes of the joint's child frame",
+        "v and tau in axes of the joint's parent frame",
+        "(0.0, 0.0, -9.81) m/s^2",
+    ] {
+        assert!(cart.contains(told), "{told}: {cart}");
+    }
+    // One for each function: what its results are.
+    let functions = cart.matches("\nvoid cart_").count();
+    assert_eq!(functions, 10);
+    assert_eq!(cart.matches("\n   results: ").count(), functions);
+    assert!(cart.lines().all(|line| line.chars().count() <= 110));
+    assert!(!cart.contains("Constraints couple joints"));
+    let board = header("scenes/snakeboard.toml", "board");
+    assert!(board.contains("Constraints couple joints"), "{board}");
+}
+
 #[test]
 fn what_c_cannot_have_is_refused() {
     let folder = folder("compile_refused");

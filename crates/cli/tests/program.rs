@@ -30,7 +30,14 @@ fn samples_as_json_have_their_stable_shape() {
     let report: Value = serde_json::from_str(&text).expect("JSON and nothing else");
     assert_eq!(
         keys(&report),
-        ["form", "method", "samples", "scene", "statistics"]
+        [
+            "columns",
+            "form",
+            "method",
+            "samples",
+            "scene",
+            "statistics"
+        ]
     );
     assert_eq!(
         keys(&report["statistics"]),
@@ -47,16 +54,16 @@ fn samples_as_json_have_their_stable_shape() {
         "angular_velocity_body",
         "name",
         "position_com",
-        "rotation_body_to_world_rowmajor",
+        "quaternion_body_to_world_xyzw",
         "velocity_com_world",
     ];
     assert_eq!(keys(body), quantities);
     assert_eq!(body["name"], "end_effector");
     assert_eq!(
-        body["rotation_body_to_world_rowmajor"]
+        body["quaternion_body_to_world_xyzw"]
             .as_array()
             .map(Vec::len),
-        Some(9)
+        Some(4)
     );
 }
 
@@ -99,6 +106,44 @@ fn a_new_spec_can_be_checked_at_once_and_is_never_overwritten() {
     let again = hamel(&make);
     assert_eq!(again.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&again.stderr).contains("made_by_test.joint"));
+}
+
+/// Anywhere: there are no joint-specs there.
+#[test]
+fn a_new_spec_is_written_in_the_folder_in_which_it_is_asked_for() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("elsewhere");
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir(&folder).expect("a folder for tests");
+    let make = |name: &str| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_hamel"));
+        command.current_dir(&folder).args(["joints", "new", name]);
+        command.output().expect("the program starts")
+    };
+    let made = make("pin_slot");
+    let told = String::from_utf8_lossy(&made.stdout).into_owned();
+    let file = folder.join("pin_slot.joint");
+    assert!(made.status.success() && made.stderr.is_empty(), "{made:?}");
+    assert!(
+        told.contains(&format!("wrote {}", file.display())),
+        "{told}"
+    );
+    let before = std::fs::read(&file).expect("it is there");
+    let again = make("pin_slot");
+    assert_eq!(again.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&again.stderr).contains("pin_slot.joint"));
+    assert_eq!(std::fs::read(&file).expect("it is there"), before);
+
+    let namesake = make("ball");
+    let told = String::from_utf8_lossy(&namesake.stderr).into_owned();
+    assert!(namesake.status.success(), "{told}");
+    assert!(
+        told.starts_with("warning: ") && told.contains("joint `ball`"),
+        "{told}"
+    );
+    // Beside the specs of the library, a new one is one of them.
+    std::fs::create_dir(folder.join("joint-specs")).expect("a folder for tests");
+    assert!(make("slot").status.success());
+    assert!(folder.join("joint-specs/slot.joint").is_file());
 }
 
 #[test]

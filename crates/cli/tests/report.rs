@@ -196,3 +196,24 @@ fn unknown_scenes_and_methods_are_named() {
         assert!(told.contains(name) && told.contains("there are"), "{told}");
     }
 }
+
+#[test]
+fn how_far_it_is_stands_in_a_log_too() {
+    let folder = folder("report_logged");
+    let place = folder.display().to_string();
+    let scene = ["--scenes", "top_slow", "--methods", "rk4"];
+    let arguments = [&["report", "--short", "-o", &place], &scene[..]].concat();
+    let output = hamel(&arguments);
+    let told = String::from_utf8_lossy(&output.stderr);
+    let first = told.lines().next().unwrap_or_default();
+    assert!(first.starts_with("curve 1 of "), "{told}");
+    assert!(first.contains("top_slow rk4"), "{told}");
+    assert!(told.contains("curves measured in"), "{told}");
+    assert!(!told.contains('\r') && !told.contains('\u{1b}'), "{told}");
+    let quiet = hamel(&[&arguments[..], &["--quiet", "--fresh"]].concat());
+    assert!(
+        quiet.stderr.is_empty(),
+        "{:?}",
+        String::from_utf8(quiet.stderr)
+    );
+}

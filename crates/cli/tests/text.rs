@@ -133,7 +133,7 @@ fn no_spreadsheet_runs_a_name() {
     let _ = std::fs::remove_file(&csv);
     stdout(&["simulate", &file, "--csv", &csv]);
     let text = std::fs::read_to_string(&csv).expect("the file is there");
-    assert!(text.starts_with("t_s,energy_J,'=1+1.x_m,"), "{text}");
+    assert!(text.contains("_J,'=1+1.x_m,"), "{text}");
 }
 
 #[test]

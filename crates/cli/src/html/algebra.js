@@ -1,4 +1,4 @@
-// Vectors are arrays [x, y, z]; quaternions [w, x, y, z]; a pose is { p, q }; matrices of four by four stand column by column.
+// Vectors are arrays [x, y, z]; quaternions [w, x, y, z], in files scalar last; a pose is { p, q }; matrices of four by four stand column by column.
 
 const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 const sub = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -34,19 +34,17 @@ function fromAxis(a) {
   return [(1 + z) / n, -y / n, x / n, 0];
 }
 
-/** The rotation vector of a unit quaternion, at most half a turn. */
-function rotationVector(q) {
+/** A unit quaternion as files have it: x, y, z, w, where w is not negative. */
+function scalarLast(q) {
   const [w, x, y, z] = q[0] < 0 ? q.map((entry) => -entry) : q;
-  const sine = Math.hypot(x, y, z);
-  const factor = sine > 1e-12 ? (2 * Math.atan2(sine, w)) / sine : 2;
-  return [x * factor, y * factor, z * factor];
+  return [x, y, z, w];
 }
 
 const point = (pose, v) => add(pose.p, turned(pose.q, v));
 const composed = (a, b) => ({ p: point(a, b.p), q: multiplied(a.q, b.q) });
 const poseOf = (seven, at = 0) => ({
   p: [seven[at], seven[at + 1], seven[at + 2]],
-  q: [seven[at + 3], seven[at + 4], seven[at + 5], seven[at + 6]],
+  q: [seven[at + 6], seven[at + 3], seven[at + 4], seven[at + 5]],
 });
 
 /** Between two poses: straight for the position, the short way round for the attitude. */

@@ -17,7 +17,7 @@ class Panel {
     const facts = document.createElement("div");
     facts.textContent = `${shortNumber(mass)} kg · joint ${joint} (${type}) on ${on}`;
     const list = document.createElement("dl");
-    this.values = ["centre of mass, m", "rotation vector, rad"].map((term) => {
+    this.values = ["centre of mass, m", "quaternion x, y, z, w"].map((term) => {
       const [dt, dd] = [document.createElement("dt"), document.createElement("dd")];
       dt.textContent = term;
       list.append(dt, dd);
@@ -29,15 +29,15 @@ class Panel {
   /** Shows where the body is. */
   show(poses) {
     if (this.body === null || this.body === undefined) return;
-    const { com, rotation } = described(this.recording, poses, this.body);
+    const { com, quaternion } = described(this.recording, poses, this.body);
     const text = (vector) => vector.map((part) => part.toFixed(4).replace("-", "−").padStart(9)).join(" ");
     this.values[0].textContent = text(com);
-    this.values[1].textContent = text(rotation);
+    this.values[1].textContent = text(quaternion);
   }
 }
 
 /** Position of a body's centre of mass and its attitude, as the columns of the CSV have them. */
 function described(recording, poses, body) {
   const pose = poses[body];
-  return { com: point(pose, recording.bodies[body].com), rotation: rotationVector(pose.q) };
+  return { com: point(pose, recording.bodies[body].com), quaternion: scalarLast(pose.q) };
 }

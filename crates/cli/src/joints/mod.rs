@@ -23,7 +23,7 @@ Examples:
   hamel joints explain-error E0305
       why a spec is refused, with a wrong and a right one
   hamel joints new pin_slot
-      writes joint-specs/pin_slot.joint to start from
+      writes pin_slot.joint to start from, in joint-specs/ where there is such a folder, else here
 
 A JOINT is the name of a library joint, or the path of a .joint file (it contains `/` or ends in .joint).";
 

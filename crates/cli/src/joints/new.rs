@@ -2,20 +2,25 @@
 
 use crate::files::new_file;
 use crate::output::{self, Failure};
-use std::path::PathBuf;
+use crate::terminal;
+use std::path::{Path, PathBuf};
+
+/// Where specs of this repository are, which `cargo build` reads.
+const LIBRARY: &str = "joint-specs";
 
 /// Write a spec to start from.
 ///
-/// The file is a complete joint (a pin in a slot): change it, then run `hamel joints check FILE` and `cargo build`.
+/// The file is a complete joint (a pin in a slot): change it, then run `hamel joints check FILE`. A file that is there already
+/// stays as it is.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Name of the joint, in snake_case
     #[arg(value_name = "NAME")]
     name: String,
 
-    /// Folder of the new file
-    #[arg(long, value_name = "FOLDER", default_value = "joint-specs")]
-    folder: PathBuf,
+    /// Folder of the new file [default: joint-specs where the current folder has it, else the current folder]
+    #[arg(long, value_name = "FOLDER")]
+    folder: Option<PathBuf>,
 }
 
 /// Writes the file; one that exists is never touched.
@@ -23,12 +28,35 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let text = template(&args.name);
     let file = format!("{}.joint", args.name);
     hamel_codegen::spec::parse(&text, &file).map_err(|errors| Failure::Spec(Box::new(errors)))?;
-    let path = args.folder.join(&file);
+    let library = Path::new(LIBRARY);
+    let path = match &args.folder {
+        Some(folder) => folder.join(&file),
+        None if library.is_dir() => library.join(&file),
+        None => PathBuf::from(&file),
+    };
     new_file(&path)?.write(text)?;
+    warn_of_namesake(&args.name);
+    let next = match path.parent() == Some(library) {
+        true => "`cargo build`, `cargo test`\nthe language: joint-specs/README.md",
+        false => {
+            "a crate that builds it (docs/library.md, \"Joints of your own\")\nthe language: joint-specs/README.md of the repository"
+        }
+    };
     let shown = path.display();
+    let place = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
     output::print(&format!(
-        "wrote {shown}\nnext: change it to your joint, `hamel joints check {shown}`, `cargo build`, `cargo test`\nthe language: joint-specs/README.md\n"
+        "wrote {}\nnext: change it to your joint, `hamel joints check {shown}`, {next}\n",
+        place.display()
     ))
+}
+
+/// A registry takes one joint of a name, and `joints explain NAME` shows that of the library.
+fn warn_of_namesake(name: &str) {
+    if hamel_joints::specs().any(|(known, _)| known == name) {
+        terminal::err(&format!(
+            "warning: the library has a joint `{name}` already: scenes cannot use both; give yours another name"
+        ));
+    }
 }
 
 fn template(name: &str) -> String {

@@ -59,7 +59,7 @@ pub struct Args {
     #[arg(long, conflicts_with_all = ["fresh", "short"])]
     pub page_only: bool,
 
-    /// No progress bar
+    /// Do not tell how far it is: no bar on a terminal, no lines elsewhere
     #[arg(long)]
     pub quiet: bool,
 

@@ -34,13 +34,16 @@ Examples:
   hamel simulate panda7.urdf --controller hold.toml --t-end 2
       with the `[controller]` of a file of its own; scenes/README.md describes the kinds
 
-The CSV file has one row a sample: `t_s`, `energy_J`, and for each body NAME
-  NAME.x_m, .y_m, .z_m                       position of the centre of mass, world axes
-  NAME.rx_rad, .ry_rad, .rz_rad              attitude as rotation vector, body to world
-  NAME.vx_m_per_s, …                         velocity of the centre of mass, world axes
-  NAME.wx_rad_per_s, …                       angular velocity, body axes
-then for each named frame its origin and quaternion, FRAME.x_m, … and .qw, …, and with a controller the efforts JOINT.tau.FREEDOM.
-The Parquet file has the same columns and more: docs/trajectories.md lists them.
+CSV and Parquet have one row a sample and the same columns, whose names end with the unit; --json tells the same numbers.
+  t_s, energy_J, kinetic_energy_J, potential_energy_J
+  BODY.x_m, .y_m, .z_m                       position of the centre of mass, world axes
+  BODY.qx, .qy, .qz, .qw                     attitude as unit quaternion, body axes to world axes
+  BODY.vx_m_per_s, …                         velocity of the centre of mass, world axes
+  BODY.wx_rad_per_s, …                       angular velocity, body axes
+  FRAME.x_m, … and .qx, …                    origin and attitude of each named frame
+  JOINT.q.q_rad, JOINT.v.q_rad_per_s         angle of a revolute joint, not reduced to a turn, and its rate; of a prismatic one
+                                             JOINT.q.q_m, JOINT.v.q_m_per_s; the names of other joints are in docs/trajectories.md
+  JOINT.tau.q_N_m                            with a controller, its efforts
 
 The page (`--html`) shows bodies by the [[shape]]s of the scene, or by the ellipsoids or boxes of their inertias. Drag to turn,
 wheel to zoom, click a body to select it, drag in a plot to move in time, Space to play, ← and → to step.

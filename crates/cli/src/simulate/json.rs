@@ -1,7 +1,7 @@
 //! The samples as JSON. Names and meaning of all keys are stable.
 
+use super::columns::{Column, JsonSample};
 use super::control::Outcome;
-use super::sample::Sample;
 use crate::output::Failure;
 use crate::terminal::fragment_of_json;
 use hamel::integrate::Crossing;
@@ -11,7 +11,7 @@ use serde_json::ser::Formatter;
 use std::io::{self, Write};
 
 /// What `--json` prints.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 pub struct Report<'a> {
     /// Name of the scene.
     pub scene: &'a str,
@@ -25,8 +25,10 @@ pub struct Report<'a> {
     /// What the steps passed over; absent where they followed everything.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unresolved: Option<String>,
+    /// What the numbers of a sample are.
+    pub columns: &'a [Column],
     /// The states asked for.
-    pub samples: &'a [Sample<'a>],
+    pub samples: &'a [JsonSample<'a>],
     /// What the scene's events came to, in the order of time; absent where there is none.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     pub events: &'a [Event<'a>],
@@ -106,22 +108,17 @@ impl Formatter for Digits17 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Report, Sample, Statistics, write};
+    use super::{Digits17, Report, Statistics, write};
+    use serde::Serialize;
+    use serde_json::Serializer;
 
     #[test]
     fn numbers_have_17_digits_and_read_back() {
-        let samples = [Sample {
-            t: 0.1,
-            energy: -1.0 / 3.0,
-            bodies: Vec::new(),
-            frames: Vec::new(),
-            efforts: Vec::new(),
-        }];
         let statistics = Statistics {
             steps: 3,
             rejected: 0,
             evaluations: 18,
-            run_time_s: 0.0,
+            run_time_s: 0.1,
         };
         let report = Report {
             scene: "a \"scene\"",
@@ -129,7 +126,8 @@ mod tests {
             method: "rk4",
             reason: None,
             unresolved: None,
-            samples: &samples,
+            columns: &[],
+            samples: &[],
             events: &[],
             control: None,
             statistics,
@@ -137,10 +135,17 @@ mod tests {
         let mut bytes = Vec::new();
         write(&report, &mut bytes).expect("memory takes it");
         let text = String::from_utf8(bytes).expect("JSON is UTF-8");
-        assert!(text.contains(r#""t":1.0000000000000001e-1,"energy":-3.3333333333333331e-1"#));
+        assert!(
+            text.contains(r#""run_time_s":1.0000000000000001e-1"#),
+            "{text}"
+        );
         let value: serde_json::Value = serde_json::from_str(&text).expect("valid JSON");
-        assert_eq!(value["samples"][0]["energy"].as_f64(), Some(-1.0 / 3.0));
         assert_eq!(value["scene"].as_str(), Some("a \"scene\""));
         assert_eq!(value["statistics"]["evaluations"].as_u64(), Some(18));
+        let mut third = Vec::new();
+        let written =
+            (-1.0_f64 / 3.0).serialize(&mut Serializer::with_formatter(&mut third, Digits17));
+        written.expect("memory takes it");
+        assert_eq!(third, b"-3.3333333333333331e-1");
     }
 }

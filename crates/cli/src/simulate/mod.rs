@@ -1,6 +1,7 @@
 //! `hamel simulate`: from a scene file to a trajectory.
 
 mod args;
+mod columns;
 mod compile;
 mod control;
 mod csv;

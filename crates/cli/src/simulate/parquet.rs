@@ -1,12 +1,9 @@
-//! The trajectory as Parquet: the columns of the CSV, then energies and the joints' own state, all as doubles.
+//! The trajectory as Parquet: every column as doubles.
 
-use super::csv::columns;
+use super::columns::Columns;
 use super::plan::Plan;
-use super::sample::Sample;
 use crate::files::{Draft, Output};
 use crate::output::Failure;
-use hamel::integrate::Step;
-use hamel::mechanism::Kinematics;
 use parquet::basic::{Repetition, Type as Physical};
 use parquet::data_type::DoubleType;
 use parquet::errors::{ParquetError, Result as Written};
@@ -27,6 +24,9 @@ const TABLE: &str = "trajectory";
 
 /// What files tell of their run.
 const TOLD: [&str; 3] = ["scene", "form", "method"];
+
+/// The key under which files tell the units and meanings of their columns, as JSON.
+const COLUMNS: &str = "columns";
 
 /// Whether a file is a trajectory that was written before.
 pub fn is_own(file: &File) -> bool {
@@ -52,18 +52,16 @@ impl<'a> Parquet<'a> {
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn create(plan: &'a Plan) -> Result<Option<Self>, Failure> {
+    pub fn create(plan: &'a Plan, columns: &Columns<'_>) -> Result<Option<Self>, Failure> {
         let Some(output) = &plan.parquet else {
             return Ok(None);
         };
-        let names = names(plan);
-        let columns = vec![Vec::new(); names.len()];
-        let writer = writer(output.open()?, plan, names);
+        let writer = writer(output.open()?, plan, columns);
         let writer = writer.map_err(|error| refusal(output, error))?;
         Ok(Some(Self {
             writer,
             output,
-            columns,
+            columns: vec![Vec::new(); columns.list().len()],
         }))
     }
 
@@ -71,16 +69,8 @@ impl<'a> Parquet<'a> {
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn write(
-        &mut self,
-        sample: &Sample<'_>,
-        step: &Step<'_>,
-        kinematics: &Kinematics,
-    ) -> Result<(), Failure> {
-        let energies = [kinematics.kinetic_energy(), kinematics.potential_energy()];
-        let joints = step.configuration.iter().chain(step.speeds).copied();
-        let row = sample.numbers().into_iter().chain(energies).chain(joints);
-        for (column, number) in self.columns.iter_mut().zip(row) {
+    pub fn write(&mut self, row: &[f64]) -> Result<(), Failure> {
+        for (column, &number) in self.columns.iter_mut().zip(row) {
             column.push(number);
         }
         let rows = self.columns.first().map_or(0, Vec::len);
@@ -106,8 +96,8 @@ impl<'a> Parquet<'a> {
     }
 }
 
-fn writer(file: Draft, plan: &Plan, names: Vec<String>) -> Written<SerializedFileWriter<Draft>> {
-    let fields: Written<Vec<_>> = names.iter().map(|name| column(name)).collect();
+fn writer(file: Draft, plan: &Plan, columns: &Columns<'_>) -> Written<SerializedFileWriter<Draft>> {
+    let fields: Written<Vec<_>> = columns.names().map(column).collect();
     let schema = Type::group_type_builder(TABLE).with_fields(fields?);
     let values = [
         plan.scene.name.clone(),
@@ -116,6 +106,9 @@ fn writer(file: Draft, plan: &Plan, names: Vec<String>) -> Written<SerializedFil
     ];
     let told = TOLD.into_iter().zip(values);
     let told = told.map(|(key, value)| KeyValue::new(key.to_owned(), value));
+    let meanings = serde_json::to_string(columns.list());
+    let meanings = meanings.map_err(|error| ParquetError::External(Box::new(error)))?;
+    let told = told.chain([KeyValue::new(COLUMNS.to_owned(), meanings)]);
     // Samples hardly repeat: dictionaries would only be tried in vain.
     let properties = WriterProperties::builder()
         .set_dictionary_enabled(false)
@@ -144,22 +137,6 @@ fn write_group(writer: &mut SerializedFileWriter<Draft>, columns: &mut [Vec<f64>
     }
     group.close()?;
     Ok(())
-}
-
-/// `t_s` and the other columns of the CSV, energies, `JOINT.q.NAME` for every stored scalar, `JOINT.v.NAME` for every speed.
-fn names(plan: &Plan) -> Vec<String> {
-    let bodies = plan.scene.mechanism.bodies();
-    let mut names = columns(plan);
-    names.extend(["kinetic_energy_J", "potential_energy_J"].map(String::from));
-    for body in bodies {
-        let scalars = body.joint().coordinates().iter();
-        names.extend(scalars.map(|scalar| format!("{}.q.{scalar}", body.joint_name())));
-    }
-    for body in bodies {
-        let speeds = body.joint().speeds().iter();
-        names.extend(speeds.map(|speed| format!("{}.v.{speed}", body.joint_name())));
-    }
-    names
 }
 
 fn refusal(output: &Output, error: ParquetError) -> Failure {

@@ -32,6 +32,8 @@ pub struct Plan {
     pub parquet: Option<Output>,
     /// Where it goes as a page to look at, if anywhere.
     pub html: Option<Output>,
+    /// Whether it is printed as JSON.
+    pub json: bool,
 }
 
 impl Plan {
@@ -78,6 +80,7 @@ impl Plan {
             csv,
             parquet,
             html,
+            json: args.json,
         })
     }
 
@@ -91,6 +94,11 @@ impl Plan {
     pub fn files(&self) -> impl Iterator<Item = &Path> {
         let files = [&self.csv, &self.parquet, &self.html];
         files.into_iter().flatten().map(Output::path)
+    }
+
+    /// Whether anything asks for the numbers of all columns.
+    pub fn has_rows(&self) -> bool {
+        self.json || self.csv.is_some() || self.parquet.is_some()
     }
 
     /// Whether the trajectory goes to any file.

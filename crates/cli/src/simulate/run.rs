@@ -1,6 +1,7 @@
 //! The run itself: integrate, write the trajectory on the way, tell the result.
 
 use super::args::Args;
+use super::columns::{Columns, JsonSample, Moment, Turns};
 use super::compile;
 use super::control::{Loop, Outcome};
 use super::csv::Trajectory;
@@ -9,7 +10,7 @@ use super::page::Page;
 use super::parquet::Parquet;
 use super::plan::Plan;
 use super::progress::Progress;
-use super::sample::{self, Sample};
+use super::sample;
 use super::table::Summary;
 use super::unresolved;
 use crate::interrupt::{self, Heed};
@@ -31,10 +32,11 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// Mistakes in the scene or the options; a simulation that stops early or is interrupted; output that cannot be written.
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let plan = Plan::new(args, registry)?;
+    let columns = Columns::new(&plan);
     let run = match args.compiled {
         true => {
             let mut equations = compile::equations(args, &plan)?;
-            let run = simulate(&plan, &mut equations.dynamics, args.quiet)?;
+            let run = simulate(&plan, &columns, &mut equations.dynamics, args.quiet)?;
             Run {
                 equations: Some(compile::told(&equations)),
                 ..run
@@ -42,11 +44,11 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
         }
         false => {
             let mut tree = plan.settings.arithmetic.dynamics(&plan.scene.mechanism);
-            simulate(&plan, &mut *tree, args.quiet)?
+            simulate(&plan, &columns, &mut *tree, args.quiet)?
         }
     };
     match (args.json, args.quiet) {
-        (true, _) => print_json(&plan, &run)?,
+        (true, _) => print_json(&plan, &columns, &run)?,
         (false, true) => {}
         (false, false) => print_summary(&plan, &run)?,
     }
@@ -85,31 +87,34 @@ struct Run {
     solution: Solution,
     statistics: Statistics,
     outcome: Option<Outcome>,
-    /// What the controller exerts at each sample; empty without one.
-    efforts: Vec<Vec<f64>>,
+    /// The numbers of each sample, where JSON is asked for.
+    rows: Vec<Vec<f64>>,
     /// Whether the user ended it.
     is_interrupted: bool,
 }
 
-fn simulate(plan: &Plan, dynamics: &mut dyn Dynamics, quiet: bool) -> Result<Run, Failure> {
+fn simulate(
+    plan: &Plan,
+    columns: &Columns<'_>,
+    dynamics: &mut dyn Dynamics,
+    quiet: bool,
+) -> Result<Run, Failure> {
     let control = Loop::new(plan)?;
-    let mut recorder = Recorder::new(plan, quiet);
+    let mut recorder = Recorder::new(plan, columns, quiet);
     let heed = Heed::new();
-    let mut efforts: Vec<Vec<f64>> = Vec::new();
     let start = Instant::now();
     let result = move_on(plan, dynamics, control.as_ref(), &mut |step| {
         let mut tau = Vec::new();
         if let Some(control) = &control {
             control.see(step);
-            if let Some(sample) = step.sample {
+            if step.sample.is_some() {
                 tau = control.efforts(step);
-                // Samples at one time are seen once.
-                efforts.resize(sample + 1, tau.clone());
             }
         }
         recorder.see(step, &tau)
     });
     let run_time_s = start.elapsed().as_secs_f64();
+    let rows = std::mem::take(&mut recorder.rows);
     let recorded = recorder.finish()?;
     drop(heed);
     let failure = control.as_ref().and_then(Loop::failure);
@@ -128,7 +133,7 @@ fn simulate(plan: &Plan, dynamics: &mut dyn Dynamics, quiet: bool) -> Result<Run
         solution,
         statistics,
         outcome: control.map(Loop::finish),
-        efforts,
+        rows,
         is_interrupted: recorded.is_interrupted,
     })
 }
@@ -172,14 +177,9 @@ fn stopped(plan: &Plan, recorded: Recorded, error: &dyn std::fmt::Display) -> Fa
     })
 }
 
-fn sample<'a>(
-    mechanism: &'a Mechanism,
-    state: &State,
-    efforts: &[f64],
-) -> Result<Sample<'a>, Failure> {
+fn kinematics(mechanism: &Mechanism, state: &State) -> Result<Kinematics, Failure> {
     let at = (&*state.configuration, &*state.speeds);
-    Sample::new(mechanism, state.time, at, efforts)
-        .map_err(|error| without_value(state.time, &error))
+    sample::kinematics(mechanism, at).map_err(|error| without_value(state.time, &error))
 }
 
 /// The failure of a sample that cannot be told.
@@ -190,7 +190,11 @@ fn without_value(time: f64, error: &StateError) -> Failure {
 /// Writes samples as they come, so that a simulation that stops leaves its trajectory up to there.
 struct Recorder<'a> {
     plan: &'a Plan,
+    columns: &'a Columns<'a>,
+    turns: Turns,
     mechanism: &'a Mechanism,
+    /// For JSON, which is printed at the end.
+    rows: Vec<Vec<f64>>,
     /// Absent before the first step is shown, by when options, scene, first state and method have been accepted.
     files: Option<Files<'a>>,
     has_samples: bool,
@@ -217,34 +221,21 @@ struct Recorded {
 }
 
 impl<'a> Files<'a> {
-    fn create(plan: &'a Plan) -> Result<Self, Failure> {
+    fn create(plan: &'a Plan, columns: &Columns<'_>) -> Result<Self, Failure> {
         Ok(Self {
-            trajectory: Trajectory::create(plan)?,
-            parquet: Parquet::create(plan)?,
+            trajectory: Trajectory::create(plan, columns)?,
+            parquet: Parquet::create(plan, columns)?,
             page: Page::create(plan)?,
         })
     }
 
-    /// Takes a sample.
-    fn record(
-        &mut self,
-        mechanism: &Mechanism,
-        step: &Step<'_>,
-        kinematics: &Kinematics,
-        efforts: &[f64],
-    ) -> Result<(), Failure> {
-        if self.trajectory.is_none() && self.parquet.is_none() && self.page.is_none() {
-            return Ok(());
-        }
-        let sample = Sample::of(mechanism, step.time, kinematics, efforts);
+    /// Takes a row of the columns.
+    fn record(&mut self, row: &[f64]) -> Result<(), Failure> {
         if let Some(trajectory) = &mut self.trajectory {
-            trajectory.write(&sample)?;
+            trajectory.write(row)?;
         }
         if let Some(parquet) = &mut self.parquet {
-            parquet.write(&sample, step, kinematics)?;
-        }
-        if let Some(page) = &mut self.page {
-            page.sample(step, kinematics, efforts);
+            parquet.write(row)?;
         }
         Ok(())
     }
@@ -258,10 +249,13 @@ impl<'a> Files<'a> {
 }
 
 impl<'a> Recorder<'a> {
-    fn new(plan: &'a Plan, quiet: bool) -> Self {
+    fn new(plan: &'a Plan, columns: &'a Columns<'a>, quiet: bool) -> Self {
         Self {
             plan,
+            columns,
+            turns: columns.turns(),
             mechanism: &plan.scene.mechanism,
+            rows: Vec::new(),
             files: None,
             has_samples: false,
             progress: Progress::new(plan.settings.t_end, quiet),
@@ -289,20 +283,33 @@ impl<'a> Recorder<'a> {
     fn take(&mut self, step: &Step<'_>, efforts: &[f64]) -> Result<(), Failure> {
         let files = match &mut self.files {
             Some(files) => files,
-            none => none.insert(Files::create(self.plan)?),
+            none => none.insert(Files::create(self.plan, self.columns)?),
         };
+        self.turns.follow(self.mechanism, step);
         if let Some(page) = &mut files.page
             && !step.is_within
         {
             page.step(step.time);
         }
-        if step.sample.is_some() {
-            let at = (step.configuration, step.speeds);
-            let found = sample::kinematics(self.mechanism, at);
-            let found = found.map_err(|error| without_value(step.time, &error))?;
-            files.record(self.mechanism, step, &found, efforts)?;
-            self.has_samples = true;
+        let Some(sample) = step.sample else {
+            return Ok(());
+        };
+        let at = (step.configuration, step.speeds);
+        let found = sample::kinematics(self.mechanism, at);
+        let found = found.map_err(|error| without_value(step.time, &error))?;
+        if self.plan.has_rows() {
+            let moment = Moment::of(step, &found, efforts, &self.turns);
+            let row = self.columns.row(&moment);
+            files.record(&row)?;
+            if self.plan.json {
+                // Samples at one time are seen once.
+                self.rows.resize(sample + 1, row);
+            }
         }
+        if let Some(page) = &mut files.page {
+            page.sample(step, &found, efforts);
+        }
+        self.has_samples = true;
         Ok(())
     }
 
@@ -337,14 +344,9 @@ impl<'a> Recorder<'a> {
     }
 }
 
-fn print_json(plan: &Plan, run: &Run) -> Result<(), Failure> {
-    let samples = run.solution.samples.iter();
-    let efforts = run.efforts.iter().map(Vec::as_slice);
-    let efforts = efforts.chain(std::iter::repeat(&[][..]));
-    let samples: Vec<Sample<'_>> = samples
-        .zip(efforts)
-        .map(|(state, efforts)| sample(&plan.scene.mechanism, state, efforts))
-        .collect::<Result<_, _>>()?;
+fn print_json(plan: &Plan, columns: &Columns<'_>, run: &Run) -> Result<(), Failure> {
+    let rows = run.rows.iter();
+    let samples: Vec<_> = rows.map(|row| JsonSample { columns, row }).collect();
     let events: Vec<_> = run.solution.events.iter().map(json::Event::of).collect();
     json::print(&Report {
         scene: &plan.scene.name,
@@ -352,6 +354,7 @@ fn print_json(plan: &Plan, run: &Run) -> Result<(), Failure> {
         method: plan.settings.method.scheme().name(),
         reason: plan.reason.as_deref(),
         unresolved: unresolved::unresolved(plan, run.statistics.steps, run.solution.state.time)?,
+        columns: columns.list(),
         samples: &samples,
         events: &events,
         control: run.outcome.as_ref(),
@@ -377,8 +380,9 @@ fn print_summary(plan: &Plan, run: &Run) -> Result<(), Failure> {
         plan,
         equations: run.equations.as_deref(),
         unresolved: unresolved.as_deref(),
-        first: &sample(mechanism, &first, &[])?,
-        last: &sample(mechanism, last, &[])?,
+        start_energy: kinematics(mechanism, &first)?.energy(),
+        end: &kinematics(mechanism, last)?,
+        time: last.time,
         most_kinetic_energy,
         samples: solution.samples.len(),
         outcome: run.outcome.as_ref(),

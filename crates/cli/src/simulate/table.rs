@@ -1,11 +1,12 @@
 //! The summary for people: final state, energy, and what the simulation took.
 
+use super::columns::BODY;
 use super::control::Outcome;
 use super::json::Statistics;
 use super::plan::Plan;
-use super::sample::{BodySample, Sample};
 use comfy_table::{Cell, CellAlignment, Table, presets};
 use hamel::integrate::{Approach, Crossing};
+use hamel::mechanism::{BodyState, Kinematics, Mechanism};
 use std::fmt;
 
 /// Numbers from here on are written with an exponent.
@@ -21,10 +22,12 @@ pub struct Summary<'a> {
     pub plan: &'a Plan,
     /// How the equations were compiled, where they were.
     pub equations: Option<&'a str>,
-    /// State at time 0.
-    pub first: &'a Sample<'a>,
-    /// State at the end.
-    pub last: &'a Sample<'a>,
+    /// Energy at time 0, J.
+    pub start_energy: f64,
+    /// The bodies at the end.
+    pub end: &'a Kinematics,
+    /// When that is, s.
+    pub time: f64,
     /// Kinetic energy at time 0, J.
     pub most_kinetic_energy: f64,
     /// Samples of the trajectory.
@@ -44,7 +47,8 @@ pub struct Summary<'a> {
 impl fmt::Display for Summary<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.scene(f)?;
-        writeln!(f, "{}", bodies(self.last).trim_fmt())?;
+        let table = bodies(&self.plan.scene.mechanism, self.end);
+        writeln!(f, "{}", table.trim_fmt())?;
         self.energy(f)?;
         self.crossings(f)?;
         if let Some(outcome) = self.outcome {
@@ -101,7 +105,7 @@ impl Summary<'_> {
         if let Some(equations) = self.equations {
             writeln!(f, "equations   {equations}")?;
         }
-        writeln!(f, "state at {} s:", self.last.t)
+        writeln!(f, "state at {} s:", self.time)
     }
 
     /// The first events, and how many follow.
@@ -118,7 +122,7 @@ impl Summary<'_> {
     }
 
     fn energy(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (start, end) = (self.first.energy, self.last.energy);
+        let (start, end) = (self.start_energy, self.end.energy());
         let scale = start.abs().max(self.most_kinetic_energy);
         let change = end - start;
         // With nothing at work it is the integrator's alone.
@@ -140,35 +144,32 @@ impl Summary<'_> {
     }
 }
 
-/// One line a body and axis.
-fn bodies(sample: &Sample<'_>) -> Table {
+/// One line a body and axis, and one for the scalar of its quaternion.
+fn bodies(mechanism: &Mechanism, end: &Kinematics) -> Table {
     let mut table = Table::new();
     table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+    // In the order of `BODY`.
     table.set_header([
         "body",
         "axis",
         "position\nof com, m",
-        "attitude\n(rotation vector), rad",
+        "attitude\n(quaternion,\nbody to world)",
         "velocity\nof com, m/s",
         "angular velocity\n(body axes), rad/s",
     ]);
-    for body in &sample.bodies {
-        table.add_row(row(body));
+    for (body, state) in mechanism.bodies().iter().zip(&end.bodies) {
+        table.add_row(row(body.name(), state));
     }
     table
 }
 
-fn row(body: &BodySample<'_>) -> Vec<Cell> {
-    let quantities = [
-        body.position_com,
-        body.rotation_vector(),
-        body.velocity_com_world,
-        body.angular_velocity_body,
-    ];
-    let names = [body.name.to_owned(), "x\ny\nz".to_owned()];
+fn row(name: &str, state: &BodyState) -> Vec<Cell> {
+    let names = [name.to_owned(), "x\ny\nz\nw".to_owned()];
     let names = names.into_iter().map(Cell::new);
-    let numbers = quantities.iter().map(|quantity| {
-        let lines: Vec<String> = quantity.iter().map(|&number| decimal(number)).collect();
+    let numbers = BODY.iter().map(|part| {
+        let mut numbers = Vec::new();
+        (part.read)(state, &mut numbers);
+        let lines: Vec<String> = numbers.into_iter().map(decimal).collect();
         Cell::new(lines.join("\n")).set_alignment(CellAlignment::Right)
     });
     names.chain(numbers).collect()

@@ -1,6 +1,6 @@
 //! Columns of named frames and of controllers.
 
-use super::recorded::{POSITION, Page, read_csv, read_parquet, simulate};
+use super::recorded::{POSITION, Page, attitude, read_csv, read_parquet, simulate};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde_json::Value;
 
@@ -31,34 +31,26 @@ fn frames_stand_where_their_bodies_carry_them() {
     );
     let marks = marks(&page);
     assert_eq!(marks.len(), 6);
-    for (name, body, [x, y, z, w, i, j, k]) in marks {
+    for (name, body, [x, y, z, i, j, k, w]) in marks {
         let own = UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k));
         for (row, _) in csv["t_s"].iter().enumerate() {
             let read = |ends: [&str; 3], of: &str| {
                 Vector3::from(ends.map(|end| csv[&format!("{of}.{end}")][row]))
             };
-            let (place, attitude) =
+            let (place, turned) =
                 body.map_or((Vector3::zeros(), UnitQuaternion::identity()), |body| {
                     let (of, com) = (page.names()[body], &page.header["bodies"][body]["com"]);
-                    let attitude = UnitQuaternion::new(read(["rx_rad", "ry_rad", "rz_rad"], of));
+                    let turned = attitude(&csv, of, row);
                     let com = [0, 1, 2].map(|axis| com[axis].as_f64().expect("a number"));
                     (
-                        read(["x_m", "y_m", "z_m"], of) - attitude * Vector3::from(com),
-                        attitude,
+                        read(["x_m", "y_m", "z_m"], of) - turned * Vector3::from(com),
+                        turned,
                     )
                 });
-            let [w, i, j, k] =
-                ["qw", "qx", "qy", "qz"].map(|end| csv[&format!("{name}.{end}")][row]);
-            let found = Quaternion::new(w, i, j, k);
             // Roundings of an arm of a metre.
-            assert!(
-                w >= 0.0 && (found.norm() - 1.0).abs() < 1e-15,
-                "{name}: {found}"
-            );
-            let error = UnitQuaternion::new_unchecked(found).angle_to(&(attitude * own));
+            let error = attitude(&csv, &name, row).angle_to(&(turned * own));
             assert!(error < 1e-14, "{name} in row {row}: {error:e} rad");
-            let error =
-                read(["x_m", "y_m", "z_m"], &name) - place - attitude * Vector3::new(x, y, z);
+            let error = read(["x_m", "y_m", "z_m"], &name) - place - turned * Vector3::new(x, y, z);
             assert!(
                 error.amax() < 1e-14,
                 "{name} in row {row}: {:e} m",
@@ -68,6 +60,12 @@ fn frames_stand_where_their_bodies_carry_them() {
         let column = format!("{name}.x_m");
         assert_eq!(csv[&column], table[&column]);
     }
+}
+
+/// The column of the speed with which an effort that turns does work.
+fn speed_of(effort: &str) -> String {
+    let speed = effort.replace(".tau.", ".v.");
+    speed.replace("_N_m", "_rad_per_s")
 }
 
 /// What the efforts of a controller do is the energy that the mechanism gains.
@@ -88,7 +86,7 @@ fn efforts_of_a_controller_do_the_work() {
     let power = |row: usize| -> f64 {
         let terms = freedoms
             .iter()
-            .map(|name| table[*name][row] * table[&name.replace(".tau.", ".v.")][row]);
+            .map(|name| table[*name][row] * table[&speed_of(name)][row]);
         terms.sum()
     };
     let rows = table["t_s"].len();
@@ -115,7 +113,7 @@ fn efforts_that_are_held_change_with_the_period_alone() {
     let scene = "scenes/balance_mpc.toml";
     let files = simulate(scene, "held", &["--t-end", "0.4"]);
     let (csv, page) = (read_csv(&files.csv), Page::read(&files.html));
-    let tau = &csv["slide_x.tau.q"];
+    let tau = &csv["slide_x.tau.q_N"];
     let changes: Vec<f64> = (1..tau.len())
         .filter(|&row| tau[row] != tau[row - 1])
         .map(|row| csv["t_s"][row])
@@ -126,7 +124,11 @@ fn efforts_that_are_held_change_with_the_period_alone() {
         assert!((periods - periods.round()).abs() < 1e-9, "{time}");
     }
     assert!(tau[0] != 0.0 && tau.iter().all(|force| force.abs() <= 8.0));
-    assert!(csv["cardan.tau.first"].iter().all(|force| *force == 0.0));
+    assert!(
+        csv["cardan.tau.first_N_m"]
+            .iter()
+            .all(|force| *force == 0.0)
+    );
     let columns = page.columns();
     let column = columns
         .iter()

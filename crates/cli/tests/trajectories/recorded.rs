@@ -52,6 +52,17 @@ pub fn simulate(file: &str, name: &str, options: &[&str]) -> Files {
 /// Numbers by the names of their columns.
 pub type Columns = BTreeMap<String, Vec<f64>>;
 
+/// Attitude of a body or frame in a row.
+pub fn attitude(columns: &Columns, of: &str, row: usize) -> UnitQuaternion<f64> {
+    let [x, y, z, w] = ["qx", "qy", "qz", "qw"].map(|end| columns[&format!("{of}.{end}")][row]);
+    let found = Quaternion::new(w, x, y, z);
+    assert!(
+        w >= 0.0 && (found.norm() - 1.0).abs() < 1e-15,
+        "{of}: {found}"
+    );
+    UnitQuaternion::new_unchecked(found)
+}
+
 pub fn read_csv(path: &Path) -> Columns {
     let mut reader = csv::Reader::from_path(path).expect("a CSV");
     let names = reader.headers().expect("names").clone();
@@ -160,7 +171,7 @@ impl Page {
     pub fn pose(&self, frame: usize, body: usize) -> (Vector3<f64>, UnitQuaternion<f64>) {
         let first = self.columns().len() * self.frames();
         let at = first + 7 * (frame * self.names().len() + body);
-        let [x, y, z, w, i, j, k] = std::array::from_fn(|place| self.float(at + place));
+        let [x, y, z, i, j, k, w] = std::array::from_fn(|place| self.float(at + place));
         let attitude = UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k));
         let com = &self.header["bodies"][body]["com"];
         let com = [0, 1, 2].map(|axis| com[axis].as_f64().expect("a number"));

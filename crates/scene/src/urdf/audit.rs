@@ -98,14 +98,6 @@ impl Audit<'_> {
     /// An element that the schema does not have here.
     fn not_read(&mut self, node: Node<'_, '_>, place: usize, schema: &Element, owner: &str) {
         let name = node.tag_name().name();
-        let namespace = node.tag_name().namespace().unwrap_or_default();
-        if namespace.contains("xacro") {
-            let message = format!("<xacro:{name}>: the file is a xacro template, not a URDF");
-            let error = Diagnostic::new(tag(node), message);
-            self.sink
-                .push(error.help("expand it first: `xacro robot.urdf.xacro > robot.urdf`"));
-            return;
-        }
         if SHOWN.contains(&name) {
             return;
         }

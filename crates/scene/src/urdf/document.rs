@@ -1,5 +1,6 @@
 //! The XML under a URDF: a tree that knows the place of everything, or its syntax error; and the texts and numbers of its attributes.
 
+use super::foreign;
 use crate::diagnostics::Diagnostic;
 use crate::read::Sink;
 use crate::source::Span;
@@ -22,8 +23,9 @@ fn refusal(text: &str, error: &Error) -> Diagnostic {
     };
     let refusal = Diagnostic::new(span, format!("not valid XML: {message}"));
     match error {
-        Error::UnknownNamespace(..) => {
-            refusal.help("a prefix is declared by an attribute `xmlns:prefix` of <robot>")
+        Error::UnknownNamespace(prefix, _) => {
+            let declared = "a prefix is declared by an attribute `xmlns:prefix` of <robot>";
+            refusal.help(foreign::of_prefix(prefix).unwrap_or(declared))
         }
         Error::DtdDetected => refusal.help("a URDF has no document type"),
         _ => refusal,

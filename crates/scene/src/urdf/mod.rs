@@ -16,6 +16,7 @@
 mod audit;
 mod convert;
 mod document;
+mod foreign;
 mod joint;
 mod mass;
 mod masses;
@@ -74,7 +75,7 @@ pub struct Import {
 /// The robot that a text in URDF describes. Messages call the text `source_name`.
 ///
 /// # Errors
-/// All mistakes of the text: XML that is not well-formed; missing or malformed elements and attributes; links and joints that
+/// All mistakes of the text: XML that is not well-formed, or in another format (xacro, SDF and MJCF are told by name); missing or malformed elements and attributes; links and joints that
 /// make no tree; mass properties that no body can have; a link without mass at the end of a moving joint.
 pub fn read(text: &str, source_name: &str, options: &Options) -> Result<Import, Diagnostics> {
     let mut sink = Sink::default();
@@ -141,13 +142,11 @@ fn import(
     options: &Options,
     sink: &mut Sink,
 ) -> Option<Import> {
-    let root = document.root_element();
-    if !root.has_tag_name("robot") {
-        let name = visible_line(root.tag_name().name());
-        let message = format!("the document is a <{name}>, not a <robot>");
-        sink.push(Diagnostic::new(tag(root), message));
+    if let Some(refusal) = foreign::refusal(document) {
+        sink.push(refusal);
         return None;
     }
+    let root = document.root_element();
     let mut notices = Notices::default();
     let version = version(root, &mut notices);
     let mut audit = Audit {

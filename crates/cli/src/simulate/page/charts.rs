@@ -1,10 +1,11 @@
 //! What the page plots: which columns there are, what they are called, and their values at a time.
 
+use super::super::columns::Units;
 use super::super::plan::Plan;
 use hamel::integrate::Step;
 use hamel::mechanism::{Body, Kinematics, Mechanism};
 use hamel::spatial::split;
-use nalgebra::Matrix6xX;
+use itertools::Itertools;
 use serde::Serialize;
 
 /// A plot: one of its variants at a time is shown.
@@ -156,20 +157,30 @@ fn described(plan: &Plan, next: &mut usize) -> Vec<Chart> {
         plain(&about("the world’s origin"), "kg m²/s", &["x", "y", "z"]),
         plain(&about("the centre of mass"), "kg m²/s", &["x", "y", "z"]),
     ];
-    let joints =
-        |names: fn(&Body) -> &[&'static str], units: [&'static str; 2], next: &mut usize| {
-            let bodies = mechanism.bodies().iter().enumerate();
-            let variants = bodies.map(|(index, body)| {
-                let columns = numbered(names(body).iter().copied(), next);
-                let unit = unit(body, units);
-                variant(body.joint_name(), &unit, Some(index), columns)
-            });
-            variants.collect::<Vec<_>>()
-        };
-    let coordinates = joints(|body| body.joint().freedoms(), ["rad", "m"], next);
-    let speeds = joints(|body| body.joint().speeds(), ["rad/s", "m/s"], next);
+    let joints = |names: fn(&Body) -> &[&'static str],
+                  units: fn(&Units) -> Vec<&'static str>,
+                  next: &mut usize| {
+        let bodies = mechanism.bodies().iter().enumerate();
+        let variants = bodies.map(|(index, body)| {
+            let columns = numbered(names(body).iter().copied(), next);
+            let unit = distinct(units(&Units::of(body.joint())));
+            variant(body.joint_name(), &unit, Some(index), columns)
+        });
+        variants.collect::<Vec<_>>()
+    };
+    let rates = |units: &Units| units.speeds.iter().map(|unit| unit.rate()).collect();
+    let lengths = |units: &Units| {
+        units
+            .freedoms
+            .iter()
+            .map(|unit| unit.coordinate())
+            .collect()
+    };
+    let forces = |units: &Units| units.velocities.iter().map(|unit| unit.effort()).collect();
+    let coordinates = joints(|body| body.joint().freedoms(), lengths, next);
+    let speeds = joints(|body| body.joint().speeds(), rates, next);
     let efforts = match plan.control.is_some() {
-        true => joints(|body| body.joint().freedoms(), ["N m", "N"], next),
+        true => joints(|body| body.joint().freedoms(), forces, next),
         false => Vec::new(),
     };
     let columns = numbered(["longest", "shortest"].into_iter(), next);
@@ -214,14 +225,8 @@ fn numbered<'n>(names: impl Iterator<Item = &'n str>, next: &mut usize) -> Vec<C
     columns.collect()
 }
 
-/// Unit of a joint's freedoms, of those for turns and for slides: freedoms that turn the body are angular.
-fn unit(body: &Body, units: [&'static str; 2]) -> String {
-    let mut map = Matrix6xX::zeros(body.joint().layout().freedoms);
-    body.joint()
-        .twist_map_child(&body.home(), map.as_mut_slice());
-    let columns = map.column_iter();
-    let turns: Vec<bool> = columns.map(|twist| twist.rows(0, 3).amax() > 0.0).collect();
-    let units = [true, false].into_iter().zip(units);
-    let units = units.filter(|(kind, _)| turns.contains(kind));
-    units.map(|(_, unit)| unit).collect::<Vec<_>>().join(", ")
+/// Each unit once, in the order in which they come.
+fn distinct(units: Vec<&'static str>) -> String {
+    let units = units.into_iter().filter(|unit| !unit.is_empty());
+    units.unique().collect::<Vec<_>>().join(", ")
 }

@@ -8,7 +8,7 @@ use hamel::mechanism::Body;
 use hamel_scene::text::visible;
 use serde::Serialize;
 
-/// Everything but the recorded numbers. All in SI units; poses are x, y, z and a quaternion, scalar first.
+/// Everything but the recorded numbers. All in SI units; poses are x, y, z and a quaternion x, y, z, w.
 #[derive(Debug, Serialize)]
 pub struct Header<'a> {
     /// Version of this layout.
@@ -62,7 +62,7 @@ impl<'a> Header<'a> {
             pose: seven(&frame.at),
         });
         Self {
-            version: 1,
+            version: 2,
             name: &scene.name,
             description: visible(&scene.description),
             method: format!("{} form, {}", settings.form_name(), plan.method()),

@@ -1,6 +1,10 @@
 //! Where each body's share lies in the arguments, for the header.
 
-use crate::model::{Body, Model};
+use crate::model::Model;
+use hamel_codegen::derived::Derived;
+use hamel_codegen::emit::report::units::{of_freedoms, of_velocities};
+use hamel_codegen::manifold::Kind;
+use hamel_codegen::model::VelocityFrame;
 use hamel_codegen::text::one_line;
 use serde::Serialize;
 use std::ops::Range;
@@ -14,6 +18,8 @@ pub struct Share {
     /// Its type.
     joint_type: String,
     is_driven: bool,
+    /// In which axes v is read; empty where it is the rates of what is stored.
+    axes: &'static str,
     configuration: Part,
     freedoms: Part,
     speeds: Part,
@@ -38,9 +44,10 @@ pub fn layout(model: &Model) -> Vec<Share> {
             joint: one_line(&body.joint_name),
             joint_type: one_line(&body.joint.derived.spec.name.value),
             is_driven: body.driven,
-            configuration: part(share.configuration, stored(body)),
-            freedoms: part(share.freedoms, freedoms(body)),
-            speeds: part(share.speeds, body.joint.derived.speed_names.clone()),
+            axes: axes(&body.joint.derived),
+            configuration: part(share.configuration, stored(&body.joint.derived)),
+            freedoms: part(share.freedoms, efforts(&body.joint.derived)),
+            speeds: part(share.speeds, speeds(&body.joint.derived)),
         })
         .collect()
 }
@@ -54,15 +61,69 @@ fn part(range: Range<usize>, names: Vec<String>) -> Part {
     Part { entries, names }
 }
 
-fn stored(body: &Body) -> Vec<String> {
-    let coordinates = body.joint.derived.space.manifold.coordinates();
-    coordinates
-        .iter()
-        .map(|symbol| symbol.name.to_string())
-        .collect()
+fn axes(derived: &Derived) -> &'static str {
+    match derived.spec.velocity.value {
+        VelocityFrame::Child => "of the joint's child frame",
+        VelocityFrame::Parent => "of the joint's parent frame",
+        VelocityFrame::Rates => "",
+    }
 }
 
-fn freedoms(body: &Body) -> Vec<String> {
-    let freedoms = body.joint.derived.spec.freedoms.value.iter();
-    freedoms.map(|freedom| freedom.name.clone()).collect()
+/// Stored scalars with their units: entries of matrices, quaternions and unit vectors have none.
+fn stored(derived: &Derived) -> Vec<String> {
+    let (freedoms, units) = (freedoms(derived), of_freedoms(derived));
+    let unit_of = |name: &str| {
+        let own = freedoms.iter().position(|freedom| *freedom == name);
+        own.map_or("", |own| units[own])
+    };
+    let factors = derived.space.manifold.factors().iter();
+    let named = factors.flat_map(|factor| {
+        let scalars = factor.coordinates.iter().enumerate();
+        scalars.map(|(place, symbol)| {
+            let unit = match factor.kind {
+                Kind::Real(_) => unit_of(&symbol.name),
+                // The last column of a motion's matrix is a displacement.
+                Kind::Se2 if place % 3 == 2 => "m",
+                Kind::Se3 if place % 4 == 3 => "m",
+                _ => "",
+            };
+            named(&symbol.name, unit)
+        })
+    });
+    named.collect()
+}
+
+fn freedoms(derived: &Derived) -> Vec<&str> {
+    let freedoms = derived.spec.freedoms.value.iter();
+    freedoms.map(|freedom| freedom.name.as_str()).collect()
+}
+
+/// Efforts do work with velocities.
+fn efforts(derived: &Derived) -> Vec<String> {
+    let units = of_velocities(derived).into_iter();
+    let units = units.map(|unit| match unit.as_str() {
+        "rad/s" => "N m",
+        "m/s" => "N",
+        _ => "",
+    });
+    let freedoms = freedoms(derived).into_iter().zip(units);
+    freedoms.map(|(name, unit)| named(name, unit)).collect()
+}
+
+/// A speed that is called after a freedom is its velocity.
+fn speeds(derived: &Derived) -> Vec<String> {
+    let (freedoms, units) = (freedoms(derived), of_velocities(derived));
+    let speeds = derived.speed_names.iter().map(|name| {
+        let own = freedoms.iter().position(|freedom| freedom == name);
+        named(name, own.map_or("", |own| &units[own]))
+    });
+    speeds.collect()
+}
+
+/// `turn (rad/s)`.
+fn named(name: &str, unit: &str) -> String {
+    match unit {
+        "" => name.to_owned(),
+        unit => format!("{name} ({unit})"),
+    }
 }

@@ -8,6 +8,7 @@ mod breaks;
 mod formula;
 mod helpers;
 mod layout;
+mod results;
 mod statement;
 
 use super::{Function, Lowered, argument_size, identifier, identifiers};
@@ -105,6 +106,10 @@ pub fn module(
     context.insert("configuration", &configuration);
     context.insert("freedoms", &freedoms);
     context.insert("speeds", &speeds);
+    let gravity = model.gravity.iter().map(|entry| format!("{entry:?}"));
+    context.insert("gravity", &gravity.collect::<Vec<_>>());
+    let is_coupled = !model.coupling.constraints.is_empty();
+    context.insert("is_coupled", &is_coupled);
     context.insert("bodies", &layout::layout(model));
     context.insert("functions", &written);
     context.insert("used", &used.helpers());
@@ -121,6 +126,8 @@ pub fn module(
 struct Written {
     name: &'static str,
     summary: String,
+    /// Units, axes and order of its results.
+    results: &'static str,
     operations: String,
     /// Declarations of its parameters, in order.
     parameters: Vec<String>,
@@ -160,6 +167,7 @@ impl Written {
         Self {
             name: function.name,
             summary: one_line(&function.summary),
+            results: results::results(function.name),
             operations: function.operations().to_string(),
             parameters: parameters.chain([results]).collect(),
             unused: unused.chain((count == 0).then_some("results")).collect(),

@@ -1,0 +1,33 @@
+//! Whether the names of a file's columns are such as trajectories have, of whatever scene.
+
+use super::parts::{BODY, FRAME, MECHANISM, ends};
+
+/// What stands between a joint and one of its numbers.
+const OF_JOINTS: [&str; 3] = [".q.", ".v.", ".tau."];
+
+/// Whether these are the columns of the mechanism, of bodies, of frames and of joints, one group after the other, and no others.
+pub fn are_columns(names: &[&str]) -> bool {
+    let (body, frame) = (ends(&BODY), ends(&FRAME));
+    let Some(mut names) = rest(names, "", &ends(&MECHANISM)) else {
+        return false;
+    };
+    while let [first, ..] = names {
+        let owner = first.strip_suffix(body[0].as_str()).unwrap_or_default();
+        let group = [&body, &frame].into_iter();
+        let mut group = group.filter_map(|ends| rest(names, owner, ends));
+        names = match group.next() {
+            Some(rest) if owner.len() > 1 => rest,
+            _ if OF_JOINTS.iter().any(|of| first.contains(of)) => &names[1..],
+            _ => return false,
+        };
+    }
+    true
+}
+
+/// What follows on the columns of `owner` with these ends, if the names begin with them.
+fn rest<'n, 't>(names: &'n [&'t str], owner: &str, ends: &[String]) -> Option<&'n [&'t str]> {
+    let (group, rest) = names.split_at_checked(ends.len())?;
+    let mut named = group.iter().zip(ends);
+    let is_group = named.all(|(name, end)| name.strip_prefix(owner) == Some(end));
+    is_group.then_some(rest)
+}

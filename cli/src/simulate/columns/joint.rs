@@ -1,0 +1,134 @@
+//! Columns of joints: coordinates, speeds, and what a controller exerts.
+
+use super::coordinates::{Factor, Kind};
+use super::turns::Turn;
+use super::units::{Unit, Units};
+use super::{Columns, Ending, List};
+use hamel::mechanism::{Body, Mechanism};
+
+impl<'a> Columns<'a> {
+    /// Coordinates and speeds of all joints.
+    pub(super) fn joints(&mut self, mechanism: &'a Mechanism) {
+        for (index, body) in mechanism.bodies().iter().enumerate() {
+            let units = Units::of(body.joint());
+            self.enter(Some(List::Joints), body.joint_name());
+            self.coordinates(index, body, &units);
+            let speeds = body.ranges().speeds.clone();
+            self.add("v", speed_endings(body, &units), move |moment, row| {
+                row.extend(&moment.speeds[speeds.clone()]);
+            });
+        }
+    }
+
+    /// τ of all joints.
+    pub(super) fn efforts(&mut self, mechanism: &'a Mechanism) {
+        for body in mechanism.bodies() {
+            let units = Units::of(body.joint());
+            self.enter(Some(List::Efforts), body.joint_name());
+            let freedoms = body.ranges().freedoms.clone();
+            self.add("tau", effort_endings(body, &units), move |moment, row| {
+                row.extend(&moment.efforts[freedoms.clone()]);
+            });
+        }
+    }
+
+    fn coordinates(&mut self, index: usize, body: &'a Body, units: &Units) {
+        let factors = Factor::all(body.joint());
+        let endings = coordinate_endings(&factors, units);
+        let first = self.turns.len();
+        let turns = factors.iter().filter_map(|factor| {
+            let (cosine, sine) = factor.kind.turn()?;
+            Some(Turn {
+                body: index,
+                cosine: factor.first + cosine,
+                sine: factor.first + sine,
+            })
+        });
+        self.turns.extend(turns);
+        self.add("q", endings, move |moment, row| {
+            let q = body.configuration(moment.configuration);
+            let mut angles = moment.angles[first..].iter();
+            for factor in &factors {
+                let angle = factor.kind.turn().and_then(|_| angles.next());
+                factor.read(q, angle.copied().unwrap_or(f64::NAN), row);
+            }
+        });
+    }
+}
+
+/// Of all parts of Q. The name of a part is left out where there is no other, unless it is all that there is to say.
+fn coordinate_endings(factors: &[Factor], units: &Units) -> Vec<Ending> {
+    let endings = factors.iter().flat_map(|factor| {
+        let stem = factor.stem.trim_end_matches('_');
+        let quantities = factor.kind.quantities();
+        let scalar = || {
+            let unit = units.scalars[factor.first];
+            vec![ending("q", factor.stem.clone(), unit, meaning(unit))]
+        };
+        match quantities {
+            [] => scalar(),
+            [(_, unit)] if !stem.is_empty() => {
+                vec![ending("q", stem.to_owned(), *unit, meaning(*unit))]
+            }
+            quantities => {
+                let named = quantities.iter().map(|(name, unit)| {
+                    let name = match factors {
+                        [_] => (*name).to_owned(),
+                        _ if stem.is_empty() => (*name).to_owned(),
+                        _ => format!("{stem}_{name}"),
+                    };
+                    let meaning = match (factor.kind, unit) {
+                        (Kind::S2, _) => "unit vector in Q",
+                        (_, Unit::None) => {
+                            "attitude in Q as unit quaternion, scalar last and not negative"
+                        }
+                        (_, unit) => meaning(*unit),
+                    };
+                    ending("q", name, *unit, meaning)
+                });
+                named.collect()
+            }
+        }
+    });
+    endings.collect()
+}
+
+/// Of a coordinate.
+const fn meaning(unit: Unit) -> &'static str {
+    match unit {
+        Unit::Angle => "angle of the joint, not reduced to a turn",
+        Unit::Length => "displacement of the joint",
+        Unit::None => "stored scalar of Q",
+    }
+}
+
+fn speed_endings(body: &Body, units: &Units) -> Vec<Ending> {
+    let speeds = body.joint().speeds().iter().zip(&units.speeds);
+    let endings = speeds.map(|(name, unit)| Ending {
+        name: format!("v.{name}"),
+        unit: unit.rate(),
+        meaning: String::from("speed of the joint"),
+    });
+    endings.collect()
+}
+
+fn effort_endings(body: &Body, units: &Units) -> Vec<Ending> {
+    let freedoms = body.joint().freedoms().iter().zip(&units.velocities);
+    let endings = freedoms.map(|(name, unit)| Ending {
+        name: format!("tau.{name}"),
+        unit: unit.effort(),
+        meaning: String::from("effort of the controller"),
+    });
+    endings.collect()
+}
+
+fn ending(key: &str, name: String, unit: Unit, meaning: &str) -> Ending {
+    Ending {
+        name: format!("{key}.{name}"),
+        unit: match unit {
+            Unit::None if meaning != self::meaning(Unit::None) => "1",
+            unit => unit.coordinate(),
+        },
+        meaning: meaning.to_owned(),
+    }
+}

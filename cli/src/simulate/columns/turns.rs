@@ -1,0 +1,90 @@
+//! Angles that are stored as cosine and sine, followed over the motion so that they count turns.
+
+use hamel::integrate::Step;
+use hamel::mechanism::{Body, Mechanism};
+use std::f64::consts::TAU;
+
+/// Where an angle is stored.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turn {
+    /// Whose joint it belongs to.
+    pub body: usize,
+    /// Place of its cosine in the joint's Q.
+    pub cosine: usize,
+    /// Place of its sine.
+    pub sine: usize,
+}
+
+/// The angles at the end of the last step that was seen.
+#[derive(Clone, Debug)]
+pub struct Turns {
+    turns: Vec<Turn>,
+    angles: Vec<f64>,
+    rates: Vec<f64>,
+    time: Option<f64>,
+}
+
+impl Turns {
+    pub(super) fn new(turns: Vec<Turn>) -> Self {
+        let count = turns.len();
+        Self {
+            turns,
+            angles: vec![0.0; count],
+            rates: vec![0.0; count],
+            time: None,
+        }
+    }
+
+    /// The angles, rad: between −π and π at the first step, and without jumps from there.
+    pub fn angles(&self) -> &[f64] {
+        &self.angles
+    }
+
+    /// Goes on to the end of `step`.
+    pub fn follow(&mut self, mechanism: &Mechanism, step: &Step<'_>) {
+        let last = self.time.replace(step.time);
+        let states = self.angles.iter_mut().zip(&mut self.rates);
+        for (turn, (angle, rate)) in self.turns.iter().zip(states) {
+            let body = &mechanism.bodies()[turn.body];
+            let (reduced, next) = turn.read(body, step);
+            *angle = match last {
+                None => reduced,
+                // A step may be longer than half a turn where the rate hardly changes: the rates say how many it was.
+                Some(last) => {
+                    let expected = *angle + 0.5 * (step.time - last) * (*rate + next);
+                    reduced + TAU * ((expected - reduced) / TAU).round()
+                }
+            };
+            *rate = next;
+        }
+    }
+}
+
+impl Turn {
+    /// The angle between −π and π, and its rate, rad/s.
+    fn read(&self, body: &Body, step: &Step<'_>) -> (f64, f64) {
+        let q = body.configuration(step.configuration);
+        let speeds = &step.speeds[body.ranges().speeds.clone()];
+        let rates = configuration_rates(body, q, speeds);
+        let (cosine, sine) = (q[self.cosine], q[self.sine]);
+        let rate = cosine * rates[self.sine] - sine * rates[self.cosine];
+        (sine.atan2(cosine), rate)
+    }
+}
+
+/// Q̇ of a joint.
+fn configuration_rates(body: &Body, q: &[f64], speeds: &[f64]) -> Vec<f64> {
+    let joint = body.joint();
+    let freedoms = joint.layout().freedoms;
+    let mut basis = vec![0.0; freedoms * speeds.len()];
+    joint.speed_basis(q, &mut basis);
+    let mut velocity = vec![0.0; freedoms];
+    for (column, speed) in basis.chunks(freedoms.max(1)).zip(speeds) {
+        for (entry, part) in velocity.iter_mut().zip(column) {
+            *entry += part * speed;
+        }
+    }
+    let mut rates = vec![0.0; q.len()];
+    joint.configuration_rate(q, &velocity, &mut rates);
+    rates
+}

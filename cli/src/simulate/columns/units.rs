@@ -1,0 +1,198 @@
+//! Units of a joint's freedoms, velocities and speeds, which are those on its page: read off how they move Q and the child.
+
+use super::coordinates::Factor;
+use hamel::erased::AnyJoint;
+use nalgebra::{DMatrix, DVector, Vector6};
+
+/// What a coordinate measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// An angle, rad.
+    Angle,
+    /// A length, m.
+    Length,
+    /// Neither.
+    None,
+}
+
+impl Unit {
+    /// Of the coordinate.
+    pub const fn coordinate(self) -> &'static str {
+        match self {
+            Self::Angle => "rad",
+            Self::Length => "m",
+            Self::None => "",
+        }
+    }
+
+    /// Of its rate.
+    pub const fn rate(self) -> &'static str {
+        match self {
+            Self::Angle => "rad/s",
+            Self::Length => "m/s",
+            Self::None => "",
+        }
+    }
+
+    /// Of the effort that does work at this rate.
+    pub const fn effort(self) -> &'static str {
+        match self {
+            Self::Angle => "N m",
+            Self::Length => "N",
+            Self::None => "",
+        }
+    }
+
+    /// By the twist of a unit rate: an angle where it is a unit rotation, a length where it is a unit translation.
+    fn of_twist(twist: &Vector6<f64>) -> Self {
+        let (angular, linear) = hamel::spatial::split(twist);
+        let is_unit = |length: f64| (length - 1.0).abs() < EXACT;
+        match (angular.norm(), linear.norm()) {
+            (turn, _) if is_unit(turn) => Self::Angle,
+            (turn, slide) if turn < EXACT && is_unit(slide) => Self::Length,
+            _ => Self::None,
+        }
+    }
+}
+
+/// Roundings of kernels at home.
+const EXACT: f64 = 1e-9;
+
+/// What a joint's coordinates measure.
+#[derive(Clone, Debug)]
+pub struct Units {
+    /// ϕ.
+    pub freedoms: Vec<Unit>,
+    /// v, with which τ does work.
+    pub velocities: Vec<Unit>,
+    /// v̄.
+    pub speeds: Vec<Unit>,
+    /// The stored scalars of Q that are in no group; [`Unit::None`] for others.
+    pub scalars: Vec<Unit>,
+}
+
+impl Units {
+    /// Those of `joint`.
+    pub fn of(joint: &dyn AnyJoint) -> Self {
+        let home = Home::of(joint);
+        let columns = 0..joint.layout().freedoms;
+        let freedoms: Vec<_> = columns.clone().map(|k| home.freedom(k)).collect();
+        let velocities: Vec<_> = columns
+            .map(|k| match is_unit(home.velocity_map.row(k).iter(), k) {
+                true => freedoms[k],
+                false => Unit::of_twist(&home.twist(k)),
+            })
+            .collect();
+        let speeds = 0..joint.layout().speeds;
+        let speeds = speeds.map(|speed| home.speed(speed, &velocities)).collect();
+        let scalars = home.scalars(&freedoms);
+        Self {
+            freedoms,
+            velocities,
+            speeds,
+            scalars,
+        }
+    }
+}
+
+/// Whether entries are those of the unit vector `k`.
+fn is_unit<'e>(entries: impl Iterator<Item = &'e f64>, k: usize) -> bool {
+    let mut entries = entries.enumerate();
+    entries.all(|(i, entry)| (entry - f64::from(u8::from(i == k))).abs() < EXACT)
+}
+
+/// A joint at home, where its kernels say what its coordinates do.
+struct Home {
+    factors: Vec<Factor>,
+    /// X^c.
+    twist_map: DMatrix<f64>,
+    /// S₀.
+    velocity_map: DMatrix<f64>,
+    /// S̄.
+    speed_basis: DMatrix<f64>,
+    /// ∂Q/∂ϕ.
+    rates: DMatrix<f64>,
+}
+
+impl Home {
+    fn of(joint: &dyn AnyJoint) -> Self {
+        let layout = joint.layout();
+        let (size, freedoms) = (layout.configuration, layout.freedoms);
+        let mut q = vec![0.0; size];
+        joint.home(&mut q);
+        let mut twist_map = DMatrix::zeros(6, freedoms);
+        joint.twist_map_child(&q, twist_map.as_mut_slice());
+        let mut velocity_map = DMatrix::zeros(freedoms, freedoms);
+        joint.velocity_map(&q, velocity_map.as_mut_slice());
+        let mut speed_basis = DMatrix::zeros(freedoms, layout.speeds);
+        joint.speed_basis(&q, speed_basis.as_mut_slice());
+        let mut rates = DMatrix::zeros(size, freedoms);
+        for (velocity, mut rate) in velocity_map.column_iter().zip(rates.column_iter_mut()) {
+            let mut column = vec![0.0; size];
+            joint.configuration_rate(&q, velocity.clone_owned().as_slice(), &mut column);
+            rate.copy_from_slice(&column);
+        }
+        Self {
+            factors: Factor::all(joint),
+            twist_map,
+            velocity_map,
+            speed_basis,
+            rates,
+        }
+    }
+
+    /// What moves an attitude is an angle, what else moves a group is a length; of real vectors the twist decides.
+    fn freedom(&self, k: usize) -> Unit {
+        let moved = self.factors.iter().flat_map(|factor| {
+            let places = (0..factor.kind.size()).filter(|place| {
+                let rate = self.rates[(factor.first + place, k)];
+                rate.abs() > EXACT
+            });
+            places.map(|place| (factor.kind, factor.kind.turns(place)))
+        });
+        let moved: Vec<_> = moved.collect();
+        if moved.iter().any(|(_, turns)| *turns) {
+            return Unit::Angle;
+        }
+        match moved.first() {
+            Some((super::coordinates::Kind::Scalar, _)) | None => {
+                let column = &self.twist_map * self.velocity_map.column(k);
+                Unit::of_twist(&six(&column))
+            }
+            Some(_) => Unit::Length,
+        }
+    }
+
+    fn twist(&self, k: usize) -> Vector6<f64> {
+        six(&self.twist_map.column(k).clone_owned())
+    }
+
+    /// Of a speed that is one entry of v, as of that; of any other by its twist.
+    fn speed(&self, speed: usize, velocities: &[Unit]) -> Unit {
+        let column = self.speed_basis.column(speed);
+        let own = (0..velocities.len()).find(|&k| is_unit(column.iter(), k));
+        match own {
+            Some(k) => velocities[k],
+            None => Unit::of_twist(&six(&(&self.twist_map * column))),
+        }
+    }
+
+    /// A stored scalar has the unit of the freedoms that move it.
+    fn scalars(&self, freedoms: &[Unit]) -> Vec<Unit> {
+        let unit = |row: usize| {
+            let rates = self.rates.row(row);
+            let moving = rates.iter().zip(freedoms);
+            let mut moving = moving.filter(|(rate, _)| rate.abs() > EXACT);
+            let first = moving.next().map_or(Unit::None, |(_, unit)| *unit);
+            match moving.all(|(_, unit)| *unit == first) {
+                true => first,
+                false => Unit::None,
+            }
+        };
+        (0..self.rates.nrows()).map(unit).collect()
+    }
+}
+
+fn six(column: &DVector<f64>) -> Vector6<f64> {
+    Vector6::from_iterator(column.iter().copied())
+}

@@ -1,0 +1,97 @@
+//! Files of robots in other formats than URDF: the error says what the file is, and what makes a URDF of it.
+
+mod common;
+
+use common::hamel;
+use std::fs;
+use std::path::Path;
+
+fn write(name: &str, text: &str) -> String {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    fs::write(&path, text).expect("a folder for tests");
+    path.display().to_string()
+}
+
+/// What is said of a file, which every command that reads one refuses in the same words.
+fn refusal(name: &str, text: &str) -> String {
+    let file = write(name, text);
+    let said = ["simulate", "compile", "import"].map(|command| {
+        let output = hamel(&[command, &file]);
+        assert_eq!(output.status.code(), Some(1), "{command} {name}");
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    });
+    assert!(said.iter().all(|other| *other == said[0]), "{said:#?}");
+    said[0].clone()
+}
+
+const EXPANDED: &str = r#"<?xml version="1.0"?>
+<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <link name="base"/>
+  <link name="arm"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <joint name="hinge" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/></joint>
+</robot>
+"#;
+
+#[test]
+fn macros_of_xacro_are_to_be_expanded_first() {
+    let of_element = EXPANDED.replace(
+        "<link name=\"base\"/>",
+        "<xacro:property name=\"l\" value=\"1\"/><link name=\"base\"/>",
+    );
+    let of_attribute = EXPANDED.replace("mass value=\"1\"", "mass value=\"${2*m}\"");
+    let undeclared = of_element.replace(" xmlns:xacro=\"http://www.ros.org/wiki/xacro\"", "");
+    for (name, text) in [
+        ("robot.xacro", &of_element),
+        ("robot.urdf.xacro", &of_attribute),
+        ("unexpanded.urdf", &of_element),
+        ("unexpanded.xml", &of_attribute),
+        ("undeclared.urdf", &undeclared),
+    ] {
+        let said = refusal(name, text);
+        assert!(said.contains("xacro robot.xacro > robot.urdf"), "{said}");
+        assert!(!said.contains("TOML"), "{said}");
+    }
+}
+
+#[test]
+fn what_xacro_has_expanded_is_read_whatever_its_ending() {
+    for name in ["expanded.urdf", "expanded.xml", "expanded"] {
+        let file = write(name, EXPANDED);
+        let output = hamel(&["simulate", &file, "--t-end", "0", "--json"]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{name}: {said}");
+    }
+}
+
+#[test]
+fn other_formats_are_named() {
+    let sdf = "<?xml version='1.0'?>\n<sdf version='1.9'><model name='arm'/></sdf>\n";
+    let mjcf = "\u{feff}<mujoco model=\"arm\"><worldbody/></mujoco>\n";
+    for (name, text, wanted) in [
+        ("arm.sdf", sdf, ["SDF, the format of Gazebo", "sdf2urdf.py"]),
+        ("sdf.urdf", sdf, ["SDF, the format of Gazebo", "gz sdf -p"]),
+        (
+            "arm.xml",
+            mjcf,
+            ["MJCF, the format of MuJoCo", "mjcf_urdf_simple_converter"],
+        ),
+        (
+            "mjcf.toml",
+            mjcf,
+            ["MJCF, the format of MuJoCo", "not read"],
+        ),
+    ] {
+        let said = refusal(name, text);
+        assert!(wanted.iter().all(|part| said.contains(part)), "{said}");
+    }
+    let other = refusal("other.xml", "<COLLADA version=\"1.5\"/>\n");
+    assert!(other.contains("a <COLLADA>, not a <robot>"), "{other}");
+}
+
+#[test]
+fn broken_xml_is_refused_as_such() {
+    for text in ["<", "<robot", "<?xml", "<sdf>", "<a b='${'/>", "<!-- -->"] {
+        let said = refusal("broken.xml", text);
+        assert!(said.starts_with("error: "), "{said}");
+    }
+}

@@ -1,0 +1,52 @@
+//! What each function writes, for the header: units, axes, and the order of the entries.
+
+use crate::functions::Kind;
+
+/// Of the function of that name; empty for one that is none of [`Kind`].
+pub fn results(name: &str) -> &'static str {
+    let kind = Kind::ALL.into_iter().find(|kind| kind.name() == name);
+    kind.map_or("", of)
+}
+
+const fn of(kind: Kind) -> &'static str {
+    match kind {
+        Kind::ForwardDynamics => {
+            "results: a, one entry a speed in the order of v; rad/s^2 where it turns, m/s^2 where it slides."
+        }
+        Kind::InverseDynamics | Kind::BiasForces => {
+            "results: efforts, one entry a speed in the order of v; N m where it turns, N where it slides. Gravity, springs, dampers and \
+             constant efforts of the scene are at work already; these come to them."
+        }
+        Kind::MassMatrix => {
+            "results: row i and column j belong to speeds i and j in the order of v; kg m^2 where both turn, kg where both slide, \
+             kg m between them. Symmetric, and all of it is written."
+        }
+        Kind::MomentumRates => {
+            "results: first v, rad/s and m/s, then the rates of p, N m and N, both in the order of v."
+        }
+        Kind::Momenta => {
+            "results: p, one entry a speed in the order of v; N m s where it turns, N s where it slides."
+        }
+        Kind::Speeds => "results: v, one entry a speed; rad/s where it turns, m/s where it slides.",
+        Kind::Hamiltonian => {
+            "results: one number, J; the potential energy of gravity is zero at the world's origin."
+        }
+        Kind::Energies => {
+            "results: kinetic energy, then potential energy, J; that of gravity is zero at the world's origin."
+        }
+        Kind::Poses => {
+            "results: 12 numbers a body, in the order of the bodies above. First the rotation R by rows, R11, R12, R13, R21, ..., \
+             which takes body axes to world axes; then the origin of the body frame (not the centre of mass), x, y, z in world axes, m."
+        }
+        Kind::ForwardDerivatives => {
+            "results: a row a speed, in the order of v. Its columns are the derivatives of the acceleration by phi (a column a freedom, in the \
+             order of tau), by v (a column a speed) and by tau (a column a freedom), then the acceleration itself; units are those of a over those \
+             of phi (rad, m), v and tau. phi are local coordinates about q, 0 at q: a displacement of the joint along each freedom."
+        }
+        Kind::InverseDerivatives => {
+            "results: a row a speed, in the order of v. Its columns are the derivatives of the effort by phi (a column a freedom, in the order of \
+             tau) and by v (a column a speed); units are those of efforts over those of phi (rad, m) and v. phi are local coordinates about q, 0 at \
+             q: a displacement of the joint along each freedom."
+        }
+    }
+}
