@@ -43,7 +43,7 @@ then for each named frame its origin and quaternion, FRAME.x_m, … and .qw, …
 The Parquet file has the same columns and more: docs/trajectories.md lists them.
 
 The page (`--html`) shows bodies by the [[shape]]s of the scene, or by the ellipsoids or boxes of their inertias. Drag to turn,
-wheel to zoom, click a body to select it, drag in a plot to move in time, Space to play, ← and → to step.
+wheel to zoom, click a body to select it, drag in a plot to move in time, Space to play, ← and → to step, F to follow, A to see all, R for the first view.
 It holds at most 60 samples a second of the trajectory: for a smooth picture keep --sample-step at 0.02 or less.
 
 Files are written beside their names and take them when they are whole; one that this command did not write is replaced with --force only. Ctrl-C ends the simulation

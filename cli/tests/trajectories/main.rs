@@ -87,7 +87,7 @@ fn a_page_plots_what_the_tables_hold() {
     for (column, of) in [
         (find("Energy", "", "kinetic"), "kinetic_energy_J"),
         (find("Energy", "", "total"), "energy_J"),
-        (find("Coordinates ϕ from home", "front", "q"), "front.q.q"),
+        (find("Coordinates from home", "front", "q"), "front.q.q"),
         (find("Speeds v̄", "front", "q"), "front.v.q"),
     ] {
         for frame in 0..page.frames() {
