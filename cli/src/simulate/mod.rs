@@ -8,6 +8,7 @@ mod csv;
 mod json;
 mod page;
 mod parquet;
+mod picture;
 mod plan;
 mod progress;
 mod run;

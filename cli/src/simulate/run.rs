@@ -8,6 +8,7 @@ use super::csv::Trajectory;
 use super::json::{self, Report, Statistics};
 use super::page::Page;
 use super::parquet::Parquet;
+use super::picture::Picture;
 use super::plan::Plan;
 use super::progress::Progress;
 use super::sample::{self, Sample};
@@ -206,6 +207,7 @@ struct Files<'a> {
     trajectory: Option<Trajectory<'a>>,
     parquet: Option<Parquet<'a>>,
     page: Option<Page<'a>>,
+    picture: Option<Picture<'a>>,
 }
 
 /// What a recorder leaves.
@@ -222,6 +224,7 @@ impl<'a> Files<'a> {
             trajectory: Trajectory::create(plan)?,
             parquet: Parquet::create(plan)?,
             page: Page::create(plan)?,
+            picture: Picture::create(plan)?,
         })
     }
 
@@ -233,6 +236,9 @@ impl<'a> Files<'a> {
         kinematics: &Kinematics,
         efforts: &[f64],
     ) -> Result<(), Failure> {
+        if let Some(picture) = &mut self.picture {
+            picture.sample(step.time, kinematics);
+        }
         if self.trajectory.is_none() && self.parquet.is_none() && self.page.is_none() {
             return Ok(());
         }
@@ -253,7 +259,8 @@ impl<'a> Files<'a> {
         let csv = self.trajectory.map_or(Ok(()), Trajectory::finish);
         let parquet = self.parquet.map_or(Ok(()), Parquet::finish);
         let page = self.page.map_or(Ok(()), Page::finish);
-        csv.and(parquet).and(page)
+        let picture = self.picture.map_or(Ok(()), Picture::finish);
+        csv.and(parquet).and(page).and(picture)
     }
 }
 

@@ -10,6 +10,8 @@ mod solids;
 mod text;
 mod unwrapped;
 
+pub(super) use solids::Ellipsoid;
+
 use super::plan::Plan;
 use crate::files::{Draft, first_line};
 use crate::output::Failure;
