@@ -144,6 +144,25 @@ async function checkScrubbing(page) {
   assert.match(legend, /kinetic .*potential .*total /);
 }
 
+/** Keys do the same after a click on any control. */
+async function checkKeys(page) {
+  for (const id of ["rods", "rods", "follow", "follow", "loop", "loop", "all", "home", "scrub"]) {
+    await page.click(`#${id}`);
+    await page.keyboard.press("Home");
+    await page.keyboard.press("ArrowRight");
+    assert.equal(await timeOf(page), await page.evaluate(() => hamel.recording.times[1]), `an arrow after a click on ${id}`);
+    for (const playing of [true, false]) {
+      await page.keyboard.press(" ");
+      assert.equal(await page.evaluate(() => hamel.playing), playing, `Space after a click on ${id}`);
+    }
+  }
+  await page.keyboard.press("a");
+  assert.equal(await page.isChecked("#follow"), false, "all of the motion, and follows");
+  await page.keyboard.press("f");
+  assert.equal(await page.isChecked("#follow"), true, "F does not follow");
+  await page.keyboard.press("r");
+}
+
 /** A click selects a body; its panel has the numbers of the CSV; drags and the wheel move the view. */
 async function checkView(page, name) {
   const { x, y, width, height } = await page.locator("#stage").boundingBox();
@@ -213,6 +232,7 @@ for (const name of ["g1", "plate_cart_arm", "snakeboard"]) {
   const page = await opened(name);
   await checkPoses(page, name);
   await checkScrubbing(page);
+  await checkKeys(page);
   await checkView(page, name);
   await checkPlay(page, name);
   for (const colorScheme of ["light", "dark"]) {

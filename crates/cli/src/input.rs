@@ -24,11 +24,8 @@ impl Input {
     /// # Errors
     /// A file that cannot be read; `floating_base` for what is no robot.
     pub fn read(path: &Path, floating_base: bool) -> Result<Self, Failure> {
-        let ending = path.extension().unwrap_or_default();
         let (text, name) = read_file(path)?;
-        // No scene begins so; other formats of robots do, and the reader of URDF names them.
-        let is_xml = text.trim_start_matches(is_before_xml).starts_with('<');
-        let is_robot = is_xml || ending.eq_ignore_ascii_case("urdf");
+        let is_robot = urdf::is_robot(path, &text);
         if floating_base && !is_robot {
             return Err(Failure::Options(format!(
                 "--floating-base is for robots in URDF, and {} is none: a scene says itself how its bodies move",
@@ -75,9 +72,4 @@ impl Input {
         let build = hamel_compiler::scene_of(&self.label, description);
         Ok(build.library(hamel_joints::specs()))
     }
-}
-
-/// Blanks, and the mark of the order of bytes.
-fn is_before_xml(c: char) -> bool {
-    c.is_whitespace() || c == '\u{feff}'
 }

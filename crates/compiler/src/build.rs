@@ -348,18 +348,16 @@ impl Build {
             Source::File(path) => path,
             Source::Described(_, description) => return Ok((**description).clone()),
         };
-        let ending = path.extension().unwrap_or_default();
-        if ending.eq_ignore_ascii_case("urdf") {
+        let (text, name) = (read(path)?, path.display().to_string());
+        if urdf::is_robot(path, &text) {
             let options = urdf::Options {
                 floating_base: self.floating_base,
                 ..urdf::Options::default()
             };
-            return urdf::load(path, &options)
-                .map(|import| import.scene)
-                .map_err(failed);
+            let import = urdf::read(&text, &name, &options);
+            return import.map(|import| import.scene).map_err(failed);
         }
-        let text = read(path)?;
-        Scene::from_toml(&text, &path.display().to_string()).map_err(failed)
+        Scene::from_toml(&text, &name).map_err(failed)
     }
 
     /// A joint type, from the first place that has its spec.

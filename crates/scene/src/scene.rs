@@ -134,16 +134,16 @@ impl Scene {
         describe(draft, sink, source)?.build(registry)
     }
 
-    /// The scene in the file `path`, or the robot in it, where its name ends in `.urdf`: on a fixed base, at home and at rest.
+    /// The scene in the file `path`, or the robot in it ([`urdf::is_robot`]): on a fixed base, at home and at rest.
     ///
     /// # Errors
     /// A file that cannot be read or is not UTF-8, and all mistakes of its text.
     pub fn load(path: impl AsRef<Path>, registry: &JointRegistry) -> Result<Self, Diagnostics> {
         let path = path.as_ref();
-        if urdf::is_named(path) {
-            return urdf::load(path, &urdf::Options::default())?.build(registry);
-        }
         let (text, name) = read_file(path)?;
+        if urdf::is_robot(path, &text) {
+            return urdf::read(&text, &name, &urdf::Options::default())?.build(registry);
+        }
         Self::parse(&text, &name, registry)
     }
 }

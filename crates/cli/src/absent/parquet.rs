@@ -1,10 +1,8 @@
 //! What stands for Parquet in a program that was built without it.
 
+use super::columns::Columns;
 use super::plan::Plan;
-use super::sample::Sample;
 use crate::output::Failure;
-use hamel::integrate::Step;
-use hamel::mechanism::Kinematics;
 use std::convert::Infallible;
 use std::fs::File;
 use std::marker::PhantomData;
@@ -25,7 +23,7 @@ impl<'a> Parquet<'a> {
     ///
     /// # Errors
     /// A plan that asks for a file.
-    pub fn create(plan: &'a Plan) -> Result<Option<Self>, Failure> {
+    pub fn create(plan: &'a Plan, _: &Columns<'_>) -> Result<Option<Self>, Failure> {
         match plan.parquet {
             None => Ok(None),
             Some(_) => Err(absent()),
@@ -33,7 +31,7 @@ impl<'a> Parquet<'a> {
     }
 
     /// Cannot be called.
-    pub fn write(&mut self, _: &Sample<'_>, _: &Step<'_>, _: &Kinematics) -> Result<(), Failure> {
+    pub fn write(&mut self, _: &[f64]) -> Result<(), Failure> {
         let _ = self.plan;
         match self.never {}
     }

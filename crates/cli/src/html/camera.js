@@ -17,10 +17,26 @@ class Camera {
     this.elevation = 0.35;
   }
 
-  /** Shows all of a ball in a picture so many times wider than high. */
-  fit(centre, radius, aspect) {
-    this.target = centre;
-    this.distance = (1.08 * radius) / Math.sin(Camera.angle / 2) / Math.min(1, aspect);
+  /** Shows all of some balls, [place, radius], as large as they can be, in a picture so many times wider than high, whose part `covered` at
+      the top is under something else. */
+  fit(balls, aspect, covered = 0) {
+    const { back, right, up } = this.axes();
+    // Balls stay off the edges.
+    const upright = Math.tan(Camera.angle / 2) * 0.92;
+    const most = (slope, along) =>
+      Math.max(...balls.map(([place, radius]) => dot(along, place) + slope * dot(back, place) + radius * Math.hypot(1, slope)));
+    const opposite = (along) => scaled(along, -1);
+    // The eye is behind four planes that touch the balls; in its own axes, at x, y and z.
+    const [wide, high] = [upright * aspect, upright * (1 - 2 * covered)];
+    const [east, west] = [most(wide, right), most(wide, opposite(right))];
+    const [north, south] = [most(high, up), most(upright, opposite(up))];
+    const z = Math.max((east + west) / (2 * wide), (north + south) / (high + upright));
+    const x = (east - west) / 2;
+    const y = (north - south + z * (upright - high)) / 2;
+    const depths = balls.map(([place, radius]) => [dot(back, place) - radius, dot(back, place) + radius]).flat();
+    const middle = (Math.min(...depths) + Math.max(...depths)) / 2;
+    this.target = add(add(scaled(right, x), scaled(up, y)), scaled(back, middle));
+    this.distance = Math.max(z - middle, 1e-9);
   }
 
   /** Directions of the picture in the world: towards the eye, right and up. */

@@ -166,33 +166,22 @@ class Plot {
     context.clip();
     context.lineWidth = 1.5;
     context.lineJoin = "round";
-    const breaks = this.breaks();
     this.variant.columns.forEach(({ index }, k) => {
       context.strokeStyle = color(`--line-${(k % 6) + 1}`);
-      this.line(context, recording.columns[index], breaks, x, y);
+      this.line(context, recording.columns[index], x, y);
     });
     context.restore();
   }
 
-  /** Frames before which angles jump by a turn, as those of a ball joint do: no line goes there. */
-  breaks() {
-    const columns = this.variant.columns.map(({ index }) => this.recording.columns[index]);
-    const jumps = (frame) => Math.hypot(...columns.map((column) => column[frame] - column[frame - 1])) > Math.PI;
-    const found = new Set();
-    if (this.variant.unit !== "rad") return found;
-    for (let frame = 1; frame < this.recording.frames; frame++) if (jumps(frame)) found.add(frame);
-    return found;
-  }
-
   /** One column as a line, which gaps break. */
-  line(context, column, breaks, x, y) {
+  line(context, column, x, y) {
     context.beginPath();
     let down = false;
     column.forEach((number, frame) => {
       const value = this.onAxis(number);
       if (Number.isFinite(value)) {
         const place = [x(this.recording.times[frame]), y(value)];
-        if (down && !breaks.has(frame)) context.lineTo(...place);
+        if (down) context.lineTo(...place);
         else context.moveTo(...place);
       }
       down = Number.isFinite(value);

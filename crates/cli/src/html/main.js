@@ -12,7 +12,7 @@ class Page {
     this.pace = new Pace(() => this.resize());
     this.stage = this.makeStage();
     element("name").textContent = recording.name;
-    element("description").textContent = recording.description;
+    Object.assign(element("description"), { textContent: recording.description, title: recording.description });
     element("facts").textContent = `${recording.method} · ${recording.frames} frames`;
     element("charts").append(...this.plots.map((plot) => plot.element));
     this.panel.choose(null);
@@ -22,6 +22,7 @@ class Page {
     this.listenToWindow();
     this.restyle();
     this.resize();
+    this.home();
   }
 
   /** The view; null, and told, where it cannot be. */
@@ -70,13 +71,27 @@ class Page {
     element("play").textContent = playing ? "Pause" : "Play";
   }
 
+  /** Names beside the bodies, the nearest ones first; one that would cover another goes below it, or is left out. */
   placeLabels() {
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    this.recording.bodies.forEach((body, index) => {
-      const place = this.stage.camera.project(point(this.stage.poses[index], body.com));
-      this.labels[index].hidden = !place;
-      if (place) this.labels[index].style.transform = `translate(${place[0] * width}px, ${place[1] * height}px)`;
+    const eye = this.stage.camera.eye();
+    const labels = this.recording.bodies.map((body, index) => {
+      const place = point(this.stage.poses[index], body.com);
+      return { label: this.labels[index], seen: this.stage.camera.project(place), far: length(sub(place, eye)) };
     });
+    labels.sort((a, b) => a.far - b.far);
+    const taken = [];
+    const room = { width: 4, height: 17 };
+    for (const { label, seen } of labels) {
+      const x = seen ? seen[0] * width : 0;
+      const wide = (label.wide ??= label.offsetWidth) + room.width;
+      const free = (y) => !taken.some((other) => Math.abs(other.y - y) < room.height && x < other.x + other.wide && other.x < x + wide);
+      const y = seen ? [0, 1, -1, 2, -2].map((row) => seen[1] * height + row * room.height).find(free) : undefined;
+      label.style.visibility = y === undefined ? "hidden" : "";
+      if (y === undefined) continue;
+      taken.push({ x, y, wide });
+      label.style.transform = `translate(${x}px, ${y}px)`;
+    }
   }
 
   /** Fits the picture to its place: as sharp as the screen, or while it plays as sharp as this machine can. */
@@ -108,7 +123,26 @@ class Page {
 
   /** The first view again. */
   home() {
-    this.stage?.home();
+    this.look((stage) => stage.home());
+  }
+
+  /** All of the motion. */
+  frameAll() {
+    this.look((stage) => stage.frameAll());
+  }
+
+  /** Goes with the mechanism, or no longer. */
+  follow(wanted) {
+    this.look((stage) => stage.follow(wanted));
+  }
+
+  /** Changes the view. */
+  look(change) {
+    if (!this.stage) return;
+    const tools = element("tools");
+    this.stage.covered = tools.offsetTop + tools.offsetHeight;
+    change(this.stage);
+    element("follow").checked = this.stage.options.follow;
     this.invalidate();
   }
 
@@ -135,7 +169,7 @@ class Page {
         change(event.target);
         this.invalidate();
       });
-    for (const option of ["rods", "frames", "trails", "ground", "follow"]) {
+    for (const option of ["rods", "frames", "trails", "ground"]) {
       element(option).checked = options[option];
       changed(option, (box) => (options[option] = box.checked));
     }
@@ -145,6 +179,8 @@ class Page {
     }
     changed("solids", (list) => (options.solids = list.value));
     changed("names", (box) => element("labels").replaceChildren(...(box.checked ? this.labels : [])));
+    element("follow").addEventListener("change", (event) => this.follow(event.target.checked));
+    element("all").addEventListener("click", () => this.frameAll());
     element("home").addEventListener("click", () => this.home());
     const clicked = (place) => this.select(this.stage.pick(place));
     camera.listen(this.canvas, () => this.invalidate(), clicked);
@@ -157,17 +193,25 @@ class Page {
       ArrowRight: () => this.step(1),
       Home: () => this.clock.seek(0),
       End: () => this.clock.seek(this.clock.duration),
+      a: () => this.frameAll(),
+      f: () => this.follow(!this.stage?.options.follow),
       r: () => this.home(),
       Escape: () => this.select(null),
     };
     document.addEventListener("keydown", (event) => {
       const key = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-      const own = event.target.closest("select, input, button");
-      const taken = own?.matches("select, input[type=range]") ? /^( |Arrow|Home|End)/ : /^ /;
-      if (!key || event.ctrlKey || event.metaKey || event.altKey || (own && taken.test(event.key))) return;
+      if (!key || event.ctrlKey || event.metaKey || event.altKey || needsKey(document.activeElement, event.key)) return;
       event.preventDefault();
       key();
     });
+    // A control that was clicked gives the keys back.
+    document.addEventListener("pointerdown", () => (this.pointed = true), true);
+    document.addEventListener("keydown", () => (this.pointed = false), true);
+    for (const kind of ["click", "change"])
+      document.addEventListener(kind, ({ target }) => {
+        // A list is open after a click on it, until something is chosen.
+        if (this.pointed && target.matches?.("button, input, select") && !(kind === "click" && target.matches("select"))) target.blur();
+      });
   }
 
   listenToWindow() {
@@ -175,6 +219,13 @@ class Page {
     new ResizeObserver(() => this.plots.forEach((plot) => plot.resize())).observe(element("charts"));
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.restyle());
   }
+}
+
+/** Whether a control that has the focus does something itself with a key. */
+function needsKey(control, key) {
+  if (control?.matches("select, textarea, input[type=text], input[type=number], input[type=search]")) return key !== "Escape";
+  if (control?.matches("input[type=range]")) return /^(Arrow|Home|End|Page)/.test(key);
+  return key === " " && Boolean(control?.matches("button, input, summary"));
 }
 
 /** Counts the frames drawn in a second, and asks for a less sharp picture where they are few. */

@@ -42,7 +42,7 @@ void main() {
     return;
   }
   vec3 n = normalize(normal);
-  float lit = 0.62 + 0.16 * dot(n, up) + 0.34 * max(dot(n, light), 0.0);
+  float lit = 0.68 + 0.14 * dot(n, up) + 0.34 * max(dot(n, light), 0.0);
   // Octants of two tones show how a round body turns.
   if (paint.a > 0.5 && inside.x * inside.y * inside.z < 0.0) lit *= 0.8;
   shown = vec4(paint.rgb * lit, 1.0);

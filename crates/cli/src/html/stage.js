@@ -1,3 +1,39 @@
+/** The ball around the box around some balls. */
+function extent(balls) {
+  const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  for (const [place, radius] of balls)
+    for (let k = 0; k < 3; k++) {
+      low[k] = Math.min(low[k], place[k] - radius);
+      high[k] = Math.max(high[k], place[k] + radius);
+    }
+  const centre = scaled(add(low, high), 0.5);
+  const distances = balls.map(([place, radius]) => length(sub(place, centre)) + radius);
+  return { centre, radius: distances.reduce((a, b) => Math.max(a, b), 0) || 1 };
+}
+
+/** Few of many balls: of those whose middles are within a cell of a grid, the largest. */
+function thinned(balls, size) {
+  const kept = new Map();
+  for (const ball of balls) {
+    const key = ball[0].map((part) => Math.round(part / (0.04 * size))).join();
+    if (!(kept.get(key)?.[1] >= ball[1])) kept.set(key, ball);
+  }
+  return [...kept.values()];
+}
+
+const placed = (pose, balls) => balls.map(([place, radius]) => [point(pose, place), radius]);
+
+/** Balls in a shape that touch its surface where it reaches farthest. */
+const corners = {
+  box: (size) => signs.map((sign) => [sign.map((part, k) => (part * size[k]) / 2), 0]),
+  sphere: ([r]) => [[[0, 0, 0], r]],
+  cylinder: ([r, l]) => rim.flatMap(([c, s]) => [-l / 2, l / 2].map((z) => [[r * c, r * s, z], 0])),
+  capsule: ([r, l]) => [[[0, 0, -l / 2], r], [[0, 0, l / 2], r]],
+  ellipsoid: (half) => half.flatMap((axis, k) => [-axis, axis].map((part) => [[0, 1, 2].map((j) => (j === k ? part : 0)), 0])).concat([[[0, 0, 0], Math.min(...half)]]),
+};
+const signs = [-1, 1].flatMap((x) => [-1, 1].flatMap((y) => [-1, 1].map((z) => [x, y, z])));
+const rim = Array.from({ length: 8 }, (_, k) => [Math.cos((k * Math.PI) / 4), Math.sin((k * Math.PI) / 4)]);
+
 /** What is to be seen of the recording at a time. */
 class Stage {
   constructor(recording, painter) {
@@ -6,6 +42,8 @@ class Stage {
     this.camera = new Camera(recording.up);
     this.options = { solids: "shape", rods: true, frames: false, trails: false, ground: true, follow: false };
     this.selected = null;
+    // Height of what covers the picture's top, pixels.
+    this.covered = 0;
     // Shapes show by themselves how bodies hang together.
     this.options.rods = recording.bodies.some((_, body) => !recording.shapes.some((shape) => shape.body === body));
     this.measure();
@@ -18,49 +56,43 @@ class Stage {
   /** How large the mechanism is, where it goes, and how high the ground is. */
   measure() {
     const { recording } = this;
-    const reach = {
-      box: (size) => Math.hypot(...size) / 2,
-      sphere: ([r]) => r,
-      cylinder: ([r, l]) => Math.hypot(r, l / 2),
-      capsule: ([r, l]) => r + l / 2,
-    };
-    // Balls around what stands for each body, and its joint.
-    const around = recording.bodies.map((body, index) => {
-      const shapes = recording.shapes.filter((shape) => shape.body === index);
-      const balls = shapes.map((shape) => [poseOf(shape.pose).p, reach[shape.kind](shape.size)]);
-      if (balls.length === 0) balls.push([body.com, Math.max(0, ...(body.ellipsoid?.half ?? []))]);
-      return [...balls, [poseOf(body.joint_in_body).p, 0]];
-    });
-    const bounds = (frames) => {
-      const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
-      const balls = [];
-      let bottom = Infinity;
-      for (const frame of frames)
-        recording.bodies.forEach((_, index) => {
-          const pose = recording.poseAt(frame, index);
-          balls.push(...around[index].map(([place, radius]) => [point(pose, place), radius]));
-          bottom = Math.min(bottom, this.lowest(index, pose));
-        });
-      for (const [place, radius] of balls)
-        for (let k = 0; k < 3; k++) {
-          low[k] = Math.min(low[k], place[k] - radius);
-          high[k] = Math.max(high[k], place[k] + radius);
-        }
-      const centre = scaled(add(low, high), 0.5);
-      const distances = balls.map(([place, radius]) => length(sub(place, centre)) + radius);
-      return { centre, radius: distances.reduce((a, b) => Math.max(a, b), 0) || 1, bottom };
-    };
     const stride = Math.max(1, Math.ceil(recording.frames / 240));
     const some = Array.from({ length: Math.ceil(recording.frames / stride) }, (_, k) => k * stride);
-    const [still, moving] = [bounds([0]), bounds([...some, recording.frames - 1])];
+    some.push(recording.frames - 1);
+    const poses = some.map((frame) => recording.bodies.map((_, index) => recording.poseAt(frame, index)));
+    const still = extent(this.balls(poses[0]));
     this.size = still.radius;
-    this.travels = moving.radius > 4 * still.radius;
-    // What travels has room around it.
-    this.all = this.travels ? { ...still, radius: 1.5 * still.radius } : moving;
+    this.everything = poses.flatMap((poses) => this.balls(poses));
+    this.travels = extent(this.everything).radius > 2.5 * this.size;
+    // Of what travels, all that is ever about the centre of mass: it stays in a picture that goes with it.
+    const moved = (poses) => {
+      const centre = recording.centre(poses);
+      return this.balls(poses).map(([place, radius]) => [sub(place, centre), radius]);
+    };
+    this.about = thinned(poses.flatMap(moved), this.size);
+    this.everything = thinned(this.everything, this.size);
     this.options.follow = this.travels;
-    // The ground is level with the world's origin, or below everything; of what falls far, below where it starts.
-    const bottom = moving.bottom > -6 * this.size ? moving.bottom : still.bottom;
-    this.ground = bottom < -0.02 * this.size ? bottom : 0;
+    this.ground = this.groundBelow(poses);
+  }
+
+  /** Balls that fill what stands for each body up to its corners, and its joint: [place, radius]. */
+  balls(poses) {
+    this.around ??= this.recording.bodies.map((body, index) => {
+      const shapes = this.recording.shapes.filter((shape) => shape.body === index);
+      const balls = shapes.flatMap((shape) => placed(poseOf(shape.pose), corners[shape.kind](shape.size)));
+      if (balls.length === 0 && body.ellipsoid) balls.push(...placed(poseOf(body.ellipsoid.pose), corners.ellipsoid(body.ellipsoid.half)));
+      return [...balls, [body.com, 0], [poseOf(body.joint_in_body).p, 0]];
+    });
+    return this.around.flatMap((balls, index) => placed(poses[index], balls));
+  }
+
+  /** The ground is level with the world's origin, or below everything; of what falls far, below where it starts. */
+  groundBelow(poses) {
+    const bottom = (poses) => Math.min(...poses.map((pose, index) => this.lowest(index, pose)));
+    const lowest = Math.min(...poses.map(bottom));
+    this.falls = lowest < -6 * this.size;
+    const level = this.falls ? bottom(poses[0]) : lowest;
+    return level < -0.02 * this.size ? level : 0;
   }
 
   /** Height of the lowest point of what stands for a body: of its shapes, or of its ellipsoid. */
@@ -87,11 +119,34 @@ class Stage {
     return heights.length ? Math.min(...heights) : dot(point(pose, com), up);
   }
 
-  /** The first view. */
+  /** The first direction of view, on all of the motion, or on what travels at the time shown. */
   home() {
     this.camera.reset();
+    this.options.follow = this.travels;
+    const centre = this.recording.centre(this.poses ?? this.recording.posesAt(0));
+    this.fit(this.travels ? this.near(centre) : this.everything);
+  }
+
+  /** All of the motion, in the direction of view that there is. */
+  frameAll() {
+    this.options.follow = false;
+    this.fit(this.everything);
+  }
+
+  /** Begins or ends to go with the mechanism; it begins in the middle of the picture. */
+  follow(wanted) {
+    this.options.follow = wanted;
+    if (wanted && this.poses) this.fit(this.near(this.recording.centre(this.poses)));
+  }
+
+  /** All that is ever about the centre of mass, when that is at `centre`, with room to see where it goes. */
+  near(centre) {
+    return this.about.map(([place, radius]) => [add(scaled(place, 1.25), centre), 1.25 * radius]);
+  }
+
+  fit(balls) {
     const { clientWidth: width, clientHeight: height } = this.painter.canvas;
-    this.camera.fit(this.all.centre, this.all.radius, width / height || 1);
+    this.camera.fit(balls, width / height || 1, height ? Math.min(0.25, this.covered / height) : 0);
     this.followed = null;
   }
 
@@ -233,6 +288,15 @@ class Stage {
     if (options.frames) this.drawFrames(poses);
   }
 
+  /** Heights of the grids: the ground; where something falls through it, floors at equal distances, of which one is above it and one below. */
+  floors() {
+    const height = dot(this.camera.target, this.recording.up);
+    const spacing = 2 * this.size;
+    const below = Math.floor((height - this.size - this.ground) / spacing);
+    if (!this.falls || below >= 0) return [this.ground];
+    return [below, below + 1].map((floor) => this.ground + floor * spacing);
+  }
+
   /** Squares on the ground about the middle of the picture, 1, 2 or 5 times a power of ten wide. */
   drawGrid() {
     const { camera, recording, painter, colors } = this;
@@ -242,14 +306,16 @@ class Stage {
     const [e1, e2] = [camera.front, camera.left];
     const middle = [e1, e2].map((axis) => Math.round(dot(camera.target, axis) / step));
     const reach = 18;
-    const at = (u, v) => add(add(scaled(e1, u * step), scaled(e2, v * step)), scaled(recording.up, this.ground));
-    const points = [];
-    for (let k = -reach; k <= reach; k++) {
-      points.push(...at(middle[0] + k, middle[1] - reach), ...at(middle[0] + k, middle[1] + reach));
-      points.push(...at(middle[0] - reach, middle[1] + k), ...at(middle[0] + reach, middle[1] + k));
+    for (const height of this.floors()) {
+      const at = (u, v) => add(add(scaled(e1, u * step), scaled(e2, v * step)), scaled(recording.up, height));
+      const points = [];
+      for (let k = -reach; k <= reach; k++) {
+        points.push(...at(middle[0] + k, middle[1] - reach), ...at(middle[0] + k, middle[1] + reach));
+        points.push(...at(middle[0] - reach, middle[1] + k), ...at(middle[0] + reach, middle[1] + k));
+      }
+      painter.drawLines(new Float32Array(points), { color: colors.grid, alpha: 0.75, width: 1, centre: at(...middle), reach: reach * step });
     }
     this.gridStep = step;
-    painter.drawLines(new Float32Array(points), { color: colors.grid, alpha: 0.75, width: 1, centre: at(...middle), reach: reach * step });
   }
 
   /** Paths so far: the whole one of the selected body, else of all bodies over a third of the recording. */

@@ -21,6 +21,8 @@ Examples:
       with the method that the scene's springs and dampers call for; the summary says why
   hamel simulate scenes/rolling_disk.toml --html disk.html
       one page to open in a browser, with no network: the motion in three dimensions, and plots along the time
+  hamel simulate scenes/heavy_top.toml --picture top.svg --instants 6
+      a still picture: the last sample, and five before it, paler
   hamel simulate scenes/snake.toml --parquet snake.parquet
       the trajectory for pandas, polars, MATLAB or PlotJuggler
   hamel simulate scenes/report/chain_8.toml --compiled
@@ -46,7 +48,7 @@ CSV and Parquet have one row a sample and the same columns, whose names end with
   JOINT.tau.q_N_m                            with a controller, its efforts
 
 The page (`--html`) shows bodies by the [[shape]]s of the scene, or by the ellipsoids or boxes of their inertias. Drag to turn,
-wheel to zoom, click a body to select it, drag in a plot to move in time, Space to play, ← and → to step.
+wheel to zoom, click a body to select it, drag in a plot to move in time, Space to play, ← and → to step, F to follow, A to see all, R for the first view.
 It holds at most 60 samples a second of the trajectory: for a smooth picture keep --sample-step at 0.02 or less.
 
 Files are written beside their names and take them when they are whole; one that this command did not write is replaced with --force only. Ctrl-C ends the simulation
@@ -141,6 +143,14 @@ pub struct Args {
     /// Write a page to FILE that shows the motion and plots in a browser; it needs no network and no other file
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
+
+    /// Write a picture to FILE as SVG: the bodies at the last sample, as the page shows them
+    #[arg(long, value_name = "FILE")]
+    pub picture: Option<PathBuf>,
+
+    /// Show the motion in the picture by so many instants from the first sample to the last, the earlier ones paler
+    #[arg(long, value_name = "COUNT", default_value_t = 1, requires = "picture", value_parser = clap::value_parser!(u8).range(1..=50))]
+    pub instants: u8,
 
     /// Print the samples as JSON on stdout, and nothing else; no CSV unless asked for
     #[arg(long)]

@@ -12,6 +12,7 @@ mod parquet;
 #[cfg(not(feature = "parquet"))]
 #[path = "../absent/parquet.rs"]
 mod parquet;
+mod picture;
 mod plan;
 mod progress;
 mod run;

@@ -1,7 +1,7 @@
 //! What one run of `hamel simulate` is to do: the scene, the settings, the times and the files.
 
 use super::args::Args;
-use super::{csv, page, parquet, settings, times};
+use super::{csv, page, parquet, picture, settings, times};
 use crate::files::{Output, admit};
 use crate::input::Input;
 use crate::output::{Failure, tell};
@@ -34,6 +34,10 @@ pub struct Plan {
     pub html: Option<Output>,
     /// Whether it is printed as JSON.
     pub json: bool,
+    /// Where a picture of it goes, if anywhere.
+    pub picture: Option<Output>,
+    /// How many instants the picture shows.
+    pub instants: usize,
 }
 
 impl Plan {
@@ -69,7 +73,7 @@ impl Plan {
             let (method, why) = chosen.map_err(|error| Failure::Simulation(error.to_string()))?;
             (settings.method, reason) = (method, Some(why));
         }
-        let [csv, parquet, html] = outputs(args)?;
+        let [csv, parquet, html, picture] = outputs(args)?;
         Ok(Self {
             input,
             scene,
@@ -81,6 +85,8 @@ impl Plan {
             parquet,
             html,
             json: args.json,
+            picture,
+            instants: args.instants.into(),
         })
     }
 
@@ -92,7 +98,7 @@ impl Plan {
 
     /// The files of the trajectory.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
-        let files = [&self.csv, &self.parquet, &self.html];
+        let files = [&self.csv, &self.parquet, &self.html, &self.picture];
         files.into_iter().flatten().map(Output::path)
     }
 
@@ -135,11 +141,11 @@ impl Plan {
     }
 }
 
-/// The files of the trajectory: as CSV, as Parquet and as a page.
-fn outputs(args: &Args) -> Result<[Option<Output>; 3], Failure> {
+/// The files of the trajectory: as CSV, as Parquet, as a page and as a picture.
+fn outputs(args: &Args) -> Result<[Option<Output>; 4], Failure> {
     let csv = csv_path(args);
-    let paths = [&csv, &args.parquet, &args.html].map(Option::as_deref);
-    let known = [csv::is_own, parquet::is_own, page::is_own];
+    let paths = [&csv, &args.parquet, &args.html, &args.picture].map(Option::as_deref);
+    let known = [csv::is_own, parquet::is_own, page::is_own, picture::is_own];
     let written = paths.into_iter().zip(known);
     let written = written.filter_map(|(path, is_own)| Some((path?, is_own as _)));
     let read = [Some(&args.scene), args.controller.as_ref()];
@@ -159,6 +165,10 @@ fn csv_path(args: &Args) -> Option<PathBuf> {
     };
     match &args.csv {
         Some(path) => Some(path.clone()),
-        None => (!args.json && args.parquet.is_none() && args.html.is_none()).then(default),
+        None => {
+            let others = [&args.parquet, &args.html, &args.picture];
+            let is_alone = others.into_iter().all(Option::is_none);
+            (!args.json && is_alone).then(default)
+        }
     }
 }

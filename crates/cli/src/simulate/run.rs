@@ -8,6 +8,7 @@ use super::csv::Trajectory;
 use super::json::{self, Report, Statistics};
 use super::page::Page;
 use super::parquet::Parquet;
+use super::picture::Picture;
 use super::plan::Plan;
 use super::progress::Progress;
 use super::sample;
@@ -210,6 +211,7 @@ struct Files<'a> {
     trajectory: Option<Trajectory<'a>>,
     parquet: Option<Parquet<'a>>,
     page: Option<Page<'a>>,
+    picture: Option<Picture<'a>>,
 }
 
 /// What a recorder leaves.
@@ -226,6 +228,7 @@ impl<'a> Files<'a> {
             trajectory: Trajectory::create(plan, columns)?,
             parquet: Parquet::create(plan, columns)?,
             page: Page::create(plan)?,
+            picture: Picture::create(plan)?,
         })
     }
 
@@ -244,7 +247,8 @@ impl<'a> Files<'a> {
         let csv = self.trajectory.map_or(Ok(()), Trajectory::finish);
         let parquet = self.parquet.map_or(Ok(()), Parquet::finish);
         let page = self.page.map_or(Ok(()), Page::finish);
-        csv.and(parquet).and(page)
+        let picture = self.picture.map_or(Ok(()), Picture::finish);
+        csv.and(parquet).and(page).and(picture)
     }
 }
 
@@ -308,6 +312,9 @@ impl<'a> Recorder<'a> {
         }
         if let Some(page) = &mut files.page {
             page.sample(step, &found, efforts);
+        }
+        if let Some(picture) = &mut files.picture {
+            picture.sample(step.time, &found);
         }
         self.has_samples = true;
         Ok(())

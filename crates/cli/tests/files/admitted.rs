@@ -4,10 +4,11 @@ use super::place::{Place, said};
 use std::fs;
 
 /// Commands that read the first file and write the second; `IN` and `OUT` stand for them.
-const COMMANDS: [(&str, &str); 6] = [
+const COMMANDS: [(&str, &str); 7] = [
     ("top.toml", "simulate IN --t-end 0.01 --csv OUT"),
     ("top.toml", "simulate IN --t-end 0.01 --parquet OUT"),
     ("top.toml", "simulate IN --t-end 0.01 --html OUT"),
+    ("top.toml", "simulate IN --t-end 0.01 --picture OUT"),
     ("top.toml", "compile IN --function momenta -o OUT"),
     ("panda.urdf", "import IN -o OUT"),
     ("ball.joint", "joints explain ./IN -o OUT"),

@@ -92,10 +92,13 @@ pub fn read(text: &str, source_name: &str, options: &Options) -> Result<Import, 
     }
 }
 
-/// Whether the file's name says that it holds a robot in URDF.
-pub fn is_named(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("urdf"))
+/// Whether a file holds a robot rather than a scene: what is XML is read as URDF, whatever the file's ending, and so is what ends in `.urdf`.
+///
+/// No scene begins as XML does; other formats of robots do, and [`read`] names them.
+pub fn is_robot(path: &Path, text: &str) -> bool {
+    let is_before_xml = |c: char| c.is_whitespace() || c == '\u{feff}';
+    let ending = path.extension().unwrap_or_default();
+    ending.eq_ignore_ascii_case("urdf") || text.trim_start_matches(is_before_xml).starts_with('<')
 }
 
 /// The robot in the file `path`.

@@ -2,6 +2,7 @@
 
 use super::super::columns::Units;
 use super::super::plan::Plan;
+use super::unwrapped::Unwrapped;
 use hamel::integrate::Step;
 use hamel::mechanism::{Body, Kinematics, Mechanism};
 use hamel::spatial::split;
@@ -42,6 +43,9 @@ pub struct Charts<'a> {
     columns: usize,
     first_energy: Option<f64>,
     steps: Steps,
+    /// One a body: the coordinates of its joint from home.
+    followed: Vec<Unwrapped>,
+    coordinates: Vec<f64>,
 }
 
 impl<'a> Charts<'a> {
@@ -56,6 +60,12 @@ impl<'a> Charts<'a> {
             columns,
             first_energy: None,
             steps: Steps::default(),
+            followed: mechanism
+                .bodies()
+                .iter()
+                .map(|body| Unwrapped::new(body.joint(), body.home()))
+                .collect(),
+            coordinates: Vec::new(),
         }
     }
 
@@ -74,7 +84,16 @@ impl<'a> Charts<'a> {
         self.steps.note(time);
     }
 
-    /// The columns' values at the end of `step`, in the order of [`described`]; `efforts` are a controller's, empty without one.
+    /// Follows the coordinates to a sample, also to one that is no frame: the fewer turn between two, the surer.
+    pub fn follow(&mut self, configuration: &[f64]) {
+        let bodies = self.mechanism.bodies().iter().zip(&mut self.followed);
+        let coordinates = bodies.flat_map(|(body, followed)| {
+            followed.follow(body.joint(), body.configuration(configuration))
+        });
+        self.coordinates = coordinates.collect();
+    }
+
+    /// The columns' values at the end of `step`, to which the coordinates have been followed, in the order of [`described`]; `efforts` are a controller's, empty without one.
     pub fn values(
         &mut self,
         step: &Step<'_>,
@@ -94,12 +113,7 @@ impl<'a> Charts<'a> {
         for momentum in [linear, about_origin, about_com] {
             values.extend(momentum.iter());
         }
-        for body in self.mechanism.bodies() {
-            values.extend(local_coordinates(
-                body,
-                body.configuration(step.configuration),
-            ));
-        }
+        values.extend(&self.coordinates);
         values.extend(step.speeds);
         values.extend(efforts);
         values.extend(self.steps.take());
@@ -125,15 +139,6 @@ impl Steps {
 
     fn take(&mut self) -> [f64; 2] {
         self.extremes.take().unwrap_or([f64::NAN; 2])
-    }
-}
-
-/// ϕ of `q` from the joint's home; NaN where there is none.
-fn local_coordinates(body: &Body, q: &[f64]) -> Vec<f64> {
-    let mut phi = vec![0.0; body.joint().layout().freedoms];
-    match body.joint().local(&body.home(), q, &mut phi) {
-        Ok(()) => phi,
-        Err(_) => vec![f64::NAN; phi.len()],
     }
 }
 
@@ -189,7 +194,7 @@ fn described(plan: &Plan, next: &mut usize) -> Vec<Chart> {
         ("Energy", false, energy),
         (change_title, false, change),
         ("Momentum", false, momentum),
-        ("Coordinates ϕ from home", false, coordinates),
+        ("Coordinates from home", false, coordinates),
         ("Speeds v̄", false, speeds),
         ("Controller’s efforts τ", false, efforts),
         ("Integration steps", true, steps),

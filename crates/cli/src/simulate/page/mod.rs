@@ -8,6 +8,9 @@ mod charts;
 mod header;
 mod solids;
 mod text;
+mod unwrapped;
+
+pub(super) use solids::Ellipsoid;
 
 use super::plan::Plan;
 use crate::files::{Draft, first_line};
@@ -78,6 +81,7 @@ impl<'a> Page<'a> {
     ///
     /// `efforts` are the controller's, empty without one.
     pub fn sample(&mut self, step: &Step<'_>, kinematics: &Kinematics, efforts: &[f64]) {
+        self.charts.follow(step.configuration);
         let near = step.time - self.last_frame < self.spacing * (1.0 - ROUNDING);
         let is_last = step
             .sample

@@ -12,7 +12,8 @@ pub struct Ellipsoid {
     /// Half axes, m.
     half: [f64; 3],
     /// Pose of its principal axes in the body frame, at the centre of mass.
-    pose: [f64; 7],
+    #[serde(serialize_with = "as_seven")]
+    pose: Pose<f64>,
 }
 
 impl Ellipsoid {
@@ -30,9 +31,23 @@ impl Ellipsoid {
         });
         Some(Self {
             half: half.into(),
-            pose: seven(&Pose::new(proper(principal.eigenvectors), mass.com)),
+            pose: Pose::new(proper(principal.eigenvectors), mass.com),
         })
     }
+
+    /// Half axes, m.
+    pub fn half(&self) -> Vector3<f64> {
+        self.half.into()
+    }
+
+    /// Pose of its principal axes in the body frame.
+    pub const fn axes(&self) -> Pose<f64> {
+        self.pose
+    }
+}
+
+fn as_seven<S: serde::Serializer>(pose: &Pose<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    seven(pose).serialize(serializer)
 }
 
 /// The rotation among principal axes with their signs changed.
