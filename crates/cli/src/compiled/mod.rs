@@ -57,6 +57,10 @@ pub struct Equations {
     /// Functions that would be too long, which the tree computes.
     pub left_out: Vec<TooLong>,
     /// Those of the module.
+    #[cfg_attr(
+        not(feature = "report"),
+        expect(dead_code, reason = "the report alone tells it")
+    )]
     pub functions: Vec<Kind>,
     _library: Library,
 }
@@ -69,8 +73,16 @@ pub struct Cost {
     /// From the text to the library, by the C compiler, s.
     pub compilation: f64,
     /// Length of the text, bytes.
+    #[cfg_attr(
+        not(feature = "report"),
+        expect(dead_code, reason = "the report alone tells it")
+    )]
     pub text: usize,
     /// Length of the library, bytes.
+    #[cfg_attr(
+        not(feature = "report"),
+        expect(dead_code, reason = "the report alone tells it")
+    )]
     pub library: u64,
 }
 

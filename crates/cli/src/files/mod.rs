@@ -7,6 +7,7 @@
 mod admit;
 mod draft;
 mod first;
+#[cfg(feature = "report")]
 mod lock;
 mod place;
 mod unfinished;
@@ -14,6 +15,7 @@ mod unfinished;
 pub use admit::{Output, admit, new_file};
 pub use draft::Draft;
 pub use first::first_line;
+#[cfg(feature = "report")]
 pub use lock::Lock;
 pub use unfinished::{Unfinished, private_folder, remove_unfinished};
 

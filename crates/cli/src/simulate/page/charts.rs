@@ -6,7 +6,6 @@ use super::unwrapped::Unwrapped;
 use hamel::integrate::Step;
 use hamel::mechanism::{Body, Kinematics, Mechanism};
 use hamel::spatial::split;
-use itertools::Itertools;
 use serde::Serialize;
 
 /// A plot: one of its variants at a time is shown.
@@ -232,6 +231,11 @@ fn numbered<'n>(names: impl Iterator<Item = &'n str>, next: &mut usize) -> Vec<C
 
 /// Each unit once, in the order in which they come.
 fn distinct(units: Vec<&'static str>) -> String {
-    let units = units.into_iter().filter(|unit| !unit.is_empty());
-    units.unique().collect::<Vec<_>>().join(", ")
+    let mut distinct: Vec<&str> = Vec::new();
+    for unit in units.into_iter().filter(|unit| !unit.is_empty()) {
+        if !distinct.contains(&unit) {
+            distinct.push(unit);
+        }
+    }
+    distinct.join(", ")
 }
