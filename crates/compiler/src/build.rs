@@ -88,8 +88,7 @@ pub struct Module {
     pub left_out: Vec<TooLong>,
 }
 
-/// Why a scene is not compiled.
-#[derive(Debug)]
+/// Why a scene is not compiled. `Debug` prints the same text as `Display`, because that is what a failing build script shows.
 pub enum Error {
     /// A file cannot be read or written, or `OUT_DIR` is not set.
     File(PathBuf, std::io::Error),
@@ -134,6 +133,12 @@ impl std::fmt::Display for Error {
                 "lanes are of modules in Rust, whose functions are generic over scalars: a module in C takes one state at a time",
             ),
         }
+    }
+}
+
+impl std::fmt::Debug for Error {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{self}")
     }
 }
 

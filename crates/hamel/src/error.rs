@@ -6,10 +6,10 @@ use hamel_runtime::dynamics::DynamicsError;
 use hamel_runtime::mechanism::{MechanismErrors, StateError};
 use hamel_scene::suggest::nearest;
 use hamel_scene::{Diagnostics, TooManySamples};
-use std::fmt::{Display, Formatter};
+use std::fmt::{Debug, Display, Formatter};
 
-/// Why a model cannot be made, asked or moved.
-#[derive(Debug, thiserror::Error)]
+/// Why a model cannot be made, asked or moved. `Debug` prints the same text as `Display`, because that is what a failing `main` shows.
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// Mistakes in a scene or a robot file, each with its line.
@@ -39,6 +39,12 @@ pub enum Error {
     /// A name that the model does not have.
     #[error(transparent)]
     Name(#[from] UnknownName),
+}
+
+impl Debug for Error {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{self}")
+    }
 }
 
 /// What is wrong with a body that was made by hand.

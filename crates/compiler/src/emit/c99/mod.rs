@@ -1,6 +1,6 @@
 //! A module of functions in C99: a source that needs nothing but `<math.h>`, and its header.
 //!
-//! Templates lay the texts out (`compiler/templates`); what they are filled with is made here, operation by operation as in Rust. Sums of
+//! Templates lay the texts out (`crates/compiler/templates`); what they are filled with is made here, operation by operation as in Rust. Sums of
 //! products are multiply–adds, fused only where the target does that in hardware. Sines and cosines are those of the C library, one by one:
 //! the polynomials of the Rust runtime pay where a compiler vectorises them across angles, which ISO C has no means to ask for.
 

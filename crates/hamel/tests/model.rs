@@ -1,0 +1,184 @@
+//! Models agree with the runtime below them, and refuse what is wrong by name.
+
+use hamel::dynamics::Frame;
+use hamel::integrate::{Event, Method, State};
+use hamel::{Body, Builder, Error, Model};
+
+const ROBOT: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../../tests/data/urdf/panda7.urdf"
+);
+const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/");
+
+fn robot() -> Model {
+    hamel::load(ROBOT).expect("a robot")
+}
+
+fn moving(robot: &Model) -> State {
+    let mut state = robot.state();
+    for (n, joint) in robot
+        .joints()
+        .map(str::to_owned)
+        .enumerate()
+        .collect::<Vec<_>>()
+    {
+        let x = 0.3 + 0.1 * n as f64;
+        robot
+            .set_position(&mut state, &joint, &[x])
+            .expect("an angle");
+        robot
+            .set_speeds(&mut state, &joint, &[-x])
+            .expect("a speed");
+    }
+    state
+}
+
+#[test]
+fn equations_of_motion_hold() -> Result<(), Error> {
+    let mut robot = robot();
+    let state = moving(&robot);
+    let efforts = [1.0, -2.0, 3.0, 0.5, 0.1, -0.2, 0.3];
+    let rates = robot.forward_dynamics(&state, &efforts)?;
+    let left = robot.mass_matrix(&state)? * &rates + robot.bias_forces(&state)?;
+    let needed = robot.inverse_dynamics(&state, rates.as_slice())?;
+    for (i, effort) in efforts.iter().enumerate() {
+        // A thousand roundings of efforts up to 100 N m.
+        assert!((left[i] - effort).abs() < 1e-11, "{left}");
+        assert!((needed[i] - effort).abs() < 1e-11, "{needed}");
+    }
+    Ok(())
+}
+
+#[test]
+fn jacobians_take_speeds_to_twists() -> Result<(), Error> {
+    let mut robot = robot();
+    let state = moving(&robot);
+    let speeds = hamel::nalgebra::DVector::from_column_slice(&state.speeds);
+    for frame in ["panda_hand_tcp", "panda_link4"] {
+        let twist = robot.jacobian(&state, frame)? * &speeds;
+        let found = robot.twist(&state, frame)?;
+        assert!((twist - found).amax() < 1e-14);
+        // The last rows are the velocity of the frame's origin in world axes.
+        let step = 1e-6;
+        let mut places = [-step, step].map(|dt| {
+            let mut moved = state.clone();
+            for (q, v) in moved.configuration.iter_mut().zip(&state.speeds) {
+                *q += dt * v;
+            }
+            robot.pose(&moved, frame).expect("a pose").translation
+        });
+        places[1] -= places[0];
+        let velocity = places[1] / (2.0 * step);
+        // Rounding of positions, over the step.
+        assert!((velocity - found.fixed_rows::<3>(3)).amax() < 1e-9);
+        let body = robot.jacobian_in(&state, frame, Frame::Body)? * &speeds;
+        assert!((body.rows(0, 3).norm() - found.fixed_rows::<3>(0).norm()).abs() < 1e-13);
+    }
+    Ok(())
+}
+
+#[test]
+fn names_that_are_not_there_are_told_with_the_nearest() {
+    let mut robot = robot();
+    let state = robot.state();
+    let error = robot
+        .jacobian(&state, "panda_hand_tpc")
+        .expect_err("no such frame");
+    assert!(error.to_string().contains("`panda_hand_tcp`"), "{error}");
+    let mut moved = state.clone();
+    let error = robot
+        .set_position(&mut moved, "panda_jont4", &[0.1])
+        .expect_err("no such joint");
+    assert!(error.to_string().contains("`panda_joint4`"), "{error}");
+    assert!(
+        robot
+            .set_position(&mut moved, "panda_joint4", &[0.1, 0.2])
+            .is_err()
+    );
+    assert!(
+        robot
+            .set_position(&mut moved, "panda_joint4", &[f64::NAN])
+            .is_err()
+    );
+    assert!(robot.set_speeds(&mut moved, "panda_joint4", &[]).is_err());
+    assert_eq!(moved, state);
+    let mut short = state.clone();
+    short.configuration.clear();
+    assert!(
+        robot
+            .set_position(&mut short, "panda_joint4", &[0.1])
+            .is_err()
+    );
+    assert!(robot.forward_dynamics(&short, &[0.0; 7]).is_err());
+    assert!(robot.forward_dynamics(&state, &[]).is_err());
+}
+
+#[test]
+fn bodies_by_hand_are_refused_all_at_once() {
+    let error = Builder::new()
+        .body(Body::new("a", "revolut"))
+        .body(Body::new("b", "screw"))
+        .body(Body::new("c", "screw").parameter("leed", 0.1))
+        .body(Body::new("d", "revolute").on("e"))
+        .body(Body::new("e", "revolute").mass(-1.0, [0.0; 3]))
+        .build()
+        .expect_err("five mistakes");
+    let text = error.to_string();
+    assert_eq!(text.lines().count(), 5, "{text}");
+    for told in [
+        "`revolute`",
+        "needs the parameter `lead`",
+        "no parameter `leed`",
+        "`e`",
+        "mass",
+    ] {
+        assert!(text.contains(told), "{told}: {text}");
+    }
+}
+
+#[test]
+fn a_scene_moves_as_it_says() -> Result<(), Error> {
+    for scene in [
+        "plate_cart_arm.toml",
+        "ball_pendulum_upright.toml",
+        "balance_mpc.toml",
+    ] {
+        let model = hamel::load(format!("{SCENES}{scene}"))?;
+        let motion = model.simulate().until(0.1).every(0.05).run()?;
+        assert_eq!(motion.samples.len(), 3, "{scene}");
+        assert_eq!(motion.state.time, 0.1);
+    }
+    Ok(())
+}
+
+#[test]
+fn a_simulation_takes_inputs_events_and_times() -> Result<(), Error> {
+    let rod = Body::new("rod", "prismatic").mass(2.0, [0.0; 3]);
+    let slide = Builder::new().gravity([0.0; 3]).body(rod).build()?;
+    let simulation = || {
+        slide
+            .simulate()
+            .until(2.0)
+            .method(Method::dormand_prince(1e-12))
+    };
+    let motion = simulation()
+        .inputs(|_time, _q, _speeds, efforts| efforts[0] = 4.0)
+        .at([0.5, 1.0])
+        .event(Event::new("one metre", |_time, q, _speeds| q[0] - 1.0).stopping())
+        .run()?;
+    // x = t² under 4 N on 2 kg.
+    assert!(motion.stopped && (motion.state.time - 1.0).abs() < 1e-12);
+    assert!((motion.samples[0].configuration[0] - 0.25).abs() < 1e-12);
+    assert!(simulation().every(f64::NAN).run().is_err());
+    assert!(simulation().every(1e-300).run().is_err());
+    assert!(simulation().until(f64::INFINITY).run().is_err());
+    assert!(simulation().at([1.0, 0.5]).run().is_err());
+    Ok(())
+}
+
+#[test]
+fn an_error_that_ends_a_program_is_told_in_words() {
+    let error = hamel::load("no such file.urdf").expect_err("no such file");
+    assert_eq!(format!("{error:?}"), error.to_string());
+    assert!(error.to_string().contains("no such file.urdf"), "{error}");
+}
