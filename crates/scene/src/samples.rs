@@ -36,8 +36,7 @@ impl Settings {
     pub fn sample_times(&self) -> Result<Vec<f64>, TooManySamples> {
         let (step, t_end) = (self.sample_step, self.t_end);
         let count = t_end / step;
-        // A comparison that NaN fails as well.
-        if !(count <= MOST_SAMPLES) {
+        if count.is_nan() || count > MOST_SAMPLES {
             return Err(TooManySamples { step, t_end, count });
         }
         // Rounding must not add a sample just before the last one.
