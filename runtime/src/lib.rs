@@ -2,7 +2,8 @@
 //!
 //! A joint type implements [`joint::Joint`]; the generator `hamel-codegen` writes such implementations from `.joint`
 //! files. A [`mechanism::Mechanism`] is a tree of bodies on such joints; [`dynamics`] evaluates its equations of motion in
-//! Lagrangian and port-Hamiltonian form; [`integrate`] advances the state on the joints' manifolds; [`control`] closes loops around them.
+//! Lagrangian and port-Hamiltonian form. Motions, controllers and compiled scenes are crates beside this one; users depend on `hamel`, which holds all
+//! of them.
 //!
 //! Without default features the crate is `no_std`; mechanisms and what is built on them need the feature `alloc`, joints and
 //! their kernels do not.

@@ -93,7 +93,7 @@ impl ForwardDerivatives {
         }
     }
 
-    /// How many numbers a compiled module writes for the derivatives of `mechanism` ([`Equations`](crate::compiled::Equations::forward_dynamics_derivatives)): for each speed
+    /// How many numbers a compiled module writes for the derivatives of `mechanism` (`Equations::forward_dynamics_derivatives` of `hamel-compiled`): for each speed
     /// the rows of all matrices, and its rate.
     pub fn entries(mechanism: &Mechanism) -> usize {
         let layout = mechanism.layout();

@@ -33,7 +33,7 @@ const SHRINKS: f64 = 0.5;
 ///
 /// For light bodies that carry heavy ones, where [`Recursive`] loses as many digits as the ratio of their masses has zeros. The motion of a
 /// mechanism in the Lagrangian form then keeps them as well; momenta in doubles do not hold what their speeds are asked to
-/// ([`Form::Hamiltonian`](crate::integrate::Form::Hamiltonian)). A mechanism whose joints constraints couple is left to [`Recursive`] as it is.
+/// (`Form::Hamiltonian` of `hamel-integrate`). A mechanism whose joints constraints couple is left to [`Recursive`] as it is.
 ///
 /// After construction nothing allocates.
 #[derive(Clone, Debug)]
