@@ -130,6 +130,7 @@ pub struct JointEntry {
 
 /// Why a joint cannot be built from the values given.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ParameterError {
     /// Too few or too many values.
     #[error("joint type `{joint}` takes {expected} parameter(s), not {found}")]

@@ -9,6 +9,7 @@ use std::fmt::{Debug, Display, Formatter};
 use std::path::{Path, PathBuf};
 
 /// Why generation failed. `Debug` prints the same text as `Display`, because that is what a failing `main` shows.
+#[non_exhaustive]
 pub enum BuildError {
     /// Specs with errors, all of them.
     Specs(Vec<Diagnostics>),

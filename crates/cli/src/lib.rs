@@ -25,7 +25,7 @@ use std::process::ExitCode;
 /// What `hamel --help` ends with.
 const FEATURES: &str = "`hamel help COMMAND` explains a command with examples.
 
-What takes long to build is left out unless `cargo` is told otherwise, `cargo run --release --features full`:
+What takes long to build is left out unless `cargo` is told otherwise, `cargo run --release -p hamel-cli --features full`:
   parquet     trajectories as Parquet, `simulate --parquet`
   predictive  scenes whose controller is model predictive control, `kind = \"mpc\"`
   report      `hamel report`: error against run time, with plots

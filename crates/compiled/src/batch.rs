@@ -6,6 +6,7 @@ use core::fmt::Write;
 
 /// Why a batch is not computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum BatchError {
     /// The module was compiled without the function.
     #[error(

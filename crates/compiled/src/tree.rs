@@ -13,6 +13,7 @@ use hamel_runtime::scalar::all_finite;
 
 /// A module that does not belong to a mechanism.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CompiledError {
     /// Sizes differ.
     #[error(

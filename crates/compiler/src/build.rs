@@ -89,6 +89,7 @@ pub struct Module {
 }
 
 /// Why a scene is not compiled. `Debug` prints the same text as `Display`, because that is what a failing build script shows.
+#[non_exhaustive]
 pub enum Error {
     /// A file cannot be read or written, or `OUT_DIR` is not set.
     File(PathBuf, std::io::Error),

@@ -10,6 +10,7 @@ use hamel_runtime::shown::Number;
 
 /// Why a controller cannot be made, or cannot go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ControlError {
     /// A number out of range.
     #[error("{quantity} is {value}: it must be {requirement}", value = Number(*.value))]

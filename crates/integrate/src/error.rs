@@ -9,6 +9,7 @@ use hamel_runtime::shown::Number;
 
 /// Why a step cannot be taken, or is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StepFailure {
     /// The length of a step that is asked for.
     #[error("the step is {step} s long: it must be positive and finite", step = Number(*.step))]
@@ -98,6 +99,7 @@ fn advice(cause: &StepFailure) -> &'static str {
 
 /// Why an integration ends before its time.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum IntegrateError {
     /// An option out of range.
     #[error("{option} is {value}: it must be {requirement}", value = Number(*.value))]

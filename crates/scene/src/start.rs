@@ -9,6 +9,7 @@ use std::cell::RefCell;
 
 /// Why a scene cannot start.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StartError {
     /// The first state, or the method, is refused.
     #[error(transparent)]

@@ -5,6 +5,7 @@ use alloc::string::String;
 
 /// Why equations of motion cannot be evaluated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DynamicsError {
     /// Some motion carries no inertia.
     #[error(

@@ -21,6 +21,7 @@ pub trait QuasiSystem<const N: usize> {
 
 /// Why Theorem 1 does not apply at a point.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum QuasiError {
     /// S(q) has no inverse.
     #[error("the velocity map S(q) is singular at this q")]

@@ -6,6 +6,7 @@ use alloc::string::String;
 
 /// Why an element does not fit its mechanism.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ElementError {
     /// No body has that index.
     #[error("{element}: there is no body of index {index}, the mechanism has {count}")]

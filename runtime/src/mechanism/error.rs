@@ -25,6 +25,7 @@ impl Display for Loci {
 
 /// Why a mechanism cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MechanismError {
     /// Gravity is NaN or infinite.
     #[error("gravity component {axis} is {value}, not a finite number", value = Number(*.value))]
@@ -231,6 +232,7 @@ impl core::error::Error for MechanismErrors {}
 
 /// Why a state, or a part of one, is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StateError {
     /// A vector of the wrong size.
     #[error("{quantity} of {element} has {found} entries: it must have {expected}")]

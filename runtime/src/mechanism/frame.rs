@@ -19,6 +19,7 @@ pub struct NamedFrame {
 
 /// What is wrong with a named frame.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FrameFault {
     /// No body has that index.
     #[error("there is no body of index {index}, the mechanism has {count}")]

@@ -9,6 +9,7 @@ pub const ROTATION_TOLERANCE: f64 = 1e-9;
 
 /// Why a pose is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PoseError {
     /// A number is NaN or infinite.
     #[error("{part} entry ({row}, {column}) is {value}, not a finite number", value = Number(*.value))]

@@ -37,6 +37,7 @@ pub struct MassProperties {
 
 /// Why mass properties are refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MassError {
     /// A number is NaN or infinite.
     #[error("{quantity} is {value}, not a finite number", value = Number(*.value))]

@@ -45,6 +45,6 @@ impl<'a> Parquet<'a> {
 /// Says what to build.
 fn absent() -> Failure {
     Failure::Options(String::from(
-        "this program was built without Parquet: build it with the feature, `cargo run --release --features parquet -- simulate …`",
+        "this program was built without Parquet: build it with the feature, `cargo run --release -p hamel-cli --features parquet -- simulate …`",
     ))
 }

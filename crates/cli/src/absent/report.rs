@@ -19,6 +19,6 @@ pub struct Args {
 /// Always.
 pub fn run(_: &Args, _: &JointRegistry) -> Result<(), Failure> {
     Err(Failure::Options(String::from(
-        "this program was built without `hamel report`: build it with the feature, `cargo run --release --features report -- report`",
+        "this program was built without `hamel report`: build it with the feature, `cargo run --release -p hamel-cli --features report -- report`",
     )))
 }

@@ -136,7 +136,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
 
-    /// Write the trajectory to FILE as Parquet
+    /// Write the trajectory to FILE as Parquet (in a program built with `--features parquet`)
     #[arg(long, value_name = "FILE")]
     pub parquet: Option<PathBuf>,
 

@@ -50,10 +50,8 @@ impl<'a> Places<'a> {
             MechanismError::Element(ElementError::Value { element, .. }) => {
                 self.constraint(element)
             }
-            MechanismError::Gravity { .. }
-            | MechanismError::Coupled { .. }
-            | MechanismError::Configuration(_)
-            | MechanismError::Element(_) => None,
+            // Of gravity, of all constraints together, or of the configuration.
+            _ => None,
         };
         at(span, error.to_string())
     }

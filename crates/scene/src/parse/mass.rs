@@ -54,9 +54,8 @@ fn refusal(owner: &str, error: &MassError, spans: Spans) -> Diagnostic {
     let span = match error {
         MassError::NegativeMass { .. } => spans.mass,
         MassError::NotFinite { .. } => spans.com,
-        MassError::NotSymmetric { .. }
-        | MassError::NotPositive { .. }
-        | MassError::Triangle { .. } => spans.inertia,
+        // All others are of the inertia.
+        _ => spans.inertia,
     };
     Diagnostic::new(span, format!("{owner}{error}"))
 }
