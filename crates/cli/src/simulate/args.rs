@@ -101,7 +101,7 @@ pub struct Args {
     )]
     pub tol: Option<f64>,
 
-    /// Length of all steps, s, shorter where samples are landed on; implies rk4 where the method has step control
+    /// Fixed step size, s; a step is shortened where needed to end on a sample time; implies rk4 where the method has step control
     #[arg(
         long,
         value_name = "SECONDS",
@@ -156,7 +156,7 @@ pub struct Args {
     #[arg(long)]
     pub json: bool,
 
-    /// Print nothing but errors; also what is not simulated is not told
+    /// Print errors only, no warnings about what is not simulated (limits, friction, …)
     #[arg(long, conflicts_with = "json")]
     pub quiet: bool,
 
@@ -167,9 +167,9 @@ pub struct Args {
 /// Names of the two forms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FormName {
-    /// State (Q, v), Theorem 2
+    /// State (Q, v), (24) and (34)
     Lagrangian,
-    /// State (Q, p), port-Hamiltonian, Theorem 3
+    /// State (Q, p), port-Hamiltonian, (27) and (35)
     Hamiltonian,
 }
 

@@ -55,7 +55,7 @@ pub const MECHANISM: [Part<Whole>; 4] = [
         key: "energy",
         names: &["energy"],
         unit: "J",
-        meaning: "kinetic and potential energy of the bodies; that of springs is not in it",
+        meaning: "kinetic and potential energy, of gravity and of springs",
         read: |whole, row| row.push(whole.energy),
     },
     Part {
