@@ -29,12 +29,17 @@ impl<'a> Feedback<'a> {
         }
     }
 
+    /// Takes a step that was accepted: step control has gone round what failed before.
+    pub fn accepted(&mut self) {
+        self.failure = None;
+    }
+
     /// The controller itself.
     pub fn controller(&mut self) -> &mut dyn Controller {
         self.controller
     }
 
-    /// The first failure, and its time (s); step control may have gone round it since.
+    /// The first failure since the last accepted step ([`Feedback::accepted`]), and its time, s.
     pub const fn failure(&self) -> Option<&(f64, ControlError)> {
         self.failure.as_ref()
     }

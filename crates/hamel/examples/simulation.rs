@@ -17,7 +17,7 @@ pub fn main() -> Result<(), hamel::Error> {
     let motion = pendulum
         .simulate()
         .until(2.0)
-        .every(0.5)
+        .sample_every(0.5)
         .event(lowest)
         .run()?;
     for crossing in &motion.events {

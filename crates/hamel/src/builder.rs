@@ -3,6 +3,7 @@
 use crate::error::{BodyError, Error};
 use crate::model::Model;
 use hamel_joints::registry;
+use hamel_runtime::erased::AnyJoint;
 use hamel_runtime::mechanism::{BodySpec, Mechanism};
 use hamel_runtime::registry::JointRegistry;
 use hamel_runtime::spatial::{MassProperties, Pose};
@@ -11,7 +12,7 @@ use hamel_scene::{Scene, Settings};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
-/// A body with the joint that it hangs on: a rigid body of mass zero, fixed to nothing, until said otherwise.
+/// A body with the joint that it hangs on: a rigid body of mass zero, on a joint to the world, until said otherwise.
 ///
 /// Its pose in its parent is `placement · H(Q)`; a joint acts about and along the z axis of its own frame, which `placement` turns.
 #[derive(Clone, Debug)]
@@ -55,7 +56,7 @@ impl Body {
         self
     }
 
-    /// Where the joint's frame is in its parent's.
+    /// Where the joint's frame is in its parent's; replaces what [`Body::at`] said.
     #[must_use]
     pub const fn placed(mut self, pose: Pose<f64>) -> Self {
         self.placement = pose;
@@ -90,68 +91,93 @@ impl Body {
         self
     }
 
-    fn error(&self, reason: impl ToString) -> BodyError {
-        BodyError {
-            body: self.name.clone(),
-            reason: reason.to_string(),
-        }
-    }
-
     /// The parameters in the order of the joint type.
-    fn values(&self, known: &[&str]) -> Result<Vec<f64>, BodyError> {
-        let is_known = |name: &str| known.contains(&name);
-        if let Some((name, _)) = self.parameters.iter().find(|(name, _)| !is_known(name)) {
-            let known = known.join("`, `");
-            let joint = &self.joint;
-            return Err(self.error(format!(
-                "joint type `{joint}` has no parameter `{name}`; it has `{known}`"
-            )));
-        }
-        let value = |name: &&str| {
+    fn values(&self, known: &[&str]) -> Result<Vec<f64>, Vec<String>> {
+        let joint = &self.joint;
+        let of_joint = match known {
+            [] => String::from("none"),
+            known => format!("`{}`", known.join("`, `")),
+        };
+        let unknown = self
+            .parameters
+            .iter()
+            .filter(|(name, _)| !known.contains(&&**name));
+        let mut errors: Vec<String> = unknown
+            .map(|(name, _)| {
+                format!("joint type `{joint}` has no parameter `{name}`; it has {of_joint}")
+            })
+            .collect();
+        let mut values = Vec::new();
+        for name in known {
             let mut given = self.parameters.iter().filter(|(given, _)| given == name);
             match (given.next(), given.next()) {
-                (Some(&(_, value)), None) => Ok(value),
-                (None, _) => Err(self.error(format!(
-                    "joint type `{}` needs the parameter `{name}`",
-                    self.joint
-                ))),
-                (Some(_), Some(_)) => {
-                    Err(self.error(format!("the parameter `{name}` is given twice")))
+                (Some(&(_, value)), None) => values.push(value),
+                (None, _) => {
+                    errors.push(format!("joint type `{joint}` needs the parameter `{name}`"));
                 }
+                (Some(_), Some(_)) => errors.push(format!("the parameter `{name}` is given twice")),
             }
-        };
-        known.iter().map(value).collect()
+        }
+        match errors.is_empty() {
+            true => Ok(values),
+            false => Err(errors),
+        }
     }
 
-    fn spec(&self, before: &[Self], registry: &JointRegistry) -> Result<BodySpec, BodyError> {
-        let unknown = |kind: &str, name: &str, found: Option<&str>| {
-            let hint = found.map(|name| format!("; did you mean `{name}`?"));
-            self.error(format!("no {kind} `{name}`{}", hint.unwrap_or_default()))
-        };
+    fn joint(&self, registry: &JointRegistry) -> Result<Arc<dyn AnyJoint>, Vec<String>> {
         let entry = registry.get(&self.joint).ok_or_else(|| {
-            let found = nearest(&self.joint, registry.names());
-            unknown("joint type is called", &self.joint, found)
+            let hint = hint(&self.joint, registry.names());
+            vec![format!("no joint type is called `{}`{hint}", self.joint)]
         })?;
         let names: Vec<&str> = entry.parameters.iter().map(|info| info.name).collect();
-        let joint = (entry.build)(&self.values(&names)?).map_err(|error| self.error(error))?;
-        let parent = self.parent.as_deref().map(|parent| {
-            let found = before.iter().position(|body| body.name == parent);
-            found.ok_or_else(|| {
-                let names = before.iter().map(|body| body.name.as_str());
-                unknown("body before it is called", parent, nearest(parent, names))
-            })
-        });
-        let mass = MassProperties::new(self.mass, self.com, self.inertia);
-        Ok(BodySpec {
-            name: self.name.clone(),
-            joint_name: self.name.clone(),
-            parent: parent.transpose()?,
-            joint,
-            placement: self.placement,
-            child_placement: Pose::identity(),
-            mass: mass.map_err(|error| self.error(error))?,
+        (entry.build)(&self.values(&names)?).map_err(|error| vec![error.to_string()])
+    }
+
+    fn parent(&self, before: &[Self]) -> Result<Option<usize>, Vec<String>> {
+        let Some(parent) = &self.parent else {
+            return Ok(None);
+        };
+        let names = || before.iter().map(|body| body.name.as_str());
+        let found = names().position(|name| name == parent);
+        found.map(Some).ok_or_else(|| {
+            let hint = hint(parent, names());
+            vec![format!("no body before it is called `{parent}`{hint}")]
         })
     }
+
+    /// The body as mechanisms take it, or everything that is wrong with it.
+    fn spec(&self, before: &[Self], registry: &JointRegistry) -> Result<BodySpec, Vec<BodyError>> {
+        let mass = MassProperties::new(self.mass, self.com, self.inertia);
+        let mass = mass.map_err(|error| vec![error.to_string()]);
+        match (self.joint(registry), self.parent(before), mass) {
+            (Ok(joint), Ok(parent), Ok(mass)) => Ok(BodySpec {
+                name: self.name.clone(),
+                joint_name: self.name.clone(),
+                parent,
+                joint,
+                placement: self.placement,
+                child_placement: Pose::identity(),
+                mass,
+            }),
+            (joint, parent, mass) => {
+                let errors = [joint.err(), parent.err(), mass.err()];
+                let errors = errors.into_iter().flatten().flatten();
+                let body = &self.name;
+                let error = |reason| BodyError {
+                    body: body.clone(),
+                    reason,
+                };
+                Err(errors.map(error).collect())
+            }
+        }
+    }
+}
+
+/// The name among `known` that `name` most likely means, as the end of a message.
+fn hint<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
+    nearest(name, known)
+        .map(|name| format!("; did you mean `{name}`?"))
+        .unwrap_or_default()
 }
 
 /// Bodies that become a [`Model`].
@@ -202,13 +228,13 @@ impl Builder {
     /// The model, at home and at rest. A joint is called as its body.
     ///
     /// # Errors
-    /// Everything that is wrong with the bodies.
+    /// Everything that is wrong with the bodies; once each is right, what is wrong with them together, such as two of one name.
     pub fn build(self) -> Result<Model, Error> {
         let (mut specs, mut errors) = (Vec::new(), Vec::new());
         for (index, body) in self.bodies.iter().enumerate() {
             match body.spec(&self.bodies[..index], &self.registry) {
                 Ok(spec) => specs.push(spec),
-                Err(error) => errors.push(error),
+                Err(own) => errors.extend(own),
             }
         }
         if !errors.is_empty() {

@@ -4,8 +4,10 @@ use hamel_control::ControlError;
 use hamel_integrate::IntegrateError;
 use hamel_runtime::dynamics::DynamicsError;
 use hamel_runtime::mechanism::{MechanismErrors, StateError};
+use hamel_runtime::registry::DuplicateJoint;
+use hamel_runtime::shown::Number;
 use hamel_scene::suggest::nearest;
-use hamel_scene::{Diagnostics, TooManySamples};
+use hamel_scene::{Diagnostics, SampleError};
 use std::fmt::{Debug, Display, Formatter};
 
 /// Why a model cannot be made, asked or moved. `Debug` prints the same text as `Display`, because that is what a failing `main` shows.
@@ -30,12 +32,23 @@ pub enum Error {
     /// A motion that cannot begin or go on.
     #[error(transparent)]
     Integrate(#[from] IntegrateError),
-    /// A controller that cannot be made, or has no efforts.
+    /// A controller that cannot be made.
     #[error("controller: {0}")]
-    Control(#[from] ControlError),
-    /// More samples than anybody wants.
+    Controller(ControlError),
+    /// A controller that has no efforts on the way.
+    #[error("at {time} s: controller: {cause}", time = Number(*.time))]
+    Control {
+        /// When, s.
+        time: f64,
+        /// Why.
+        cause: ControlError,
+    },
+    /// Samples that cannot be taken.
     #[error(transparent)]
-    Samples(#[from] TooManySamples),
+    Samples(#[from] SampleError),
+    /// Joint types of one name.
+    #[error(transparent)]
+    Registry(#[from] DuplicateJoint),
     /// A name that the model does not have.
     #[error(transparent)]
     Name(#[from] UnknownName),
@@ -60,14 +73,12 @@ pub struct BodyError {
 /// A name that is not there.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownName {
-    /// What was looked for: `joint`, `body`, `frame`.
+    /// What was looked for: `joint or body`, `frame or body`.
     pub kind: &'static str,
     /// The name.
     pub name: String,
     /// The one that it most likely means.
     pub nearest: Option<String>,
-    /// How many there are.
-    pub count: usize,
 }
 
 impl UnknownName {
@@ -75,12 +86,11 @@ impl UnknownName {
     pub(crate) fn new<'a>(
         kind: &'static str,
         name: &str,
-        known: impl Iterator<Item = &'a str> + Clone,
+        known: impl Iterator<Item = &'a str>,
     ) -> Self {
         Self {
             kind,
             name: name.to_owned(),
-            count: known.clone().count(),
             nearest: nearest(name, known).map(str::to_owned),
         }
     }
@@ -88,13 +98,7 @@ impl UnknownName {
 
 impl Display for UnknownName {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
-        let Self {
-            kind, name, count, ..
-        } = self;
-        write!(
-            f,
-            "there is no {kind} `{name}` among the {count} of the model"
-        )?;
+        write!(f, "the model has no {} `{}`", self.kind, self.name)?;
         match &self.nearest {
             Some(nearest) => write!(f, "; did you mean `{nearest}`?"),
             None => Ok(()),

@@ -14,7 +14,8 @@ use nalgebra::{DMatrix, DVector, Vector3, Vector6};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The model in a file: a robot where its name ends in `.urdf`, else a scene in TOML. Joints are those of the library.
+/// The model in a file: a robot in URDF, on a fixed base, or a scene in TOML. Joints are those of the library. What a file says and a model does not have
+/// (limits, friction, meshes) is listed in the `notices` of [`Model::scene`]; [`scene::urdf`](hamel_scene::urdf) reads robots that move freely.
 ///
 /// # Errors
 /// A file that cannot be read, and all mistakes of its text.
@@ -32,10 +33,12 @@ pub fn load_with(path: impl AsRef<Path>, registry: &JointRegistry) -> Result<Mod
 
 /// A mechanism with named joints, bodies and frames, its initial state and the room for its dynamics.
 ///
-/// Methods take a [`State`] (Q, v̄) and give vectors and matrices of the right size. v̄ and v̄̇ have one entry a speed; efforts τ one a degree of
-/// freedom of a joint's v, in N m or N. Both are equal for holonomic joints. Vectors are those of all joints in the order of [`Model::joints`].
+/// Methods take a [`State`] (Q, v̄) and give vectors and matrices of the right size, for all joints in the order of [`Model::joints`]. v̄ and v̄̇ have one entry
+/// per speed; efforts τ one per entry of a joint's velocity v, in N m or N. Both sizes are equal but for nonholonomic joints. Where a scene prescribes the motion of a
+/// joint, its entries of τ are accelerations, and those of v̄ are what the state says.
 ///
-/// A clone has room of its own and shares the mechanism: make one for each thread. [`Recursive`] does the same without allocating.
+/// Each call allocates its result; [`Recursive`] writes into slices and allocates nothing. Clones share the mechanism and have memory of their own: make one
+/// for each thread.
 #[derive(Clone, Debug)]
 pub struct Model {
     scene: Scene,
@@ -53,7 +56,7 @@ impl Model {
         }
     }
 
-    /// What it was made of: initial state, events, shapes, controller, settings.
+    /// What it was made of: initial state, events, shapes, controller, settings, notices.
     pub const fn scene(&self) -> &Scene {
         &self.scene
     }
@@ -64,7 +67,7 @@ impl Model {
     }
 
     /// The equations of motion by the recursive algorithms, for what [`Model`] does not offer.
-    pub const fn dynamics(&mut self) -> &mut Recursive {
+    pub const fn dynamics_mut(&mut self) -> &mut Recursive {
         &mut self.dynamics
     }
 
@@ -88,7 +91,7 @@ impl Model {
         self.mechanism().frames().iter().map(|frame| &*frame.name)
     }
 
-    /// The joint of that name, or that of the body of that name: its type, and the ranges of its entries ([`Body::ranges`]).
+    /// The body on the joint of that name, or the body of that name: its joint, and the ranges of its entries ([`Body::ranges`]).
     ///
     /// # Errors
     /// A name that the model does not have.
@@ -99,7 +102,9 @@ impl Model {
     fn joint_index(&self, name: &str) -> Result<usize, UnknownName> {
         let found = self.joints().position(|joint| joint == name);
         let found = found.or_else(|| self.mechanism().body_index(name));
-        found.ok_or_else(|| UnknownName::new("joint", name, self.joints().chain(self.bodies())))
+        found.ok_or_else(|| {
+            UnknownName::new("joint or body", name, self.joints().chain(self.bodies()))
+        })
     }
 
     /// The initial state of the file; a robot is at home and at rest.
@@ -111,7 +116,7 @@ impl Model {
     /// rotation vector of a ball, in rad and m.
     ///
     /// # Errors
-    /// An unknown joint; not one number a degree of freedom; numbers that are not finite.
+    /// An unknown joint; not one number per local coordinate; numbers that are not finite.
     pub fn set_position(&self, state: &mut State, joint: &str, phi: &[f64]) -> Result<(), Error> {
         let index = self.joint_index(joint)?;
         let mechanism = self.mechanism();
@@ -125,14 +130,17 @@ impl Model {
     /// Gives a joint its speeds v̄, rad/s and m/s.
     ///
     /// # Errors
-    /// An unknown joint; not one number a speed.
+    /// An unknown joint; not one number per speed; numbers that are not finite.
     pub fn set_speeds(&self, state: &mut State, joint: &str, speeds: &[f64]) -> Result<(), Error> {
         let body = self.joint(joint)?;
         let own = body.ranges().speeds.clone();
         check_size(body.joint_name(), "speeds", own.len(), speeds.len())?;
         self.mechanism()
             .check_room("speeds", Space::Speeds, &state.speeds)?;
-        state.speeds[own].copy_from_slice(speeds);
+        let mut moved = state.speeds.clone();
+        moved[own].copy_from_slice(speeds);
+        self.mechanism().check_speeds("speeds", &moved)?;
+        state.speeds = moved;
         Ok(())
     }
 
@@ -152,7 +160,7 @@ impl Model {
         Ok(rates)
     }
 
-    /// The efforts `S̄ᵀτ` (one a speed) that inputs must exert for v̄̇ = `accelerations`.
+    /// The efforts `S̄ᵀτ` (one per speed) that inputs must exert for v̄̇ = `accelerations`.
     ///
     /// # Errors
     /// A wrong size; numbers that are not finite.
@@ -168,7 +176,7 @@ impl Model {
         Ok(efforts)
     }
 
-    /// M̄(Q), one row and one column a speed.
+    /// M̄(Q), one row and one column per speed.
     ///
     /// # Errors
     /// A wrong size; numbers that are not finite.
@@ -178,7 +186,7 @@ impl Model {
         Ok(self.mass.matrix())
     }
 
-    /// Inverse dynamics at v̄̇ = 0: Coriolis and centrifugal forces, gravity, springs and dampers; one entry a speed.
+    /// Inverse dynamics at v̄̇ = 0: Coriolis and centrifugal forces, gravity, springs and dampers; one entry per speed.
     ///
     /// # Errors
     /// A wrong size; numbers that are not finite.
@@ -189,11 +197,11 @@ impl Model {
         Ok(bias)
     }
 
-    /// The 6×S̄ matrix that takes v̄ to the twist of a frame or a body: angular velocity in the first three rows, velocity of the frame's origin in the
-    /// last three, in **world axes** ([`Frame::WorldAligned`]); one column a speed.
+    /// The 6×S matrix (S speeds) that takes v̄ to the twist of a frame or a body: angular velocity in the first three rows, velocity of the frame's origin in the
+    /// last three, in **world axes** ([`Frame::WorldAligned`]); one column per speed.
     ///
     /// # Errors
-    /// An unknown frame; a wrong size.
+    /// An unknown frame; a wrong size; numbers that are not finite.
     pub fn jacobian(&mut self, state: &State, frame: &str) -> Result<DMatrix<f64>, Error> {
         self.jacobian_in(state, frame, Frame::WorldAligned)
     }
@@ -246,7 +254,7 @@ impl Model {
             (None, Some(body)) => readings.body_frame(body)?,
             (None, None) => {
                 let known = self.frames().chain(self.bodies());
-                return Err(UnknownName::new("frame", frame, known).into());
+                return Err(UnknownName::new("frame or body", frame, known).into());
             }
         };
         Ok(read(at))

@@ -3,10 +3,11 @@
 use crate::error::Error;
 use hamel_control::Feedback;
 use hamel_integrate::{Event, Form, Integration, Method, Options, Solution, State};
-use hamel_scene::{Scene, Settings};
+use hamel_scene::{Company, Scene, Settings};
 use std::cell::RefCell;
+use std::ops::ControlFlow;
 
-/// Efforts τ, one a degree of freedom, from time (s), Q and v̄; they are zero when it is called.
+/// Efforts τ, one per entry of v, from time (s), Q and v̄; they are zero when it is called.
 type Inputs<'a> = Box<dyn FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a>;
 
 /// A motion that is being put together; [`Simulation::run`] moves the model.
@@ -32,27 +33,27 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// From this state, instead of the initial one of the file.
-    pub fn from(mut self, state: State) -> Self {
+    /// From this state, instead of the initial one of the file. A controller of the scene still counts its time from 0.
+    pub fn starting_at(mut self, state: State) -> Self {
         self.start = state;
         self
     }
 
-    /// Until this time, s.
+    /// Until this time, s; it is a time, not a duration.
     pub const fn until(mut self, time: f64) -> Self {
         self.settings.t_end = time;
         self
     }
 
-    /// With a sample each `step` seconds, and one at the end.
-    pub fn every(mut self, step: f64) -> Self {
+    /// With a sample at the start, one each `step` seconds after it, and one at the end.
+    pub fn sample_every(mut self, step: f64) -> Self {
         self.settings.sample_step = step;
         self.times = None;
         self
     }
 
     /// With samples at these times alone, s, ascending.
-    pub fn at(mut self, times: impl Into<Vec<f64>>) -> Self {
+    pub fn sample_at(mut self, times: impl Into<Vec<f64>>) -> Self {
         self.times = Some(times.into());
         self
     }
@@ -64,7 +65,7 @@ impl<'a> Simulation<'a> {
         self
     }
 
-    /// By the method that the first state asks for, to this tolerance.
+    /// Chooses the method automatically from the initial state, with this tolerance per step; [`Simulation::chosen_method`] tells which, and why.
     pub const fn tolerance(mut self, tolerance: f64) -> Self {
         self.settings.method = Method::dormand_prince(tolerance);
         self.settings.chooses = true;
@@ -77,13 +78,13 @@ impl<'a> Simulation<'a> {
         self
     }
 
-    /// With one event more than the scene has.
+    /// With one event more than the scene has. [`Crossing::event`](hamel_integrate::Crossing::event) counts those of the scene first.
     pub fn event(mut self, event: Event<'a>) -> Self {
         self.events.push(event);
         self
     }
 
-    /// Under efforts τ (one a degree of freedom, N m or N) from time, Q and v̄, instead of the scene's controller; they are zero when it is called.
+    /// Under efforts τ (one per entry of v, N m or N) from time, Q and v̄, instead of the scene's controller; they are zero when it is called.
     pub fn inputs(mut self, inputs: impl FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a) -> Self {
         self.inputs = Some(Box::new(inputs));
         self
@@ -101,7 +102,8 @@ impl<'a> Simulation<'a> {
         let control = scene.control.as_ref().filter(|_| self.inputs.is_none());
         let mut controller = control
             .map(|control| control.controller(mechanism, options.t_end))
-            .transpose()?;
+            .transpose()
+            .map_err(Error::Controller)?;
         let feedback = controller
             .as_mut()
             .map(|law| RefCell::new(Feedback::new(&mut **law)));
@@ -119,6 +121,10 @@ impl<'a> Simulation<'a> {
             motion = motion.inputs(|time, q, speeds, efforts| {
                 feedback.borrow_mut().fill(time, q, speeds, efforts);
             });
+            motion = motion.observer(|_| {
+                feedback.borrow_mut().accepted();
+                ControlFlow::Continue(())
+            });
         }
         if let Some(period) = control.and_then(|control| control.period) {
             motion = motion.held(period);
@@ -127,32 +133,40 @@ impl<'a> Simulation<'a> {
         let failure = feedback.and_then(|feedback| feedback.borrow().failure().cloned());
         match (ended, failure) {
             (Ok(solution), _) => Ok(solution),
-            (Err(_), Some((_, cause))) => Err(cause.into()),
+            (Err(_), Some((time, cause))) => Err(Error::Control { time, cause }),
             (Err(error), None) => Err(error.into()),
         }
     }
 
     fn options(&self) -> Result<Options, Error> {
-        let mut settings = self.settings;
-        let control = self
-            .scene
-            .control
-            .as_ref()
-            .filter(|_| self.inputs.is_none());
-        if settings.chooses {
-            settings.method = self.scene.choose_method(&settings, control)?.0;
-        }
         let samples = match &self.times {
             Some(times) => times.clone(),
-            None => settings.sample_times()?,
+            None => self.settings.sample_times(self.start.time)?,
         };
-        let start = self.start.time;
         Ok(Options {
-            form: settings.form,
-            method: settings.method,
-            t_end: settings.t_end,
-            samples: samples.into_iter().filter(|&time| time >= start).collect(),
+            form: self.settings.form,
+            method: self.chosen_method()?.0,
+            t_end: self.settings.t_end,
+            samples,
         })
+    }
+
+    /// The method that [`Simulation::run`] will take, and why, where the choice is left open.
+    ///
+    /// # Errors
+    /// A first state that the equations of motion cannot be evaluated at.
+    pub fn chosen_method(&self) -> Result<(Method, Option<String>), Error> {
+        if !self.settings.chooses {
+            return Ok((self.settings.method, None));
+        }
+        let company = Company {
+            has_inputs: self.inputs.is_some() || self.scene.control.is_some(),
+            has_events: !self.events.is_empty(),
+        };
+        let chosen = self
+            .scene
+            .choose_method(&self.settings, &self.start, company)?;
+        Ok((chosen.0, Some(chosen.1)))
     }
 }
 

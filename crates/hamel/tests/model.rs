@@ -1,7 +1,7 @@
 //! Models agree with the runtime below them, and refuse what is wrong by name.
 
 use hamel::dynamics::Frame;
-use hamel::integrate::{Event, Method, State};
+use hamel::integrate::{Event, Method, Scheme, State};
 use hamel::{Body, Builder, Error, Model};
 
 const ROBOT: &str = concat!(
@@ -101,6 +101,11 @@ fn names_that_are_not_there_are_told_with_the_nearest() {
             .is_err()
     );
     assert!(robot.set_speeds(&mut moved, "panda_joint4", &[]).is_err());
+    assert!(
+        robot
+            .set_speeds(&mut moved, "panda_joint4", &[f64::NAN])
+            .is_err()
+    );
     assert_eq!(moved, state);
     let mut short = state.clone();
     short.configuration.clear();
@@ -122,9 +127,9 @@ fn bodies_by_hand_are_refused_all_at_once() {
         .body(Body::new("d", "revolute").on("e"))
         .body(Body::new("e", "revolute").mass(-1.0, [0.0; 3]))
         .build()
-        .expect_err("five mistakes");
+        .expect_err("six mistakes");
     let text = error.to_string();
-    assert_eq!(text.lines().count(), 5, "{text}");
+    assert_eq!(text.lines().count(), 6, "{text}");
     for told in [
         "`revolute`",
         "needs the parameter `lead`",
@@ -138,13 +143,9 @@ fn bodies_by_hand_are_refused_all_at_once() {
 
 #[test]
 fn a_scene_moves_as_it_says() -> Result<(), Error> {
-    for scene in [
-        "plate_cart_arm.toml",
-        "ball_pendulum_upright.toml",
-        "balance_mpc.toml",
-    ] {
+    for scene in ["plate_cart_arm.toml", "ball_pendulum_upright.toml"] {
         let model = hamel::load(format!("{SCENES}{scene}"))?;
-        let motion = model.simulate().until(0.1).every(0.05).run()?;
+        let motion = model.simulate().until(0.1).sample_every(0.05).run()?;
         assert_eq!(motion.samples.len(), 3, "{scene}");
         assert_eq!(motion.state.time, 0.1);
     }
@@ -163,16 +164,30 @@ fn a_simulation_takes_inputs_events_and_times() -> Result<(), Error> {
     };
     let motion = simulation()
         .inputs(|_time, _q, _speeds, efforts| efforts[0] = 4.0)
-        .at([0.5, 1.0])
+        .sample_at([0.5, 1.0])
         .event(Event::new("one metre", |_time, q, _speeds| q[0] - 1.0).stopping())
         .run()?;
     // x = t² under 4 N on 2 kg.
     assert!(motion.stopped && (motion.state.time - 1.0).abs() < 1e-12);
     assert!((motion.samples[0].configuration[0] - 0.25).abs() < 1e-12);
-    assert!(simulation().every(f64::NAN).run().is_err());
-    assert!(simulation().every(1e-300).run().is_err());
+    assert!(simulation().sample_every(f64::NAN).run().is_err());
+    assert!(simulation().sample_every(1e-300).run().is_err());
     assert!(simulation().until(f64::INFINITY).run().is_err());
-    assert!(simulation().at([1.0, 0.5]).run().is_err());
+    for times in [[1.0, 0.5], [-1.0, 0.5], [f64::NAN, 0.5]] {
+        assert!(simulation().sample_at(times).run().is_err(), "{times:?}");
+    }
+    for step in [0.0, -0.1] {
+        assert!(simulation().sample_every(step).run().is_err(), "{step}");
+    }
+    let mut later = slide.state();
+    later.time = 0.5;
+    let motion = simulation()
+        .starting_at(later)
+        .until(1.0)
+        .sample_every(0.25)
+        .run()?;
+    let times: Vec<f64> = motion.samples.iter().map(|state| state.time).collect();
+    assert_eq!(times, [0.5, 0.75, 1.0]);
     Ok(())
 }
 
@@ -181,4 +196,25 @@ fn an_error_that_ends_a_program_is_told_in_words() {
     let error = hamel::load("no such file.urdf").expect_err("no such file");
     assert_eq!(format!("{error:?}"), error.to_string());
     assert!(error.to_string().contains("no such file.urdf"), "{error}");
+}
+
+#[test]
+fn a_method_is_chosen_for_what_the_motion_has() -> Result<(), Error> {
+    let scene = format!("{SCENES}report/torsion_1e12.toml");
+    let model = hamel::load(scene)?;
+    let open = || model.simulate().until(0.01).tolerance(1e-8);
+    let alone = open().chosen_method()?;
+    assert_eq!(alone.0.scheme(), &Scheme::Exponential, "{alone:?}");
+    let followed = [
+        open()
+            .inputs(|_time, _q, _speeds, _efforts| {})
+            .chosen_method()?,
+        open()
+            .event(Event::new("top", |_time, q, _speeds| q[0]))
+            .chosen_method()?,
+    ];
+    for (method, reason) in followed {
+        assert_ne!(method.scheme(), &Scheme::Exponential, "{reason:?}");
+    }
+    Ok(())
 }

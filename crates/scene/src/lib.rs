@@ -27,6 +27,7 @@ pub mod text;
 pub mod urdf;
 mod write;
 
+pub use choose::Company;
 pub use control::{
     Control, ControllerDescription, GoalDescription, LawDescription, PortDescription,
     ReferenceDescription, RegulatorDescription,
@@ -42,7 +43,7 @@ pub use forces::{
     PointSpring, SpringEnergy, WrenchAxes, WrenchDescription,
 };
 pub use notice::{Notice, Severity};
-pub use samples::TooManySamples;
+pub use samples::SampleError;
 pub use scene::{Scene, read_file};
 pub use settings::{Arithmetic, Settings};
 pub use shape::{Geometry, ShapeDescription};

@@ -104,11 +104,18 @@ mod tests {
             "x_m y_m z_m qx qy qz qw vx_m_per_s vy_m_per_s vz_m_per_s wx_rad_per_s wy_rad_per_s wz_rad_per_s",
         );
         let frame = of("tip.", "x_m y_m z_m qx qy qz qw");
+        let older = of(
+            "a.b.",
+            "x_m y_m z_m rx_rad ry_rad rz_rad vx_m_per_s vy_m_per_s vz_m_per_s wx_rad_per_s wy_rad_per_s wz_rad_per_s",
+        );
+        let older_frame = of("tip.", "x_m y_m z_m qw qx qy qz");
         let head = "t_s,energy_J,kinetic_energy_J,potential_energy_J";
         for own in [
             format!("{head},{body}\n0.0,1.0\n"),
             format!("{head},{body},{body}\n"),
             format!("{head},{body},{frame},\"a,b.q.x_m\",elbow.v.x_m_per_s,elbow.tau.x_N\n"),
+            format!("t_s,energy_J,{older},{older}\n0.0,1.0\n"),
+            format!("t_s,energy_J,{older},{older_frame},elbow.tau.x\n"),
         ] {
             assert!(is_known(&own), "{own}");
         }

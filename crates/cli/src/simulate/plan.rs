@@ -8,7 +8,7 @@ use crate::output::{Failure, tell};
 use hamel::integrate::{Method, Options, Sampling};
 use hamel::registry::JointRegistry;
 use hamel::shown::Number;
-use hamel_scene::{Control, Scene, Settings};
+use hamel_scene::{Company, Control, SampleError, Scene, Settings};
 use std::path::{Path, PathBuf};
 
 /// A run, decided in every respect.
@@ -57,9 +57,7 @@ impl Plan {
         }
         let mut settings = settings::overridden(&scene.settings, args)?;
         let times = if args.at.is_empty() {
-            settings.sample_times().map_err(|error| {
-                Failure::Options(format!("{error}: choose a larger --sample-step"))
-            })?
+            settings.sample_times(0.0).map_err(refused)?
         } else {
             let given = args.t_end.map(|_| settings.t_end);
             let (times, t_end) = times::chosen(&args.at, given)?;
@@ -69,7 +67,11 @@ impl Plan {
         scene.check_start(&settings, control.as_ref())?;
         let mut reason = None;
         if settings.chooses {
-            let chosen = scene.choose_method(&settings, control.as_ref());
+            let company = Company {
+                has_inputs: control.is_some(),
+                has_events: false,
+            };
+            let chosen = scene.choose_method(&settings, &scene.start(), company);
             let (method, why) = chosen.map_err(|error| Failure::Simulation(error.to_string()))?;
             (settings.method, reason) = (method, Some(why));
         }
@@ -139,6 +141,11 @@ impl Plan {
             samples: self.times.clone(),
         }
     }
+}
+
+/// Samples that cannot be taken, and what to do.
+fn refused(error: SampleError) -> Failure {
+    Failure::Options(format!("{error}: choose a larger --sample-step"))
 }
 
 /// The files of the trajectory: as CSV, as Parquet, as a page and as a picture.

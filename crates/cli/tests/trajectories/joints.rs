@@ -96,7 +96,7 @@ fn json_and_parquet_tell_units_and_meanings_of_the_columns_of_the_csv() {
     let files = simulate(file, "meanings", &options);
     let csv = read_csv(&files.csv);
     let output = Command::new(env!("CARGO_BIN_EXE_hamel"))
-        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../.."))
         .args(["simulate", file, "--json"])
         .args(options)
         .output()

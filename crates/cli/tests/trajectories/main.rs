@@ -178,7 +178,7 @@ fn a_picture_is_small_and_the_same_each_time() {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("picture.svg");
     let draw = |options: &[&str]| {
         let output = Command::new(env!("CARGO_BIN_EXE_hamel"))
-            .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))
+            .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../.."))
             .args(["simulate", "--quiet", "--picture"])
             .arg(&path)
             .args(options)
