@@ -356,3 +356,13 @@ fn a_joint_that_lives_on_one_side_says_so() {
     assert_eq!(singularity("sqrt(x)"), (true, true));
     assert_eq!(singularity("sqrt(x * x)"), (false, false));
 }
+
+#[test]
+fn entries_of_wide_matrices_have_names_of_their_own() {
+    let row = ["1 + x * x"; 11].join(", ");
+    let rows = [row.as_str(); 11].join("; ");
+    let source = format!(
+        "hamel = 1; joint test {{ config x: R1, y: R1; let m = [{rows}]; H = trans([x, y, m[1, 11] + m[11, 1]]); }}"
+    );
+    hamel_codegen::derive(&source, "test.joint").unwrap_or_else(|errors| panic!("{errors}"));
+}

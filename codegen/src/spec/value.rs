@@ -199,9 +199,11 @@ impl Value {
 
 /// `name11 …` row by row, `name1 …` for a column.
 fn by_rows(name: &str, rows: usize, columns: usize) -> Vec<String> {
+    // Row 1, column 11 is not row 11, column 1.
+    let between = if rows.max(columns) > 9 { "_" } else { "" };
     let numbered = |n: usize| match columns {
         1 => format!("{name}{}", n + 1),
-        _ => format!("{name}{}{}", n / columns + 1, n % columns + 1),
+        _ => format!("{name}{}{between}{}", n / columns + 1, n % columns + 1),
     };
     (0..rows * columns).map(numbered).collect()
 }

@@ -57,7 +57,7 @@ impl Display for RuntimeError {
     fn fmt(&self, out: &mut Formatter<'_>) -> std::fmt::Result {
         write!(
             out,
-            "the runtime's path `{}` is no path of a module; write `::hamel`, `my_crate::hamel` or `crate::hamel`",
+            "the runtime's path `{}` is no path of a module; write `::hamel`, `mechanics::hamel`, or one that begins with `crate`",
             self.text
         )
     }
