@@ -142,7 +142,7 @@ fn series(ideal: &Ideal, expansion: &Expansion) -> (Matrix, Matrix) {
     (s.base.clone(), right)
 }
 
-/// What it takes to simplify a kernel and to write it, in code and in pages: in proportion to its terms.
+/// The error that a kernel has a number beyond the range of doubles.
 fn beyond_doubles(spec: &JointSpec, number: &Rational) -> Diagnostic {
     let bits = |n: &BigInt| n.bits().cast_signed();
     let size = bits(&number.numer()) - bits(&number.denom());
@@ -152,6 +152,7 @@ fn beyond_doubles(spec: &JointSpec, number: &Rational) -> Diagnostic {
         .help("use other units: doubles are between about 2^-1022 and 2^1024")
 }
 
+/// What it takes to simplify a kernel and to write it, in code and in pages: in proportion to its terms.
 fn spend_on_formulas(kernel: &Kernel) {
     let entries = kernel.outputs.iter().flat_map(Matrix::entries);
     let terms: usize = entries.map(|entry| entry.terms().len()).sum();

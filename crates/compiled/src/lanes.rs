@@ -65,7 +65,7 @@ impl Default for Level {
     }
 }
 
-/// `F` of as many states as there are whole rows of in all quantities, eight at a time; whether all results are finite. What a machine does not have is
+/// Evaluates `F`, eight states at a time, for every row that is complete in all inputs. Returns whether all results are finite. What a machine does not have is
 /// done at the baseline.
 ///
 /// Modules that are compiled with lanes hold this function of theirs: see [`Equations`](super::Equations).

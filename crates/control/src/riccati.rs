@@ -1,7 +1,6 @@
 //! Algebraic Riccati equations, by doubling.
 //!
-//! Each step of the doubling algorithm squares the closed loop, so that convergence is quadratic and what is left of its matrix says whether it is
-//! stable: no subspace is chosen. That there is a solution is asked before (`reach`), since rounding would make one up. (B. D. O. Anderson, *Second-order convergent algorithms for the steady-state Riccati equation*,
+//! Each step of the doubling algorithm squares the closed loop, so that convergence is quadratic, and the norm that remains of the closed-loop matrix shows stability. No invariant subspace has to be selected. That there is a solution is asked before (`reach`), since rounding would make one up. (B. D. O. Anderson, *Second-order convergent algorithms for the steady-state Riccati equation*,
 //! 1978; for continuous time after a Cayley transform, E. K.-W. Chu, H.-Y. Fan and W.-W. Lin, *A structure-preserving doubling algorithm for
 //! continuous-time algebraic Riccati equations*, 2005.)
 

@@ -1,4 +1,4 @@
-//! How near a motion comes to the sets on which a joint loses its meaning.
+//! How near a motion comes to the singular configurations of a joint.
 
 use alloc::string::String;
 use alloc::vec::Vec;

@@ -1,4 +1,4 @@
-//! Which method suits a mechanism: by how fast the motions about its first state are, with and without its springs and dampers, and by first steps.
+//! Chooses a method from the eigenvalues at the initial state, with and without force elements, and from trial steps.
 
 use super::{IntegrateError, Method, Mode, Scheme, Spectrum, State, step_probe};
 use alloc::format;
@@ -56,7 +56,7 @@ impl Choice {
     /// Without springs, dampers and other elements a mechanism moves as fast as gravity and its own speeds make it: an explicit method whose order
     /// suits the tolerance. With them, rates more than thirty times those are fast: where explicit methods would be held to steps far
     /// shorter than the motion, Radau IIA takes over if the fastest are damped, whatever else swings that its steps resolve; the exponential
-    /// method if they are not, and first steps of both show that it pays. A motion that grows leaves the state that its rate is that of, and is followed.
+    /// method if they are not, and first steps of both show that it pays. An unstable mode soon leaves the state at which its rate was computed, so that an explicit method follows it.
     ///
     /// # Errors
     /// A state that the equations of motion cannot be evaluated at.
@@ -200,7 +200,7 @@ impl Wanted {
         (stiff, mode): (&Stiff<'_>, &Mode),
     ) -> Result<Choice, String> {
         if mode.is_growing() {
-            return Err("followed, as it soon leaves the state that its rate is that of".into());
+            return Err("an explicit method follows it, as it soon leaves the state at which this rate was computed".into());
         }
         if self.is_bound {
             return Err("followed, as the exponential method goes with no inputs, prescribed motions, coupled joints, dense output or events".into());

@@ -1,6 +1,6 @@
 //! What rounding takes from the state in one step is given back in the next.
 //!
-//! A sum of a million steps in doubles loses a millionfold of a rounding, or its root at best. Here every y and
+//! Over n steps, rounding errors add up to n units in the last place, or √n at best. Here every y and
 //! every ϕ keeps what the sum was too coarse to take (W. Kahan; here with the exact remainder of D. E. Knuth). It belongs to the
 //! integration: the state that a caller sees is rounded.
 

@@ -6,7 +6,7 @@
 //! scheme. All polynomials pass through both ends, and Q comes out of them through Φ. Inner points are Lobatto's, but for the middle one, whose slope
 //! follows from the change over the step: that keeps the basis well conditioned, and the error small against that of the step.
 //!
-//! Where the mechanism is stiff, an evaluation makes more of an error of the polynomial than h takes off it: errors grow from degree to degree.
+//! On stiff mechanisms an evaluation of the equations amplifies the interpolation error by more than the factor h reduces it: errors grow from degree to degree.
 //! Implicit steps therefore have another beginning, the polynomial of their stages, which F does not enter, and go on from it only as long as
 //! no degree changes much more than the one before.
 

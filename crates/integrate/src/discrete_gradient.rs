@@ -6,8 +6,7 @@
 //! - `v̄ + λ M̄⁻¹Δp̄` for v̄ under T and J̄22, and in the work done;
 //! - `Tᵀ∂H/∂ϕ + λ p̄/h`, along `T⁻¹Δϕ = h v̄`.
 //!
-//! λ is chosen such that the energy at the end is what it shall be. What it lacks changes with λ by `−p̄ᵀv̄ − Δp̄ᵀM̄⁻¹Δp̄`, which vanishes at rest alone: where
-//! the motion is fastest Δp̄ is small, where it turns p̄ is. The energy is held against that at the beginning of all steps and the work done since, so
+//! λ is chosen such that the energy at the end is what it shall be. The energy error has the derivative `−p̄ᵀv̄ − Δp̄ᵀM̄⁻¹Δp̄` by λ, which is zero only at rest: at top speed Δp̄ is small, at turning points p̄ is. The energy is held against that at the beginning of all steps and the work done since, so
 //! that rounding does not add up.
 
 use super::StepFailure;

@@ -22,8 +22,7 @@ pub enum Direction {
 
 /// A function g(t, q, v̄) whose zeros are wanted, where it changes its sign.
 ///
-/// It must be continuous along the motion. It is evaluated at the initial state, at both ends of every step and at three points between them, so that of
-/// crossings that undo each other within a quarter of a step both may be missed, and a zero that is touched but not crossed is none. A state at
+/// It must be continuous along the motion. It is evaluated at the initial state, at both ends of every step and at three points between them, so that two opposite crossings within a quarter of a step may both be missed. Touching zero without a change of sign is no event. A state at
 /// which g is exactly 0 belongs to neither side: a motion that starts there crosses nothing.
 pub struct Event<'a> {
     pub(super) name: String,

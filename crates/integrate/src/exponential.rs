@@ -1,8 +1,7 @@
 //! One step of an exponential Rosenbrock method of order 4(3): the equations linearised at the state are solved exactly, what is left is
 //! taken as in an explicit method.
 //!
-//! M. Hochbruck, A. Ostermann and J. Schweitzer, *Exponential Rosenbrock-type methods*, 2009: exprb43. A stiff spring at a joint is linear but for the
-//! bend of ϕ, so that its oscillation is followed through steps of many periods, damped or not. The matrices are dense: made for up to some
+//! M. Hochbruck, A. Ostermann and J. Schweitzer, *Exponential Rosenbrock-type methods*, 2009: exprb43. A stiff spring at a joint is linear except for the curvature of the local coordinates, so that one step may span many periods, damped or not. The matrices are dense: made for up to some
 //! tens of freedoms.
 
 use super::StepFailure;

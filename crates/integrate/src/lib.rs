@@ -5,7 +5,7 @@
 //! joint that has moved by half a radian gets `Φ(Q_b, ϕ)`, projected onto the manifold against rounding, for its base point, where ϕ begins at 0 again. Nothing is
 //! ever added to Q.
 //!
-//! What a scheme does to go from one state to the next is a `Stepper`; all of them share the state and its charts (`Standing`), the equations as a
+//! What a scheme does to go from one state to the next is a `Stepper`; all of them share the state and its charts (`StepState`), the equations as a
 //! vector field (`Flow`), the control of steps and the way over the samples (`Driver`), and dense output with the events on it.
 //!
 //! | mechanism | scheme |

@@ -1,4 +1,4 @@
-//! What of bodies can be checked without their joints: whoever makes equations of them asks for it first.
+//! Checks on bodies that do not depend on their joints. They run before equations of motion are built.
 
 use super::{BodySpec, MechanismError};
 use crate::spatial::{MassProperties, Pose, SpatialInertia};

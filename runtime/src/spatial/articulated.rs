@@ -1,4 +1,4 @@
-//! Articulated inertia: what a body and all that hangs on it feel like to a hand at one frame.
+//! Articulated inertia: the apparent inertia of a body and its subtree, with joints free to move, at one frame.
 
 use super::fused::{add_cross, add_scaled, apply, apply_transposed, cross, product};
 use super::{SpatialInertia, Symmetric3, join, split};

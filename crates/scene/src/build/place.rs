@@ -1,4 +1,4 @@
-//! Where in the text stands what the mechanism refuses.
+//! Maps errors of a mechanism to their places in the scene file.
 
 use crate::description::SceneDescription;
 use crate::diagnostics::Diagnostic;

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! and what the tree needs at fixed a and λ by the derivatives r of inverse dynamics, λ being carried along as a wrench on the bodies. With
-//! `A_dᵀ δv̄_d = −δ(Aᵀ v̄)` as part of r and δe, the accelerations change by `δa = p + S̄ x`, where p answers to δe by the dependent ones alone and
+//! `A_dᵀ δv̄_d = −δ(Aᵀ v̄)` as part of r and δe, the accelerations change by `δa = p + S̄ x`, where p is the change of the dependent accelerations that cancels δe and
 //! `S̄ᵀMS̄ x = −S̄ᵀ (r + M p)`. Prescribed entries of x stand still, or are the inputs.
 
 use super::inverse::InverseDerivatives;

@@ -22,8 +22,7 @@
 //! which is O(n · depth), a few products a pair. For a joint whose X̄ is constant ∂X̄ and ∂c vanish, and with them all kernels beyond X̄; the other
 //! joints have kernels for `∂X̄ v̄`, `∂X̄ᵀ F`, `∂c/∂ϕ` and `∂c/∂v̄`, derived by the generator.
 //!
-//! Forward dynamics takes the same U and W as loads of the articulated factors: W is one more acceleration of the base of the subtree, and
-//! B, with the joints below free to give way, is one more 6×3 matrix of the articulated recursion. Each column then is one sweep inward along
+//! Forward dynamics takes the same U and W as loads of the articulated factors: W enters as an additional acceleration of the subtree's base. B is propagated like the articulated inertia, as another 6×3 matrix, with the joints below free. Each column then is one sweep inward along
 //! its branch and one outward, O(n), eight columns at a time; M̄ is never formed. Mechanisms of few speeds
 //! take `−M̄⁻¹` times the derivatives of inverse dynamics instead, which is as exact and costs less for them ([`factor`]).
 //!

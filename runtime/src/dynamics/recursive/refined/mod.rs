@@ -1,8 +1,7 @@
 //! The recursive form with residuals in 106 bits: exact where doubles cancel, and slower, up to a hundred times an evaluation.
 //!
 //! A light body that carries a heavy one, or a long chain, has a mass matrix of a large condition c, and the recursion in doubles finds
-//! accelerations to c roundings. Here they are improved by iterative refinement (J. H. Wilkinson, *Rounding Errors in Algebraic Processes*, 1963, §3.6): inverse dynamics in
-//! extended numbers tells what the accelerations at hand leave of the efforts, the factors at hand what to add. Each round gains as many digits as the
+//! accelerations to c roundings. Here they are improved by iterative refinement (J. H. Wilkinson, *Rounding Errors in Algebraic Processes*, 1963, §3.6): inverse dynamics in double-double numbers gives the residual of the efforts; the factors that are there give the correction. Each round gains as many digits as the
 //! first result had, so that the last one is what exact arithmetic would round to.
 //!
 //! What elements exert is taken from doubles, as the elements give it.
