@@ -1,4 +1,4 @@
-//! Operations of the emitted kernels, as a table: one line a joint, or one a kernel.
+//! Operations of the emitted kernels, as a table: one line per joint, or one a kernel.
 //!
 //! `cargo run -p hamel-codegen --example operations -- joint-specs` for each joint of the folders or files given,
 //! `… --example operations -- --kernels joint-specs/ball.joint` for each of its kernels.

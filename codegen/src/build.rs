@@ -96,7 +96,7 @@ impl Build {
         self
     }
 
-    /// Writes one file a joint and an index into `modules`, one page and one drawing a joint into `pages`, and an overview
+    /// Writes one file per joint and an index into `modules`, one page and one drawing per joint into `pages`, and an overview
     /// `JOINTS.md` beside the folder of pages: for sources that are committed. With `HAMEL_GENERATE=check` it writes nothing, and stale, missing and surplus files are an error.
     #[must_use]
     pub fn library(mut self, modules: impl Into<PathBuf>, pages: impl Into<PathBuf>) -> Self {

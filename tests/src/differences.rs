@@ -26,7 +26,7 @@ pub fn derivative(step: f64, f: impl Fn(f64) -> DMatrix<f64>) -> DMatrix<f64> {
     sum.unwrap_or_else(|| f(0.0) * 0.0)
 }
 
-/// Φ(q, ϕ) of all joints, `phi` one entry a freedom.
+/// Φ(q, ϕ) of all joints, `phi` one entry per freedom.
 pub fn moved(mechanism: &Mechanism, q: &[f64], phi: &[f64]) -> Vec<f64> {
     let mut target = q.to_vec();
     for body in mechanism.bodies() {

@@ -28,7 +28,7 @@ pub struct Case {
     pub speeds: Vec<f64>,
     /// v̄̇, of order 1.
     pub rates: Vec<f64>,
-    /// τ, one entry a freedom, of order 1.
+    /// τ, one entry per freedom, of order 1.
     pub efforts: Vec<f64>,
 }
 

@@ -64,7 +64,7 @@ fn links_lead_to_files() {
         }
     }
     assert!(broken.is_empty(), "{}", broken.join("\n"));
-    // The overview of joints alone has one a joint.
+    // The overview of joints alone has one per joint.
     assert!(count > 50, "{count}");
 }
 

@@ -1,4 +1,4 @@
-//! The committed library: one file a joint with an index, one page and one drawing a joint, and their overview.
+//! The committed library: one file per joint with an index, one page and one drawing per joint, and their overview.
 
 use super::{BuildError, parallel, watch};
 use crate::derived::Derived;

@@ -337,7 +337,7 @@ impl Compiled {
             .inverse_dynamics_derivatives(q, speeds, accelerations, out)
     }
 
-    /// Whether `q` and vectors with one entry a speed have their sizes, and are finite.
+    /// Whether `q` and vectors with one entry per speed have their sizes, and are finite.
     fn check<const N: usize>(
         &self,
         q: &[f64],
@@ -349,13 +349,13 @@ impl Compiled {
         vectors.try_for_each(|(quantity, own)| mechanism.check_vector(quantity, Space::Speeds, own))
     }
 
-    /// Whether `room` for results has one entry a speed.
+    /// Whether `room` for results has one entry per speed.
     fn check_room(&self, quantity: &'static str, room: &[f64]) -> Result<(), StateError> {
         let mechanism = self.tree.mechanism();
         mechanism.check_room(quantity, Space::Speeds, room)
     }
 
-    /// Whether τ has one entry a freedom, and is finite.
+    /// Whether τ has one entry per freedom, and is finite.
     fn check_efforts(&self, efforts: &[f64]) -> Result<(), StateError> {
         let mechanism = self.tree.mechanism();
         mechanism.check_vector("efforts", Space::Freedoms, efforts)

@@ -64,7 +64,7 @@ impl<'a> Joint<'a> {
         columns(&entries, self.joint.derived.shape.freedoms)
     }
 
-    /// S̄ by rows, one a freedom.
+    /// S̄ by rows, one per freedom.
     pub fn speed_basis(&self) -> Vec<Vec<Sym>> {
         let (freedoms, speeds) = (
             self.joint.derived.shape.freedoms,
@@ -105,26 +105,26 @@ impl<'a> Joint<'a> {
         columns(&entries, self.joint.derived.shape.freedoms)
     }
 
-    /// ∂(X̄^c x)/∂ϕ, one column a freedom.
+    /// ∂(X̄^c x)/∂ϕ, one column per freedom.
     pub fn twist_gradient(&self, x: &[Sym]) -> Vec<Twist> {
         let given = [(self.joint.derived.arguments.speeds.as_slice(), x)];
         let entries = self.product(&self.joint.products.twist_gradient, &given);
         columns(&entries, self.joint.derived.shape.freedoms)
     }
 
-    /// ∂c/∂ϕ, one column a freedom.
+    /// ∂c/∂ϕ, one column per freedom.
     pub fn bias_gradient(&self) -> Vec<Twist> {
         let entries = self.product(&self.joint.products.bias_acceleration_gradient, &[]);
         columns(&entries, self.joint.derived.shape.freedoms)
     }
 
-    /// ∂c/∂v̄, one column a speed.
+    /// ∂c/∂v̄, one column per speed.
     pub fn bias_slope(&self) -> Vec<Twist> {
         let entries = self.product(&self.joint.products.bias_acceleration_slope, &[]);
         columns(&entries, self.joint.derived.shape.speeds)
     }
 
-    /// ∂(X̄^cᵀ h)/∂ϕ by rows, one a speed; none where X̄^c is constant.
+    /// ∂(X̄^cᵀ h)/∂ϕ by rows, one per speed; none where X̄^c is constant.
     pub fn effort_gradient(&self, wrench: &Wrench) -> Vec<Vec<Sym>> {
         let parts = parts_of(wrench);
         let given = [(self.joint.derived.arguments.wrench.as_slice(), &parts[..])];

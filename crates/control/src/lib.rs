@@ -55,7 +55,7 @@ pub struct Measure {
 
 /// A law from time, Q and v̄ to efforts τ.
 pub trait Controller: Debug {
-    /// τ into `efforts` (one entry a freedom, collocated with v) at `time` (s), `q` and v̄.
+    /// τ into `efforts` (one entry per freedom, collocated with v) at `time` (s), `q` and v̄.
     ///
     /// # Errors
     /// A wrong size; a local coordinate that cannot be found; equations of motion or an optimisation that cannot be solved.

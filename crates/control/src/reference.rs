@@ -35,7 +35,7 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// The motion that begins at the configuration `start` and has the speeds `laws` (one a speed), from 0 to `end` (s).
+    /// The motion that begins at the configuration `start` and has the speeds `laws` (one per speed), from 0 to `end` (s).
     ///
     /// # Errors
     /// A nonholonomic joint, or one whose motion is prescribed; constraints that couple joints; a wrong size; numbers that are not finite; a
@@ -132,12 +132,12 @@ impl Reference {
             .check_vector("configuration", Space::Configuration, q)?)
     }
 
-    /// v_ref at `time` (s), one entry a speed.
+    /// v_ref at `time` (s), one entry per speed.
     pub fn speeds(&self, time: f64) -> impl Iterator<Item = f64> + '_ {
         self.laws.iter().map(move |law| law.velocity(time))
     }
 
-    /// v̇_ref at `time` (s), one entry a speed.
+    /// v̇_ref at `time` (s), one entry per speed.
     pub fn accelerations(&self, time: f64) -> impl Iterator<Item = f64> + '_ {
         self.laws.iter().map(move |law| law.acceleration(time))
     }

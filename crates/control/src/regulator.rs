@@ -92,7 +92,7 @@ impl Equilibrium {
         &self.inputs
     }
 
-    /// τ that holds the mechanism there, one entry a freedom.
+    /// τ that holds the mechanism there, one entry per freedom.
     pub fn efforts(&self) -> &[f64] {
         &self.efforts
     }

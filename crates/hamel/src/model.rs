@@ -81,7 +81,7 @@ impl Model {
         self.mechanism().bodies().iter().map(Body::joint_name)
     }
 
-    /// Names of the bodies, one a joint.
+    /// Names of the bodies, one per joint.
     pub fn bodies(&self) -> impl Iterator<Item = &str> + Clone {
         self.mechanism().bodies().iter().map(Body::name)
     }

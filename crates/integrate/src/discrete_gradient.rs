@@ -1,4 +1,4 @@
-//! What turns the midpoint rule into a discrete-gradient method on the port-Hamiltonian form: one number a step.
+//! What turns the midpoint rule into a discrete-gradient method on the port-Hamiltonian form: one number per step.
 //!
 //! The midpoint rule takes `ϕ̇ = T v̄`, `p̄̇ = J̄22 v̄ − Tᵀ∂H/∂ϕ + τ̄` with `v̄ = ∂H/∂p̄` half-way. A discrete gradient takes other partial derivatives of H: those half-way
 //! and a correction along the change over the step, such that their product with the change is that of H (O. Gonzalez, *Time integration and

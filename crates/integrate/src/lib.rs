@@ -70,7 +70,7 @@ pub use tableau::{Estimate, Tableau};
 use core::ops::ControlFlow;
 use hamel_runtime::dynamics::Dynamics;
 
-/// Efforts τ (one entry a freedom) from time, q and v̄; entries are zero when it is called.
+/// Efforts τ (one entry per freedom) from time, q and v̄; entries are zero when it is called.
 pub type Inputs<'a> = dyn FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a;
 
 /// Sees the initial state, every accepted step, and samples of dense output within them; breaks to end the integration there.

@@ -15,7 +15,7 @@ pub struct JointForces {
     pub damping: Option<Located<PerFreedom>>,
     /// Inertia of what turns with the joint, such as a rotor: added to the diagonal of the joint's own block of M.
     pub armature: Option<Located<PerFreedom>>,
-    /// Constant efforts τ, one a freedom.
+    /// Constant efforts τ, one per freedom.
     pub effort: Option<Located<Vec<f64>>>,
     /// Prescribed motion.
     pub motion: Option<Located<Vec<Law>>>,
@@ -28,7 +28,7 @@ impl JointForces {
     }
 }
 
-/// Numbers of at least 0, one a freedom.
+/// Numbers of at least 0, one per freedom.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PerFreedom {
     /// The same for every freedom.

@@ -25,7 +25,7 @@ use alloc::sync::Arc;
 
 /// Equations of motion of one mechanism.
 ///
-/// `q` is a configuration, `speeds` v̄ and `momenta` p̄ have one entry a speed, `efforts` τ one a freedom: τ is collocated
+/// `q` is a configuration, `speeds` v̄ and `momenta` p̄ have one entry per speed, `efforts` τ one per freedom: τ is collocated
 /// with v. Where constraints couple joints ([`Mechanism::with_constraints`]), v̄ has the speeds of all joints, and the entries of dependent
 /// ones are 0 in p̄ and in all rates. Configurations are taken to lie on the joints' manifolds ([`Mechanism::check_configuration`]).
 /// What a call that ends with an error has written has no value.

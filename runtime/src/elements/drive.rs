@@ -37,7 +37,7 @@ impl Law {
 
 /// A joint whose motion is given: its velocity is a function of time, whatever it takes.
 ///
-/// In the dynamics its first entries of τ, one a speed, are its accelerations v̄̇, and its entries of p̄ its speeds v̄. The effort that
+/// In the dynamics its first entries of τ, one per speed, are its accelerations v̄̇, and its entries of p̄ its speeds v̄. The effort that
 /// it takes is what [`Recursive::joint_efforts`](crate::dynamics::Recursive::joint_efforts) reads after inverse dynamics at the accelerations found,
 /// or after [`Recursive::coupling_force`](crate::dynamics::Recursive::coupling_force) where constraints couple joints.
 #[derive(Clone, Debug)]

@@ -13,7 +13,7 @@ pub struct JointDamper {
     pub name: String,
     /// The body whose joint it damps.
     pub body: usize,
-    /// c, one entry a freedom: N·m·s/rad or N·s/m; not negative.
+    /// c, one entry per freedom: N·m·s/rad or N·s/m; not negative.
     pub coefficients: Vec<f64>,
 }
 
@@ -75,7 +75,7 @@ pub struct JointEffort {
     pub name: String,
     /// The body whose joint is driven.
     pub body: usize,
-    /// τ, one entry a freedom: N·m or N.
+    /// τ, one entry per freedom: N·m or N.
     pub efforts: Vec<f64>,
 }
 

@@ -24,7 +24,7 @@ pub trait Slope {
 /// Where elements put how what they exert changes. What is said of a body that is not there makes all of it NaN.
 #[derive(Debug)]
 pub struct Slopes<'a> {
-    /// X̄, one column a speed.
+    /// X̄, one column per speed.
     pub(crate) columns: &'a [Vector6<f64>],
     /// One a freedom.
     pub(crate) variations: &'a [Variation<f64>],

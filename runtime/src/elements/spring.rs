@@ -19,7 +19,7 @@ pub struct JointSpring {
     pub name: String,
     /// The body whose joint it turns back.
     pub body: usize,
-    /// K by rows, symmetric, one row a freedom: N·m/rad or N/m.
+    /// K by rows, symmetric, one row per freedom: N·m/rad or N/m.
     pub stiffness: Vec<f64>,
     /// The configuration of the joint at which it is at rest.
     pub rest: Vec<f64>,

@@ -163,7 +163,7 @@ fn nowhere() -> Pose<f64> {
 pub struct Action<'a> {
     /// Wrench on each body at the origin of its joint-child frame, world axes.
     pub(crate) wrenches: &'a mut [Vector6<f64>],
-    /// τ, one entry a freedom.
+    /// τ, one entry per freedom.
     pub(crate) efforts: &'a mut [f64],
 }
 
@@ -173,7 +173,7 @@ impl<'a> Action<'a> {
         Self { wrenches, efforts }
     }
 
-    /// Adds efforts of the joint under a body, one entry a freedom.
+    /// Adds efforts of the joint under a body, one entry per freedom.
     pub fn add_effort(&mut self, view: &View<'_>, body: usize, effort: &[f64]) {
         let range = view.body(body).map(|body| body.ranges().freedoms.clone());
         let own = range.and_then(|range| self.efforts.get_mut(range));

@@ -18,7 +18,7 @@ use nalgebra::{Matrix3, Vector6};
 /// sizes; of any other every result is NaN, or an error where there can be one. What does not depend on an argument does not look at it.
 ///
 /// The methods from [`AnyJoint::parts`] on are the joint's share in the recursions over a mechanism, in the frames of
-/// [`steps`](crate::steps). There `columns` are those of X̄, and pivots, loads and rates have one entry a speed. What solves a mechanism or
+/// [`steps`](crate::steps). There `columns` are those of X̄, and pivots, loads and rates have one entry per speed. What solves a mechanism or
 /// differentiates it is for [`Native`] numbers.
 pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     /// The same joint in numbers of 106 bits.
@@ -181,9 +181,9 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     fn momenta(&self, inertia: &SpatialInertia<T>, columns: &[Vector6<T>], out: &mut [Vector6<T>])
     where
         T: Native;
-    /// `X̄ᵀ F` into `out`, one entry a speed.
+    /// `X̄ᵀ F` into `out`, one entry per speed.
     fn gather(&self, wrench: &Vector6<T>, columns: &[Vector6<T>], out: &mut [T]);
-    /// What one unit of each ϕ and speed changes at the `state` (q, v̄, v̄̇), one entry a freedom; `motions` are those of the child frames of
+    /// What one unit of each ϕ and speed changes at the `state` (q, v̄, v̄̇), one entry per freedom; `motions` are those of the child frames of
     /// this joint and of its parent. An empty v̄̇ is zero.
     fn vary(
         &self,

@@ -66,7 +66,7 @@ where
         }
     }
 
-    /// The variations of one joint at (q, v̄, v̄̇), one a freedom; `own` and `parent` are the motions of the child frames.
+    /// The variations of one joint at (q, v̄, v̄̇), one per freedom; `own` and `parent` are the motions of the child frames.
     #[inline(always)]
     pub(crate) fn variations<T: Scalar>(
         &self,

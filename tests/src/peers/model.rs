@@ -1,4 +1,4 @@
-//! `MODEL.txt`: one line a joint.
+//! `MODEL.txt`: one line per joint.
 
 use hamel::spatial::{MassProperties, Pose};
 use nalgebra::{Matrix3, Vector3};

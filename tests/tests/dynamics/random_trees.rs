@@ -200,7 +200,7 @@ fn composite_momenta(case: &Case, state: &Kinematics) -> DMatrix<f64> {
     rootward(case, momenta)
 }
 
-/// Sums over branches, one column a body.
+/// Sums over branches, one column per body.
 fn rootward(case: &Case, mut own: Vec<Vector6<f64>>) -> DMatrix<f64> {
     for (index, body) in case.mechanism.bodies().iter().enumerate().rev() {
         if let Some(parent) = body.parent() {

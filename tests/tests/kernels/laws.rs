@@ -1,4 +1,4 @@
-//! The law suite over every joint of the library, one test a joint; a new spec enters by itself.
+//! The law suite over every joint of the library, one test per joint; a new spec enters by itself.
 //!
 //! `everywhere` searches for a place where a kernel is not what the spec defines. Its sweep looks at more parameters, more lines and more
 //! places: `cargo test --release --package hamel-tests --test kernels laws -- --ignored`.

@@ -11,7 +11,7 @@ use quote::quote;
 /// How the joints are laid out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Index {
-    /// `mod.rs` beside one file a joint, in the crate's module `joints`; exports `for_each_joint!`.
+    /// `mod.rs` beside one file per joint, in the crate's module `joints`; exports `for_each_joint!`.
     Files,
     /// One file with a module for each joint, for `include!`.
     Nested,

@@ -23,7 +23,7 @@ struct State {
     failure: Option<String>,
     errors: Vec<MeasureOutcome>,
     values: Vec<f64>,
-    /// τ as it was taken last, one entry a freedom.
+    /// τ as it was taken last, one entry per freedom.
     efforts: Vec<f64>,
     largest_effort: f64,
 }

@@ -1,4 +1,4 @@
-//! The trajectory as CSV: one row a sample, units in the names of the columns.
+//! The trajectory as CSV: one row per sample, units in the names of the columns.
 
 use super::columns::{Columns, are_columns};
 use super::plan::Plan;

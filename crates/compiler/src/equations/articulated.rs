@@ -33,7 +33,7 @@ struct Start<'a> {
     biases: Vec<Twist>,
     /// Acceleration of the world that stands for gravity.
     world: Twist,
-    /// The efforts at a body's joint, one a speed.
+    /// The efforts at a body's joint, one per speed.
     efforts: &'a dyn Fn(usize) -> Vec<Sym>,
     /// The argument that holds the rates of driven joints.
     given: Argument,

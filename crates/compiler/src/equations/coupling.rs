@@ -11,7 +11,7 @@ use num_traits::Zero;
 
 /// The constraints at one configuration.
 pub(super) struct Coupling {
-    /// Aᵀ, one row a constraint, one column a speed.
+    /// Aᵀ, one row a constraint, one column per speed.
     rows: Vec<Vec<Sym>>,
     /// B, one row a dependent, one column an independent speed.
     basis: Vec<Vec<Sym>>,

@@ -17,7 +17,7 @@ struct Stretch<'a> {
 }
 
 impl Tree<'_> {
-    /// The efforts of the springs at a body's joint, one a freedom; none where it has no spring.
+    /// The efforts of the springs at a body's joint, one per freedom; none where it has no spring.
     pub(super) fn spring_efforts(&self, index: usize) -> Vec<Sym> {
         let elements = &self.model.elements;
         let springs = elements.joint_springs.iter();
@@ -113,7 +113,7 @@ impl Tree<'_> {
             .collect()
     }
 
-    /// `Σ_k γ_k v_k (a v)` of the rotors at a body's joint, one a freedom: what their turning takes where velocities do not commute.
+    /// `Σ_k γ_k v_k (a v)` of the rotors at a body's joint, one per freedom: what their turning takes where velocities do not commute.
     pub(super) fn rotor_forces(&self, index: usize) -> Vec<Sym> {
         if !self.has_armature(index) {
             return vec![];
@@ -127,7 +127,7 @@ impl Tree<'_> {
         joint.gamma(speeds).iter().map(force).collect()
     }
 
-    /// `Ẋ̄ᵀ h` of a body's joint, one a speed.
+    /// `Ẋ̄ᵀ h` of a body's joint, one per speed.
     pub(super) fn bias_momentum(&self, index: usize, momentum: &Wrench) -> Vec<Sym> {
         let speeds = &self.bodies[index].speeds;
         self.joint_at(index, speeds).bias_momentum(momentum)

@@ -7,7 +7,7 @@ use crate::graph::{Argument, Slopes, Sym, section};
 use num_traits::Zero;
 
 impl Tree<'_> {
-    /// By rows, one a speed: `∂v̄̇/∂ϕ`, `∂v̄̇/∂v̄`, `∂v̄̇/∂τ` and v̄̇.
+    /// By rows, one per speed: `∂v̄̇/∂ϕ`, `∂v̄̇/∂v̄`, `∂v̄̇/∂τ` and v̄̇.
     pub fn forward_derivatives(&self) -> Vec<Sym> {
         let rates = self.composite_accelerations();
         let needed = self.needed_slopes(&rates, Some(Argument::Efforts));

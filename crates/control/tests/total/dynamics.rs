@@ -21,7 +21,7 @@ fn forms(mechanism: &Arc<Mechanism>) -> [Box<dyn Dynamics>; 3] {
     ]
 }
 
-/// Arguments that are right: q, v̄, τ, and room for one number a speed.
+/// Arguments that are right: q, v̄, τ, and room for one number per speed.
 struct Right {
     q: Vec<f64>,
     v: Vec<f64>,

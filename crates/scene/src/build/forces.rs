@@ -14,11 +14,11 @@ use nalgebra::{DMatrix, DVector};
 pub(crate) struct Acting {
     /// Spring.
     pub(crate) spring: Option<Spring>,
-    /// Damping, one number a freedom; empty without.
+    /// Damping, one number per freedom; empty without.
     pub(crate) damping: Vec<f64>,
-    /// Armature, one number a freedom; empty without.
+    /// Armature, one number per freedom; empty without.
     pub(crate) armature: Vec<f64>,
-    /// Constant efforts τ, one a freedom; empty without.
+    /// Constant efforts τ, one per freedom; empty without.
     pub(crate) effort: Vec<f64>,
     /// Prescribed speeds, one law a speed; empty without.
     pub(crate) motion: Vec<Law>,

@@ -132,10 +132,10 @@ impl FrameReadings<'_> {
     }
 
     /// The 6×K matrix of the frame's displacements under a unit of each local coordinate ϕ (at ϕ = 0), twists as of J, into `out`: column by column,
-    /// one a freedom.
+    /// one per freedom.
     ///
     /// # Errors
-    /// When `out` has not six entries a freedom.
+    /// When `out` has not six entries per freedom.
     pub fn local_jacobian(&self, axes: Frame, out: &mut [f64]) -> Result<(), StateError> {
         let pose = self.pose();
         self.fill_locals(out, |variation, arm| {
@@ -143,10 +143,10 @@ impl FrameReadings<'_> {
         })
     }
 
-    /// `∂(J v̄)/∂ϕ` at fixed v̄: the derivatives of [`FrameReadings::twist`] into `out`, column by column, one a freedom.
+    /// `∂(J v̄)/∂ϕ` at fixed v̄: the derivatives of [`FrameReadings::twist`] into `out`, column by column, one per freedom.
     ///
     /// # Errors
-    /// When `out` has not six entries a freedom.
+    /// When `out` has not six entries per freedom.
     pub fn twist_gradient(&self, axes: Frame, out: &mut [f64]) -> Result<(), StateError> {
         let (pose, twist) = (self.pose(), self.twist(axes));
         self.fill_locals(out, |variation, arm| {

@@ -10,7 +10,7 @@ use nalgebra::{Cholesky, Matrix6, Vector6};
 pub(super) const MOST_FREEDOMS: usize = 6;
 
 impl Recursive {
-    /// `S̄ᵀτ` into `efforts` (one entry a speed): what inputs must exert, beside the elements, for the mechanism to accelerate with
+    /// `S̄ᵀτ` into `efforts` (one entry per speed): what inputs must exert, beside the elements, for the mechanism to accelerate with
     /// `accelerations` = v̄̇ at `q` and v̄. Constraints that couple joints exert nothing here: for their share see [`Recursive::coupling_force`].
     ///
     /// # Errors
@@ -37,7 +37,7 @@ impl Recursive {
         self.mechanism.check_finite((q, speeds), &found)
     }
 
-    /// `C̄ v̄ + S̄ᵀN̂` of the tree into `efforts` (one entry a speed): inverse dynamics at v̄̇ = 0.
+    /// `C̄ v̄ + S̄ᵀN̂` of the tree into `efforts` (one entry per speed): inverse dynamics at v̄̇ = 0.
     ///
     /// # Errors
     /// When a vector has the wrong size, or is not finite.
@@ -78,7 +78,7 @@ impl Recursive {
         Some(turn_back(&node.motion.placement.rotation, &node.wrench))
     }
 
-    /// `X^cᵀF = τ + Aλ` of every joint into `efforts` (one entry a freedom), as of the last
+    /// `X^cᵀF = τ + Aλ` of every joint into `efforts` (one entry per freedom), as of the last
     /// [`Recursive::inverse_dynamics`] at `q`, or [`Recursive::coupling_force`] where constraints couple joints: also what it takes to move a
     /// joint whose motion is prescribed.
     ///
@@ -107,7 +107,7 @@ impl Recursive {
         }
     }
 
-    /// `λ = (AᵀA)⁻¹Aᵀ(X^cᵀF − τ)` into `forces` (one entry a constraint), for applied efforts τ (one a freedom), as of
+    /// `λ = (AᵀA)⁻¹Aᵀ(X^cᵀF − τ)` into `forces` (one entry a constraint), for applied efforts τ (one per freedom), as of
     /// the last [`Recursive::inverse_dynamics`] at `q`, or [`Recursive::coupling_force`] where constraints couple joints. Entries of τ of joints
     /// whose motion is prescribed are not read.
     ///

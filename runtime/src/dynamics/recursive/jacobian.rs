@@ -9,15 +9,15 @@ use crate::spatial::{shift_wrench, split};
 use nalgebra::Vector6;
 
 impl Readings<'_> {
-    /// The 6×S̄ matrix that takes v̄ to the twist of `body` into `out`, column by column, one a speed.
+    /// The 6×S̄ matrix that takes v̄ to the twist of `body` into `out`, column by column, one per speed.
     ///
     /// # Errors
-    /// When there is no such body; when `out` has not six entries a speed.
+    /// When there is no such body; when `out` has not six entries per speed.
     pub fn jacobian(&self, body: usize, frame: Frame, out: &mut [f64]) -> Result<(), StateError> {
         self.body_frame(body)?.jacobian(frame, out)
     }
 
-    /// The Jacobian of `body` times `weights`, one a speed: the twist under these speeds.
+    /// The Jacobian of `body` times `weights`, one per speed: the twist under these speeds.
     ///
     /// # Errors
     /// When there is no such body; when `weights` has the wrong size.
@@ -30,7 +30,7 @@ impl Readings<'_> {
         self.body_frame(body)?.jacobian_product(frame, weights)
     }
 
-    /// The transposed Jacobian of `body` times a `wrench` on it into `efforts`, one a speed: what the wrench does to the speeds.
+    /// The transposed Jacobian of `body` times a `wrench` on it into `efforts`, one per speed: what the wrench does to the speeds.
     ///
     /// # Errors
     /// When there is no such body; when `efforts` has the wrong size.
@@ -47,10 +47,10 @@ impl Readings<'_> {
 }
 
 impl FrameReadings<'_> {
-    /// The 6×S̄ matrix J that takes v̄ to the frame's twist into `out`, column by column, one a speed.
+    /// The 6×S̄ matrix J that takes v̄ to the frame's twist into `out`, column by column, one per speed.
     ///
     /// # Errors
-    /// When `out` has not six entries a speed.
+    /// When `out` has not six entries per speed.
     pub fn jacobian(&self, axes: Frame, out: &mut [f64]) -> Result<(), StateError> {
         let speeds = self.recursive.mechanism.layout().speeds;
         check_size(WHOLE, "Jacobian", 6 * speeds, out.len())?;
@@ -65,7 +65,7 @@ impl FrameReadings<'_> {
         Ok(())
     }
 
-    /// `J w` for `weights` w, one a speed: the frame's twist under these speeds.
+    /// `J w` for `weights` w, one per speed: the frame's twist under these speeds.
     ///
     /// # Errors
     /// When `weights` has the wrong size.
@@ -87,7 +87,7 @@ impl FrameReadings<'_> {
         Ok(twist)
     }
 
-    /// `Jᵀ W` for a `wrench` W on the frame's body into `efforts`, one a speed: what the wrench does to the speeds.
+    /// `Jᵀ W` for a `wrench` W on the frame's body into `efforts`, one per speed: what the wrench does to the speeds.
     ///
     /// # Errors
     /// When `efforts` has the wrong size.
@@ -118,7 +118,7 @@ impl Recursive {
     /// world axes, (angular; linear).
     ///
     /// # Errors
-    /// When `q` has the wrong size; when `out` has not six entries a speed.
+    /// When `q` has the wrong size; when `out` has not six entries per speed.
     pub fn centroidal_map(&mut self, q: &[f64], out: &mut [f64]) -> Result<(), StateError> {
         self.check(q, &[])?;
         let speeds = self.mechanism.layout().speeds;

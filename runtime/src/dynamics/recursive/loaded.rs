@@ -17,7 +17,7 @@ use nalgebra::Vector6;
 /// The factors of M̄ + W, and room for solving with them.
 #[derive(Clone, Debug)]
 pub struct LoadedMass {
-    /// Y, one column a speed.
+    /// Y, one column per speed.
     yields: Vec<Vector6<f64>>,
     /// LDLᵀ of each joint's block, S×S row by row: D on the diagonal, L below.
     blocks: Vec<Vec<f64>>,

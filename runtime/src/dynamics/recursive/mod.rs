@@ -64,25 +64,25 @@ pub struct Recursive {
     climbs: Vec<Climb>,
     world: Node,
     nodes: Vec<Node>,
-    /// X̄, one column a speed.
+    /// X̄, one column per speed.
     columns: Vec<Vector6<f64>>,
-    /// Composite momenta of the columns, one a speed.
+    /// Composite momenta of the columns, one per speed.
     momenta: Vec<Vector6<f64>>,
     slender: Vec<Slender>,
     inertias: Vec<ArticulatedInertia<f64>>,
     pivots: Vec<Pivot<f64>>,
     loads: Vec<f64>,
-    /// `S̄ᵀτ`, one entry a speed.
+    /// `S̄ᵀτ`, one entry per speed.
     forces: Vec<f64>,
-    /// Efforts of the elements alone, one entry a freedom.
+    /// Efforts of the elements alone, one entry per freedom.
     efforts: Vec<f64>,
     /// The same with τ.
     combined: Vec<f64>,
-    /// τ of the inputs, one entry a freedom.
+    /// τ of the inputs, one entry per freedom.
     inputs: Vec<f64>,
     /// Wrenches of elements on the bodies, at the child frames' origins, in world axes.
     external: Vec<Vector6<f64>>,
-    /// Prescribed rates of driven joints, one entry a speed; zero for the others.
+    /// Prescribed rates of driven joints, one entry per speed; zero for the others.
     driven: Vec<f64>,
     coupling: Option<Coupling>,
 }
@@ -145,7 +145,7 @@ impl Recursive {
         })
     }
 
-    /// `task` with `q` and vectors with one entry a speed. That they have their sizes is checked before it, that they are finite after it: by
+    /// `task` with `q` and vectors with one entry per speed. That they have their sizes is checked before it, that they are finite after it: by
     /// then they are in the cache, while a look at all of them beforehand would wait for memory.
     #[inline]
     fn with_inputs<E: From<StateError>>(
@@ -164,7 +164,7 @@ impl Recursive {
         done
     }
 
-    /// Whether `q` and vectors with one entry a speed have their sizes, and are finite.
+    /// Whether `q` and vectors with one entry per speed have their sizes, and are finite.
     fn check(&self, q: &[f64], vectors: &[(&'static str, &[f64])]) -> Result<(), StateError> {
         let mechanism = &self.mechanism;
         mechanism.check_vector("configuration", Space::Configuration, q)?;
@@ -172,12 +172,12 @@ impl Recursive {
         vectors.try_for_each(|(quantity, own)| mechanism.check_vector(quantity, Space::Speeds, own))
     }
 
-    /// Whether `room` for results has one entry a speed.
+    /// Whether `room` for results has one entry per speed.
     fn check_room(&self, quantity: &'static str, room: &[f64]) -> Result<(), StateError> {
         self.mechanism.check_room(quantity, Space::Speeds, room)
     }
 
-    /// Whether τ has one entry a freedom, and is finite; where it is not, and a kernel at (q, v̄) is not either, that is the cause.
+    /// Whether τ has one entry per freedom, and is finite; where it is not, and a kernel at (q, v̄) is not either, that is the cause.
     fn check_efforts(&self, q: &[f64], speeds: &[f64], tau: &[f64]) -> Result<(), StateError> {
         let checked = self.mechanism.check_vector("efforts", Space::Freedoms, tau);
         checked.map_err(|error| match &error {
@@ -186,7 +186,7 @@ impl Recursive {
         })
     }
 
-    /// `task` at (q, v̄), and whether its results are finite, each with one entry a speed; an error is traced back to what is not finite first.
+    /// `task` at (q, v̄), and whether its results are finite, each with one entry per speed; an error is traced back to what is not finite first.
     fn finite<const N: usize>(
         &mut self,
         (q, speeds): (&[f64], &[f64]),

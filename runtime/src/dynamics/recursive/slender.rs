@@ -24,7 +24,7 @@ const RATIO: f64 = 1e4;
 /// What a slender body keeps in its child frame's axes.
 #[derive(Clone, Debug)]
 pub(super) struct Slender {
-    /// X̄, one column a speed.
+    /// X̄, one column per speed.
     pub(super) columns: Vec<Vector6<f64>>,
     /// V.
     pub(super) twist: Vector6<f64>,
@@ -35,7 +35,7 @@ pub(super) struct Slender {
     /// The body's weight, in both axes.
     weight: Vector6<f64>,
     seen_weight: Vector6<f64>,
-    /// The joint's, one a speed; the others of the mechanism are in world axes.
+    /// The joint's, one per speed; the others of the mechanism are in world axes.
     pivots: Vec<Pivot<f64>>,
 }
 

@@ -161,7 +161,7 @@ impl Recursive {
         }
     }
 
-    /// Inward: [`Recursive::articulate`], and the loads of generalised `forces` (one entry a speed) against the wrenches of the nodes.
+    /// Inward: [`Recursive::articulate`], and the loads of generalised `forces` (one entry per speed) against the wrenches of the nodes.
     pub(super) fn eliminate(&mut self, forces: &[f64]) -> Result<(), DynamicsError> {
         for index in (0..self.links.len()).rev() {
             let inertia = match self.links[index].slender {
@@ -256,7 +256,7 @@ impl Recursive {
         }
     }
 
-    /// Inward: the wrench of each node and of all that hangs on it; `X̄ᵀ` of it into `out`, one entry a speed.
+    /// Inward: the wrench of each node and of all that hangs on it; `X̄ᵀ` of it into `out`, one entry per speed.
     pub(super) fn gather(&mut self, out: &mut [f64]) {
         for index in (0..self.links.len()).rev() {
             let link = &self.links[index];

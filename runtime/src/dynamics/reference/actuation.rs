@@ -14,7 +14,7 @@ use nalgebra::{DMatrix, DVector, Vector6};
 
 /// What the elements of a mechanism amount to at one state.
 pub(super) struct ElementForces {
-    /// τ, one entry a freedom.
+    /// τ, one entry per freedom.
     pub(super) efforts: DVector<f64>,
     /// Stored energy, J.
     pub(super) energy: f64,
@@ -75,7 +75,7 @@ pub(super) fn hold(matrix: &mut DMatrix<f64>, side: &mut DVector<f64>, known: &[
     }
 }
 
-/// The driven among the independent speeds, each with its entry of `values` (one a speed of the tree).
+/// The driven among the independent speeds, each with its entry of `values` (one per speed of the tree).
 pub(super) fn driven(
     mechanism: &Mechanism,
     expansion: &Expansion,
@@ -88,7 +88,7 @@ pub(super) fn driven(
     place(expansion, speeds.map(|speed| (speed, values[speed])))
 }
 
-/// The same for values with one entry a freedom: prescribed accelerations are the first of a joint's.
+/// The same for values with one entry per freedom: prescribed accelerations are the first of a joint's.
 pub(super) fn driven_freedoms(
     mechanism: &Mechanism,
     expansion: &Expansion,

@@ -61,7 +61,7 @@ impl Reference {
 }
 
 impl Reference {
-    /// Numbers with one entry a speed: of the right size, and finite.
+    /// Numbers with one entry per speed: of the right size, and finite.
     fn speeds_of<'a>(
         &self,
         quantity: &'static str,
@@ -79,7 +79,7 @@ impl Reference {
         Ok(DVector::from_column_slice(slice))
     }
 
-    /// Whether room for results has one entry a speed.
+    /// Whether room for results has one entry per speed.
     fn check_room(&self, quantity: &'static str, room: &[f64]) -> Result<(), StateError> {
         self.mechanism.check_room(quantity, Space::Speeds, room)
     }

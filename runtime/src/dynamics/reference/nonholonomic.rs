@@ -16,7 +16,7 @@ impl Expansion {
         self.speed_basis.ncols()
     }
 
-    /// `M̄ = S̄ᵀ M S̄`, one row a speed.
+    /// `M̄ = S̄ᵀ M S̄`, one row per speed.
     pub fn reduced_mass_matrix(&self) -> DMatrix<f64> {
         self.speed_basis
             .tr_mul(&(&self.mass_matrix * &self.speed_basis))
@@ -38,7 +38,7 @@ impl Expansion {
         self.speed_basis.tr_mul(&inner)
     }
 
-    /// `S̄ᵀ N̂`, one entry a speed, (34).
+    /// `S̄ᵀ N̂`, one entry per speed, (34).
     pub fn reduced_potential_forces(&self) -> DVector<f64> {
         self.speed_basis.tr_mul(&self.potential_forces())
     }

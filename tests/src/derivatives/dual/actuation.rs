@@ -154,7 +154,7 @@ impl Actuation {
         }
     }
 
-    /// Generalised forces, one a speed.
+    /// Generalised forces, one per speed.
     pub fn forces(&self, form: &DualForm, q: &[D], speeds: &[D]) -> Vec<D> {
         let mut forces = form.reduced(q, &self.efforts(form, q, speeds));
         let poses = form.poses(q);

@@ -39,12 +39,12 @@ pub(super) struct Coupling {
     pub(super) independent: Vec<usize>,
     /// Whether each of the independent speeds is prescribed.
     driven: Vec<bool>,
-    /// Aᵀ, one row a constraint, one column a speed of the tree.
+    /// Aᵀ, one row a constraint, one column per speed of the tree.
     matrix: Vec<f64>,
     lu: Lu<f64>,
     /// B, one row a dependent, one column an independent speed.
     basis: DMatrix<f64>,
-    /// M S̄, one row a speed of the tree.
+    /// M S̄, one row per speed of the tree.
     momenta: DMatrix<f64>,
     /// `S̄ᵀ M S̄`.
     mass: DMatrix<f64>,
@@ -199,7 +199,7 @@ fn rows(mechanism: &Mechanism) -> Vec<Row> {
 }
 
 impl Recursive {
-    /// `Aᵀ` of the constraints at `q`, one row a constraint, one column a speed of the tree: for choosing which speeds depend.
+    /// `Aᵀ` of the constraints at `q`, one row a constraint, one column per speed of the tree: for choosing which speeds depend.
     pub(crate) fn constraint_matrix(&mut self, q: &[f64]) -> DMatrix<f64> {
         self.weigh(q);
         let mut rows = rows(&self.mechanism);

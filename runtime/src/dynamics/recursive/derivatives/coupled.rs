@@ -47,7 +47,7 @@ pub(super) struct Coupled {
 /// One column on its way to an answer.
 #[derive(Clone, Debug)]
 struct Column {
-    /// r, one entry a speed.
+    /// r, one entry per speed.
     needed: Vec<f64>,
     /// δv̄_d, then δe, then the dependent entries of p; one entry a constraint.
     dependent: Vec<f64>,

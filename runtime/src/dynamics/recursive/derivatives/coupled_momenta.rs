@@ -45,7 +45,7 @@ pub(super) struct CoupledMomenta {
     multipliers: Vec<f64>,
     /// ν, later the dependent entries of δv̄ that `−Fᵀ U` asks for.
     dependent: Vec<f64>,
-    /// r − δp̄ of one column, one entry a speed.
+    /// r − δp̄ of one column, one entry per speed.
     asked: Vec<f64>,
     /// δv̄.
     faster: Vec<f64>,

@@ -46,9 +46,9 @@ pub(super) struct Responses {
     dragging: Vec<ArticulatedCoriolis>,
     /// One a speed: `Bᵀ X / d`.
     pub(super) drags: Vec<Vector3<f64>>,
-    /// At most one a freedom.
+    /// At most one per freedom.
     pub(super) pushes: Vec<Push>,
-    /// At most one a speed.
+    /// At most one per speed.
     faster: Vec<Push>,
     /// One a freedom.
     forced: Vec<Push>,
@@ -132,7 +132,7 @@ impl ForwardDerivatives {
         Some(coupled.completed.each_ref())
     }
 
-    /// Takes all of them over from rows that hold them side by side, one a speed: `∂v̄̇/∂ϕ`, `∂v̄̇/∂v̄`, `∂v̄̇/∂τ`, v̄̇, and then those of
+    /// Takes all of them over from rows that hold them side by side, one per speed: `∂v̄̇/∂ϕ`, `∂v̄̇/∂v̄`, `∂v̄̇/∂τ`, v̄̇, and then those of
     /// [`ForwardDerivatives::completed_speeds`], where there are any.
     ///
     /// # Errors

@@ -91,7 +91,7 @@ impl InverseDerivatives {
         of(&self.by_local) + of(&self.by_speeds)
     }
 
-    /// Takes both over from rows that hold them side by side, one a speed.
+    /// Takes both over from rows that hold them side by side, one per speed.
     ///
     /// # Errors
     /// Rows for another mechanism.

@@ -196,7 +196,7 @@ impl Recursive {
         }
     }
 
-    /// The variations of the joint under body `index` at (q, v̄, v̄̇), one a freedom, after [`Recursive::advance`].
+    /// The variations of the joint under body `index` at (q, v̄, v̄̇), one per freedom, after [`Recursive::advance`].
     pub(in crate::dynamics::recursive) fn vary(
         &self,
         index: usize,

@@ -39,7 +39,7 @@ const SHRINKS: f64 = 0.5;
 pub struct Refined {
     tree: Recursive,
     residual: Residual,
-    /// The rates found so far, one entry a speed.
+    /// The rates found so far, one entry per speed.
     found: Vec<Extended>,
     /// What they leave, and what that calls for.
     left: Vec<f64>,
