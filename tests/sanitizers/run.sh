@@ -48,4 +48,4 @@ export RUSTC_BOOTSTRAP=1 RUSTFLAGS="-Zsanitizer=address" HAMEL_LIBRARIES=$librar
 # Libraries that were loaded stay to the end of the program, which is no leak.
 export ASAN_OPTIONS=detect_leaks=0
 cargo test --locked --manifest-path tests/sanitizers/Cargo.toml --target "$host" --target-dir "$target" -- --nocapture "${skip[@]}"
-cargo test --locked --package hamel --lib --features levels --target "$host" --target-dir "$target" -- compiled::
+cargo test --locked --package hamel-compiled --lib --features levels --target "$host" --target-dir "$target"
