@@ -38,7 +38,7 @@ pub struct Derived {
     pub speed_map: Matrix,
     /// S to first order in ϕ, (32): S₀ + Σ S_k ϕ_k, in S₀-factored form where that is shorter: `(left, right)` with `S = left · right`.
     pub velocity_map_series: (Matrix, Matrix),
-    /// N_X: basis of the inertias that the joint cannot feel, `[m, mc_x, mc_y, mc_z, Ixx, Iyy, Izz, Ixy, Ixz, Iyz]`.
+    /// N_X: basis of the inertias that do not affect the joint, `[m, mc_x, mc_y, mc_z, Ixx, Iyy, Izz, Ixy, Ixz, Iyz]`.
     pub unidentifiable: Vec<[Rational; 10]>,
     /// All that was proved, and what was checked instead.
     pub claims: Vec<Claim>,

@@ -182,7 +182,7 @@ impl Kernel {
 pub struct Shape {
     /// N: stored scalars of Q.
     pub configuration: usize,
-    /// K: freedoms, size of v and ϕ.
+    /// K: degrees of freedom, size of v and ϕ.
     pub freedoms: usize,
     /// S: speeds v̄.
     pub speeds: usize,
@@ -218,7 +218,7 @@ pub struct Word {
     pub value: Expr,
     /// The `let` or its entry: the name itself, but for derivatives.
     pub base: Symbol,
-    /// The freedoms along which a derivative is taken, one after the other.
+    /// The degrees of freedom along which a derivative is taken, one after the other.
     pub along: Vec<usize>,
 }
 

@@ -121,7 +121,7 @@ pub struct Freedom {
     /// The factor that it moves.
     pub factor: usize,
     /// Its generator: coordinates in the standard basis of that factor's algebra; rational or of parameters. Empty for a
-    /// freedom of `local`, which only Φ gives a meaning.
+    /// degree of freedom of `local`, which only Φ gives a meaning.
     pub generator: Vec<Expr>,
 }
 
@@ -250,7 +250,7 @@ pub struct Unproved {
 }
 
 impl JointSpec {
-    /// The freedoms of one factor.
+    /// The degrees of freedom of one factor.
     pub(crate) fn freedoms_of(&self, factor: usize) -> impl Iterator<Item = &Freedom> {
         let freedoms = self.freedoms.value.iter();
         freedoms.filter(move |freedom| freedom.factor == factor)

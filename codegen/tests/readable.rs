@@ -55,7 +55,7 @@ fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The names of a spec: parameters, factors, stored scalars, freedoms, speeds, `let`s and their entries.
+/// The names of a spec: parameters, factors, stored scalars, degrees of freedom, speeds, `let`s and their entries.
 fn names_of(joint: &str) -> BTreeSet<String> {
     let path = repository().join(format!("joint-specs/{joint}.joint"));
     let source = std::fs::read_to_string(&path).expect("the spec of a generated joint");

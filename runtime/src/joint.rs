@@ -88,7 +88,7 @@ pub enum VelocityFrame {
 
 /// A joint of Definition 1 or 2, with its kernels.
 ///
-/// `N` scalars store the configuration Q, `K` is the number of freedoms (size of v and ϕ), `S` the number of speeds v̄
+/// `N` scalars store the configuration Q, `K` is the number of degrees of freedom (size of v and ϕ), `S` the number of speeds v̄
 /// (`S = K` for a holonomic joint), `C = K − S` the number of nonholonomic constraints. Twists and wrenches are
 /// 6-vectors, angular part first. SI units, radians. The implementing type holds the joint's parameters.
 pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
@@ -108,7 +108,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     const STRUCTURES: Structures;
     /// Which entries of H, X^c, S̄ and the derivatives of the last two are known.
     const PATTERNS: Patterns<K, S>;
-    /// Basis of the spatial inertias in the child frame that the joint cannot feel (N_X):
+    /// Basis of the spatial inertias in the child frame that do not affect the joint (N_X):
     /// `[m, mc_x, mc_y, mc_z, Ixx, Iyy, Izz, Ixy, Ixz, Iyz]`, inertia about the frame origin.
     const UNIDENTIFIABLE: &'static [[f64; 10]];
 

@@ -1,6 +1,7 @@
 //! Mechanisms as the scene compiler takes them, and what it makes of them in double precision.
 
 use crate::random;
+use chacha20::ChaCha8Rng;
 use hamel::elements::{
     BodySpring, BodyWrench, Drive, Element, JointSpring, Law, PointConstraint, RotationSpring,
     WrenchAxes,
@@ -13,7 +14,6 @@ use hamel_compiler::graph::Argument;
 use hamel_compiler::model::{Body, Coupling, Elements, Model};
 use hamel_compiler::prune::{Pruning, prune};
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;

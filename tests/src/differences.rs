@@ -26,7 +26,7 @@ pub fn derivative(step: f64, f: impl Fn(f64) -> DMatrix<f64>) -> DMatrix<f64> {
     sum.unwrap_or_else(|| f(0.0) * 0.0)
 }
 
-/// Φ(q, ϕ) of all joints, `phi` one entry per freedom.
+/// Φ(q, ϕ) of all joints, `phi` one entry per degree of freedom.
 pub fn moved(mechanism: &Mechanism, q: &[f64], phi: &[f64]) -> Vec<f64> {
     let mut target = q.to_vec();
     for body in mechanism.bodies() {
@@ -161,7 +161,7 @@ mod tests {
                 let own = &mut expected[ranges.configuration.clone()];
                 body.joint().configuration_rate(q, v.as_slice(), own);
             }
-            // Rounding ε |q| / h = 3 · 2.2e-16 · 128 = 9e-14 a freedom, six of them.
+            // Rounding ε |q| / h = 3 · 2.2e-16 · 128 = 9e-14 a degree of freedom, six of them.
             assert!(difference(found.as_slice(), &expected) < 6e-13);
         }
     }

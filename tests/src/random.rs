@@ -1,12 +1,12 @@
 //! Seeded random mechanisms and states: trees of any joints, placed anywhere, with physical inertias.
 
+use chacha20::ChaCha8Rng;
 use hamel::erased::AnyJoint;
 use hamel::mechanism::{Body, BodySpec, Mechanism};
 use hamel::nalgebra::{Matrix3, Vector3};
 use hamel::registry::{JointEntry, JointRegistry};
 use hamel::spatial::{MassProperties, Pose, so3};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
 
 /// Longest ϕ from home, rad and m: most of a half turn.
@@ -28,7 +28,7 @@ pub struct Case {
     pub speeds: Vec<f64>,
     /// v̄̇, of order 1.
     pub rates: Vec<f64>,
-    /// τ, one entry per freedom, of order 1.
+    /// τ, one entry per degree of freedom, of order 1.
     pub efforts: Vec<f64>,
 }
 

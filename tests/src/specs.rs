@@ -1,7 +1,7 @@
 //! Random valid specs: joints that hold their claims by construction, no two alike.
 
+use chacha20::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::fmt::Write;
 
 /// What a random joint does, with what makes its X full of rank everywhere.

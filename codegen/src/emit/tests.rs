@@ -198,7 +198,7 @@ fn a_joint_explains_itself() {
         "J₂₂ = −p~ = ",
         "pose_in_se3",
         "18 multiplications",
-        "Inertias that the joint cannot feel",
+        "Inertias that do not affect the joint",
     ] {
         assert!(text.contains(part), "no {part} in {text}");
     }

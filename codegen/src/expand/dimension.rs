@@ -1,4 +1,4 @@
-//! The dimension of the configuration manifold against the number of freedoms.
+//! The dimension of the configuration manifold against the number of degrees of freedom.
 
 use super::motion::Motion;
 use crate::diagnostic::Diagnostic;
@@ -20,7 +20,7 @@ pub enum Confinement {
     Orbit(usize),
 }
 
-/// A joint of k freedoms has a k-dimensional configuration manifold: refuses factors of which the dimension is known to be another.
+/// A joint of k degrees of freedom has a k-dimensional configuration manifold: refuses factors of which the dimension is known to be another.
 pub fn check(joint: &Prepared, exponential: bool) -> Result<(), Vec<Diagnostic>> {
     let manifold = &joint.space.manifold;
     let freedoms = &joint.spec.freedoms;

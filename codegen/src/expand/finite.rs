@@ -174,7 +174,7 @@ pub fn retract_differential_inverse(
     Some((steps.finish(), rates))
 }
 
-/// `ad_ϕ` on the freedoms at `places`: entry (i, j) is `Σ_k c^i_kj ϕ_k`.
+/// `ad_ϕ` on the degrees of freedom at `places`: entry (i, j) is `Σ_k c^i_kj ϕ_k`.
 fn restricted_adjoint(joint: &Prepared, constants: &[Matrix], places: &[usize]) -> Matrix {
     Matrix::from_fn(places.len(), places.len(), |i, j| {
         let term = |&k: &usize| {

@@ -1,4 +1,4 @@
-//! N_X: the spatial inertias that a joint cannot feel.
+//! N_X: the spatial inertias that do not affect a joint.
 //!
 //! `N = [I mc~; −mc~ m1]` in the child frame with `N X^c = 0`, and constant when read in the parent frame:
 //! `ad_Tᵀ N + N ad_T = 0` for each twist T of the joint. Linear in the ten parameters; solved over the rationals.

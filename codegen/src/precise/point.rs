@@ -3,8 +3,8 @@
 use super::Precise;
 use crate::expr::{Application, Atom, Expr, Function, Monomial, Number, Role, Symbol};
 use crate::matrix::Matrix;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use chacha20::ChaCha8Rng;
+use chacha20::rand_core::{Rng, SeedableRng};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
 

@@ -5,8 +5,8 @@ use super::start::Draw;
 use super::{Point, Precise};
 use crate::expr::{Expr, Symbol};
 use crate::model::ConfigurationSpace;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use chacha20::ChaCha8Rng;
+use chacha20::rand_core::{Rng, SeedableRng};
 
 /// Draws before a point is given up: a random point misses what a joint forbids about every other time.
 const ATTEMPTS: usize = 64;
@@ -27,7 +27,7 @@ const REACHES: [f64; 2] = [4.0, 16.0];
 const ROUGH: (usize, usize) = (64, 10);
 
 /// A deterministic source of random points of one joint.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Sampler<'a> {
     space: &'a ConfigurationSpace,
     draw: Draw,
@@ -111,9 +111,9 @@ impl<'a> Sampler<'a> {
         free.requirements.clear();
         free.loci.clear();
         let mut sampler = Sampler::new(&free, self.draw.bits).single();
-        sampler.draw.random = self.draw.random.clone();
+        std::mem::swap(&mut sampler.draw.random, &mut self.draw.random);
         let point = sampler.point();
-        self.draw.random = sampler.draw.random.clone();
+        std::mem::swap(&mut sampler.draw.random, &mut self.draw.random);
         point
     }
 

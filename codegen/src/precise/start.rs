@@ -5,15 +5,15 @@ use crate::expr::{Expr, Number};
 use crate::manifold::{Factor, Kind};
 use crate::model::Interval;
 use crate::precise::Point;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::Rng;
+use chacha20::ChaCha8Rng;
+use chacha20::rand_core::Rng;
 
 /// Sizes of parameters and, halved, of real coordinates, where nothing else is declared: of order 1, and not near 0.
 const SMALLEST: f64 = 0.2;
 const LARGEST: f64 = 2.0;
 
 /// Random numbers of a stated precision.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Draw {
     pub random: ChaCha8Rng,
     pub bits: usize,

@@ -195,7 +195,7 @@ impl Prover<'_> {
         }
     }
 
-    /// The manifold has as many dimensions as there are freedoms.
+    /// The manifold has as many dimensions as there are degrees of freedom.
     pub(super) fn has_dimension(&self) -> Attempt {
         let found = dimension::confinement(self.joint, &self.domain, self.exponential);
         match found {
@@ -221,7 +221,7 @@ impl Prover<'_> {
         let error = refuted(
             code::DIMENSION,
             &self.joint.spec.manifold.span,
-            "the relations are not shown to cut out a manifold of as many dimensions as there are freedoms",
+            "the relations are not shown to cut out a manifold of as many dimensions as there are degrees of freedom",
             "here",
         );
         match gram.is_zero() {

@@ -17,7 +17,7 @@ const FIRST_INDEX: usize = 0x6000;
 /// Most term operations for shortening one expression.
 const LIMIT: u64 = 20_000;
 
-/// Derivatives, by what they are of and along which freedoms, to their numbers.
+/// Derivatives, by what they are of and along which degrees of freedom, to their numbers.
 type Numbers = BTreeMap<(Symbol, Vec<usize>), usize>;
 
 /// The words of a joint.

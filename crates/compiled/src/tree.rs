@@ -355,7 +355,7 @@ impl Compiled {
         mechanism.check_room(quantity, Space::Speeds, room)
     }
 
-    /// Whether τ has one entry per freedom, and is finite.
+    /// Whether τ has one entry per degree of freedom, and is finite.
     fn check_efforts(&self, efforts: &[f64]) -> Result<(), StateError> {
         let mechanism = self.tree.mechanism();
         mechanism.check_vector("efforts", Space::Freedoms, efforts)

@@ -62,7 +62,7 @@ fn of_body(model: &Model, body: &Body, [bare, framed, pruned]: [&Link; 3]) -> St
             });
         let _ = writeln!(
             text,
-            "  inertia that the joint does not feel: {} = 0, {to}",
+            "  inertia that does not affect the joint: {} = 0, {to}",
             gone.join(", ")
         );
     }
@@ -166,7 +166,7 @@ fn of_function(kind: Kind, [bare, framed, pruned]: &[Chosen; 3]) -> String {
     text += &saved(
         flops(framed),
         flops(pruned),
-        "leaving out what joints do not feel",
+        "leaving out inertias that do not affect joints",
     );
     text
 }

@@ -64,7 +64,7 @@ impl<'a> Joint<'a> {
         columns(&entries, self.joint.derived.shape.freedoms)
     }
 
-    /// S̄ by rows, one per freedom.
+    /// S̄ by rows, one per degree of freedom.
     pub fn speed_basis(&self) -> Vec<Vec<Sym>> {
         let (freedoms, speeds) = (
             self.joint.derived.shape.freedoms,
@@ -105,14 +105,14 @@ impl<'a> Joint<'a> {
         columns(&entries, self.joint.derived.shape.freedoms)
     }
 
-    /// ∂(X̄^c x)/∂ϕ, one column per freedom.
+    /// ∂(X̄^c x)/∂ϕ, one column per degree of freedom.
     pub fn twist_gradient(&self, x: &[Sym]) -> Vec<Twist> {
         let given = [(self.joint.derived.arguments.speeds.as_slice(), x)];
         let entries = self.product(&self.joint.products.twist_gradient, &given);
         columns(&entries, self.joint.derived.shape.freedoms)
     }
 
-    /// ∂c/∂ϕ, one column per freedom.
+    /// ∂c/∂ϕ, one column per degree of freedom.
     pub fn bias_gradient(&self) -> Vec<Twist> {
         let entries = self.product(&self.joint.products.bias_acceleration_gradient, &[]);
         columns(&entries, self.joint.derived.shape.freedoms)

@@ -5,7 +5,7 @@
 //!    │  describe    numbers for all that does not change, or the list of what is not compiled
 //!    ▼
 //! Model
-//!    │  prune       frames that cost least; inertias that no joint feels moved to the root
+//!    │  prune       frames that cost least; inertias that affect no joint moved to the root
 //!    ▼
 //! Link per body
 //!    │  equations   recursions on the graph: articulated bodies, composite bodies, Newton–Euler

@@ -65,11 +65,11 @@ pub struct Body {
     pub child_placement: Pose<f64>,
     /// Mass properties in the body frame.
     pub mass: MassProperties,
-    /// What is added to the diagonal of the joint's own block of M, one per freedom.
+    /// What is added to the diagonal of the joint's own block of M, one per degree of freedom.
     pub armature: Vec<f64>,
-    /// Viscous damping, one per freedom.
+    /// Viscous damping, one per degree of freedom.
     pub damping: Vec<f64>,
-    /// Constant efforts, one per freedom.
+    /// Constant efforts, one per degree of freedom.
     pub effort: Vec<f64>,
     /// Whether the joint's motion is prescribed: its first entries of τ are its accelerations, and its entries of p̄ its speeds.
     pub driven: bool,

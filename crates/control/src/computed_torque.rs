@@ -20,7 +20,7 @@ pub struct ErrorDynamics {
 /// Moves a mechanism of holonomic joints, each with its own inputs, along a reference.
 ///
 /// `τ = M v̇* + C v + N` by inverse dynamics, elements included, with `v̇* = v̇_ref + 2ζω (v_ref − v) − ω² S₀ e` and e the local
-/// coordinates of Q about Q_ref: `Φ(Q_ref, e) = Q`. For joints whose velocities commute (all of one freedom) errors then obey their linear equation
+/// coordinates of Q about Q_ref: `Φ(Q_ref, e) = Q`. For joints whose velocities commute (all of one degree of freedom) errors then obey their linear equation
 /// exactly, wherever they are; for attitudes `½|v − v_ref|² + ½ω²|e|²` never grows, whatever v_ref is, as `e · ė = e · (v − v_ref)`. Other joints
 /// that turn and slide at once add the product of e and v_ref, which the gains must outweigh.
 #[derive(Clone, Debug)]

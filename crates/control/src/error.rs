@@ -1,6 +1,6 @@
 //! Why a controller cannot be made, or cannot go on.
 
-use super::reach::Motion;
+use super::stabilizability::Motion;
 use alloc::string::String;
 use hamel_integrate::StepFailure;
 use hamel_runtime::dynamics::DynamicsError;

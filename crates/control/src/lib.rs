@@ -24,11 +24,11 @@ mod feedback;
 mod path;
 #[cfg(feature = "predictive")]
 mod predictive;
-mod reach;
 mod reference;
 mod regulator;
 pub mod riccati;
 mod scales;
+mod stabilizability;
 mod state;
 
 pub use computed_torque::{ComputedTorque, ErrorDynamics};
@@ -38,9 +38,9 @@ pub use feedback::Feedback;
 pub use path::{Curve, PathFollower, PathGains};
 #[cfg(feature = "predictive")]
 pub use predictive::PredictiveRegulator;
-pub use reach::Motion;
 pub use reference::Reference;
 pub use regulator::{Equilibrium, Regulator, Weights};
+pub use stabilizability::Motion;
 
 use core::fmt::Debug;
 
@@ -55,7 +55,7 @@ pub struct Measure {
 
 /// A law from time, Q and v̄ to efforts τ.
 pub trait Controller: Debug {
-    /// τ into `efforts` (one entry per freedom, collocated with v) at `time` (s), `q` and v̄.
+    /// τ into `efforts` (one entry per degree of freedom, collocated with v) at `time` (s), `q` and v̄.
     ///
     /// # Errors
     /// A wrong size; a local coordinate that cannot be found; equations of motion or an optimisation that cannot be solved.
@@ -83,7 +83,7 @@ pub trait Controller: Debug {
     ) -> Result<(), ControlError>;
 }
 
-/// The measures of laws that hold or follow a configuration: the largest deviations of any freedom and of any speed.
+/// The measures of laws that hold or follow a configuration: the largest deviations of any degree of freedom and of any speed.
 pub(crate) const DEVIATIONS: &[Measure] = &[
     Measure {
         name: "position error",

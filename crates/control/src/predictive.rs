@@ -4,9 +4,9 @@ mod program;
 mod stability;
 
 use super::error::{positive, require, size};
-use super::reach::Time;
 use super::regulator::{Equilibrium, Weights};
 use super::riccati::{self, Optimum, Weighting};
+use super::stabilizability::Time;
 use super::state::check_state;
 use super::{ControlError, Controller, DEVIATIONS, Measure};
 use alloc::sync::Arc;
@@ -333,7 +333,7 @@ fn foreseeable(
     }
 }
 
-/// The name of the joint that a freedom belongs to.
+/// The name of the joint that a degree of freedom belongs to.
 fn owner(mechanism: &Mechanism, freedom: usize) -> &str {
     let mut bodies = mechanism.bodies().iter();
     let owner = bodies.find(|body| body.ranges().freedoms.contains(&freedom));

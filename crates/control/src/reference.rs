@@ -50,7 +50,7 @@ impl Reference {
         if let Some(body) = mechanism.bodies().iter().find(|body| !is_holonomic(body)) {
             return Err(ControlError::Joint {
                 joint: body.joint_name().into(),
-                reason: "is nonholonomic: it has fewer speeds than freedoms, and so cannot be moved along any reference",
+                reason: "is nonholonomic: it has fewer speeds than degrees of freedom, and so cannot be moved along any reference",
             });
         }
         size(

@@ -15,14 +15,14 @@ use nalgebra::{DMatrix, DVector};
 /// Accelerations at rest that pass for rounding, rad/s² or m/s²: a goal typed with nine digits, with gravity of 10 m/s² on an arm of 1 m, has about 1e-8.
 const AT_REST: f64 = 1e-7;
 
-/// A configuration at which a mechanism rests under constant efforts of some freedoms, and the freedoms that have inputs.
+/// A configuration at which a mechanism rests under constant efforts of some degrees of freedom, and the degrees of freedom that have inputs.
 #[derive(Clone, Debug)]
 pub struct Equilibrium {
     mechanism: Arc<Mechanism>,
     goal: Vec<f64>,
     /// In the order in which their joints were named.
     inputs: Vec<usize>,
-    /// τ of all freedoms at rest; 0 without input.
+    /// τ of all degrees of freedom at rest; 0 without input.
     efforts: Vec<f64>,
 }
 
@@ -30,10 +30,10 @@ pub struct Equilibrium {
 const MOST_FREEDOMS: usize = 500;
 
 impl Equilibrium {
-    /// The equilibrium `goal` of `mechanism` with inputs on the freedoms of the joints under the bodies `actuated`, in that order.
+    /// The equilibrium `goal` of `mechanism` with inputs on the degrees of freedom of the joints under the bodies `actuated`, in that order.
     ///
     /// # Errors
-    /// More than 500 freedoms; no joint that has inputs, a nonholonomic one among them, or one twice; joints that are coupled, or whose motion is prescribed; a goal off its manifolds; a speed
+    /// More than 500 degrees of freedom; no joint that has inputs, a nonholonomic one among them, or one twice; joints that are coupled, or whose motion is prescribed; a goal off its manifolds; a speed
     /// that gravity or elements would move there and that no input holds.
     pub fn new(
         mechanism: Arc<Mechanism>,
@@ -43,7 +43,7 @@ impl Equilibrium {
         check_free(&mechanism)?;
         if mechanism.layout().freedoms > MOST_FREEDOMS {
             return Err(ControlError::Mechanism(
-                "the mechanism has more than 500 freedoms: a regulator takes dense matrices of twice their number",
+                "the mechanism has more than 500 degrees of freedom: a regulator takes dense matrices of twice their number",
             ));
         }
         mechanism.check_configuration(&goal)?;
@@ -87,12 +87,12 @@ impl Equilibrium {
         &self.goal
     }
 
-    /// The freedoms that have inputs, in the order in which their joints were named.
+    /// The degrees of freedom that have inputs, in the order in which their joints were named.
     pub fn inputs(&self) -> &[usize] {
         &self.inputs
     }
 
-    /// τ that holds the mechanism there, one entry per freedom.
+    /// τ that holds the mechanism there, one entry per degree of freedom.
     pub fn efforts(&self) -> &[f64] {
         &self.efforts
     }
@@ -204,7 +204,7 @@ impl Equilibrium {
     }
 }
 
-/// The efforts at rest of the freedoms that have inputs; with them, nothing may accelerate.
+/// The efforts at rest of the degrees of freedom that have inputs; with them, nothing may accelerate.
 fn held(
     mechanism: &Arc<Mechanism>,
     goal: &[f64],
@@ -219,7 +219,7 @@ fn held(
     let mut free: Option<(&Body, usize, f64)> = None;
     for body in mechanism.bodies() {
         let ranges = body.ranges();
-        // Joints with inputs are holonomic: each freedom has its speed.
+        // Joints with inputs are holonomic: each degree of freedom has its speed.
         let has_inputs = inputs.contains(&ranges.freedoms.start);
         for (place, speed) in ranges.speeds.clone().enumerate() {
             let force = forces[speed];
@@ -250,7 +250,7 @@ fn held(
 /// What deviations and inputs cost: the diagonals of Q and R.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Weights {
-    /// One entry a freedom, 1/rad² or 1/m²; not negative.
+    /// One entry a degree of freedom, 1/rad² or 1/m²; not negative.
     pub position: Vec<f64>,
     /// One entry a speed; not negative.
     pub speed: Vec<f64>,

@@ -5,8 +5,8 @@
 //! continuous-time algebraic Riccati equations*, 2005.)
 
 use super::ControlError;
-use super::reach::{self, Time};
 use super::scales;
+use super::stabilizability::{self, Time};
 use nalgebra::{DMatrix, DVector};
 use num_traits::Float;
 
@@ -177,10 +177,10 @@ pub(super) fn solvable(
     state: &DMatrix<f64>,
     time: Time,
 ) -> Result<(), ControlError> {
-    if let Some(motion) = reach::beyond(a, b, time) {
+    if let Some(motion) = stabilizability::beyond(a, b, time) {
         return Err(ControlError::BeyondReach(motion));
     }
-    match reach::beyond(&a.transpose(), state, time) {
+    match stabilizability::beyond(&a.transpose(), state, time) {
         Some(motion) => Err(ControlError::Unseen(motion)),
         None => Ok(()),
     }

@@ -4,7 +4,7 @@ use super::ControlError;
 use super::error::size;
 use hamel_runtime::mechanism::{Body, Mechanism, Space, StateError};
 
-/// ϕ of all joints with `Φ(from, ϕ) = to`, into `phi` (one entry per freedom).
+/// ϕ of all joints with `Φ(from, ϕ) = to`, into `phi` (one entry per degree of freedom).
 pub(super) fn deviation(
     mechanism: &Mechanism,
     from: &[f64],

@@ -17,7 +17,7 @@ const PREFERENCE: f64 = 3.0;
 /// The product of step and rate up to which an explicit method is stable: Dormand and Prince's, on the real axis.
 const STABLE: f64 = 3.3;
 
-/// Steps of an explicit method that take the work of one of Radau IIA or of the exponential method, for a few freedoms.
+/// Steps of an explicit method that take the work of one of Radau IIA or of the exponential method, for a few degrees of freedom.
 const IMPLICIT: f64 = 10.0;
 
 /// Tolerances below which Dormand and Prince's methods of order 5 and of order 8 take more work than the next higher order. Measured on chain_2, chain_8,
@@ -32,7 +32,7 @@ const MOST_TRIED: usize = 32;
 /// What is asked of an integration.
 #[derive(Clone, Copy, Debug)]
 pub struct Wanted {
-    /// Tolerance of a step, as [`super::Control::tolerance`].
+    /// Tolerance of a step, as [`super::StepControl::tolerance`].
     pub tolerance: f64,
     /// How long the motion is, s.
     pub span: f64,

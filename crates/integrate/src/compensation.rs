@@ -11,7 +11,7 @@ use hamel_runtime::mechanism::{Body, Mechanism};
 /// The exact state is that of `Φ(base, ϕ + compensation.phi)` and `y + compensation.y`.
 #[derive(Clone, Debug)]
 pub(super) struct Compensation {
-    /// One entry a freedom.
+    /// One entry a degree of freedom.
     pub(super) phi: Vec<f64>,
     /// One entry a speed.
     pub(super) y: Vec<f64>,
@@ -43,7 +43,7 @@ impl Compensation {
     }
 }
 
-/// Whether Φ can be Q + ϕ: coordinates as many as freedoms, and rates that ϕ does not bend.
+/// Whether Φ can be Q + ϕ: coordinates as many as degrees of freedom, and rates that ϕ does not bend.
 fn adds(body: &Body) -> bool {
     let layout = body.joint().layout();
     layout.configuration == layout.freedoms

@@ -2,10 +2,10 @@
 
 use super::approach::Watch;
 use super::clock::Clock;
-use super::control::Controller;
 use super::flow::Flow;
-use super::options::{Control, least_step};
+use super::options::{StepControl, least_step};
 use super::outputs::Outputs;
+use super::step_control::StepController;
 use super::step_state::StepState;
 use super::stepper::{self, Span, Stepper};
 use super::{
@@ -69,7 +69,7 @@ pub(super) struct Driver<'a> {
 struct Pacing {
     /// The step to try where no sample time is in the way.
     step: f64,
-    controller: Controller,
+    controller: StepController,
 }
 
 impl<'a> Driver<'a> {
@@ -159,7 +159,7 @@ impl<'a> Driver<'a> {
         };
         Ok(Pacing {
             step,
-            controller: Controller::new(order),
+            controller: StepController::new(order),
         })
     }
 
@@ -230,7 +230,7 @@ impl<'a> Driver<'a> {
             ..
         } = self;
         let outcome = stepper.attempt(step_state, flow, span);
-        let Some(Control {
+        let Some(StepControl {
             tolerance,
             max_step,
             ..

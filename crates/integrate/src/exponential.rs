@@ -2,7 +2,7 @@
 //! taken as in an explicit method.
 //!
 //! M. Hochbruck, A. Ostermann and J. Schweitzer, *Exponential Rosenbrock-type methods*, 2009: exprb43. A stiff spring at a joint is linear except for the curvature of the local coordinates, so that one step may span many periods, damped or not. The matrices are dense: made for up to some
-//! tens of freedoms.
+//! tens of degrees of freedom.
 
 use super::StepFailure;
 use super::flow::{Flow, Rates};

@@ -365,7 +365,7 @@ fn fill(
     }
 }
 
-/// The largest number of freedoms of a joint.
+/// The largest number of degrees of freedom of a joint.
 pub(super) fn widest(mechanism: &Mechanism) -> usize {
     let bodies = mechanism.bodies().iter();
     let widest = bodies.map(|body| body.ranges().freedoms.len()).max();

@@ -61,7 +61,7 @@ impl<'a> Integration<'a> {
         }
     }
 
-    /// With efforts τ (one entry per freedom) from time, q and v̄; entries are zero when it is called.
+    /// With efforts τ (one entry per degree of freedom) from time, q and v̄; entries are zero when it is called.
     pub fn inputs(mut self, inputs: impl FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a) -> Self {
         self.inputs = Some(Box::new(inputs));
         self

@@ -26,7 +26,6 @@ mod clock;
 mod collocation;
 mod commutator_free;
 mod compensation;
-mod control;
 mod dense;
 mod discrete_gradient;
 mod dop853;
@@ -49,6 +48,7 @@ mod root;
 mod solution;
 mod spectrum;
 mod stages;
+mod step_control;
 mod step_probe;
 mod step_state;
 mod stepper;
@@ -62,7 +62,7 @@ pub use error::{IntegrateError, StepFailure};
 pub use event::{Crossing, Direction, Event};
 pub use integration::{Integration, Sampling};
 pub use linear::LinearStep;
-pub use options::{Control, Form, Method, Options, Scheme};
+pub use options::{Form, Method, Options, Scheme, StepControl};
 pub use solution::{Solution, State, Statistics, Step};
 pub use spectrum::{Mode, Spectrum};
 pub use tableau::{Estimate, Tableau};
@@ -70,7 +70,7 @@ pub use tableau::{Estimate, Tableau};
 use core::ops::ControlFlow;
 use hamel_runtime::dynamics::Dynamics;
 
-/// Efforts τ (one entry per freedom) from time, q and v̄; entries are zero when it is called.
+/// Efforts τ (one entry per degree of freedom) from time, q and v̄; entries are zero when it is called.
 pub type Inputs<'a> = dyn FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a;
 
 /// Sees the initial state, every accepted step, and samples of dense output within them; breaks to end the integration there.

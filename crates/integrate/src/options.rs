@@ -174,13 +174,13 @@ pub enum Method {
         /// How steps are made.
         scheme: Scheme,
         /// How accurate they shall be.
-        control: Control,
+        control: StepControl,
     },
 }
 
 /// What step control is given.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Control {
+pub struct StepControl {
     /// Error allowed a step: absolute in ϕ (relative to a ϕ above 1), relative in speeds (to max(1 SI unit, |v̄|)) and in momenta
     /// by what they do to the speeds.
     pub tolerance: f64,
@@ -190,7 +190,7 @@ pub struct Control {
     pub first_step: Option<f64>,
 }
 
-impl Control {
+impl StepControl {
     /// Least tolerance, below which rounding of the estimate decides.
     pub const LEAST_TOLERANCE: f64 = 1e-16;
     /// Largest tolerance, beyond which a step says nothing.
@@ -240,7 +240,7 @@ impl Method {
     pub const fn controlled(scheme: Scheme, tolerance: f64) -> Self {
         Self::Controlled {
             scheme,
-            control: Control::to(tolerance),
+            control: StepControl::to(tolerance),
         }
     }
 
@@ -252,7 +252,7 @@ impl Method {
     }
 
     /// What its step control is given, if it has any.
-    pub const fn control(&self) -> Option<Control> {
+    pub const fn control(&self) -> Option<StepControl> {
         match *self {
             Self::Fixed { .. } => None,
             Self::Controlled { control, .. } => Some(control),

@@ -103,7 +103,7 @@ impl Turns {
     }
 }
 
-/// Whether all entries of `phi` (one per freedom) and `y` (one per speed) are finite.
+/// Whether all entries of `phi` (one per degree of freedom) and `y` (one per speed) are finite.
 fn check_finite(mechanism: &Mechanism, phi: &[f64], y: &[f64]) -> Result<(), StepFailure> {
     if all_finite(phi) & all_finite(y) {
         return Ok(());

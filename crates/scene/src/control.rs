@@ -126,7 +126,7 @@ pub struct RegulatorDescription {
     pub actuated: Option<Vec<Located<String>>>,
     /// Where joints are wanted; the others at home.
     pub goals: Vec<GoalDescription>,
-    /// Weights of positions (one per freedom), speeds (one per speed) and efforts (one an input).
+    /// Weights of positions (one per degree of freedom), speeds (one per speed) and efforts (one an input).
     pub weights: [Located<PerFreedom>; 3],
 }
 

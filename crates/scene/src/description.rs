@@ -134,7 +134,7 @@ pub enum Motion {
     /// Every speed is 0.
     #[default]
     Rest,
-    /// All freedoms v, which must satisfy the joint's constraint.
+    /// All degrees of freedom v, which must satisfy the joint's constraint.
     Velocity(Located<Vec<f64>>),
     /// Speeds v̄.
     Speeds(Located<Vec<f64>>),

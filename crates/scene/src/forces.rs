@@ -15,7 +15,7 @@ pub struct JointForces {
     pub damping: Option<Located<PerFreedom>>,
     /// Inertia of what turns with the joint, such as a rotor: added to the diagonal of the joint's own block of M.
     pub armature: Option<Located<PerFreedom>>,
-    /// Constant efforts τ, one per freedom.
+    /// Constant efforts τ, one per degree of freedom.
     pub effort: Option<Located<Vec<f64>>>,
     /// Prescribed motion.
     pub motion: Option<Located<Vec<Law>>>,
@@ -28,10 +28,10 @@ impl JointForces {
     }
 }
 
-/// Numbers of at least 0, one per freedom.
+/// Numbers of at least 0, one per degree of freedom.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PerFreedom {
-    /// The same for every freedom.
+    /// The same for every degree of freedom.
     All(f64),
     /// One for each.
     Each(Vec<f64>),
@@ -59,7 +59,7 @@ pub struct JointSpring {
 /// Energy of a spring at a joint.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SpringEnergy {
-    /// `½ ϕᵀKϕ`, with ϕ the local coordinates of Q from the rest; one stiffness for every freedom, or a diagonal.
+    /// `½ ϕᵀKϕ`, with ϕ the local coordinates of Q from the rest; one stiffness for every degree of freedom, or a diagonal.
     Diagonal(PerFreedom),
     /// The same with a full matrix K, symmetric and positive semidefinite.
     Full(DMatrix<f64>),

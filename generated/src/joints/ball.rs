@@ -5,7 +5,7 @@
 //! parent axes, rad/s, (9). Local coordinates are exponential, about the child's axes, rad.
 //!
 //! - Configuration: Q ∈ SO3, stored as Q₁₁, Q₁₂, Q₁₃, Q₂₁, Q₂₂, Q₂₃, Q₃₁, Q₃₂, Q₃₃.
-//! - Freedoms: `e1` (ϕ₁, rad), `e2` (ϕ₂, rad), `e3` (ϕ₃, rad).
+//! - Degrees of freedom: `e1` (ϕ₁, rad), `e2` (ϕ₂, rad), `e3` (ϕ₃, rad).
 //! - Velocity v: read in the axes of the parent.
 //! - The identity, and not written: S̄.
 //! - Zero, and not written: A, ∂S̄/∂ϕ, c.

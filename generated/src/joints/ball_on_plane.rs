@@ -5,7 +5,7 @@
 //! velocity in parent axes, rad/s, and the rate of p, m/s. The speeds are the angular velocity.
 //!
 //! - Configuration: R ∈ SO3, p ∈ R2, stored as R₁₁, R₁₂, R₁₃, R₂₁, R₂₂, R₂₃, R₃₁, R₃₂, R₃₃, p₁, p₂.
-//! - Freedoms: `wx` (ϕ₁, rad), `wy` (ϕ₂, rad), `wz` (ϕ₃, rad), `p1` (ϕ₄, m), `p2` (ϕ₅, m).
+//! - Degrees of freedom: `wx` (ϕ₁, rad), `wy` (ϕ₂, rad), `wz` (ϕ₃, rad), `p1` (ϕ₄, m), `p2` (ϕ₅, m).
 //! - Velocity v: read as X declares.
 //! - Speeds v̄: `wx`, `wy`, `wz`; constraints: 2.
 //! - Zero, and not written: ∂S̄/∂ϕ.

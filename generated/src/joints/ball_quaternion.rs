@@ -6,7 +6,7 @@
 //! rotation vectors about the child's axes, rad.
 //!
 //! - Configuration: Q ∈ S3, stored as Q.w, Q.x, Q.y, Q.z.
-//! - Freedoms: `e1` (ϕ₁, rad), `e2` (ϕ₂, rad), `e3` (ϕ₃, rad).
+//! - Degrees of freedom: `e1` (ϕ₁, rad), `e2` (ϕ₂, rad), `e3` (ϕ₃, rad).
 //! - Velocity v: read in the axes of the parent.
 //! - The identity, and not written: S̄.
 //! - Zero, and not written: A, ∂S̄/∂ϕ, c.

@@ -5,7 +5,7 @@
 //! relative to the parent, in child axes, rad/s. Local coordinates are rotation vectors about the child's axes, rad.
 //!
 //! - Configuration: Q ∈ S3, stored as Q.w, Q.x, Q.y, Q.z.
-//! - Freedoms: `e1` (ϕ₁, rad), `e2` (ϕ₂, rad), `e3` (ϕ₃, rad).
+//! - Degrees of freedom: `e1` (ϕ₁, rad), `e2` (ϕ₂, rad), `e3` (ϕ₃, rad).
 //! - Velocity v: read in the axes of the child.
 //! - The identity, and not written: S₀, S₀⁻¹, S̄.
 //! - Zero, and not written: ∂X^c/∂ϕ, A, ∂S̄/∂ϕ, c, the dual of c.

@@ -6,7 +6,7 @@
 //! is zero, (14). The speeds are the rate of turn and the forward velocity, (15).
 //!
 //! - Configuration: Q ∈ SE2, stored as Q₁₁, Q₁₂, Q₁₃, Q₂₁, Q₂₂, Q₂₃.
-//! - Freedoms: `turn` (ϕ₁, rad), `forward` (ϕ₂, m), `sideways` (ϕ₃, m).
+//! - Degrees of freedom: `turn` (ϕ₁, rad), `forward` (ϕ₂, m), `sideways` (ϕ₃, m).
 //! - Velocity v: read in the axes of the child.
 //! - Speeds v̄: `turn`, `forward`; constraints: 1.
 //! - The identity, and not written: S₀, S₀⁻¹.

@@ -4,7 +4,7 @@
 //! Q is the angle in rad, which counts turns, and the displacement in m. v is their rates, rad/s and m/s.
 //!
 //! - Configuration: theta ∈ R1, z ∈ R1, stored as θ, z.
-//! - Freedoms: `theta` (ϕ₁, rad), `z` (ϕ₂, m).
+//! - Degrees of freedom: `theta` (ϕ₁, rad), `z` (ϕ₂, m).
 //! - Velocity v: read as the rates of the local coordinates.
 //! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹, the projection.
 //! - Zero, and not written: ∂X^c/∂ϕ, ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, the residual, c, the dual of c.

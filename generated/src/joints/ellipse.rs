@@ -5,7 +5,7 @@
 //! the curve is v times the length of the tangent.
 //!
 //! - Configuration: q ∈ S1, stored as q.c, q.s.
-//! - Freedoms: `angle` (ϕ, rad).
+//! - Degrees of freedom: `angle` (ϕ, rad).
 //! - Velocity v: read in the axes of the child.
 //! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹.
 //! - Zero, and not written: ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ.

@@ -6,7 +6,7 @@
 //! with the spin it has a global triple.
 //!
 //! - Configuration: Q ∈ SO3, stored as Q₁₁, Q₁₂, Q₁₃, Q₂₁, Q₂₂, Q₂₃, Q₃₁, Q₃₂, Q₃₃.
-//! - Freedoms: `tilt_x` (ϕ₁, rad), `tilt_y` (ϕ₂, rad), `spin` (ϕ₃, rad).
+//! - Degrees of freedom: `tilt_x` (ϕ₁, rad), `tilt_y` (ϕ₂, rad), `spin` (ϕ₃, rad).
 //! - Velocity v: read in the axes of the child.
 //! - The identity, and not written: S₀, S₀⁻¹, S̄.
 //! - Zero, and not written: A, ∂S̄/∂ϕ.

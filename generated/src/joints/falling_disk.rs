@@ -5,7 +5,7 @@
 //! angular velocity in child axes, rad/s, and the rate of p in parent axes, m/s. The speeds are the angular velocity.
 //!
 //! - Configuration: R ∈ SO3, p ∈ R2, stored as R₁₁, R₁₂, R₁₃, R₂₁, R₂₂, R₂₃, R₃₁, R₃₂, R₃₃, p₁, p₂.
-//! - Freedoms: `wx` (ϕ₁, rad), `wy` (ϕ₂, rad), `wz` (ϕ₃, rad), `p1` (ϕ₄, m), `p2` (ϕ₅, m).
+//! - Degrees of freedom: `wx` (ϕ₁, rad), `wy` (ϕ₂, rad), `wz` (ϕ₃, rad), `p1` (ϕ₄, m), `p2` (ϕ₅, m).
 //! - Velocity v: read in the axes of the child.
 //! - Speeds v̄: `wx`, `wy`, `wz`; constraints: 2.
 //! - The identity, and not written: S₀, S₀⁻¹.

@@ -6,7 +6,7 @@
 //! coordinates are the exponential ones of SE(3).
 //!
 //! - Configuration: Q ∈ SE3, stored as Q₁₁, Q₁₂, Q₁₃, Q₁₄, Q₂₁, Q₂₂, Q₂₃, Q₂₄, Q₃₁, Q₃₂, Q₃₃, Q₃₄.
-//! - Freedoms: `wx` (ϕ₁, rad), `wy` (ϕ₂, rad), `wz` (ϕ₃, rad), `vx` (ϕ₄, m), `vy` (ϕ₅, m), `vz` (ϕ₆, m).
+//! - Degrees of freedom: `wx` (ϕ₁, rad), `wy` (ϕ₂, rad), `wz` (ϕ₃, rad), `vx` (ϕ₄, m), `vy` (ϕ₅, m), `vz` (ϕ₆, m).
 //! - Velocity v: read in the axes of the child.
 //! - The identity, and not written: S₀, S₀⁻¹, S̄.
 //! - Zero, and not written: ∂X^c/∂ϕ, A, ∂S̄/∂ϕ, c, the dual of c.

@@ -5,7 +5,7 @@
 //! and the last axis coincide, and no rates give the turn about the third direction. `ball` has no such place.
 //!
 //! - Configuration: yaw ∈ R1, pitch ∈ R1, roll ∈ R1, stored as yaw, pitch, roll.
-//! - Freedoms: `yaw` (ϕ₁, rad), `pitch` (ϕ₂, rad), `roll` (ϕ₃, rad).
+//! - Degrees of freedom: `yaw` (ϕ₁, rad), `pitch` (ϕ₂, rad), `roll` (ϕ₃, rad).
 //! - Velocity v: read as the rates of the local coordinates.
 //! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹, the projection.
 //! - Zero, and not written: ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, the residual.

@@ -5,7 +5,7 @@
 //! coordinates: rad/s, and m/s along the parent's x and y. The speeds are the rate of turn and the velocity along the edge.
 //!
 //! - Configuration: theta ∈ R1, x ∈ R1, y ∈ R1, stored as θ, x, y.
-//! - Freedoms: `theta` (ϕ₁, rad), `x` (ϕ₂, m), `y` (ϕ₃, m).
+//! - Degrees of freedom: `theta` (ϕ₁, rad), `x` (ϕ₂, m), `y` (ϕ₃, m).
 //! - Velocity v: read as the rates of the local coordinates.
 //! - Speeds v̄: `turn`, `glide`; constraints: 1.
 //! - The identity, and not written: S₀, S₀⁻¹, D, D⁻¹, the projection.

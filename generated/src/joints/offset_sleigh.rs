@@ -5,7 +5,7 @@
 //! along its x and its y in m/s. The point at `offset` along x has no velocity along y.
 //!
 //! - Configuration: Q ∈ SE2, stored as Q₁₁, Q₁₂, Q₁₃, Q₂₁, Q₂₂, Q₂₃.
-//! - Freedoms: `turn` (ϕ₁, rad), `forward` (ϕ₂, m), `sideways` (ϕ₃, m).
+//! - Degrees of freedom: `turn` (ϕ₁, rad), `forward` (ϕ₂, m), `sideways` (ϕ₃, m).
 //! - Velocity v: read in the axes of the child.
 //! - Speeds v̄: `turn`, `forward`; constraints: 1.
 //! - The identity, and not written: S₀, S₀⁻¹.

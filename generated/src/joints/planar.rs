@@ -6,7 +6,7 @@
 //! (along its y) in m/s. Local coordinates are the exponential ones of SE(2), so that S = I − ½ ad_ϕ + ….
 //!
 //! - Configuration: Q ∈ SE2, stored as Q₁₁, Q₁₂, Q₁₃, Q₂₁, Q₂₂, Q₂₃.
-//! - Freedoms: `turn` (ϕ₁, rad), `forward` (ϕ₂, m), `sideways` (ϕ₃, m).
+//! - Degrees of freedom: `turn` (ϕ₁, rad), `forward` (ϕ₂, m), `sideways` (ϕ₃, m).
 //! - Velocity v: read in the axes of the child.
 //! - The identity, and not written: S₀, S₀⁻¹, S̄.
 //! - Zero, and not written: ∂X^c/∂ϕ, A, ∂S̄/∂ϕ, c, the dual of c.

@@ -5,7 +5,7 @@
 //! rate of these coordinates: rad/s, and m/s along the parent's x and y.
 //!
 //! - Configuration: theta ∈ R1, x ∈ R1, y ∈ R1, stored as θ, x, y.
-//! - Freedoms: `theta` (ϕ₁, rad), `x` (ϕ₂, m), `y` (ϕ₃, m).
+//! - Degrees of freedom: `theta` (ϕ₁, rad), `x` (ϕ₂, m), `y` (ϕ₃, m).
 //! - Velocity v: read as the rates of the local coordinates.
 //! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹, the projection.
 //! - Zero, and not written: ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, the residual.

@@ -5,7 +5,7 @@
 //! closed path of the axis turns the child about it all the same, by the solid angle that it encloses.
 //!
 //! - Configuration: Q ∈ SO3, stored as Q₁₁, Q₁₂, Q₁₃, Q₂₁, Q₂₂, Q₂₃, Q₃₁, Q₃₂, Q₃₃.
-//! - Freedoms: `tilt_x` (ϕ₁, rad), `tilt_y` (ϕ₂, rad), `spin` (ϕ₃, rad).
+//! - Degrees of freedom: `tilt_x` (ϕ₁, rad), `tilt_y` (ϕ₂, rad), `spin` (ϕ₃, rad).
 //! - Velocity v: read in the axes of the child.
 //! - Speeds v̄: `tilt_x`, `tilt_y`; constraints: 1.
 //! - The identity, and not written: S₀, S₀⁻¹.

@@ -4,7 +4,7 @@
 //! Q is the displacement in metres, v its rate in m/s. A Euclidean joint in the sense of Example 4.
 //!
 //! - Configuration: q ∈ R1, stored as q.
-//! - Freedoms: `q` (ϕ, m).
+//! - Degrees of freedom: `q` (ϕ, m).
 //! - Velocity v: read as the rates of the local coordinates.
 //! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹, the projection.
 //! - Zero, and not written: ∂X^c/∂ϕ, ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, the residual, c, the dual of c.

@@ -5,7 +5,7 @@
 //! v is the rate of turn in rad/s, positive right-handed about z. A Lie-subgroup joint in the sense of Example 1.
 //!
 //! - Configuration: q ∈ S1, stored as q.c, q.s.
-//! - Freedoms: `turn` (ϕ, rad).
+//! - Degrees of freedom: `turn` (ϕ, rad).
 //! - Velocity v: read in the axes of the child.
 //! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹.
 //! - Zero, and not written: ∂X^c/∂ϕ, ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, c, the dual of c.

@@ -4,7 +4,7 @@
 //! Q is the angle in rad, which counts turns. v is its rate in rad/s.
 //!
 //! - Configuration: q ∈ R1, stored as q.
-//! - Freedoms: `q` (ϕ, rad).
+//! - Degrees of freedom: `q` (ϕ, rad).
 //! - Velocity v: read as the rates of the local coordinates.
 //! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹, the projection.
 //! - Zero, and not written: ∂X^c/∂ϕ, ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, the residual, c, the dual of c.

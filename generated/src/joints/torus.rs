@@ -5,7 +5,7 @@
 //! The torus has a global frame, so that two velocities serve everywhere.
 //!
 //! - Configuration: u ∈ S1, w ∈ S1, stored as u.c, u.s, w.c, w.s.
-//! - Freedoms: `around` (ϕ₁, rad), `tube` (ϕ₂, rad).
+//! - Degrees of freedom: `around` (ϕ₁, rad), `tube` (ϕ₂, rad).
 //! - Velocity v: read in the axes of the child.
 //! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹.
 //! - Zero, and not written: ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ.

@@ -4,7 +4,7 @@
 //! Q is the position of the child's origin in parent axes, m; v is its velocity in parent axes, m/s.
 //!
 //! - Configuration: p ∈ R3, stored as p₁, p₂, p₃.
-//! - Freedoms: `p1` (ϕ₁, m), `p2` (ϕ₂, m), `p3` (ϕ₃, m).
+//! - Degrees of freedom: `p1` (ϕ₁, m), `p2` (ϕ₂, m), `p3` (ϕ₃, m).
 //! - Velocity v: read as the rates of the local coordinates.
 //! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹, the projection.
 //! - Zero, and not written: ∂X^c/∂ϕ, ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, the residual, c, the dual of c.

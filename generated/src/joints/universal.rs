@@ -5,7 +5,7 @@
 //! has no singular configuration.
 //!
 //! - Configuration: first ∈ R1, second ∈ R1, stored as first, second.
-//! - Freedoms: `first` (ϕ₁, rad), `second` (ϕ₂, rad).
+//! - Degrees of freedom: `first` (ϕ₁, rad), `second` (ϕ₂, rad).
 //! - Velocity v: read as the rates of the local coordinates.
 //! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹, the projection.
 //! - Zero, and not written: ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, the residual.

@@ -6,7 +6,7 @@
 //! rate of roll in rad/s.
 //!
 //! - Configuration: g ∈ SE2, roll ∈ R1, stored as g₁₁, g₁₂, g₁₃, g₂₁, g₂₂, g₂₃, roll.
-//! - Freedoms: `turn` (ϕ₁, rad), `forward` (ϕ₂, m), `sideways` (ϕ₃, m), `roll` (ϕ₄, rad).
+//! - Degrees of freedom: `turn` (ϕ₁, rad), `forward` (ϕ₂, m), `sideways` (ϕ₃, m), `roll` (ϕ₄, rad).
 //! - Velocity v: read in the axes of the child.
 //! - Speeds v̄: `turn`, `roll`; constraints: 2.
 //! - The identity, and not written: S₀, S₀⁻¹.

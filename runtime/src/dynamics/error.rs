@@ -118,7 +118,7 @@ impl Mechanism {
         }
     }
 
-    /// The joint and the freedom or speed behind a row of a mass matrix whose pivot is not above its limit: singular, or not finite.
+    /// The joint and the degree of freedom or speed behind a row of a mass matrix whose pivot is not above its limit: singular, or not finite.
     pub(super) fn singular_mass(
         &self,
         space: Space,

@@ -6,7 +6,7 @@ use crate::mechanism::Mechanism;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-/// `τ = −c v`, freedom by freedom.
+/// `τ = −c v`, degree of freedom by degree of freedom.
 #[derive(Clone, Debug)]
 pub struct JointDamper {
     /// Name, for messages.

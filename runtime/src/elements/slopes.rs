@@ -26,7 +26,7 @@ pub trait Slope {
 pub struct Slopes<'a> {
     /// X̄, one column per speed.
     pub(crate) columns: &'a [Vector6<f64>],
-    /// One a freedom.
+    /// One a degree of freedom.
     pub(crate) variations: &'a [Variation<f64>],
     pub(crate) into: Target<'a>,
 }
@@ -36,7 +36,7 @@ pub struct Slopes<'a> {
 pub(crate) enum Target<'a> {
     /// All of them.
     Whole {
-        /// `∂(generalised force)/∂ϕ`: a row a speed, a column a freedom.
+        /// `∂(generalised force)/∂ϕ`: a row a speed, a column a degree of freedom.
         by_local: &'a mut Sensitivity,
         /// `∂(generalised force)/∂v̄`.
         by_speeds: &'a mut Sensitivity,
@@ -49,7 +49,7 @@ pub(crate) enum Target<'a> {
 #[derive(Clone, Debug)]
 pub struct JointSlopes {
     joints: Vec<OwnSlopes>,
-    /// The joint of each freedom and of each speed.
+    /// The joint of each degree of freedom and of each speed.
     of_freedom: Vec<usize>,
     of_speed: Vec<usize>,
     /// Whether a joint's forces change with another's motion.
@@ -150,7 +150,7 @@ const SIGNS: [f64; 2] = [-1.0, 1.0];
 /// A column of one of both matrices.
 #[derive(Clone, Copy)]
 enum Column {
-    /// That of a freedom.
+    /// That of a degree of freedom.
     Local(usize),
     /// That of a speed.
     Speed(usize),

@@ -163,17 +163,17 @@ fn nowhere() -> Pose<f64> {
 pub struct Action<'a> {
     /// Wrench on each body at the origin of its joint-child frame, world axes.
     pub(crate) wrenches: &'a mut [Vector6<f64>],
-    /// τ, one entry per freedom.
+    /// τ, one entry per degree of freedom.
     pub(crate) efforts: &'a mut [f64],
 }
 
 impl<'a> Action<'a> {
-    /// Into a wrench for each body, and an entry of τ for each freedom.
+    /// Into a wrench for each body, and an entry of τ for each degree of freedom.
     pub const fn new(wrenches: &'a mut [Vector6<f64>], efforts: &'a mut [f64]) -> Self {
         Self { wrenches, efforts }
     }
 
-    /// Adds efforts of the joint under a body, one entry per freedom.
+    /// Adds efforts of the joint under a body, one entry per degree of freedom.
     pub fn add_effort(&mut self, view: &View<'_>, body: usize, effort: &[f64]) {
         let range = view.body(body).map(|body| body.ranges().freedoms.clone());
         let own = range.and_then(|range| self.efforts.get_mut(range));

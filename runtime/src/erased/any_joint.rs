@@ -34,11 +34,11 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     fn velocity_frame(&self) -> VelocityFrame;
     /// Names of the stored scalars of Q.
     fn coordinates(&self) -> &'static [&'static str];
-    /// Names of the freedoms.
+    /// Names of the degrees of freedom.
     fn freedoms(&self) -> &'static [&'static str];
     /// Names of the speeds.
     fn speeds(&self) -> &'static [&'static str];
-    /// Basis of the inertias that the joint cannot feel, [`Joint::UNIDENTIFIABLE`].
+    /// Basis of the inertias that do not affect the joint, [`Joint::UNIDENTIFIABLE`].
     fn unidentifiable(&self) -> &'static [[f64; 10]];
     /// The functions whose zeros the joint must stay away from, [`Joint::SINGULARITIES`].
     fn singularities(&self) -> &'static [&'static str];
@@ -124,7 +124,7 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
         own: &mut Motion<T>,
         columns: &mut [Vector6<T>],
     );
-    /// Takes the joint's freedoms out of `inertia`, which becomes what its parent feels; `armature` is added to the pivots. An empty one is zero.
+    /// Takes the joint's degrees of freedom out of `inertia`, which becomes what its parent feels; `armature` is added to the pivots. An empty one is zero.
     ///
     /// # Errors
     /// The first pivot that does not stand above its rounding; one of NaN where a size is another.
@@ -137,7 +137,7 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     ) -> Result<(), PivotFailure<T>>
     where
         T: Native;
-    /// Takes the joint's freedoms out of `wrench`, which becomes what its parent feels, for generalised `forces` (momenta or
+    /// Takes the joint's degrees of freedom out of `wrench`, which becomes what its parent feels, for generalised `forces` (momenta or
     /// efforts) of the joint; `loads` are kept for [`AnyJoint::resolve`].
     fn reduce(
         &self,
@@ -183,7 +183,7 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
         T: Native;
     /// `X̄ᵀ F` into `out`, one entry per speed.
     fn gather(&self, wrench: &Vector6<T>, columns: &[Vector6<T>], out: &mut [T]);
-    /// What one unit of each ϕ and speed changes at the `state` (q, v̄, v̄̇), one entry per freedom; `motions` are those of the child frames of
+    /// What one unit of each ϕ and speed changes at the `state` (q, v̄, v̄̇), one entry per degree of freedom; `motions` are those of the child frames of
     /// this joint and of its parent. An empty v̄̇ is zero.
     fn vary(
         &self,

@@ -19,7 +19,7 @@ use alloc::sync::Arc;
 pub struct Layout {
     /// N: stored scalars of Q.
     pub configuration: usize,
-    /// K: freedoms, the size of v and of ϕ.
+    /// K: degrees of freedom, the size of v and of ϕ.
     pub freedoms: usize,
     /// S: speeds, the size of v̄ and of p̄.
     pub speeds: usize,

@@ -14,7 +14,7 @@ use nalgebra::DMatrix;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Actuation {
     elements: Vec<Arc<dyn Element>>,
-    /// One entry a freedom; empty where there is none.
+    /// One entry a degree of freedom; empty where there is none.
     armature: Vec<f64>,
     drives: Vec<Drive>,
     /// Whether the joint under each body is driven; empty where there are no drives.
@@ -51,7 +51,7 @@ impl Mechanism {
         Ok(self)
     }
 
-    /// The mechanism with `inertia` (kg m² or kg, one entry per freedom) added to that which the joint under `body` feels: a rotor behind a
+    /// The mechanism with `inertia` (kg m² or kg, one entry per degree of freedom) added to that which the joint under `body` feels: a rotor behind a
     /// gear. Kinetic energy grows by `½ Σ a v²`, and with γ ≠ 0 the equations by `Σ_k γ_k v_k (a v)`, as (16) has it.
     ///
     /// # Errors
@@ -192,7 +192,7 @@ impl Mechanism {
         &self.actuation.elements
     }
 
-    /// Rotor inertias of the joint under `body`, one entry per freedom; empty where it has none, and where there is no such body.
+    /// Rotor inertias of the joint under `body`, one entry per degree of freedom; empty where it has none, and where there is no such body.
     pub fn armature(&self, body: usize) -> &[f64] {
         let freedoms = self.bodies.get(body).map(|own| own.ranges.freedoms.clone());
         let own = freedoms.and_then(|freedoms| self.actuation.armature.get(freedoms));

@@ -91,10 +91,10 @@ pub enum MechanismError {
         /// What is too large.
         what: &'static str,
     },
-    /// A joint that has not as many speeds and constraints as freedoms, or more than six of these.
+    /// A joint that has not as many speeds and constraints as degrees of freedom, or more than six of these.
     #[error(
-        "joint `{joint}`: it has {freedoms} freedoms, {speeds} speeds and {constraints} constraints: there must be at most six \
-         freedoms, as many as speeds and constraints together"
+        "joint `{joint}`: it has {freedoms} degrees of freedom, {speeds} speeds and {constraints} constraints: there must be at most six \
+         degrees of freedom, as many as speeds and constraints together"
     )]
     Layout {
         /// The joint.

@@ -1,7 +1,7 @@
 //! Velocities of one joint: from a twist to v, from v to v̄ and back.
 
 use super::check::{Space, check_size};
-use super::reach::least_squares;
+use super::inverse_kinematics::least_squares;
 use super::{Body, Mechanism, StateError};
 use alloc::vec;
 use alloc::vec::Vec;

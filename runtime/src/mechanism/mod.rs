@@ -10,8 +10,8 @@ mod check;
 mod error;
 mod frame;
 mod initial;
+mod inverse_kinematics;
 mod kinematics;
-mod reach;
 mod rigid;
 
 pub use actuation::dependent_columns;
@@ -21,8 +21,8 @@ pub use check::{Space, WHOLE, check_size};
 pub use error::{Loci, MechanismError, MechanismErrors, StateError};
 pub use frame::{FrameFault, NamedFrame};
 pub use initial::CONSTRAINT_TOLERANCE;
+pub use inverse_kinematics::REACH_TOLERANCE;
 pub use kinematics::{BodyState, Kinematics};
-pub use reach::REACH_TOLERANCE;
 pub use rigid::{RigidBody, check_bodies};
 
 use crate::erased::Layout;

@@ -1,4 +1,4 @@
-//! Elimination of a joint's freedoms from the inertia and the wrench of what it carries, one freedom after the other.
+//! Elimination of a joint's degrees of freedom from the inertia and the wrench of what it carries, one degree of freedom after the other.
 
 use super::Steps;
 use crate::erased::nan;
@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Vector3, Vector6};
 /// update, with a margin of four.
 const ROUNDINGS: f64 = 64.0;
 
-/// One eliminated freedom.
+/// One eliminated degree of freedom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pivot<T> {
     /// `Y_j = I X_j`: the momentum of one unit of its speed, with those before it free.
@@ -22,7 +22,7 @@ pub struct Pivot<T> {
 }
 
 impl<T: Scalar> Pivot<T> {
-    /// Of a freedom not yet eliminated.
+    /// Of a degree of freedom not yet eliminated.
     pub fn zero() -> Self {
         Self {
             momentum: Vector6::zeros(),
@@ -31,7 +31,7 @@ impl<T: Scalar> Pivot<T> {
     }
 }
 
-/// A freedom that moves no inertia.
+/// A degree of freedom that moves no inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PivotFailure<T = f64> {
     /// Which of the joint's speeds.
@@ -229,7 +229,7 @@ where
         wrench
     }
 
-    /// `A + Σ_j X_j x_j` with the rates `x_j = t_j − Y_jᵀ A / d_j`, last freedom first.
+    /// `A + Σ_j X_j x_j` with the rates `x_j = t_j − Y_jᵀ A / d_j`, last degree of freedom first.
     #[inline(always)]
     pub(crate) fn motion<T: Scalar>(
         motion: &Vector6<T>,

@@ -20,7 +20,7 @@ pub struct Variation<T> {
     pub drift: Vector6<T>,
     /// `W = ad_{V̇_λ} Z + ad_{V_λ} U + ad_V ∂X̄ v̄ + ∂(X̄ v̄̇ + c)`.
     pub rate: Vector6<T>,
-    /// `W_v = ad_{V + V_λ} X + ∂c/∂v̄`; zero where the joint has fewer speeds than freedoms.
+    /// `W_v = ad_{V + V_λ} X + ∂c/∂v̄`; zero where the joint has fewer speeds than degrees of freedom.
     pub speed_rate: Vector6<T>,
 }
 
@@ -66,7 +66,7 @@ where
         }
     }
 
-    /// The variations of one joint at (q, v̄, v̄̇), one per freedom; `own` and `parent` are the motions of the child frames.
+    /// The variations of one joint at (q, v̄, v̄̇), one per degree of freedom; `own` and `parent` are the motions of the child frames.
     #[inline(always)]
     pub(crate) fn variations<T: Scalar>(
         &self,

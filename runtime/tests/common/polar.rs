@@ -1,4 +1,4 @@
-//! A point in the plane in polar coordinates (r, θ): a joint that loses a freedom where r = 0.
+//! A point in the plane in polar coordinates (r, θ): a joint that loses a degree of freedom where r = 0.
 
 use super::derived::{Declared, Derived};
 use hamel_runtime::erased::{AnyJoint, erase};

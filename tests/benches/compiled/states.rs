@@ -1,13 +1,13 @@
 //! Random states of the scene, in both layouts, and what is called with them.
 
 use crate::{Task, Way};
+use chacha20::ChaCha8Rng;
 use cpu_time::ThreadTime;
 use hamel::compiled::{Batch, Entry, Lanes, OneState};
 use hamel::dynamics::{Dynamics, Recursive};
 use hamel_tests::emitted::plate_cart_arm as module;
 use hamel_tests::{random, scenes};
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use std::hint::black_box;
 
 /// States of one call of a batch; others take them one after the other.

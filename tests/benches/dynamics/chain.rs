@@ -1,11 +1,11 @@
 //! A random chain, ready to be timed.
 
 use crate::Timed;
+use chacha20::ChaCha8Rng;
 use cpu_time::ThreadTime;
 use hamel::dynamics::{Dynamics, ForwardDerivatives, InverseDerivatives, Recursive};
 use hamel_tests::random;
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use std::hint::black_box;
 
 /// States that calls take in turn.

@@ -1,6 +1,7 @@
 //! Implicit steps of a chain with stiff springs and dampers at its joints, ready to be timed.
 
 use crate::Timed;
+use chacha20::ChaCha8Rng;
 use cpu_time::ThreadTime;
 use hamel::dynamics::Recursive;
 use hamel::elements::{Element, JointDamper, JointSpring};
@@ -8,7 +9,6 @@ use hamel::integrate::{Form, Integration, Method, Options, Scheme, State};
 use hamel::mechanism::Mechanism;
 use hamel_tests::random;
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
 
 /// Steps from rest, and their length, s: the springs of bodies of order 1 have periods of 6e-3 s, and their dampers times of 1e-2 s.

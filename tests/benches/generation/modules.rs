@@ -1,4 +1,4 @@
-//! From a scene or robot to compiled equations: `hamel compile` of a humanoid of 35 freedoms and of a chain of 512 like links, and what the Rust compiler takes
+//! From a scene or robot to compiled equations: `hamel compile` of a humanoid of 35 degrees of freedom and of a chain of 512 like links, and what the Rust compiler takes
 //! for their modules, all functions but derivatives, optimised.
 
 use crate::{cargo, report};

@@ -5,7 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod kernels;
-#[path = "../../src/emitted/plate_cart_arm.rs"]
+#[path = "../../src/emitted/snakeboard.rs"]
 #[rustfmt::skip]
 pub mod scene;
 

@@ -7,8 +7,8 @@ mod libraries;
 /// How the program loads libraries, as it stands there.
 #[path = "../../../crates/cli/src/compiled/library.rs"]
 mod library;
-/// A committed module with functions of many states.
-#[path = "../../src/emitted/plate_cart_arm.rs"]
-#[rustfmt::skip]
+/// A compiled scene with functions of many states.
 #[allow(dead_code, reason = "not all of its functions are called here")]
-mod module;
+mod module {
+    include!(concat!(env!("OUT_DIR"), "/plate_cart_arm.rs"));
+}

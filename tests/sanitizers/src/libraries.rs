@@ -19,7 +19,7 @@ fn library(name: &str) -> PathBuf {
     PathBuf::from(folder).join(name)
 }
 
-/// Sizes as the environment has them: bodies, stored scalars, freedoms, speeds, results of derivatives.
+/// Sizes as the environment has them: bodies, stored scalars, degrees of freedom, speeds, results of derivatives.
 fn sizes(name: &str) -> Sizes {
     let text =
         std::fs::read_to_string(library(name).with_extension("sizes")).expect("run.sh writes it");

@@ -65,7 +65,7 @@ impl Declared {
         }
     }
 
-    /// Number of freedoms.
+    /// Number of degrees of freedom.
     pub fn freedoms(&self) -> usize {
         self.locals.len()
     }

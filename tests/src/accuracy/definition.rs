@@ -115,7 +115,7 @@ impl Definition {
         self.configuration
     }
 
-    /// Number of freedoms.
+    /// Number of degrees of freedom.
     pub fn freedoms(&self) -> usize {
         self.declared.freedoms()
     }

@@ -3,12 +3,12 @@
 use super::Definition;
 use super::tracked::Tracked;
 use super::wide::{BITS, Wide};
+use chacha20::ChaCha8Rng;
 use hamel_codegen::expr::{Atom, Expr, Symbol};
 use hamel_codegen::manifold::Kind;
 use hamel_codegen::model::Freedom;
 use hamel_codegen::precise::Sampler;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeSet;
 
 /// A million turns, rad.
@@ -279,7 +279,7 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// Whether a freedom turns something, or is of unknown kind, so that it must stay within half a turn.
+    /// Whether a degree of freedom turns something, or is of unknown kind, so that it must stay within half a turn.
     fn turns(&self, freedom: &Freedom) -> bool {
         let kind = self.definition.spec().manifold.value.factors()[freedom.factor].kind;
         let rotations = match kind {

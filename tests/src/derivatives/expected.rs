@@ -13,7 +13,7 @@ pub struct Expected {
     pub mass: DMatrix<f64>,
     /// How many speeds.
     pub rows: usize,
-    /// How many freedoms.
+    /// How many degrees of freedom.
     pub freedoms: usize,
 }
 

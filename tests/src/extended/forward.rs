@@ -1,4 +1,4 @@
-//! Forward dynamics of a chain in extended precision: elimination, freedom by freedom, from the tip to the root.
+//! Forward dynamics of a chain in extended precision: elimination, degree of freedom by degree of freedom, from the tip to the root.
 
 use super::chain::{Chain, Link};
 use super::number::{Exact, cross, hat};
@@ -25,7 +25,7 @@ impl Chain {
             let mut inertia = link.spatial_inertia() + &carried.0;
             let (acceleration, wrench) = &biases[index];
             let mut wrench = wrench + &carried.1 + &inertia * acceleration;
-            // The last freedom of a joint is nearest to the child.
+            // The last degree of freedom of a joint is nearest to the child.
             for j in (0..size).rev() {
                 let axis = j + 3 - size;
                 let effort = efforts[size * index + j].clone();

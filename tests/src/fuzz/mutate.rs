@@ -1,8 +1,8 @@
 //! Mutations: of bytes, of words, and of whole statements and bracketed parts.
 
 use super::corpus::{Corpus, groups, words};
+use chacha20::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// Most mutations of one input.
 const DEEPEST: usize = 6;

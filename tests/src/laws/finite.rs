@@ -1,4 +1,4 @@
-//! Laws of the manifold, of the finite maps, and of what a joint cannot feel.
+//! Laws of the manifold, of the finite maps, and of the inertias that do not affect a joint.
 
 use super::dual::{constant, moving, slopes, twist};
 use super::{At, TOLERANCE, close};

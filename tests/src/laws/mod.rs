@@ -9,12 +9,12 @@ pub mod search;
 mod speed;
 mod velocity;
 
+use chacha20::ChaCha8Rng;
 use dual::{constant, moving};
 use hamel::joint::Joint;
 use hamel::nalgebra::{SMatrix, SVector};
 use hamel::scalar::Dual;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// Bound on relative errors: sums of up to a hundred products of numbers of order 1 to 10 in double precision, 100 × 10² × 1.1e-16.
 const TOLERANCE: f64 = 1e-12;

@@ -1,6 +1,6 @@
 //! Motions in extended precision by equations that share nothing with the runtime's: what its motions are measured against.
 //!
-//! Every body moves by Newton's and Euler's equations in all six freedoms, and joints are rows that its acceleration must satisfy, whose
+//! Every body moves by Newton's and Euler's equations in all six degrees of freedom, and joints are rows that its acceleration must satisfy, whose
 //! multipliers a linear system gives: no tree recursion, no local coordinates, no generated kernel. State is position, quaternion, velocity and
 //! angular velocity of each body, in double-double numbers (106 bits); steps are extrapolated midpoint steps of order 16 and 20. [`closed`]
 //! has the motions that are known in closed form, in 256 bits.

@@ -6,7 +6,7 @@ use hamel::erased::AnyJoint;
 use hamel::nalgebra::DVector;
 use std::sync::Arc;
 
-/// Bound of relative errors: each side sums some hundred products a freedom over 12 bodies, and intermediate terms on arms
+/// Bound of relative errors: each side sums some hundred products a degree of freedom over 12 bodies, and intermediate terms on arms
 /// of several metres exceed the largest of the equation up to tenfold; 1000 roundings of 1.1e-16.
 const ROUNDING: f64 = 1e-13;
 
@@ -19,7 +19,7 @@ fn relative(found: &DVector<f64>, expected: &DVector<f64>, terms: &[&DVector<f64
     difference(found.as_slice(), expected.as_slice()) / largest.max(size(expected.as_slice()))
 }
 
-/// (24) and (26): `M v̇ + Ĉv + N̂` is what the joints exert, constraint forces included, for all freedoms.
+/// (24) and (26): `M v̇ + Ĉv + N̂` is what the joints exert, constraint forces included, for all degrees of freedom.
 ///
 /// # Panics
 /// With the figure and the case, where it does not hold.
@@ -140,6 +140,6 @@ pub fn constraint_forces_are_those_of_the_joint_wrench(kinds: &[Arc<dyn AnyJoint
         let error = relative(&found, &expected, &[&coriolis, &weight, &point.efforts]);
         worst.meet(error / condition(&point), point.case.seed);
     }
-    // (37) solves with M, so that its rounding grows with the condition of M; n ε with n up to 50 freedoms.
+    // (37) solves with M, so that its rounding grows with the condition of M; n ε with n up to 50 degrees of freedom.
     worst.assert_within(50.0 * f64::EPSILON);
 }

@@ -8,7 +8,7 @@ use hamel::erased::AnyJoint;
 use hamel::nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 
-/// Powers of up to 50 freedoms, each from sums over 50: 1000 roundings of 1.1e-16. The condition of M̄ does not enter, since
+/// Powers of up to 50 degrees of freedom, each from sums over 50: 1000 roundings of 1.1e-16. The condition of M̄ does not enter, since
 /// the residual of a solution with M̄ is small in forces.
 const ROUNDING: f64 = 1e-13;
 

@@ -7,7 +7,7 @@ use hamel::dynamics::{
 };
 use hamel::elements::PointConstraint;
 use hamel::integrate::{
-    Control, Event, Form, Integration, LinearStep, Method, Options, Scheme, State, Statistics,
+    Event, Form, Integration, LinearStep, Method, Options, Scheme, State, Statistics, StepControl,
     Tableau,
 };
 use hamel::mechanism::NamedFrame;
@@ -368,7 +368,7 @@ fn integration(
 fn accepted_steps_do_not_allocate() {
     let controlled = Method::Controlled {
         scheme: Scheme::DormandPrince,
-        control: Control {
+        control: StepControl {
             tolerance: 1e-3,
             max_step: STEP,
             first_step: Some(STEP),

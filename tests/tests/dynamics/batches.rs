@@ -1,12 +1,12 @@
 //! Many states of a compiled scene at once (`hamel::compiled::Batch`), with the committed module.
 
 use allocation_counter::measure;
+use chacha20::ChaCha8Rng;
 use hamel::compiled::{Batch, Equations, InLanes, Lanes, Level};
 use hamel::dynamics::{Dynamics, Recursive};
 use hamel_tests::emitted::plate_cart_arm as module;
 use hamel_tests::{random, scenes};
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
 
 /// The module as it would be without lanes.

@@ -1,6 +1,7 @@
 //! Compiled modules in C: every scene that is compiled, bit by bit as its lines are evaluated here and as Rust computes them, and against the tree.
 
 use super::compiled::{Point, scene_files};
+use chacha20::ChaCha8Rng;
 use hamel::nalgebra::{Rotation3, Vector3};
 use hamel::scalar::Dual;
 use hamel_codegen::derived::Primitive;
@@ -15,7 +16,6 @@ use hamel_tests::c99::{Module, Program};
 use hamel_tests::emitted::{ball_chain, geodesic_springs, plate_cart_arm, snakeboard};
 use hamel_tests::random;
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use std::cell::RefCell;
 use std::path::Path;
 

@@ -1,12 +1,12 @@
 //! Long chains in double precision against 256-bit arithmetic on the same doubles.
 
+use chacha20::ChaCha8Rng;
 use hamel::dynamics::{Dynamics, MassMatrix, Recursive};
 use hamel::mechanism::Mechanism;
 use hamel_tests::extended::{Chain, Exact, Freedoms};
 use hamel_tests::figures::{difference, size};
 use hamel_tests::random;
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
 
 /// What is asked of accelerations, relative to the largest.

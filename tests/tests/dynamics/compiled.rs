@@ -5,6 +5,7 @@ mod derivatives;
 mod loops;
 mod moments;
 
+use chacha20::ChaCha8Rng;
 use hamel::dynamics::{Dynamics, MassMatrix, Recursive};
 use hamel::elements::BodySpring;
 use hamel::mechanism::Mechanism;
@@ -16,7 +17,6 @@ use hamel_scene::Scene;
 use hamel_tests::peers::Reference;
 use hamel_tests::{compiled, random, scenes};
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

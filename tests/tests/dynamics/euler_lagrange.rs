@@ -1,5 +1,6 @@
 //! The equations of motion against Euler–Lagrange in ϕ, from H and Φ alone, and that oracle against a textbook.
 
+use chacha20::ChaCha8Rng;
 use hamel::dynamics::{Recursive, Reference};
 use hamel::erased::AnyJoint;
 use hamel::mechanism::{BodySpec, Mechanism};
@@ -9,10 +10,9 @@ use hamel_tests::figures::{Largest, difference, size};
 use hamel_tests::oracle::{Motion, Oracle, OracleJoint};
 use hamel_tests::random::{Case, cases, library, numbers};
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
 
-/// Six bodies, 36 freedoms at most: the oracle's sums of 4×4 products in world coordinates, metres away from the origin,
+/// Six bodies, 36 degrees of freedom at most: the oracle's sums of 4×4 products in world coordinates, metres away from the origin,
 /// cancel up to a hundredfold; 1000 roundings of 1.1e-16.
 const ROUNDING: f64 = 1e-13;
 

@@ -1,6 +1,7 @@
 //! Named frames: Jacobians, their rates and their gradients against dual numbers and differences; operational-space inertia against products of
 //! dense matrices, and closed forms.
 
+use chacha20::ChaCha8Rng;
 use hamel::dynamics::{Dynamics, DynamicsError, Frame, Recursive};
 use hamel::mechanism::{Mechanism, MechanismError, NamedFrame, StateError};
 use hamel::nalgebra::{DMatrix, DVector, Matrix6, Vector3, Vector6};
@@ -11,7 +12,6 @@ use hamel_tests::differences::{STEP, derivative, moved};
 use hamel_tests::figures::{Largest, difference, size};
 use hamel_tests::random::{Case, cases, chain, configuration, library, numbers};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -305,7 +305,7 @@ fn frames_that_cannot_move_in_all_ways_are_refused_by_name() {
         assert!(matches!(error, DynamicsError::SingularFrame { .. }));
         assert!(error.to_string().contains("`floor`"), "{error}");
         assert!(error.to_string().contains("`angular x`"), "{error}");
-        // The tool of a body with few freedoms moves in as many ways.
+        // The tool of a body with few degrees of freedom moves in as many ways.
         let few = case.speeds.len() < 6;
         match dynamics.operational_inertia(&case.q, 0, Frame::Body) {
             Ok(_) => assert!(!few, "{}", place(&case)),

@@ -1,21 +1,21 @@
 //! Linearised steps of the integrators against central differences of the steps themselves, through Φ and its inverse.
 
+use chacha20::ChaCha8Rng;
 use hamel::elements::{Drive, Law};
-use hamel::integrate::{Control, Form, LinearStep, Method, Scheme, StepFailure, Tableau};
+use hamel::integrate::{Form, LinearStep, Method, Scheme, StepControl, StepFailure, Tableau};
 use hamel_tests::differences::STEP;
 use hamel_tests::figures::Largest;
 use hamel_tests::linear_step::{self, BOUND, DT, FIXED, FORMS, place, stepping};
 use hamel_tests::peers::{Reference, convert, numbers};
 use hamel_tests::random::{self, Case, cases, library};
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use std::path::Path;
 use std::sync::Arc;
 
 /// A pair that takes its first step whatever its error.
 const fn unchecked(scheme: Scheme) -> Method {
-    let control = Control {
-        tolerance: Control::LARGEST_TOLERANCE,
+    let control = StepControl {
+        tolerance: StepControl::LARGEST_TOLERANCE,
         max_step: DT,
         first_step: Some(DT),
     };

@@ -67,7 +67,7 @@ pub struct Report {
     pub counts: Vec<CountRow>,
     /// Measured errors of the kernels, where figures were given.
     pub accuracy: Vec<AccuracyRow>,
-    /// The inertias that the joint cannot feel: `Ixx + Iyy`.
+    /// The inertias that do not affect the joint: `Ixx + Iyy`.
     pub unidentifiable: Vec<String>,
     /// Text of the spec.
     pub spec: String,

@@ -39,7 +39,7 @@ enum Part {
     Manifold,
     Home,
     Loci,
-    /// What ϕ means: Φ, and the directions of the freedoms.
+    /// What ϕ means: Φ, and the directions of the degrees of freedom.
     Motion,
     Pose,
     /// What v means: X, or the frame in which v is read.

@@ -104,7 +104,7 @@ fn multiple_of(a: &Matrix, b: &Matrix) -> Option<Rational> {
     (rest.is_zero() && !ratio.is_zero()).then_some(ratio)
 }
 
-/// `ad_ϕ` in the declared basis, where one factor alone moves; freedoms that only Φ gives a meaning have none.
+/// `ad_ϕ` in the declared basis, where one factor alone moves; degrees of freedom that only Φ gives a meaning have none.
 fn adjoint(derived: &Derived, local: &[Expr]) -> Option<Matrix> {
     let freedoms = &derived.spec.freedoms.value;
     let factor = freedoms.first()?.factor;

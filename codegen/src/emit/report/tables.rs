@@ -23,7 +23,7 @@ pub struct ParameterRow {
     pub range: String,
 }
 
-/// A freedom.
+/// A degree of freedom.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FreedomRow {
     /// Its name.

@@ -71,7 +71,7 @@ fn unit(derived: &Derived, k: usize, freedom: &Freedom) -> &'static str {
     };
     let angle_if = |angle: bool| if angle { "rad" } else { "m" };
     match factor.kind {
-        // A freedom of `local` is what Φ makes of it.
+        // A degree of freedom of `local` is what Φ makes of it.
         _ if freedom.generator.is_empty() => of_twist(derived, Some(&derived.local_twist_map), k),
         Kind::S1 | Kind::So2 | Kind::So3 | Kind::S3 | Kind::S2 => "rad",
         Kind::Se2 => angle_if(turns(1)),

@@ -67,7 +67,7 @@ fn storage(derived: &Derived, report: &Report) -> Vec<String> {
             manifold(derived),
             report.coordinates.join(", ")
         ),
-        format!("- Freedoms: {}.", freedoms.join(", ")),
+        format!("- Degrees of freedom: {}.", freedoms.join(", ")),
         format!("- Velocity v: read {}.", velocity_frame(&derived.spec)),
     ];
     if derived.shape.constraints > 0 {

@@ -127,7 +127,7 @@ fn a_projection_begins_at_the_value_of_its_formulas() {
     );
 }
 
-/// Of the 12 entries, 6 relations leave the pose of a rigid body; those of the cosets leave 2 freedoms, or 4.
+/// Of the 12 entries, 6 relations leave the pose of a rigid body; those of the cosets leave 2 degrees of freedom, or 4.
 #[test]
 fn a_projection_solves_as_many_relations_as_the_coset_has() {
     for (basis, rank) in [

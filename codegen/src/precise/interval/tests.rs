@@ -3,8 +3,8 @@
 use super::Interval;
 use crate::expr::{Function, Number, Rational};
 use crate::precise::Precise;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use chacha20::ChaCha8Rng;
+use chacha20::rand_core::{Rng, SeedableRng};
 
 const BITS: usize = 64;
 const FINE: usize = 768;

@@ -16,14 +16,14 @@ use std::ops::Range;
 /// Most freedoms: those of a free body.
 const MOST_FREEDOMS: usize = 6;
 
-/// The freedoms of a joint.
+/// The degrees of freedom of a joint.
 pub(super) struct Freedoms {
     pub list: Declared<Vec<Freedom>>,
     /// Whether some are those of `local`, which only Phi gives a meaning.
     pub local: bool,
 }
 
-/// All freedoms, in order; `None` where they cannot be told.
+/// All degrees of freedom, in order; `None` where they cannot be told.
 pub(super) fn freedoms(context: &Context<'_>, scope: &mut Scope<'_, '_, '_>) -> Option<Freedoms> {
     let bases = basis_freedoms(context, scope);
     let local = context.statements.local;
@@ -48,31 +48,32 @@ pub(super) fn freedoms(context: &Context<'_>, scope: &mut Scope<'_, '_, '_>) -> 
     })
 }
 
-/// The error that there are more freedoms than a joint, or its configuration, can have.
+/// The error that there are more degrees of freedom than a joint, or its configuration, can have.
 fn too_many(context: &Context<'_>, count: usize, span: &Range<usize>) -> Option<Diagnostic> {
     let error = |message| Diagnostic::new(code::FREEDOMS, span.clone(), message).label("too many");
     let dimension = context.manifold.value.dimension();
     let related = !context.statements.relations.is_empty();
     if related && count >= dimension {
-        let message =
-            format!("{count} freedoms, and relations leave fewer than {dimension} of the factors");
+        let message = format!(
+            "{count} degrees of freedom, and relations leave fewer than {dimension} of the factors"
+        );
         return Some(error(message).help(
-            "name the freedoms that are left by `local a, b;`, and say by Phi how they move Q",
+            "name the degrees of freedom that are left by `local a, b;`, and say by Phi how they move Q",
         ));
     }
     if count > MOST_FREEDOMS {
         return Some(error(format!(
-            "{count} freedoms, a joint has at most {MOST_FREEDOMS}"
+            "{count} degrees of freedom, a joint has at most {MOST_FREEDOMS}"
         )));
     }
     (count > dimension).then(|| {
         error(format!(
-            "{count} freedoms on a manifold of dimension {dimension}"
+            "{count} degrees of freedom on a manifold of dimension {dimension}"
         ))
     })
 }
 
-/// The freedoms of the `basis` statements.
+/// The degrees of freedom of the `basis` statements.
 struct Bases {
     list: Vec<Freedom>,
     /// Factors that have one.
@@ -134,7 +135,7 @@ fn coordinate_freedoms(
 
 fn claim<'n>(names: impl Iterator<Item = &'n Name>, scope: &mut Scope<'_, '_, '_>) {
     for name in names {
-        scope.claim(name, Form::Snake, "a freedom");
+        scope.claim(name, Form::Snake, "a degree of freedom");
         scope.claim_text(&local_name(&name.text), &name.span, "a local coordinate");
     }
 }
@@ -163,7 +164,7 @@ fn named(basis: &Basis, factor: usize, generators: Vec<Vec<Expr>>, first: usize)
         .collect()
 }
 
-/// The freedoms of a real factor without a basis.
+/// The degrees of freedom of a real factor without a basis.
 fn coordinates(factor: &Factor, index: usize, size: usize, first: usize) -> Vec<Freedom> {
     let unit = |n: usize| (0..size).map(|i| Expr::integer((i == n).into())).collect();
     let symbols = factor.coordinates.iter().enumerate();
@@ -174,7 +175,7 @@ fn coordinates(factor: &Factor, index: usize, size: usize, first: usize) -> Vec<
 
 fn no_basis(context: &Context<'_>, factor: &Factor) -> Diagnostic {
     let message = format!(
-        "factor `{}` has no basis, so that its freedoms have no names and no directions",
+        "factor `{}` has no basis, so that its degrees of freedom have no names and no directions",
         factor.name
     );
     let error = Diagnostic::new(code::BASIS_MISSING, context.manifold.span.clone(), message)
@@ -186,7 +187,8 @@ fn no_basis(context: &Context<'_>, factor: &Factor) -> Diagnostic {
                 .collect();
             error.help(format!("add `basis {} of {algebra};`", names.join(", ")))
         }
-        None => error.help("it is no group: name its freedoms by `local a, b;` and declare Phi"),
+        None => error
+            .help("it is no group: name its degrees of freedom by `local a, b;` and declare Phi"),
     }
 }
 

@@ -19,7 +19,7 @@ pub(super) struct Matrices {
     pub speed_names: Option<Declared<Vec<String>>>,
 }
 
-/// Evaluates them where the freedoms are not known, for the errors in them.
+/// Evaluates them where the degrees of freedom are not known, for the errors in them.
 pub(super) fn evaluate_only(statements: &Once<'_>, evaluator: &mut Evaluator<'_>) {
     for target in [Target::TwistMap, Target::Constraint, Target::SpeedBasis] {
         if let Some(statement) = statements.target(target) {
@@ -28,7 +28,7 @@ pub(super) fn evaluate_only(statements: &Once<'_>, evaluator: &mut Evaluator<'_>
     }
 }
 
-/// Evaluates all of them, for a joint of these freedoms.
+/// Evaluates all of them, for a joint of these degrees of freedom.
 pub(super) fn matrices(
     context: &Context<'_>,
     freedoms: &[&str],
@@ -129,11 +129,13 @@ fn matrix(
             .map_or(statement.span, |node| &node.span)
             .clone();
         let shape = match target {
-            Target::TwistMap => format!("the shape 6×{k}, a twist for each freedom"),
+            Target::TwistMap => format!("the shape 6×{k}, a twist for each degree of freedom"),
             Target::Constraint => format!(
-                "{k} rows, one for each freedom, and fewer columns, one for each constraint"
+                "{k} rows, one for each degree of freedom, and fewer columns, one for each constraint"
             ),
-            _ => format!("{k} rows, one for each freedom, and fewer columns, one for each speed"),
+            _ => format!(
+                "{k} rows, one for each degree of freedom, and fewer columns, one for each speed"
+            ),
         };
         let message = format!(
             "{} is {}; it must have {shape}",
@@ -141,7 +143,10 @@ fn matrix(
             value.describe()
         );
         let error = Diagnostic::new(code::DECLARED_SHAPE, span, message).label("wrong shape");
-        evaluator.report(error.note(format!("the freedoms are {}", freedoms.join(", "))));
+        evaluator.report(error.note(format!(
+            "the degrees of freedom are {}",
+            freedoms.join(", ")
+        )));
     }
     Some(Declared {
         value: matrix?,
@@ -149,7 +154,7 @@ fn matrix(
     })
 }
 
-/// The columns of A and of S_bar, where both stand, add up to the freedoms.
+/// The columns of A and of S_bar, where both stand, add up to the degrees of freedom.
 fn check_pair(
     k: usize,
     constraint: &Option<Declared<Matrix>>,
@@ -161,7 +166,7 @@ fn check_pair(
     {
         let (constraints, speeds) = (a.value.columns(), s.value.columns());
         let message = format!(
-            "the columns of A ({constraints}) and of S_bar ({speeds}) do not add up to the freedoms ({k})"
+            "the columns of A ({constraints}) and of S_bar ({speeds}) do not add up to the degrees of freedom ({k})"
         );
         let error = Diagnostic::new(code::CONSTRAINT, s.span.clone(), message);
         evaluator.report(error.label(format!("expected columns: {}", k - constraints)));

@@ -35,7 +35,7 @@ pub(super) fn retract(
     })
 }
 
-/// Inside Phi the name of a freedom is its generator.
+/// Inside Phi the name of a degree of freedom is its generator.
 fn generator_names(freedoms: &Freedoms, factors: &[Factor]) -> Vec<(String, Value)> {
     let list = freedoms
         .list
@@ -96,7 +96,7 @@ fn locals(freedoms: &Freedoms, factors: &[Factor]) -> Locals {
     }
 }
 
-/// ϕ of each factor that has freedoms with generators.
+/// ϕ of each factor that has degrees of freedom with generators.
 fn by_factor(list: &[Freedom], factors: &[Factor]) -> BTreeMap<String, Value> {
     let sum = |n: usize, factor: &Factor| {
         let mut coordinates = Matrix::zeros(factor.kind.dimension(), 1);

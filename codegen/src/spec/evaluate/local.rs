@@ -1,4 +1,4 @@
-//! Local coordinates in Phi: `phi`, `phi.R` of a factor, `phi.turn` of a freedom, `phi[2]`.
+//! Local coordinates in Phi: `phi`, `phi.R` of a factor, `phi.turn` of a degree of freedom, `phi[2]`.
 
 use super::super::value::Value;
 use super::super::{Fallible, code, names};
@@ -11,7 +11,7 @@ use std::ops::Range;
 pub(in super::super) struct Locals {
     /// ϕ of each factor that has any, by the factor's name; of `local`s, all of them under no name.
     pub by_factor: BTreeMap<String, Value>,
-    /// Each ϕ by the name of its freedom.
+    /// Each ϕ by the name of its degree of freedom.
     pub by_freedom: BTreeMap<String, Expr>,
     /// Each ϕ in order.
     pub all: Vec<Expr>,
@@ -58,7 +58,7 @@ impl Locals {
                 let error = Diagnostic::new(
                     code::FIELD,
                     span.clone(),
-                    format!("`{name}` is neither a factor nor a freedom"),
+                    format!("`{name}` is neither a factor nor a degree of freedom"),
                 );
                 let error = error.label("no such part of phi");
                 let known: Vec<&str> = self

@@ -28,7 +28,7 @@ pub struct Library {
     equations: &'static Equations,
 }
 
-/// Numbers of bodies, of stored scalars, of freedoms, of speeds, and of results of the derivatives of forward dynamics.
+/// Numbers of bodies, of stored scalars, of degrees of freedom, of speeds, and of results of the derivatives of forward dynamics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sizes {
     pub bodies: usize,

@@ -23,7 +23,7 @@ struct State {
     failure: Option<String>,
     errors: Vec<MeasureOutcome>,
     values: Vec<f64>,
-    /// τ as it was taken last, one entry per freedom.
+    /// τ as it was taken last, one entry per degree of freedom.
     efforts: Vec<f64>,
     largest_effort: f64,
 }
@@ -38,7 +38,7 @@ pub struct Outcome {
     pub period_s: Option<f64>,
     /// The quantities by which it is judged.
     pub errors: Vec<MeasureOutcome>,
-    /// The largest effort of any freedom at the ends of steps, N m or N.
+    /// The largest effort of any degree of freedom at the ends of steps, N m or N.
     pub largest_effort: f64,
 }
 

@@ -2,7 +2,7 @@
 
 use super::args::{Args, ArithmeticName, FormName, MethodName, SamplingName};
 use crate::output::Failure;
-use hamel::integrate::{Control, Form, Method, Sampling, Scheme};
+use hamel::integrate::{Form, Method, Sampling, Scheme, StepControl};
 use hamel::shown::Number;
 use hamel_scene::{Arithmetic, Settings};
 
@@ -91,7 +91,7 @@ const fn accuracy(scene: Method) -> (Option<f64>, Option<f64>) {
 }
 
 fn tolerance(tol: f64) -> Result<f64, Failure> {
-    let (least, largest) = (Control::LEAST_TOLERANCE, Control::LARGEST_TOLERANCE);
+    let (least, largest) = (StepControl::LEAST_TOLERANCE, StepControl::LARGEST_TOLERANCE);
     let limit = format!("between {:?} and {:?}", Number(least), Number(largest));
     in_range("--tol", tol, (least..=largest).contains(&tol), &limit)
 }

@@ -94,7 +94,7 @@ impl Summary<'_> {
             description => writeln!(f, "{}: {description}", scene.name)?,
         }
         let bodies = counted(scene.mechanism.bodies().len(), "body", "bodies");
-        let freedoms = counted(layout.freedoms, "freedom", "freedoms");
+        let freedoms = counted(layout.freedoms, "degree of freedom", "degrees of freedom");
         let speeds = counted(layout.speeds, "speed", "speeds");
         let form = settings.form_name();
         let method = self.plan.method();

@@ -4,10 +4,10 @@
 
 use super::interrupted::{rows, send};
 use super::place::{Place, said};
+use chacha20::ChaCha8Rng;
 use nix::sys::signal::Signal;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use rand::{Rng, RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::fs;
 use std::io::Write;
 use std::os::unix::process::ExitStatusExt;

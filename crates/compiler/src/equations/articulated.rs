@@ -1,4 +1,4 @@
-//! Forward dynamics by articulated bodies: each joint's freedoms are eliminated from the inertia of what it carries.
+//! Forward dynamics by articulated bodies: each joint's degrees of freedom are eliminated from the inertia of what it carries.
 
 use super::newton_euler::Spin;
 use super::{Tree, carried, number, wrench_to_parent};
@@ -158,7 +158,7 @@ impl Tree<'_> {
         self.outward(&start, &pivots, &given)
     }
 
-    /// Takes the freedoms of a body's joint out of what it carries.
+    /// Takes the degrees of freedom of a body's joint out of what it carries.
     fn eliminate(
         &self,
         index: usize,
@@ -220,7 +220,7 @@ impl Tree<'_> {
                 later,
             });
         }
-        // Along a freedom nothing is left but the effort at it.
+        // Along a degree of freedom nothing is left but the effort at it.
         for (j, given) in given.into_iter().enumerate() {
             if let Some(entry) = self.feels(index, j) {
                 *wrench.entry_mut(entry) = given;

@@ -17,7 +17,7 @@ use crate::graph::{Argument, Slopes, Sym, section};
 use crate::spatial::{Coriolis, Rigid, Step, Vec3, Wrench, dot};
 use num_traits::{One, Zero};
 
-/// A row a speed; a column a freedom, then a column a speed.
+/// A row a speed; a column a degree of freedom, then a column a speed.
 pub(super) type Rows = Vec<Vec<Sym>>;
 
 /// A body and all that hangs on it.

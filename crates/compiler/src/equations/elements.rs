@@ -17,7 +17,7 @@ struct Stretch<'a> {
 }
 
 impl Tree<'_> {
-    /// The efforts of the springs at a body's joint, one per freedom; none where it has no spring.
+    /// The efforts of the springs at a body's joint, one per degree of freedom; none where it has no spring.
     pub(super) fn spring_efforts(&self, index: usize) -> Vec<Sym> {
         let elements = &self.model.elements;
         let springs = elements.joint_springs.iter();

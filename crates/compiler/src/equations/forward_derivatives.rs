@@ -49,7 +49,7 @@ impl Tree<'_> {
         self.factorised(matrix)
     }
 
-    /// `∂v̄̇/∂τ = M̄⁻¹ S̄ᵀ`, a column a freedom; the first efforts of a driven joint are its rates.
+    /// `∂v̄̇/∂τ = M̄⁻¹ S̄ᵀ`, a column a degree of freedom; the first efforts of a driven joint are its rates.
     fn effort_columns(&self, matrix: &Matrix, factors: &Factors) -> Vec<Vec<Sym>> {
         let inverse = factors.inverse();
         let size = inverse.len();

@@ -1,4 +1,4 @@
-//! Inertias that joints do not feel move to the parent, from the leaves to the root; what arrives at the world is dropped.
+//! Inertias that do not affect a joint move to its parent, from the leaves to the root; what arrives at the world is dropped.
 //!
 //! N_X is spanned in the joint's child frame (`Derived::unidentifiable`). Subtracting its elements makes as many of the ten parameters of a
 //! body 0 as it has dimensions. N is constant also in the parent frame, so it may be read at home.

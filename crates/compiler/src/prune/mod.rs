@@ -1,4 +1,4 @@
-//! What a scene does not need, taken away before any equation is written: inertias that no joint feels, and frames that cost.
+//! What a scene does not need, taken away before any equation is written: inertias that affect no joint, and frames that cost.
 //!
 //! All of it is exact: M, the forces of (24) and (34), and the efforts stay what they are, to rounding. Joint reaction wrenches do not: who
 //! wants these takes them from the tree.
@@ -70,7 +70,7 @@ impl Fixed {
 pub struct Pruning {
     /// Frames move to where placements are sparse.
     pub frames: bool,
-    /// Inertias that no joint feels move to the root.
+    /// Inertias that affect no joint move to the root.
     pub inertias: bool,
 }
 
@@ -87,7 +87,7 @@ impl Pruning {
     };
 }
 
-/// The links of a model, in frames chosen for few operations, with the inertias that no joint feels moved to the root.
+/// The links of a model, in frames chosen for few operations, with the inertias that affect no joint moved to the root.
 pub fn prune(model: &Model, pruning: Pruning) -> Vec<Link> {
     let placed = Placed::new(model, pruning.frames);
     let links = placed.links();

@@ -2,8 +2,8 @@
 
 use crate::support::{NOT_FINITE, at, bare, equipped, refused, wrong};
 use hamel_integrate::{
-    Choice, Control, Estimate, Event, Form, Integration, LinearStep, Method, Options, Sampling,
-    Scheme, Spectrum, State, Tableau, Wanted,
+    Choice, Estimate, Event, Form, Integration, LinearStep, Method, Options, Sampling, Scheme,
+    Spectrum, State, StepControl, Tableau, Wanted,
 };
 use hamel_runtime::dynamics::Recursive;
 use hamel_runtime::mechanism::Mechanism;
@@ -101,7 +101,7 @@ fn numbers_out_of_range_are_errors() {
         ];
         let controls = controls.map(|(tolerance, max_step, first_step)| Method::Controlled {
             scheme: Scheme::DormandPrince,
-            control: Control {
+            control: StepControl {
                 tolerance,
                 max_step,
                 first_step,

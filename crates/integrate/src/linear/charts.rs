@@ -66,7 +66,7 @@ impl Charts {
         (&own.moved, &own.rate_by_speeds)
     }
 
-    /// ϕ̇ at v̄, one per freedom.
+    /// ϕ̇ at v̄, one per degree of freedom.
     pub(super) fn rates(&self, speeds: &[f64], rates: &mut [f64]) {
         for own in &self.0 {
             let speeds = &speeds[own.speeds.clone()];

@@ -133,7 +133,7 @@ impl LinearStep {
     }
 
     /// Takes one step of `step` (s) from (q, y) under efforts τ that are held, and its derivatives. y is v̄ in the Lagrangian and p̄ in the
-    /// Hamiltonian form, one entry per speed; τ has one entry per freedom.
+    /// Hamiltonian form, one entry per speed; τ has one entry per degree of freedom.
     ///
     /// # Errors
     /// A step that is not positive and finite; a state of the wrong size, not finite or off the joints' manifolds; a singular mass matrix; a

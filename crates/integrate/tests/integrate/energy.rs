@@ -83,7 +83,7 @@ fn pendulum() -> Arc<Mechanism> {
     )
 }
 
-/// One freedom passes its fastest point twice a swing, where the momentum hardly changes in a step, and comes to rest twice.
+/// One degree of freedom passes its fastest point twice a swing, where the momentum hardly changes in a step, and comes to rest twice.
 #[test]
 fn swings_of_one_joint_keep_their_energy() {
     let mechanism = pendulum();

@@ -6,7 +6,7 @@ use crate::common::wall::{Kernel, wall};
 use crate::support::options;
 use hamel_compiled::{Compiled, Equations, InLanes};
 use hamel_integrate::{
-    Control, Event, Form, IntegrateError, Integration, Method, Sampling, Scheme, State,
+    Event, Form, IntegrateError, Integration, Method, Sampling, Scheme, State, StepControl,
 };
 use hamel_runtime::dynamics::{Dynamics, Recursive, Reference, Refined};
 use hamel_runtime::mechanism::Mechanism;
@@ -56,7 +56,7 @@ fn methods() -> Vec<Method> {
     let controlled = Scheme::ALL.into_iter().filter(Scheme::has_estimate);
     let controlled = controlled.map(|scheme| Method::Controlled {
         scheme,
-        control: Control {
+        control: StepControl {
             tolerance: 1e-6,
             max_step: 0.05,
             first_step: None,

@@ -5,8 +5,8 @@ use crate::common::random::Random;
 use crate::common::trees::{GRAVITY, body, tree};
 use crate::support::{distance, fixed_steps, options, run, start};
 use hamel_integrate::{
-    Control, Estimate, Form, IntegrateError, Method, Options, Scheme, State, StepFailure, Tableau,
-    integrate, no_inputs, no_observer,
+    Estimate, Form, IntegrateError, Method, Options, Scheme, State, StepControl, StepFailure,
+    Tableau, integrate, no_inputs, no_observer,
 };
 use hamel_runtime::dynamics::{Dynamics, DynamicsError, Reference};
 use hamel_runtime::mechanism::{Mechanism, StateError};
@@ -109,7 +109,7 @@ fn work_is_counted() {
     assert_eq!(statistics.evaluations, 1 + 15 * 100);
     let rough = Method::Controlled {
         scheme: Scheme::DormandPrince,
-        control: Control {
+        control: StepControl {
             tolerance: 1e-10,
             max_step: f64::INFINITY,
             first_step: Some(1.0),

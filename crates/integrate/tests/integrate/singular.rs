@@ -4,7 +4,7 @@ use crate::common::polar::polar;
 use crate::common::trees::body;
 use crate::support::{options, run};
 use hamel_integrate::{
-    Control, Form, IntegrateError, Method, Scheme, State, integrate, no_inputs, no_observer,
+    Form, IntegrateError, Method, Scheme, State, StepControl, integrate, no_inputs, no_observer,
 };
 use hamel_runtime::dynamics::Reference;
 use hamel_runtime::mechanism::{Mechanism, MechanismErrors};
@@ -36,7 +36,7 @@ fn the_nearest_approach_is_reported() {
     let aside = 0.01;
     let method = Method::Controlled {
         scheme: Scheme::DormandPrince,
-        control: Control {
+        control: StepControl {
             tolerance: 1e-10,
             max_step: 1e-3,
             first_step: None,

@@ -208,7 +208,7 @@ impl Fit<'_> {
             "weights.position",
             position,
             layout.freedoms,
-            "freedom",
+            "degree of freedom",
             sink,
         );
         let speed = spread("weights.speed", speed, layout.speeds, "speed", sink);

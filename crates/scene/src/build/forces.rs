@@ -14,11 +14,11 @@ use nalgebra::{DMatrix, DVector};
 pub(crate) struct Acting {
     /// Spring.
     pub(crate) spring: Option<Spring>,
-    /// Damping, one number per freedom; empty without.
+    /// Damping, one number per degree of freedom; empty without.
     pub(crate) damping: Vec<f64>,
-    /// Armature, one number per freedom; empty without.
+    /// Armature, one number per degree of freedom; empty without.
     pub(crate) armature: Vec<f64>,
-    /// Constant efforts τ, one per freedom; empty without.
+    /// Constant efforts τ, one per degree of freedom; empty without.
     pub(crate) effort: Vec<f64>,
     /// Prescribed speeds, one law a speed; empty without.
     pub(crate) motion: Vec<Law>,
@@ -91,7 +91,7 @@ fn armature(stand: &Stand, numbers: Option<&Located<PerFreedom>>) -> Result<Vec<
     }
 }
 
-/// One number a freedom.
+/// One number a degree of freedom.
 fn each(
     stand: &Stand,
     key: &str,

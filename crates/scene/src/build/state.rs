@@ -160,7 +160,7 @@ impl Stand {
         let speeds = self.mechanism.speeds_from_velocity(0, q, velocity);
         speeds.map_err(refusal(span)).map_err(|error| {
             error.help(format!(
-                "its freedoms are {}",
+                "its degrees of freedom are {}",
                 self.joint.freedoms().join(", ")
             ))
         })

@@ -6,7 +6,7 @@ use crate::settings::{
     ARITHMETIC_NAMES, FORM_NAMES, METHOD_NAMES, SAMPLING_NAMES, Settings, arithmetic_named,
     form_named, sampling_named,
 };
-use hamel_integrate::{Control, Method, Scheme};
+use hamel_integrate::{Method, Scheme, StepControl};
 use hamel_runtime::shown::Number;
 
 /// Reads the settings; the defaults where the table or a key of it is absent or in error.
@@ -79,7 +79,7 @@ fn positive(table: &mut Fields<'_>, key: &'static str, sink: &mut Sink) -> Optio
 }
 
 fn tolerance(table: &mut Fields<'_>, sink: &mut Sink) -> Option<f64> {
-    let (least, largest) = (Control::LEAST_TOLERANCE, Control::LARGEST_TOLERANCE);
+    let (least, largest) = (StepControl::LEAST_TOLERANCE, StepControl::LARGEST_TOLERANCE);
     let limit = format!("between {:?} and {:?}", Number(least), Number(largest));
     let holds = |number| (least..=largest).contains(&number);
     let number = table.optional("tol")?.number_within(holds, &limit, sink)?;

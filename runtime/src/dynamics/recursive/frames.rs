@@ -132,10 +132,10 @@ impl FrameReadings<'_> {
     }
 
     /// The 6×K matrix of the frame's displacements under a unit of each local coordinate ϕ (at ϕ = 0), twists as of J, into `out`: column by column,
-    /// one per freedom.
+    /// one per degree of freedom.
     ///
     /// # Errors
-    /// When `out` has not six entries per freedom.
+    /// When `out` has not six entries per degree of freedom.
     pub fn local_jacobian(&self, axes: Frame, out: &mut [f64]) -> Result<(), StateError> {
         let pose = self.pose();
         self.fill_locals(out, |variation, arm| {
@@ -143,10 +143,10 @@ impl FrameReadings<'_> {
         })
     }
 
-    /// `∂(J v̄)/∂ϕ` at fixed v̄: the derivatives of [`FrameReadings::twist`] into `out`, column by column, one per freedom.
+    /// `∂(J v̄)/∂ϕ` at fixed v̄: the derivatives of [`FrameReadings::twist`] into `out`, column by column, one per degree of freedom.
     ///
     /// # Errors
-    /// When `out` has not six entries per freedom.
+    /// When `out` has not six entries per degree of freedom.
     pub fn twist_gradient(&self, axes: Frame, out: &mut [f64]) -> Result<(), StateError> {
         let (pose, twist) = (self.pose(), self.twist(axes));
         self.fill_locals(out, |variation, arm| {
@@ -165,7 +165,7 @@ impl FrameReadings<'_> {
         })
     }
 
-    /// One column a freedom of the joints on the way to the root, zero for the others.
+    /// One column a degree of freedom of the joints on the way to the root, zero for the others.
     fn fill_locals(
         &self,
         out: &mut [f64],

@@ -78,7 +78,7 @@ impl Recursive {
         Some(turn_back(&node.motion.placement.rotation, &node.wrench))
     }
 
-    /// `X^cᵀF = τ + Aλ` of every joint into `efforts` (one entry per freedom), as of the last
+    /// `X^cᵀF = τ + Aλ` of every joint into `efforts` (one entry per degree of freedom), as of the last
     /// [`Recursive::inverse_dynamics`] at `q`, or [`Recursive::coupling_force`] where constraints couple joints: also what it takes to move a
     /// joint whose motion is prescribed.
     ///
@@ -107,7 +107,7 @@ impl Recursive {
         }
     }
 
-    /// `λ = (AᵀA)⁻¹Aᵀ(X^cᵀF − τ)` into `forces` (one entry a constraint), for applied efforts τ (one per freedom), as of
+    /// `λ = (AᵀA)⁻¹Aᵀ(X^cᵀF − τ)` into `forces` (one entry a constraint), for applied efforts τ (one per degree of freedom), as of
     /// the last [`Recursive::inverse_dynamics`] at `q`, or [`Recursive::coupling_force`] where constraints couple joints. Entries of τ of joints
     /// whose motion is prescribed are not read.
     ///

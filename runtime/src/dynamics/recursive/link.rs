@@ -22,7 +22,7 @@ pub(super) struct Link {
     pub(super) frame: Pose<f64>,
     /// Inertia in the joint's child frame.
     pub(super) inertia: SpatialInertia<f64>,
-    /// Rotor inertias, one per freedom; empty where there are none.
+    /// Rotor inertias, one per degree of freedom; empty where there are none.
     pub(super) armature: Vec<f64>,
     /// Whether the joint's motion is prescribed.
     pub(super) driven: bool,

@@ -1,6 +1,6 @@
 //! `(M̄ + W)⁻¹` in O(n), with W a block for each joint: what stiff springs and dampers at joints make of the mass matrix in an implicit step.
 //!
-//! The articulated recursion, joint by joint instead of freedom by freedom: with Y = I X̄ and `D = X̄ᵀY + W`, `I ← I − Y D⁻¹ Yᵀ`. What is stiff stands in D, and
+//! The articulated recursion, joint by joint instead of degree of freedom by freedom: with Y = I X̄ and `D = X̄ᵀY + W`, `I ← I − Y D⁻¹ Yᵀ`. What is stiff stands in D, and
 //! is never a difference.
 
 use super::Recursive;

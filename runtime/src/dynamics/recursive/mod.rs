@@ -74,11 +74,11 @@ pub struct Recursive {
     loads: Vec<f64>,
     /// `S̄ᵀτ`, one entry per speed.
     forces: Vec<f64>,
-    /// Efforts of the elements alone, one entry per freedom.
+    /// Efforts of the elements alone, one entry per degree of freedom.
     efforts: Vec<f64>,
     /// The same with τ.
     combined: Vec<f64>,
-    /// τ of the inputs, one entry per freedom.
+    /// τ of the inputs, one entry per degree of freedom.
     inputs: Vec<f64>,
     /// Wrenches of elements on the bodies, at the child frames' origins, in world axes.
     external: Vec<Vector6<f64>>,
@@ -177,7 +177,7 @@ impl Recursive {
         self.mechanism.check_room(quantity, Space::Speeds, room)
     }
 
-    /// Whether τ has one entry per freedom, and is finite; where it is not, and a kernel at (q, v̄) is not either, that is the cause.
+    /// Whether τ has one entry per degree of freedom, and is finite; where it is not, and a kernel at (q, v̄) is not either, that is the cause.
     fn check_efforts(&self, q: &[f64], speeds: &[f64], tau: &[f64]) -> Result<(), StateError> {
         let checked = self.mechanism.check_vector("efforts", Space::Freedoms, tau);
         checked.map_err(|error| match &error {

@@ -14,7 +14,7 @@ use nalgebra::{DMatrix, DVector, Vector6};
 
 /// What the elements of a mechanism amount to at one state.
 pub(super) struct ElementForces {
-    /// τ, one entry per freedom.
+    /// τ, one entry per degree of freedom.
     pub(super) efforts: DVector<f64>,
     /// Stored energy, J.
     pub(super) energy: f64,

@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// M, V, S, A and S̄ of a mechanism with their derivatives in ϕ, all at ϕ = 0.
 ///
-/// With K freedoms, S̄ speeds and C constraints in total. Slice k of a `…_gradient` is the derivative along ϕ_k.
+/// With K degrees of freedom, S̄ speeds and C constraints in total. Slice k of a `…_gradient` is the derivative along ϕ_k.
 #[derive(Clone, Debug)]
 pub struct Expansion {
     /// M, K×K.

@@ -1,7 +1,7 @@
 //! Theorems 2 and 3 as they stand: every matrix of (24)–(28) and (34)–(37) can be looked at.
 //!
 //! Index patterns follow the paper, with its errata set right: (26) contracts momentum with the rows of S and velocity with
-//! S⁻¹; after (36), `p = M S̄ M̄⁻¹ p̄`. Cost grows with the cube of the number of freedoms, and matrices are allocated.
+//! S⁻¹; after (36), `p = M S̄ M̄⁻¹ p̄`. Cost grows with the cube of the number of degrees of freedom, and matrices are allocated.
 
 mod actuation;
 mod coupling;

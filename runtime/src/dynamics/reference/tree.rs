@@ -12,7 +12,7 @@ pub(super) struct BodyMotion {
     pose: Pose<f64>,
     /// J, 6×K: v of the whole mechanism to the twist of this frame, in this frame.
     pub(super) jacobian: Matrix6xX<f64>,
-    /// ∂J/∂ϕ_k, where it is not zero: for the freedoms of the joints between world and body.
+    /// ∂J/∂ϕ_k, where it is not zero: for the degrees of freedom of the joints between world and body.
     pub(super) jacobian_gradient: Vec<Option<Matrix6xX<f64>>>,
 }
 

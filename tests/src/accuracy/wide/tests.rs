@@ -1,9 +1,9 @@
 //! Against numbers of any size: 256 bits, less the few that the last operation loses.
 
 use super::{BITS, Wide, stumpff};
+use chacha20::ChaCha8Rng;
 use hamel_codegen::precise::Precise;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// Bits that must agree, relative to the size given.
 const AGREED: i32 = 245;

@@ -3,6 +3,7 @@
 use super::kernels::constants;
 use super::{D, DualForm};
 use crate::random::numbers;
+use chacha20::ChaCha8Rng;
 use hamel::elements::{
     BodySpring, BodyWrench, Element, JointDamper, JointEffort, JointSpring, RotationSpring,
     WrenchAxes,
@@ -12,7 +13,6 @@ use hamel::nalgebra::{Matrix3, Vector3, Vector6};
 use hamel::scalar::Dual;
 use hamel::spatial::{Pose, join, so3, split, vee};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
 
 /// What a mechanism carries besides its bodies; nothing by default.

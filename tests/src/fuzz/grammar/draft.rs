@@ -1,7 +1,7 @@
 //! A spec in parts, before it is written.
 
+use chacha20::ChaCha8Rng;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 use std::fmt::Write;
 
 /// A random spec.

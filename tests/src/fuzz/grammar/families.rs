@@ -2,8 +2,8 @@
 
 use super::draft::Draft;
 use super::formulas::{nothing, number, pick, positive, smooth};
+use chacha20::ChaCha8Rng;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 
 type Family = fn(&mut Draft, &mut ChaCha8Rng);
 

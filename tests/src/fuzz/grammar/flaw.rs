@@ -2,8 +2,8 @@
 
 use super::draft::{Draft, Slot};
 use super::formulas::{nothing, pick};
+use chacha20::ChaCha8Rng;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 
 /// Makes one place of the draft wrong; nothing where it has none.
 pub fn plant(draft: &mut Draft, random: &mut ChaCha8Rng) -> Option<String> {

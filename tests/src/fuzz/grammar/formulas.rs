@@ -1,7 +1,7 @@
 //! Random formulas: smooth functions, positive ones, zeros that are identities.
 
+use chacha20::ChaCha8Rng;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 
 pub fn pick<'a>(random: &mut ChaCha8Rng, choices: &[&'a str]) -> &'a str {
     choices[random.random_range(0..choices.len())]

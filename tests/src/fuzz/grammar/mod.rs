@@ -11,9 +11,9 @@ mod formulas;
 pub use draft::Made;
 
 use crate::enclosure::Point;
+use chacha20::ChaCha8Rng;
 use draft::Draft;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// Spec number `seed`.
 pub fn made(seed: u64) -> Made {

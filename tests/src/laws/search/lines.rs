@@ -3,9 +3,9 @@
 use super::critical::{Critical, critical};
 use super::subject::Kernels;
 use crate::accuracy::{Case, Definition, numbers};
+use chacha20::ChaCha8Rng;
 use hamel_codegen::manifold::Kind;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 
 /// Samples of a line near its start: every quarter of a radian or metre up to two turns.
 const NEAR: i32 = 32;

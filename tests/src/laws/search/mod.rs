@@ -28,6 +28,7 @@ mod traced;
 pub use plant::{KERNELS, Plant, Planted, Where};
 
 use crate::accuracy::{Definition, Worst};
+use chacha20::ChaCha8Rng;
 use compare::Definitions;
 use hamel::joint::Joint;
 use hamel_codegen::derived::{Derived, KernelKind};
@@ -37,7 +38,6 @@ use hamel_codegen::precise::Sampler;
 use lines::{Direction, Place, samples};
 use parameters::Axis;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
 use subject::{Build, Kernels, Sized};
 

@@ -1,10 +1,10 @@
 //! Loops over like bodies, as they are written.
 
+use chacha20::ChaCha8Rng;
 use hamel_compiler::emit::{Lowered, lines::Line};
 use hamel_compiler::functions::{Kind, Loops, compile};
 use hamel_tests::{compiled, random};
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 
 /// In Rust, a row that is read later in the same turn is borrowed until then: nothing else of its array can be written before.
 #[test]

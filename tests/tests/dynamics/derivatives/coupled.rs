@@ -1,5 +1,6 @@
 //! Both forms where constraints couple joints, against differences of the dynamics itself along the motions that the constraints allow.
 
+use chacha20::ChaCha8Rng;
 use hamel::dynamics::{
     Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, Recursive,
 };
@@ -11,7 +12,6 @@ use hamel_tests::differences::{STEP, derivative, moved};
 use hamel_tests::figures::{Largest, difference, size};
 use hamel_tests::random::{Case, cases, library, numbers};
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
 
 /// Random constraints come near to where they determine nothing, so that v̄̇ varies over lengths of a tenth. With a sixteenth of the usual step the

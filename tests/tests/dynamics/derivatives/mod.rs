@@ -7,12 +7,12 @@ mod coupled_system;
 mod driven;
 mod refusals;
 
+use chacha20::ChaCha8Rng;
 use hamel::dynamics::{ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives, Recursive};
 use hamel_tests::derivatives::{self, Equipped, bare_and_equipped};
 use hamel_tests::peers::{Reference, convert, numbers};
 use hamel_tests::random::{self, Case, cases, library, slender_cases};
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use std::path::Path;
 use std::sync::Arc;
 

@@ -1,12 +1,12 @@
 //! A mechanism at a random state, and the formulas in question, right and wrong.
 
+use chacha20::ChaCha8Rng;
 use hamel::dynamics::reference::Expansion;
 use hamel::dynamics::{Recursive, Reference};
 use hamel::mechanism::Mechanism;
 use hamel::nalgebra::{Cholesky, DMatrix, DVector};
 use hamel_tests::random::{configuration, numbers};
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
 
 /// A mechanism at a random state.

@@ -187,15 +187,15 @@ fn follow_with(
 fn a_tree_of_all_kinds_of_joints_follows() {
     let (scene, mut reference, law) = following(mixed(), 1.0);
     assert!(scene.mechanism.bodies().len() >= 18);
-    // The fastest law and the feedback turn by 0.03 rad a step, of which order 9 leaves nothing. Step control at rounding would follow that of 40 freedoms in a
+    // The fastest law and the feedback turn by 0.03 rad a step, of which order 9 leaves nothing. Step control at rounding would follow that of 40 degrees of freedom in a
     // chain, by ever smaller steps.
     let steps = Method::fixed(Scheme::Verner9, 1.0 / 256.0);
-    // Forty freedoms in a chain: M is so ill conditioned that the rounding of accelerations is above that of angles.
+    // Forty degrees of freedom in a chain: M is so ill conditioned that the rounding of accelerations is above that of angles.
     let noise = acceleration_noise(&scene, &mut reference, 256, 1.0);
     check_with(&follow(&scene, &law, steps, 1.0), noise);
 }
 
-/// From elsewhere the error of a joint of one freedom fades as the law says: as (1 + ω t) e^{−ω t}.
+/// From elsewhere the error of a joint of one degree of freedom fades as the law says: as (1 + ω t) e^{−ω t}.
 #[test]
 fn errors_fade_as_they_are_told_to() {
     let text = text("panda7_tracking");

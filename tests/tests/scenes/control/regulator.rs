@@ -1,13 +1,13 @@
 //! LQR on the ball pendulum: upright from everywhere within a region that is proved, and no attitude favoured by coordinates.
 
 use super::{parse, scene, text, watch};
+use chacha20::ChaCha8Rng;
 use hamel::control::{Equilibrium, Regulator, Weights};
 use hamel::integrate::{Method, Scheme};
 use hamel::nalgebra::{Matrix3, Vector3};
 use hamel::spatial::so3;
 use hamel_scene::Scene;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 use std::sync::Arc;
 

@@ -1,10 +1,10 @@
 //! Riccati equations: known solutions, residuals, and what has none.
 
+use chacha20::ChaCha8Rng;
 use hamel::control::ControlError;
 use hamel::control::riccati::{Weighting, continuous, discrete};
 use nalgebra::{DMatrix, dmatrix};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// Residuals relative to the largest entry of the terms: some hundred roundings, times the conditioning of eight states.
 const RESIDUAL: f64 = 1e-11;

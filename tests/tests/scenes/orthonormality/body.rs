@@ -10,7 +10,7 @@ use hamel::nalgebra::{Cholesky, SMatrix, SVector, Vector6};
 use hamel::spatial::bracket_dual_product;
 use std::sync::Arc;
 
-/// The equations of motion of a mechanism of one body on a joint of `K` freedoms.
+/// The equations of motion of a mechanism of one body on a joint of `K` degrees of freedom.
 pub struct OneBody<const K: usize> {
     mechanism: Arc<Mechanism>,
 }

@@ -3,6 +3,7 @@
 mod body;
 
 use body::OneBody;
+use chacha20::ChaCha8Rng;
 use hamel::dynamics::{Dynamics, Reference};
 use hamel::integrate::{Form, Method, Options, State, Step, integrate, no_inputs};
 use hamel::mechanism::{BodySpec, Mechanism};
@@ -11,7 +12,6 @@ use hamel::spatial::{MassProperties, Pose};
 use hamel_tests::figures::{difference, size};
 use hamel_tests::random::{configuration, library, numbers};
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 

@@ -10,7 +10,7 @@ use crate::model::{Freedom, JointSpec};
 /// First index of the symbols made here, above all that a derivation numbers itself and below those of shared terms.
 const FIRST_INDEX: usize = 0x4000;
 
-/// How the freedoms of a factor stand to the standard basis of its algebra.
+/// How the degrees of freedom of a factor stand to the standard basis of its algebra.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Basis {
     /// They are that basis, in its order and side by side.
@@ -21,13 +21,13 @@ pub enum Basis {
     Subalgebra,
 }
 
-/// A factor, its place in Q, and its freedoms' places in ϕ.
+/// A factor, its place in Q, and its degrees of freedom' places in ϕ.
 pub struct Part<'a> {
     /// Its place among the factors.
     pub number: usize,
     /// Where its stored scalars begin.
     pub start: usize,
-    /// The places of its freedoms.
+    /// The places of its degrees of freedom.
     pub freedoms: Vec<usize>,
     /// Its basis.
     pub basis: Basis,
@@ -146,7 +146,7 @@ impl Part<'_> {
         (0..self.dimension()).map(name).collect()
     }
 
-    /// Each freedom's ϕ from the logarithm, with its place.
+    /// Each degree of freedom's ϕ from the logarithm, with its place.
     pub fn in_declared_basis(&self) -> Vec<(usize, Expr)> {
         let standard: Vec<Expr> = self.logarithm().iter().map(Expr::symbol).collect();
         let own: Vec<&Freedom> = self.own().collect();

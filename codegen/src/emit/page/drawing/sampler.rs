@@ -102,7 +102,7 @@ impl<'a> Sampler<'a> {
         )
     }
 
-    /// The freedom that a constraint forbids, if it is one alone.
+    /// The degree of freedom that a constraint forbids, if it is one alone.
     pub fn only_freedom(&self, constraint: usize) -> Option<usize> {
         let column = self.column(KernelKind::Constraint, &self.home(), constraint)?;
         let mut others = column

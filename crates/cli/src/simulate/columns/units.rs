@@ -1,4 +1,4 @@
-//! Units of a joint's freedoms, velocities and speeds, which are those on its page: read off how they move Q and the child.
+//! Units of a joint's degrees of freedom, velocities and speeds, which are those on its page: read off how they move Q and the child.
 
 use super::coordinates::Factor;
 use hamel::erased::AnyJoint;
@@ -177,7 +177,7 @@ impl Home {
         }
     }
 
-    /// A stored scalar has the unit of the freedoms that move it.
+    /// A stored scalar has the unit of the degrees of freedom that move it.
     fn scalars(&self, freedoms: &[Unit]) -> Vec<Unit> {
         let unit = |row: usize| {
             let rates = self.rates.row(row);

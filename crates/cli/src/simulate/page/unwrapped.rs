@@ -147,7 +147,7 @@ impl Unwrapped {
     }
 }
 
-/// The freedoms that turn the body.
+/// The degrees of freedom that turn the body.
 fn turning(joint: &dyn AnyJoint, home: &[f64]) -> Vec<usize> {
     let mut map = Matrix6xX::zeros(joint.layout().freedoms);
     joint.twist_map_child(home, map.as_mut_slice());

@@ -110,7 +110,7 @@ fn efforts(derived: &Derived) -> Vec<String> {
     freedoms.map(|(name, unit)| named(name, unit)).collect()
 }
 
-/// A speed that is called after a freedom is its velocity.
+/// A speed that is called after a degree of freedom is its velocity.
 fn speeds(derived: &Derived) -> Vec<String> {
     let (freedoms, units) = (freedoms(derived), of_velocities(derived));
     let speeds = derived.speed_names.iter().map(|name| {

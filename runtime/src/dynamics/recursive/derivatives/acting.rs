@@ -21,7 +21,7 @@ use alloc::vec::Vec;
 pub(super) struct Acting {
     pub(super) by_local: Sensitivity,
     pub(super) by_speeds: Sensitivity,
-    /// One a freedom.
+    /// One a degree of freedom.
     variations: Vec<Variation<f64>>,
 }
 

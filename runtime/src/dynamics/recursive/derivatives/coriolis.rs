@@ -113,7 +113,7 @@ impl ArticulatedCoriolis {
         }
     }
 
-    /// Takes out one freedom with column X, momentum Y and `1/d`; what is left of U in its rate, `Bᵀ X / d`.
+    /// Takes out one degree of freedom with column X, momentum Y and `1/d`; what is left of U in its rate, `Bᵀ X / d`.
     #[inline(always)]
     pub(super) fn eliminate(
         &mut self,

@@ -30,7 +30,7 @@ use nalgebra::Vector6;
 pub(super) struct Coupled {
     /// Of the tree, at the accelerations and the λ that are.
     inverse: InverseDerivatives,
-    /// `∂e/∂ϕ` and `∂e/∂v̄`: a row a constraint, a column a freedom or a speed.
+    /// `∂e/∂ϕ` and `∂e/∂v̄`: a row a constraint, a column a degree of freedom or a speed.
     asked_by_local: Sensitivity,
     asked_by_speeds: Sensitivity,
     /// `∂(Aᵀ v̄)/∂ϕ`.

@@ -33,9 +33,9 @@ use nalgebra::Vector6;
 /// Workspace, and what changes on the way.
 #[derive(Clone, Debug)]
 pub(super) struct CoupledMomenta {
-    /// r: a row a speed, a column a freedom.
+    /// r: a row a speed, a column a degree of freedom.
     pub(super) needed: Sensitivity,
-    /// `Fᵀ U`: a row a constraint, a column a freedom.
+    /// `Fᵀ U`: a row a constraint, a column a degree of freedom.
     slipping: Sensitivity,
     /// `Ȧᵀ`: a row a constraint, a column a speed.
     turning: Sensitivity,

@@ -7,7 +7,7 @@ use crate::spatial::shift_wrench;
 use crate::steps::Variation;
 
 impl Recursive {
-    /// The derivatives of the potential energy in gravity (one per freedom, in ϕ at ϕ = 0) into `potential`, and those of the kinetic energy at
+    /// The derivatives of the potential energy in gravity (one per degree of freedom, in ϕ at ϕ = 0) into `potential`, and those of the kinetic energy at
     /// fixed v̄ into `kinetic`; the latter's derivative in v̄ is p̄. What elements store is no part of either.
     ///
     /// # Errors

@@ -46,11 +46,11 @@ pub(super) struct Responses {
     dragging: Vec<ArticulatedCoriolis>,
     /// One a speed: `Bᵀ X / d`.
     pub(super) drags: Vec<Vector3<f64>>,
-    /// At most one per freedom.
+    /// At most one per degree of freedom.
     pub(super) pushes: Vec<Push>,
     /// At most one per speed.
     faster: Vec<Push>,
-    /// One a freedom.
+    /// One a degree of freedom.
     forced: Vec<Push>,
 }
 
@@ -110,7 +110,7 @@ impl ForwardDerivatives {
         &self.rates
     }
 
-    /// `∂v̄̇/∂ϕ`: a row a speed, a column a freedom.
+    /// `∂v̄̇/∂ϕ`: a row a speed, a column a degree of freedom.
     pub const fn by_local(&self) -> &Sensitivity {
         &self.by_local
     }
@@ -120,13 +120,13 @@ impl ForwardDerivatives {
         &self.by_speeds
     }
 
-    /// `∂v̄̇/∂τ = M̄⁻¹ S̄ᵀ`: a row a speed, a column a freedom.
+    /// `∂v̄̇/∂τ = M̄⁻¹ S̄ᵀ`: a row a speed, a column a degree of freedom.
     pub const fn by_efforts(&self) -> &Sensitivity {
         &self.by_efforts
     }
 
     /// `∂v̄/∂ϕ` and `∂v̄/∂v̄ᵢ = S̄` of the speeds that [`Dynamics::complete_speeds`] completes where constraints couple joints: a row a speed, columns of
-    /// freedoms and of speeds, 0 for the dependent ones. `None` where no constraint does, so that every speed stands for itself.
+    /// degrees of freedom and of speeds, 0 for the dependent ones. `None` where no constraint does, so that every speed stands for itself.
     pub fn completed_speeds(&self) -> Option<[&Sensitivity; 2]> {
         let coupled = self.coupled.as_ref()?;
         Some(coupled.completed.each_ref())

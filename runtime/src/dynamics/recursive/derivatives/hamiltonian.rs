@@ -39,7 +39,7 @@ pub struct HamiltonianDerivatives {
     pub(super) rates_by_speeds: Sensitivity,
     responses: Responses,
     by_momenta: Vec<Push>,
-    /// One a freedom.
+    /// One a degree of freedom.
     pub(super) variations: Vec<Variation<f64>>,
     /// One a speed: X°, and `N X° − ad_Xᵀ (h + m)`.
     pub(super) moving: Vec<[Vector6<f64>; 2]>,
@@ -85,7 +85,7 @@ impl HamiltonianDerivatives {
         &self.speeds
     }
 
-    /// `∂v̄/∂ϕ` at fixed p̄: a row a speed, a column a freedom.
+    /// `∂v̄/∂ϕ` at fixed p̄: a row a speed, a column a degree of freedom.
     pub const fn speeds_by_local(&self) -> &Sensitivity {
         &self.speeds_by_local
     }
@@ -95,7 +95,7 @@ impl HamiltonianDerivatives {
         &self.speeds_by_momenta
     }
 
-    /// `∂p̄̇/∂ϕ` at fixed p̄ and τ: a row a speed, a column a freedom.
+    /// `∂p̄̇/∂ϕ` at fixed p̄ and τ: a row a speed, a column a degree of freedom.
     pub const fn rates_by_local(&self) -> &Sensitivity {
         &self.rates_by_local
     }
@@ -105,7 +105,7 @@ impl HamiltonianDerivatives {
         &self.rates_by_momenta
     }
 
-    /// `∂p̄̇/∂τ = S̄ᵀ`: a row a speed, a column a freedom.
+    /// `∂p̄̇/∂τ = S̄ᵀ`: a row a speed, a column a degree of freedom.
     pub const fn rates_by_efforts(&self) -> &Sensitivity {
         &self.rates_by_efforts
     }

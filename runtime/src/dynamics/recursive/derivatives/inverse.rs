@@ -23,10 +23,10 @@ impl Four {
     const ZERO: Self = Self([0.0; 4]);
 }
 
-/// What a freedom and a speed of a joint meet the [`Below`] of a joint under it with: two of X̄, W and W_v, and the angular parts of U and X̄.
+/// What a degree of freedom and a speed of a joint meet the [`Below`] of a joint under it with: two of X̄, W and W_v, and the angular parts of U and X̄.
 type Above = [Four; 9];
 
-/// What a freedom and a speed of a joint meet the [`Above`] of a joint over it with: the two wrenches that they raise, two of `N X̄`, two of
+/// What a degree of freedom and a speed of a joint meet the [`Above`] of a joint over it with: the two wrenches that they raise, two of `N X̄`, two of
 /// `Bᵀ X̄`. Each product of both is one entry of each derivative on either side of the diagonal.
 type Below = [Four; 9];
 
@@ -36,9 +36,9 @@ pub struct InverseDerivatives {
     pub(super) by_local: Sensitivity,
     pub(super) by_speeds: Sensitivity,
     branches: Vec<Branch>,
-    /// One a freedom.
+    /// One a degree of freedom.
     pub(super) variations: Vec<Variation<f64>>,
-    /// One a freedom.
+    /// One a degree of freedom.
     above: Vec<Above>,
     /// One a freedom: its products with one below.
     met: Vec<Four>,
@@ -46,7 +46,7 @@ pub struct InverseDerivatives {
     coriolis: Vec<Coriolis>,
     /// One a body: from its parent's frame to its own, in world axes.
     offsets: Vec<Vector3<f64>>,
-    /// Whether each freedom is a speed, at the same place.
+    /// Whether each degree of freedom is a speed, at the same place.
     square: bool,
     acting: Acting,
 }
@@ -72,7 +72,7 @@ impl InverseDerivatives {
         }
     }
 
-    /// `∂τ̄/∂ϕ`: a row a speed, a column a freedom.
+    /// `∂τ̄/∂ϕ`: a row a speed, a column a degree of freedom.
     pub const fn by_local(&self) -> &Sensitivity {
         &self.by_local
     }
@@ -199,7 +199,7 @@ impl Recursive {
             }
             let turned = raised - bracket_dual_product(&variation.local, &node.wrench);
             let below = match columns.get(b) {
-                // More freedoms than speeds.
+                // More degrees of freedom than speeds.
                 None => {
                     let zero = Vector6::zeros();
                     out.above[slot] = above(&zero, variation);
@@ -251,7 +251,7 @@ impl Recursive {
     }
 }
 
-/// The products of one freedom and speed with those of all joints above into their rows and columns.
+/// The products of one degree of freedom and speed with those of all joints above into their rows and columns.
 fn climb_pairs(index: usize, slot: usize, out: &mut InverseDerivatives) {
     let own_speed = speed_of(&out.branches[index], slot);
     let (locals, speeds) = (out.by_local.columns, out.by_speeds.columns);
@@ -277,7 +277,7 @@ fn climb_pairs(index: usize, slot: usize, out: &mut InverseDerivatives) {
     }
 }
 
-/// The same where each freedom is a speed.
+/// The same where each degree of freedom is a speed.
 fn climb_square(index: usize, slot: usize, out: &mut InverseDerivatives) {
     let size = out.by_local.columns;
     let (local_above, local_own) = out.by_local.entries.split_at_mut(slot * size);
@@ -298,7 +298,7 @@ fn climb_square(index: usize, slot: usize, out: &mut InverseDerivatives) {
     }
 }
 
-/// The products of one freedom and speed with those of all joints above, by their freedoms.
+/// The products of one degree of freedom and speed with those of all joints above, by their degrees of freedom.
 // On its own and through memory, so that the four products stay side by side in vector registers.
 #[inline(never)]
 fn meet_above(index: usize, below: &Below, out: &mut InverseDerivatives) {
@@ -317,7 +317,7 @@ fn meet_above(index: usize, below: &Below, out: &mut InverseDerivatives) {
     }
 }
 
-/// The same for the freedoms of one joint.
+/// The same for the degrees of freedom of one joint.
 // On its own, so that they are not done side by side, for which all numbers would have to be laid out anew.
 #[inline(never)]
 fn meet_joint(above: &[Above], below: &Below, met: &mut [Four]) {
@@ -326,7 +326,7 @@ fn meet_joint(above: &[Above], below: &Below, met: &mut [Four]) {
     }
 }
 
-/// The speed that stands at the same place in its joint as a freedom.
+/// The speed that stands at the same place in its joint as a degree of freedom.
 #[inline(always)]
 fn speed_of(branch: &Branch, slot: usize) -> Option<usize> {
     let speed = branch.speeds.0 + (slot - branch.freedoms.0);

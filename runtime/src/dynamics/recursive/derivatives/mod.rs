@@ -196,7 +196,7 @@ impl Recursive {
         }
     }
 
-    /// The variations of the joint under body `index` at (q, v̄, v̄̇), one per freedom, after [`Recursive::advance`].
+    /// The variations of the joint under body `index` at (q, v̄, v̄̇), one per degree of freedom, after [`Recursive::advance`].
     pub(in crate::dynamics::recursive) fn vary(
         &self,
         index: usize,
@@ -230,7 +230,7 @@ fn in_child(node: &Node, wrench: &nalgebra::Vector6<f64>) -> nalgebra::Vector6<f
     crate::spatial::turn_back(&node.motion.placement.rotation, wrench)
 }
 
-/// Where the freedoms and speeds of each joint stand, and what it hangs on.
+/// Where the degrees of freedom and speeds of each joint stand, and what it hangs on.
 #[derive(Clone, Copy, Debug)]
 struct Branch {
     /// `usize::MAX` for the world.

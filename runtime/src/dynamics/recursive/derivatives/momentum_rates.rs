@@ -95,7 +95,7 @@ impl Recursive {
         self.add_own_rates(index, q, efforts, out);
     }
 
-    /// One freedom and speed against all above its joint.
+    /// One degree of freedom and speed against all above its joint.
     fn climb_rates(
         &self,
         index: usize,

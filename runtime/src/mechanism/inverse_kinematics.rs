@@ -16,7 +16,7 @@ const STEPS: usize = 60;
 /// Halvings of a step that does not bring the pose nearer.
 const HALVINGS: usize = 12;
 
-/// Starts other than home, along each freedom both ways, tried in turn when home leads nowhere.
+/// Starts other than home, along each degree of freedom both ways, tried in turn when home leads nowhere.
 const STARTS: [f64; 3] = [1.5, 3.0, 0.75];
 
 /// The least-squares solution of `matrix · x = target`, by QR; zero along what a singular matrix cannot reach.

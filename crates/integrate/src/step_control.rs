@@ -10,13 +10,13 @@ const GROW: f64 = 10.0;
 
 /// Step sizes for a method whose error estimate is of order `order`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Controller {
+pub(super) struct StepController {
     exponent: f64,
     previous: f64,
     just_rejected: bool,
 }
 
-impl Controller {
+impl StepController {
     pub(super) fn new(order: u32) -> Self {
         Self {
             exponent: 1.0 / f64::from(order) - 0.75 * MEMORY,

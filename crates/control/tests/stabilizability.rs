@@ -8,7 +8,7 @@ use hamel_control::ControlError;
 use hamel_control::riccati::{Optimum, Weighting, continuous};
 use nalgebra::{DMatrix, DVector, dmatrix};
 
-/// `M q̈ + D q̇ + K q = u` of some freedoms, with inputs on some of them.
+/// `M q̈ + D q̇ + K q = u` of some degrees of freedom, with inputs on some of them.
 struct Linear {
     mass: DMatrix<f64>,
     damping: DMatrix<f64>,

@@ -1,0 +1,30 @@
+//! Compiles the scenes of `hamel_tests::emitted`, as a user's build script does. The two short modules that are committed are written by the test
+//! `dynamics emitted`.
+
+use hamel_compiler::functions::Kind;
+use hamel_compiler::{Build, Error, scene};
+
+fn main() -> Result<(), Error> {
+    println!("cargo::rerun-if-changed=build.rs");
+    compiled("../scenes/plate_cart_arm.toml", Kind::ALL)
+        .lanes()
+        .compile()?;
+    compiled(
+        "data/scenes/geodesic_springs.toml",
+        [
+            Kind::ForwardDynamics,
+            Kind::MomentumRates,
+            Kind::Hamiltonian,
+        ],
+    )
+    .compile()?;
+    compiled(
+        "data/scenes/ball_chain.toml",
+        [Kind::ForwardDynamics, Kind::InverseDynamics],
+    )
+    .compile()
+}
+
+fn compiled(path: &str, functions: impl IntoIterator<Item = Kind>) -> Build {
+    scene(path).specs("../joint-specs").functions(functions)
+}
