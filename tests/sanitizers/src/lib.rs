@@ -5,7 +5,7 @@
 mod batches;
 mod libraries;
 /// How the program loads libraries, as it stands there.
-#[path = "../../../crates/cli/src/compiled/library.rs"]
+#[path = "../../../crates/native/src/library.rs"]
 mod library;
 /// A committed module with functions of many states.
 #[path = "../../src/emitted/plate_cart_arm.rs"]

@@ -6,9 +6,10 @@ use super::measure::Budget;
 use super::representation::Representation;
 use super::row::Row;
 use super::subject::Implementation;
-use crate::compiled::Compiler;
+use crate::compiled::compiler;
 use crate::output::{Failure, tell};
 use hamel::integrate::{Form, Scheme};
+use hamel_native::Compiler;
 
 /// Scenes of the short report: one of each kind.
 const SHORT_SCENES: [&str; 6] = [
@@ -103,7 +104,7 @@ impl Plan {
             ));
         }
         let step = if args.short { 2 } else { 1 };
-        let compiler = match Compiler::find() {
+        let compiler = match compiler() {
             _ if args.page_only => None,
             Ok(compiler) => Some(compiler),
             Err(none) => {

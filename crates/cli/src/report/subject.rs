@@ -5,11 +5,12 @@ use super::plan::Plan;
 use super::representation::Representation;
 use super::row;
 use super::store::Store;
-use crate::compiled::{self, Compiler, Equations, compiled};
+use crate::compiled::compiled;
 use crate::output::Failure;
 use hamel::dynamics::Dynamics;
 use hamel::registry::JointRegistry;
 use hamel_compiler::functions::Kind;
+use hamel_native::{Compiler, Equations};
 use hamel_scene::{Diagnostics, Scene, SceneDescription};
 use itertools::Itertools;
 
@@ -118,7 +119,7 @@ impl Subject {
             forms.iter().map(move |&form| (form, scheme))
         });
         let kinds: Vec<Kind> = called
-            .flat_map(|(form, scheme)| compiled::functions(form, scheme))
+            .flat_map(|(form, scheme)| hamel_native::functions(form, scheme))
             .copied()
             .unique_by(|kind| kind.name())
             .collect();

@@ -1,11 +1,11 @@
 //! The C compiler of the machine.
 
+use super::Error;
 use super::child::{self, Ended};
-use super::temporary;
-use crate::output::Failure;
 use hamel_compiler::Module;
 use std::ffi::OsString;
 use std::fmt;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
@@ -45,11 +45,11 @@ impl fmt::Display for Compiler {
 }
 
 impl Compiler {
-    /// The one that `CC` names, else the first of `cc`, `gcc` and `clang` that can be run.
+    /// The one that `CC` names, else the first of `cc`, `gcc` and `clang` that can be run. The search ends when `is_ended` says so.
     ///
     /// # Errors
-    /// There is none; the message says what was looked for. A time limit that is none; an interrupt.
-    pub fn find() -> Result<Self, Failure> {
+    /// There is none; the message says what was looked for. A time limit that is none; a search that was ended.
+    pub fn find(is_ended: &dyn Fn() -> bool) -> Result<Self, Error> {
         let limit = limit()?;
         let named = std::env::var(VARIABLE).unwrap_or_default();
         let mut words = named.split_whitespace();
@@ -59,9 +59,9 @@ impl Compiler {
                 options: words.map(str::to_owned).collect(),
                 limit,
             };
-            return match named.answers()? {
+            return match named.answers(is_ended)? {
                 Ok(()) => Ok(named),
-                Err(error) => Err(Failure::Options(format!(
+                Err(error) => Err(Error::NoCompiler(format!(
                     "compiled equations need a C compiler, and `{program}`, which the variable {VARIABLE} names, cannot be run: {error}"
                 ))),
             };
@@ -72,24 +72,24 @@ impl Compiler {
                 options: vec![],
                 limit,
             };
-            if known.answers()?.is_ok() {
+            if known.answers(is_ended)?.is_ok() {
                 return Ok(known);
             }
         }
         let names = NAMES.map(|name| format!("`{name}`")).join(", ");
-        Err(Failure::Options(format!(
+        Err(Error::NoCompiler(format!(
             "compiled equations need a C compiler, and none of {names} can be run: install one, or name it in the variable {VARIABLE}"
         )))
     }
 
     /// Whether it can be run.
-    fn answers(&self) -> Result<std::io::Result<()>, Failure> {
+    fn answers(&self, is_ended: &dyn Fn() -> bool) -> Result<io::Result<()>, Error> {
         let mut command = Command::new(&self.program);
         command.args(&self.options).arg("--version");
         let limit = LIMIT_OF_ANSWER.min(self.limit);
-        match child::run(&mut command, None, limit) {
-            Ok(Ended::Interrupted) => Err(interrupted()),
-            Ok(Ended::Late) => Ok(Err(std::io::Error::other(format!(
+        match child::run(&mut command, None, limit, is_ended) {
+            Ok(Ended::Unwanted) => Err(Error::Ended),
+            Ok(Ended::Late) => Ok(Err(io::Error::other(format!(
                 "it does not tell its version within {} s",
                 limit.as_secs_f64()
             )))),
@@ -101,13 +101,19 @@ impl Compiler {
     /// The module as a library in `folder`.
     ///
     /// # Errors
-    /// A folder that cannot be written; a compiler that fails, with what it says, or that takes too long; an interrupt.
-    pub fn build(&self, folder: &Path, name: &str, module: &Module) -> Result<PathBuf, Failure> {
+    /// A folder that cannot be written; a compiler that fails, with what it says, that takes too long or that was ended.
+    pub(crate) fn build(
+        &self,
+        folder: &Path,
+        name: &str,
+        module: &Module,
+        is_ended: &dyn Fn() -> bool,
+    ) -> Result<PathBuf, Error> {
         let source = folder.join(format!("{name}.c"));
         let library = folder.join(format!("{name}{}", std::env::consts::DLL_SUFFIX));
-        std::fs::write(&source, &module.text).map_err(temporary)?;
+        std::fs::write(&source, &module.text).map_err(Error::Folder)?;
         let header = module.header.as_deref().unwrap_or_default();
-        std::fs::write(source.with_extension("h"), header).map_err(temporary)?;
+        std::fs::write(source.with_extension("h"), header).map_err(Error::Folder)?;
         let said = folder.join("said");
         let mut command = Command::new(&self.program);
         command
@@ -117,36 +123,28 @@ impl Compiler {
             .arg("-o")
             .arg(&library)
             .arg("-lm");
-        let failed = |said: &str| {
-            Failure::Refused(format!(
-                "the C compiler {self} failed:\n{}",
-                said.trim_end()
-            ))
+        let failed = |said: &str| Error::Failed {
+            compiler: self.to_string(),
+            said: said.trim_end().to_owned(),
         };
-        match child::run(&mut command, Some(&said), self.limit) {
+        match child::run(&mut command, Some(&said), self.limit, is_ended) {
             Ok(Ended::Itself(status)) if status.success() => Ok(library),
             Ok(Ended::Itself(_)) => {
-                let said = std::fs::read(said).map_err(temporary)?;
+                let said = std::fs::read(said).map_err(Error::Folder)?;
                 Err(failed(&String::from_utf8_lossy(&said)))
             }
             Ok(Ended::Late) => Err(failed(&format!(
                 "it took more than {} s, and was ended; the variable {LIMIT} sets another limit",
                 self.limit.as_secs_f64()
             ))),
-            Ok(Ended::Interrupted) => Err(interrupted()),
+            Ok(Ended::Unwanted) => Err(Error::Ended),
             Err(error) => Err(failed(&error.to_string())),
         }
     }
 }
 
-fn interrupted() -> Failure {
-    Failure::Interrupted(String::from(
-        "the C compiler was ended; files are as they were",
-    ))
-}
-
 /// The time limit.
-fn limit() -> Result<Duration, Failure> {
+fn limit() -> Result<Duration, Error> {
     let Some(text) = std::env::var_os(LIMIT) else {
         return Ok(DEFAULT_LIMIT);
     };
@@ -154,7 +152,7 @@ fn limit() -> Result<Duration, Failure> {
     let seconds = text.parse().ok().filter(|seconds| *seconds > 0.0);
     let limit = seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
     limit.ok_or_else(|| {
-        Failure::Options(format!(
+        Error::NoCompiler(format!(
             "the variable {LIMIT} is {text:?}; it must be a number of seconds above 0"
         ))
     })

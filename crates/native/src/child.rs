@@ -1,6 +1,5 @@
-//! A child process that ends: by itself, at a time limit, or when the program is interrupted.
+//! A child process that ends: by itself, at a time limit, or when its caller wants no more.
 
-use crate::interrupt::{self, Heed};
 use std::fs::File;
 use std::io;
 use std::path::Path;
@@ -17,15 +16,21 @@ pub enum Ended {
     Itself(ExitStatus),
     /// It was ended at the time limit.
     Late,
-    /// It was ended since the program is to end.
-    Interrupted,
+    /// It was ended since its caller wanted no more.
+    Unwanted,
 }
 
-/// Runs a command without input for as long as `limit`, with all that it starts; what it says on stderr goes to the file `said`, if anywhere.
+/// Runs a command without input, with all that it starts, for as long as `limit` and until `is_ended`; what it says on stderr goes to the file `said`, if
+/// anywhere.
 ///
 /// # Errors
 /// A program that cannot be started, a file that cannot be written.
-pub fn run(command: &mut Command, said: Option<&Path>, limit: Duration) -> io::Result<Ended> {
+pub fn run(
+    command: &mut Command,
+    said: Option<&Path>,
+    limit: Duration,
+    is_ended: &dyn Fn() -> bool,
+) -> io::Result<Ended> {
     // To a file, not through a pipe, which what it leaves behind could hold open.
     let stderr = match said {
         Some(path) => Stdio::from(File::create(path)?),
@@ -37,7 +42,6 @@ pub fn run(command: &mut Command, said: Option<&Path>, limit: Duration) -> io::R
         .stderr(stderr);
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(command, 0);
-    let _heed = Heed::new();
     let start = Instant::now();
     let mut child = command.spawn()?;
     loop {
@@ -45,11 +49,11 @@ pub fn run(command: &mut Command, said: Option<&Path>, limit: Duration) -> io::R
             return Ok(Ended::Itself(status));
         }
         let is_late = start.elapsed() > limit;
-        if is_late || interrupt::is_requested() {
+        if is_late || is_ended() {
             end(&mut child)?;
             return Ok(match is_late {
                 true => Ended::Late,
-                false => Ended::Interrupted,
+                false => Ended::Unwanted,
             });
         }
         std::thread::sleep(LOOK);
