@@ -1,6 +1,6 @@
 //! The options of `hamel report`.
 
-use crate::files::Force;
+use hamel_console::files::Force;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

@@ -1,8 +1,8 @@
 //! What generation costs, apart from run time: each joint of the library derived and written out once.
 
 use super::watch::Watch;
-use crate::output::Failure;
 use hamel_codegen::emit::rust;
+use hamel_console::output::Failure;
 use serde::Serialize;
 
 /// The cost of one joint.

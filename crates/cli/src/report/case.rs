@@ -1,7 +1,7 @@
 //! Scenes with references, as they were when the program was built.
 
-use crate::output::Failure;
 use hamel::integrate::{Method, Scheme};
+use hamel_console::output::Failure;
 use hamel_scene::{Scene, SceneDescription};
 use serde::Deserialize;
 

@@ -4,7 +4,7 @@ use super::build_cost::{self, Cost};
 use super::machine::Machine;
 use super::row::{Build, Drift, Row, Stability, Work};
 use super::store::read;
-use crate::output::Failure;
+use hamel_console::output::Failure;
 use itertools::Itertools;
 use std::collections::HashSet;
 use std::path::Path;

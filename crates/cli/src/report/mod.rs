@@ -5,6 +5,7 @@ mod build_cost;
 mod case;
 mod drift;
 mod figures;
+mod lock;
 mod machine;
 mod measure;
 mod page;

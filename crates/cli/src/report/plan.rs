@@ -6,9 +6,9 @@ use super::measure::Budget;
 use super::representation::Representation;
 use super::row::Row;
 use super::subject::Implementation;
-use crate::compiled::compiler;
-use crate::output::{Failure, tell};
 use hamel::integrate::{Form, Scheme};
+use hamel_console::compiled::compiler;
+use hamel_console::output::{Failure, tell};
 use hamel_native::Compiler;
 
 /// Scenes of the short report: one of each kind.

@@ -1,6 +1,6 @@
 //! How far the measurements are: a bar on a terminal, else a line from time to time, so that a log shows it too.
 
-use crate::terminal;
+use hamel_console::terminal;
 use hamel_scene::text::visible;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::cell::Cell;

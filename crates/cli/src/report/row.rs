@@ -60,12 +60,12 @@ pub struct Work {
     pub seconds_least: Option<f64>,
     pub seconds_median: Option<f64>,
     pub seconds_spread: Option<f64>,
-    #[serde(with = "crate::cells::rows")]
+    #[serde(with = "hamel_console::cells::rows")]
     pub failure: String,
     /// `full` or `short`: how long a point was measured.
     pub budget: String,
     /// Processor, system, compiler, flags and version, in one line.
-    #[serde(with = "crate::cells::rows")]
+    #[serde(with = "hamel_console::cells::rows")]
     pub machine: String,
 }
 
@@ -125,10 +125,10 @@ pub struct Build {
     pub compilation_s: f64,
     pub text_bytes: usize,
     pub library_bytes: u64,
-    #[serde(with = "crate::cells::rows")]
+    #[serde(with = "hamel_console::cells::rows")]
     pub compiler: String,
     /// Processor, system, compiler of this program, flags and version, in one line.
-    #[serde(with = "crate::cells::rows")]
+    #[serde(with = "hamel_console::cells::rows")]
     pub machine: String,
 }
 
@@ -174,11 +174,11 @@ pub struct Drift {
     pub time_s: f64,
     /// |E − E₀| / max(|E₀|, T₀).
     pub drift: f64,
-    #[serde(with = "crate::cells::rows")]
+    #[serde(with = "hamel_console::cells::rows")]
     pub failure: String,
     pub budget: String,
     /// Processor, system, compiler, flags and version, in one line.
-    #[serde(with = "crate::cells::rows")]
+    #[serde(with = "hamel_console::cells::rows")]
     pub machine: String,
 }
 
@@ -222,7 +222,7 @@ pub struct Stability {
     pub step_s: Option<f64>,
     pub largest_tried_s: f64,
     /// Processor, system, compiler, flags and version, in one line.
-    #[serde(with = "crate::cells::rows")]
+    #[serde(with = "hamel_console::cells::rows")]
     pub machine: String,
 }
 

@@ -2,16 +2,17 @@
 
 use super::args::Args;
 use super::figures::Figures;
+use super::lock::Lock;
 use super::machine::Machine;
 use super::plan::Plan;
 use super::progress::Progress;
 use super::row::{Build, Drift, Stability, Work};
 use super::store::{Store, Stores, set_aside};
 use super::{drift, page, stability, work};
-use crate::files::{Lock, Output, admit};
-use crate::interrupt::Heed;
-use crate::output::{self, Failure};
 use hamel::registry::JointRegistry;
+use hamel_console::files::{Output, admit};
+use hamel_console::interrupt::Heed;
+use hamel_console::output::{self, Failure};
 use std::path::Path;
 
 /// Measures and writes the page.

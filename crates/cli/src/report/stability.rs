@@ -5,9 +5,9 @@ use super::measure;
 use super::plan::Plan;
 use super::row::{self, Row, form_name};
 use super::store::Store;
-use crate::output::Failure;
 use hamel::integrate::{Form, Method, Scheme};
 use hamel::registry::JointRegistry;
+use hamel_console::output::Failure;
 use hamel_scene::{Motion, PerFreedom, Position, Scene, SceneDescription, SpringEnergy};
 use std::time::Duration;
 

@@ -1,9 +1,9 @@
 //! CSV files that grow as figures are measured, and are read again when the command goes on.
 
 use super::row::{Build, Drift, Row, Stability, Work};
-use crate::files::{Output, admit, new_file};
-use crate::interrupt;
-use crate::output::Failure;
+use hamel_console::files::{Output, admit, new_file};
+use hamel_console::interrupt;
+use hamel_console::output::Failure;
 use std::collections::HashMap;
 use std::fs::{self, File};
 use std::io::Read;

@@ -7,9 +7,9 @@ use super::representation::Representation;
 use super::row::{NOT_RUN, Row, Work, form_name};
 use super::store::{Store, Stores};
 use super::subject::{Implementation, Subject};
-use crate::output::Failure;
 use hamel::integrate::{Form, Method, Scheme};
 use hamel::registry::JointRegistry;
+use hamel_console::output::Failure;
 use hamel_scene::SceneDescription;
 use itertools::Itertools;
 

@@ -3,8 +3,8 @@
 use super::args::Args;
 use super::plan::Plan;
 use super::progress;
-use crate::compiled::{compiled, compiler};
-use crate::output::{Failure, tell};
+use hamel_console::compiled::{compiled, compiler};
+use hamel_console::output::{Failure, tell};
 use hamel_native::Equations;
 use hamel_scene::Arithmetic;
 

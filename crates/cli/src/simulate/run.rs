@@ -14,13 +14,13 @@ use super::progress::Progress;
 use super::sample;
 use super::table::Summary;
 use super::unresolved;
-use crate::interrupt::{self, Heed};
-use crate::output::{self, Failure};
 use hamel::dynamics::Dynamics;
 use hamel::integrate::{IntegrateError, Integration, Observer, Solution, State, Step};
 use hamel::mechanism::{Kinematics, Mechanism, StateError};
 use hamel::registry::JointRegistry;
 use hamel::shown::Number;
+use hamel_console::interrupt::{self, Heed};
+use hamel_console::output::{self, Failure};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 

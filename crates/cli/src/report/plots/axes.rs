@@ -2,7 +2,7 @@
 
 use super::refused;
 use super::style::{FONT, GRID, LABEL, Look, Mark, QUIET, TITLE, decade};
-use crate::output::Failure;
+use hamel_console::output::Failure;
 use itertools::Itertools;
 use plotters::coord::Shift;
 use plotters::prelude::*;

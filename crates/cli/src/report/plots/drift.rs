@@ -2,8 +2,8 @@
 
 use super::axes::{Curve, Panel, figure};
 use super::style::{self, Look};
-use crate::output::Failure;
 use crate::report::row::Drift;
+use hamel_console::output::Failure;
 
 const WIDTH: u32 = 1180;
 const HEIGHT: u32 = 420;

@@ -10,7 +10,7 @@ pub use drift::drawing as drift;
 pub use stability::drawing as stability;
 pub use work::{forms, implementations, representations};
 
-use crate::output::Failure;
+use hamel_console::output::Failure;
 
 /// A drawing that the library refuses.
 fn refused<E: std::fmt::Display>(error: E) -> Failure {

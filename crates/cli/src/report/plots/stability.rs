@@ -2,8 +2,8 @@
 
 use super::axes::{Curve, Panel, figure};
 use super::style;
-use crate::output::Failure;
 use crate::report::row::Stability;
+use hamel_console::output::Failure;
 
 const WIDTH: u32 = 1180;
 const HEIGHT: u32 = 420;

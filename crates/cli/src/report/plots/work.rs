@@ -2,8 +2,8 @@
 
 use super::axes::{Curve, Panel, figure};
 use super::style::{self, Look};
-use crate::output::Failure;
 use crate::report::row::Work;
+use hamel_console::output::Failure;
 use itertools::Itertools;
 
 const WIDTH: u32 = 1180;

@@ -1,6 +1,6 @@
 //! A folder that one command writes at a time.
 
-use crate::output::Failure;
+use hamel_console::output::Failure;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io;
 use std::path::Path;

@@ -10,7 +10,7 @@ use std::io::{self, IsTerminal, Write};
 ///
 /// # Errors
 /// A stdout that cannot be written.
-pub fn out(text: &str) -> io::Result<()> {
+pub(crate) fn out(text: &str) -> io::Result<()> {
     io::stdout().lock().write_all(visible(text).as_bytes())
 }
 
@@ -20,7 +20,7 @@ pub fn err(text: &str) {
 }
 
 /// Says on stderr what has been rendered with colours or without them: `render` writes out itself what would not be seen.
-pub fn err_rendered(render: impl FnOnce(bool) -> String) {
+pub(crate) fn err_rendered(render: impl FnOnce(bool) -> String) {
     let mut stderr = io::stderr().lock();
     let colour = stderr.is_terminal() && std::env::var_os("NO_COLOR").is_none();
     drop(write!(stderr, "{}", render(colour)));
@@ -42,7 +42,7 @@ pub fn answer(answer: &Error) {
 }
 
 /// Texts of JSON, in which what would not be seen is written as `\u202e`.
-pub struct Texts;
+pub(crate) struct Texts;
 
 impl Formatter for Texts {
     fn write_string_fragment<W: ?Sized + Write>(

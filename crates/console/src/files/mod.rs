@@ -7,17 +7,14 @@
 mod admit;
 mod draft;
 mod first;
-#[cfg(feature = "report")]
-mod lock;
 mod place;
 mod unfinished;
 
-pub use admit::{Output, admit, new_file};
+pub use admit::{IsOwn, Output, admit, new_file};
 pub use draft::Draft;
 pub use first::first_line;
-#[cfg(feature = "report")]
-pub use lock::Lock;
-pub use unfinished::{Unfinished, private_folder, remove_unfinished};
+use unfinished::Unfinished;
+pub(crate) use unfinished::{private_folder, remove_unfinished};
 
 /// Lets a command replace files that this program did not write.
 #[derive(Clone, Copy, Debug, clap::Args)]

@@ -17,8 +17,7 @@ fn is_run(text: &str) -> bool {
 }
 
 /// The text of a cell.
-#[cfg(any(test, feature = "report"))]
-pub fn text(cell: &str) -> &str {
+fn text(cell: &str) -> &str {
     match cell.strip_prefix('\'') {
         Some(rest) if is_run(rest.trim_start_matches('\'')) => rest,
         _ => cell,
@@ -26,7 +25,6 @@ pub fn text(cell: &str) -> &str {
 }
 
 /// Texts of rows, for `serde(with)`.
-#[cfg(feature = "report")]
 pub mod rows {
     use serde::{Deserialize, Deserializer, Serializer};
 

@@ -7,7 +7,7 @@ use crate::files::remove_unfinished;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// The exit code of a program that was interrupted.
-pub const EXIT_CODE: u8 = 130;
+pub(crate) const EXIT_CODE: u8 = 130;
 
 static IS_REQUESTED: AtomicBool = AtomicBool::new(false);
 
