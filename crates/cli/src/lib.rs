@@ -6,8 +6,6 @@ mod compile;
 mod import;
 mod input;
 mod joints;
-#[cfg(feature = "report")]
-mod report;
 #[cfg(not(feature = "report"))]
 #[path = "absent/report.rs"]
 mod report;
@@ -15,6 +13,8 @@ mod simulate;
 
 use clap::{Parser, Subcommand};
 use hamel_console::{interrupt, output, terminal};
+#[cfg(feature = "report")]
+use hamel_report as report;
 use std::process::ExitCode;
 
 /// What `hamel --help` ends with.

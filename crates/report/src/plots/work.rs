@@ -2,7 +2,7 @@
 
 use super::axes::{Curve, Panel, figure};
 use super::style::{self, Look};
-use crate::report::row::Work;
+use crate::row::Work;
 use hamel_console::output::Failure;
 use itertools::Itertools;
 

@@ -2,7 +2,7 @@
 
 use super::axes::{Curve, Panel, figure};
 use super::style;
-use crate::report::row::Stability;
+use crate::row::Stability;
 use hamel_console::output::Failure;
 
 const WIDTH: u32 = 1180;

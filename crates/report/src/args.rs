@@ -37,32 +37,32 @@ Exit codes: 0 success, also where runs failed; 1 a file that cannot be read or w
 pub struct Args {
     /// Folder for the page and its CSV files; made if it is not there
     #[arg(short, long, value_name = "FOLDER", default_value = "report")]
-    pub output: PathBuf,
+    pub(crate) output: PathBuf,
 
     /// Some scenes, methods and repetitions, in less than a minute
     #[arg(long)]
-    pub short: bool,
+    pub(crate) short: bool,
 
     /// Only these scenes [default: all that have references]
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
-    pub scenes: Vec<String>,
+    pub(crate) scenes: Vec<String>,
 
     /// Only these methods [default: all]
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
-    pub methods: Vec<String>,
+    pub(crate) methods: Vec<String>,
 
     /// Measure anew what the CSV files have of this machine; the files stay as they were beside the new ones, as NAME.1.csv and so on
     #[arg(long)]
-    pub fresh: bool,
+    pub(crate) fresh: bool,
 
     /// Make the page from the CSV files and measure nothing
     #[arg(long, conflicts_with_all = ["fresh", "short"])]
-    pub page_only: bool,
+    pub(crate) page_only: bool,
 
     /// Do not tell how far it is: no bar on a terminal, no lines elsewhere
     #[arg(long)]
-    pub quiet: bool,
+    pub(crate) quiet: bool,
 
     #[command(flatten)]
-    pub force: Force,
+    pub(crate) force: Force,
 }

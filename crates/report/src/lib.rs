@@ -1,4 +1,6 @@
 //! `hamel report`: error against run time, on scenes whose motions are known.
+//!
+//! [`run`] measures what [`Args`] ask for on the equations of the tree and on compiled ones, keeps the figures in CSV files, and makes a page of them.
 
 mod args;
 mod build_cost;

@@ -2,7 +2,7 @@
 
 use super::axes::{Curve, Panel, figure};
 use super::style::{self, Look};
-use crate::report::row::Drift;
+use crate::row::Drift;
 use hamel_console::output::Failure;
 
 const WIDTH: u32 = 1180;
