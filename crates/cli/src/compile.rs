@@ -1,12 +1,12 @@
 //! `hamel compile`: a scene or a robot as Rust or C that holds nothing it does not need.
 
-use crate::files::{Force, admit, first_line};
 use crate::input::Input;
-use crate::output::{self, Failure};
 use clap::ValueEnum;
 use hamel::registry::JointRegistry;
 use hamel_compiler::functions::Kind;
 use hamel_compiler::{Build, Error, Language, explain};
+use hamel_console::files::{Force, admit, first_line};
+use hamel_console::output::{self, Failure};
 use std::fs::File;
 use std::path::PathBuf;
 

@@ -1,9 +1,9 @@
 //! `hamel import`: a robot in URDF as a scene file.
 
-use crate::files::{Force, admit};
-use crate::output::{self, Failure, tell};
 use fnv::FnvHasher;
 use hamel::registry::JointRegistry;
+use hamel_console::files::{Force, admit};
+use hamel_console::output::{self, Failure, tell};
 use hamel_scene::{read_file, urdf};
 use std::fs::File;
 use std::hash::Hasher;

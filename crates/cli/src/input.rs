@@ -1,8 +1,8 @@
 //! What commands read: a scene file, or a robot in URDF. It is read once, whatever is made of it.
 
-use crate::output::Failure;
 use hamel::registry::JointRegistry;
 use hamel_compiler::Build;
+use hamel_console::output::Failure;
 use hamel_scene::{Scene, SceneDescription, read_file, urdf};
 use std::path::Path;
 

@@ -2,24 +2,19 @@
 //!
 //! This library holds the program, so that tests can be built with all of its features. Exit code 0 means success, 1 that something went wrong (told on stderr), 2 that the command line was not understood, 130 that it was interrupted.
 
-mod cells;
 mod compile;
-mod compiled;
-mod files;
 mod import;
 mod input;
-mod interrupt;
 mod joints;
-mod output;
-#[cfg(feature = "report")]
-mod report;
 #[cfg(not(feature = "report"))]
 #[path = "absent/report.rs"]
 mod report;
 mod simulate;
-mod terminal;
 
 use clap::{Parser, Subcommand};
+use hamel_console::{interrupt, output, terminal};
+#[cfg(feature = "report")]
+use hamel_report as report;
 use std::process::ExitCode;
 
 /// What `hamel --help` ends with.

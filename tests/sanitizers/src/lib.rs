@@ -5,7 +5,7 @@
 mod batches;
 mod libraries;
 /// How the program loads libraries, as it stands there.
-#[path = "../../../crates/cli/src/compiled/library.rs"]
+#[path = "../../../crates/native/src/library.rs"]
 mod library;
 /// A compiled scene with functions of many states.
 #[allow(dead_code, reason = "not all of its functions are called here")]

@@ -2,7 +2,7 @@
 
 use super::columns::Columns;
 use super::plan::Plan;
-use crate::output::Failure;
+use hamel_console::output::Failure;
 use std::convert::Infallible;
 use std::fs::File;
 use std::marker::PhantomData;

@@ -1,7 +1,7 @@
 //! What stands for `hamel report` in a program that was built without it.
 
-use crate::output::Failure;
 use hamel::registry::JointRegistry;
+use hamel_console::output::Failure;
 use std::ffi::OsString;
 
 /// Report error against run time (not built into this program: needs `--features report`)

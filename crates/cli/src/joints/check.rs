@@ -1,9 +1,9 @@
 //! `hamel joints check`.
 
 use super::{Library, source};
-use crate::output::{self, Failure};
 use hamel_codegen::derived::{Claim, Derived};
 use hamel_codegen::emit::report::proof_in_words;
+use hamel_console::output::{self, Failure};
 use serde::Serialize;
 
 /// Derive joints anew and prove every claim.

@@ -1,9 +1,9 @@
 //! `hamel joints explain`.
 
 use super::source;
-use crate::files::{Force, admit, first_line};
-use crate::output::{self, Failure};
 use hamel_codegen::emit::{Accuracy, explain_text, html_page};
+use hamel_console::files::{Force, admit, first_line};
+use hamel_console::output::{self, Failure};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 

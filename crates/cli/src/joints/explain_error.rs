@@ -1,7 +1,7 @@
 //! `hamel joints explain-error`.
 
-use crate::output::{self, Failure};
 use hamel_codegen::spec::code;
+use hamel_console::output::{self, Failure};
 
 /// Explain an error code of specs: why it is an error, a spec that has it, and one that has not.
 ///

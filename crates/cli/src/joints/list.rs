@@ -1,10 +1,10 @@
 //! `hamel joints list`.
 
 use super::{Library, source};
-use crate::output::{self, Failure};
 use comfy_table::Table;
 use comfy_table::presets::UTF8_HORIZONTAL_ONLY;
 use hamel_codegen::derived::Derived;
+use hamel_console::output::{self, Failure};
 use serde::Serialize;
 
 /// List the joints of the library.

@@ -7,8 +7,8 @@ mod list;
 mod new;
 mod source;
 
-use crate::output::Failure;
 use clap::Subcommand;
+use hamel_console::output::Failure;
 
 const EXAMPLES: &str = "\
 Examples:

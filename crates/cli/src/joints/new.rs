@@ -1,8 +1,8 @@
 //! `hamel joints new`.
 
-use crate::files::new_file;
-use crate::output::{self, Failure};
-use crate::terminal;
+use hamel_console::files::new_file;
+use hamel_console::output::{self, Failure};
+use hamel_console::terminal;
 use std::path::{Path, PathBuf};
 
 /// Where specs of this repository are, which `cargo build` reads.

@@ -1,7 +1,7 @@
 //! Finding the spec that a user means: a joint of the library, or a file.
 
-use crate::output::Failure;
 use hamel_codegen::derived::Derived;
+use hamel_console::output::Failure;
 use std::path::Path;
 
 /// Whether this is the path of a spec, not the name of a joint of the library.

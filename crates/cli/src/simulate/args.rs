@@ -1,9 +1,9 @@
 //! The options of `hamel simulate`.
 
-use crate::files::Force;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, ValueEnum};
 use hamel::integrate::Scheme;
+use hamel_console::files::Force;
 use hamel_scene::Settings;
 use std::path::PathBuf;
 

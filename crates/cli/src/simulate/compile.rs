@@ -3,8 +3,9 @@
 use super::args::Args;
 use super::plan::Plan;
 use super::progress;
-use crate::compiled::{self, Compiler, Equations, compiled};
-use crate::output::{Failure, tell};
+use hamel_console::compiled::{compiled, compiler};
+use hamel_console::output::{Failure, tell};
+use hamel_native::Equations;
 use hamel_scene::Arithmetic;
 
 /// The equations of the scene of `args`, for simulations in its form by its method.
@@ -17,11 +18,11 @@ pub fn equations(args: &Args, plan: &Plan) -> Result<Equations, Failure> {
             "compiled equations are evaluated in doubles, and the scene asks for others: with `--compiled` say `--arithmetic doubles`".into(),
         ));
     }
-    let compiler = Compiler::find()?;
+    let compiler = compiler()?;
     let progress = progress::compiling(args.quiet, &compiler);
     // Of the text that the mechanism was made of: what the file holds by now may be another scene.
     let (build, label) = (plan.input.build()?, plan.input.label());
-    let kinds = compiled::functions(plan.settings.form, *plan.settings.method.scheme());
+    let kinds = hamel_native::functions(plan.settings.form, *plan.settings.method.scheme());
     let equations = compiled(build, label, kinds, &compiler, &plan.scene)?;
     progress.finish_and_clear();
     if !args.quiet {

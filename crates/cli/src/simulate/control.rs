@@ -1,10 +1,10 @@
 //! The controller in the loop, and how well it did.
 
 use super::plan::Plan;
-use crate::output::Failure;
 use hamel::control::{Controller, Measure};
 use hamel::integrate::Step;
 use hamel::shown::Number;
+use hamel_console::output::Failure;
 use serde::Serialize;
 use std::cell::RefCell;
 use std::fmt;

@@ -2,9 +2,9 @@
 
 use super::columns::{Columns, are_columns};
 use super::plan::Plan;
-use crate::cells::cell;
-use crate::files::{Draft, Output};
-use crate::output::Failure;
+use hamel_console::cells::cell;
+use hamel_console::files::{Draft, Output};
+use hamel_console::output::Failure;
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read};
 

@@ -2,9 +2,9 @@
 
 use super::columns::{Column, JsonSample};
 use super::control::Outcome;
-use crate::output::Failure;
-use crate::terminal::fragment_of_json;
 use hamel::integrate::Crossing;
+use hamel_console::output::Failure;
+use hamel_console::terminal::fragment_of_json;
 use serde::Serialize;
 use serde_json::Serializer;
 use serde_json::ser::Formatter;

@@ -15,6 +15,7 @@ mod parquet;
 mod picture;
 mod plan;
 mod progress;
+mod recorder;
 mod run;
 mod sample;
 mod settings;

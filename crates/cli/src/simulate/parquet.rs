@@ -2,8 +2,8 @@
 
 use super::columns::Columns;
 use super::plan::Plan;
-use crate::files::{Draft, Output};
-use crate::output::Failure;
+use hamel_console::files::{Draft, Output};
+use hamel_console::output::Failure;
 use parquet::basic::{Repetition, Type as Physical};
 use parquet::data_type::DoubleType;
 use parquet::errors::{ParquetError, Result as Written};

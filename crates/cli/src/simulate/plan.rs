@@ -2,12 +2,12 @@
 
 use super::args::Args;
 use super::{csv, page, parquet, picture, settings, times};
-use crate::files::{Output, admit};
 use crate::input::Input;
-use crate::output::{Failure, tell};
 use hamel::integrate::{Method, Options, Sampling};
 use hamel::registry::JointRegistry;
 use hamel::shown::Number;
+use hamel_console::files::{Output, admit};
+use hamel_console::output::{Failure, tell};
 use hamel_scene::{Company, Control, SampleError, Scene, Settings};
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,6 @@
 //! Progress on stderr; nothing where stderr is no terminal.
 
-use crate::compiled::Compiler;
+use hamel_native::Compiler;
 use hamel_scene::text::visible;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::Duration;

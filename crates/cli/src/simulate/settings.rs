@@ -1,9 +1,9 @@
 //! The settings of a scene with the options of the command line laid over them.
 
 use super::args::{Args, ArithmeticName, FormName, MethodName, SamplingName};
-use crate::output::Failure;
 use hamel::integrate::{Form, Method, Sampling, Scheme, StepControl};
 use hamel::shown::Number;
+use hamel_console::output::Failure;
 use hamel_scene::{Arithmetic, Settings};
 
 /// The settings that `args` and the scene's `settings` make together.

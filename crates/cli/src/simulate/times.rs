@@ -1,6 +1,6 @@
 //! The times that `--at` asks for.
 
-use crate::output::Failure;
+use hamel_console::output::Failure;
 
 /// The times asked for, checked against the end of the simulation, and that end.
 ///

@@ -1,8 +1,8 @@
 //! The oscillations that the steps of a method pass over.
 
 use super::plan::Plan;
-use crate::output::Failure;
 use hamel::integrate::{IntegrateError, Scheme, Spectrum};
+use hamel_console::output::Failure;
 
 /// Steps that turn the phase of an oscillation by more than this do not follow it, rad: some six of them a period.
 const FOLLOWED: f64 = 1.0;

@@ -13,12 +13,12 @@ mod unwrapped;
 pub(super) use solids::Ellipsoid;
 
 use super::plan::Plan;
-use crate::files::{Draft, first_line};
-use crate::output::Failure;
 use blob::Blob;
 use charts::Charts;
 use hamel::integrate::Step;
 use hamel::mechanism::Kinematics;
+use hamel_console::files::{Draft, first_line};
+use hamel_console::output::Failure;
 use header::Header;
 use std::fs::File;
 use std::io::Write;

@@ -1,9 +1,9 @@
 //! The page put together from its parts.
 
 use super::header::Header;
-use crate::output::Failure;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use hamel_console::output::Failure;
 
 const FRAME: &str = include_str!("../../html/page.html");
 const STYLE: &str = include_str!("../../html/style.css");

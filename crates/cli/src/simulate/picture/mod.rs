@@ -10,10 +10,10 @@ mod svg;
 mod view;
 
 use super::plan::Plan;
-use crate::files::{Draft, first_line};
-use crate::output::Failure;
 use hamel::mechanism::Kinematics;
 use hamel::spatial::Pose;
+use hamel_console::files::{Draft, first_line};
+use hamel_console::output::Failure;
 use scenery::Scenery;
 use std::fs::File;
 use std::io::Write;

@@ -1,0 +1,25 @@
+//! The files that commands write: all of them through here.
+//!
+//! A command says all its files at once, with those that it reads, before it opens any: [`admit`] refuses what would destroy something. Each file is then
+//! written beside its name, as a [`Draft`], and takes the name when it is whole. So whatever stops the program, a file that was there before is
+//! as it was, or whole and new.
+
+mod admit;
+mod draft;
+mod first;
+mod place;
+mod unfinished;
+
+pub use admit::{IsOwn, Output, admit, new_file};
+pub use draft::Draft;
+pub use first::first_line;
+use unfinished::Unfinished;
+pub(crate) use unfinished::{private_folder, remove_unfinished};
+
+/// Lets a command replace files that this program did not write.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub struct Force {
+    /// Replace files also where this program did not write them
+    #[arg(long)]
+    pub force: bool,
+}
