@@ -2,10 +2,12 @@
 
 use crate::error::Error;
 use hamel_control::Feedback;
-use hamel_integrate::{Event, Form, Integration, Method, Options, Solution, State};
+use hamel_integrate::{
+    Event, Form, GlobalError, Integration, Method, Observer, Options, Solution, State, no_observer,
+};
+use hamel_runtime::dynamics::Dynamics;
 use hamel_scene::{Company, Scene, Settings};
 use std::cell::RefCell;
-use std::ops::ControlFlow;
 
 /// Efforts τ, one per entry of v, from time (s), Q and v̄; they are zero when it is called.
 type Inputs<'a> = Box<dyn FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a>;
@@ -94,12 +96,64 @@ impl<'a> Simulation<'a> {
     ///
     /// # Errors
     /// A state, settings or events that are refused; a controller or equations that fail on the way.
-    pub fn run(self) -> Result<Solution, Error> {
+    pub fn run(mut self) -> Result<Solution, Error> {
         let options = self.options()?;
-        let (scene, start) = (self.scene, self.start);
-        let mechanism = &scene.mechanism;
-        let mut dynamics = self.settings.arithmetic.dynamics(mechanism);
-        let control = scene.control.as_ref().filter(|_| self.inputs.is_none());
+        let mut dynamics = self.dynamics();
+        self.motion(&mut *dynamics, &options)
+    }
+
+    /// As [`Simulation::run`], with an estimate of the error of its states. It takes about as many evaluations of the equations again; inputs are asked for
+    /// the efforts of companion motions too.
+    ///
+    /// # Errors
+    /// Those of [`Simulation::run`].
+    pub fn run_estimated(mut self) -> Result<(Solution, GlobalError), Error> {
+        let options = self.options()?;
+        let mut dynamics = self.dynamics();
+        let solution = self.motion(&mut *dynamics, &options)?;
+        let (scene, start) = (self.scene, self.start.clone());
+        let mut companion = |start: &State, options: &Options, observer: &mut Observer<'_>| {
+            let motion = self.integrate(&mut *dynamics, (start, options), vec![], observer);
+            motion.map_err(|error| error.to_string())
+        };
+        let error = GlobalError::estimate(
+            &scene.mechanism,
+            &start,
+            &options,
+            &solution,
+            &mut companion,
+        );
+        Ok((solution, error))
+    }
+
+    fn dynamics(&self) -> Box<dyn Dynamics> {
+        self.settings.arithmetic.dynamics(&self.scene.mechanism)
+    }
+
+    /// The motion itself, with its events.
+    fn motion(
+        &mut self,
+        dynamics: &mut dyn Dynamics,
+        options: &Options,
+    ) -> Result<Solution, Error> {
+        let mechanism = &self.scene.mechanism;
+        let own = self.scene.events.iter().map(|event| event.event(mechanism));
+        let events = own.chain(std::mem::take(&mut self.events)).collect();
+        let start = self.start.clone();
+        self.integrate(dynamics, (&start, options), events, &mut no_observer)
+    }
+
+    /// One motion under the inputs, or a controller that begins with it.
+    fn integrate(
+        &mut self,
+        dynamics: &mut dyn Dynamics,
+        (start, options): (&State, &Options),
+        events: Vec<Event<'_>>,
+        observer: &mut Observer<'_>,
+    ) -> Result<Solution, Error> {
+        let mechanism = &self.scene.mechanism;
+        let control = self.scene.control.as_ref();
+        let control = control.filter(|_| self.inputs.is_none());
         let mut controller = control
             .map(|control| control.controller(mechanism, options.t_end))
             .transpose()
@@ -107,23 +161,22 @@ impl<'a> Simulation<'a> {
         let feedback = controller
             .as_mut()
             .map(|law| RefCell::new(Feedback::new(&mut **law)));
-        let mut motion =
-            Integration::new(&mut *dynamics, &start, &options).sampling(self.settings.sampling);
-        for event in scene.events.iter().map(|event| event.event(mechanism)) {
+        let mut motion = Integration::new(dynamics, start, options)
+            .sampling(self.settings.sampling)
+            .observer(|step| {
+                if let Some(feedback) = &feedback {
+                    feedback.borrow_mut().accepted();
+                }
+                observer(step)
+            });
+        for event in events {
             motion = motion.event(event);
         }
-        for event in self.events {
-            motion = motion.event(event);
-        }
-        if let Some(inputs) = self.inputs {
+        if let Some(inputs) = &mut self.inputs {
             motion = motion.inputs(inputs);
         } else if let Some(feedback) = &feedback {
             motion = motion.inputs(|time, q, speeds, efforts| {
                 feedback.borrow_mut().fill(time, q, speeds, efforts);
-            });
-            motion = motion.observer(|_| {
-                feedback.borrow_mut().accepted();
-                ControlFlow::Continue(())
             });
         }
         if let Some(period) = control.and_then(|control| control.period) {

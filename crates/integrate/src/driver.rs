@@ -5,6 +5,7 @@ use super::clock::Clock;
 use super::flow::Flow;
 use super::options::{StepControl, least_step};
 use super::outputs::Outputs;
+use super::rounding::Rounding;
 use super::step_control::StepController;
 use super::step_state::StepState;
 use super::stepper::{self, Span, Stepper};
@@ -70,6 +71,7 @@ struct Pacing {
     /// The step to try where no sample time is in the way.
     step: f64,
     controller: StepController,
+    rounding: Rounding,
 }
 
 impl<'a> Driver<'a> {
@@ -129,7 +131,10 @@ impl<'a> Driver<'a> {
         let mut stopped = self.report(observer);
         while !stopped && self.clock.time() < self.options.t_end {
             self.advance(&mut pacing, observer)?;
-            stopped = self.end.is_some() || self.report(observer);
+            // What ends on the end of the step is a sample as well, if one falls there.
+            let is_past = self.end.as_ref();
+            let is_past = is_past.is_some_and(|end| end.time < self.clock.time());
+            stopped = is_past || self.report(observer) || self.end.is_some();
         }
         let solves = self.stepper.solves();
         self.statistics.evaluations = self.flow.evaluations;
@@ -142,6 +147,7 @@ impl<'a> Driver<'a> {
             events: self.crossings,
             statistics: self.statistics,
             approaches: self.watch.finish(),
+            rounding: pacing.rounding.limit(&self.flow),
             stopped,
         })
     }
@@ -160,6 +166,7 @@ impl<'a> Driver<'a> {
         Ok(Pacing {
             step,
             controller: StepController::new(order),
+            rounding: Rounding::new(),
         })
     }
 
@@ -249,11 +256,22 @@ impl<'a> Driver<'a> {
                 return Err(cause);
             }
         };
-        if error.is_nan() || error > 1.0 {
-            pacing.step = step * pacing.controller.reject(Some(error));
+        let mut allowed = pacing.rounding.allowed(step, tolerance);
+        if error > allowed && stepper.is_embedded() && pacing.rounding.refuse() {
+            let end = span.time + span.step;
+            // Where the equations have no value nearby, nothing is known of it.
+            let measured = pacing.rounding.measure(step_state, flow, end);
+            if measured.is_ok() {
+                allowed = pacing.rounding.allowed(step, tolerance);
+            }
+        }
+        let part = error / allowed;
+        if part.is_nan() || part > 1.0 {
+            pacing.step = step * pacing.controller.reject(Some(part));
             return Err(self.inaccurate(joint, error));
         }
-        let next = step * pacing.controller.accept(error);
+        pacing.rounding.accept(error, joint, tolerance);
+        let next = step * pacing.controller.accept(part);
         // A step that was cut short to land says nothing against the step that was meant.
         let cut = step < pacing.step;
         pacing.step = if cut { next.max(pacing.step) } else { next }.min(max_step);

@@ -109,6 +109,10 @@ impl Stepper for Explicit {
         step_state.accept(flow, time, is_same.then(|| self.stages.last()))
     }
 
+    fn is_embedded(&self) -> bool {
+        true
+    }
+
     fn order(&self) -> u32 {
         self.tableau.order
     }

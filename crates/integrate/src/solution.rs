@@ -1,6 +1,6 @@
 //! What an integration starts from, shows on the way, and returns.
 
-use super::{Approach, Crossing};
+use super::{Approach, Crossing, RoundingLimit};
 use alloc::vec::Vec;
 
 /// State of a mechanism at one time.
@@ -63,6 +63,8 @@ pub struct Solution {
     pub statistics: Statistics,
     /// How near each joint that has singular sets came to them, in the order of the joints.
     pub approaches: Vec<Approach>,
+    /// The steps whose length rounding has decided, and not the tolerance: smaller tolerances make such motions no more accurate. `None` where there is none.
+    pub rounding: Option<RoundingLimit>,
     /// Whether the observer or an event ended it before [`Options::t_end`](super::Options::t_end).
     pub stopped: bool,
 }

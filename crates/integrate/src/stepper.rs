@@ -47,6 +47,11 @@ pub(super) trait Stepper {
         step_state.accept(flow, time, None)
     }
 
+    /// Whether its estimate is a sum of rates that cancel, of which rounding leaves its part.
+    fn is_embedded(&self) -> bool {
+        false
+    }
+
     /// The power of the step with which its estimated error falls.
     fn order(&self) -> u32;
 

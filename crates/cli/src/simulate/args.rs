@@ -156,6 +156,10 @@ pub struct Args {
     #[arg(long)]
     pub json: bool,
 
+    /// Do not estimate the error of the motion, which takes about as long again as the motion
+    #[arg(long)]
+    pub no_error_estimate: bool,
+
     /// Print errors only, no warnings about what is not simulated (limits, friction, …)
     #[arg(long, conflicts_with = "json")]
     pub quiet: bool,

@@ -1,5 +1,6 @@
 //! The samples as JSON. Names and meaning of all keys are stable.
 
+use super::accuracy::Accuracy;
 use super::columns::{Column, JsonSample};
 use super::control::Outcome;
 use hamel::integrate::Crossing;
@@ -35,6 +36,9 @@ pub struct Report<'a> {
     /// What the controller did, where there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub control: Option<&'a Outcome>,
+    /// How far the states are from the exact motion, where that was estimated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<&'a Accuracy>,
     /// What the simulation took.
     pub statistics: Statistics,
 }

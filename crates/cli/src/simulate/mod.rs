@@ -1,5 +1,6 @@
 //! `hamel simulate`: from a scene file to a trajectory.
 
+mod accuracy;
 mod args;
 mod columns;
 mod compile;

@@ -1,5 +1,6 @@
 //! The run itself: integrate, write the trajectory on the way, tell the result.
 
+use super::accuracy::Accuracy;
 use super::args::Args;
 use super::columns::{Columns, JsonSample};
 use super::compile;
@@ -11,7 +12,7 @@ use super::sample;
 use super::table::Summary;
 use super::unresolved;
 use hamel::dynamics::Dynamics;
-use hamel::integrate::{IntegrateError, Integration, Observer, Solution, State};
+use hamel::integrate::{IntegrateError, Integration, Observer, Options, Solution, State};
 use hamel::mechanism::{Kinematics, Mechanism};
 use hamel::registry::JointRegistry;
 use hamel_console::interrupt::Heed;
@@ -28,7 +29,7 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let run = match args.compiled {
         true => {
             let mut equations = compile::equations(args, &plan)?;
-            let run = simulate(&plan, &columns, &mut equations.dynamics, args.quiet)?;
+            let run = simulate(args, &plan, &columns, &mut equations.dynamics)?;
             Run {
                 equations: Some(compile::told(&equations)),
                 ..run
@@ -36,7 +37,7 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
         }
         false => {
             let mut tree = plan.settings.arithmetic.dynamics(&plan.scene.mechanism);
-            simulate(&plan, &columns, &mut *tree, args.quiet)?
+            simulate(args, &plan, &columns, &mut *tree)?
         }
     };
     match (args.json, args.quiet) {
@@ -79,6 +80,8 @@ struct Run {
     solution: Solution,
     statistics: Statistics,
     outcome: Option<Outcome>,
+    /// Its error, where that was estimated.
+    accuracy: Option<Accuracy>,
     /// The numbers of each sample, where JSON is asked for.
     rows: Vec<Vec<f64>>,
     /// Whether the user ended it.
@@ -86,16 +89,24 @@ struct Run {
 }
 
 fn simulate(
+    args: &Args,
     plan: &Plan,
     columns: &Columns<'_>,
     dynamics: &mut dyn Dynamics,
-    quiet: bool,
 ) -> Result<Run, Failure> {
     let control = Loop::new(plan)?;
-    let mut recorder = Recorder::new(plan, columns, quiet);
+    let mut recorder = Recorder::new(plan, columns, args.quiet);
     let heed = Heed::new();
     let start = Instant::now();
-    let result = move_on(plan, dynamics, control.as_ref(), &mut |step| {
+    let (initial, options) = (plan.scene.start(), plan.options());
+    let motion = Motion {
+        plan,
+        initial: &initial,
+        options: &options,
+        control: control.as_ref(),
+        is_companion: false,
+    };
+    let result = move_on(&motion, dynamics, &mut |step| {
         let mut tau = Vec::new();
         if let Some(control) = &control {
             control.see(step);
@@ -108,12 +119,15 @@ fn simulate(
     let run_time_s = start.elapsed().as_secs_f64();
     let rows = recorder.rows();
     let recorded = recorder.finish()?;
-    drop(heed);
     let failure = control.as_ref().and_then(Loop::failure);
     let solution = result.map_err(|error| match failure {
         Some(cause) => stopped(plan, recorded, &cause),
         None => stopped(plan, recorded, &error),
     })?;
+    // Nobody is told of it under `--quiet`.
+    let is_wanted = !args.no_error_estimate && !args.quiet && !recorded.is_interrupted;
+    let accuracy = is_wanted.then(|| Accuracy::estimate(plan, dynamics, &solution));
+    drop(heed);
     let statistics = Statistics {
         steps: solution.statistics.steps,
         rejected: solution.statistics.rejected,
@@ -125,26 +139,45 @@ fn simulate(
         solution,
         statistics,
         outcome: control.map(Loop::finish),
+        accuracy,
         rows,
         is_interrupted: recorded.is_interrupted,
     })
 }
 
+/// A motion that is to be integrated.
+pub struct Motion<'a> {
+    /// What the run is.
+    pub plan: &'a Plan,
+    /// The first state.
+    pub initial: &'a State,
+    /// What the integrator is asked to do.
+    pub options: &'a Options,
+    /// The controller, if there is one.
+    pub control: Option<&'a Loop>,
+    /// Whether it only tells the error of another one: without events, and with samples that end steps.
+    pub is_companion: bool,
+}
+
 /// Integrates, with feedback where there is a controller: at every instant, or held over its period.
-fn move_on(
-    plan: &Plan,
+///
+/// # Errors
+/// Those of [`Integration::run`].
+pub fn move_on(
+    motion: &Motion<'_>,
     dynamics: &mut dyn Dynamics,
-    control: Option<&Loop>,
     observer: &mut Observer<'_>,
 ) -> Result<Solution, IntegrateError> {
-    let (initial, options) = (plan.scene.start(), plan.options());
-    let mut integration = Integration::new(dynamics, &initial, &options)
-        .sampling(plan.settings.sampling)
-        .observer(observer);
-    for event in &plan.scene.events {
-        integration = integration.event(event.event(&plan.scene.mechanism));
+    let plan = motion.plan;
+    let mut integration =
+        Integration::new(dynamics, motion.initial, motion.options).observer(observer);
+    if !motion.is_companion {
+        integration = integration.sampling(plan.settings.sampling);
+        for event in &plan.scene.events {
+            integration = integration.event(event.event(&plan.scene.mechanism));
+        }
     }
-    if let Some(control) = control {
+    if let Some(control) = motion.control {
         integration = integration.inputs(|time, q, speeds, efforts| {
             control.fill(time, q, speeds, efforts);
         });
@@ -174,6 +207,7 @@ fn print_json(plan: &Plan, columns: &Columns<'_>, run: &Run) -> Result<(), Failu
         samples: &samples,
         events: &events,
         control: run.outcome.as_ref(),
+        error: run.accuracy.as_ref(),
         statistics: run.statistics,
     })
 }
@@ -202,6 +236,7 @@ fn print_summary(plan: &Plan, run: &Run) -> Result<(), Failure> {
         most_kinetic_energy,
         samples: solution.samples.len(),
         outcome: run.outcome.as_ref(),
+        accuracy: run.accuracy.as_ref(),
         statistics: run.statistics,
         approaches: &solution.approaches,
         events: &solution.events,

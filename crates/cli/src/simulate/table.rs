@@ -1,5 +1,6 @@
 //! The summary for people: final state, energy, and what the simulation took.
 
+use super::accuracy::Accuracy;
 use super::columns::BODY;
 use super::control::Outcome;
 use super::json::Statistics;
@@ -34,6 +35,8 @@ pub struct Summary<'a> {
     pub samples: usize,
     /// What the controller did, where there is one.
     pub outcome: Option<&'a Outcome>,
+    /// Its error, where that was estimated.
+    pub accuracy: Option<&'a Accuracy>,
     /// What the simulation took.
     pub statistics: Statistics,
     /// What the steps passed over.
@@ -50,6 +53,9 @@ impl fmt::Display for Summary<'_> {
         let table = bodies(&self.plan.scene.mechanism, self.end);
         writeln!(f, "{}", table.trim_fmt())?;
         self.energy(f)?;
+        if let Some(accuracy) = self.accuracy {
+            write!(f, "{accuracy}")?;
+        }
         self.crossings(f)?;
         if let Some(outcome) = self.outcome {
             write!(f, "{outcome}")?;

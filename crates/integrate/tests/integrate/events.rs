@@ -234,6 +234,27 @@ fn a_stopping_event_ends_it_there() {
     }
 }
 
+/// The end of a step, the sample there and the event that ends it are one instant.
+#[test]
+fn what_ends_on_a_sample_has_that_sample() {
+    for sampling in [Sampling::Landing, Sampling::Dense] {
+        let options = Options {
+            samples: vec![0.25, 0.5, 0.75],
+            ..options(Form::Lagrangian, Method::rk4(0.25), 1.0)
+        };
+        let (initial, mechanism) = (at(0.0, 0.0, 1.0), stone());
+        let mut dynamics = Reference::new(Arc::clone(&mechanism));
+        // Positive at 0.5 s, which is the last time at which the root can be told from it.
+        let event = Event::new("half", |t, _, _| t - 0.5 + 1e-17).stopping();
+        let motion = Integration::new(&mut dynamics, &initial, &options);
+        let solution = motion.sampling(sampling).event(event).run();
+        let solution = solution.expect("integrates");
+        assert_eq!(solution.state.time, 0.5);
+        let times: Vec<_> = solution.samples.iter().map(|state| state.time).collect();
+        assert_eq!(times, [0.25, 0.5]);
+    }
+}
+
 /// A ball that keeps half of its speed: the n-th flight lasts `2 · 2⁻ⁿ v₀/g`.
 #[test]
 fn a_ball_bounces_by_restarts() {

@@ -1,0 +1,135 @@
+//! The error of a motion, estimated by companion motions, as the summary and JSON tell it.
+
+use super::plan::Plan;
+use super::run::move_on;
+use super::{control::Loop, run::Motion};
+use hamel::dynamics::Dynamics;
+use hamel::integrate::{
+    GlobalError, IntegrateError, Observer, Options, Solution, State, StateError,
+};
+use hamel_console::interrupt;
+use serde::Serialize;
+use std::fmt;
+use std::ops::ControlFlow;
+
+/// The estimate of the error of a motion.
+#[derive(Clone, Debug, Serialize)]
+pub struct Accuracy {
+    /// Of the last state.
+    end: Parts,
+    /// Of each sample, steps and rounding together.
+    samples: Vec<Option<f64>>,
+    /// Change of the last state per relative change of the initial speeds; absent where it was not found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    conditioning: Option<f64>,
+    /// Whether it is likely to be right within a factor of ten.
+    reliable: bool,
+    /// Why not, where it is not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reason: Option<String>,
+    /// Evaluations of the equations of motion that the estimate took.
+    evaluations: usize,
+}
+
+/// An error, by where it comes from; `null` in JSON where it is not known.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Parts {
+    total: Option<f64>,
+    steps: Option<f64>,
+    rounding: Option<f64>,
+}
+
+fn known(error: f64) -> Option<f64> {
+    error.is_finite().then_some(error)
+}
+
+impl From<StateError> for Parts {
+    fn from(error: StateError) -> Self {
+        Self {
+            total: known(error.total()),
+            steps: known(error.steps),
+            rounding: known(error.rounding),
+        }
+    }
+}
+
+impl Accuracy {
+    /// That of `solution`, to which `dynamics` came under `plan`. Companions are not ended by events, and follow a controller of their own.
+    pub fn estimate(plan: &Plan, dynamics: &mut dyn Dynamics, solution: &Solution) -> Self {
+        let (initial, options) = (plan.scene.start(), plan.options());
+        let mut companion = |initial: &State, options: &Options, observer: &mut Observer<'_>| {
+            run(plan, &mut *dynamics, (initial, options), observer)
+                .map_err(|error| error.to_string())
+        };
+        let mechanism = &plan.scene.mechanism;
+        GlobalError::estimate(mechanism, &initial, &options, solution, &mut companion).into()
+    }
+}
+
+/// One companion, which an interrupt ends.
+fn run(
+    plan: &Plan,
+    dynamics: &mut dyn Dynamics,
+    (initial, options): (&State, &Options),
+    observer: &mut Observer<'_>,
+) -> Result<Solution, IntegrateError> {
+    // It was begun for the motion before.
+    let control = Loop::new(plan).ok().flatten();
+    let motion = Motion {
+        plan,
+        initial,
+        options,
+        control: control.as_ref(),
+        is_companion: true,
+    };
+    move_on(&motion, dynamics, &mut |step| {
+        if let Some(control) = &control {
+            control.see(step);
+        }
+        match interrupt::is_requested() {
+            true => ControlFlow::Break(()),
+            false => observer(step),
+        }
+    })
+}
+
+impl From<GlobalError> for Accuracy {
+    fn from(error: GlobalError) -> Self {
+        let samples = error.samples.iter();
+        Self {
+            end: error.end.into(),
+            samples: samples.map(|error| known(error.total())).collect(),
+            conditioning: error.conditioning.and_then(known),
+            reliable: error.doubt.is_none(),
+            reason: error.doubt.map(|doubt| doubt.to_string()),
+            evaluations: error.evaluations,
+        }
+    }
+}
+
+impl fmt::Display for Accuracy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let told =
+            |error: Option<f64>| error.map_or("?".to_owned(), |error| format!("{error:.1e}"));
+        let Parts {
+            total,
+            steps,
+            rounding,
+        } = self.end;
+        write!(
+            f,
+            "error       {} at the end, estimated: {} of steps, {} of rounding",
+            told(total),
+            told(steps),
+            told(rounding)
+        )?;
+        if let Some(conditioning) = self.conditioning {
+            write!(f, "; conditioning {conditioning:.1e}")?;
+        }
+        writeln!(f)?;
+        match &self.reason {
+            Some(reason) => writeln!(f, "            not reliable: {reason}"),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,401 @@
+//! The global error of a motion: how far its states are from those of the exact motion, estimated from companion motions.
+//!
+//! Two companions repeat the motion with coarser steps. Their distances from the motion tell how its error falls with the steps, and so what is left of
+//! it (extrapolation, as P. Deuflhard and F. Bornemann, *Scientific Computing with Ordinary Differential Equations*, 4.4). A third one begins
+//! beside the first state: the distance to which it is carried away is the conditioning of the motion, which also multiplies rounding.
+//! The companions together take about as many evaluations as the motion.
+
+use super::{Method, Observer, Options, Solution, State, Step, StepControl};
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::fmt::{Display, Formatter};
+use core::ops::ControlFlow;
+use hamel_runtime::mechanism::{BodyState, Mechanism};
+use hamel_runtime::spatial::so3;
+use nalgebra::Vector3;
+use num_traits::Float;
+
+/// Companions are so many times coarser, each than the one before: three digits, which tells errors from rounding and costs half of the steps at order 9.
+const COARSER: f64 = 1e3;
+
+/// No companion is coarser than this, beyond which errors do not fall as the order says.
+const COARSEST: f64 = 1e-3;
+
+/// Companions must differ by this factor in their tolerance to tell anything.
+const LEAST_RATIO: f64 = 10.0;
+
+/// The motion is compared at this many times at most, and not more often than each so many steps of a companion: landing on them must not be what its steps are.
+const MOST_TIMES: usize = 64;
+const STEPS_BETWEEN: f64 = 4.0;
+
+/// Errors may fall by this part of the order of a method, where it was not observed to be more.
+const LEAST_ORDER: f64 = 0.6;
+
+/// Errors above this part of the motion are not small, so that nothing about them is linear.
+const LARGE: f64 = 1e-2;
+
+/// The largest of the errors of all bodies: of attitudes in rad; of positions, velocities and angular velocities as parts of max(1 SI unit, size).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StateError {
+    /// From the steps of the method.
+    pub steps: f64,
+    /// From rounding.
+    pub rounding: f64,
+}
+
+impl StateError {
+    /// Both together.
+    pub const fn total(&self) -> f64 {
+        self.steps + self.rounding
+    }
+}
+
+/// Why an estimate is not reliable.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Doubt {
+    /// The error is too large for anything about it to be linear.
+    Large,
+    /// The error of companions does not fall with their steps as the order of the method says.
+    Order {
+        /// The order by which it falls.
+        observed: f64,
+        /// The order of the method.
+        order: u32,
+    },
+    /// A companion takes steps as short as those of the motion: something else than the error limits them.
+    Steps,
+    /// A companion does not come to the end.
+    Companion(String),
+}
+
+impl Display for Doubt {
+    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Large => f.write_str("the error is more than 1 % of the motion"),
+            Self::Order { observed, order } => write!(
+                f,
+                "the error of coarser motions falls with order {observed:.1}, the method is of order {order}"
+            ),
+            Self::Steps => f.write_str(
+                "coarser motions take steps that are hardly longer: their errors tell nothing about those of the motion",
+            ),
+            Self::Companion(cause) => write!(f, "a coarser motion fails: {cause}"),
+        }
+    }
+}
+
+/// The estimate of the error of a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GlobalError {
+    /// Of each sample of the solution; between times at which the motion was compared, that of the worse one of the two beside it.
+    pub samples: Vec<StateError>,
+    /// Of the last state.
+    pub end: StateError,
+    /// Change of the last state per relative change of the initial speeds; absent where that was not found.
+    pub conditioning: Option<f64>,
+    /// Why it may be wrong by more than a factor of ten, if so.
+    pub doubt: Option<Doubt>,
+    /// Evaluations of the equations of motion by the companions.
+    pub evaluations: usize,
+}
+
+/// Runs a companion from this state by these options, with the same inputs as the motion, and without its events; else why there is none.
+pub type Run<'a> = dyn FnMut(&State, &Options, &mut Observer<'_>) -> Result<Solution, String> + 'a;
+
+/// A companion as far as it is compared.
+struct Companion {
+    /// At the times of comparison.
+    states: Vec<State>,
+    steps: f64,
+    /// Distances that speeds and configuration have gone, in the units of errors, at the times of comparison: what rounding of each step adds to.
+    paths: Vec<f64>,
+}
+
+impl GlobalError {
+    /// The error of `solution`, which was computed from `initial` by `options`.
+    pub fn estimate(
+        mechanism: &Mechanism,
+        initial: &State,
+        options: &Options,
+        solution: &Solution,
+        run: &mut Run<'_>,
+    ) -> Self {
+        Estimation::new(mechanism, initial, options, solution, run).finish()
+    }
+}
+
+struct Estimation<'a, 'r> {
+    mechanism: &'a Mechanism,
+    initial: &'a State,
+    options: &'a Options,
+    solution: &'a Solution,
+    run: &'a mut Run<'r>,
+    evaluations: usize,
+    doubt: Option<Doubt>,
+}
+
+impl<'a, 'r> Estimation<'a, 'r> {
+    fn new(
+        mechanism: &'a Mechanism,
+        initial: &'a State,
+        options: &'a Options,
+        solution: &'a Solution,
+        run: &'a mut Run<'r>,
+    ) -> Self {
+        Self {
+            mechanism,
+            initial,
+            options,
+            solution,
+            run,
+            evaluations: 0,
+            doubt: None,
+        }
+    }
+
+    fn finish(mut self) -> GlobalError {
+        let times = self.times();
+        let found = self.compare(&times);
+        let (errors, conditioning) = found.unwrap_or_else(|doubt| {
+            self.doubt.get_or_insert(doubt);
+            let unknown = StateError {
+                steps: f64::NAN,
+                rounding: f64::NAN,
+            };
+            (times.iter().map(|_| unknown).collect(), None)
+        });
+        let worst = |errors: &[StateError]| {
+            let both = errors.iter().copied();
+            both.max_by(|a, b| a.total().total_cmp(&b.total()))
+                .unwrap_or_default()
+        };
+        let samples = self.solution.samples.iter().map(|sample| {
+            let after = times.partition_point(|state| state.time < sample.time);
+            let first = after.saturating_sub(1);
+            let exact = times.get(after).is_some_and(|t| t.time == sample.time);
+            let first = if exact { after } else { first };
+            let last = (after + 1).min(times.len());
+            worst(errors.get(first..last).unwrap_or_default())
+        });
+        let samples: Vec<StateError> = samples
+            .zip(&self.solution.samples)
+            .map(|(error, sample)| match sample.time > self.initial.time {
+                true => error,
+                false => StateError::default(),
+            })
+            .collect();
+        let end = errors.last().copied().unwrap_or_default();
+        if errors.iter().any(|error| !(error.total() <= LARGE)) {
+            self.doubt.get_or_insert(Doubt::Large);
+        }
+        GlobalError {
+            samples,
+            end,
+            conditioning,
+            doubt: self.doubt,
+            evaluations: self.evaluations,
+        }
+    }
+
+    /// The states of the solution at which it is compared: the last one, and some of the samples.
+    fn times(&self) -> Vec<State> {
+        let end = &self.solution.state;
+        let samples = self.solution.samples.iter();
+        let inner: Vec<&State> = samples
+            .filter(|state| state.time > self.initial.time && state.time < end.time)
+            .collect();
+        let coarse = self.solution.statistics.steps as f64
+            * Float::powf(COARSER, -2.0 / f64::from(self.order()));
+        let most = ((coarse / STEPS_BETWEEN) as usize).clamp(1, MOST_TIMES);
+        let stride = (inner.len() / most).max(1);
+        let mut times: Vec<State> = inner
+            .iter()
+            .skip(stride - 1)
+            .step_by(stride)
+            .map(|&state| state.clone())
+            .collect();
+        if end.time > self.initial.time {
+            times.push(end.clone());
+        }
+        times
+    }
+
+    fn order(&self) -> u32 {
+        self.options.method.scheme().order()
+    }
+
+    fn compare(&mut self, times: &[State]) -> Result<(Vec<StateError>, Option<f64>), Doubt> {
+        let (first, second) = self.coarser();
+        let steps = self.solution.statistics.steps as f64;
+        let fine = self.companion(first, times, self.initial)?;
+        let coarse = self.companion(second, times, self.initial)?;
+        let order = f64::from(self.order());
+        let [near, far] =
+            [&fine, &coarse].map(|companion| self.distances(&companion.states, times));
+        let observed = order_between(
+            near.last().copied().unwrap_or(0.0) / far.last().copied().unwrap_or(0.0),
+            coarse.steps / fine.steps,
+        );
+        let used = observed.clamp(LEAST_ORDER * order, order);
+        let left = Float::powf(fine.steps / steps, used);
+        if left > 0.5 {
+            self.doubt.get_or_insert(Doubt::Steps);
+        }
+        let left = left.min(0.5);
+        let left = left / (1.0 - left);
+        let (conditioning, growth) = self.conditioning(second, &coarse, times);
+        let errors = near.iter().enumerate().map(|(i, near)| {
+            let growth = growth.get(i).copied().unwrap_or(1.0);
+            let rounding = 0.5 * f64::EPSILON * growth.max(fine.paths[i]).max(1.0);
+            StateError {
+                // What is below rounding is no longer that of steps.
+                steps: near * left,
+                rounding,
+            }
+        });
+        let errors: Vec<StateError> = errors.collect();
+        let last = errors.last().map_or(0.0, |error| error.rounding);
+        let is_above_rounding = near.last().is_some_and(|&near| near > 100.0 * last);
+        if is_above_rounding && observed < LEAST_ORDER * order {
+            let order = self.order();
+            self.doubt.get_or_insert(Doubt::Order { observed, order });
+        }
+        Ok((errors, conditioning))
+    }
+
+    /// Two methods with coarser steps.
+    fn coarser(&self) -> (Method, Method) {
+        match self.options.method {
+            Method::Fixed { scheme, dt } => (
+                Method::fixed(scheme, 2.0 * dt),
+                Method::fixed(scheme, 4.0 * dt),
+            ),
+            Method::Controlled { scheme, control } => {
+                let tolerance = control.tolerance;
+                let ratio = (COARSEST / tolerance).sqrt().clamp(LEAST_RATIO, COARSER);
+                let with = |tolerance: f64| Method::Controlled {
+                    scheme,
+                    control: StepControl {
+                        tolerance: tolerance.min(StepControl::LARGEST_TOLERANCE),
+                        ..control
+                    },
+                };
+                (with(tolerance * ratio), with(tolerance * ratio * ratio))
+            }
+        }
+    }
+
+    fn companion(
+        &mut self,
+        method: Method,
+        times: &[State],
+        from: &State,
+    ) -> Result<Companion, Doubt> {
+        let options = Options {
+            method,
+            t_end: times.last().map_or(from.time, |state| state.time),
+            samples: times.iter().map(|state| state.time).collect(),
+            ..self.options.clone()
+        };
+        let mut path = Path::default();
+        let mut paths = Vec::new();
+        let solution = (self.run)(from, &options, &mut |step: &Step<'_>| {
+            path.follow(step);
+            if step.sample.is_some() {
+                paths.push(path.length);
+            }
+            ControlFlow::Continue(())
+        });
+        let solution = solution.map_err(Doubt::Companion)?;
+        self.evaluations += solution.statistics.evaluations;
+        if solution.samples.len() < times.len() || paths.len() < times.len() {
+            return Err(Doubt::Companion("it was ended before".into()));
+        }
+        Ok(Companion {
+            steps: solution.statistics.steps as f64,
+            states: solution.samples,
+            paths,
+        })
+    }
+
+    /// The conditioning, and how much a relative change of the speeds has grown at each time.
+    fn conditioning(
+        &mut self,
+        method: Method,
+        beside: &Companion,
+        times: &[State],
+    ) -> (Option<f64>, Vec<f64>) {
+        let tolerance = method.control().map_or(1e-6, |control| control.tolerance);
+        let change = (10.0 * tolerance).clamp(1e-7, 1e-3);
+        let mut from = self.initial.clone();
+        for speed in &mut from.speeds {
+            *speed *= 1.0 + change;
+        }
+        let Ok(moved) = self.companion(method, times, &from) else {
+            return (None, Vec::new());
+        };
+        let growth = self.distances(&moved.states, &beside.states);
+        let growth: Vec<f64> = growth.iter().map(|distance| distance / change).collect();
+        (growth.last().copied(), growth)
+    }
+
+    fn distances(&self, some: &[State], others: &[State]) -> Vec<f64> {
+        let pairs = some.iter().zip(others);
+        pairs
+            .map(|(a, b)| distance(self.mechanism, a, b).unwrap_or(f64::NAN))
+            .collect()
+    }
+}
+
+/// The order with which an error falls by `ratio` where steps get shorter by `steps`.
+fn order_between(ratio: f64, steps: f64) -> f64 {
+    match ratio > 0.0 && steps < 1.0 {
+        true => Float::ln(ratio) / Float::ln(steps),
+        false => f64::INFINITY,
+    }
+}
+
+/// How far speeds and coordinates have gone.
+#[derive(Default)]
+struct Path {
+    length: f64,
+    last: Option<(f64, Vec<f64>)>,
+}
+
+impl Path {
+    fn follow(&mut self, step: &Step<'_>) {
+        let largest = step
+            .speeds
+            .iter()
+            .fold(0.0_f64, |most, v| most.max(v.abs()));
+        if let Some((time, speeds)) = &self.last {
+            let changes = step.speeds.iter().zip(speeds).map(|(a, b)| (a - b).abs());
+            let change = changes.fold(0.0, f64::max) / largest.max(1.0);
+            self.length += change.max((step.time - time) * largest);
+        }
+        self.last = Some((step.time, step.speeds.to_vec()));
+    }
+}
+
+/// The largest distance of any body between two states, as in [`StateError`].
+fn distance(mechanism: &Mechanism, a: &State, b: &State) -> Option<f64> {
+    let of = |state: &State| {
+        let kinematics = mechanism.kinematics(&state.configuration, &state.speeds);
+        kinematics.ok()
+    };
+    let (a, b) = (of(a)?, of(b)?);
+    let pairs = a.bodies.iter().zip(&b.bodies);
+    let parts = pairs.flat_map(|(a, b)| body_distances(a, b));
+    Some(parts.fold(0.0, |most, part| if part <= most { most } else { part }))
+}
+
+fn body_distances(a: &BodyState, b: &BodyState) -> [f64; 4] {
+    let part = |a: Vector3<f64>, b: Vector3<f64>| (a - b).norm() / b.norm().max(1.0);
+    [
+        so3::log(&b.pose.rotation.tr_mul(&a.pose.rotation)).norm(),
+        part(a.position_com, b.position_com),
+        part(a.velocity_com, b.velocity_com),
+        part(a.angular_velocity_body(), b.angular_velocity_body()),
+    ]
+}
