@@ -18,7 +18,7 @@ fn folder(version: u32) -> PathBuf {
 #[test]
 fn scenes_of_version_1_are_read() -> Result<(), Box<dyn Error>> {
     let scenes = files(&folder(1), "toml")?;
-    assert_eq!(scenes.len(), 2);
+    assert_eq!(scenes.len(), 3);
     for path in scenes {
         Scene::load(&path, &hamel_joints::registry())?;
     }
