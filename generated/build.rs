@@ -11,7 +11,7 @@ fn main() -> Result<(), hamel_codegen::BuildError> {
     hamel_codegen::Build::new()
         .specs("../joint-specs")
         .runtime("hamel_runtime")
-        .accuracy("../tests/data/kernel_accuracy.csv")
+        .accuracy("kernel_accuracy.csv")
         .library("src/joints", "pages")
         .compile()
 }

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs, io};
 
-const SCENES: &str = "../../scenes";
+/// The scenes: by a link, which a package holds as files, or where git makes no links, in the folder that it means.
+const SCENES: [&str; 2] = ["scenes", "../../scenes"];
 
 fn main() -> io::Result<()> {
     println!("cargo::rerun-if-changed=build.rs");
@@ -69,18 +70,16 @@ fn commit() -> String {
 
 /// The list of scenes with references, in the order of their names: each `report/NAME.json` with its scene beside it or in the folder above.
 fn cases() -> io::Result<String> {
-    let folder = Path::new(SCENES).join("report");
+    let scenes = SCENES.map(Path::new).into_iter().find(|path| path.is_dir());
+    let scenes = scenes.ok_or_else(|| io::Error::other("the folder `scenes` is not there"))?;
+    let folder = scenes.join("report");
     watch(&folder);
-    let mut names: Vec<String> = match fs::read_dir(&folder) {
-        Ok(entries) => entries
-            .filter_map(|entry| {
-                let name = entry.ok()?.file_name();
-                Some(name.to_str()?.strip_suffix(".json")?.to_owned())
-            })
-            .collect(),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Vec::new(),
-        Err(error) => return Err(error),
-    };
+    let mut names = Vec::new();
+    for entry in fs::read_dir(&folder)? {
+        let name = entry?.file_name();
+        let name = name.to_str().and_then(|name| name.strip_suffix(".json"));
+        names.extend(name.map(str::to_owned));
+    }
     names.sort();
     let mut list = String::from("const CASES: &[Case] = &[\n");
     for name in names {
@@ -88,7 +87,7 @@ fn cases() -> io::Result<String> {
         let own = folder.join(format!("{name}.toml"));
         let scene = match own.exists() {
             true => own,
-            false => Path::new(SCENES).join(format!("{name}.toml")),
+            false => scenes.join(format!("{name}.toml")),
         };
         let [scene, reference] = [scene, reference].map(|path| {
             watch(&path);

@@ -15,6 +15,9 @@ pub use joints::*;
 #[cfg(feature = "alloc")]
 use hamel_runtime::registry::JointRegistry;
 
+/// The largest error of each kernel against its definition in 256 bits, in units of the last place, as CSV with a line of names.
+pub const KERNEL_ACCURACY: &str = include_str!("../kernel_accuracy.csv");
+
 /// A registry of every joint of the library.
 #[cfg(feature = "alloc")]
 pub fn registry() -> JointRegistry {

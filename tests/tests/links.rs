@@ -3,14 +3,22 @@
 use std::path::{Path, PathBuf};
 
 /// Folders whose pages are looked at, and those below them.
-const FOLDERS: [&str; 9] = [
+const FOLDERS: [&str; 17] = [
     "",
     "codegen",
+    "crates/cli",
+    "crates/compiled",
+    "crates/compiler",
+    "crates/control",
+    "crates/diagnostics",
     "crates/hamel",
+    "crates/integrate",
+    "crates/scene",
     "docs",
     "generated",
     "generated/pages",
     "joint-specs",
+    "runtime",
     "scenes",
     "tests",
 ];

@@ -42,9 +42,8 @@ fn workspace(root: &Path, size: u64) -> Result<std::path::PathBuf, Box<dyn Error
     fs::create_dir_all(&specs)?;
     fs::create_dir_all(package.join("src/joints"))?;
     fs::create_dir_all(package.join("pages"))?;
-    fs::create_dir_all(root.join("tests/data"))?;
     fs::write(
-        root.join("tests/data/kernel_accuracy.csv"),
+        package.join("kernel_accuracy.csv"),
         "joint,kernel,type,worst ulp,points\n",
     )?;
     fs::write(root.join("Cargo.toml"), "[workspace]\n")?;

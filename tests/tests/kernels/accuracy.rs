@@ -1,7 +1,7 @@
 //! Compiled kernels against their definitions in 256 bits: at most 16 ulp of the largest summand, at random and extreme points.
 //!
 //! `cargo test` takes a few hundred points a joint. The sweep takes 10⁵ and puts each joint's rows into
-//! `tests/data/kernel_accuracy.csv` as soon as it is done:
+//! `generated/kernel_accuracy.csv` as soon as it is done:
 //! `cargo test --release --package hamel-tests --test kernels sweep -- --ignored --nocapture`. With `HAMEL_SWEEP=resume` it leaves
 //! out the groups of kernels whose rows are all there already.
 
@@ -28,7 +28,7 @@ const PROGRESS: usize = 20_000;
 static TABLE: Mutex<()> = Mutex::new(());
 
 fn table() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("data/kernel_accuracy.csv")
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../generated/kernel_accuracy.csv")
 }
 
 /// The worst errors at a few points.

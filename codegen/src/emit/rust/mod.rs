@@ -153,6 +153,7 @@ pub fn text(joint: &str, header: &str, items: TokenStream) -> Result<String, Wri
 
 /// Why a file cannot be written.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum WriteError {
     /// Emitted tokens that are no Rust: a fault of this crate.
     Malformed {

@@ -110,7 +110,7 @@ fn version(tokens: &mut Tokens<'_>) -> Fallible<()> {
             return Err(Box::new(
                 error
                     .label("no such version")
-                    .help(format!("this generator reads version {VERSION}")),
+                    .help(format!("this generator reads version {VERSION}; a file of a later one is read by a later generator")),
             ));
         }
         None => return Err(tokens.expected("the version of the language")),

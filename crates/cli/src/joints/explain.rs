@@ -56,6 +56,5 @@ fn is_own(file: &File) -> bool {
 
 /// The errors of the library's kernels as they were measured when the program was built.
 fn measured() -> Result<Accuracy, Failure> {
-    let table = include_str!(concat!(env!("OUT_DIR"), "/kernel_accuracy.csv"));
-    Accuracy::parse(table).map_err(|error| Failure::Page(error.to_string()))
+    Accuracy::parse(hamel_joints::KERNEL_ACCURACY).map_err(|error| Failure::Page(error.to_string()))
 }

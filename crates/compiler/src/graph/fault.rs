@@ -28,6 +28,7 @@ pub struct Fault {
 
 /// How numbers are left.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Cause {
     /// A result beyond the range of doubles, or a function where it has no value.
     Range,

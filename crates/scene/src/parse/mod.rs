@@ -163,7 +163,8 @@ fn version(fields: &mut Fields<'_>, sink: &mut Sink) {
             "`hamel` is {}, but this program reads version {VERSION} of the scene format",
             version.value
         );
-        sink.push(Diagnostic::new(version.span, message));
+        let error = Diagnostic::new(version.span, message);
+        sink.push(error.help("a file of a later version is read by a later program"));
     }
 }
 
