@@ -2,7 +2,7 @@
 
 use crate::links;
 use anyhow::{Context, Result};
-use mdbook_driver::book::Book;
+use mdbook_driver::book::{Book, SectionNumber};
 use mdbook_summary::{Link, Summary, SummaryItem, parse_summary};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -65,12 +65,21 @@ fn add_linked(root: &Path, items: &mut [SummaryItem], known: &mut BTreeSet<PathB
         for file in links::of(root, page, &text)? {
             if is_page(&file) && known.insert(file.clone()) {
                 let name = title(&read(root, &file)?, &file)?;
-                link.nested_items.push(Link::new(name, file).into());
+                let mut nested = Link::new(name, file);
+                nested.number = number_below(link);
+                link.nested_items.push(nested.into());
             }
         }
         add_linked(root, &mut link.nested_items, known)?;
     }
     Ok(())
+}
+
+/// The number of the next chapter below another. The contents are indented by it, though they do not show it.
+fn number_below(link: &Link) -> Option<SectionNumber> {
+    let mut number = link.number.clone()?;
+    number.push(u32::try_from(link.nested_items.len() + 1).ok()?);
+    Some(number)
 }
 
 pub fn is_page(file: &Path) -> bool {

@@ -10,13 +10,24 @@ use anyhow::{Context, Result};
 use mdbook_driver::MDBook;
 use mdbook_driver::config::Config;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 /// What the site holds besides pages, as mdBook copies it.
 const FILES: &str = "target/book-files";
 
-fn main() -> Result<()> {
+fn main() -> ExitCode {
+    match build() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn build() -> Result<()> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let root = root.canonicalize().context("the repository is there")?;
+    let root = root.canonicalize().context("the repository")?;
     let motions = std::env::args_os().nth(1).map(PathBuf::from);
 
     let config = Config::from_disk(root.join("docs/book.toml"))?;
