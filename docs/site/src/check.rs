@@ -50,20 +50,23 @@ fn leads_somewhere(
     site.join(&file).is_file() && pages.get(&file).is_none_or(has_place)
 }
 
-/// Attributes of the tags of a page as mdBook writes them: in double quotes, with `<` escaped elsewhere.
+/// Places and links in the tags of a page as mdBook writes it: values are in double quotes and have no spaces, and text has no `<`.
 fn read(html: &str) -> Page {
     let mut page = Page::default();
-    let tags = html.split('<').skip(1);
-    for tag in tags.filter_map(|rest| rest.split_once('>')) {
-        let words = tag.0.split_inclusive("=\"").zip(tag.0.split("=\"").skip(1));
-        for (before, after) in words {
-            let value = after.split('"').next().unwrap_or_default().to_owned();
-            match before.trim_end_matches("=\"").rsplit([' ', '\n']).next() {
-                Some("id") => page.ids.insert(value),
-                Some("href" | "src") => page.targets.insert(value),
-                _ => true,
-            };
+    let tags = html.split('<').filter_map(|rest| rest.split_once('>'));
+    for word in tags.flat_map(|(tag, _)| tag.split_ascii_whitespace()) {
+        if let Some(id) = value(word, "id") {
+            page.ids.insert(id.to_owned());
+        }
+        if let Some(target) = value(word, "href").or_else(|| value(word, "src")) {
+            page.targets.insert(target.to_owned());
         }
     }
     page
+}
+
+/// The value in `name="value"`.
+fn value<'a>(word: &'a str, name: &str) -> Option<&'a str> {
+    let quoted = word.strip_prefix(name)?.strip_prefix("=\"")?;
+    quoted.split('"').next()
 }
