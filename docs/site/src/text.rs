@@ -1,4 +1,4 @@
-//! What pages hold for the site that GitHub reads otherwise: formulas, and links to motions.
+//! What pages hold for others than mdBook: formulas as GitHub reads them, items that rustdoc links, and links to motions.
 
 use anyhow::{Context, Result, bail};
 use mdbook_driver::book::Book;
@@ -58,7 +58,7 @@ fn typeset(text: &str) -> Result<String> {
                 result += &format!("{line}\n");
             }
             (None, None) if is_code => result += &format!("{line}\n"),
-            (None, None) => result += &format!("{}\n", typeset_line(line)?),
+            (None, None) => result += &format!("{}\n", without_items(&typeset_line(line)?)),
         }
     }
     match formula {
@@ -77,6 +77,21 @@ fn typeset_line(line: &str) -> Result<String> {
         result += rest;
     }
     Ok(result)
+}
+
+/// Takes the brackets from `[`Item`]`, a link that rustdoc alone resolves.
+fn without_items(line: &str) -> String {
+    let mut parts = line.split("[`");
+    let mut result = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        match part.split_once("`]") {
+            Some((item, rest)) if !rest.starts_with(['(', '[', ':']) => {
+                result += &format!("`{item}`{rest}");
+            }
+            _ => result += &format!("[`{part}"),
+        }
+    }
+    result
 }
 
 fn mathml(latex: &str, display_mode: DisplayMode) -> Result<String> {
