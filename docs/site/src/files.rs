@@ -19,7 +19,8 @@ pub fn gather(root: &Path, book: &Book, motions: Option<&Path>, to: &Path) -> Re
         let Some(page) = &chapter.path else { continue };
         for file in links::of(root, page, &chapter.content)? {
             if !chapters::is_page(&file) {
-                copy(&root.join(&file), &to.join(&file))?;
+                let name = links::in_site(&file.to_string_lossy());
+                copy(&root.join(&file), &to.join(name))?;
             }
         }
     }

@@ -29,6 +29,15 @@ pub fn path(target: &str) -> Option<&str> {
     (!path.is_empty() && !is_address).then_some(path)
 }
 
+/// What a link leads to in the site. Sources end with `.txt` there: browsers save files of other names instead of showing them.
+pub fn in_site(target: &str) -> String {
+    let ending = path(target).and_then(|path| path.rsplit_once('.'));
+    match ending {
+        Some((_, "rs" | "toml")) => format!("{target}.txt"),
+        _ => target.to_owned(),
+    }
+}
+
 /// A path without `.` and `..`, which must not lead out of the folder where it begins.
 pub fn within(path: &Path) -> Result<PathBuf> {
     let mut result = PathBuf::new();

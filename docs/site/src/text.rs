@@ -1,5 +1,6 @@
-//! What pages hold for others than mdBook: formulas as GitHub reads them, items that rustdoc links, and links to motions.
+//! What pages hold for others than mdBook: formulas as GitHub reads them, items that rustdoc links, links to sources and to motions.
 
+use crate::links;
 use anyhow::{Context, Result, bail};
 use mdbook_driver::book::Book;
 use pulldown_latex::config::DisplayMode;
@@ -58,7 +59,10 @@ fn typeset(text: &str) -> Result<String> {
                 result += &format!("{line}\n");
             }
             (None, None) if is_code => result += &format!("{line}\n"),
-            (None, None) => result += &format!("{}\n", without_items(&typeset_line(line)?)),
+            (None, None) => {
+                let line = without_items(&typeset_line(line)?);
+                result += &format!("{}\n", rename_sources(&line));
+            }
         }
     }
     match formula {
@@ -92,6 +96,24 @@ fn without_items(line: &str) -> String {
         }
     }
     result
+}
+
+/// Links and definitions of links with the names that sources have in the site.
+fn rename_sources(line: &str) -> String {
+    let mut parts = line.split("](");
+    let mut result = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let ends = part.split_once(')');
+        let (target, rest) = ends.unwrap_or((part, ""));
+        let end = if ends.is_some() { ")" } else { "" };
+        result += &format!("]({}{end}{rest}", links::in_site(target));
+    }
+    match result.split_once("]: ") {
+        Some((name, target)) if name.starts_with('[') => {
+            format!("{name}]: {}", links::in_site(target))
+        }
+        _ => result,
+    }
 }
 
 fn mathml(latex: &str, display_mode: DisplayMode) -> Result<String> {
