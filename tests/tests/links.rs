@@ -36,8 +36,17 @@ fn pages() -> Vec<PathBuf> {
         .collect()
 }
 
-/// Targets of `[text](target)` outside of code.
+/// A text without its comments, which may hold links of the site that `docs/site` builds; it checks those.
+fn without_comments(text: &str) -> String {
+    let mut parts = text.split("<!--");
+    let first = parts.next().unwrap_or_default();
+    let rests = parts.map(|part| part.split_once("-->").map_or("", |(_, rest)| rest));
+    first.to_owned() + &rests.collect::<String>()
+}
+
+/// Targets of `[text](target)`, and of definitions `[name]: target`, outside of code.
 fn targets(text: &str) -> Vec<String> {
+    let text = without_comments(text);
     let mut is_code = false;
     let lines = text.lines().filter(|line| {
         if line.trim_start().starts_with("```") {
@@ -48,7 +57,12 @@ fn targets(text: &str) -> Vec<String> {
     let ends = |line: &str| -> Vec<String> {
         let links = line.split("](").skip(1);
         let ends = links.filter_map(|rest| rest.split_once(')'));
-        ends.map(|(target, _)| target.to_owned()).collect()
+        let ends = ends.map(|(target, _)| target);
+        let definition = line
+            .strip_prefix('[')
+            .and_then(|rest| rest.split_once("]: "));
+        let definition = definition.map(|(_, target)| target);
+        ends.chain(definition).map(str::to_owned).collect()
     };
     lines.flat_map(ends).collect()
 }
