@@ -93,7 +93,7 @@ fn simulate(
 ) -> Result<Run, Failure> {
     let control = Loop::new(plan)?;
     let mut recorder = Recorder::new(plan, columns, quiet);
-    let heed = Heed::new();
+    let heed = Heed::begin();
     let start = Instant::now();
     let result = move_on(plan, dynamics, control.as_ref(), &mut |step| {
         let mut tau = Vec::new();
