@@ -3,7 +3,7 @@
 /// How formulas begin, in one spreadsheet or another.
 const FORMULAS: [char; 10] = ['=', '+', '-', '@', '＝', '＋', '－', '＠', '\t', '\r'];
 
-/// The text as a cell, which no spreadsheet runs. A text that begins so already gets one more apostrophe, so that [`text`] gives it back.
+/// The text as a cell, which no spreadsheet runs. A text that begins so already gets one more apostrophe, so that [`rows`] gives it back.
 pub fn cell(text: &str) -> String {
     match is_run(text.trim_start_matches('\'')) {
         true => format!("'{text}"),

@@ -13,7 +13,7 @@ use hamel_scene::Scene;
 /// # Errors
 /// There is none; the message says what was looked for. A time limit that is none; an interrupt.
 pub fn compiler() -> Result<Compiler, Failure> {
-    let _heed = Heed::new();
+    let _heed = Heed::begin();
     Ok(Compiler::find(&interrupt::is_requested)?)
 }
 
@@ -32,7 +32,7 @@ pub fn compiled(
     let source = Source::new(build, label, kinds)?;
     // A library that is loaded needs its file no more.
     let folder = private_folder().map_err(Error::Folder)?;
-    let _heed = Heed::new();
+    let _heed = Heed::begin();
     let start = (&scene.mechanism, &*scene.configuration);
     Ok(source.load(compiler, folder.path(), start, &interrupt::is_requested)?)
 }

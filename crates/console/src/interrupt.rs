@@ -65,7 +65,7 @@ pub struct Heed(());
 
 impl Heed {
     /// From now on.
-    pub fn new() -> Self {
+    pub fn begin() -> Self {
         HEEDING.fetch_add(1, Ordering::SeqCst);
         Self(())
     }

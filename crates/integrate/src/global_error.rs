@@ -186,7 +186,8 @@ impl<'a, 'r> Estimation<'a, 'r> {
             })
             .collect();
         let end = errors.last().copied().unwrap_or_default();
-        if errors.iter().any(|error| !(error.total() <= LARGE)) {
+        let is_small = |error: &StateError| error.total() <= LARGE;
+        if !errors.iter().all(is_small) {
             self.doubt.get_or_insert(Doubt::Large);
         }
         GlobalError {

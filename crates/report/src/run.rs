@@ -89,7 +89,7 @@ fn measure(
         stability: Store::open(folder, machine)?,
         drift: Store::open(folder, machine)?,
     };
-    let heed = Heed::new();
+    let heed = Heed::begin();
     let measured = work::measure(plan, registry, machine, &mut stores, tick)
         .and_then(|()| stability::measure(plan, registry, machine, &mut stores.stability, tick))
         .and_then(|()| drift::measure(plan, registry, machine, &mut stores.drift, tick));

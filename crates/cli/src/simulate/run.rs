@@ -96,7 +96,7 @@ fn simulate(
 ) -> Result<Run, Failure> {
     let control = Loop::new(plan)?;
     let mut recorder = Recorder::new(plan, columns, args.quiet);
-    let heed = Heed::new();
+    let heed = Heed::begin();
     let start = Instant::now();
     let (initial, options) = (plan.scene.start(), plan.options());
     let motion = Motion {
