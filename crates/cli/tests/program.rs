@@ -32,6 +32,7 @@ fn samples_as_json_have_their_stable_shape() {
         keys(&report),
         [
             "columns",
+            "error",
             "form",
             "method",
             "samples",
@@ -43,6 +44,18 @@ fn samples_as_json_have_their_stable_shape() {
         keys(&report["statistics"]),
         ["evaluations", "rejected", "run_time_s", "steps"]
     );
+    let error = &report["error"];
+    assert_eq!(
+        keys(error),
+        ["end", "evaluations", "reliable", "samples"],
+        "{error}"
+    );
+    assert_eq!(error["reliable"], true);
+    assert_eq!(keys(&error["end"]), ["rounding", "steps", "total"]);
+    // At a tolerance of 1e-6 a step.
+    let total = error["end"]["total"].as_f64().expect("it is known");
+    assert!((1e-8..1e-4).contains(&total), "{total:e}");
+    assert_eq!(error["samples"].as_array().map(Vec::len), Some(2));
     let samples = report["samples"].as_array().expect("a list");
     let times: Vec<f64> = samples
         .iter()
@@ -275,4 +288,41 @@ fn error_codes_are_explained() {
     assert_eq!(unknown.status.code(), Some(2));
     let message = String::from_utf8_lossy(&unknown.stderr).into_owned();
     assert!(message.contains("did you mean `E0305`?"), "{message}");
+}
+
+#[test]
+fn the_error_of_a_motion_is_told_unless_it_is_not_wanted() {
+    let scene = "scenes/double_ball_pendulum.toml";
+    let told = |more: &[&str]| {
+        let csv = tempfile::NamedTempFile::with_suffix(".csv").expect("a file");
+        let path = csv.path().to_str().expect("text").to_owned();
+        let run = ["simulate", scene, "--t-end", "1", "--force", "--csv", &path];
+        stdout(&[&run[..], more].concat())
+    };
+    let line = |text: &str| {
+        text.lines()
+            .find(|line| line.starts_with("error "))
+            .map(str::to_owned)
+    };
+    let text = told(&["--tol", "1e-8"]);
+    let line_of_it = line(&text).expect("the summary tells it");
+    assert!(
+        line_of_it.contains("at the end, estimated: "),
+        "{line_of_it}"
+    );
+    assert_eq!(line(&told(&["--tol", "1e-8", "--no-error-estimate"])), None);
+    // Companions follow a controller of their own, and end where an event has ended the motion.
+    let text = stdout(&[
+        "simulate",
+        "scenes/cart_path.toml",
+        "--t-end",
+        "0.5",
+        "--json",
+    ]);
+    let report: Value = serde_json::from_str(&text).expect("JSON and nothing else");
+    assert!(
+        report["error"]["end"]["total"].as_f64().is_some(),
+        "{}",
+        report["error"]
+    );
 }

@@ -166,7 +166,7 @@ impl<'a> Driver<'a> {
         Ok(Pacing {
             step,
             controller: StepController::new(order),
-            rounding: Rounding::new(),
+            rounding: Rounding::new(&self.flow),
         })
     }
 
@@ -249,6 +249,12 @@ impl<'a> Driver<'a> {
             pacing.step = step * pacing.controller.reject(None);
             return Err(cause);
         }
+        if let Some(weight) = stepper.estimate_weight()
+            && pacing.rounding.is_due()
+        {
+            let end = span.time + span.step;
+            pacing.rounding.look(step_state, flow, end, weight);
+        }
         let (error, joint) = match stepper.error(step_state, flow, span, tolerance) {
             Ok(found) => found,
             Err(cause) => {
@@ -256,17 +262,10 @@ impl<'a> Driver<'a> {
                 return Err(cause);
             }
         };
-        let mut allowed = pacing.rounding.allowed(step, tolerance);
-        if error > allowed && stepper.is_embedded() && pacing.rounding.refuse() {
-            let end = span.time + span.step;
-            // Where the equations have no value nearby, nothing is known of it.
-            let measured = pacing.rounding.measure(step_state, flow, end);
-            if measured.is_ok() {
-                allowed = pacing.rounding.allowed(step, tolerance);
-            }
-        }
+        let allowed = pacing.rounding.allowed(step, tolerance);
         let part = error / allowed;
         if part.is_nan() || part > 1.0 {
+            pacing.rounding.refuse();
             pacing.step = step * pacing.controller.reject(Some(part));
             return Err(self.inaccurate(joint, error));
         }

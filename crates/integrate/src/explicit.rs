@@ -6,6 +6,7 @@ use super::step_state::StepState;
 use super::stepper::{Span, Stepper};
 use super::{Estimate, StepFailure, Tableau};
 use alloc::vec::Vec;
+use num_traits::Float;
 
 /// An explicit Runge–Kutta method.
 pub(super) struct Explicit {
@@ -109,8 +110,17 @@ impl Stepper for Explicit {
         step_state.accept(flow, time, is_same.then(|| self.stages.last()))
     }
 
-    fn is_embedded(&self) -> bool {
-        true
+    fn estimate_weight(&self) -> Option<f64> {
+        let norm = |weights: &Terms| {
+            let squares = weights.iter().map(|(_, weight)| weight * weight);
+            Float::sqrt(squares.sum::<f64>())
+        };
+        match &self.estimate {
+            Combined::None => None,
+            Combined::One(weights) => Some(norm(weights)),
+            // Beside the estimate of order 3 it counts less.
+            Combined::Pair { fifth, .. } => Some(norm(fifth) / 3.0),
+        }
     }
 
     fn order(&self) -> u32 {
@@ -130,7 +140,7 @@ fn stages_taken(tableau: &Tableau, is_controlled: bool) -> usize {
 
 /// The estimate of [`Estimate::Pair`]; NaN where a difference is.
 fn paired(fifth: f64, third: f64) -> f64 {
-    let norm = num_traits::Float::hypot(fifth, 0.1 * third);
+    let norm = Float::hypot(fifth, 0.1 * third);
     if fifth == 0.0 {
         0.0
     } else {

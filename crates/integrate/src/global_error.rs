@@ -5,11 +5,13 @@
 //! beside the first state: the distance to which it is carried away is the conditioning of the motion, which also multiplies rounding.
 //! The companions together take about as many evaluations as the motion.
 
-use super::{Method, Observer, Options, Solution, State, Step, StepControl};
+use super::{Form, Method, Observer, Options, Scheme, Solution, State, Step, StepControl};
 use alloc::string::String;
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::fmt::{Display, Formatter};
 use core::ops::ControlFlow;
+use hamel_runtime::dynamics::{Dynamics, Recursive};
 use hamel_runtime::mechanism::{BodyState, Mechanism};
 use hamel_runtime::spatial::so3;
 use nalgebra::Vector3;
@@ -19,7 +21,7 @@ use num_traits::Float;
 const COARSER: f64 = 1e3;
 
 /// No companion is coarser than this, beyond which errors do not fall as the order says.
-const COARSEST: f64 = 1e-3;
+const COARSEST: f64 = 1e-2;
 
 /// Companions must differ by this factor in their tolerance to tell anything.
 const LEAST_RATIO: f64 = 10.0;
@@ -28,8 +30,29 @@ const LEAST_RATIO: f64 = 10.0;
 const MOST_TIMES: usize = 64;
 const STEPS_BETWEEN: f64 = 4.0;
 
-/// Errors may fall by this part of the order of a method, where it was not observed to be more.
-const LEAST_ORDER: f64 = 0.6;
+/// Motions of fewer steps are compared with a finer companion, which costs little then: coarser ones would have too few steps to tell an order.
+const FEW: usize = 16;
+
+/// How many times finer that is, in the tolerance, or in the step.
+const FINER: (f64, f64) = (1e3, 5.0);
+
+/// Below this, errors of the exponential method may be those of rounding in oscillations that its steps pass over.
+const OSCILLATIONS: f64 = 1e-11;
+
+/// Above this, what rounding amounts to is of no interest, and is not looked for by a companion of its own.
+const FAR_ABOVE_ROUNDING: f64 = 1e-9;
+
+/// Errors are taken to fall by no less than this part of the order of a method: what is observed between the two coarser motions is less than what follows.
+const LEAST_ORDER: f64 = 0.8;
+
+/// They are taken to fall by no less than this power of the tolerance.
+const LEAST_SLOPE: f64 = 0.85;
+
+/// A coarser motion of more than this part of the steps has steps that are hardly longer.
+const HARDLY_LONGER: f64 = 0.9;
+
+/// Where less than this part of it is observed, the estimate is not reliable.
+const DOUBTED_ORDER: f64 = 0.4;
 
 /// Errors above this part of the motion are not small, so that nothing about them is linear.
 const LARGE: f64 = 1e-2;
@@ -65,6 +88,8 @@ pub enum Doubt {
     },
     /// A companion takes steps as short as those of the motion: something else than the error limits them.
     Steps,
+    /// Steps are longer than oscillations, whose rounding no companion tells.
+    Oscillations,
     /// A companion does not come to the end.
     Companion(String),
 }
@@ -78,7 +103,10 @@ impl Display for Doubt {
                 "the error of coarser motions falls with order {observed:.1}, the method is of order {order}"
             ),
             Self::Steps => f.write_str(
-                "coarser motions take steps that are hardly longer: their errors tell nothing about those of the motion",
+                "something else than the error decides how long steps are: motions of other tolerances take steps that are hardly longer or shorter",
+            ),
+            Self::Oscillations => f.write_str(
+                "the method takes steps longer than oscillations: how rounding adds up over these is not known",
             ),
             Self::Companion(cause) => write!(f, "a coarser motion fails: {cause}"),
         }
@@ -115,7 +143,7 @@ struct Companion {
 impl GlobalError {
     /// The error of `solution`, which was computed from `initial` by `options`.
     pub fn estimate(
-        mechanism: &Mechanism,
+        mechanism: &Arc<Mechanism>,
         initial: &State,
         options: &Options,
         solution: &Solution,
@@ -126,7 +154,7 @@ impl GlobalError {
 }
 
 struct Estimation<'a, 'r> {
-    mechanism: &'a Mechanism,
+    mechanism: &'a Arc<Mechanism>,
     initial: &'a State,
     options: &'a Options,
     solution: &'a Solution,
@@ -137,7 +165,7 @@ struct Estimation<'a, 'r> {
 
 impl<'a, 'r> Estimation<'a, 'r> {
     fn new(
-        mechanism: &'a Mechanism,
+        mechanism: &'a Arc<Mechanism>,
         initial: &'a State,
         options: &'a Options,
         solution: &'a Solution,
@@ -190,6 +218,10 @@ impl<'a, 'r> Estimation<'a, 'r> {
         if !errors.iter().all(is_small) {
             self.doubt.get_or_insert(Doubt::Large);
         }
+        let is_exponential = *self.options.method.scheme() == Scheme::Exponential;
+        if is_exponential && errors.iter().any(|error| error.total() < OSCILLATIONS) {
+            self.doubt.get_or_insert(Doubt::Oscillations);
+        }
         GlobalError {
             samples,
             end,
@@ -227,6 +259,9 @@ impl<'a, 'r> Estimation<'a, 'r> {
     }
 
     fn compare(&mut self, times: &[State]) -> Result<(Vec<StateError>, Option<f64>), Doubt> {
+        if self.solution.statistics.steps < FEW {
+            return self.compare_with_finer(times);
+        }
         let (first, second) = self.coarser();
         let steps = self.solution.statistics.steps as f64;
         let fine = self.companion(first, times, self.initial)?;
@@ -239,30 +274,108 @@ impl<'a, 'r> Estimation<'a, 'r> {
             coarse.steps / fine.steps,
         );
         let used = observed.clamp(LEAST_ORDER * order, order);
-        let left = Float::powf(fine.steps / steps, used);
-        if left > 0.5 {
+        let by_steps = Float::powf(fine.steps / steps, used);
+        if fine.steps > HARDLY_LONGER * steps || self.is_held(first, fine.steps / steps) {
             self.doubt.get_or_insert(Doubt::Steps);
         }
-        let left = left.min(0.5);
+        // Samples that cut steps short hide that errors fall with the tolerance.
+        let by_tolerance = self
+            .ratio(first)
+            .map_or(1.0, |r| Float::powf(r, LEAST_SLOPE));
+        let left = by_steps.min(by_tolerance).min(0.5);
         let left = left / (1.0 - left);
-        let (conditioning, growth) = self.conditioning(second, &coarse, times);
-        let errors = near.iter().enumerate().map(|(i, near)| {
-            let growth = growth.get(i).copied().unwrap_or(1.0);
-            let rounding = 0.5 * f64::EPSILON * growth.max(fine.paths[i]).max(1.0);
-            StateError {
-                // What is below rounding is no longer that of steps.
-                steps: near * left,
-                rounding,
-            }
-        });
-        let errors: Vec<StateError> = errors.collect();
-        let last = errors.last().map_or(0.0, |error| error.rounding);
+        let from_steps: Vec<f64> = near.iter().map(|near| near * left).collect();
+        let errors = self.with_rounding(from_steps, (second, &coarse), times);
+        let last = errors.0.last().map_or(0.0, |error| error.rounding);
         let is_above_rounding = near.last().is_some_and(|&near| near > 100.0 * last);
-        if is_above_rounding && observed < LEAST_ORDER * order {
+        if is_above_rounding && observed < DOUBTED_ORDER * order {
             let order = self.order();
             self.doubt.get_or_insert(Doubt::Order { observed, order });
         }
-        Ok((errors, conditioning))
+        Ok(errors)
+    }
+
+    /// Whether steps of a companion are much shorter than its tolerance would have them, with few samples to land on: stability holds them, for one.
+    fn is_held(&self, companion: Method, steps: f64) -> bool {
+        let Some(ratio) = self.ratio(companion) else {
+            return false;
+        };
+        let is_free = 4 * self.solution.samples.len() < self.solution.statistics.steps;
+        let expected = Float::powf(ratio, 1.0 / f64::from(self.order()));
+        is_free && steps > Float::sqrt(expected)
+    }
+
+    /// The tolerance over that of a companion, where there are tolerances.
+    fn ratio(&self, companion: Method) -> Option<f64> {
+        let own = self.options.method.control()?.tolerance;
+        Some(own / companion.control()?.tolerance)
+    }
+
+    /// The distance from a motion that is much more accurate.
+    fn compare_with_finer(
+        &mut self,
+        times: &[State],
+    ) -> Result<(Vec<StateError>, Option<f64>), Doubt> {
+        let method = match self.options.method {
+            Method::Fixed { scheme, dt } => Method::fixed(scheme, dt / FINER.1),
+            Method::Controlled { scheme, control } => Method::Controlled {
+                scheme,
+                control: StepControl {
+                    tolerance: (control.tolerance / FINER.0).max(StepControl::LEAST_TOLERANCE),
+                    ..control
+                },
+            },
+        };
+        let fine = self.companion(method, times, self.initial)?;
+        if fine.steps <= self.solution.statistics.steps as f64 {
+            self.doubt.get_or_insert(Doubt::Steps);
+        }
+        let from_steps = self.distances(&fine.states, times);
+        Ok(self.with_rounding(from_steps, (self.options.method, &fine), times))
+    }
+
+    /// Errors from steps with those from rounding, as a companion beside `other` tells them where they count.
+    fn with_rounding(
+        &mut self,
+        from_steps: Vec<f64>,
+        (method, other): (Method, &Companion),
+        times: &[State],
+    ) -> (Vec<StateError>, Option<f64>) {
+        let is_near = from_steps.iter().any(|&error| error < FAR_ABOVE_ROUNDING);
+        let (conditioning, growth) = match is_near {
+            true => self.conditioning(method, other, times),
+            false => (None, Vec::new()),
+        };
+        let errors = from_steps.into_iter().enumerate().map(|(i, steps)| {
+            let growth = growth.get(i).copied().unwrap_or(1.0);
+            let unit = self.unit(&times[i]);
+            let rounding = unit * growth.max(other.paths[i]).max(1.0);
+            StateError { steps, rounding }
+        });
+        (errors.collect(), conditioning)
+    }
+
+    /// What one rounding of the state amounts to: half an ulp, and of momenta what these do to speeds.
+    fn unit(&self, state: &State) -> f64 {
+        let unit = 0.5 * f64::EPSILON;
+        if self.options.form == Form::Lagrangian {
+            return unit;
+        }
+        let mut dynamics = Recursive::new(Arc::clone(self.mechanism));
+        let mut rounded = state.clone();
+        let mut momenta = state.speeds.clone();
+        let found = dynamics.momenta(&state.configuration, &state.speeds, &mut momenta);
+        let signs = [unit, -unit].into_iter().cycle();
+        for (momentum, sign) in momenta.iter_mut().zip(signs) {
+            // A change of a rounding would be lost: this one is a thousand of them.
+            *momentum *= 1.0 + 1024.0 * sign;
+        }
+        let found = found
+            .and_then(|()| dynamics.speeds(&state.configuration, &momenta, &mut rounded.speeds));
+        match found {
+            Ok(()) => (distance(self.mechanism, &rounded, state).unwrap_or(0.0) / 1024.0).max(unit),
+            Err(_) => unit,
+        }
     }
 
     /// Two methods with coarser steps.
@@ -329,16 +442,34 @@ impl<'a, 'r> Estimation<'a, 'r> {
     ) -> (Option<f64>, Vec<f64>) {
         let tolerance = method.control().map_or(1e-6, |control| control.tolerance);
         let change = (10.0 * tolerance).clamp(1e-7, 1e-3);
-        let mut from = self.initial.clone();
-        for speed in &mut from.speeds {
-            *speed *= 1.0 + change;
-        }
+        let from = self.beside(change);
         let Ok(moved) = self.companion(method, times, &from) else {
             return (None, Vec::new());
         };
         let growth = self.distances(&moved.states, &beside.states);
         let growth: Vec<f64> = growth.iter().map(|distance| distance / change).collect();
         (growth.last().copied(), growth)
+    }
+
+    /// The first state with other speeds: one larger by a part of the largest of its joint, the next one smaller. Where constraints couple joints, all of them
+    /// larger by a part of themselves, which these allow.
+    fn beside(&self, change: f64) -> State {
+        let mut from = self.initial.clone();
+        if !self.mechanism.constraints().is_empty() {
+            from.speeds
+                .iter_mut()
+                .for_each(|speed| *speed *= 1.0 + change);
+            return from;
+        }
+        for body in self.mechanism.bodies() {
+            let speeds = &mut from.speeds[body.ranges().speeds.clone()];
+            let largest = speeds.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+            let signs = [change, -change].into_iter().cycle();
+            for (speed, sign) in speeds.iter_mut().zip(signs) {
+                *speed += sign * largest;
+            }
+        }
+        from
     }
 
     fn distances(&self, some: &[State], others: &[State]) -> Vec<f64> {

@@ -8,16 +8,20 @@ use super::StepFailure;
 use super::flow::{Flow, Rates};
 use super::step_state::StepState;
 use alloc::string::String;
+use alloc::vec;
 use alloc::vec::Vec;
 
-/// Attempts of one step that are refused before rounding is asked for: the second one is of a step that the first estimate has chosen.
+/// Attempts of one step that are refused before rounding is looked at again: the second one is of a step that the first estimate has chosen.
 const REFUSALS: usize = 2;
 
-/// Accepted steps after which it is no longer known.
+/// Accepted steps after which it is looked at again: two evaluations in so many steps cost some thousandths of them.
 const LIFE: usize = 64;
 
-/// What rounding of rates comes to in an estimate, as a part of what they would come to in a sum: weights of estimates are about a tenth, and of either sign.
-const PART: f64 = 0.25;
+/// How many times what rounding comes to on average is still rounding.
+const MARGIN: f64 = 12.0;
+
+/// What is left of an older look beside a new one, as one look at rounding may see little of it by chance.
+const MEMORY: f64 = 0.8;
 
 /// Steps whose length rounding has decided, and not the tolerance.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,101 +36,147 @@ pub struct RoundingLimit {
 
 /// What is known of rounding at the present state.
 pub(super) struct Rounding {
-    /// By what the estimate of a step's error grows with its length, over a tolerance of 1, 1/s; 0 where it is not known.
+    /// By what the estimate of a step's error grows with its length, over a tolerance of 1, 1/s.
     rate: f64,
-    /// Steps accepted since.
-    age: usize,
+    /// Steps accepted since; `None` where it has not been looked at.
+    age: Option<usize>,
     /// Attempts of the present step that were refused.
     refusals: usize,
-    limit: Option<(usize, usize, f64)>,
+    limit: Option<Limit>,
+    room: Room,
+}
+
+/// As [`RoundingLimit`], with the body in the place of its joint.
+struct Limit {
+    steps: usize,
+    body: usize,
+    error: f64,
+}
+
+/// Two points next to each other, with their rates.
+struct Room {
+    phi: Vec<f64>,
+    y: Vec<f64>,
+    here: Rates,
+    beside: Rates,
+    difference: Vec<f64>,
 }
 
 impl Rounding {
-    pub(super) const fn new() -> Self {
+    pub(super) fn new(flow: &Flow<'_>) -> Self {
+        let here = flow.new_rates();
         Self {
             rate: 0.0,
-            age: 0,
+            age: None,
             refusals: 0,
             limit: None,
+            room: Room {
+                phi: here.phi.clone(),
+                y: here.y.clone(),
+                difference: vec![0.0; here.phi.len() + here.y.len()],
+                beside: here.clone(),
+                here,
+            },
         }
     }
 
     /// What of an estimated error over `tolerance` is allowed a step for its rounding.
     pub(super) fn allowed(&self, step: f64, tolerance: f64) -> f64 {
-        (PART * self.rate * step / tolerance).max(1.0)
+        (self.rate * step / tolerance).max(1.0)
     }
 
-    /// A step was refused for its error; whether rounding is to be looked at.
-    pub(super) const fn refuse(&mut self) -> bool {
+    /// Whether it is to be looked at.
+    pub(super) fn is_due(&self) -> bool {
+        self.refusals >= REFUSALS || self.age.is_none_or(|age| age >= LIFE)
+    }
+
+    /// The present step was refused for its error.
+    pub(super) const fn refuse(&mut self) {
         self.refusals += 1;
-        self.refusals >= REFUSALS
     }
 
-    /// Looks at it, at the end of the step just tried, which comes at `time`.
-    pub(super) fn measure(
+    /// Looks at it, at the end of the step just tried, which comes at `time`. Where the equations have no value nearby, nothing is known of it.
+    /// `weight` is that of [`Stepper::estimate_weight`](super::stepper::Stepper::estimate_weight).
+    pub(super) fn look(
         &mut self,
         step_state: &mut StepState,
         flow: &mut Flow<'_>,
         time: f64,
-    ) -> Result<(), StepFailure> {
-        let found = scatter(step_state, flow, time)?;
-        step_state.set_errors(1.0, &found);
-        let (rate, _) = step_state.largest_error(flow, None)?;
-        self.rate = if rate.is_finite() { rate } else { 0.0 };
-        self.age = 0;
-        Ok(())
+        weight: f64,
+    ) {
+        let found = self.room.scatter(step_state, flow, time);
+        let found = found.and_then(|()| {
+            step_state.set_errors(1.0, &self.room.difference);
+            step_state.largest_error(flow, None)
+        });
+        let rate = found.map_or(0.0, |(rate, _)| rate);
+        let rate = match rate.is_finite() {
+            true => MARGIN * weight * rate,
+            false => 0.0,
+        };
+        self.rate = rate.max(MEMORY * self.rate);
+        (self.age, self.refusals) = (Some(0), 0);
     }
 
-    /// A step was accepted with this error of the joint under a body.
-    pub(super) fn accept(&mut self, error: f64, joint: usize, tolerance: f64) {
+    /// A step was accepted with this error of the joint under a body, over the tolerance.
+    pub(super) fn accept(&mut self, error: f64, body: usize, tolerance: f64) {
         self.refusals = 0;
-        self.age += 1;
-        if self.age > LIFE {
-            self.rate = 0.0;
+        self.age = self.age.map(|age| age + 1);
+        if error <= 1.0 {
+            return;
         }
-        if error > 1.0 {
-            let (steps, worst, most) = self.limit.unwrap_or((0, joint, 0.0));
-            let error = error * tolerance;
-            self.limit = Some(match error > most {
-                true => (steps + 1, joint, error),
-                false => (steps + 1, worst, most),
-            });
+        let error = error * tolerance;
+        let first = Limit {
+            steps: 0,
+            body,
+            error,
+        };
+        let limit = self.limit.get_or_insert(first);
+        limit.steps += 1;
+        if error > limit.error {
+            (limit.body, limit.error) = (body, error);
         }
     }
 
     /// The steps whose length it has decided, if there are any.
     pub(super) fn limit(&self, flow: &Flow<'_>) -> Option<RoundingLimit> {
-        let (steps, joint, error) = self.limit?;
+        let limit = self.limit.as_ref()?;
         Some(RoundingLimit {
-            steps,
-            joint: flow.joint_name(joint),
-            error,
+            steps: limit.steps,
+            joint: flow.joint_name(limit.body),
+            error: limit.error,
         })
     }
 }
 
-/// Differences of the rates at the point that the step has come to, and at one that differs from it by a rounding in each of its numbers: ϕ̇, then ẏ.
-fn scatter(
-    step_state: &StepState,
-    flow: &mut Flow<'_>,
-    time: f64,
-) -> Result<Vec<f64>, StepFailure> {
-    let (phi, y) = (&step_state.phi, &step_state.next_y);
-    let mut rates = |phi: &[f64], y: &[f64]| -> Result<Rates, StepFailure> {
-        let mut rates = flow.new_rates();
-        flow.evaluate(time, &step_state.base, phi, y, rates.parts())?;
-        Ok(rates)
-    };
-    let here = rates(phi, y)?;
-    let beside = rates(&beside(phi), &beside(y))?;
-    let pairs = here.phi.iter().zip(&beside.phi);
-    let pairs = pairs.chain(here.y.iter().zip(&beside.y));
-    Ok(pairs.map(|(a, b)| a - b).collect())
+impl Room {
+    /// Differences of the rates at the point that the step has come to, and at one that differs from it by a rounding in each of its numbers: ϕ̇,
+    /// then ẏ.
+    fn scatter(
+        &mut self,
+        step_state: &StepState,
+        flow: &mut Flow<'_>,
+        time: f64,
+    ) -> Result<(), StepFailure> {
+        beside(&step_state.phi, &mut self.phi);
+        beside(&step_state.next_y, &mut self.y);
+        let (here, base) = (self.here.parts(), &step_state.base);
+        step_state.evaluate_there(flow, time, here)?;
+        flow.evaluate(time, base, &self.phi, &self.y, self.beside.parts())?;
+        let (here, beside) = (&self.here, &self.beside);
+        let pairs = here.phi.iter().zip(&beside.phi);
+        let pairs = pairs.chain(here.y.iter().zip(&beside.y));
+        for (difference, (a, b)) in self.difference.iter_mut().zip(pairs) {
+            *difference = a - b;
+        }
+        Ok(())
+    }
 }
 
 /// Numbers that are larger by a rounding, and smaller, in turn. What is 0 stays.
-fn beside(numbers: &[f64]) -> Vec<f64> {
+fn beside(numbers: &[f64], moved: &mut [f64]) {
     let signs = [f64::EPSILON, -f64::EPSILON].into_iter().cycle();
-    let pairs = numbers.iter().zip(signs);
-    pairs.map(|(number, sign)| number * (1.0 + sign)).collect()
+    for ((number, sign), moved) in numbers.iter().zip(signs).zip(moved) {
+        *moved = number * (1.0 + sign);
+    }
 }

@@ -47,9 +47,9 @@ pub(super) trait Stepper {
         step_state.accept(flow, time, None)
     }
 
-    /// Whether its estimate is a sum of rates that cancel, of which rounding leaves its part.
-    fn is_embedded(&self) -> bool {
-        false
+    /// The root of the sum of squares of the weights that its estimate has, where it is a sum of rates that cancel: what rounding of these amounts to in it.
+    fn estimate_weight(&self) -> Option<f64> {
+        None
     }
 
     /// The power of the step with which its estimated error falls.

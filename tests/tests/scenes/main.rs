@@ -2,6 +2,7 @@
 
 mod control;
 mod coupled_scenes;
+mod estimates;
 mod formats;
 mod forms_agree;
 mod fuzz_scenes;

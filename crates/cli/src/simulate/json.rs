@@ -3,7 +3,7 @@
 use super::accuracy::Accuracy;
 use super::columns::{Column, JsonSample};
 use super::control::Outcome;
-use hamel::integrate::Crossing;
+use hamel::integrate::{Crossing, RoundingLimit};
 use hamel_console::output::Failure;
 use hamel_console::terminal::fragment_of_json;
 use serde::Serialize;
@@ -39,8 +39,33 @@ pub struct Report<'a> {
     /// How far the states are from the exact motion, where that was estimated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<&'a Accuracy>,
+    /// Where rounding decided how long steps are; absent where the tolerance did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rounding: Option<Rounding<'a>>,
     /// What the simulation took.
     pub statistics: Statistics,
+}
+
+/// Steps whose length rounding decided, and not the tolerance.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Rounding<'a> {
+    /// How many.
+    pub steps: usize,
+    /// The joint with the largest estimated error.
+    pub joint: &'a str,
+    /// That error: smaller tolerances buy nothing.
+    pub error: f64,
+}
+
+impl<'a> Rounding<'a> {
+    /// What is told of it.
+    pub fn of(limit: &'a RoundingLimit) -> Self {
+        Self {
+            steps: limit.steps,
+            joint: &limit.joint,
+            error: limit.error,
+        }
+    }
 }
 
 /// One crossing of an event of the scene.

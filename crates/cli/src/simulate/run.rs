@@ -208,6 +208,7 @@ fn print_json(plan: &Plan, columns: &Columns<'_>, run: &Run) -> Result<(), Failu
         events: &events,
         control: run.outcome.as_ref(),
         error: run.accuracy.as_ref(),
+        rounding: run.solution.rounding.as_ref().map(json::Rounding::of),
         statistics: run.statistics,
     })
 }
@@ -239,6 +240,7 @@ fn print_summary(plan: &Plan, run: &Run) -> Result<(), Failure> {
         accuracy: run.accuracy.as_ref(),
         statistics: run.statistics,
         approaches: &solution.approaches,
+        rounding: solution.rounding.as_ref(),
         events: &solution.events,
     };
     output::print(&summary.to_string())

@@ -6,7 +6,7 @@ use super::control::Outcome;
 use super::json::Statistics;
 use super::plan::Plan;
 use comfy_table::{Cell, CellAlignment, Table, presets};
-use hamel::integrate::{Approach, Crossing};
+use hamel::integrate::{Approach, Crossing, RoundingLimit};
 use hamel::mechanism::{BodyState, Kinematics, Mechanism};
 use std::fmt;
 
@@ -43,6 +43,8 @@ pub struct Summary<'a> {
     pub unresolved: Option<&'a str>,
     /// What the scene's events came to.
     pub events: &'a [Crossing],
+    /// Where rounding decided how long steps are.
+    pub rounding: Option<&'a RoundingLimit>,
     /// How near joints came to singular sets.
     pub approaches: &'a [Approach],
 }
@@ -72,6 +74,18 @@ impl fmt::Display for Summary<'_> {
         )?;
         if let Some(unresolved) = self.unresolved {
             writeln!(f, "unresolved  {unresolved}")?;
+        }
+        if let Some(RoundingLimit {
+            steps,
+            joint,
+            error,
+        }) = self.rounding
+        {
+            writeln!(
+                f,
+                "rounding    decided the length of {steps} steps, not the tolerance: at joint `{joint}` the error of a step is not below {error:.1e} in \
+                 doubles; see `--arithmetic refined`"
+            )?;
         }
         for approach in self.approaches {
             writeln!(f, "singular    {approach}")?;
