@@ -159,6 +159,8 @@ mod tests {
             samples: &[],
             events: &[],
             control: None,
+            error: None,
+            rounding: None,
             statistics,
         };
         let mut bytes = Vec::new();
