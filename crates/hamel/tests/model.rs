@@ -191,6 +191,66 @@ fn a_simulation_takes_inputs_events_and_times() -> Result<(), Error> {
     Ok(())
 }
 
+/// x = t² under 4 N on 2 kg is known, and so is a pendulum of small swings but for its tolerance.
+#[test]
+fn a_simulation_tells_its_error() -> Result<(), Error> {
+    let rod = Body::new("rod", "revolute").mass(1.0, [0.5, 0.0, 0.0]);
+    let rod = rod.inertia([0.0, 0.1, 0.1]);
+    let pendulum = Builder::new()
+        .gravity([0.0, -9.81, 0.0])
+        .body(rod)
+        .build()?;
+    let run = |tolerance: f64| {
+        let motion = pendulum.simulate().until(3.0).sample_every(0.5);
+        motion
+            .method(Method::dormand_prince(tolerance))
+            .run_estimated()
+    };
+    let (exact, _) = run(1e-14)?;
+    for tolerance in [1e-5, 1e-7, 1e-9] {
+        let (motion, error) = run(tolerance)?;
+        assert_eq!(error.doubt, None);
+        assert_eq!(error.samples.len(), motion.samples.len());
+        assert_eq!(error.samples[0].total(), 0.0);
+        // The angle, and the speed as a part of max(1, size).
+        let pairs = [
+            (motion.state.configuration[0], exact.state.configuration[0]),
+            (motion.state.speeds[0], exact.state.speeds[0]),
+        ];
+        let parts = pairs.map(|(found, exact)| (found - exact).abs() / exact.abs().max(1.0));
+        let true_error = parts[0].max(parts[1]);
+        let ratio = error.end.total() / true_error;
+        assert!((0.1..10.0).contains(&ratio), "{tolerance:e}: {ratio}");
+    }
+    Ok(())
+}
+
+#[test]
+fn an_estimate_that_cannot_be_had_says_why() -> Result<(), Error> {
+    let rod = Body::new("rod", "prismatic").mass(2.0, [0.0; 3]);
+    let slide = Builder::new().gravity([0.0; 3]).body(rod).build()?;
+    let mut calls = 0;
+    // Of the first motion there are inputs, of companions there are none.
+    let simulation = slide
+        .simulate()
+        .until(1.0)
+        .inputs(|_time, _q, _speeds, efforts| {
+            calls += 1;
+            efforts[0] = if calls < 500 { 4.0 } else { f64::NAN };
+        });
+    let (_, error) = simulation.method(Method::rk4(0.01)).run_estimated()?;
+    assert!(error.end.total().is_nan());
+    let doubt = error
+        .doubt
+        .map(|doubt| doubt.to_string())
+        .unwrap_or_default();
+    assert!(doubt.starts_with("a coarser motion fails: "), "{doubt}");
+    // A motion of no length has no error.
+    let (_, error) = slide.simulate().until(0.0).run_estimated()?;
+    assert_eq!((error.end.total(), error.doubt), (0.0, None));
+    Ok(())
+}
+
 #[test]
 fn an_error_that_ends_a_program_is_told_in_words() {
     let error = hamel::load("no such file.urdf").expect_err("no such file");

@@ -5,7 +5,7 @@ use super::run::move_on;
 use super::{control::Loop, run::Motion};
 use hamel::dynamics::Dynamics;
 use hamel::integrate::{
-    GlobalError, IntegrateError, Observer, Options, Solution, State, StateError,
+    ErrorParts, GlobalError, IntegrateError, Observer, Options, Solution, State,
 };
 use hamel_console::interrupt;
 use serde::Serialize;
@@ -43,8 +43,8 @@ fn known(error: f64) -> Option<f64> {
     error.is_finite().then_some(error)
 }
 
-impl From<StateError> for Parts {
-    fn from(error: StateError) -> Self {
+impl From<ErrorParts> for Parts {
+    fn from(error: ErrorParts) -> Self {
         Self {
             total: known(error.total()),
             steps: known(error.steps),

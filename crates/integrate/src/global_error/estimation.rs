@@ -1,20 +1,13 @@
-//! The global error of a motion: how far its states are from those of the exact motion, estimated from companion motions.
-//!
-//! Two companions repeat the motion with coarser steps. Their distances from the motion tell how its error falls with the steps, and so what is left of
-//! it (extrapolation, as P. Deuflhard and F. Bornemann, *Scientific Computing with Ordinary Differential Equations*, 4.4). A third one begins
-//! beside the first state: the distance to which it is carried away is the conditioning of the motion, which also multiplies rounding.
-//! The companions together take about as many evaluations as the motion.
+//! The way from companions to errors.
 
-use super::{Form, Method, Observer, Options, Scheme, Solution, State, Step, StepControl};
-use alloc::string::String;
+use super::companion::{Companion, Path, distance};
+use super::{Doubt, ErrorParts, GlobalError, Run};
+use crate::{Form, Method, Options, Scheme, Solution, State, Step, StepControl};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
-use core::fmt::{Display, Formatter};
 use core::ops::ControlFlow;
 use hamel_runtime::dynamics::{Dynamics, Recursive};
-use hamel_runtime::mechanism::{BodyState, Mechanism};
-use hamel_runtime::spatial::so3;
-use nalgebra::Vector3;
+use hamel_runtime::mechanism::Mechanism;
 use num_traits::Float;
 
 /// Companions are so many times coarser, each than the one before: three digits, which tells errors from rounding and costs half of the steps at order 9.
@@ -39,6 +32,9 @@ const FINER: (f64, f64) = (1e3, 5.0);
 /// Below this, errors of the exponential method may be those of rounding in oscillations that its steps pass over.
 const OSCILLATIONS: f64 = 1e-11;
 
+/// Motions of as many steps that differ by less than this may have made the same steps.
+const ALIKE: f64 = 1e-11;
+
 /// Above this, what rounding amounts to is of no interest, and is not looked for by a companion of its own.
 const FAR_ABOVE_ROUNDING: f64 = 1e-9;
 
@@ -49,111 +45,18 @@ const LEAST_ORDER: f64 = 0.8;
 const LEAST_SLOPE: f64 = 0.85;
 
 /// A coarser motion of more than this part of the steps has steps that are hardly longer.
-const HARDLY_LONGER: f64 = 0.9;
+const HARDLY_LONGER: f64 = 0.95;
+
+/// A coarser motion of more steps than this power of what its tolerance would have is held to them.
+const HELD: f64 = 0.5;
 
 /// Where less than this part of it is observed, the estimate is not reliable.
 const DOUBTED_ORDER: f64 = 0.4;
 
 /// Errors above this part of the motion are not small, so that nothing about them is linear.
 const LARGE: f64 = 1e-2;
-
-/// The largest of the errors of all bodies: of attitudes in rad; of positions, velocities and angular velocities as parts of max(1 SI unit, size).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StateError {
-    /// From the steps of the method.
-    pub steps: f64,
-    /// From rounding.
-    pub rounding: f64,
-}
-
-impl StateError {
-    /// Both together.
-    pub const fn total(&self) -> f64 {
-        self.steps + self.rounding
-    }
-}
-
-/// Why an estimate is not reliable.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Doubt {
-    /// The error is too large for anything about it to be linear.
-    Large,
-    /// The error of companions does not fall with their steps as the order of the method says.
-    Order {
-        /// The order by which it falls.
-        observed: f64,
-        /// The order of the method.
-        order: u32,
-    },
-    /// A companion takes steps as short as those of the motion: something else than the error limits them.
-    Steps,
-    /// Steps are longer than oscillations, whose rounding no companion tells.
-    Oscillations,
-    /// A companion does not come to the end.
-    Companion(String),
-}
-
-impl Display for Doubt {
-    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Large => f.write_str("the error is more than 1 % of the motion"),
-            Self::Order { observed, order } => write!(
-                f,
-                "the error of coarser motions falls with order {observed:.1}, the method is of order {order}"
-            ),
-            Self::Steps => f.write_str(
-                "something else than the error decides how long steps are: motions of other tolerances take steps that are hardly longer or shorter",
-            ),
-            Self::Oscillations => f.write_str(
-                "the method takes steps longer than oscillations: how rounding adds up over these is not known",
-            ),
-            Self::Companion(cause) => write!(f, "a coarser motion fails: {cause}"),
-        }
-    }
-}
-
-/// The estimate of the error of a motion.
-#[derive(Clone, Debug, PartialEq)]
-pub struct GlobalError {
-    /// Of each sample of the solution; between times at which the motion was compared, that of the worse one of the two beside it.
-    pub samples: Vec<StateError>,
-    /// Of the last state.
-    pub end: StateError,
-    /// Change of the last state per relative change of the initial speeds; absent where that was not found.
-    pub conditioning: Option<f64>,
-    /// Why it may be wrong by more than a factor of ten, if so.
-    pub doubt: Option<Doubt>,
-    /// Evaluations of the equations of motion by the companions.
-    pub evaluations: usize,
-}
-
-/// Runs a companion from this state by these options, with the same inputs as the motion, and without its events; else why there is none.
-pub type Run<'a> = dyn FnMut(&State, &Options, &mut Observer<'_>) -> Result<Solution, String> + 'a;
-
-/// A companion as far as it is compared.
-struct Companion {
-    /// At the times of comparison.
-    states: Vec<State>,
-    steps: f64,
-    /// Distances that speeds and configuration have gone, in the units of errors, at the times of comparison: what rounding of each step adds to.
-    paths: Vec<f64>,
-}
-
-impl GlobalError {
-    /// The error of `solution`, which was computed from `initial` by `options`.
-    pub fn estimate(
-        mechanism: &Arc<Mechanism>,
-        initial: &State,
-        options: &Options,
-        solution: &Solution,
-        run: &mut Run<'_>,
-    ) -> Self {
-        Estimation::new(mechanism, initial, options, solution, run).finish()
-    }
-}
-
-struct Estimation<'a, 'r> {
+/// An estimate that is being made.
+pub(super) struct Estimation<'a, 'r> {
     mechanism: &'a Arc<Mechanism>,
     initial: &'a State,
     options: &'a Options,
@@ -164,7 +67,7 @@ struct Estimation<'a, 'r> {
 }
 
 impl<'a, 'r> Estimation<'a, 'r> {
-    fn new(
+    pub(super) fn new(
         mechanism: &'a Arc<Mechanism>,
         initial: &'a State,
         options: &'a Options,
@@ -182,39 +85,29 @@ impl<'a, 'r> Estimation<'a, 'r> {
         }
     }
 
-    fn finish(mut self) -> GlobalError {
+    pub(super) fn finish(mut self) -> GlobalError {
         let times = self.times();
-        let found = self.compare(&times);
+        // A motion of no length has no error.
+        let found = match times.is_empty() {
+            true => Ok((Vec::new(), None)),
+            false => self.compare(&times),
+        };
         let (errors, conditioning) = found.unwrap_or_else(|doubt| {
             self.doubt.get_or_insert(doubt);
-            let unknown = StateError {
+            let unknown = ErrorParts {
                 steps: f64::NAN,
                 rounding: f64::NAN,
             };
             (times.iter().map(|_| unknown).collect(), None)
         });
-        let worst = |errors: &[StateError]| {
-            let both = errors.iter().copied();
-            both.max_by(|a, b| a.total().total_cmp(&b.total()))
-                .unwrap_or_default()
-        };
-        let samples = self.solution.samples.iter().map(|sample| {
-            let after = times.partition_point(|state| state.time < sample.time);
-            let first = after.saturating_sub(1);
-            let exact = times.get(after).is_some_and(|t| t.time == sample.time);
-            let first = if exact { after } else { first };
-            let last = (after + 1).min(times.len());
-            worst(errors.get(first..last).unwrap_or_default())
+        let samples = self.solution.samples.iter();
+        let samples = samples.map(|sample| match sample.time > self.initial.time {
+            true => error_at(sample.time, &times, &errors),
+            false => ErrorParts::default(),
         });
-        let samples: Vec<StateError> = samples
-            .zip(&self.solution.samples)
-            .map(|(error, sample)| match sample.time > self.initial.time {
-                true => error,
-                false => StateError::default(),
-            })
-            .collect();
+        let samples = samples.collect();
         let end = errors.last().copied().unwrap_or_default();
-        let is_small = |error: &StateError| error.total() <= LARGE;
+        let is_small = |error: &ErrorParts| error.total() <= LARGE;
         if !errors.iter().all(is_small) {
             self.doubt.get_or_insert(Doubt::Large);
         }
@@ -258,7 +151,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
         self.options.method.scheme().order()
     }
 
-    fn compare(&mut self, times: &[State]) -> Result<(Vec<StateError>, Option<f64>), Doubt> {
+    fn compare(&mut self, times: &[State]) -> Result<(Vec<ErrorParts>, Option<f64>), Doubt> {
         if self.solution.statistics.steps < FEW {
             return self.compare_with_finer(times);
         }
@@ -302,7 +195,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
         };
         let is_free = 4 * self.solution.samples.len() < self.solution.statistics.steps;
         let expected = Float::powf(ratio, 1.0 / f64::from(self.order()));
-        is_free && steps > Float::sqrt(expected)
+        is_free && steps > Float::powf(expected, HELD)
     }
 
     /// The tolerance over that of a companion, where there are tolerances.
@@ -315,7 +208,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
     fn compare_with_finer(
         &mut self,
         times: &[State],
-    ) -> Result<(Vec<StateError>, Option<f64>), Doubt> {
+    ) -> Result<(Vec<ErrorParts>, Option<f64>), Doubt> {
         let method = match self.options.method {
             Method::Fixed { scheme, dt } => Method::fixed(scheme, dt / FINER.1),
             Method::Controlled { scheme, control } => Method::Controlled {
@@ -327,10 +220,11 @@ impl<'a, 'r> Estimation<'a, 'r> {
             },
         };
         let fine = self.companion(method, times, self.initial)?;
-        if fine.steps <= self.solution.statistics.steps as f64 {
+        let from_steps = self.distances(&fine.states, times);
+        let is_alike = from_steps.iter().all(|&error| error < ALIKE);
+        if is_alike && fine.steps <= self.solution.statistics.steps as f64 {
             self.doubt.get_or_insert(Doubt::Steps);
         }
-        let from_steps = self.distances(&fine.states, times);
         Ok(self.with_rounding(from_steps, (self.options.method, &fine), times))
     }
 
@@ -340,7 +234,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
         from_steps: Vec<f64>,
         (method, other): (Method, &Companion),
         times: &[State],
-    ) -> (Vec<StateError>, Option<f64>) {
+    ) -> (Vec<ErrorParts>, Option<f64>) {
         let is_near = from_steps.iter().any(|&error| error < FAR_ABOVE_ROUNDING);
         let (conditioning, growth) = match is_near {
             true => self.conditioning(method, other, times),
@@ -350,7 +244,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
             let growth = growth.get(i).copied().unwrap_or(1.0);
             let unit = self.unit(&times[i]);
             let rounding = unit * growth.max(other.paths[i]).max(1.0);
-            StateError { steps, rounding }
+            ErrorParts { steps, rounding }
         });
         (errors.collect(), conditioning)
     }
@@ -479,7 +373,6 @@ impl<'a, 'r> Estimation<'a, 'r> {
             .collect()
     }
 }
-
 /// The order with which an error falls by `ratio` where steps get shorter by `steps`.
 fn order_between(ratio: f64, steps: f64) -> f64 {
     match ratio > 0.0 && steps < 1.0 {
@@ -488,46 +381,16 @@ fn order_between(ratio: f64, steps: f64) -> f64 {
     }
 }
 
-/// How far speeds and coordinates have gone.
-#[derive(Default)]
-struct Path {
-    length: f64,
-    last: Option<(f64, Vec<f64>)>,
-}
-
-impl Path {
-    fn follow(&mut self, step: &Step<'_>) {
-        let largest = step
-            .speeds
-            .iter()
-            .fold(0.0_f64, |most, v| most.max(v.abs()));
-        if let Some((time, speeds)) = &self.last {
-            let changes = step.speeds.iter().zip(speeds).map(|(a, b)| (a - b).abs());
-            let change = changes.fold(0.0, f64::max) / largest.max(1.0);
-            self.length += change.max((step.time - time) * largest);
-        }
-        self.last = Some((step.time, step.speeds.to_vec()));
-    }
-}
-
-/// The largest distance of any body between two states, as in [`StateError`].
-fn distance(mechanism: &Mechanism, a: &State, b: &State) -> Option<f64> {
-    let of = |state: &State| {
-        let kinematics = mechanism.kinematics(&state.configuration, &state.speeds);
-        kinematics.ok()
+/// That of the state at this time, if it was compared; else the larger one of those beside it.
+fn error_at(time: f64, times: &[State], errors: &[ErrorParts]) -> ErrorParts {
+    let after = times.partition_point(|state| state.time < time);
+    let is_compared = times.get(after).is_some_and(|state| state.time == time);
+    let first = match is_compared {
+        true => after,
+        false => after.saturating_sub(1),
     };
-    let (a, b) = (of(a)?, of(b)?);
-    let pairs = a.bodies.iter().zip(&b.bodies);
-    let parts = pairs.flat_map(|(a, b)| body_distances(a, b));
-    Some(parts.fold(0.0, |most, part| if part <= most { most } else { part }))
-}
-
-fn body_distances(a: &BodyState, b: &BodyState) -> [f64; 4] {
-    let part = |a: Vector3<f64>, b: Vector3<f64>| (a - b).norm() / b.norm().max(1.0);
-    [
-        so3::log(&b.pose.rotation.tr_mul(&a.pose.rotation)).norm(),
-        part(a.position_com, b.position_com),
-        part(a.velocity_com, b.velocity_com),
-        part(a.angular_velocity_body(), b.angular_velocity_body()),
-    ]
+    let last = (after + 1).min(times.len());
+    let beside = errors.get(first..last).unwrap_or_default().iter().copied();
+    let worst = beside.max_by(|a, b| a.total().total_cmp(&b.total()));
+    worst.unwrap_or_default()
 }

@@ -1,0 +1,59 @@
+//! Companion motions, and how far states are from each other.
+
+use crate::{State, Step};
+use alloc::vec::Vec;
+use hamel_runtime::mechanism::{BodyState, Mechanism};
+use hamel_runtime::spatial::so3;
+use nalgebra::Vector3;
+
+/// A companion as far as it is compared.
+pub(super) struct Companion {
+    /// At the times of comparison.
+    pub(super) states: Vec<State>,
+    pub(super) steps: f64,
+    /// Distances that speeds and configuration have gone, in the units of errors, at the times of comparison: what rounding of each step adds to.
+    pub(super) paths: Vec<f64>,
+}
+/// How far speeds and coordinates have gone.
+#[derive(Default)]
+pub(super) struct Path {
+    pub(super) length: f64,
+    last: Option<(f64, Vec<f64>)>,
+}
+
+impl Path {
+    pub(super) fn follow(&mut self, step: &Step<'_>) {
+        let largest = step
+            .speeds
+            .iter()
+            .fold(0.0_f64, |most, v| most.max(v.abs()));
+        if let Some((time, speeds)) = &self.last {
+            let changes = step.speeds.iter().zip(speeds).map(|(a, b)| (a - b).abs());
+            let change = changes.fold(0.0, f64::max) / largest.max(1.0);
+            self.length += change.max((step.time - time) * largest);
+        }
+        self.last = Some((step.time, step.speeds.to_vec()));
+    }
+}
+
+/// The largest distance of any body between two states, as in [`ErrorParts`].
+pub(super) fn distance(mechanism: &Mechanism, a: &State, b: &State) -> Option<f64> {
+    let of = |state: &State| {
+        let kinematics = mechanism.kinematics(&state.configuration, &state.speeds);
+        kinematics.ok()
+    };
+    let (a, b) = (of(a)?, of(b)?);
+    let pairs = a.bodies.iter().zip(&b.bodies);
+    let parts = pairs.flat_map(|(a, b)| body_distances(a, b));
+    Some(parts.fold(0.0, |most, part| if part <= most { most } else { part }))
+}
+
+fn body_distances(a: &BodyState, b: &BodyState) -> [f64; 4] {
+    let part = |a: Vector3<f64>, b: Vector3<f64>| (a - b).norm() / b.norm().max(1.0);
+    [
+        so3::log(&b.pose.rotation.tr_mul(&a.pose.rotation)).norm(),
+        part(a.position_com, b.position_com),
+        part(a.velocity_com, b.velocity_com),
+        part(a.angular_velocity_body(), b.angular_velocity_body()),
+    ]
+}
