@@ -18,10 +18,10 @@ const REFUSALS: usize = 2;
 const LIFE: usize = 64;
 
 /// How many times what rounding comes to on average is still rounding.
-const MARGIN: f64 = 12.0;
+const MARGIN: f64 = 8.0;
 
 /// What is left of an older look beside a new one, as one look at rounding may see little of it by chance.
-const MEMORY: f64 = 0.8;
+const MEMORY: f64 = 0.95;
 
 /// Steps whose length rounding has decided, and not the tolerance.
 #[derive(Clone, Debug, PartialEq)]

@@ -305,5 +305,8 @@ fn what_takes_dense_matrices_has_a_limit() {
     );
     let weights = "weights = { position = 1.0, speed = 1.0, effort = 1.0 }";
     let message = refusal(501, &format!("[controller]\nkind = \"lqr\"\n{weights}\n"));
-    assert!(message.contains("more than 500 freedoms"), "{message}");
+    assert!(
+        message.contains("more than 500 degrees of freedom"),
+        "{message}"
+    );
 }
