@@ -15,7 +15,11 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let wire = hamel::Builder::new().registry(known).body(bead).build()?;
     let mut start = wire.state();
     wire.set_position(&mut start, "bead", &[0.2, 0.0])?;
-    let motion = wire.simulate().starting_at(start.clone()).until(1.0).run()?;
+    let motion = wire
+        .simulate()
+        .starting_at(start.clone())
+        .until(1.0)
+        .run()?;
     let drift = wire.energy(&motion.state)? - wire.energy(&start)?;
     println!(
         "bead at {:.6} m after 1 s, energy changed by {drift:.1e} J",
