@@ -14,11 +14,14 @@ pub(super) struct Companion {
     /// Distances that speeds and configuration have gone, in the units of errors, at the times of comparison: what rounding of each step adds to.
     pub(super) paths: Vec<f64>,
 }
+
 /// How far speeds and coordinates have gone.
 #[derive(Default)]
 pub(super) struct Path {
     pub(super) length: f64,
-    last: Option<(f64, Vec<f64>)>,
+    /// Time and speeds of the step before; no speeds before the first.
+    time: f64,
+    speeds: Vec<f64>,
 }
 
 impl Path {
@@ -27,12 +30,16 @@ impl Path {
             .speeds
             .iter()
             .fold(0.0_f64, |most, v| most.max(v.abs()));
-        if let Some((time, speeds)) = &self.last {
-            let changes = step.speeds.iter().zip(speeds).map(|(a, b)| (a - b).abs());
+        if self.speeds.is_empty() {
+            self.speeds.extend_from_slice(step.speeds);
+        } else {
+            let pairs = step.speeds.iter().zip(&self.speeds);
+            let changes = pairs.map(|(a, b)| (a - b).abs());
             let change = changes.fold(0.0, f64::max) / largest.max(1.0);
-            self.length += change.max((step.time - time) * largest);
+            self.length += change.max((step.time - self.time) * largest);
+            self.speeds.copy_from_slice(step.speeds);
         }
-        self.last = Some((step.time, step.speeds.to_vec()));
+        self.time = step.time;
     }
 }
 

@@ -240,9 +240,10 @@ impl<'a, 'r> Estimation<'a, 'r> {
             true => self.conditioning(method, other, times),
             false => (None, Vec::new()),
         };
+        let mut dynamics = Recursive::new(Arc::clone(self.mechanism));
         let errors = from_steps.into_iter().enumerate().map(|(i, steps)| {
             let growth = growth.get(i).copied().unwrap_or(1.0);
-            let unit = self.unit(&times[i]);
+            let unit = self.unit(&mut dynamics, &times[i]);
             let rounding = unit * growth.max(other.paths[i]).max(1.0);
             ErrorParts { steps, rounding }
         });
@@ -250,12 +251,11 @@ impl<'a, 'r> Estimation<'a, 'r> {
     }
 
     /// What one rounding of the state amounts to: half an ulp, and of momenta what these do to speeds.
-    fn unit(&self, state: &State) -> f64 {
+    fn unit(&self, dynamics: &mut Recursive, state: &State) -> f64 {
         let unit = 0.5 * f64::EPSILON;
         if self.options.form == Form::Lagrangian {
             return unit;
         }
-        let mut dynamics = Recursive::new(Arc::clone(self.mechanism));
         let mut rounded = state.clone();
         let mut momenta = state.speeds.clone();
         let found = dynamics.momenta(&state.configuration, &state.speeds, &mut momenta);
