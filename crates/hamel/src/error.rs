@@ -43,6 +43,18 @@ pub enum Error {
         /// Why.
         cause: ControlError,
     },
+    /// An accuracy that no tolerance reaches.
+    #[error(
+        "an error of at most {wanted:.1e} was asked for, and the least estimated is {error:.1e}, of which {rounding:.1e} is rounding in doubles"
+    )]
+    Accuracy {
+        /// The error that was asked for.
+        wanted: f64,
+        /// The least one found, as estimated.
+        error: f64,
+        /// The part of it that is rounding.
+        rounding: f64,
+    },
     /// Samples that cannot be taken.
     #[error(transparent)]
     Samples(#[from] SampleError),

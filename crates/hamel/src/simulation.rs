@@ -3,7 +3,8 @@
 use crate::error::Error;
 use hamel_control::Feedback;
 use hamel_integrate::{
-    Event, Form, GlobalError, Integration, Method, Observer, Options, Solution, State, no_observer,
+    Event, Form, GlobalError, Integration, Method, Observer, Options, Solution, State, Tuned,
+    no_observer,
 };
 use hamel_runtime::dynamics::Dynamics;
 use hamel_scene::{Company, Scene, Settings};
@@ -60,10 +61,11 @@ impl<'a> Simulation<'a> {
         self
     }
 
-    /// By this method.
+    /// By this method; with this tolerance or step too, unless [`Simulation::accuracy`] comes after it.
     pub const fn method(mut self, method: Method) -> Self {
         self.settings.method = method;
         self.settings.chooses = false;
+        self.settings.accuracy = None;
         self
     }
 
@@ -71,6 +73,18 @@ impl<'a> Simulation<'a> {
     pub const fn tolerance(mut self, tolerance: f64) -> Self {
         self.settings.method = Method::dormand_prince(tolerance);
         self.settings.chooses = true;
+        self.settings.accuracy = None;
+        self
+    }
+
+    /// With an error of the last state of at most `error`, as [`hamel_integrate::ErrorParts`] measures it: attitudes in rad, positions and velocities as parts
+    /// of max(1 SI unit, size). The tolerance is searched for by motions that are integrated and estimated for this alone, two as a rule; inputs are asked for
+    /// their efforts too. [`Simulation::run`] refuses an accuracy that is not reached, [`Simulation::run_estimated`] tells the error.
+    pub const fn accuracy(mut self, error: f64) -> Self {
+        self.settings.accuracy = Some(error);
+        if let Method::Fixed { .. } = self.settings.method {
+            self = self.tolerance(Settings::DEFAULT_TOL);
+        }
         self
     }
 
@@ -95,22 +109,50 @@ impl<'a> Simulation<'a> {
     /// Moves the model: its last state, its samples and its events.
     ///
     /// # Errors
-    /// A state, settings or events that are refused; a controller or equations that fail on the way.
+    /// A state, settings or events that are refused; a controller or equations that fail on the way; an accuracy that is not reached.
     pub fn run(mut self) -> Result<Solution, Error> {
-        let options = self.options()?;
         let mut dynamics = self.dynamics();
+        if let Some(wanted) = self.settings.accuracy {
+            let found = self.search(&mut *dynamics, wanted)?;
+            if !found.is_reached {
+                let (error, rounding) = (found.error.total(), found.error.rounding);
+                return Err(Error::Accuracy {
+                    wanted,
+                    error,
+                    rounding,
+                });
+            }
+        }
+        let options = self.options()?;
         self.motion(&mut *dynamics, &options)
     }
 
     /// As [`Simulation::run`], with an estimate of the error of its states. It takes about as many evaluations of the equations again; inputs are asked for
-    /// the efforts of companion motions too.
+    /// the efforts of companion motions too. An accuracy that is not reached is no error here: the estimate says so.
     ///
     /// # Errors
     /// Those of [`Simulation::run`].
     pub fn run_estimated(mut self) -> Result<(Solution, GlobalError), Error> {
-        let options = self.options()?;
         let mut dynamics = self.dynamics();
-        let solution = self.motion(&mut *dynamics, &options)?;
+        if let Some(wanted) = self.settings.accuracy {
+            self.search(&mut *dynamics, wanted)?;
+        }
+        self.estimated(&mut *dynamics)
+    }
+
+    /// Settles the tolerance at which the last state has the accuracy that is wanted.
+    fn search(&mut self, dynamics: &mut dyn Dynamics, wanted: f64) -> Result<Tuned, Error> {
+        let found = Tuned::search(wanted, |tolerance| {
+            self.settings = self.settings.with_tolerance(tolerance);
+            Ok::<_, Error>(self.estimated(dynamics)?.1)
+        })?;
+        self.settings = self.settings.with_tolerance(found.tolerance);
+        Ok(found)
+    }
+
+    fn estimated(&mut self, dynamics: &mut dyn Dynamics) -> Result<(Solution, GlobalError), Error> {
+        let options = self.options()?;
+        let solution = self.motion(dynamics, &options)?;
         let (scene, start) = (self.scene, self.start.clone());
         let mut companion = |start: &State, options: &Options, observer: &mut Observer<'_>| {
             let motion = self.integrate(&mut *dynamics, (start, options), vec![], observer);
@@ -138,9 +180,14 @@ impl<'a> Simulation<'a> {
     ) -> Result<Solution, Error> {
         let mechanism = &self.scene.mechanism;
         let own = self.scene.events.iter().map(|event| event.event(mechanism));
-        let events = own.chain(std::mem::take(&mut self.events)).collect();
+        // The caller's own are wanted again where a tolerance is searched for.
+        let mut others = std::mem::take(&mut self.events);
+        let others_again = others.iter_mut().map(Event::by_ref);
+        let events = own.chain(others_again).collect();
         let start = self.start.clone();
-        self.integrate(dynamics, (&start, options), events, &mut no_observer)
+        let moved = self.integrate(dynamics, (&start, options), events, &mut no_observer);
+        self.events = others;
+        moved
     }
 
     /// One motion under the inputs, or a controller that begins with it.
@@ -209,17 +256,13 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// A first state that the equations of motion cannot be evaluated at.
     pub fn chosen_method(&self) -> Result<(Method, Option<String>), Error> {
-        if !self.settings.chooses {
-            return Ok((self.settings.method, None));
-        }
         let company = Company {
             has_inputs: self.inputs.is_some() || self.scene.control.is_some(),
             has_events: !self.events.is_empty(),
         };
-        let chosen = self
+        Ok(self
             .scene
-            .choose_method(&self.settings, &self.start, company)?;
-        Ok((chosen.0, Some(chosen.1)))
+            .choose_method(&self.settings, &self.start, company)?)
     }
 }
 

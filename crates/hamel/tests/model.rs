@@ -226,6 +226,37 @@ fn a_simulation_tells_its_error() -> Result<(), Error> {
 }
 
 #[test]
+fn a_simulation_has_the_accuracy_that_is_asked_for() -> Result<(), Error> {
+    let model = hamel::load(format!("{SCENES}double_ball_pendulum.toml"))?;
+    let motion = || model.simulate().until(2.0).sample_every(2.0);
+    let (exact, _) = motion()
+        .method(Method::controlled(Scheme::Verner9, 1e-15))
+        .run_estimated()?;
+    for wanted in [1e-4, 1e-7, 1e-10] {
+        let solution = motion().accuracy(wanted).run()?;
+        let pairs = solution.state.speeds.iter().zip(&exact.state.speeds);
+        let error = pairs
+            .map(|(a, b)| (a - b).abs() / b.abs().max(1.0))
+            .fold(0.0, f64::max);
+        // Estimates are right within a factor of ten, and a third of what is asked is aimed at; no error is a thousand times smaller than it need be.
+        assert!(
+            error < 3.0 * wanted && error > 1e-3 * wanted,
+            "{wanted:e}: {error:e}"
+        );
+    }
+    let refused = motion().accuracy(1e-16).run().expect_err("doubles round");
+    assert!(matches!(refused, Error::Accuracy { .. }), "{refused}");
+    // Events of the caller's own end all of the motions.
+    let stopped = motion()
+        .accuracy(1e-6)
+        .event(Event::new("second", |time, _, _| time - 0.5).stopping())
+        .run()?;
+    assert!((stopped.state.time - 0.5).abs() < 1e-9);
+    assert_eq!(stopped.events.len(), 1);
+    Ok(())
+}
+
+#[test]
 fn an_estimate_that_cannot_be_had_says_why() -> Result<(), Error> {
     let rod = Body::new("rod", "prismatic").mass(2.0, [0.0; 3]);
     let slide = Builder::new().gravity([0.0; 3]).body(rod).build()?;

@@ -45,6 +45,17 @@ impl<'a> Event<'a> {
         }
     }
 
+    /// The same event for one integration, after which it can be asked for again.
+    pub fn by_ref(&mut self) -> Event<'_> {
+        let function = &mut self.function;
+        Event {
+            name: self.name.clone(),
+            function: Box::new(|time, q, speeds| function(time, q, speeds)),
+            direction: self.direction,
+            stops: self.stops,
+        }
+    }
+
     /// Only crossings in that direction.
     #[must_use]
     pub const fn towards(mut self, direction: Direction) -> Self {

@@ -62,7 +62,7 @@ pub use approach::{Approach, Near};
 pub use choice::{Choice, Wanted};
 pub use error::{IntegrateError, StepFailure};
 pub use event::{Crossing, Direction, Event};
-pub use global_error::{Doubt, ErrorParts, GlobalError};
+pub use global_error::{Doubt, ErrorParts, GlobalError, Tuned};
 pub use integration::{Integration, Sampling};
 pub use linear::LinearStep;
 pub use options::{Form, Method, Options, Scheme, StepControl};

@@ -13,7 +13,7 @@ pub struct Company {
 }
 
 impl Scene {
-    /// The method for a motion from `start` under `settings`, with the tolerance of its method, and why.
+    /// The method for a motion from `start` under `settings`: the one named, or else one that suits the scene and the tolerance, and why.
     ///
     /// # Errors
     /// A first state that the equations of motion cannot be evaluated at.
@@ -22,10 +22,10 @@ impl Scene {
         settings: &Settings,
         start: &State,
         company: Company,
-    ) -> Result<(Method, String), IntegrateError> {
+    ) -> Result<(Method, Option<String>), IntegrateError> {
         let tolerance = match settings.method {
-            Method::Controlled { control, .. } => control.tolerance,
-            Method::Fixed { .. } => Settings::DEFAULT_TOL,
+            Method::Controlled { control, .. } if settings.chooses => control.tolerance,
+            named => return Ok((named, None)),
         };
         let is_bound = company.has_inputs
             || company.has_events
@@ -43,6 +43,6 @@ impl Scene {
             true => choice.reason + "; what the controller adds was not looked at",
             false => choice.reason,
         };
-        Ok((Method::controlled(choice.scheme, tolerance), reason))
+        Ok((Method::controlled(choice.scheme, tolerance), Some(reason)))
     }
 }

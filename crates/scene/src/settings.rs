@@ -63,6 +63,9 @@ pub struct Settings {
     pub method: Method,
     /// Whether the method is left to [`hamel_integrate::Choice`]; `method` then has the tolerance.
     pub chooses: bool,
+    /// The largest error that the last state shall have, as [`hamel_integrate::ErrorParts`] measures it; the tolerance is then searched for
+    /// ([`hamel_integrate::Tuned`]), and the one of `method` means nothing.
+    pub accuracy: Option<f64>,
     /// Form of the equations of motion.
     pub form: Form,
     /// What they are solved in.
@@ -85,8 +88,8 @@ impl Settings {
     /// Tolerance of methods with step control where a scene gives none.
     pub const DEFAULT_TOL: f64 = 1e-10;
 
-    /// The method that `scheme`, a step and a tolerance ask for; a tolerance alone asks for `dopri5`, a step alone for `rk4`. `None` where the
-    /// scheme cannot be told a tolerance. Of step and tolerance at most one is given.
+    /// The method that `scheme`, a step and a tolerance ask for; a step alone asks for `rk4`. Where nothing but a tolerance is given at most, the choice is
+    /// left open, and the method that is told has the tolerance. `None` where the scheme cannot be told a tolerance. Of step and tolerance at most one is given.
     pub fn method_of(scheme: Option<Scheme>, dt: Option<f64>, tol: Option<f64>) -> Option<Method> {
         let implied = match dt {
             Some(_) => Scheme::Rk4,
@@ -102,6 +105,16 @@ impl Settings {
                 Some(Method::controlled(scheme, tol))
             }
         }
+    }
+
+    /// The same with this tolerance, where the method has step control.
+    #[must_use]
+    pub fn with_tolerance(&self, tolerance: f64) -> Self {
+        let mut settings = *self;
+        if let Method::Controlled { control, .. } = &mut settings.method {
+            control.tolerance = tolerance;
+        }
+        settings
     }
 
     /// Name of the method, as scene files and the command line write it.
@@ -134,7 +147,8 @@ impl Default for Settings {
         Self {
             t_end: Self::DEFAULT_T_END,
             method: Method::dormand_prince(Self::DEFAULT_TOL),
-            chooses: false,
+            chooses: true,
+            accuracy: None,
             form: Form::Lagrangian,
             arithmetic: Arithmetic::Doubles,
             sample_step: Self::DEFAULT_SAMPLE_STEP,

@@ -84,8 +84,25 @@ fn an_accuracy_implies_its_method() {
             .method
     };
     assert_eq!(method("dt = 0.25"), Method::rk4(0.25));
-    assert_eq!(method("tol = 0.05"), Method::dormand_prince(0.05));
     assert_eq!(method("method = 'rk4'"), Method::rk4(Settings::DEFAULT_DT));
+}
+
+/// Without a method and without a step the method is chosen from the scene.
+#[test]
+fn the_method_is_chosen_unless_it_is_named() {
+    let link = body("link", "world", "");
+    let settings = |table: &str| read(&format!("{link}[simulation]\n{table}")).settings;
+    for (table, chooses) in [
+        ("", true),
+        ("tol = 0.05", true),
+        ("method = 'auto'", true),
+        ("method = 'dopri5'\ntol = 0.05", false),
+        ("dt = 0.25", false),
+        ("method = 'rk4'", false),
+    ] {
+        assert_eq!(settings(table).chooses, chooses, "{table}");
+    }
+    assert_eq!(settings("tol = 0.05").method, Method::dormand_prince(0.05));
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! What stands for Parquet in a program that was built without it.
 
+use super::accuracy::Accuracy;
 use super::columns::Columns;
 use super::plan::Plan;
 use hamel_console::output::Failure;
@@ -37,7 +38,7 @@ impl<'a> Parquet<'a> {
     }
 
     /// Cannot be called.
-    pub fn finish(self) -> Result<(), Failure> {
+    pub fn finish(self, _: Option<&Accuracy>) -> Result<(), Failure> {
         match self.never {}
     }
 }

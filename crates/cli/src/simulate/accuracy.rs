@@ -54,16 +54,34 @@ impl From<ErrorParts> for Parts {
 }
 
 impl Accuracy {
-    /// That of `solution`, to which `dynamics` came under `plan`. Companions are not ended by events, and follow a controller of their own.
+    /// That of `solution`, to which `dynamics` came under `plan`.
     pub fn estimate(plan: &Plan, dynamics: &mut dyn Dynamics, solution: &Solution) -> Self {
-        let (initial, options) = (plan.scene.start(), plan.options());
-        let mut companion = |initial: &State, options: &Options, observer: &mut Observer<'_>| {
-            run(plan, &mut *dynamics, (initial, options), observer)
-                .map_err(|error| error.to_string())
-        };
-        let mechanism = &plan.scene.mechanism;
-        GlobalError::estimate(mechanism, &initial, &options, solution, &mut companion).into()
+        estimate(plan, dynamics, solution).into()
     }
+
+    /// The error of the last state in a few words.
+    pub fn at_the_end(&self) -> String {
+        let error = told(self.end.total);
+        match self.reliable {
+            true => format!("estimated error at the end {error}"),
+            false => format!("estimated error at the end {error}, not reliable"),
+        }
+    }
+
+    /// Of each sample, steps and rounding together; absent where it is not known.
+    pub fn samples(&self) -> &[Option<f64>] {
+        &self.samples
+    }
+}
+
+/// The error of `solution`, to which `dynamics` came under `plan`. Companions are not ended by events, and follow a controller of their own.
+pub fn estimate(plan: &Plan, dynamics: &mut dyn Dynamics, solution: &Solution) -> GlobalError {
+    let (initial, options) = (plan.scene.start(), plan.options());
+    let mut companion = |initial: &State, options: &Options, observer: &mut Observer<'_>| {
+        run(plan, &mut *dynamics, (initial, options), observer).map_err(|error| error.to_string())
+    };
+    let mechanism = &plan.scene.mechanism;
+    GlobalError::estimate(mechanism, &initial, &options, solution, &mut companion)
 }
 
 /// One companion, which an interrupt ends.
@@ -107,10 +125,12 @@ impl From<GlobalError> for Accuracy {
     }
 }
 
+fn told(error: Option<f64>) -> String {
+    error.map_or("?".to_owned(), |error| format!("{error:.1e}"))
+}
+
 impl fmt::Display for Accuracy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let told =
-            |error: Option<f64>| error.map_or("?".to_owned(), |error| format!("{error:.1e}"));
         let Parts {
             total,
             steps,

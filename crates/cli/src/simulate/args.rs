@@ -17,7 +17,9 @@ Examples:
       with fixed steps, trajectory to swing.csv
   hamel simulate scenes/heavy_top.toml --method verner9 --tol 2e-16
       as accurate as doubles allow: order 9, and sums that lose no rounding
-  hamel simulate scenes/report/ball_spring.toml --method auto --tol 1e-8
+  hamel simulate scenes/double_ball_pendulum.toml --accuracy 1e-8
+      the last state to eight digits: the tolerance is searched for, and the summary tells the error
+  hamel simulate scenes/report/ball_spring.toml --tol 1e-8
       with the method that the scene's springs and dampers call for; the summary says why
   hamel simulate scenes/rolling_disk.toml --html disk.html
       one page to open in a browser, with no network: the motion in three dimensions, and plots along the time
@@ -60,7 +62,7 @@ Exit codes: 0 success; 1 a scene with mistakes, a simulation that stopped, a fil
 ///
 /// Options override the `[simulation]` table of the scene.
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES, group = ArgGroup::new("accuracy"))]
+#[command(after_help = EXAMPLES, group = ArgGroup::new("steps"))]
 pub struct Args {
     /// Scene file (TOML; the format is described in scenes/README.md), or a robot in URDF (`.urdf`)
     #[arg(value_name = "SCENE")]
@@ -91,12 +93,22 @@ pub struct Args {
     #[arg(long, value_parser = methods())]
     pub method: Option<MethodName>,
 
-    /// Tolerance of one step of a method with step control, between 1e-16 and 0.1: absolute in angle, relative in rates; implies dopri5 where the method
-    /// has fixed steps
+    /// Error that the last state shall have at most, between 1e-16 and 0.1: attitudes in rad, positions and velocities as parts of max(1 SI unit, size).
+    /// The tolerance is searched for by motions of its own, and the summary says so where doubles do not reach it
+    #[arg(
+        long,
+        value_name = "ERROR",
+        group = "steps",
+        allow_negative_numbers = true
+    )]
+    pub accuracy: Option<f64>,
+
+    /// Tolerance of one step of a method with step control, between 1e-16 and 0.1: absolute in angle, relative in rates; implies auto where the method
+    /// of the scene has fixed steps
     #[arg(
         long,
         value_name = "TOLERANCE",
-        group = "accuracy",
+        group = "steps",
         allow_negative_numbers = true
     )]
     pub tol: Option<f64>,
@@ -105,7 +117,7 @@ pub struct Args {
     #[arg(
         long,
         value_name = "SECONDS",
-        group = "accuracy",
+        group = "steps",
         allow_negative_numbers = true
     )]
     pub dt: Option<f64>,

@@ -3,6 +3,7 @@
 use super::accuracy::Accuracy;
 use super::columns::{Column, JsonSample};
 use super::control::Outcome;
+use super::request::Request;
 use hamel::integrate::{Crossing, RoundingLimit};
 use hamel_console::output::Failure;
 use hamel_console::terminal::fragment_of_json;
@@ -23,6 +24,9 @@ pub struct Report<'a> {
     /// Why the method was chosen; absent where it was named.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<&'a str>,
+    /// What came of the accuracy that was asked for; absent where a tolerance or a step was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub accuracy: Option<&'a Request>,
     /// What the steps passed over; absent where they followed everything.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unresolved: Option<String>,

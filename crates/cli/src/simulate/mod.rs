@@ -7,6 +7,7 @@ mod compile;
 mod control;
 mod csv;
 mod json;
+mod metadata;
 mod page;
 #[cfg(feature = "parquet")]
 mod parquet;
@@ -17,6 +18,7 @@ mod picture;
 mod plan;
 mod progress;
 mod recorder;
+mod request;
 mod run;
 mod sample;
 mod settings;

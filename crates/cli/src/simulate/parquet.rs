@@ -1,5 +1,6 @@
 //! The trajectory as Parquet: every column as doubles.
 
+use super::accuracy::Accuracy;
 use super::columns::Columns;
 use super::plan::Plan;
 use hamel_console::files::{Draft, Output};
@@ -27,6 +28,9 @@ const TOLD: [&str; 3] = ["scene", "form", "method"];
 
 /// The key under which files tell the units and meanings of their columns, as JSON.
 const COLUMNS: &str = "columns";
+
+/// The key under which they tell the error of the motion, as `--json` does.
+const ERROR: &str = "error";
 
 /// Whether a file is a trajectory that was written before.
 pub fn is_own(file: &File) -> bool {
@@ -80,12 +84,19 @@ impl<'a> Parquet<'a> {
         Ok(())
     }
 
-    /// Writes what is still in memory, and the end of the file, and gives it its name.
+    /// Writes what is still in memory, and the end of the file with the error of the motion, and gives it its name.
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn finish(mut self) -> Result<(), Failure> {
+    pub fn finish(mut self, accuracy: Option<&Accuracy>) -> Result<(), Failure> {
         self.flush()?;
+        if let Some(accuracy) = accuracy {
+            let error = serde_json::to_string(accuracy);
+            let error = error
+                .map_err(|error| refusal(self.output, ParquetError::External(Box::new(error))))?;
+            let entry = KeyValue::new(ERROR.to_owned(), error);
+            self.writer.append_key_value_metadata(entry);
+        }
         let draft = self.writer.into_inner();
         draft.map_err(|error| refusal(self.output, error))?.finish()
     }

@@ -1,7 +1,8 @@
 //! What one run of `hamel simulate` is to do: the scene, the settings, the times and the files.
 
 use super::args::Args;
-use super::{csv, page, parquet, picture, settings, times};
+use super::request::Request;
+use super::{csv, metadata, page, parquet, picture, settings, times};
 use crate::input::Input;
 use hamel::integrate::{Method, Options, Sampling};
 use hamel::registry::JointRegistry;
@@ -22,12 +23,16 @@ pub struct Plan {
     pub settings: Settings,
     /// Why the method was chosen, where the choice was left open.
     pub reason: Option<String>,
+    /// What came of the accuracy that was asked for, if one was.
+    pub request: Option<Request>,
     /// What controls the mechanism, if anything does.
     pub control: Option<Control>,
     /// Sample times, s.
     pub times: Vec<f64>,
     /// Where the trajectory goes as CSV, if anywhere.
     pub csv: Option<Output>,
+    /// Where the metadata of the CSV file go, if there is one.
+    pub metadata: Option<Output>,
     /// Where it goes as Parquet, if anywhere.
     pub parquet: Option<Output>,
     /// Where it goes as a page to look at, if anywhere.
@@ -65,31 +70,44 @@ impl Plan {
             times
         };
         scene.check_start(&settings, control.as_ref())?;
-        let mut reason = None;
-        if settings.chooses {
-            let company = Company {
-                has_inputs: control.is_some(),
-                has_events: false,
-            };
-            let chosen = scene.choose_method(&settings, &scene.start(), company);
-            let (method, why) = chosen.map_err(|error| Failure::Simulation(error.to_string()))?;
-            (settings.method, reason) = (method, Some(why));
-        }
-        let [csv, parquet, html, picture] = outputs(args)?;
-        Ok(Self {
+        let [csv, metadata, parquet, html, picture] = outputs(args)?;
+        let mut plan = Self {
             input,
             scene,
             settings,
-            reason,
+            reason: None,
+            request: None,
             control,
             times,
             csv,
+            metadata,
             parquet,
             html,
             json: args.json,
             picture,
             instants: args.instants.into(),
-        })
+        };
+        let tolerance = settings.accuracy.unwrap_or_else(|| tolerance(&settings));
+        plan.choose(tolerance)?;
+        Ok(plan)
+    }
+
+    /// Settles the method with this tolerance, and why it is that one, where the choice is left open.
+    ///
+    /// # Errors
+    /// A first state to which no method can be chosen.
+    pub fn choose(&mut self, tolerance: f64) -> Result<(), Failure> {
+        let settings = self.settings.with_tolerance(tolerance);
+        let company = Company {
+            has_inputs: self.control.is_some(),
+            has_events: false,
+        };
+        let chosen = self
+            .scene
+            .choose_method(&settings, &self.scene.start(), company);
+        let chosen = chosen.map_err(|error| Failure::Simulation(error.to_string()))?;
+        (self.settings.method, self.reason) = chosen;
+        Ok(())
     }
 
     /// Whether anything but gravity can change the energy.
@@ -143,16 +161,30 @@ impl Plan {
     }
 }
 
+/// The tolerance of settings, 0 where steps have one length.
+fn tolerance(settings: &Settings) -> f64 {
+    let control = settings.method.control();
+    control.map_or(0.0, |control| control.tolerance)
+}
+
 /// Samples that cannot be taken, and what to do.
 fn refused(error: SampleError) -> Failure {
     Failure::Options(format!("{error}: choose a larger --sample-step"))
 }
 
-/// The files of the trajectory: as CSV, as Parquet, as a page and as a picture.
-fn outputs(args: &Args) -> Result<[Option<Output>; 4], Failure> {
+/// The files of the trajectory: as CSV with its metadata, as Parquet, as a page and as a picture.
+fn outputs(args: &Args) -> Result<[Option<Output>; 5], Failure> {
     let csv = csv_path(args);
-    let paths = [&csv, &args.parquet, &args.html, &args.picture].map(Option::as_deref);
-    let known = [csv::is_own, parquet::is_own, page::is_own, picture::is_own];
+    let metadata = csv.as_deref().and_then(metadata::path);
+    let paths = [&csv, &metadata, &args.parquet, &args.html, &args.picture];
+    let paths = paths.map(Option::as_deref);
+    let known = [
+        csv::is_own,
+        metadata::is_own,
+        parquet::is_own,
+        page::is_own,
+        picture::is_own,
+    ];
     let written = paths.into_iter().zip(known);
     let written = written.filter_map(|(path, is_own)| Some((path?, is_own as _)));
     let read = [Some(&args.scene), args.controller.as_ref()];

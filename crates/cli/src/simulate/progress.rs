@@ -40,10 +40,18 @@ impl Progress {
     }
 }
 
-/// What is shown while a compiler works, which does not tell how far it is.
+/// What is shown while a compiler works.
 pub fn compiling(quiet: bool, compiler: &Compiler) -> ProgressBar {
+    working(
+        &visible(&format!("compiling the scene, with {compiler}")),
+        quiet,
+    )
+}
+
+/// What is shown of work that does not tell how far it is.
+pub fn working(message: &str, quiet: bool) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(None, target(quiet));
-    bar.set_message(visible(&format!("compiling the scene, with {compiler}")));
+    bar.set_message(message.to_owned());
     bar.enable_steady_tick(Duration::from_millis(100));
     bar
 }

@@ -1,7 +1,9 @@
 //! The record of a run: samples go to the files as they come.
 
+use super::accuracy::Accuracy;
 use super::columns::{Columns, Moment, Turns};
 use super::csv::Trajectory;
+use super::metadata::Metadata;
 use super::page::Page;
 use super::parquet::Parquet;
 use super::picture::Picture;
@@ -40,6 +42,7 @@ pub struct Recorder<'a> {
 /// Those that are asked for.
 struct Files<'a> {
     trajectory: Option<Trajectory<'a>>,
+    metadata: Option<Metadata<'a>>,
     parquet: Option<Parquet<'a>>,
     page: Option<Page<'a>>,
     picture: Option<Picture<'a>>,
@@ -54,9 +57,10 @@ pub struct Recorded {
 }
 
 impl<'a> Files<'a> {
-    fn create(plan: &'a Plan, columns: &Columns<'_>) -> Result<Self, Failure> {
+    fn create(plan: &'a Plan, columns: &'a Columns<'a>) -> Result<Self, Failure> {
         Ok(Self {
             trajectory: Trajectory::create(plan, columns)?,
+            metadata: Metadata::create(plan, columns)?,
             parquet: Parquet::create(plan, columns)?,
             page: Page::create(plan)?,
             picture: Picture::create(plan)?,
@@ -74,12 +78,14 @@ impl<'a> Files<'a> {
         Ok(())
     }
 
-    fn finish(self) -> Result<(), Failure> {
+    fn finish(self, accuracy: Option<&Accuracy>) -> Result<(), Failure> {
         let csv = self.trajectory.map_or(Ok(()), Trajectory::finish);
-        let parquet = self.parquet.map_or(Ok(()), Parquet::finish);
-        let page = self.page.map_or(Ok(()), Page::finish);
+        let metadata = self.metadata.map(|metadata| metadata.finish(accuracy));
+        let parquet = self.parquet.map(|parquet| parquet.finish(accuracy));
+        let page = self.page.map(|page| page.finish(accuracy));
         let picture = self.picture.map_or(Ok(()), Picture::finish);
-        csv.and(parquet).and(page).and(picture)
+        let told = [metadata, parquet, page].into_iter().flatten();
+        told.fold(csv.and(picture), Result::and)
     }
 }
 
@@ -170,11 +176,21 @@ impl<'a> Recorder<'a> {
         std::mem::take(&mut self.rows)
     }
 
-    /// Finishes the files, unless there is no sample or they cannot be written: then what they would replace stays.
+    /// Whether the user has ended the simulation.
+    pub const fn is_interrupted(&self) -> bool {
+        self.is_interrupted
+    }
+
+    /// Ends the progress that is shown.
+    pub fn moved(&self) {
+        self.progress.finish();
+    }
+
+    /// Finishes the files, with the error of the motion where that was estimated, unless there is no sample or they cannot be written: then what they would replace stays.
     ///
     /// # Errors
     /// A file that cannot be written; what ended the record early.
-    pub fn finish(self) -> Result<Recorded, Failure> {
+    pub fn finish(self, accuracy: Option<&Accuracy>) -> Result<Recorded, Failure> {
         self.progress.finish();
         let is_written = !matches!(self.failure, Some(Failure::Write { .. }));
         let files = self.files.filter(|_| self.has_samples && is_written);
@@ -182,7 +198,7 @@ impl<'a> Recorder<'a> {
             has_files: files.is_some(),
             is_interrupted: self.is_interrupted,
         };
-        files.map_or(Ok(()), Files::finish)?;
+        files.map_or(Ok(()), |files| files.finish(accuracy))?;
         match self.failure {
             None => Ok(recorded),
             Some(Failure::Simulation(cause)) => Err(stopped(self.plan, recorded, &cause)),

@@ -8,6 +8,7 @@ use super::control::{Loop, Outcome};
 use super::json::{self, Report, Statistics};
 use super::plan::Plan;
 use super::recorder::{Recorder, stopped, without_value};
+use super::request::Request;
 use super::sample;
 use super::table::Summary;
 use super::unresolved;
@@ -24,7 +25,8 @@ use std::time::Instant;
 /// # Errors
 /// Mistakes in the scene or the options; a simulation that stops early or is interrupted; output that cannot be written.
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
-    let plan = Plan::new(args, registry)?;
+    let mut plan = Plan::new(args, registry)?;
+    Request::settle(&mut plan, args.quiet)?;
     let columns = Columns::new(&plan);
     let run = match args.compiled {
         true => {
@@ -117,16 +119,19 @@ fn simulate(
         recorder.see(step, &tau)
     });
     let run_time_s = start.elapsed().as_secs_f64();
+    recorder.moved();
     let rows = recorder.rows();
-    let recorded = recorder.finish()?;
+    // Nobody is told of it under `--quiet` where there is no file.
+    let is_wanted =
+        !args.no_error_estimate && !recorder.is_interrupted() && (!args.quiet || plan.has_files());
+    let solved = result.as_ref().ok().filter(|_| is_wanted);
+    let accuracy = solved.map(|solution| Accuracy::estimate(plan, dynamics, solution));
+    let recorded = recorder.finish(accuracy.as_ref())?;
     let failure = control.as_ref().and_then(Loop::failure);
     let solution = result.map_err(|error| match failure {
         Some(cause) => stopped(plan, recorded, &cause),
         None => stopped(plan, recorded, &error),
     })?;
-    // Nobody is told of it under `--quiet`.
-    let is_wanted = !args.no_error_estimate && !args.quiet && !recorded.is_interrupted;
-    let accuracy = is_wanted.then(|| Accuracy::estimate(plan, dynamics, &solution));
     drop(heed);
     let statistics = Statistics {
         steps: solution.statistics.steps,
@@ -202,6 +207,7 @@ fn print_json(plan: &Plan, columns: &Columns<'_>, run: &Run) -> Result<(), Failu
         form: plan.settings.form_name(),
         method: plan.settings.method.scheme().name(),
         reason: plan.reason.as_deref(),
+        accuracy: plan.request.as_ref(),
         unresolved: unresolved::unresolved(plan, run.statistics.steps, run.solution.state.time)?,
         columns: columns.list(),
         samples: &samples,

@@ -28,10 +28,12 @@ pub fn overridden(settings: &Settings, args: &Args) -> Result<Settings, Failure>
         SamplingName::Dense => Sampling::Dense,
     });
     let (method, chooses) = method(settings, args)?;
+    let accuracy = accuracy_asked(settings, args, &method)?;
     Ok(Settings {
         t_end: t_end.transpose()?.unwrap_or(settings.t_end),
         method,
         chooses,
+        accuracy,
         form: form.unwrap_or(settings.form),
         arithmetic: arithmetic.unwrap_or(settings.arithmetic),
         sample_step: sample_step.unwrap_or(settings.sample_step),
@@ -42,11 +44,15 @@ pub fn overridden(settings: &Settings, args: &Args) -> Result<Settings, Failure>
 /// The method named; or implied by an accuracy; or the scene's; and whether it is left open. The scene's accuracy stays where it fits.
 fn method(settings: &Settings, args: &Args) -> Result<(Method, bool), Failure> {
     let dt = positive("--dt", args.dt)?;
-    let tol = args.tol.map(tolerance).transpose()?;
+    let tol = args.tol.map(|tol| tolerance("--tol", tol)).transpose()?;
     let scene = settings.method;
     let own = *scene.scheme();
     let (own_dt, own_tol) = accuracy(scene);
     let scheme = match (args.method, dt, tol) {
+        // An accuracy is had by step control.
+        (None, None, None) if args.accuracy.is_some() && own_tol.is_none() => {
+            return Ok((Method::dormand_prince(Settings::DEFAULT_TOL), true));
+        }
         (None, None, None) => return Ok((scene, settings.chooses)),
         (Some(MethodName::Auto), Some(_), _) => {
             return refuse("--dt means nothing to auto, whose accuracy is --tol".to_owned());
@@ -56,14 +62,11 @@ fn method(settings: &Settings, args: &Args) -> Result<(Method, bool), Failure> {
             return Ok((Method::dormand_prince(tol), true));
         }
         (Some(MethodName::Scheme(named)), ..) => named,
-        (None, None, Some(tol)) if settings.chooses => {
-            return Ok((Method::dormand_prince(tol), true));
-        }
         // An accuracy alone leaves the scene its method where the two go together.
         (None, Some(_), _) if own_dt.is_some() => own,
-        (None, None, Some(_)) if own.has_estimate() => own,
+        (None, None, Some(_)) if own.has_estimate() && !settings.chooses => own,
         (None, Some(_), _) => Scheme::Rk4,
-        (None, None, Some(_)) => Scheme::DormandPrince,
+        (None, None, Some(tol)) => return Ok((Method::dormand_prince(tol), true)),
     };
     let (dt, tol) = match (dt, tol) {
         (None, None) if scheme.has_estimate() => (None, own_tol),
@@ -90,10 +93,28 @@ const fn accuracy(scene: Method) -> (Option<f64>, Option<f64>) {
     }
 }
 
-fn tolerance(tol: f64) -> Result<f64, Failure> {
+/// The accuracy asked for: by an option, or by the scene unless an option says how long steps are.
+fn accuracy_asked(
+    settings: &Settings,
+    args: &Args,
+    method: &Method,
+) -> Result<Option<f64>, Failure> {
+    let asked = args.accuracy.map(|value| tolerance("--accuracy", value));
+    let asked = asked.transpose()?;
+    match (asked, method) {
+        (Some(_), Method::Fixed { scheme, .. }) => refuse(format!(
+            "--accuracy means nothing to {}, whose accuracy is --dt",
+            scheme.name()
+        )),
+        (None, Method::Controlled { .. }) if args.tol.is_none() => Ok(settings.accuracy),
+        _ => Ok(asked),
+    }
+}
+
+fn tolerance(option: &str, tol: f64) -> Result<f64, Failure> {
     let (least, largest) = (StepControl::LEAST_TOLERANCE, StepControl::LARGEST_TOLERANCE);
     let limit = format!("between {:?} and {:?}", Number(least), Number(largest));
-    in_range("--tol", tol, (least..=largest).contains(&tol), &limit)
+    in_range(option, tol, (least..=largest).contains(&tol), &limit)
 }
 
 fn positive(option: &str, value: Option<f64>) -> Result<Option<f64>, Failure> {
@@ -134,6 +155,7 @@ mod tests {
         let args = Command::try_parse_from(words).ok()?.args;
         let settings = Settings {
             method: scene,
+            chooses: false,
             ..Settings::default()
         };
         overridden(&settings, &args).ok()
@@ -217,6 +239,11 @@ mod tests {
         let named = Some((false, Method::controlled(Scheme::Radau5, 1e-7)));
         assert_eq!(chooses(true, "--method radau5"), named);
         assert_eq!(chooses(true, "--dt 0.1"), Some((false, Method::rk4(0.1))));
+        // A tolerance alone keeps the method that a scene names.
+        assert_eq!(
+            chooses(false, "--tol 1e-4"),
+            Some((false, Method::dormand_prince(1e-4)))
+        );
     }
 
     #[test]

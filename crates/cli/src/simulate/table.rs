@@ -58,6 +58,9 @@ impl fmt::Display for Summary<'_> {
         if let Some(accuracy) = self.accuracy {
             write!(f, "{accuracy}")?;
         }
+        if let Some(request) = &self.plan.request {
+            writeln!(f, "            {request}")?;
+        }
         self.crossings(f)?;
         if let Some(outcome) = self.outcome {
             write!(f, "{outcome}")?;

@@ -7,6 +7,7 @@
 
 mod companion;
 mod estimation;
+mod request;
 
 use super::{Observer, Options, Solution, State};
 use alloc::string::String;
@@ -15,6 +16,8 @@ use alloc::vec::Vec;
 use core::fmt::{Display, Formatter};
 use estimation::Estimation;
 use hamel_runtime::mechanism::Mechanism;
+
+pub use request::Tuned;
 
 /// The largest of the errors of all bodies: of attitudes in rad; of positions, velocities and angular velocities as parts of max(1 SI unit, size).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -19,11 +19,13 @@ pub(super) fn settings(fields: &mut Fields<'_>, sink: &mut Sink) -> Settings {
     };
     let defaults = Settings::default();
     let t_end = not_negative(&mut table, "t_end", sink).unwrap_or(defaults.t_end);
-    let (method, chooses) = method(&mut table, sink).unwrap_or((defaults.method, false));
+    let accuracy = tolerance(&mut table, "accuracy", sink);
+    let (method, chooses) = method(&mut table, sink).unwrap_or((defaults.method, defaults.chooses));
     let settings = Settings {
         t_end,
         method,
         chooses,
+        accuracy,
         form: table
             .optional("form")
             .and_then(|form| form.choice(&FORM_NAMES, sink))
@@ -51,18 +53,20 @@ fn method(table: &mut Fields<'_>, sink: &mut Sink) -> Option<(Method, bool)> {
         .optional("method")
         .and_then(|method| method.choice(&METHOD_NAMES, sink));
     let dt = positive(table, "dt", sink);
-    let tol = tolerance(table, sink);
+    let tol = tolerance(table, "tol", sink);
     let scheme = name.and_then(Scheme::named);
-    table.at_most_one(&["dt", "tol"], sink);
-    let chooses = name == Some(Settings::AUTO);
-    match Settings::method_of(scheme, dt, tol) {
-        Some(method) if !(chooses && dt.is_some()) => return Some((method, chooses)),
-        _ => {}
-    }
-    let (key, other) = if chooses {
-        ("dt", "tol")
-    } else {
-        ("tol", "dt")
+    table.at_most_one(&["dt", "tol", "accuracy"], sink);
+    let is_open = name.is_none() && dt.is_none();
+    let chooses = is_open || name == Some(Settings::AUTO);
+    let (key, other) = match Settings::method_of(scheme, dt, tol) {
+        Some(_) if chooses && dt.is_some() => ("dt", "tol"),
+        Some(method @ Method::Controlled { .. }) => return Some((method, chooses)),
+        // An accuracy beside a step is refused above.
+        Some(method) if dt.is_some() || table.optional("accuracy").is_none() => {
+            return Some((method, chooses));
+        }
+        Some(_) => ("accuracy", "dt"),
+        None => ("tol", "dt"),
     };
     let value = table.optional(key)?;
     let (path, name) = (value.path(), name.unwrap_or_default());
@@ -78,11 +82,11 @@ fn positive(table: &mut Fields<'_>, key: &'static str, sink: &mut Sink) -> Optio
     Some(number.value)
 }
 
-fn tolerance(table: &mut Fields<'_>, sink: &mut Sink) -> Option<f64> {
+fn tolerance(table: &mut Fields<'_>, key: &'static str, sink: &mut Sink) -> Option<f64> {
     let (least, largest) = (StepControl::LEAST_TOLERANCE, StepControl::LARGEST_TOLERANCE);
     let limit = format!("between {:?} and {:?}", Number(least), Number(largest));
     let holds = |number| (least..=largest).contains(&number);
-    let number = table.optional("tol")?.number_within(holds, &limit, sink)?;
+    let number = table.optional(key)?.number_within(holds, &limit, sink)?;
     Some(number.value)
 }
 

@@ -49,9 +49,12 @@ fn comments(out: &mut String, lines: &[String]) {
 }
 
 fn settings(out: &mut String, settings: &Settings) {
-    let accuracy = match settings.method {
-        Method::Fixed { dt, .. } => format!("dt = {}", number(dt)),
-        Method::Controlled { control, .. } => format!("tol = {}", number(control.tolerance)),
+    let accuracy = match (settings.accuracy, settings.method) {
+        (Some(accuracy), _) => format!("accuracy = {}", number(accuracy)),
+        (None, Method::Fixed { dt, .. }) => format!("dt = {}", number(dt)),
+        (None, Method::Controlled { control, .. }) => {
+            format!("tol = {}", number(control.tolerance))
+        }
     };
     let (t_end, step) = (number(settings.t_end), number(settings.sample_step));
     let (form, method) = (text(settings.form_name()), text(settings.method_name()));

@@ -38,6 +38,12 @@ impl Blob {
         );
     }
 
+    /// Adds a column, with one number for each frame.
+    pub fn add_column(&mut self, values: impl Iterator<Item = f64>) {
+        self.columns
+            .push(values.map(|value| value as f32).collect());
+    }
+
     /// All times; then each column; then, frame by frame, the seven numbers of every body.
     pub fn bytes(&self) -> Vec<u8> {
         let times = self.times.iter().flat_map(|time| time.to_le_bytes());

@@ -73,6 +73,16 @@ impl<'a> Charts<'a> {
         self.columns
     }
 
+    /// Describes one column more: the estimated error.
+    pub fn add_error(&mut self) {
+        let columns = numbered(["largest of all bodies"].into_iter(), &mut self.columns);
+        self.described.push(Chart {
+            title: "Estimated error",
+            log: true,
+            variants: vec![variant("", "1", None, columns)],
+        });
+    }
+
     /// The charts, in the order of the page.
     pub fn into_described(self) -> Vec<Chart> {
         self.described

@@ -1,5 +1,6 @@
 //! What a page is told of the mechanism and of the run, as JSON.
 
+use super::super::accuracy::Accuracy;
 use super::super::plan::Plan;
 use super::super::sample::seven;
 use super::charts::Chart;
@@ -16,7 +17,7 @@ pub struct Header<'a> {
     /// Name of the scene.
     pub name: &'a str,
     description: String,
-    /// Form and method, in words.
+    /// Form, method and error at the end, in words.
     method: String,
     gravity: [f64; 3],
     /// Number of frames.
@@ -54,8 +55,12 @@ struct Mark<'a> {
 
 impl<'a> Header<'a> {
     /// What there is to tell of the run of `plan`.
-    pub fn new(plan: &'a Plan, frames: usize, charts: Vec<Chart>) -> Self {
-        let (scene, settings) = (&plan.scene, &plan.settings);
+    pub fn new(
+        plan: &'a Plan,
+        (frames, accuracy): (usize, Option<&Accuracy>),
+        charts: Vec<Chart>,
+    ) -> Self {
+        let scene = &plan.scene;
         let marks = scene.mechanism.frames().iter().map(|frame| Mark {
             name: &frame.name,
             body: frame.body,
@@ -65,7 +70,7 @@ impl<'a> Header<'a> {
             version: 2,
             name: &scene.name,
             description: visible(&scene.description),
-            method: format!("{} form, {}", settings.form_name(), plan.method()),
+            method: method(plan, accuracy),
             gravity: (*scene.mechanism.gravity()).into(),
             frames,
             bodies: scene
@@ -78,6 +83,15 @@ impl<'a> Header<'a> {
             marks: marks.collect(),
             charts,
         }
+    }
+}
+
+/// Form, method and error at the end, in words.
+fn method(plan: &Plan, accuracy: Option<&Accuracy>) -> String {
+    let method = format!("{} form, {}", plan.settings.form_name(), plan.method());
+    match accuracy {
+        Some(accuracy) => format!("{method} · {}", accuracy.at_the_end()),
+        None => method,
     }
 }
 

@@ -12,6 +12,7 @@ mod unwrapped;
 
 pub(super) use solids::Ellipsoid;
 
+use super::accuracy::Accuracy;
 use super::plan::Plan;
 use blob::Blob;
 use charts::Charts;
@@ -48,6 +49,8 @@ pub struct Page<'a> {
     /// Least time between two frames, s.
     spacing: f64,
     last_frame: f64,
+    /// Which samples are frames.
+    samples: Vec<usize>,
 }
 
 impl<'a> Page<'a> {
@@ -69,6 +72,7 @@ impl<'a> Page<'a> {
             path: output.path(),
             spacing: (1.0 / FRAMES_PER_SECOND).max(plan.settings.t_end * bodies / MOST_POSES),
             last_frame: f64::NEG_INFINITY,
+            samples: Vec::new(),
         }))
     }
 
@@ -90,17 +94,26 @@ impl<'a> Page<'a> {
             return;
         }
         self.last_frame = step.time;
+        self.samples.extend(step.sample);
         let columns = self.charts.values(step, kinematics, efforts);
         let poses = kinematics.bodies.iter().map(|body| body.pose);
         self.blob.push(step.time, &columns, poses);
     }
 
-    /// Writes the page, and gives the file its name.
+    /// Writes the page, with the error of the motion where that was estimated, and gives the file its name.
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn finish(mut self) -> Result<(), Failure> {
-        let header = Header::new(self.plan, self.blob.frames(), self.charts.into_described());
+    pub fn finish(mut self, accuracy: Option<&Accuracy>) -> Result<(), Failure> {
+        if let Some(accuracy) = accuracy {
+            let errors = accuracy.samples();
+            let frames = self.samples.iter().map(|&sample| errors.get(sample));
+            let errors = frames.map(|error| error.copied().flatten().unwrap_or(f64::NAN));
+            self.blob.add_column(errors);
+            self.charts.add_error();
+        }
+        let charts = self.charts.into_described();
+        let header = Header::new(self.plan, (self.blob.frames(), accuracy), charts);
         let page = text::page(&header, &self.blob.bytes())?;
         let written = self.file.write_all(page.as_bytes());
         written.map_err(|error| Failure::write(self.path, error))?;
