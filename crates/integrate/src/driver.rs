@@ -9,6 +9,7 @@ use super::rounding::Rounding;
 use super::step_control::StepController;
 use super::step_state::StepState;
 use super::stepper::{self, Span, Stepper};
+use super::waypoints::Waypoints;
 use super::{
     Crossing, Event, Form, Inputs, IntegrateError, Method, Near, Observer, Options, Sampling,
     Solution, State, Statistics, Step, StepFailure,
@@ -60,6 +61,7 @@ pub(super) struct Driver<'a> {
     pub(super) samples: Vec<State>,
     pub(super) crossings: Vec<Crossing>,
     watch: Watch,
+    waypoints: Waypoints,
     /// What is wanted between the ends of steps, if anything is.
     pub(super) outputs: Option<Outputs<'a>>,
     /// Where something within a step has ended the integration.
@@ -106,6 +108,7 @@ impl<'a> Driver<'a> {
         let tolerance = options.method.control().map(|control| control.tolerance);
         Ok(Self {
             watch,
+            waypoints: Waypoints::new(),
             stepper: stepper::new(options.method.scheme(), tolerance, &flow),
             flow,
             step_state,
@@ -144,6 +147,7 @@ impl<'a> Driver<'a> {
         Ok(Solution {
             state: self.end.take().unwrap_or_else(|| self.state()),
             samples: self.samples,
+            waypoints: self.waypoints.finish(),
             events: self.crossings,
             statistics: self.statistics,
             approaches: self.watch.finish(),
@@ -370,6 +374,12 @@ impl<'a> Driver<'a> {
         let time = self.clock.time();
         self.watch
             .see(&self.flow.mechanism, time, &self.step_state.configuration);
+        let (step_state, clock) = (&self.step_state, &self.clock);
+        self.waypoints.see(self.statistics.steps, || State {
+            time: clock.time(),
+            configuration: step_state.configuration.clone(),
+            speeds: step_state.speeds().to_vec(),
+        });
         let mut sample = None;
         while self.options.samples.get(self.samples.len()) == Some(&self.clock.time()) {
             sample = Some(self.samples.len());

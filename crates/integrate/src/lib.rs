@@ -57,6 +57,7 @@ mod stepper;
 mod tableau;
 mod turns;
 mod verner;
+mod waypoints;
 
 pub use approach::{Approach, Near};
 pub use choice::{Choice, Wanted};

@@ -57,6 +57,8 @@ pub struct Solution {
     pub state: State,
     /// The states at the sample times that were reached, in order.
     pub samples: Vec<State>,
+    /// The states at the ends of some steps, evenly over them, at most 32: where [`GlobalError`](super::GlobalError) compares motions with few samples.
+    pub waypoints: Vec<State>,
     /// What crossed zero, in the order of time.
     pub events: Vec<Crossing>,
     /// The work done.

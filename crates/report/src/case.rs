@@ -2,7 +2,7 @@
 
 use hamel::integrate::{Method, Scheme};
 use hamel_console::output::Failure;
-use hamel_scene::{Scene, SceneDescription};
+use hamel_scene::{Scene, SceneDescription, Settings};
 use serde::Deserialize;
 
 /// A scene and what is known of its motion.
@@ -108,22 +108,42 @@ impl Case {
     }
 }
 
-/// The schemes of these names; all of them where none is named.
+/// Methods that are measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Methods {
+    /// Those of a name.
+    pub schemes: Vec<Scheme>,
+    /// Whether the one that is chosen for the scene is.
+    pub chooses: bool,
+}
+
+/// The methods of these names; all of them where none is named.
 ///
 /// # Errors
-/// A name that no scheme has.
-pub fn schemes(names: &[String]) -> Result<Vec<Scheme>, Failure> {
+/// A name that no method has.
+pub fn methods(names: &[String]) -> Result<Methods, Failure> {
     if names.is_empty() {
-        return Ok(Scheme::ALL.to_vec());
+        return Ok(Methods {
+            schemes: Scheme::ALL.to_vec(),
+            chooses: true,
+        });
     }
-    let named = names.iter().map(|name| {
+    let (open, named): (Vec<&String>, Vec<&String>) =
+        names.iter().partition(|name| *name == Settings::AUTO);
+    let schemes = named.into_iter().map(|name| {
         Scheme::named(name).ok_or_else(|| {
             let known = Scheme::ALL.map(|scheme| scheme.name());
             let known = known.join(", ");
-            Failure::Options(format!("no method is called `{name}`: there are {known}"))
+            let auto = Settings::AUTO;
+            Failure::Options(format!(
+                "no method is called `{name}`: there are {known}, and {auto}"
+            ))
         })
     });
-    named.collect()
+    Ok(Methods {
+        schemes: schemes.collect::<Result<_, _>>()?,
+        chooses: !open.is_empty(),
+    })
 }
 
 /// The tolerance or the step of a method.

@@ -5,8 +5,10 @@ use super::row::STOPPED;
 use super::score::{Errors, errors};
 use super::watch::Watch;
 use hamel::dynamics::Dynamics;
-use hamel::integrate::{Form, Method, Options, Solution, Statistics, Step, integrate, no_inputs};
-use hamel_scene::Scene;
+use hamel::integrate::{
+    Form, Method, Options, Solution, State, Statistics, Step, integrate, no_inputs,
+};
+use hamel_scene::{Company, Scene, Settings};
 use std::time::Duration;
 
 /// How long and how often, by the time of the thread.
@@ -48,6 +50,15 @@ pub struct Times {
     pub spread: f64,
 }
 
+/// How a motion is integrated.
+#[derive(Clone, Copy, Debug)]
+pub enum Way {
+    /// By this method.
+    Method(Method),
+    /// By the one that is chosen for the scene and this tolerance; choosing belongs to the run.
+    Chosen(f64),
+}
+
 /// What a point of a diagram is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
@@ -86,12 +97,12 @@ pub fn point(
     (scene, dynamics): (&Scene, &mut (dyn Dynamics + '_)),
     reference: &Reference,
     form: Form,
-    method: Method,
+    way: Way,
     budget: Budget,
 ) -> Result<Point, Failed> {
     let samples: Vec<f64> = reference.samples.iter().map(|sample| sample.t).collect();
     let start = Watch::start();
-    let (solution, first) = run((scene, dynamics), form, method, &samples, budget.run)?;
+    let (solution, first) = run((scene, dynamics), form, way, &samples, budget.run)?;
     let errors = errors(&scene.mechanism, reference, &solution);
     let errors = errors.filter(|errors| errors.worst.is_finite());
     let errors = errors.ok_or_else(|| Failed {
@@ -101,7 +112,7 @@ pub fn point(
     })?;
     let mut seconds = vec![first];
     while seconds.len() < budget.repetitions && start.elapsed() < budget.point {
-        seconds.push(run((scene, dynamics), form, method, &samples, budget.run)?.1);
+        seconds.push(run((scene, dynamics), form, way, &samples, budget.run)?.1);
     }
     Ok(Point {
         errors,
@@ -121,22 +132,39 @@ fn times(mut seconds: Vec<f64>) -> Times {
     }
 }
 
-/// One run to the last of the sample times, and its run time, s: integration alone, without construction.
+/// The method of a run to the time `t_end`, s.
+fn method(scene: &Scene, start: &State, way: Way, t_end: f64) -> Result<Method, Failed> {
+    let tolerance = match way {
+        Way::Method(method) => return Ok(method),
+        Way::Chosen(tolerance) => tolerance,
+    };
+    let settings = Settings {
+        t_end,
+        ..Settings::default()
+    };
+    let settings = settings.with_tolerance(tolerance);
+    let chosen = scene.choose_method(&settings, start, Company::default());
+    let chosen = chosen.map_err(|error| Failed::at_once(&error.to_string()))?;
+    Ok(chosen.0)
+}
+
+/// One run to the last of the sample times, and its run time, s: the integration, with the choice of its method, without construction.
 pub fn run(
     (scene, dynamics): (&Scene, &mut (dyn Dynamics + '_)),
     form: Form,
-    method: Method,
+    way: Way,
     samples: &[f64],
     limit: Duration,
 ) -> Result<(Solution, f64), Failed> {
+    let initial = scene.start();
+    let t_end = samples.last().copied().unwrap_or(0.0);
+    let start = Watch::start();
     let options = Options {
         form,
-        method,
-        t_end: samples.last().copied().unwrap_or(0.0),
+        method: method(scene, &initial, way, t_end)?,
+        t_end,
         samples: samples.to_vec(),
     };
-    let initial = scene.start();
-    let start = Watch::start();
     let mut observer = |step: &Step<'_>| start.allows(limit, step);
     let result = integrate(dynamics, &initial, &options, &mut no_inputs, &mut observer);
     let seconds = start.seconds();

@@ -1,7 +1,7 @@
 //! What is to be measured.
 
 use super::args::Args;
-use super::case::{Case, schemes};
+use super::case::{Case, Methods, methods};
 use super::measure::Budget;
 use super::representation::Representation;
 use super::row::Row;
@@ -10,6 +10,7 @@ use hamel::integrate::{Form, Scheme};
 use hamel_console::compiled::compiler;
 use hamel_console::output::{Failure, tell};
 use hamel_native::Compiler;
+use hamel_scene::Settings;
 
 /// Scenes of the short report: one of each kind.
 const SHORT_SCENES: [&str; 6] = [
@@ -41,6 +42,8 @@ pub const TOLERANCES: [f64; 11] = [
 pub struct Plan {
     pub cases: Vec<Case>,
     pub schemes: Vec<Scheme>,
+    /// Whether the method that is chosen for a scene is measured too.
+    pub chooses: bool,
     pub budget: Budget,
     /// As rows name the budget.
     pub budget_name: &'static str,
@@ -91,7 +94,10 @@ impl Plan {
     /// Names that are not known.
     pub fn new(args: &Args) -> Result<Self, Failure> {
         let mut cases = Case::chosen(&args.scenes)?;
-        let mut schemes = schemes(&args.methods)?;
+        let Methods {
+            mut schemes,
+            chooses,
+        } = methods(&args.methods)?;
         if args.short && args.scenes.is_empty() {
             cases.retain(|case| SHORT_SCENES.contains(&case.name));
         }
@@ -116,6 +122,7 @@ impl Plan {
         Ok(Self {
             cases,
             schemes,
+            chooses,
             budget: if args.short {
                 Budget::SHORT
             } else {
@@ -136,7 +143,10 @@ impl Plan {
         machine: &str,
         mut scenes: impl Iterator<Item = &'a str>,
     ) -> bool {
-        let of_scheme = |method| self.schemes.iter().any(|scheme| scheme.name() == method);
+        let of_scheme = |method| {
+            let is_chosen = self.chooses && method == Settings::AUTO;
+            is_chosen || self.schemes.iter().any(|scheme| scheme.name() == method)
+        };
         row.machine() == machine
             && row.budget().is_none_or(|budget| budget == self.budget_name)
             && scenes.any(|name| name == row.scene())

@@ -1,7 +1,7 @@
 //! The largest step at which an undamped stiff spring stays bounded, over its stiffness.
 
 use super::case::Case;
-use super::measure;
+use super::measure::{self, Way};
 use super::plan::Plan;
 use super::row::{self, Row, form_name};
 use super::store::Store;
@@ -130,7 +130,13 @@ fn stays(scene: &Scene, scheme: Scheme, form: Form, dt: f64) -> bool {
     let limit = Duration::from_secs(5);
     let mut tree = scene.settings.arithmetic.dynamics(&scene.mechanism);
     let method = Method::fixed(scheme, dt);
-    let run = measure::run((scene, &mut *tree), form, method, &samples, limit);
+    let run = measure::run(
+        (scene, &mut *tree),
+        form,
+        Way::Method(method),
+        &samples,
+        limit,
+    );
     run.is_ok_and(|(solution, _)| {
         let mut states = solution.samples.iter();
         states.all(|state| energy(&state.configuration, &state.speeds) <= BOUND * start)

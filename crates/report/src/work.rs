@@ -1,7 +1,7 @@
 //! Work–precision: every scene with every method, at tolerances or steps from coarse to fine.
 
 use super::case::{Case, Reference, accuracy};
-use super::measure::{self, Failed, Point};
+use super::measure::{self, Failed, Point, Way};
 use super::plan::{Plan, TOLERANCES};
 use super::representation::Representation;
 use super::row::{NOT_RUN, Row, Work, form_name};
@@ -10,7 +10,7 @@ use super::subject::{Implementation, Subject};
 use hamel::integrate::{Form, Method, Scheme};
 use hamel::registry::JointRegistry;
 use hamel_console::output::Failure;
-use hamel_scene::SceneDescription;
+use hamel_scene::{SceneDescription, Settings};
 use itertools::Itertools;
 
 /// Steps of a method without step control, from that at which the scene is resolved coarsely to this power of two below it.
@@ -28,8 +28,15 @@ struct Curve {
     scene: &'static str,
     representation: Representation,
     implementation: Implementation,
-    scheme: Scheme,
+    /// Absent for the one that is chosen.
+    scheme: Option<Scheme>,
     form: Form,
+}
+
+impl Curve {
+    fn method_name(&self) -> &'static str {
+        self.scheme.map_or(Settings::AUTO, |scheme| scheme.name())
+    }
 }
 
 /// Measures what the stores have not.
@@ -51,7 +58,7 @@ pub fn measure(
         };
         let mut subject: Option<Subject> = None;
         for curve in curves(plan, case, &description) {
-            tick(&format!("{} {}", curve.scene, curve.scheme.name()));
+            tick(&format!("{} {}", curve.scene, curve.method_name()));
             let kind = (curve.representation, curve.implementation);
             if subject.as_ref().is_none_or(|known| known.kind != kind) {
                 // The one before goes first: its compiled equations make room for others.
@@ -75,8 +82,8 @@ fn follow(
     stores: &mut Stores,
 ) -> Result<(), Failure> {
     let mut slow = 0;
-    for method in methods(curve.scheme, coarse) {
-        let empty = row(plan, curve, method, reference, machine);
+    for way in ways(curve.scheme, coarse) {
+        let empty = row(plan, curve, way, reference, machine);
         if let Some(row) = stores.work.find(&empty.key()) {
             slow = if row.is_slow() { slow + 1 } else { 0 };
             continue;
@@ -84,7 +91,7 @@ fn follow(
         let measured = match slow {
             SLOW.. => Err(not_run()),
             _ => match subject.parts(plan, machine, &mut stores.build)? {
-                Ok(parts) => measure::point(parts, reference, curve.form, method, plan.budget),
+                Ok(parts) => measure::point(parts, reference, curve.form, way, plan.budget),
                 Err(failed) => Err(failed),
             },
         };
@@ -123,21 +130,34 @@ fn curves(plan: &Plan, case: &Case, scene: &SceneDescription) -> Vec<Curve> {
                 scene: case.name,
                 representation,
                 implementation,
-                scheme,
+                scheme: Some(scheme),
                 form,
             })
         });
-    curves.collect()
+    // The choice does not depend on representation and implementation.
+    let chosen = Representation::of(scene).first().map(|&representation| {
+        let forms = plan.forms(Scheme::DormandPrince).iter();
+        forms.map(move |&form| Curve {
+            scene: case.name,
+            representation,
+            implementation: Implementation::Tree,
+            scheme: None,
+            form,
+        })
+    });
+    let chosen = chosen.filter(|_| plan.chooses).into_iter().flatten();
+    chosen.chain(curves).collect()
 }
 
 /// A tolerance each, or a step each.
-fn methods(scheme: Scheme, coarse: f64) -> Vec<Method> {
-    match scheme.has_estimate() {
-        true => TOLERANCES
-            .map(|tol| Method::controlled(scheme, tol))
+fn ways(scheme: Option<Scheme>, coarse: f64) -> Vec<Way> {
+    match scheme {
+        None => TOLERANCES.map(Way::Chosen).to_vec(),
+        Some(scheme) if scheme.has_estimate() => TOLERANCES
+            .map(|tol| Way::Method(Method::controlled(scheme, tol)))
             .to_vec(),
-        false => (0..HALVINGS)
-            .map(|i| Method::fixed(scheme, coarse * 0.5_f64.powi(i)))
+        Some(scheme) => (0..HALVINGS)
+            .map(|i| Way::Method(Method::fixed(scheme, coarse * 0.5_f64.powi(i))))
             .collect(),
     }
 }
@@ -165,7 +185,13 @@ fn coarse_step(
         let method = Method::controlled(scheme, 1e-4);
         let mut tree = scene.settings.arithmetic.dynamics(&scene.mechanism);
         let parts = (&scene, &mut *tree);
-        let run = measure::run(parts, Form::Lagrangian, method, &samples, plan.budget.run);
+        let run = measure::run(
+            parts,
+            Form::Lagrangian,
+            Way::Method(method),
+            &samples,
+            plan.budget.run,
+        );
         run.map_or(0.0, |(solution, _)| {
             reference.end() / solution.statistics.steps as f64
         })
@@ -184,18 +210,21 @@ fn not_run() -> Failed {
     }
 }
 
-fn row(plan: &Plan, curve: &Curve, method: Method, reference: &Reference, machine: &str) -> Work {
+fn row(plan: &Plan, curve: &Curve, way: Way, reference: &Reference, machine: &str) -> Work {
     Work {
         scene: curve.scene.into(),
         form: form_name(curve.form).into(),
-        method: curve.scheme.name().into(),
+        method: curve.method_name().into(),
         representation: curve.representation.name().into(),
         implementation: curve.implementation.name().into(),
-        knob: match method {
-            Method::Fixed { .. } => STEP.into(),
-            Method::Controlled { .. } => "tolerance".into(),
+        knob: match way {
+            Way::Method(Method::Fixed { .. }) => STEP.into(),
+            _ => "tolerance".into(),
         },
-        accuracy: accuracy(&method),
+        accuracy: match way {
+            Way::Chosen(tolerance) => tolerance,
+            Way::Method(method) => accuracy(&method),
+        },
         error_final: None,
         error_worst: None,
         floor: reference.floor(),

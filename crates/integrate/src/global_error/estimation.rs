@@ -41,6 +41,9 @@ const FAR_ABOVE_ROUNDING: f64 = 1e-9;
 /// Errors are taken to fall by no less than this part of the order of a method: what is observed between the two coarser motions is less than what follows.
 const LEAST_ORDER: f64 = 0.8;
 
+/// Those of implicit methods by no less than this part: beside stiff springs their order is reduced.
+const REDUCED_ORDER: f64 = 0.4;
+
 /// They are taken to fall by no less than this power of the tolerance.
 const LEAST_SLOPE: f64 = 0.85;
 
@@ -52,6 +55,9 @@ const HELD: f64 = 0.5;
 
 /// Where less than this part of it is observed, the estimate is not reliable.
 const DOUBTED_ORDER: f64 = 0.4;
+
+/// At least so much of the distance at the times beside it, two motions are taken to be from each other.
+const CROSSING: f64 = 0.3;
 
 /// Errors above this part of the motion are not small, so that nothing about them is linear.
 const LARGE: f64 = 1e-2;
@@ -124,13 +130,17 @@ impl<'a, 'r> Estimation<'a, 'r> {
         }
     }
 
-    /// The states of the solution at which it is compared: the last one, and some of the samples.
+    /// The states of the solution at which it is compared: the last one, and some of the samples and of the states between them.
     fn times(&self) -> Vec<State> {
-        let end = &self.solution.state;
-        let samples = self.solution.samples.iter();
-        let inner: Vec<&State> = samples
-            .filter(|state| state.time > self.initial.time && state.time < end.time)
-            .collect();
+        let (start, end) = (self.initial.time, &self.solution.state);
+        let Solution {
+            samples, waypoints, ..
+        } = self.solution;
+        let inner = samples.iter().chain(waypoints);
+        let inner = inner.filter(|state| state.time > start && state.time < end.time);
+        let mut inner: Vec<&State> = inner.collect();
+        inner.sort_by(|a, b| a.time.total_cmp(&b.time));
+        inner.dedup_by_key(|state| state.time);
         let coarse = self.solution.statistics.steps as f64
             * Float::powf(COARSER, -2.0 / f64::from(self.order()));
         let most = ((coarse / STEPS_BETWEEN) as usize).clamp(1, MOST_TIMES);
@@ -141,7 +151,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
             .step_by(stride)
             .map(|&state| state.clone())
             .collect();
-        if end.time > self.initial.time {
+        if end.time > start {
             times.push(end.clone());
         }
         times
@@ -161,20 +171,23 @@ impl<'a, 'r> Estimation<'a, 'r> {
         let coarse = self.companion(second, times, self.initial)?;
         let order = f64::from(self.order());
         let [near, far] =
-            [&fine, &coarse].map(|companion| self.distances(&companion.states, times));
+            [&fine, &coarse].map(|companion| beside(&self.distances(&companion.states, times)));
         let observed = order_between(
             near.last().copied().unwrap_or(0.0) / far.last().copied().unwrap_or(0.0),
             coarse.steps / fine.steps,
         );
-        let used = observed.clamp(LEAST_ORDER * order, order);
+        let least = match self.options.method.scheme().takes_derivatives() {
+            true => REDUCED_ORDER,
+            false => LEAST_ORDER,
+        };
+        let used = observed.clamp(least * order, order);
         let by_steps = Float::powf(fine.steps / steps, used);
         if fine.steps > HARDLY_LONGER * steps || self.is_held(first, fine.steps / steps) {
             self.doubt.get_or_insert(Doubt::Steps);
         }
         // Samples that cut steps short hide that errors fall with the tolerance.
-        let by_tolerance = self
-            .ratio(first)
-            .map_or(1.0, |r| Float::powf(r, LEAST_SLOPE));
+        let slope = LEAST_SLOPE.min(used / (LEAST_ORDER * order));
+        let by_tolerance = self.ratio(first).map_or(1.0, |r| Float::powf(r, slope));
         let left = by_steps.min(by_tolerance).min(0.5);
         let left = left / (1.0 - left);
         let from_steps: Vec<f64> = near.iter().map(|near| near * left).collect();
@@ -373,6 +386,16 @@ impl<'a, 'r> Estimation<'a, 'r> {
             .collect()
     }
 }
+/// Distances with those at the times beside them: two motions may cross by chance where they are far from each other a moment before and after.
+fn beside(distances: &[f64]) -> Vec<f64> {
+    let at = |i: Option<usize>| i.and_then(|i| distances.get(i)).copied().unwrap_or(0.0);
+    let distances = distances.iter().enumerate().map(|(i, &own)| {
+        let others = at(i.checked_sub(1)).max(at(Some(i + 1)));
+        own.max(CROSSING * others)
+    });
+    distances.collect()
+}
+
 /// The order with which an error falls by `ratio` where steps get shorter by `steps`.
 fn order_between(ratio: f64, steps: f64) -> f64 {
     match ratio > 0.0 && steps < 1.0 {
