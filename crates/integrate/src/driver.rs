@@ -5,6 +5,7 @@ use super::clock::Clock;
 use super::flow::Flow;
 use super::options::{StepControl, least_step};
 use super::outputs::Outputs;
+use super::prospect::{Prospect, other_method};
 use super::rounding::Rounding;
 use super::step_control::StepController;
 use super::step_state::StepState;
@@ -15,6 +16,8 @@ use super::{
     Solution, State, Statistics, Step, StepFailure,
 };
 use alloc::boxed::Box;
+use alloc::format;
+use alloc::string::String;
 use alloc::vec::Vec;
 use hamel_runtime::dynamics::Dynamics;
 use num_traits::Float;
@@ -62,6 +65,7 @@ pub(super) struct Driver<'a> {
     pub(super) crossings: Vec<Crossing>,
     watch: Watch,
     waypoints: Waypoints,
+    prospect: Prospect,
     /// What is wanted between the ends of steps, if anything is.
     pub(super) outputs: Option<Outputs<'a>>,
     /// Where something within a step has ended the integration.
@@ -109,6 +113,7 @@ impl<'a> Driver<'a> {
         Ok(Self {
             watch,
             waypoints: Waypoints::new(),
+            prospect: Prospect::new(time),
             stepper: stepper::new(options.method.scheme(), tolerance, &flow),
             flow,
             step_state,
@@ -138,6 +143,9 @@ impl<'a> Driver<'a> {
             let is_past = self.end.as_ref();
             let is_past = is_past.is_some_and(|end| end.time < self.clock.time());
             stopped = is_past || self.report(observer) || self.end.is_some();
+            if !stopped {
+                self.look_ahead()?;
+            }
         }
         let solves = self.stepper.solves();
         self.statistics.evaluations = self.flow.evaluations;
@@ -154,6 +162,26 @@ impl<'a> Driver<'a> {
             rounding: pacing.rounding.limit(&self.flow),
             stopped,
         })
+    }
+
+    /// Whether the end is within reach at the present pace.
+    fn look_ahead(&mut self) -> Result<(), IntegrateError> {
+        let Self {
+            prospect,
+            flow,
+            clock,
+            options,
+            statistics,
+            step_state,
+            ..
+        } = self;
+        let time = clock.time();
+        let state = || State {
+            time,
+            configuration: step_state.configuration.clone(),
+            speeds: step_state.speeds().to_vec(),
+        };
+        prospect.check(flow, (options, statistics), time, state)
     }
 
     fn pacing(&mut self) -> Result<Pacing, IntegrateError> {
@@ -256,8 +284,7 @@ impl<'a> Driver<'a> {
         if let Some(weight) = stepper.estimate_weight()
             && pacing.rounding.is_due()
         {
-            let end = span.time + span.step;
-            pacing.rounding.look(step_state, flow, end, weight);
+            pacing.rounding.look(step_state, flow, span.time, weight);
         }
         let (error, joint) = match stepper.error(step_state, flow, span, tolerance) {
             Ok(found) => found,
@@ -305,12 +332,14 @@ impl<'a> Driver<'a> {
         if pacing.step > limit {
             return Ok(());
         }
+        let advice = other_method(&self.flow, self.options, &self.state());
         Err(IntegrateError::StepUnderflow {
             time,
             step: pacing.step,
             limit,
             cause,
             near,
+            advice: advice.map_or_else(String::new, |advice| format!("; {advice}")),
         })
     }
 

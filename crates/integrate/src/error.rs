@@ -175,8 +175,24 @@ pub enum IntegrateError {
         /// The joint that is nearest to a singular set of its own there, if one has any.
         near: Near,
     },
+    /// Steps are so short that the motion would take a night or more.
+    #[error(
+        "at {} s, after {steps} steps, a step is {step:.1e} s long, and {to_go:.1e} more would lead to the end: {advice}", Number(*.time)
+    )]
+    Hopeless {
+        /// When.
+        time: f64,
+        /// Steps taken by then.
+        steps: usize,
+        /// The mean of the last ones, s.
+        step: f64,
+        /// Steps that would be left.
+        to_go: f64,
+        /// What makes them so short, where that is known, and what to do about it.
+        advice: String,
+    },
     /// Step control has come to steps that time cannot resolve.
-    #[error("the step has shrunk to {step:e} s at {} s, the limit is {limit:e} s: {cause}{near}", Number(*.time))]
+    #[error("the step has shrunk to {step:e} s at {} s, the limit is {limit:e} s: {cause}{near}{advice}", Number(*.time))]
     StepUnderflow {
         /// When.
         time: f64,
@@ -188,5 +204,7 @@ pub enum IntegrateError {
         cause: Box<StepFailure>,
         /// The joint that is nearest to a singular set of its own there, if one has any.
         near: Near,
+        /// The method that such a state calls for, and why, where it is another one; empty otherwise.
+        advice: String,
     },
 }

@@ -45,6 +45,7 @@ mod lobatto;
 mod options;
 mod outputs;
 mod phi;
+mod prospect;
 mod root;
 mod rounding;
 mod solution;

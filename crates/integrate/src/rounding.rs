@@ -1,8 +1,8 @@
 //! Rounding in the estimate of a step's error.
 //!
 //! An embedded estimate is a sum of rates that cancel. What rounding has left in these rates does not fall as shorter steps would have it, so that a
-//! tolerance below it cannot be met: steps would shrink without an end, and the motion would not become more accurate. How much it is, two
-//! evaluations tell that differ by roundings of the state.
+//! tolerance below it cannot be met: steps would shrink without an end, and the motion would not become more accurate. How much it is, the
+//! rates beside the state tell, at a point that differs from it by roundings.
 
 use super::StepFailure;
 use super::flow::{Flow, Rates};
@@ -14,7 +14,7 @@ use alloc::vec::Vec;
 /// Attempts of one step that are refused before rounding is looked at again: the second one is of a step that the first estimate has chosen.
 const REFUSALS: usize = 2;
 
-/// Accepted steps after which it is looked at again: two evaluations in so many steps cost some thousandths of them.
+/// Accepted steps after which it is looked at again: one evaluation in so many steps costs some thousandths of them.
 const LIFE: usize = 64;
 
 /// How many times what rounding comes to on average is still rounding.
@@ -53,29 +53,27 @@ struct Limit {
     error: f64,
 }
 
-/// Two points next to each other, with their rates.
+/// A point next to the state, with its rates.
 struct Room {
     phi: Vec<f64>,
     y: Vec<f64>,
-    here: Rates,
     beside: Rates,
     difference: Vec<f64>,
 }
 
 impl Rounding {
     pub(super) fn new(flow: &Flow<'_>) -> Self {
-        let here = flow.new_rates();
+        let beside = flow.new_rates();
         Self {
             rate: 0.0,
             age: None,
             refusals: 0,
             limit: None,
             room: Room {
-                phi: here.phi.clone(),
-                y: here.y.clone(),
-                difference: vec![0.0; here.phi.len() + here.y.len()],
-                beside: here.clone(),
-                here,
+                phi: beside.phi.clone(),
+                y: beside.y.clone(),
+                difference: vec![0.0; beside.phi.len() + beside.y.len()],
+                beside,
             },
         }
     }
@@ -95,7 +93,7 @@ impl Rounding {
         self.refusals += 1;
     }
 
-    /// Looks at it, at the end of the step just tried, which comes at `time`. Where the equations have no value nearby, nothing is known of it.
+    /// Looks at it at the state, at `time`: not where a step that may be far too long has led to. Where the equations have no value nearby, nothing is known of it.
     /// `weight` is that of [`Stepper::estimate_weight`](super::stepper::Stepper::estimate_weight).
     pub(super) fn look(
         &mut self,
@@ -150,20 +148,23 @@ impl Rounding {
 }
 
 impl Room {
-    /// Differences of the rates at the point that the step has come to, and at one that differs from it by a rounding in each of its numbers: ϕ̇,
-    /// then ẏ.
+    /// Differences of the rates at the state, and at one that differs from it by a rounding in each of its numbers: ϕ̇, then ẏ.
     fn scatter(
         &mut self,
         step_state: &StepState,
         flow: &mut Flow<'_>,
         time: f64,
     ) -> Result<(), StepFailure> {
-        beside(&step_state.phi, &mut self.phi);
-        beside(&step_state.next_y, &mut self.y);
-        let (here, base) = (self.here.parts(), &step_state.base);
-        step_state.evaluate_there(flow, time, here)?;
-        flow.evaluate(time, base, &self.phi, &self.y, self.beside.parts())?;
-        let (here, beside) = (&self.here, &self.beside);
+        beside(&step_state.offset, &mut self.phi);
+        beside(&step_state.y, &mut self.y);
+        flow.evaluate(
+            time,
+            &step_state.base,
+            &self.phi,
+            &self.y,
+            self.beside.parts(),
+        )?;
+        let (here, beside) = (&step_state.rates, &self.beside);
         let pairs = here.phi.iter().zip(&beside.phi);
         let pairs = pairs.chain(here.y.iter().zip(&beside.y));
         for (difference, (a, b)) in self.difference.iter_mut().zip(pairs) {

@@ -8,7 +8,7 @@ use hamel_runtime::dynamics::Recursive;
 use hamel_runtime::mechanism::Mechanism;
 
 /// Steps taken. The second half of them counts, as the first ones grow to their length.
-pub(super) const TAKEN: usize = 40;
+pub(super) const TAKEN: usize = 16;
 
 /// The mean of the later ones of the first steps from `state` to the end of a span, s. `None` where they fail.
 pub(super) fn step(

@@ -4,7 +4,8 @@
 
 use super::motions::{cases, errors, list, number, reference, scene};
 use hamel::integrate::{
-    Form, GlobalError, Method, Options, Scheme, Solution, State, Step, integrate, no_inputs,
+    Form, GlobalError, IntegrateError, Integration, Method, Options, Scheme, Solution, State, Step,
+    integrate, no_inputs,
 };
 use hamel_scene::Scene;
 use serde_json::Value;
@@ -221,5 +222,45 @@ fn steps_do_not_shrink_into_rounding() {
                 "{tolerance:e}: {found} steps, {at_best} at 1e-11"
             );
         }
+    }
+}
+
+/// What a step far beyond the limit of stability has made of the state is not taken for rounding: steps stay at that limit, and the motion is refused for their
+/// number, not because it has grown beyond all numbers.
+#[test]
+fn rounding_of_wild_attempts_is_not_allowed_for() {
+    let text = "
+        hamel = 1
+        gravity = [0.0, 0.0, -9.81]
+        [[body]]
+        name = 'arm'
+        parent = 'world'
+        mass = 1.0
+        com = [0.3, 0.0, 0.0]
+        inertia_xx_yy_zz_xy_xz_yz = [0.01, 0.02, 0.02, 0.0, 0.0, 0.0]
+        joint = { type = 'revolute' }
+        at = { axis = [0.0, 1.0, 0.0] }
+        damping = 1e16
+    ";
+    let scene = Scene::from_toml(text, "damped.toml").expect("a sound text");
+    let scene = scene
+        .build(&hamel_joints::registry())
+        .expect("a sound scene");
+    for (scheme, tolerance) in [
+        (Scheme::DormandPrince, 1e-10),
+        (Scheme::DormandPrince8, 1e-5),
+        (Scheme::Verner9, 1e-14),
+    ] {
+        let options = Options {
+            form: Form::Lagrangian,
+            method: Method::controlled(scheme, tolerance),
+            t_end: 10.0,
+            samples: (0..1000).map(|i| 0.01 * f64::from(i)).collect(),
+        };
+        let mut dynamics = scene.settings.arithmetic.dynamics(&scene.mechanism);
+        let error = Integration::new(&mut *dynamics, &scene.start(), &options)
+            .run()
+            .expect_err("it would take days");
+        assert!(matches!(error, IntegrateError::Hopeless { .. }), "{error}");
     }
 }

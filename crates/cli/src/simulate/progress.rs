@@ -1,17 +1,29 @@
-//! Progress on stderr; nothing where stderr is no terminal.
+//! Progress on stderr: a bar on a terminal; elsewhere a line, once, of a motion that takes more than a minute.
 
+use hamel::shown::Number;
+use hamel_console::output::tell;
 use hamel_native::Compiler;
 use hamel_scene::text::visible;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::time::Duration;
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::cell::Cell;
+use std::time::{Duration, Instant};
 
 /// Ticks of the whole bar.
 const LENGTH: u64 = 1000;
+
+/// Where there is no bar, it is said after this time whether a motion takes long.
+const FIRST_LOOK: Duration = Duration::from_secs(5);
+
+/// How long a motion takes that this is said of.
+const LONG: Duration = Duration::from_secs(60);
 
 /// Shows how much of the time has been simulated.
 pub struct Progress {
     bar: ProgressBar,
     t_end: f64,
+    start: Instant,
+    /// Whether nothing is to be said of a long motion, or it has been said.
+    is_told: Cell<bool>,
 }
 
 impl Progress {
@@ -22,7 +34,12 @@ impl Progress {
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
         }
-        Self { bar, t_end }
+        Self {
+            is_told: Cell::new(quiet || !bar.is_hidden()),
+            bar,
+            t_end,
+            start: Instant::now(),
+        }
     }
 
     /// Moves the bar to the time `t`.
@@ -31,6 +48,30 @@ impl Progress {
         if tick > self.bar.position() {
             self.bar.set_message(format!("{t:.3} s"));
             self.bar.set_position(tick.min(LENGTH));
+        }
+        if !self.is_told.get() {
+            self.announce(t);
+        }
+    }
+
+    /// Says once, where there is no bar, that the motion takes long.
+    fn announce(&self, t: f64) {
+        let spent = self.start.elapsed();
+        if spent < FIRST_LOOK || t <= 0.0 {
+            return;
+        }
+        self.is_told.set(true);
+        let whole = spent.as_secs_f64() * self.t_end / t;
+        let Ok(left) = Duration::try_from_secs_f64(whole - spent.as_secs_f64()) else {
+            return;
+        };
+        if whole > LONG.as_secs_f64() {
+            let left = HumanDuration(left);
+            tell(&[format!(
+                "at {t:.3e} s of {:?} s after {} s: about {left} to go at this pace",
+                Number(self.t_end),
+                spent.as_secs()
+            )]);
         }
     }
 

@@ -117,10 +117,10 @@ fn work_is_counted() {
     };
     let statistics = run(&mechanism, &initial, &options(Form::Lagrangian, rough, 1.0)).statistics;
     assert!(statistics.rejected > 2);
-    // Rounding is looked at in the first attempt and after two that were refused, by two evaluations each.
+    // Rounding is looked at in the first attempt and after two that were refused, by an evaluation each.
     assert_eq!(
         statistics.evaluations,
-        1 + 6 * (statistics.steps + statistics.rejected) + 2 * 2
+        1 + 6 * (statistics.steps + statistics.rejected) + 2
     );
 }
 

@@ -3,7 +3,8 @@
 use crate::common::joints;
 use crate::support::{distance, on_axis, options, run};
 use hamel_integrate::{
-    Form, Integration, Method, Options, Sampling, Scheme, Solution, State, Statistics,
+    Form, IntegrateError, Integration, Method, Options, Sampling, Scheme, Solution, State,
+    Statistics,
 };
 use hamel_runtime::dynamics::Reference;
 use hamel_runtime::elements::{BodySpring, Element, JointDamper, JointSpring};
@@ -321,5 +322,46 @@ fn stiff_springs_between_bodies_take_few_iterations() {
         // 2.2 to 2.6 a step where the iteration knows of the rods, 3.8 to 4.8 where it does not.
         let steps = statistics.steps + statistics.rejected;
         assert!(statistics.iterations <= 3 * steps, "{stiffness:e}");
+    }
+}
+
+/// A spring that a damper lets creep: e^(−kt/c), whatever the fast mode.
+#[test]
+fn the_exponential_method_keeps_the_digits_of_slow_modes() {
+    for form in [Form::Lagrangian, Form::Hamiltonian] {
+        for stiffness in [1e6, 1e10, 1e14] {
+            let mechanism = wheel(stiffness, stiffness);
+            let rate = 0.5 * eigenvalues(stiffness, stiffness).0;
+            let method = Method::controlled(Scheme::Exponential, 1e-10);
+            let options = options(form, method, 1.0);
+            let solution = run(&mechanism, &turned(rate, &mechanism), &options);
+            let error = angle(&solution) - overdamped(stiffness, stiffness, rate, 1.0);
+            println!("{form:?}, {stiffness:e}: {error:e}");
+            // Some roundings in each of the up to 47 doublings of the matrix functions; the equations are linear.
+            assert!(error.abs() < 1e-13, "{form:?}, {stiffness:e}: {error:e}");
+        }
+    }
+}
+
+/// An explicit method is stable up to a step of 3.3/rate: 3e15 of them are not begun, and the error names the joint and the method that takes the motion.
+#[test]
+fn a_motion_without_an_end_in_sight_is_refused_with_what_to_do() {
+    let mechanism = wheel(0.0, 1e16);
+    let methods = [
+        Scheme::DormandPrince,
+        Scheme::DormandPrince8,
+        Scheme::Verner9,
+    ];
+    for (method, tolerance) in methods.into_iter().zip([1e-3, 1e-8, 1e-14]) {
+        let method = Method::controlled(method, tolerance);
+        let options = options(Form::Lagrangian, method, 1.0);
+        let initial = turned(1.0, &mechanism);
+        let mut dynamics = Reference::new(Arc::clone(&mechanism));
+        let error = Integration::new(&mut dynamics, &initial, &options).run();
+        let error = error.expect_err("it would take days");
+        assert!(matches!(error, IntegrateError::Hopeless { .. }), "{error}");
+        let text = error.to_string();
+        assert!(text.contains("joint `axis`"), "{text}");
+        assert!(text.contains("take the method `radau5`"), "{text}");
     }
 }

@@ -1,0 +1,94 @@
+//! Whether a motion comes to its end in a time that anybody waits for.
+
+use super::flow::Flow;
+use super::{Choice, IntegrateError, Method, Options, Scheme, State, Statistics, Wanted};
+use alloc::format;
+use alloc::string::String;
+
+/// Steps after which it is looked at again.
+const STEPS: usize = 4096;
+
+/// Evaluations of the equations, times bodies, before which nothing is said: some ten seconds on one core.
+const PATIENCE: f64 = 2e7;
+
+/// So many times the work done so far is too much: a night or more.
+const HOPELESS: f64 = 3e3;
+
+/// As many steps are too many from the first look on: of the smallest mechanism, half a month.
+const ENDLESS: f64 = 1e13;
+
+/// What is known of the pace of a motion.
+#[derive(Debug)]
+pub(super) struct Prospect {
+    /// When it was looked at last, s.
+    time: f64,
+    /// How many steps there were by then.
+    steps: usize,
+}
+
+impl Prospect {
+    pub(super) const fn new(time: f64) -> Self {
+        Self { time, steps: 0 }
+    }
+
+    /// Whether the steps so far have led far enough to `time`.
+    ///
+    /// # Errors
+    /// As many steps more, at the pace of the last ones, as would take a night or more.
+    pub(super) fn check(
+        &mut self,
+        flow: &Flow<'_>,
+        (options, statistics): (&Options, &Statistics),
+        time: f64,
+        state: impl FnOnce() -> State,
+    ) -> Result<(), IntegrateError> {
+        let steps = statistics.steps;
+        let taken = steps - self.steps;
+        if taken < STEPS {
+            return Ok(());
+        }
+        let step = (time - self.time) / taken as f64;
+        (self.time, self.steps) = (time, steps);
+        let to_go = (options.t_end - time) / step;
+        let bodies = flow.mechanism.bodies().len();
+        let work = flow.evaluations as f64 * bodies as f64;
+        let is_long = work >= PATIENCE && to_go > HOPELESS * steps as f64;
+        if !is_long && to_go < ENDLESS {
+            return Ok(());
+        }
+        let advice = match options.method {
+            Method::Fixed { .. } => "take a larger dt, or a method with step control",
+            Method::Controlled { .. } => "take a larger tolerance",
+        };
+        let other = other_method(flow, options, &state());
+        Err(IntegrateError::Hopeless {
+            time,
+            steps,
+            step,
+            to_go,
+            advice: other.unwrap_or_else(|| advice.into()),
+        })
+    }
+}
+
+/// The method that a state calls for, and why, where it is another one than that of `options`.
+pub(super) fn other_method(flow: &Flow<'_>, options: &Options, state: &State) -> Option<String> {
+    let Method::Controlled { scheme, control } = options.method else {
+        return None;
+    };
+    let wanted = Wanted {
+        tolerance: control.tolerance,
+        span: options.t_end - state.time,
+        is_bound: true,
+    };
+    let choice = Choice::new(&flow.mechanism, state, wanted).ok()?;
+    let is_stiff =
+        !matches!(choice.scheme, Scheme::Explicit(_)) && choice.scheme.tableau().is_none();
+    (is_stiff && choice.scheme != scheme).then(|| {
+        format!(
+            "{}: take the method `{}`",
+            choice.reason,
+            choice.scheme.name()
+        )
+    })
+}
