@@ -6,14 +6,21 @@ use crate::StepControl;
 /// Errors are aimed at this part of what is asked: estimates are right within a factor of ten, mostly within three.
 const AIM: f64 = 0.3;
 
+/// Beside rounding they shall be no more than this part of it: a tenth of an error costs a method of order 9 a third more steps.
+const BESIDE_ROUNDING: f64 = 0.02;
+
 /// Motions that are tried. Errors are nearly proportional to tolerances, so that the second one is right as a rule.
 const MOST_TRIALS: usize = 6;
 
 /// One trial changes the tolerance by no more than this factor: far away, errors are not proportional to it.
 const LARGEST_CHANGE: f64 = 1e5;
 
-/// The first tolerance is no larger than this.
-const LARGEST: f64 = 1e-3;
+/// The first tolerance is no smaller than this, for which errors tell of rounding, and none is larger than that.
+const FIRST_LEAST: f64 = 1e-12;
+const FIRST_LARGEST: f64 = 1e-3;
+
+/// Another tolerance is tried where it differs by more than this factor.
+const NEAR: f64 = 1.5;
 
 /// What came of a request for an accuracy.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,7 +40,7 @@ impl Tuned {
     ///
     /// `attempt` integrates the motion with a tolerance and estimates its error. Errors are nearly proportional to tolerances (L. F. Shampine, *Tolerance
     /// proportionality in ODE codes*, 1989): the next tolerance follows from the ratio of what is asked to what was found. Where rounding alone is more than
-    /// what is asked, and where a smaller tolerance makes the error no smaller, the search ends with the best that was found.
+    /// what is asked, that takes its place: smaller steps than it calls for would only round more often. The search ends with the least error that was found.
     ///
     /// # Errors
     /// Those of `attempt`.
@@ -50,7 +57,7 @@ impl Tuned {
                 is_reached: found.end.total() <= wanted,
             })
         };
-        let mut best = trial(wanted.clamp(StepControl::LEAST_TOLERANCE, LARGEST))?;
+        let mut best = trial(wanted.clamp(FIRST_LEAST, FIRST_LARGEST))?;
         let mut next = best.next_tolerance(wanted);
         for _ in 1..MOST_TRIALS {
             let Some(tolerance) = next else { break };
@@ -66,19 +73,22 @@ impl Tuned {
         Ok(best)
     }
 
-    /// A tolerance that is expected to do; `None` where this one does, and where none does.
+    /// A tolerance that is expected to do; `None` where this one does, and where none does better. What rounding comes to, steps need not be better than.
     fn next_tolerance(&self, wanted: f64) -> Option<f64> {
-        let is_rounding = self.error.rounding > self.error.steps.max(wanted);
-        if self.is_reached || is_rounding || self.tolerance <= StepControl::LEAST_TOLERANCE {
+        if self.is_reached {
             return None;
         }
-        let change = AIM * wanted / self.error.steps;
+        let ErrorParts { steps, rounding } = self.error;
+        let change = (AIM * wanted).max(BESIDE_ROUNDING * rounding) / steps;
         // An error that is not known says as much as a large one.
         let change = match change.is_finite() {
-            true => change.clamp(1.0 / LARGEST_CHANGE, AIM),
+            true => change.clamp(1.0 / LARGEST_CHANGE, LARGEST_CHANGE),
             false => 1.0 / LARGEST_CHANGE,
         };
-        Some((self.tolerance * change).max(StepControl::LEAST_TOLERANCE))
+        let tolerance = self.tolerance * change;
+        let tolerance = tolerance.clamp(StepControl::LEAST_TOLERANCE, FIRST_LARGEST);
+        let is_far = !(1.0 / NEAR..=NEAR).contains(&(tolerance / self.tolerance));
+        is_far.then_some(tolerance)
     }
 }
 
@@ -121,11 +131,17 @@ mod tests {
 
     #[test]
     fn a_search_ends_where_rounding_is_what_is_left() {
-        let (tried, found) = search(1e-14, (1.0, 1e-11));
-        assert!(!found.is_reached && tried.len() == 1, "{tried:?}");
-        let (tried, found) = search(1e-12, (1e6, 2e-12));
-        assert!(!found.is_reached && tried.len() <= 3, "{tried:?}");
-        assert_eq!(found.error.rounding, 2e-12);
+        for (wanted, amplification, rounding) in [
+            (1e-14, 1.0, 1e-11),
+            (1e-12, 1e3, 2e-12),
+            (1e-16, 2.0, 1e-15),
+        ] {
+            let (tried, found) = search(wanted, (amplification, rounding));
+            assert!(!found.is_reached && tried.len() <= 4, "{tried:?}");
+            // No smaller than rounding makes sensible.
+            let part = found.error.steps / rounding;
+            assert!((0.01..1.0).contains(&part), "{tried:?}: {part}");
+        }
     }
 
     #[test]
