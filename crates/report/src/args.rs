@@ -12,6 +12,8 @@ Examples:
       stopped and called again, it goes on where it was
   hamel report --scenes heavy_top,torsion_1e8 --methods verner9,exponential,radau5 -o stiff
       these scenes and methods alone, to the folder `stiff`
+  hamel report --methods auto,dopri5,dop853,verner9,radau5,exponential
+      whether the method that is chosen for a scene is the fastest one: `The method that is chosen` on the page
   hamel report --page-only
       the page anew from the CSV files: of this machine's figures, or where they have none, of those measured last
 

@@ -5,6 +5,7 @@
 mod args;
 mod build_cost;
 mod case;
+mod choice;
 mod drift;
 mod figures;
 mod lock;

@@ -1,10 +1,12 @@
 //! The page: figures, and tables of what they show.
 
 use super::case::Case;
+use super::choice::{self, Choice};
 use super::figures::Figures;
 use super::plan::COMPARED;
 use super::plots;
 use super::row::{Build, Work};
+use hamel::registry::JointRegistry;
 use hamel_console::files::first_line;
 use hamel_console::output::Failure;
 use itertools::Itertools;
@@ -32,6 +34,7 @@ struct Section {
     /// That of the tree and of compiled equations; empty where there is one.
     implementations: String,
     best: Vec<Best>,
+    choices: Vec<Choice>,
     failures: Vec<Failing>,
 }
 
@@ -95,9 +98,9 @@ pub fn is_own(file: &File) -> bool {
 ///
 /// # Errors
 /// Figures or texts that cannot be made.
-pub fn render(figures: &Figures) -> Result<String, Failure> {
+pub fn render(figures: &Figures, registry: &JointRegistry) -> Result<String, Failure> {
     let mut context = Context::new();
-    let sections = sections(&figures.work)?;
+    let sections = sections(&figures.work, registry)?;
     let methods = figures.work.iter().map(|row| row.method.as_str());
     let methods: Vec<&str> = methods.unique().collect();
     context.insert("machine", &figures.machine);
@@ -152,16 +155,16 @@ fn drawings<R>(
     drawings.collect()
 }
 
-fn sections(rows: &[Work]) -> Result<Vec<Section>, Failure> {
+fn sections(rows: &[Work], registry: &JointRegistry) -> Result<Vec<Section>, Failure> {
     let names = rows.iter().map(|row| row.scene.as_str()).unique();
     let sections = names.map(|name| {
         let own: Vec<&Work> = rows.iter().filter(|row| row.scene == name).collect();
-        section(name.into(), &own)
+        section(name.into(), &own, registry)
     });
     sections.collect()
 }
 
-fn section(name: String, rows: &[&Work]) -> Result<Section, Failure> {
+fn section(name: String, rows: &[&Work], registry: &JointRegistry) -> Result<Section, Failure> {
     let (description, source) = told(&name)?;
     let first = rows.first().map(|row| row.representation.clone());
     let all = rows.iter().copied();
@@ -192,10 +195,22 @@ fn section(name: String, rows: &[&Work]) -> Result<Section, Failure> {
         )?,
         implementations: drawn(&ways, |row| &row.implementation, plots::implementations)?,
         best: best(&own),
+        choices: choices(&name, registry, &main),
         failures: failures(rows),
         name,
         description,
         source,
+    })
+}
+
+/// What is chosen for a scene, where this program knows it, in the Lagrangian form.
+fn choices(name: &str, registry: &JointRegistry, rows: &[&Work]) -> Vec<Choice> {
+    let known = Case::chosen(&[name.to_owned()]).unwrap_or_default();
+    let lagrangian = rows.iter().copied();
+    let lagrangian = lagrangian.filter(|row| row.form == "lagrangian");
+    let lagrangian: Vec<&Work> = lagrangian.collect();
+    known.first().map_or_else(Vec::new, |case| {
+        choice::choices(case, registry, &lagrangian)
     })
 }
 

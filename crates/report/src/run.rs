@@ -44,7 +44,7 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
         )));
     }
     if let Some(output) = output {
-        output.write(page::render(&figures)?)?;
+        output.write(page::render(&figures, registry)?)?;
     }
     drop(lock);
     if args.quiet {
