@@ -150,6 +150,7 @@ impl<'a> Integration<'a> {
         check_length("period", period, initial.time, options.t_end)?;
         let mechanism = self.dynamics.mechanism();
         mechanism.check_configuration(&initial.configuration)?;
+        mechanism.check_limits(&initial.configuration)?;
         mechanism.check_speeds("speeds", &initial.speeds)?;
         options.check_scheme(mechanism)
     }

@@ -1,9 +1,11 @@
-//! What a mechanism carries besides its bodies: elements, rotor inertias, drives.
+//! What a mechanism carries besides its bodies: elements, rotor inertias, drives, constraints that couple joints.
 
 use super::check::Space;
 use super::{Mechanism, MechanismError, MechanismErrors, StateError};
 use crate::dynamics::Recursive;
-use crate::elements::{Drive, Element, ElementError, PointConstraint};
+use crate::elements::{
+    Drive, Element, ElementError, JointFriction, JointStop, PointConstraint,
+};
 use alloc::format;
 use alloc::sync::Arc;
 use alloc::vec;
@@ -13,15 +15,17 @@ use nalgebra::DMatrix;
 /// Elements, rotor inertias and drives of a mechanism.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Actuation {
-    elements: Vec<Arc<dyn Element>>,
+    pub(super) elements: Vec<Arc<dyn Element>>,
     /// One entry a degree of freedom; empty where there is none.
     armature: Vec<f64>,
-    drives: Vec<Drive>,
+    pub(super) drives: Vec<Drive>,
     /// Whether the joint under each body is driven; empty where there are no drives.
     driven: Vec<bool>,
-    constraints: Vec<PointConstraint>,
+    pub(super) constraints: Vec<PointConstraint>,
     /// The speeds that depend on the others, one a constraint.
-    dependent: Vec<usize>,
+    pub(super) dependent: Vec<usize>,
+    pub(super) frictions: Vec<JointFriction>,
+    pub(super) stops: Vec<JointStop>,
 }
 
 /// How small a pivot may be next to the largest to be preferred because its joint is nearer to the tips of the tree: the speeds that people
@@ -159,8 +163,12 @@ impl Mechanism {
         self.actuation.dependent.clear();
         let matrix = Recursive::new(Arc::new(self.clone())).constraint_matrix(q);
         let mut driven = vec![false; self.layout.speeds];
-        for drive in &self.actuation.drives {
-            driven[self.bodies[drive.body].ranges.speeds.clone()].fill(true);
+        let drives = self.actuation.drives.iter().map(|drive| drive.body);
+        // Joints that may stick or hit a limit keep speeds of their own.
+        let frictions = self.actuation.frictions.iter().map(|friction| friction.body);
+        let stops = self.actuation.stops.iter().map(|stop| stop.body);
+        for body in drives.chain(frictions).chain(stops) {
+            driven[self.bodies[body].ranges.speeds.clone()].fill(true);
         }
         let found = dependent_columns(matrix, |speed| driven[speed]);
         self.actuation.dependent = found.map_err(|rows| {
@@ -257,7 +265,7 @@ impl Mechanism {
     }
 }
 
-fn refuse(failures: impl Iterator<Item = ElementError>) -> Result<(), MechanismErrors> {
+pub(super) fn refuse(failures: impl Iterator<Item = ElementError>) -> Result<(), MechanismErrors> {
     MechanismErrors::check(failures.map(MechanismError::Element).collect())
 }
 

@@ -1,0 +1,96 @@
+//! Impacts: speeds that change at once.
+
+use super::complementarity::{Found, Place, Problem};
+use super::contact::{Contact, Side};
+use alloc::vec::Vec;
+use nalgebra::{DMatrix, DVector};
+
+/// A rebound below this speed, as a part of the largest one or of 1 SI unit, is none. What bounces ever less comes to rest so: the state differs by no
+/// more than that speed, and by less in the coordinates.
+const CAPTURE: f64 = 1e-12;
+
+/// Energy that rounding may add to what impacts leave, as a part of what they exchange.
+const ROUNDING: f64 = 1e-9;
+
+/// A joint at its limit.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touching {
+    pub(super) contact: usize,
+    pub(super) side: Side,
+}
+
+/// What an impact does.
+#[derive(Debug)]
+pub(super) struct Impact {
+    /// Impulses of the joints that touch, in their order.
+    pub(super) impulses: DVector<f64>,
+    /// Their speeds after it.
+    pub(super) after: Vec<f64>,
+}
+
+/// Why there is none.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum NoImpact {
+    /// The impulses are not determined.
+    Undetermined,
+    /// Energy would grow by this part of what is exchanged.
+    Gains(f64),
+}
+
+/// Speeds after the impact of all joints that are at limits, of which some move beyond; `matrix` is `M̄⁻¹` of their speeds.
+///
+/// For each joint `v⁺ ≥ −e v⁻` inwards, an impulse only inwards, and none where the inequality is strict: with one joint it is Newton's law.
+pub(super) fn impact(
+    contacts: &[Contact],
+    touching: &[Touching],
+    speeds: &[f64],
+    matrix: DMatrix<f64>,
+) -> Result<Impact, NoImpact> {
+    let largest = speeds.iter().fold(1.0_f64, |most, v| most.max(v.abs()));
+    let rebounds = touching.iter().map(|own| {
+        let contact = &contacts[own.contact];
+        let before = own.side.inwards() * speeds[contact.speed];
+        let rebound = contact.restitution * (-before).max(0.0);
+        let is_captured = rebound <= CAPTURE * largest;
+        own.side.inwards() * if is_captured { 0.0 } else { rebound }
+    });
+    let rebounds: Vec<f64> = rebounds.collect();
+    let before = |i: usize| speeds[contacts[touching[i].contact].speed];
+    let size = touching.len();
+    let problem = Problem {
+        matrix,
+        free: DVector::from_fn(size, |i, _| before(i) - rebounds[i]),
+        bounds: touching.iter().map(|own| inwards(own.side)).collect(),
+    };
+    let Found { places, efforts } = problem
+        .solve(alloc::vec![Place::Between; size])
+        .ok_or(NoImpact::Undetermined)?;
+    let free = &problem.free + &problem.matrix * &efforts;
+    let after = (0..size).map(|i| match places[i] {
+        Place::Between => rebounds[i],
+        // It leaves faster than it must, and not beyond its limit by rounding.
+        _ => {
+            let inwards = touching[i].side.inwards();
+            inwards * (inwards * (free[i] + rebounds[i])).max(0.0)
+        }
+    });
+    let after: Vec<f64> = after.collect();
+    let work = |i: usize| 0.5 * efforts[i] * (before(i) + after[i]);
+    let gained: f64 = (0..size).map(work).sum();
+    let exchanged: f64 = (0..size).map(|i| (efforts[i] * before(i)).abs()).sum();
+    if gained > ROUNDING * exchanged {
+        return Err(NoImpact::Gains(gained / exchanged));
+    }
+    Ok(Impact {
+        impulses: efforts,
+        after,
+    })
+}
+
+/// Bounds of an impulse that only pushes inwards.
+const fn inwards(side: Side) -> (f64, f64) {
+    match side {
+        Side::Lower => (0.0, f64::INFINITY),
+        Side::Upper => (f64::NEG_INFINITY, 0.0),
+    }
+}
