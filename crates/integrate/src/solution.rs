@@ -57,7 +57,7 @@ pub struct Solution {
     pub state: State,
     /// The states at the sample times that were reached, in order.
     pub samples: Vec<State>,
-    /// What crossed zero, in the order of time.
+    /// What crossed zero, and what joints with friction and limits did, in the order of time.
     pub events: Vec<Crossing>,
     /// The work done.
     pub statistics: Statistics,

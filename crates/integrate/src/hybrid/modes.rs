@@ -49,7 +49,9 @@ impl<'a> Modes<'a> {
         };
         let before = flow.replace_equations(equations);
         let before = (core::mem::replace(&mut self.held, held), before);
-        self.kept.insert(0, before);
+        if before.0.is_empty() || !is_coupled {
+            self.kept.insert(0, before);
+        }
         // The first of all is the caller's, and stays.
         if self.kept.len() > MOST_KEPT {
             let last = self.kept.iter().rposition(|(kept, _)| !kept.is_empty());
