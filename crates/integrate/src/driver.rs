@@ -366,8 +366,8 @@ impl<'a> Driver<'a> {
         let passed = self.pass(step, observer);
         let passed = passed.map_err(|cause| self.at_state(cause))?;
         match (passed, before) {
-            (Passed::TooLong, Some(before)) => {
-                self.go_back(before, step);
+            (Passed::TooLong(part), Some(before)) => {
+                self.go_back(before, (part * step).max(f64::MIN_POSITIVE));
                 return Ok(false);
             }
             (Passed::Until(end), Some(before)) => {

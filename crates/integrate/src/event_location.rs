@@ -137,6 +137,7 @@ impl<'a> EventLocation<'a> {
 
     /// The step just looked at is not taken.
     pub(super) fn go_back(&mut self) {
+        self.found.clear();
         for values in &mut self.values {
             values[PARTS] = values[0];
         }
@@ -204,6 +205,13 @@ impl<'a> EventLocation<'a> {
         }
         found.sort_unstable_by(|a, b| a.part.total_cmp(&b.part).then(a.event.cmp(&b.event)));
         Ok(())
+    }
+
+    /// The part of the step in which the piece ends, if it does.
+    pub(super) fn piece_end(&self) -> Option<f64> {
+        let events = self.events.len();
+        let mut ends = self.found.iter().filter(|found| found.event >= events);
+        ends.next().map(|found| found.part)
     }
 
     /// The guards that are crossed as early as `first`, which is one of them; none where it is an event.

@@ -24,8 +24,8 @@ pub(super) enum Passed {
     Whole,
     /// A piece of the motion ends within it.
     Until(PieceEnd),
-    /// It is too long for what ends pieces.
-    TooLong,
+    /// It is too long to tell what ends pieces, and shall be tried again with this part of its length.
+    TooLong(f64),
 }
 
 /// Where a piece of the motion ends.
@@ -42,6 +42,9 @@ enum Within {
     Something,
     Unresolved,
 }
+
+/// Pieces that end within this part of a step are told by a step of that length: next to the whole one, little is left of their digits.
+const EARLY: f64 = 0.1;
 
 /// What comes next within a step.
 enum Due {
@@ -146,7 +149,7 @@ impl Driver<'_> {
         };
         let outcome = self.pass_over(&mut outputs, step, observer);
         match outcome {
-            Ok(Passed::TooLong) => outputs.location.go_back(),
+            Ok(Passed::TooLong(_)) => outputs.location.go_back(),
             _ => outputs.location.move_on(),
         }
         self.outputs = Some(outputs);
@@ -161,12 +164,17 @@ impl Driver<'_> {
     ) -> Result<Passed, StepFailure> {
         let has_sample = self.sample_within(outputs).is_some();
         let short = self.hybrid.as_ref().map_or(0.0, Hybrid::short);
+        let least = f64::EPSILON * short;
         let at = (self.clock.time(), has_sample, step <= short);
         let (flow, stepper) = (&mut self.flow, &*self.stepper);
         match outputs.prepare(&self.step_state, flow, stepper, at)? {
             Within::Nothing => return Ok(Passed::Whole),
-            Within::Unresolved => return Ok(Passed::TooLong),
+            Within::Unresolved => return Ok(Passed::TooLong(0.5)),
             Within::Something => {}
+        }
+        let end = outputs.location.piece_end().filter(|part| *part < EARLY);
+        if end.is_some() && step > least {
+            return Ok(Passed::TooLong(EARLY));
         }
         let mut passed = 0;
         while self.end.is_none() {
@@ -176,8 +184,8 @@ impl Driver<'_> {
                 Some(Due::Crossing(found)) => {
                     let guards = outputs.location.ended_by(found);
                     if !guards.is_empty() {
-                        let state = state_of(outputs.dense.at(&mut self.flow, found.part)?);
                         let part = found.part;
+                        let state = state_of(outputs.dense.at(&mut self.flow, part)?);
                         return Ok(Passed::Until(PieceEnd { part, state, guards }));
                     }
                     passed += 1;

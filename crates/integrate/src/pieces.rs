@@ -92,10 +92,10 @@ impl Driver<'_> {
         })
     }
 
-    /// Goes back to before a step of that length, and takes half of it next.
-    pub(super) fn go_back(&mut self, before: BeforeStep, step: f64) {
+    /// Goes back to before a step, and takes one that is no longer than this next.
+    pub(super) fn go_back(&mut self, before: BeforeStep, longest: f64) {
         self.statistics.steps -= 1;
-        self.resolving = 0.5 * step;
+        self.resolving = longest;
         self.step_state = before.step_state;
         self.clock = before.clock;
         self.renew_stepper();
@@ -143,6 +143,21 @@ impl Driver<'_> {
         Ok(true)
     }
 
+    /// Takes the next step no longer than the shortest bounce, and some.
+    fn reach_over_bounces(&mut self) -> Result<(), IntegrateError> {
+        let (q, rates) = (&self.step_state.configuration, &self.step_state.rates);
+        let mut accelerations = rates.speeds.clone();
+        // p̄̇ tells v̄̇ but for what the change of M̄ adds, which is of the order of v̄².
+        let found = self.flow.speeds_of(q, &rates.y, &mut accelerations);
+        let found = found.map(|()| match &self.hybrid {
+            Some(hybrid) => hybrid.flight(q, &rates.speeds, &accelerations),
+            None => f64::INFINITY,
+        });
+        let longest = found.map_err(|cause| self.at_state(cause.into()))?;
+        self.resolving = self.resolving.min(longest);
+        Ok(())
+    }
+
     fn begin_piece(&mut self, mut state: State, ended: &[Guard]) -> Result<(), IntegrateError> {
         let Some(hybrid) = &mut self.hybrid else {
             return Ok(());
@@ -153,6 +168,7 @@ impl Driver<'_> {
         let begun = StepState::new(&mut self.flow, state.time, q, speeds);
         self.step_state = begun.map_err(|cause| self.at_state(cause))?;
         self.renew_stepper();
+        self.reach_over_bounces()?;
         let order = self.options.method.scheme().order();
         let mut events: usize = 0;
         if let Some(outputs) = &mut self.outputs {

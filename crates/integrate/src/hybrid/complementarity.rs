@@ -40,6 +40,8 @@ pub(super) struct Found {
     pub(super) places: Vec<Place>,
     /// x.
     pub(super) efforts: DVector<f64>,
+    /// Where a is 0 but for rounding.
+    pub(super) is_still: Vec<bool>,
 }
 
 impl Problem {
@@ -52,7 +54,7 @@ impl Problem {
             let efforts = self.efforts(&places)?;
             let moves = self.moves(&places, &efforts);
             if moves.is_empty() {
-                return Some(Found { places, efforts });
+                return Some(self.found(places, efforts));
             }
             if moves.len() < fewest {
                 (fewest, patience) = (moves.len(), PATIENCE);
@@ -95,14 +97,27 @@ impl Problem {
         is_finite.then_some(x)
     }
 
+    fn found(&self, places: Vec<Place>, efforts: DVector<f64>) -> Found {
+        let a = &self.free + &self.matrix * &efforts;
+        let is_still = (0..places.len()).map(|i| a[i].abs() <= self.rounding(i, &efforts));
+        Found {
+            is_still: is_still.collect(),
+            places,
+            efforts,
+        }
+    }
+
+    /// What rounding makes of one entry of a.
+    fn rounding(&self, i: usize, x: &DVector<f64>) -> f64 {
+        let row = self.matrix.row(i);
+        let terms = row.iter().zip(x).map(|(w, x)| (w * x).abs());
+        ROUNDING * (self.free[i].abs() + terms.sum::<f64>())
+    }
+
     /// Entries that are in the wrong place, and where they go.
     fn moves(&self, places: &[Place], x: &DVector<f64>) -> Vec<(usize, Place)> {
         let a = &self.free + &self.matrix * x;
-        let size = |i: usize| {
-            let row = self.matrix.row(i);
-            let terms = row.iter().zip(x).map(|(w, x)| (w * x).abs());
-            ROUNDING * (self.free[i].abs() + terms.sum::<f64>())
-        };
+        let size = |i: usize| self.rounding(i, x);
         let move_of = |i: usize| {
             let (lower, upper) = self.bounds[i];
             match places[i] {

@@ -62,7 +62,9 @@ pub(super) fn impact(
         free: DVector::from_fn(size, |i, _| before(i) - rebounds[i]),
         bounds: touching.iter().map(|own| inwards(own.side)).collect(),
     };
-    let Found { places, efforts } = problem
+    let Found {
+        places, efforts, ..
+    } = problem
         .solve(alloc::vec![Place::Between; size])
         .ok_or(NoImpact::Undetermined)?;
     let free = &problem.free + &problem.matrix * &efforts;

@@ -30,6 +30,9 @@ use hamel_runtime::dynamics::Recursive;
 use hamel_runtime::mechanism::Mechanism;
 use modes::Modes;
 
+/// How far a step reaches, as a part of a bounce.
+const BEYOND: f64 = 1.5;
+
 /// Pieces shorter than this part of the whole motion are counted.
 const SHORT: f64 = 1e-9;
 
@@ -69,6 +72,16 @@ impl Hybrid<'_> {
             last: f64::NEG_INFINITY,
             contacts,
         })
+    }
+
+    /// A step that reaches beyond the next impact of every joint that has just bounced, s, as its speed and acceleration have it.
+    pub(super) fn flight(&self, q: &[f64], speeds: &[f64], rates: &[f64]) -> f64 {
+        let flights = self.contacts.iter().filter_map(|contact| {
+            let inwards = contact.at(q)?.inwards();
+            let (leaves, returns) = (speeds[contact.speed] * inwards, -rates[contact.speed] * inwards);
+            (leaves > 0.0 && returns > 0.0).then(|| BEYOND * 2.0 * leaves / returns)
+        });
+        flights.fold(f64::INFINITY, f64::min)
     }
 
     /// Guards that tell by less time than this are trusted as they are, s.

@@ -1,6 +1,6 @@
 //! Which of the joints at rest are held, and which give way.
 
-use super::complementarity::{Place, Problem};
+use super::complementarity::{Found, Place, Problem};
 use super::contact::{Contact, Phase};
 use alloc::vec;
 use alloc::vec::Vec;
@@ -43,7 +43,19 @@ impl Resting<'_> {
                 free: self.free.clone(),
                 bounds: bounds.collect(),
             };
-            places = problem.solve(places)?.places;
+            let Found {
+                places: found,
+                is_still,
+                ..
+            } = problem.solve(places)?;
+            places = found;
+            // What is held by all that there is, and needs no more, stays.
+            let pairs = self.members.iter().zip(places.iter_mut().zip(is_still));
+            for (&index, (place, is_still)) in pairs {
+                if is_still && (self.exceeded)(index).is_none() {
+                    *place = Place::Between;
+                }
+            }
             let mut found = places.iter().zip(&slips);
             if found.all(|(place, slips)| *slips || *place == Place::Between) {
                 return Some(self.phases_of(&places));

@@ -10,7 +10,7 @@ use hamel_scene::Scene;
 fn stack(between: f64, force: f64) -> Scene {
     let text = slide("lower", "world", 2.0, "friction = 3.0")
         + &slide("upper", "lower", 1.0, &format!("friction = {between:?}"))
-        + &format!("[[wrench]]\nbody = \"upper\"\nforce = [{force:?}, 0.0, 0.0]\n");
+        + &format!("[[wrench]]\nbody = \"upper\"\nforce = [{force:?}, 0.0, 0.0]\naxes = \"world\"\n");
     scene([0.0; 3], &text)
 }
 
