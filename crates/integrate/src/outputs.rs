@@ -186,7 +186,11 @@ impl Driver<'_> {
                     if !guards.is_empty() {
                         let part = found.part;
                         let state = state_of(outputs.dense.at(&mut self.flow, part)?);
-                        return Ok(Passed::Until(PieceEnd { part, state, guards }));
+                        return Ok(Passed::Until(PieceEnd {
+                            part,
+                            state,
+                            guards,
+                        }));
                     }
                     passed += 1;
                     self.record(outputs, found)?;

@@ -101,7 +101,10 @@ fn check_joint<'a>(
         "is not one of a single coordinate whose rate is its speed, as a revolute, a prismatic or a screw joint is"
     } else if mechanism.is_driven(index) {
         "has a prescribed motion, which neither friction nor limits can change"
-    } else if mechanism.dependent_speeds().contains(&owner.ranges().speeds.start) {
+    } else if mechanism
+        .dependent_speeds()
+        .contains(&owner.ranges().speeds.start)
+    {
         "has a speed that constraints make depend on others: give friction and limits before constraints"
     } else {
         return Ok(owner);

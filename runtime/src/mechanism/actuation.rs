@@ -3,9 +3,7 @@
 use super::check::Space;
 use super::{Mechanism, MechanismError, MechanismErrors, StateError};
 use crate::dynamics::Recursive;
-use crate::elements::{
-    Drive, Element, ElementError, JointFriction, JointStop, PointConstraint,
-};
+use crate::elements::{Drive, Element, ElementError, JointFriction, JointStop, PointConstraint};
 use alloc::format;
 use alloc::sync::Arc;
 use alloc::vec;
@@ -165,7 +163,11 @@ impl Mechanism {
         let mut driven = vec![false; self.layout.speeds];
         let drives = self.actuation.drives.iter().map(|drive| drive.body);
         // Joints that may stick or hit a limit keep speeds of their own.
-        let frictions = self.actuation.frictions.iter().map(|friction| friction.body);
+        let frictions = self
+            .actuation
+            .frictions
+            .iter()
+            .map(|friction| friction.body);
         let stops = self.actuation.stops.iter().map(|stop| stop.body);
         for body in drives.chain(frictions).chain(stops) {
             driven[self.bodies[body].ranges.speeds.clone()].fill(true);

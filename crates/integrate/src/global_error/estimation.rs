@@ -340,7 +340,8 @@ impl<'a, 'r> Estimation<'a, 'r> {
         if let Some(first) = (0..most).find(differs) {
             let [motion, companion] =
                 [motion, companion].map(|told| told.get(first).cloned().unwrap_or_default());
-            self.doubt.get_or_insert(Doubt::Pieces { motion, companion });
+            self.doubt
+                .get_or_insert(Doubt::Pieces { motion, companion });
         }
     }
 

@@ -173,14 +173,16 @@ mod tests {
         let a = &problem.free + &problem.matrix * x;
         // Sums of ten numbers of size 1 to 10, twice solved for with condition numbers of some hundreds.
         let rounding = 1e-11;
-        problem.bounds.iter().enumerate().all(|(i, &(lower, upper))| {
-            let is_within = x[i] >= lower - rounding && x[i] <= upper + rounding;
-            let can_fall = x[i] > lower + rounding;
-            let can_rise = x[i] < upper - rounding;
-            is_within
-                && !(can_fall && a[i] > rounding)
-                && !(can_rise && a[i] < -rounding)
-        })
+        problem
+            .bounds
+            .iter()
+            .enumerate()
+            .all(|(i, &(lower, upper))| {
+                let is_within = x[i] >= lower - rounding && x[i] <= upper + rounding;
+                let can_fall = x[i] > lower + rounding;
+                let can_rise = x[i] < upper - rounding;
+                is_within && !(can_fall && a[i] > rounding) && !(can_rise && a[i] < -rounding)
+            })
     }
 
     #[test]
@@ -192,10 +194,13 @@ mod tests {
             let between = between.expect("W is positive definite");
             assert!(is_solved(&problem, &between.efforts), "seed {seed}");
             // There is one solution: where the search begins does not matter.
-            let at_bounds = problem.bounds.iter().map(|bounds| match bounds.0.is_finite() {
-                true => Place::AtLower,
-                false => Place::AtUpper,
-            });
+            let at_bounds = problem
+                .bounds
+                .iter()
+                .map(|bounds| match bounds.0.is_finite() {
+                    true => Place::AtLower,
+                    false => Place::AtUpper,
+                });
             let other = problem.solve(at_bounds.collect::<Vec<_>>());
             let other = other.expect("W is positive definite");
             let difference = (other.efforts - between.efforts).amax();

@@ -131,7 +131,11 @@ impl Guards {
             }
             Guard::Releases { above, bound, .. } => {
                 let effort = self.holding.effort(own);
-                if above { bound - effort } else { effort - bound }
+                if above {
+                    bound - effort
+                } else {
+                    effort - bound
+                }
             }
         }
     }

@@ -78,7 +78,10 @@ impl Hybrid<'_> {
     pub(super) fn flight(&self, q: &[f64], speeds: &[f64], rates: &[f64]) -> f64 {
         let flights = self.contacts.iter().filter_map(|contact| {
             let inwards = contact.at(q)?.inwards();
-            let (leaves, returns) = (speeds[contact.speed] * inwards, -rates[contact.speed] * inwards);
+            let (leaves, returns) = (
+                speeds[contact.speed] * inwards,
+                -rates[contact.speed] * inwards,
+            );
             (leaves > 0.0 && returns > 0.0).then(|| BEYOND * 2.0 * leaves / returns)
         });
         flights.fold(f64::INFINITY, f64::min)

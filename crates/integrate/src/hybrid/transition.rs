@@ -151,9 +151,8 @@ impl<'a> Hybrid<'a> {
             Some(Touching { contact, side })
         });
         let touching: Vec<Touching> = touching.collect();
-        let goes_beyond = |own: &Touching| {
-            own.side.inwards() * speeds[self.contacts[own.contact].speed] < 0.0
-        };
+        let goes_beyond =
+            |own: &Touching| own.side.inwards() * speeds[self.contacts[own.contact].speed] < 0.0;
         if !touching.iter().any(goes_beyond) {
             return Ok(hits);
         }
@@ -261,7 +260,10 @@ impl<'a> Hybrid<'a> {
             exceeded: &exceeded,
         };
         let found = resting.phases().ok_or_else(|| {
-            self.undecided(&members, "which of them are held is not determined: the joints depend on each other".into())
+            self.undecided(
+                &members,
+                "which of them are held is not determined: the joints depend on each other".into(),
+            )
         })?;
         for (index, phase) in members.into_iter().zip(found) {
             phases[index] = phase;
@@ -337,7 +339,8 @@ impl<'a> Hybrid<'a> {
             let contact = &self.contacts[index];
             let effort = holding.effort(contact);
             let (lower, upper) = contact.bounds(contact.at(q), false);
-            let size = [lower, upper].map(|bound| if bound.is_finite() { bound.abs() } else { 0.0 });
+            let size =
+                [lower, upper].map(|bound| if bound.is_finite() { bound.abs() } else { 0.0 });
             let room = AGREEMENT * size[0].max(size[1]).max(effort.abs()).max(1.0);
             if !(effort >= lower - room && effort <= upper + room) {
                 let reason = format!(

@@ -138,7 +138,10 @@ fn friction(value: &Value<'_>, sink: &mut Sink) -> Option<Located<FrictionDescri
     let sticking = fields.required("sticking", sink);
     fields.finish(sink);
     let sliding = sliding?.not_negative(sink)?.value;
-    let limit = format!("at least `friction.sliding`, which is {:?}", Number(sliding));
+    let limit = format!(
+        "at least `friction.sliding`, which is {:?}",
+        Number(sliding)
+    );
     let sticking = sticking?.number_within(|number| number >= sliding, &limit, sink)?;
     let friction = FrictionDescription {
         sliding,
@@ -164,7 +167,9 @@ fn limit(value: &Value<'_>, sink: &mut Sink) -> Option<Located<LimitDescription>
         (None, None) => Some((value.span(), "has neither `lower` nor `upper`".into())),
         (Some(lower), Some(upper)) if upper.value <= lower.value => {
             let [lower, above] = [lower.value, upper.value].map(Number);
-            let message = format!("has the upper limit {above:?}, which is not above the lower one, {lower:?}");
+            let message = format!(
+                "has the upper limit {above:?}, which is not above the lower one, {lower:?}"
+            );
             Some((upper.span.clone(), message))
         }
         _ => None,

@@ -1,8 +1,6 @@
 //! Several joints with friction at once: which of them stick is a complementarity problem.
 
-use super::{
-    CLOSED, FORMS, accurate, assert_near, energy, options, run, scene, slide, times_of,
-};
+use super::{CLOSED, FORMS, accurate, assert_near, energy, options, run, scene, slide, times_of};
 use hamel::integrate::{Form, Method, Scheme, Solution};
 use hamel_scene::Scene;
 
@@ -10,7 +8,9 @@ use hamel_scene::Scene;
 fn stack(between: f64, force: f64) -> Scene {
     let text = slide("lower", "world", 2.0, "friction = 3.0")
         + &slide("upper", "lower", 1.0, &format!("friction = {between:?}"))
-        + &format!("[[wrench]]\nbody = \"upper\"\nforce = [{force:?}, 0.0, 0.0]\naxes = \"world\"\n");
+        + &format!(
+            "[[wrench]]\nbody = \"upper\"\nforce = [{force:?}, 0.0, 0.0]\naxes = \"world\"\n"
+        );
     scene([0.0; 3], &text)
 }
 
@@ -33,8 +33,18 @@ fn two_blocks_stick_and_slide_as_their_equations_say() {
         for (between, force, lower, upper) in cases {
             let scene = stack(between, force);
             let solution = run(&scene, &options(form, accurate(), 2.0));
-            assert_near("lower", solution.state.configuration[0], 2.0 * lower, CLOSED);
-            assert_near("upper", solution.state.configuration[1], 2.0 * upper, CLOSED);
+            assert_near(
+                "lower",
+                solution.state.configuration[0],
+                2.0 * lower,
+                CLOSED,
+            );
+            assert_near(
+                "upper",
+                solution.state.configuration[1],
+                2.0 * upper,
+                CLOSED,
+            );
             assert!(solution.events.is_empty());
         }
     }
@@ -45,13 +55,25 @@ fn two_blocks_stick_and_slide_as_their_equations_say() {
 #[test]
 fn a_spring_chain_breaks_its_blocks_loose_one_by_one() {
     let (k1, k2, speed, friction) = (30.0_f64, 20.0_f64, 0.2_f64, [1.0, 0.5]);
-    let text = slide("hand", "world", 1.0, &format!("motion = {{ speeds = [{speed:?}] }}"))
-        + &slide("first", "world", 1.0, &format!("friction = {:?}", friction[0]))
-        + &slide("second", "world", 1.0, &format!("friction = {:?}", friction[1]))
-        + &format!(
-            "[[spring]]\nfrom = {{ body = \"hand\", point = [5.0, 0.0, 0.0] }}\nto = {{ body = \"first\" }}\nstiffness = {k1:?}\nlength = 5.0\n\
+    let text = slide(
+        "hand",
+        "world",
+        1.0,
+        &format!("motion = {{ speeds = [{speed:?}] }}"),
+    ) + &slide(
+        "first",
+        "world",
+        1.0,
+        &format!("friction = {:?}", friction[0]),
+    ) + &slide(
+        "second",
+        "world",
+        1.0,
+        &format!("friction = {:?}", friction[1]),
+    ) + &format!(
+        "[[spring]]\nfrom = {{ body = \"hand\", point = [5.0, 0.0, 0.0] }}\nto = {{ body = \"first\" }}\nstiffness = {k1:?}\nlength = 5.0\n\
              [[spring]]\nfrom = {{ body = \"first\" }}\nto = {{ body = \"second\", point = [-5.0, 0.0, 0.0] }}\nstiffness = {k2:?}\nlength = 5.0\n"
-        );
+    );
     let scene = scene([0.0; 3], &text);
     let loose = friction[0] / (k1 * speed);
     let (omega, mean) = ((k1 + k2).sqrt(), k1 * speed / (k1 + k2));
@@ -127,8 +149,18 @@ fn five_joints_lose_as_much_energy_as_friction_takes_and_come_to_rest() {
         let solution = run(&scene, &options(form, accurate(), 8.0));
         println!("{} events", solution.events.len());
         let end = energy(&scene, &solution.state);
-        assert_near("balance", end + dissipated(&scene, &solution), start, CLOSED);
-        assert!(solution.events.iter().any(|event| event.name.ends_with(": sticks")));
+        assert_near(
+            "balance",
+            end + dissipated(&scene, &solution),
+            start,
+            CLOSED,
+        );
+        assert!(
+            solution
+                .events
+                .iter()
+                .any(|event| event.name.ends_with(": sticks"))
+        );
         ends.push(solution);
     }
     let names = |solution: &Solution| {

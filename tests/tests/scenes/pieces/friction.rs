@@ -81,7 +81,12 @@ fn a_block_is_held_by_what_it_needs() {
     };
     assert_eq!(moved(needed), 0.0);
     let less = 1e-9;
-    assert_near("x", moved(needed * (1.0 - less)), -0.25 * needed * less, 1e-15);
+    assert_near(
+        "x",
+        moved(needed * (1.0 - less)),
+        -0.25 * needed * less,
+        1e-15,
+    );
 }
 
 /// m ẍ = −k x ∓ F: each half period is a half wave about ±F/k, so that the amplitude falls by 2F/k, until |k x| ≤ F at a turn.
@@ -112,7 +117,14 @@ fn an_oscillator_loses_the_same_amplitude_each_period() {
             for (index, event) in solution.events.iter().enumerate() {
                 let turn = index + 1;
                 let is_last = turn == turns;
-                assert_eq!(event.name, if is_last { "mass: sticks" } else { "mass: slides back" });
+                assert_eq!(
+                    event.name,
+                    if is_last {
+                        "mass: sticks"
+                    } else {
+                        "mass: slides back"
+                    }
+                );
                 assert_near("time", event.state.time, turn as f64 * half, tolerance);
                 let sign = if turn % 2 == 0 { 1.0 } else { -1.0 };
                 let x = event.state.configuration[0];

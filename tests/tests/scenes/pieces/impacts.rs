@@ -84,7 +84,10 @@ fn every_method_bounces() {
 fn nothing_is_lost_at_a_restitution_of_one() {
     let scene = ball(-0.3, 2.0, 1.0);
     let flight = 2.0 * (2.0 * 2.0 / G).sqrt();
-    let solution = run(&scene, &options(Form::Hamiltonian, accurate(), 50.0 * flight));
+    let solution = run(
+        &scene,
+        &options(Form::Hamiltonian, accurate(), 50.0 * flight),
+    );
     let hits = times_of(&solution.events, "ball: hits its lower limit");
     assert_eq!(hits.len(), 50);
     for (index, time) in hits.iter().enumerate() {
@@ -107,7 +110,10 @@ fn a_pendulum_hits_its_stop_with_falling_speeds() {
     let speed = (2.0 * 3.0 * G * 0.5 * (0.4_f64.cos() - 2.0_f64.cos())).sqrt();
     for form in FORMS {
         let solution = run(&scene, &options(form, accurate(), 20.0));
-        let hits = solution.events.iter().filter(|event| event.name.contains("hits"));
+        let hits = solution
+            .events
+            .iter()
+            .filter(|event| event.name.contains("hits"));
         let speeds: Vec<f64> = hits.map(|event| event.state.speeds[0]).collect();
         assert!(speeds.len() > 40, "{} hits", speeds.len());
         for (index, after) in speeds.iter().enumerate().take(30) {
@@ -147,7 +153,10 @@ fn two_limits_are_hit_at_once() {
         let thrown = scene([-G, 0.0, 0.0], &text(1.0, 0.0));
         let solution = run(&thrown, &options(form, accurate(), 0.5));
         let first = &solution.events[0];
-        assert_eq!(first.name, "weight: rests at its lower limit".replace("weight: rests at", "box: hits"));
+        assert_eq!(
+            first.name,
+            "weight: rests at its lower limit".replace("weight: rests at", "box: hits")
+        );
         assert_near("box", first.state.speeds[0], speed, CLOSED);
         assert_near("weight", first.state.speeds[1], 0.0, CLOSED);
     }
@@ -166,5 +175,8 @@ fn a_motion_that_chatters_is_refused() {
     let method = Method::controlled(Scheme::DormandPrince, 1e-9);
     let refused = try_run(&scene, &options(Form::Lagrangian, method, 1e4));
     let message = refused.expect_err("it is refused").to_string();
-    assert!(message.contains("joint `ball` chatters: 10001"), "{message}");
+    assert!(
+        message.contains("joint `ball` chatters: 10001"),
+        "{message}"
+    );
 }

@@ -19,7 +19,8 @@ fn a_swaying_effort_breaks_a_block_loose_each_time() {
         let start = scene.start();
         let options = options(form, accurate(), 1000.0);
         let integration = Integration::new(&mut *dynamics, &start, &options);
-        let inputs = integration.inputs(|time, _, _, efforts| efforts[0] = 1.2 * (omega * time).sin());
+        let inputs =
+            integration.inputs(|time, _, _, efforts| efforts[0] = 1.2 * (omega * time).sin());
         let solution = inputs.run().expect("it runs");
         let slides = times_of(&solution.events, "block: slides");
         // Twice a period: forward, and back.

@@ -45,7 +45,10 @@ fn slips_begin_and_end_when_they_shall() {
             let expected = first + slip + index as f64 * (slip + stick);
             assert_near("sticks", *time, expected, CLOSED);
         }
-        let ends = solution.events.iter().filter(|event| event.name == "block: sticks");
+        let ends = solution
+            .events
+            .iter()
+            .filter(|event| event.name == "block: sticks");
         for event in ends {
             let x: f64 = event.state.configuration.iter().sum();
             assert_near("x", x, SLIDING / STIFFNESS - amplitude, CLOSED);
