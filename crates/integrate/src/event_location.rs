@@ -4,17 +4,13 @@ use super::StepFailure;
 use super::dense::{Dense, Instant};
 use super::event::{Direction, Event};
 use super::flow::Flow;
-use super::hybrid::{Guard, Guards};
+use super::hybrid::{Guard, Guards, resolution};
 use super::root::cross;
 use alloc::vec;
 use alloc::vec::Vec;
 
 /// In how many parts a step is looked at.
-const PARTS: usize = 4;
-
-/// Guards that nothing crosses are trusted where their fourth difference over a step is within this part of the least of their values, as a parabola
-/// bends between them; those that are crossed, within this part of the largest one.
-const RESOLVED: f64 = 0.25;
+pub(super) const PARTS: usize = 4;
 
 /// A crossing within the step.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +26,8 @@ pub(super) struct Found {
 pub(super) struct EventLocation<'a> {
     pub(super) events: Vec<Event<'a>>,
     guards: Option<Guards>,
+    /// Whether the piece that they end begins with the step.
+    is_first: bool,
     /// The last value of each that was not 0; 0 where there has been none.
     sides: Vec<f64>,
     /// The values of each at the ends of all parts of the step.
@@ -46,6 +44,7 @@ impl<'a> EventLocation<'a> {
             found: Vec::with_capacity(events.len() * PARTS),
             events,
             guards: None,
+            is_first: true,
         }
     }
 
@@ -60,6 +59,7 @@ impl<'a> EventLocation<'a> {
         self.sides.resize(count, 0.0);
         self.values.resize(count, [0.0; PARTS + 1]);
         self.guards = guards;
+        self.is_first = true;
         self.read(flow, instant, PARTS)?;
         let (events, guards) = self.sides.split_at_mut(self.events.len());
         for (side, values) in events.iter_mut().zip(&self.values) {
@@ -118,21 +118,32 @@ impl<'a> EventLocation<'a> {
             values[0] = values[PARTS];
         }
         self.read(flow, end, PARTS)?;
+        self.look_again(dense, flow)
+    }
+
+    /// Looks at the same step on the polynomial as it stands now.
+    pub(super) fn look_again(
+        &mut self,
+        dense: &mut Dense,
+        flow: &mut Flow<'_>,
+    ) -> Result<bool, StepFailure> {
         self.look_between(dense, flow)?;
         let mut seen = self.sides.iter().zip(&self.values);
         Ok(seen.any(|(side, values)| changes(*side, values).next().is_some()))
     }
 
+    /// Whether a guard that nothing seems to cross has a least value within the step that is small.
+    pub(super) fn may_dip(&self) -> bool {
+        let guards = self.values.get(self.events.len()..).unwrap_or_default();
+        guards.iter().any(resolution::may_dip)
+    }
+
     /// Whether guards change too much within the step for four parts of it to tell what they do.
     pub(super) fn is_unresolved(&self) -> bool {
         let guards = self.values.get(self.events.len()..).unwrap_or_default();
-        guards.iter().any(|[a, b, c, d, e]| {
-            let bend = (a - 4.0 * b + 6.0 * c - 4.0 * d + e).abs();
-            let ends = [b, c, d, e];
-            let least = ends.iter().fold(f64::INFINITY, |least, v| least.min(**v));
-            let most = ends.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-            bend > RESOLVED * if least < 0.0 { most } else { least }
-        })
+        guards
+            .iter()
+            .any(|values| resolution::is_unresolved(values, self.is_first))
     }
 
     /// The step just looked at is not taken.
@@ -164,6 +175,7 @@ impl<'a> EventLocation<'a> {
             sides,
             values,
             found,
+            ..
         } = self;
         let end = |index: usize, i: usize| (i as f64 / PARTS as f64, values[index][i]);
         for (index, event) in events.iter_mut().enumerate() {
@@ -234,6 +246,7 @@ impl<'a> EventLocation<'a> {
     /// The step is over.
     pub(super) fn move_on(&mut self) {
         self.found.clear();
+        self.is_first = false;
         let events = self.sides.iter_mut().take(self.events.len());
         for (side, values) in events.zip(&self.values) {
             let last = values.iter().rev().find(|value| **value != 0.0);

@@ -96,7 +96,12 @@ impl<'a> Outputs<'a> {
     ) -> Result<Within, StepFailure> {
         self.dense.finish(step_state, flow, time);
         let end = step_state.instant(time);
-        let seen = self.location.glance(&mut self.dense, flow, &end)?;
+        let mut seen = self.location.glance(&mut self.dense, flow, &end)?;
+        if !seen && self.location.may_dip() {
+            // The cubic is not good enough to tell.
+            self.dense.raise(flow, stepper.stage_polynomial())?;
+            seen = self.location.look_again(&mut self.dense, flow)?;
+        }
         if !is_short && self.location.is_unresolved() {
             return Ok(Within::Unresolved);
         }

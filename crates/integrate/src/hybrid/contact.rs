@@ -109,6 +109,22 @@ impl Contact {
         contacts.collect()
     }
 
+    /// One that is at a lower limit of 0.
+    #[cfg(test)]
+    pub(super) fn bouncing(index: usize, restitution: f64) -> Self {
+        Self {
+            body: index,
+            coordinate: index,
+            freedom: index,
+            speed: index,
+            joint: String::from("joint"),
+            friction: None,
+            lower: Some(0.0),
+            upper: None,
+            restitution,
+        }
+    }
+
     pub(super) const fn limit(&self, side: Side) -> Option<f64> {
         match side {
             Side::Lower => self.lower,

@@ -96,3 +96,61 @@ const fn inwards(side: Side) -> (f64, f64) {
         Side::Upper => (f64::NEG_INFINITY, 0.0),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{NoImpact, Touching, impact};
+    use crate::hybrid::contact::{Contact, Side};
+    use alloc::vec;
+    use alloc::vec::Vec;
+    use nalgebra::DMatrix;
+
+    fn contacts(restitutions: &[f64]) -> (Vec<Contact>, Vec<Touching>) {
+        let all = restitutions.iter().enumerate();
+        let contacts = all.map(|(index, restitution)| Contact::bouncing(index, *restitution));
+        let touching = (0..restitutions.len()).map(|contact| Touching {
+            contact,
+            side: Side::Lower,
+        });
+        (contacts.collect(), touching.collect())
+    }
+
+    #[test]
+    fn one_joint_follows_newton() {
+        let (contacts, touching) = contacts(&[0.5]);
+        let matrix = DMatrix::from_element(1, 1, 0.25);
+        let found = impact(&contacts, &touching, &[-2.0], matrix).expect("determined");
+        assert_eq!(found.after, [1.0]);
+        // (1 + e) |v| over M̄⁻¹.
+        assert_eq!(found.impulses[0], 12.0);
+    }
+
+    #[test]
+    fn a_joint_is_not_pulled() {
+        // The impulse of the first throws the second off: Λ₁ = 2 / 1, v₂ = 0 + 0.5 · 2.
+        let (contacts, touching) = contacts(&[1.0, 0.0]);
+        let matrix = DMatrix::from_row_slice(2, 2, &[1.0, 0.5, 0.5, 1.0]);
+        let found = impact(&contacts, &touching, &[-1.0, 0.0], matrix).expect("determined");
+        assert_eq!(found.impulses.as_slice(), [2.0, 0.0]);
+        assert_eq!(found.after, [1.0, 1.0]);
+    }
+
+    #[test]
+    fn what_would_gain_energy_is_refused() {
+        // Λ₂ = (2c − δ)/(1 − c²) keeps the second from going beyond, which moved away at δ: the energy grows by half of Λ₂ δ.
+        let (contacts, touching) = contacts(&[1.0, 0.0]);
+        let matrix = DMatrix::from_row_slice(2, 2, &[1.0, -0.5, -0.5, 1.0]);
+        let refused = impact(&contacts, &touching, &[-1.0, 0.2], matrix);
+        assert!(matches!(refused, Err(NoImpact::Gains(part)) if part > 0.0));
+    }
+
+    #[test]
+    fn a_rebound_of_next_to_nothing_is_none() {
+        let (contacts, touching) = contacts(&[0.5]);
+        let matrix = DMatrix::from_element(1, 1, 1.0);
+        let found = impact(&contacts, &touching, &[-1.9e-12], matrix.clone());
+        assert_eq!(found.expect("determined").after, vec![0.0]);
+        let found = impact(&contacts, &touching, &[-2.1e-12], matrix);
+        assert!(found.expect("determined").after[0] > 0.0);
+    }
+}

@@ -15,6 +15,7 @@ mod impact;
 mod modes;
 mod notes;
 mod release;
+pub(super) mod resolution;
 mod transition;
 
 pub(super) use guards::{Guard, Guards};

@@ -44,7 +44,14 @@ pub(super) fn of_joint(
     };
     let what = match (before, after) {
         (before, after) if before == after => None,
-        (_, Phase::Sticks) => Some(("sticks".into(), speeds.0 > 0.0)),
+        (before, Phase::Sticks) => {
+            // The speed at its end has turned round already.
+            let forward = match before {
+                Phase::Slides { forward } => forward,
+                _ => speeds.0 > 0.0,
+            };
+            Some(("sticks".into(), forward))
+        }
         (_, Phase::Rests(side)) => {
             let what = format!("rests at its {} limit", side.name());
             Some((what, side == Side::Upper))

@@ -6,6 +6,7 @@ mod impacts;
 mod loads;
 mod refused;
 mod stick_slip;
+mod together;
 
 use hamel::integrate::{
     Crossing, Form, IntegrateError, Integration, Method, Options, Scheme, Solution, State,
