@@ -160,31 +160,51 @@ impl Mechanism {
         self.actuation.constraints = constraints;
         self.actuation.dependent.clear();
         let matrix = Recursive::new(Arc::new(self.clone())).constraint_matrix(q);
-        let mut driven = vec![false; self.layout.speeds];
-        let drives = self.actuation.drives.iter().map(|drive| drive.body);
+        let driven = self.speeds_of(self.actuation.drives.iter().map(|drive| drive.body));
+        let own = self.speeds_of(self.unilateral_joints());
         // Joints that may stick or hit a limit keep speeds of their own.
-        let frictions = self
-            .actuation
-            .frictions
-            .iter()
-            .map(|friction| friction.body);
-        let stops = self.actuation.stops.iter().map(|stop| stop.body);
-        for body in drives.chain(frictions).chain(stops) {
-            driven[self.bodies[body].ranges.speeds.clone()].fill(true);
-        }
-        let found = dependent_columns(matrix, |speed| driven[speed]);
+        let found = dependent_columns(matrix.clone(), |speed| driven[speed] || own[speed]);
         self.actuation.dependent = found.map_err(|rows| {
-            let refused = rows.into_iter().map(|(row, ratio)| {
-                let constraint = self.actuation.constraints[row].name.clone();
-                MechanismError::DependentConstraint {
-                    constraint,
-                    ratio,
-                    limit: INDEPENDENCE,
-                }
-            });
+            let takes_theirs = dependent_columns(matrix, |speed| driven[speed]).is_ok();
+            let refused = rows
+                .into_iter()
+                .map(|refused| self.refused(refused, takes_theirs));
             refused.collect::<MechanismErrors>()
         })?;
         Ok(self)
+    }
+
+    /// Which speeds are those of these bodies' joints.
+    fn speeds_of(&self, bodies: impl Iterator<Item = usize>) -> Vec<bool> {
+        let mut taken = vec![false; self.layout.speeds];
+        for body in bodies {
+            taken[self.bodies[body].ranges.speeds.clone()].fill(true);
+        }
+        taken
+    }
+
+    /// Bodies whose joints have friction or limits.
+    fn unilateral_joints(&self) -> impl Iterator<Item = usize> {
+        let frictions = self.actuation.frictions.iter().map(|own| own.body);
+        frictions.chain(self.actuation.stops.iter().map(|own| own.body))
+    }
+
+    /// A constraint that is refused, with its pivot; perhaps only as joints with friction and limits keep their speeds.
+    fn refused(&self, (row, ratio): (usize, f64), takes_theirs: bool) -> MechanismError {
+        let constraint = self.actuation.constraints[row].name.clone();
+        let joint = self.unilateral_joints().last();
+        match joint.filter(|_| takes_theirs) {
+            Some(body) => MechanismError::Element(ElementError::Joint {
+                element: format!("constraint `{constraint}`"),
+                joint: self.bodies[body].joint_name().into(),
+                reason: "has friction or limits, and so a speed of its own, and the constraint leaves no joint without them whose speed could depend on the others",
+            }),
+            None => MechanismError::DependentConstraint {
+                constraint,
+                ratio,
+                limit: INDEPENDENCE,
+            },
+        }
     }
 
     /// Constraints that couple joints.

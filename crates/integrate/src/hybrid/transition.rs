@@ -4,7 +4,7 @@ use super::complementarity::Place;
 use super::contact::{Contact, Phase, Side};
 use super::guards::{Guard, Guards};
 use super::holding::Holding;
-use super::impact::{NoImpact, Touching, impact};
+use super::impact::{Touching, impact};
 use super::notes::{Note, of_joint};
 use super::release::Resting;
 use super::{Hybrid, MOST_SHORT, names};
@@ -25,6 +25,9 @@ const AT_REST: f64 = 1e-13;
 
 /// Joints that come to a limit within so many roundings of the time do so together.
 const TOGETHER: f64 = 64.0 * f64::EPSILON;
+
+/// Joints that touch their limits at one instant may throw each other back so often: where each time takes a hundredth of their speeds, they rest after 2800.
+const MOST_IMPACTS: usize = 10_000;
 
 /// Efforts that hold joints by inverse dynamics may exceed the bounds that the complementarity problem has kept by this part of themselves.
 const AGREEMENT: f64 = 1e-6;
@@ -142,49 +145,67 @@ impl<'a> Hybrid<'a> {
         }
     }
 
-    /// The impact of all joints that touch their limits, if one of them moves beyond: which limit each one hits.
+    /// Impacts of the joints that are at their limits, until none of them moves beyond: which limit each one hits.
+    ///
+    /// Joints that move away have no part in an impact. Where it throws one of them back against its limit, that is the next impact.
     fn hit(&mut self, q: &[f64], speeds: &mut [f64]) -> Result<Vec<Option<Side>>, Fault> {
         let mut hits = vec![None; self.contacts.len()];
-        let at_limits = self.contacts.iter().enumerate();
-        let touching = at_limits.filter_map(|(contact, own)| {
+        let at_limits = self.at_limits(q);
+        let inward = |own: &Touching, speeds: &[f64]| {
+            own.side.inwards() * speeds[self.contacts[own.contact].speed]
+        };
+        if at_limits.iter().all(|own| inward(own, speeds) >= 0.0) {
+            return Ok(hits);
+        }
+        let members: Vec<usize> = at_limits.iter().map(|own| own.contact).collect();
+        let (columns, matrix) = self.inverse_mass(q, &members)?;
+        let contacts = &self.contacts;
+        let undecided = |reason: String| Fault::Undecided {
+            what: "impact",
+            joints: names(contacts, members.iter().copied()),
+            reason,
+        };
+        let inward = |i: &usize, speeds: &[f64]| {
+            at_limits[*i].side.inwards() * speeds[contacts[members[*i]].speed]
+        };
+        for _ in 0..MOST_IMPACTS {
+            let all = 0..members.len();
+            let stay: Vec<usize> = all.filter(|i| inward(i, speeds) <= 0.0).collect();
+            if !stay.iter().any(|i| inward(i, speeds) < 0.0) {
+                return Ok(hits);
+            }
+            let touching: Vec<Touching> = stay.iter().map(|&i| at_limits[i]).collect();
+            let own = matrix.select_rows(&stay).select_columns(&stay);
+            let found = impact(contacts, &touching, speeds, own);
+            let found = found.ok_or_else(|| {
+                undecided("the impulses are not determined: the joints depend on each other".into())
+            })?;
+            for (&i, impulse) in stay.iter().zip(&found.impulses) {
+                if *impulse != 0.0 {
+                    hits[members[i]] = Some(at_limits[i].side);
+                }
+                for (speed, rate) in speeds.iter_mut().zip(&columns[i]) {
+                    *speed += impulse * rate;
+                }
+            }
+            for (&i, after) in stay.iter().zip(&found.after) {
+                speeds[contacts[members[i]].speed] = *after;
+            }
+            self.free.complete_speeds(q, speeds)?;
+        }
+        Err(undecided(format!(
+            "they throw each other back more than {MOST_IMPACTS} times at once"
+        )))
+    }
+
+    /// The joints that are at limits.
+    fn at_limits(&self, q: &[f64]) -> Vec<Touching> {
+        let contacts = self.contacts.iter().enumerate();
+        let at_limits = contacts.filter_map(|(contact, own)| {
             let side = own.at(q)?;
             Some(Touching { contact, side })
         });
-        let touching: Vec<Touching> = touching.collect();
-        let goes_beyond =
-            |own: &Touching| own.side.inwards() * speeds[self.contacts[own.contact].speed] < 0.0;
-        if !touching.iter().any(goes_beyond) {
-            return Ok(hits);
-        }
-        let members: Vec<usize> = touching.iter().map(|own| own.contact).collect();
-        let (columns, matrix) = self.inverse_mass(q, &members)?;
-        let found = impact(&self.contacts, &touching, speeds, matrix);
-        let found = found.map_err(|cause| {
-            let reason = match cause {
-                NoImpact::Undetermined => "the impulses are not determined: the joints depend on each other".into(),
-                NoImpact::Gains(part) => format!(
-                    "Newton's law of impact with these restitutions would add {part:.1e} of the energy that is exchanged: give the joints one restitution"
-                ),
-            };
-            Fault::Undecided {
-                what: "impact",
-                joints: names(&self.contacts, members.iter().copied()),
-                reason,
-            }
-        })?;
-        for (own, (impulse, column)) in touching.iter().zip(found.impulses.iter().zip(&columns)) {
-            if *impulse != 0.0 {
-                hits[own.contact] = Some(own.side);
-            }
-            for (speed, rate) in speeds.iter_mut().zip(column) {
-                *speed += impulse * rate;
-            }
-        }
-        for (own, after) in touching.iter().zip(&found.after) {
-            speeds[self.contacts[own.contact].speed] = *after;
-        }
-        self.free.complete_speeds(q, speeds)?;
-        Ok(hits)
+        at_limits.collect()
     }
 
     /// Columns of M̄⁻¹ of these joints' speeds, and the rows of these speeds in them.

@@ -1,8 +1,10 @@
 //! Several joints with friction at once: which of them stick is a complementarity problem.
 
 use super::{CLOSED, FORMS, accurate, assert_near, energy, options, run, scene, slide, times_of};
+use chacha20::ChaCha8Rng;
 use hamel::integrate::{Form, Method, Scheme, Solution};
 use hamel_scene::Scene;
+use rand::{RngExt, SeedableRng};
 
 /// A block of 1 kg on one of 2 kg, the upper one pulled by a force; friction of 3 N below, and this between.
 fn stack(between: f64, force: f64) -> Scene {
@@ -186,6 +188,62 @@ fn five_joints_move_the_same_by_an_implicit_method() {
         for (a, b) in solution.events.iter().zip(&exact.events) {
             assert_eq!(a.name, b.name);
             assert_near(&a.name, a.state.time, b.state.time, 1e-6);
+        }
+    }
+}
+
+/// Chains of eight links with friction, limits and restitutions of any size.
+#[test]
+fn random_chains_stay_within_their_limits_and_gain_no_energy() {
+    for seed in 0..8 {
+        let mut random = ChaCha8Rng::seed_from_u64(900 + seed);
+        let mut number = move || random.random_range(0.0..1.0_f64);
+        let mut link = |index: usize| {
+            let parent = match index {
+                0 => "world".to_owned(),
+                _ => format!("link{}", index - 1),
+            };
+            let (at, size) = (if index == 0 { 0.0 } else { -0.4 }, 0.2 + number());
+            let sliding = 0.3 * number();
+            format!(
+                "[[body]]\nname = \"link{index}\"\nparent = \"{parent}\"\nmass = {size:?}\ncom = [0.0, 0.0, -0.2]\n\
+                 inertia_xx_yy_zz_xy_xz_yz = [0.02, 0.02, 0.01, 0.0, 0.0, 0.0]\n\
+                 joint = {{ type = \"revolute\" }}\nat = {{ position = [0.0, 0.0, {at:?}], axis = [0.0, 1.0, 0.0] }}\n\
+                 body_at = {{ rotation_vector = [1.5707963267948966, 0.0, 0.0] }}\n\
+                 friction = {{ sliding = {sliding:?}, sticking = {:?} }}\ninitial = {{ phi = [{:?}] }}\n\
+                 limit = {{ lower = {:?}, upper = 0.5, restitution = 0.4 }}\n",
+                sliding * (1.0 + 0.3 * number()),
+                if index == 0 { 0.45 } else { 0.3 * number() },
+                -0.1 - 0.4 * number(),
+            )
+        };
+        let text: String = (0..8).map(&mut link).collect();
+        let scene = scene([0.0, 0.0, -9.81], &text);
+        for form in FORMS {
+            let options = hamel::integrate::Options {
+                samples: (0..=200).map(|i| 0.01 * f64::from(i)).collect(),
+                ..options(form, Method::controlled(Scheme::DormandPrince8, 1e-10), 2.0)
+            };
+            let solution = run(&scene, &options);
+            println!(
+                "seed {seed}: {} events, {:?}",
+                solution.events.len(),
+                solution.statistics
+            );
+            let mut last = energy(&scene, &scene.start());
+            for state in &solution.samples {
+                scene
+                    .mechanism
+                    .check_limits(&state.configuration)
+                    .expect("within");
+                let now = energy(&scene, state);
+                assert!(
+                    now <= last + CLOSED,
+                    "seed {seed}, {} s: {now} J after {last} J",
+                    state.time
+                );
+                last = now;
+            }
         }
     }
 }

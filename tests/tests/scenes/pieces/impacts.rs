@@ -180,3 +180,28 @@ fn a_motion_that_chatters_is_refused() {
         "{message}"
     );
 }
+
+/// A box is thrown back from the floor with a weight that has just left it: the box reaches it at once, and takes it along. Momentum of both at the second
+/// impact stays; the first one is as if the weight were not there.
+#[test]
+fn an_impact_throws_a_joint_back_against_its_limit() {
+    let limit = |restitution: f64, speed: f64| {
+        format!(
+            "limit = {{ lower = 0.0, restitution = {restitution:?} }}\ninitial = {{ speeds = [{speed:?}] }}"
+        )
+    };
+    let text = slide("box", "world", 2.0, &limit(1.0, -1.0))
+        + &slide("weight", "box", 1.0, &limit(0.0, 0.2));
+    let scene = scene([0.0; 3], &text);
+    for form in FORMS {
+        let solution = run(&scene, &options(form, accurate(), 1.0));
+        let names: Vec<&str> = solution.events.iter().map(|event| &*event.name).collect();
+        assert_eq!(
+            names,
+            ["box: hits its lower limit", "weight: hits its lower limit"]
+        );
+        // 2 · 1 + 1 · (0.2 − 1), over 3 kg.
+        assert_near("box", solution.state.speeds[0], 0.4, CLOSED);
+        assert_near("weight", solution.state.speeds[1], 0.0, CLOSED);
+    }
+}

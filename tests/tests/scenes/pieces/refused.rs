@@ -16,7 +16,7 @@ fn a_state_beyond_a_limit_is_refused_with_its_value() {
     );
 }
 
-/// Two carts with friction on one track, which a constraint ties together twice, through each other: who holds them is not determined.
+/// A wagon on a cart, tied to the world: only one of them can have friction.
 #[test]
 fn held_joints_that_depend_on_each_other_are_refused_by_name() {
     let text = slide("cart", "world", 1.0, "friction = 1.0")
@@ -35,5 +35,7 @@ fn held_joints_that_depend_on_each_other_are_refused_by_name() {
         &hamel_joints::registry(),
     );
     let message = errors.expect_err("it is refused").to_string();
-    assert!(message.contains("constraint `track`"), "{message}");
+    let expected =
+        "constraint `track`: joint `wagon` has friction or limits, and so a speed of its own";
+    assert!(message.contains(expected), "{message}");
 }
