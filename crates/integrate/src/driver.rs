@@ -372,18 +372,25 @@ impl<'a> Driver<'a> {
             }
             (Passed::Until(end), Some(before)) => {
                 self.end_piece(end, before.clock_after(step))?;
+                self.renew_and_go_on()?;
                 self.pace_anew(pacing)?;
             }
             _ if self.end.is_some() => {}
             _ => {
-                let renewed = self.renew_inputs(time);
-                if renewed.map_err(|cause| self.at_state(cause))? && self.end_piece_at_jump()? {
+                self.resolving *= 2.0;
+                if self.renew_and_go_on()? {
                     self.pace_anew(pacing)?;
                 }
-                self.resolving *= 2.0;
             }
         }
         Ok(true)
+    }
+
+    /// Takes new inputs where it is time for them; whether that ends a piece of the motion.
+    fn renew_and_go_on(&mut self) -> Result<bool, IntegrateError> {
+        let renewed = self.renew_inputs(self.clock.time());
+        let renewed = renewed.map_err(|cause| self.at_state(cause))?;
+        Ok(renewed && self.end_piece_at_jump()?)
     }
 
     /// The first step of a piece of the motion.

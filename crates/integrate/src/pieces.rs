@@ -114,7 +114,11 @@ impl Driver<'_> {
         end: PieceEnd,
         clock: impl FnOnce(f64) -> Clock,
     ) -> Result<(), IntegrateError> {
-        self.clock = clock(end.part);
+        // The end of the step is a sample, perhaps, beyond which no rounding may lead.
+        let clock = clock(end.part);
+        if clock.time() < self.clock.time() {
+            self.clock = clock;
+        }
         let state = State {
             time: self.clock.time(),
             ..end.state

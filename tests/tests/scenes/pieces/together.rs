@@ -153,6 +153,39 @@ fn samples_and_events_go_through_all_pieces() {
     }
 }
 
+/// An impact on a sample and on an instant for new inputs, but for rounding to either side.
+#[test]
+fn an_impact_may_fall_on_a_sample() {
+    let g = 10.0;
+    for nudge in [-2.0, -1.0, 0.0, 1.0, 2.0_f64] {
+        let height = 0.5 * g * 0.25 * (1.0 + nudge * f64::EPSILON);
+        let rest = format!(
+            "limit = {{ lower = 0.0, restitution = 0.5 }}\ninitial = {{ configuration = [{height:?}] }}"
+        );
+        let scene = scene([-g, 0.0, 0.0], &slide("ball", "world", 1.0, &rest));
+        for sampling in [Sampling::Dense, Sampling::Landing] {
+            let mut dynamics = scene.settings.arithmetic.dynamics(&scene.mechanism);
+            let start = scene.start();
+            let options = Options {
+                samples: (0..=16).map(|i| 0.125 * f64::from(i)).collect(),
+                ..options(Form::Lagrangian, accurate(), 2.0)
+            };
+            let integration = Integration::new(&mut *dynamics, &start, &options);
+            let integration = integration.sampling(sampling).held(0.25);
+            let solution = integration.inputs(|_, _, _, _| {}).run().expect("it runs");
+            assert_eq!(solution.samples.len(), 17);
+            assert_near("hit", solution.events[0].state.time, 0.5, CLOSED);
+            assert_near("height", solution.samples[4].configuration[0], 0.0, CLOSED);
+            assert_near(
+                "height",
+                solution.samples[6].configuration[0],
+                0.5 * g * 0.0625,
+                CLOSED,
+            );
+        }
+    }
+}
+
 /// The tree in doubles, with residuals in more, and matrices: the same pieces.
 #[test]
 fn every_arithmetic_makes_the_same_pieces() {
