@@ -9,7 +9,9 @@
 
 mod complementarity;
 mod contact;
+mod fault;
 mod guards;
+mod hits;
 mod holding;
 mod impact;
 mod modes;

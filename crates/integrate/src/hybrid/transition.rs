@@ -2,16 +2,15 @@
 
 use super::complementarity::Place;
 use super::contact::{Contact, Phase, Side};
+use super::fault::Fault;
 use super::guards::{Guard, Guards};
 use super::holding::Holding;
-use super::impact::{Touching, impact};
 use super::notes::{Note, of_joint};
 use super::release::Resting;
 use super::{Hybrid, MOST_SHORT, names};
 use crate::dense::Instant;
 use crate::flow::Flow;
 use crate::{IntegrateError, State, StepFailure};
-use alloc::boxed::Box;
 use alloc::format;
 use alloc::string::String;
 use alloc::sync::Arc;
@@ -26,27 +25,8 @@ const AT_REST: f64 = 1e-13;
 /// Joints that come to a limit within so many roundings of the time do so together.
 const TOGETHER: f64 = 64.0 * f64::EPSILON;
 
-/// Joints that touch their limits at one instant may throw each other back so often: where each time takes a hundredth of their speeds, they rest after 2800.
-const MOST_IMPACTS: usize = 10_000;
-
 /// Efforts that hold joints by inverse dynamics may exceed the bounds that the complementarity problem has kept by this part of themselves.
 const AGREEMENT: f64 = 1e-6;
-
-/// Why a transition is not made.
-enum Fault {
-    Step(StepFailure),
-    Undecided {
-        what: &'static str,
-        joints: String,
-        reason: String,
-    },
-}
-
-impl<E: Into<StepFailure>> From<E> for Fault {
-    fn from(cause: E) -> Self {
-        Self::Step(cause.into())
-    }
-}
 
 impl<'a> Hybrid<'a> {
     /// Makes `state`, at which some of the guards end a piece, the beginning of the next one: what is to be told of it, and the guards of the next.
@@ -145,71 +125,8 @@ impl<'a> Hybrid<'a> {
         }
     }
 
-    /// Impacts of the joints that are at their limits, until none of them moves beyond: which limit each one hits.
-    ///
-    /// Joints that move away have no part in an impact. Where it throws one of them back against its limit, that is the next impact.
-    fn hit(&mut self, q: &[f64], speeds: &mut [f64]) -> Result<Vec<Option<Side>>, Fault> {
-        let mut hits = vec![None; self.contacts.len()];
-        let at_limits = self.at_limits(q);
-        let inward = |own: &Touching, speeds: &[f64]| {
-            own.side.inwards() * speeds[self.contacts[own.contact].speed]
-        };
-        if at_limits.iter().all(|own| inward(own, speeds) >= 0.0) {
-            return Ok(hits);
-        }
-        let members: Vec<usize> = at_limits.iter().map(|own| own.contact).collect();
-        let (columns, matrix) = self.inverse_mass(q, &members)?;
-        let contacts = &self.contacts;
-        let undecided = |reason: String| Fault::Undecided {
-            what: "impact",
-            joints: names(contacts, members.iter().copied()),
-            reason,
-        };
-        let inward = |i: &usize, speeds: &[f64]| {
-            at_limits[*i].side.inwards() * speeds[contacts[members[*i]].speed]
-        };
-        for _ in 0..MOST_IMPACTS {
-            let all = 0..members.len();
-            let stay: Vec<usize> = all.filter(|i| inward(i, speeds) <= 0.0).collect();
-            if !stay.iter().any(|i| inward(i, speeds) < 0.0) {
-                return Ok(hits);
-            }
-            let touching: Vec<Touching> = stay.iter().map(|&i| at_limits[i]).collect();
-            let own = matrix.select_rows(&stay).select_columns(&stay);
-            let found = impact(contacts, &touching, speeds, own);
-            let found = found.ok_or_else(|| {
-                undecided("the impulses are not determined: the joints depend on each other".into())
-            })?;
-            for (&i, impulse) in stay.iter().zip(&found.impulses) {
-                if *impulse != 0.0 {
-                    hits[members[i]] = Some(at_limits[i].side);
-                }
-                for (speed, rate) in speeds.iter_mut().zip(&columns[i]) {
-                    *speed += impulse * rate;
-                }
-            }
-            for (&i, after) in stay.iter().zip(&found.after) {
-                speeds[contacts[members[i]].speed] = *after;
-            }
-            self.free.complete_speeds(q, speeds)?;
-        }
-        Err(undecided(format!(
-            "they throw each other back more than {MOST_IMPACTS} times at once"
-        )))
-    }
-
-    /// The joints that are at limits.
-    fn at_limits(&self, q: &[f64]) -> Vec<Touching> {
-        let contacts = self.contacts.iter().enumerate();
-        let at_limits = contacts.filter_map(|(contact, own)| {
-            let side = own.at(q)?;
-            Some(Touching { contact, side })
-        });
-        at_limits.collect()
-    }
-
     /// Columns of M̄⁻¹ of these joints' speeds, and the rows of these speeds in them.
-    fn inverse_mass(
+    pub(super) fn inverse_mass(
         &mut self,
         q: &[f64],
         members: &[usize],
@@ -395,27 +312,5 @@ fn moving(contact: &Contact, speed: f64) -> Phase {
             forward: speed > 0.0,
         },
         _ => Phase::Free,
-    }
-}
-
-impl Fault {
-    fn at(self, time: f64) -> IntegrateError {
-        match self {
-            Self::Step(cause) => IntegrateError::AtState {
-                time,
-                cause: Box::new(cause),
-                near: crate::Near::default(),
-            },
-            Self::Undecided {
-                what,
-                joints,
-                reason,
-            } => IntegrateError::Undecided {
-                time,
-                what,
-                joints,
-                reason,
-            },
-        }
     }
 }

@@ -186,12 +186,15 @@ fn an_impact_may_fall_on_a_sample() {
     }
 }
 
+/// Makes equations of a scene.
+type Maker = fn(&hamel_scene::Scene) -> Box<dyn Dynamics>;
+
 /// The tree in doubles, with residuals in more, and matrices: the same pieces.
 #[test]
 fn every_arithmetic_makes_the_same_pieces() {
     let rest = "spring = { stiffness = 50.0 }\nfriction = 3.0\ninitial = { configuration = [1.0] }\nlimit = { lower = -0.5, restitution = 0.9 }";
     let scene = scene([0.0; 3], &slide("mass", "world", 2.0, rest));
-    let make: [fn(&hamel_scene::Scene) -> Box<dyn Dynamics>; 3] = [
+    let make: [Maker; 3] = [
         |scene| Box::new(Recursive::new(Arc::clone(&scene.mechanism))),
         |scene| Box::new(Refined::new(Arc::clone(&scene.mechanism))),
         |scene| Box::new(Reference::new(Arc::clone(&scene.mechanism))),
