@@ -46,6 +46,8 @@ pub fn all() -> Vec<Scene> {
         mechanism.elements().is_empty()
             && mechanism.drives().is_empty()
             && mechanism.constraints().is_empty()
+            && mechanism.frictions().is_empty()
+            && mechanism.stops().is_empty()
             && scene.control.is_none()
     });
     scenes

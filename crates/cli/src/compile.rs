@@ -2,6 +2,7 @@
 
 use crate::input::Input;
 use clap::ValueEnum;
+use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
 use hamel_compiler::functions::Kind;
 use hamel_compiler::{Build, Error, Language, explain};
@@ -133,6 +134,7 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let scene = input.scene(registry)?;
     scene.check_start(&scene.settings, scene.control.as_ref())?;
     output::tell(&scene.notices);
+    output::tell(&left_to_motions(&scene.mechanism));
     // The header first: who finds the source finds what it includes.
     let written = header.iter().chain(&args.output);
     let written = written.map(|path| (path.as_path(), is_own as _));
@@ -162,6 +164,16 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     // Both are whole before either takes its name.
     let drafts: Vec<_> = drafts.collect::<Result<_, _>>()?;
     drafts.into_iter().try_for_each(|draft| draft.finish())
+}
+
+/// What is no part of equations of motion: who moves the compiled scene without Hamel has to add it.
+fn left_to_motions(mechanism: &Mechanism) -> Vec<String> {
+    let names = mechanism.frictions().iter().map(|own| &own.name);
+    let names = names.chain(mechanism.stops().iter().map(|own| &own.name));
+    let notes = names.map(|name| {
+        format!("note: {name}: it is no part of the equations, which are those between its events; `hamel simulate --compiled` adds it")
+    });
+    notes.collect()
 }
 
 /// Whether a file is a module or a header that was compiled before.

@@ -326,3 +326,39 @@ fn the_error_of_a_motion_is_told_unless_it_is_not_wanted() {
         report["error"]
     );
 }
+
+/// Impacts and stops are told in the summary, the first ones and how often each came after them, and all of them in JSON.
+#[test]
+fn impacts_and_stops_are_told() {
+    let scene = "scenes/bouncing_ball.toml";
+    let summary = stdout(&["simulate", scene, "--html", page().as_str(), "--force"]);
+    assert!(
+        summary.contains("event       height: hits its lower limit at 0.440090807 s\n"),
+        "{summary}"
+    );
+    let last = "height: rests at its lower limit 1 time, the last at 3.960817263 s\n";
+    assert!(summary.contains(last), "{summary}");
+    let text = stdout(&["simulate", scene, "--at", "5", "--json"]);
+    let report: Value = serde_json::from_str(&text).expect("JSON and nothing else");
+    let events = report["events"].as_array().expect("a list");
+    assert_eq!(events.len(), 132);
+    assert_eq!(events[131]["name"], "height: rests at its lower limit");
+    assert_eq!(events[0]["rising"], false);
+}
+
+/// Where a page of a test goes.
+fn page() -> String {
+    let page = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("pieces.html");
+    page.display().to_string()
+}
+
+#[test]
+fn what_a_compiled_scene_leaves_to_motions_is_told() {
+    let output = hamel(&["compile", "scenes/stick_slip.toml"]);
+    assert!(output.status.success());
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        told.contains("friction of joint `contact`: it is no part of the equations"),
+        "{told}"
+    );
+}

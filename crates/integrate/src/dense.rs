@@ -60,6 +60,9 @@ pub(super) struct Instant<'a> {
     pub(super) configuration: &'a [f64],
     pub(super) speeds: &'a [f64],
     pub(super) y: &'a [f64],
+    /// The points around which ϕ is measured, and ϕ.
+    pub(super) base: &'a [f64],
+    pub(super) phi: &'a [f64],
 }
 
 impl Dense {
@@ -152,6 +155,8 @@ impl Dense {
             configuration: &self.configuration,
             speeds: &self.speeds,
             y,
+            base: &self.base,
+            phi,
         })
     }
 

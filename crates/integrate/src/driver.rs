@@ -3,8 +3,10 @@
 use super::approach::Watch;
 use super::clock::Clock;
 use super::flow::Flow;
+use super::hybrid::{Guards, Hybrid};
 use super::options::{StepControl, least_step};
-use super::outputs::Outputs;
+use super::outputs::{Outputs, Passed};
+use super::pieces::{FirstPiece, resolving};
 use super::prospect::{Prospect, other_method};
 use super::rounding::Rounding;
 use super::step_control::StepController;
@@ -59,7 +61,7 @@ pub(super) struct Driver<'a> {
     pub(super) options: &'a Options,
     hold: Option<Hold>,
     pub(super) clock: Clock,
-    start: f64,
+    pub(super) start: f64,
     pub(super) statistics: Statistics,
     pub(super) samples: Vec<State>,
     pub(super) crossings: Vec<Crossing>,
@@ -68,12 +70,16 @@ pub(super) struct Driver<'a> {
     prospect: Prospect,
     /// What is wanted between the ends of steps, if anything is.
     pub(super) outputs: Option<Outputs<'a>>,
+    /// What makes the motion go by pieces, if anything does.
+    pub(super) hybrid: Option<Hybrid<'a>>,
+    /// The longest step that tells of the ends of pieces, s.
+    pub(super) resolving: f64,
     /// Where something within a step has ended the integration.
     pub(super) end: Option<State>,
 }
 
 /// How the next step is chosen.
-struct Pacing {
+pub(super) struct Pacing {
     /// The step to try where no sample time is in the way.
     step: f64,
     controller: StepController,
@@ -95,15 +101,25 @@ impl<'a> Driver<'a> {
         if period.is_some() {
             flow.hold(time, &initial.configuration, &initial.speeds);
         }
-        let begun = StepState::new(&mut flow, time, &initial.configuration, &initial.speeds)
-            .and_then(|step_state| {
+        let first = FirstPiece::new(&mut flow, initial, (options.t_end - time, events.len()))?;
+        let FirstPiece {
+            hybrid,
+            guards,
+            state,
+            crossings,
+        } = first;
+        let holds = guards.as_ref().is_some_and(Guards::holds);
+        let begun = StepState::new(&mut flow, time, &state.configuration, &state.speeds).and_then(
+            |step_state| {
                 let mechanism = &flow.mechanism;
                 // Rates may be finite where squares of speeds are not.
                 mechanism.check_energy(&step_state.configuration, step_state.speeds())?;
                 let order = options.method.scheme().order();
-                let outputs = Outputs::new(sampling, events, order, (&flow, &step_state, time))?;
+                let at = (&mut flow, &step_state, time);
+                let outputs = Outputs::new(sampling, events, order, guards, at)?;
                 Ok((step_state, outputs))
-            });
+            },
+        );
         let (step_state, outputs) = begun.map_err(|cause| IntegrateError::AtState {
             time,
             cause: Box::new(cause),
@@ -127,8 +143,10 @@ impl<'a> Driver<'a> {
             start: time,
             statistics: Statistics::default(),
             samples: Vec::with_capacity(options.samples.len()),
-            crossings: Vec::new(),
+            crossings,
             outputs,
+            hybrid,
+            resolving: resolving(options.t_end - time, holds),
             end: None,
         })
     }
@@ -147,11 +165,8 @@ impl<'a> Driver<'a> {
                 self.look_ahead()?;
             }
         }
-        let solves = self.stepper.solves();
+        self.count_solves();
         self.statistics.evaluations = self.flow.evaluations;
-        self.statistics.iterations = solves.iterations;
-        self.statistics.jacobians = solves.jacobians;
-        self.statistics.factorizations = solves.factorizations;
         Ok(Solution {
             state: self.end.take().unwrap_or_else(|| self.state()),
             samples: self.samples,
@@ -182,6 +197,14 @@ impl<'a> Driver<'a> {
             speeds: step_state.speeds().to_vec(),
         };
         prospect.check(flow, (options, statistics), time, state)
+    }
+
+    /// Adds the work of the stepper, which is not used any more.
+    pub(super) fn count_solves(&mut self) {
+        let solves = self.stepper.solves();
+        self.statistics.iterations += solves.iterations;
+        self.statistics.jacobians += solves.jacobians;
+        self.statistics.factorizations += solves.factorizations;
     }
 
     fn pacing(&mut self) -> Result<Pacing, IntegrateError> {
@@ -236,17 +259,24 @@ impl<'a> Driver<'a> {
         loop {
             let (step, lands) = self.choose_step(pacing.step);
             let attempt = self.attempt(pacing, step);
-            let Err(cause) = attempt else {
-                return self.accept(step, lands, observer);
-            };
-            self.statistics.rejected += 1;
-            self.refuse(pacing, step, cause)?;
+            match attempt {
+                Ok(()) => {
+                    if self.accept(pacing, (step, lands), observer)? {
+                        return Ok(());
+                    }
+                    self.statistics.rejected += 1;
+                }
+                Err(cause) => {
+                    self.statistics.rejected += 1;
+                    self.refuse(pacing, step, cause)?;
+                }
+            }
         }
     }
 
     /// The step to try, and whether it ends on the target.
     fn choose_step(&self, step: f64) -> (f64, bool) {
-        let remaining = self.clock.until(self.target());
+        let (remaining, step) = (self.clock.until(self.target()), step.min(self.resolving));
         match self.options.method {
             Method::Fixed { .. } if remaining <= step * FIXED_STRETCH => (remaining, true),
             Method::Fixed { .. } => (step, false),
@@ -343,12 +373,14 @@ impl<'a> Driver<'a> {
         })
     }
 
+    /// Takes the step just tried, up to the end of the piece if that lies within; whether it is not too long for that.
     fn accept(
         &mut self,
-        step: f64,
-        lands: bool,
+        pacing: &mut Pacing,
+        (step, lands): (f64, bool),
         observer: &mut Observer<'_>,
-    ) -> Result<(), IntegrateError> {
+    ) -> Result<bool, IntegrateError> {
+        let before = self.before_step();
         let start = self.clock.time();
         if lands {
             self.clock = Clock::new(self.target());
@@ -364,26 +396,58 @@ impl<'a> Driver<'a> {
         accepted.map_err(|cause| self.at_state(cause))?;
         self.statistics.steps += 1;
         // Before the inputs change: what lies within the step moved under those that were held.
-        let passed = self.pass(observer);
-        let renewed = passed.and_then(|()| match self.end {
-            Some(_) => Ok(()),
-            None => self.renew_inputs(time),
-        });
-        renewed.map_err(|cause| self.at_state(cause))
+        let passed = self.pass(step, observer);
+        let passed = passed.map_err(|cause| self.at_state(cause))?;
+        match (passed, before) {
+            (Passed::TooLong(part), Some(before)) => {
+                self.go_back(before, (part * step).max(f64::MIN_POSITIVE));
+                return Ok(false);
+            }
+            (Passed::Until(end), Some(before)) => {
+                self.end_piece(end, before.clock_after(step))?;
+                self.renew_and_go_on()?;
+                self.pace_anew(pacing)?;
+            }
+            _ if self.end.is_some() => {}
+            _ => {
+                self.resolving *= 2.0;
+                if self.renew_and_go_on()? {
+                    self.pace_anew(pacing)?;
+                }
+            }
+        }
+        Ok(true)
     }
 
-    /// Takes new inputs where it is time for them, and the rates that they make.
-    fn renew_inputs(&mut self, time: f64) -> Result<(), StepFailure> {
+    /// Takes new inputs where it is time for them; whether that ends a piece of the motion.
+    fn renew_and_go_on(&mut self) -> Result<bool, IntegrateError> {
+        let renewed = self.renew_inputs(self.clock.time());
+        let renewed = renewed.map_err(|cause| self.at_state(cause))?;
+        Ok(renewed && self.end_piece_at_jump()?)
+    }
+
+    /// The first step of a piece of the motion.
+    fn pace_anew(&mut self, pacing: &mut Pacing) -> Result<(), IntegrateError> {
+        if let Some(control) = self.options.method.control() {
+            let first = self.first_step(control.tolerance, self.stepper.order())?;
+            pacing.step = first.min(control.max_step);
+        }
+        Ok(())
+    }
+
+    /// Takes new inputs where it is time for them, and the rates that they make; whether it is.
+    fn renew_inputs(&mut self, time: f64) -> Result<bool, StepFailure> {
         let Some(hold) = self.hold.as_mut().filter(|hold| hold.falls_on(time)) else {
-            return Ok(());
+            return Ok(false);
         };
         hold.count += 1;
         let (q, speeds) = (&self.step_state.configuration, self.step_state.speeds());
         self.flow.hold(time, q, speeds);
-        self.step_state.evaluate(&mut self.flow, time)
+        self.step_state.evaluate(&mut self.flow, time)?;
+        Ok(true)
     }
 
-    fn at_state(&self, cause: StepFailure) -> IntegrateError {
+    pub(super) fn at_state(&self, cause: StepFailure) -> IntegrateError {
         IntegrateError::AtState {
             time: self.clock.time(),
             cause: Box::new(cause),

@@ -163,6 +163,31 @@ pub enum IntegrateError {
         /// The joint that is nearest to a singular set of its own there, if one has any.
         near: Near,
     },
+    /// A joint whose motion has ever shorter pieces.
+    #[error(
+        "at {} s: joint `{joint}` chatters: {count} impacts, stops and starts have followed each other at once",
+        Number(*.time)
+    )]
+    Chatter {
+        /// The joint.
+        joint: String,
+        /// How many there were.
+        count: usize,
+        /// When, s.
+        time: f64,
+    },
+    /// What friction or limits do that is not determined.
+    #[error("at {} s: {what} of joints {joints}: {reason}", Number(*.time))]
+    Undecided {
+        /// When, s.
+        time: f64,
+        /// `friction`, `limit` or `impact`.
+        what: &'static str,
+        /// The joints.
+        joints: String,
+        /// Why not.
+        reason: String,
+    },
     /// A step of fixed size fails.
     #[error("the step of {step:e} s at {} s fails: {cause}{near}{}", Number(*.time), advice(.cause))]
     Step {

@@ -22,7 +22,7 @@ pub enum Direction {
 
 /// A function g(t, q, v̄) whose zeros are wanted, where it changes its sign.
 ///
-/// It must be continuous along the motion. It is evaluated at the initial state, at both ends of every step and at three points between them, so that two opposite crossings within a quarter of a step may both be missed. Touching zero without a change of sign is no event. A state at
+/// It must be continuous along the motion. It is evaluated at the initial state, at both ends of every step and at three points between them, so that two opposite crossings within a quarter of a step may both be missed. Touching zero without a change of sign is no event, and no jump of the speeds at an impact. A state at
 /// which g is exactly 0 belongs to neither side: a motion that starts there crosses nothing.
 pub struct Event<'a> {
     pub(super) name: String,
@@ -96,13 +96,15 @@ impl Debug for Event<'_> {
 /// What became of an event.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Crossing {
-    /// Which event, in the order in which they were given.
+    /// Which event, in the order in which they were given; their number for what a joint does.
     pub event: usize,
+    /// The body whose joint hits a limit, or begins or ceases to stick; `None` for events that were given.
+    pub joint: Option<usize>,
     /// Its name.
     pub name: String,
-    /// Whether the function rises there.
+    /// Whether the function rises there; of a joint, whether it moves towards larger coordinates, before it where it is at rest after it.
     pub rising: bool,
     /// The state, at the first time at which the function is known to be on the other side: the zero, but for the rounding of time. It lies on the dense
-    /// output, and has its accuracy.
+    /// output, and has its accuracy. After an impact, with the speeds that it leaves.
     pub state: State,
 }

@@ -1,22 +1,23 @@
-//! Finds the crossings of events within one step.
+//! Finds the crossings of events, and of the guards that end a piece, within one step.
 
 use super::StepFailure;
 use super::dense::{Dense, Instant};
 use super::event::{Direction, Event};
 use super::flow::Flow;
+use super::hybrid::{Guard, Guards, resolution};
 use super::root::cross;
 use alloc::vec;
 use alloc::vec::Vec;
 
 /// In how many parts a step is looked at.
-const PARTS: usize = 4;
+pub(super) const PARTS: usize = 4;
 
 /// A crossing within the step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
     /// Where, from 0 to 1.
     pub(super) part: f64,
-    /// Index of the event.
+    /// Index of the event; guards follow the events.
     pub(super) event: usize,
     pub(super) rising: bool,
 }
@@ -24,6 +25,9 @@ pub(super) struct Found {
 /// What is known of the events' functions.
 pub(super) struct EventLocation<'a> {
     pub(super) events: Vec<Event<'a>>,
+    guards: Option<Guards>,
+    /// Whether the piece that they end begins with the step.
+    is_first: bool,
     /// The last value of each that was not 0; 0 where there has been none.
     sides: Vec<f64>,
     /// The values of each at the ends of all parts of the step.
@@ -39,22 +43,68 @@ impl<'a> EventLocation<'a> {
             values: vec![[0.0; PARTS + 1]; events.len()],
             found: Vec::with_capacity(events.len() * PARTS),
             events,
+            guards: None,
+            is_first: true,
         }
     }
 
-    /// Takes note of the initial state.
+    /// From here on, with the guards of a piece: takes note of the state at which it begins. A jump of an event's function crosses nothing.
     pub(super) fn begin(
         &mut self,
-        time: f64,
-        q: &[f64],
-        speeds: &[f64],
+        flow: &mut Flow<'_>,
+        instant: &Instant<'_>,
+        guards: Option<Guards>,
     ) -> Result<(), StepFailure> {
-        for (index, event) in self.events.iter_mut().enumerate() {
-            let value = value_of(event, time, q, speeds)?;
-            self.values[index][PARTS] = value;
-            self.sides[index] = value;
+        let count = self.events.len() + guards.as_ref().map_or(0, |guards| guards.list.len());
+        self.sides.resize(count, 0.0);
+        self.values.resize(count, [0.0; PARTS + 1]);
+        self.guards = guards;
+        self.is_first = true;
+        self.read(flow, instant, PARTS)?;
+        let (events, guards) = self.sides.split_at_mut(self.events.len());
+        for (side, values) in events.iter_mut().zip(&self.values) {
+            let value = values[PARTS];
+            *side = if value == 0.0 { *side } else { value };
         }
+        // Where a piece begins, its guards are 0 or more, but for rounding.
+        guards.fill(1.0);
         Ok(())
+    }
+
+    /// The guards that a jump of the inputs has made negative at `instant`.
+    pub(super) fn broken(
+        &mut self,
+        flow: &mut Flow<'_>,
+        instant: &Instant<'_>,
+    ) -> Result<Vec<Guard>, StepFailure> {
+        let Some(guards) = self.guards.as_mut().filter(|guards| guards.holds()) else {
+            return Ok(Vec::new());
+        };
+        let mut broken = Vec::new();
+        guards.values(flow, instant, |index, value| {
+            if value < 0.0 {
+                broken.push(index);
+            }
+        })?;
+        let list = broken.into_iter().map(|index| guards.list[index]);
+        Ok(list.filter(|guard| guard.is_of_holding()).collect())
+    }
+
+    /// The values of all functions, at the end of that part of the step.
+    fn read(
+        &mut self,
+        flow: &mut Flow<'_>,
+        instant: &Instant<'_>,
+        part: usize,
+    ) -> Result<(), StepFailure> {
+        let (events, guards) = self.values.split_at_mut(self.events.len());
+        for (event, values) in self.events.iter_mut().zip(events) {
+            values[part] = value_at(event, instant)?;
+        }
+        match &mut self.guards {
+            Some(own) => own.values(flow, instant, |index, value| guards[index][part] = value),
+            None => Ok(()),
+        }
     }
 
     /// Looks at the step between the last end and this one on the cubic; whether something seems to be crossed in it.
@@ -62,23 +112,52 @@ impl<'a> EventLocation<'a> {
         &mut self,
         dense: &mut Dense,
         flow: &mut Flow<'_>,
-        (time, q, speeds): (f64, &[f64], &[f64]),
+        end: &Instant<'_>,
     ) -> Result<bool, StepFailure> {
-        for (event, values) in self.events.iter_mut().zip(&mut self.values) {
+        for values in &mut self.values {
             values[0] = values[PARTS];
-            values[PARTS] = value_of(event, time, q, speeds)?;
         }
+        self.read(flow, end, PARTS)?;
+        self.look_again(dense, flow)
+    }
+
+    /// Looks at the same step on the polynomial as it stands now.
+    pub(super) fn look_again(
+        &mut self,
+        dense: &mut Dense,
+        flow: &mut Flow<'_>,
+    ) -> Result<bool, StepFailure> {
         self.look_between(dense, flow)?;
         let mut seen = self.sides.iter().zip(&self.values);
         Ok(seen.any(|(side, values)| changes(*side, values).next().is_some()))
     }
 
+    /// Whether a guard that nothing seems to cross has a least value within the step that is small.
+    pub(super) fn may_dip(&self) -> bool {
+        let guards = self.values.get(self.events.len()..).unwrap_or_default();
+        guards.iter().any(resolution::may_dip)
+    }
+
+    /// Whether guards change too much within the step for four parts of it to tell what they do.
+    pub(super) fn is_unresolved(&self) -> bool {
+        let guards = self.values.get(self.events.len()..).unwrap_or_default();
+        guards
+            .iter()
+            .any(|values| resolution::is_unresolved(values, self.is_first))
+    }
+
+    /// The step just looked at is not taken.
+    pub(super) fn go_back(&mut self) {
+        self.found.clear();
+        for values in &mut self.values {
+            values[PARTS] = values[0];
+        }
+    }
+
     fn look_between(&mut self, dense: &mut Dense, flow: &mut Flow<'_>) -> Result<(), StepFailure> {
         for i in 1..PARTS {
             let instant = dense.at(flow, i as f64 / PARTS as f64)?;
-            for (event, values) in self.events.iter_mut().zip(&mut self.values) {
-                values[i] = value_at(event, instant)?;
-            }
+            self.read(flow, &instant, i)?;
         }
         Ok(())
     }
@@ -92,18 +171,21 @@ impl<'a> EventLocation<'a> {
         self.look_between(dense, flow)?;
         let Self {
             events,
+            guards,
             sides,
             values,
             found,
+            ..
         } = self;
+        let end = |index: usize, i: usize| (i as f64 / PARTS as f64, values[index][i]);
         for (index, event) in events.iter_mut().enumerate() {
             for (i, rising) in changes(sides[index], &values[index]) {
                 if !counts(event.direction, rising) {
                     continue;
                 }
-                let end = |i: usize| (i as f64 / PARTS as f64, values[index][i]);
-                let part = cross(end(i - 1), end(i), dense.resolution(), |part| {
-                    value_at(event, dense.at(flow, part)?)
+                let ends = (end(index, i - 1), end(index, i));
+                let part = cross(ends.0, ends.1, dense.resolution(), |part| {
+                    value_at(event, &dense.at(flow, part)?)
                 })?;
                 found.push(Found {
                     part,
@@ -112,14 +194,61 @@ impl<'a> EventLocation<'a> {
                 });
             }
         }
+        if let Some(guards) = guards {
+            for index in 0..guards.list.len() {
+                let event = events.len() + index;
+                let mut falls = changes(sides[event], &values[event]);
+                let Some((i, _)) = falls.find(|(_, rising)| !rising) else {
+                    continue;
+                };
+                let (from, mut at_from) = end(event, i - 1);
+                // Where the piece begins, 0 counts as its inside.
+                at_from = at_from.max(f64::MIN_POSITIVE);
+                let part = cross((from, at_from), end(event, i), f64::EPSILON, |part| {
+                    let instant = dense.at(flow, part)?;
+                    guards.value(index, flow, &instant)
+                })?;
+                found.push(Found {
+                    part,
+                    event,
+                    rising: false,
+                });
+            }
+        }
         found.sort_unstable_by(|a, b| a.part.total_cmp(&b.part).then(a.event.cmp(&b.event)));
         Ok(())
+    }
+
+    /// The part of the step in which the piece ends, if it does.
+    pub(super) fn piece_end(&self) -> Option<f64> {
+        let events = self.events.len();
+        let mut ends = self.found.iter().filter(|found| found.event >= events);
+        ends.next().map(|found| found.part)
+    }
+
+    /// The guards that are crossed as early as `first`, which is one of them; none where it is an event.
+    pub(super) fn ended_by(&self, first: Found) -> Vec<Guard> {
+        let Some(guards) = &self.guards else {
+            return Vec::new();
+        };
+        let guard_of = |found: &Found| {
+            let index = found.event.checked_sub(self.events.len())?;
+            guards.list.get(index).copied()
+        };
+        if guard_of(&first).is_none() {
+            return Vec::new();
+        }
+        let together = |found: &&Found| found.part - first.part <= 4.0 * f64::EPSILON;
+        let found = self.found.iter().filter(|found| found.part >= first.part);
+        found.filter(together).filter_map(guard_of).collect()
     }
 
     /// The step is over.
     pub(super) fn move_on(&mut self) {
         self.found.clear();
-        for (side, values) in self.sides.iter_mut().zip(&self.values) {
+        self.is_first = false;
+        let events = self.sides.iter_mut().take(self.events.len());
+        for (side, values) in events.zip(&self.values) {
             let last = values.iter().rev().find(|value| **value != 0.0);
             *side = last.copied().unwrap_or(*side);
         }
@@ -148,17 +277,8 @@ const fn counts(direction: Direction, rising: bool) -> bool {
     }
 }
 
-fn value_at(event: &mut Event<'_>, instant: Instant<'_>) -> Result<f64, StepFailure> {
-    value_of(event, instant.time, instant.configuration, instant.speeds)
-}
-
-fn value_of(
-    event: &mut Event<'_>,
-    time: f64,
-    q: &[f64],
-    speeds: &[f64],
-) -> Result<f64, StepFailure> {
-    let value = (event.function)(time, q, speeds);
+fn value_at(event: &mut Event<'_>, instant: &Instant<'_>) -> Result<f64, StepFailure> {
+    let value = (event.function)(instant.time, instant.configuration, instant.speeds);
     if value.is_finite() {
         return Ok(value);
     }

@@ -3,10 +3,12 @@
 use super::StepFailure;
 use super::step_state::add;
 use super::{Form, Inputs};
+use alloc::boxed::Box;
 use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
+use core::ops::{Deref, DerefMut};
 use hamel_runtime::dynamics::{Dynamics, DynamicsError};
 use hamel_runtime::mechanism::{CONSTRAINT_TOLERANCE, Mechanism, Space};
 use hamel_runtime::scalar::all_finite;
@@ -76,9 +78,35 @@ pub(super) struct RatesMut<'a> {
     pub(super) speeds: &'a mut [f64],
 }
 
+/// Equations of motion of the caller's, or made for a piece of the motion.
+pub(super) enum Equations<'a> {
+    Lent(&'a mut dyn Dynamics),
+    Own(Box<dyn Dynamics>),
+}
+
+impl<'a> Deref for Equations<'a> {
+    type Target = dyn Dynamics + 'a;
+
+    fn deref(&self) -> &Self::Target {
+        match self {
+            Self::Lent(dynamics) => *dynamics,
+            Self::Own(dynamics) => &**dynamics,
+        }
+    }
+}
+
+impl DerefMut for Equations<'_> {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        match self {
+            Self::Lent(dynamics) => *dynamics,
+            Self::Own(dynamics) => &mut **dynamics,
+        }
+    }
+}
+
 /// The equations of motion with their inputs, as a vector field.
 pub(super) struct Flow<'a> {
-    dynamics: &'a mut dyn Dynamics,
+    dynamics: Equations<'a>,
     /// `None` where there are none.
     inputs: Option<&'a mut Inputs<'a>>,
     pub(super) mechanism: Arc<Mechanism>,
@@ -88,6 +116,8 @@ pub(super) struct Flow<'a> {
     efforts: Vec<f64>,
     /// The inputs of the last [`Flow::hold`], which stand until the next; `None` where inputs follow the state.
     held: Option<Vec<f64>>,
+    /// Efforts of friction at the joints that slide, by their freedoms: they are added to the inputs.
+    friction: Vec<(usize, f64)>,
 }
 
 impl<'a> Flow<'a> {
@@ -99,13 +129,14 @@ impl<'a> Flow<'a> {
         let mechanism = Arc::clone(dynamics.mechanism());
         let layout = *mechanism.layout();
         Self {
-            dynamics,
+            dynamics: Equations::Lent(dynamics),
             inputs,
             form,
             evaluations: 0,
             configuration: vec![0.0; layout.configuration],
             efforts: vec![0.0; layout.freedoms],
             held: None,
+            friction: Vec::new(),
             mechanism,
         }
     }
@@ -129,7 +160,18 @@ impl<'a> Flow<'a> {
 
     /// The equations of motion.
     pub(super) fn dynamics(&mut self) -> &mut dyn Dynamics {
-        self.dynamics
+        &mut *self.dynamics
+    }
+
+    /// From now on the equations of a mechanism with the same joints; those until now.
+    pub(super) fn replace_equations(&mut self, equations: Equations<'a>) -> Equations<'a> {
+        self.mechanism = Arc::clone(equations.mechanism());
+        core::mem::replace(&mut self.dynamics, equations)
+    }
+
+    /// From now on these efforts of friction.
+    pub(super) fn set_friction(&mut self, friction: Vec<(usize, f64)>) {
+        self.friction = friction;
     }
 
     /// Room for the rates of one stage.
@@ -264,10 +306,22 @@ impl<'a> Flow<'a> {
         self.local_rates(base, phi, &rates.speeds, &mut rates.phi);
     }
 
-    /// τ at time `time`, `q` and v̄, with the accelerations of driven joints, as [`Dynamics::forward_dynamics`] takes them.
-    pub(super) fn efforts(&mut self, time: f64, q: &[f64], speeds: &[f64], efforts: &mut [f64]) {
+    /// τ of inputs and friction at time `time`, `q` and v̄.
+    pub(super) fn given_efforts(
+        &mut self,
+        time: f64,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &mut [f64],
+    ) {
         let held = self.held.as_deref();
         fill(&mut self.inputs, held, time, q, speeds, efforts);
+        add_friction(&self.friction, efforts);
+    }
+
+    /// τ at time `time`, `q` and v̄, with the accelerations of driven joints, as [`Dynamics::forward_dynamics`] takes them.
+    pub(super) fn efforts(&mut self, time: f64, q: &[f64], speeds: &[f64], efforts: &mut [f64]) {
+        self.given_efforts(time, q, speeds, efforts);
         self.mechanism.prescribe_accelerations(time, efforts);
     }
 
@@ -305,11 +359,13 @@ impl<'a> Flow<'a> {
             configuration,
             efforts,
             held,
+            friction,
             ..
         } = self;
         let mut fill = |speeds: &[f64], efforts: &mut [f64]| {
             let held = held.as_deref();
             fill(inputs, held, time, configuration, speeds, efforts);
+            add_friction(friction, efforts);
             mechanism.prescribe_accelerations(time, efforts);
         };
         match self.form {
@@ -362,6 +418,12 @@ fn fill(
                 inputs(time, q, speeds, efforts);
             }
         }
+    }
+}
+
+fn add_friction(friction: &[(usize, f64)], efforts: &mut [f64]) {
+    for &(freedom, effort) in friction {
+        efforts[freedom] += effort;
     }
 }
 

@@ -8,6 +8,8 @@ use alloc::vec::Vec;
 use core::fmt::{Debug, Formatter};
 use core::ops::ControlFlow;
 use hamel_runtime::dynamics::Dynamics;
+#[cfg(doc)]
+use hamel_runtime::mechanism::Mechanism;
 
 /// Where the states at sample times come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -92,13 +94,14 @@ impl<'a> Integration<'a> {
         self
     }
 
-    /// Moves the mechanism.
+    /// Moves the mechanism, with the friction and the limits of its joints ([`Mechanism::with_frictions`], [`Mechanism::with_stops`]): by smooth
+    /// pieces, whose ends are among [`Solution::events`].
     ///
     /// The initial state is checked, not projected; speeds of joints whose motion is prescribed are those of their laws, whatever it says.
     ///
     /// # Errors
     /// Options out of range; a period that is not positive and finite; `t_end` before the initial time; an initial state of the wrong size, not finite,
-    /// or off the joints' manifolds; a singular mass matrix; a step that fails at fixed size, or shrinks to nothing under step control; an event whose
+    /// off the joints' manifolds, or beyond their limits; friction or impacts that are not determined; a joint that chatters; a singular mass matrix; a step that fails at fixed size, or shrinks to nothing under step control; an event whose
     /// function is not finite.
     pub fn run(mut self) -> Result<Solution, IntegrateError> {
         let observer = core::mem::replace(&mut self.observer, Box::new(no_observer));
@@ -150,6 +153,7 @@ impl<'a> Integration<'a> {
         check_length("period", period, initial.time, options.t_end)?;
         let mechanism = self.dynamics.mechanism();
         mechanism.check_configuration(&initial.configuration)?;
+        mechanism.check_limits(&initial.configuration)?;
         mechanism.check_speeds("speeds", &initial.speeds)?;
         options.check_scheme(mechanism)
     }

@@ -8,6 +8,8 @@
 //! What a scheme does to go from one state to the next is a `Stepper`; all of them share the state and its charts (`StepState`), the equations as a
 //! vector field (`Flow`), the control of steps and the way over the samples (`Driver`), and dense output with the events on it.
 //!
+//! Joints with dry friction or limits move by pieces (`hybrid`): in each of them some are held, and whatever the scheme does is smooth.
+//!
 //! | mechanism | scheme |
 //! |---|---|
 //! | most | [`Scheme::DormandPrince`]; [`Scheme::DormandPrince8`] from 1e-6 down, [`Scheme::Verner9`] near rounding |
@@ -38,6 +40,7 @@ mod explicit;
 mod exponential;
 mod flow;
 mod global_error;
+mod hybrid;
 mod integration;
 mod jacobian;
 mod linear;
@@ -45,6 +48,7 @@ mod lobatto;
 mod options;
 mod outputs;
 mod phi;
+mod pieces;
 mod prospect;
 mod root;
 mod rounding;

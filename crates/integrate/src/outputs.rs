@@ -5,6 +5,7 @@ use super::driver::Driver;
 use super::event::Event;
 use super::event_location::{EventLocation, Found};
 use super::flow::Flow;
+use super::hybrid::{Guard, Guards, Hybrid};
 use super::step_state::StepState;
 use super::stepper::{Span, Stepper};
 use super::{Crossing, Form, Observer, Sampling, State, Step, StepFailure};
@@ -13,9 +14,37 @@ use alloc::vec::Vec;
 /// The dense output, and who wants it.
 pub(super) struct Outputs<'a> {
     pub(super) dense: Dense,
-    location: EventLocation<'a>,
+    pub(super) location: EventLocation<'a>,
     pub(super) sampling: Sampling,
 }
+
+/// What has become of a step that was accepted.
+pub(super) enum Passed {
+    /// It is behind, with all that lies within it.
+    Whole,
+    /// A piece of the motion ends within it.
+    Until(PieceEnd),
+    /// It is too long to tell what ends pieces, and shall be tried again with this part of its length.
+    TooLong(f64),
+}
+
+/// Where a piece of the motion ends.
+pub(super) struct PieceEnd {
+    /// The part of the step that has been made.
+    pub(super) part: f64,
+    pub(super) state: State,
+    pub(super) guards: Vec<Guard>,
+}
+
+/// What is due within a step.
+enum Within {
+    Nothing,
+    Something,
+    Unresolved,
+}
+
+/// Pieces that end within this part of a step are told by a step of that length: next to the whole one, little is left of their digits.
+const EARLY: f64 = 0.1;
 
 /// What comes next within a step.
 enum Due {
@@ -29,39 +58,61 @@ impl<'a> Outputs<'a> {
         sampling: Sampling,
         events: Vec<Event<'a>>,
         order: u32,
-        (flow, step_state, time): (&Flow<'_>, &StepState, f64),
+        guards: Option<Guards>,
+        (flow, step_state, time): (&mut Flow<'_>, &StepState, f64),
     ) -> Result<Option<Self>, StepFailure> {
-        if sampling == Sampling::Landing && events.is_empty() {
+        if sampling == Sampling::Landing && events.is_empty() && guards.is_none() {
             return Ok(None);
         }
-        let mut location = EventLocation::new(events);
-        location.begin(time, &step_state.configuration, step_state.speeds())?;
-        Ok(Some(Self {
+        let mut outputs = Self {
             dense: Dense::new(order, flow),
-            location,
+            location: EventLocation::new(events),
             sampling,
-        }))
+        };
+        let instant = step_state.instant(time);
+        outputs.location.begin(flow, &instant, guards)?;
+        Ok(Some(outputs))
     }
 
-    /// Makes ready what is due in the step just accepted, which ends at `time`; whether anything is.
+    /// Goes on with another piece of the motion.
+    pub(super) fn restart(
+        &mut self,
+        guards: Guards,
+        order: u32,
+        (flow, step_state, time): (&mut Flow<'_>, &StepState, f64),
+    ) -> Result<(), StepFailure> {
+        self.dense = Dense::new(order, flow);
+        let instant = step_state.instant(time);
+        self.location.begin(flow, &instant, Some(guards))
+    }
+
+    /// Makes ready what is due in the step just accepted, which ends at `time`; guards of steps of `short` and less are trusted as they are.
     fn prepare(
         &mut self,
         step_state: &StepState,
         flow: &mut Flow<'_>,
         stepper: &dyn Stepper,
-        (time, has_sample): (f64, bool),
-    ) -> Result<bool, StepFailure> {
+        (time, has_sample, is_short): (f64, bool, bool),
+    ) -> Result<Within, StepFailure> {
         self.dense.finish(step_state, flow, time);
-        let end = (time, &*step_state.configuration, step_state.speeds());
-        let seen = self.location.glance(&mut self.dense, flow, end)?;
+        let end = step_state.instant(time);
+        let mut seen = self.location.glance(&mut self.dense, flow, &end)?;
+        if !seen && self.location.may_dip() {
+            // The cubic is not good enough to tell.
+            self.dense.raise(flow, stepper.stage_polynomial())?;
+            seen = self.location.look_again(&mut self.dense, flow)?;
+        }
+        if !is_short && self.location.is_unresolved() {
+            return Ok(Within::Unresolved);
+        }
         if !seen && !has_sample {
-            return Ok(false);
+            return Ok(Within::Nothing);
         }
         self.dense.raise(flow, stepper.stage_polynomial())?;
         if seen {
             self.location.locate(&mut self.dense, flow)?;
         }
-        Ok(true)
+        Ok(Within::Something)
     }
 
     /// What comes next, after `passed` crossings; `sample` is the time of the next sample within the step.
@@ -92,13 +143,20 @@ impl Driver<'_> {
         }
     }
 
-    /// Shows and records what lies within the step just accepted, up to what ends the integration.
-    pub(super) fn pass(&mut self, observer: &mut Observer<'_>) -> Result<(), StepFailure> {
+    /// Shows and records what lies within the step just accepted, up to what ends the integration or the piece.
+    pub(super) fn pass(
+        &mut self,
+        step: f64,
+        observer: &mut Observer<'_>,
+    ) -> Result<Passed, StepFailure> {
         let Some(mut outputs) = self.outputs.take() else {
-            return Ok(());
+            return Ok(Passed::Whole);
         };
-        let outcome = self.pass_over(&mut outputs, observer);
-        outputs.location.move_on();
+        let outcome = self.pass_over(&mut outputs, step, observer);
+        match outcome {
+            Ok(Passed::TooLong(_)) => outputs.location.go_back(),
+            _ => outputs.location.move_on(),
+        }
         self.outputs = Some(outputs);
         outcome
     }
@@ -106,12 +164,22 @@ impl Driver<'_> {
     fn pass_over(
         &mut self,
         outputs: &mut Outputs<'_>,
+        step: f64,
         observer: &mut Observer<'_>,
-    ) -> Result<(), StepFailure> {
-        let at = (self.clock.time(), self.sample_within(outputs).is_some());
+    ) -> Result<Passed, StepFailure> {
+        let has_sample = self.sample_within(outputs).is_some();
+        let short = self.hybrid.as_ref().map_or(0.0, Hybrid::short);
+        let least = f64::EPSILON * short;
+        let at = (self.clock.time(), has_sample, step <= short);
         let (flow, stepper) = (&mut self.flow, &*self.stepper);
-        if !outputs.prepare(&self.step_state, flow, stepper, at)? {
-            return Ok(());
+        match outputs.prepare(&self.step_state, flow, stepper, at)? {
+            Within::Nothing => return Ok(Passed::Whole),
+            Within::Unresolved => return Ok(Passed::TooLong(0.5)),
+            Within::Something => {}
+        }
+        let end = outputs.location.piece_end().filter(|part| *part < EARLY);
+        if end.is_some() && step > least {
+            return Ok(Passed::TooLong(EARLY));
         }
         let mut passed = 0;
         while self.end.is_none() {
@@ -119,12 +187,22 @@ impl Driver<'_> {
                 None => break,
                 Some(Due::Sample { part }) => self.sample(outputs, part, observer)?,
                 Some(Due::Crossing(found)) => {
+                    let guards = outputs.location.ended_by(found);
+                    if !guards.is_empty() {
+                        let part = found.part;
+                        let state = state_of(outputs.dense.at(&mut self.flow, part)?);
+                        return Ok(Passed::Until(PieceEnd {
+                            part,
+                            state,
+                            guards,
+                        }));
+                    }
                     passed += 1;
                     self.record(outputs, found)?;
                 }
             }
         }
-        Ok(())
+        Ok(Passed::Whole)
     }
 
     /// The next sample, where it lies within the step and is not to be landed on.
@@ -171,6 +249,7 @@ impl Driver<'_> {
         }
         self.crossings.push(Crossing {
             event: found.event,
+            joint: None,
             name: event.name.clone(),
             rising: found.rising,
             state,

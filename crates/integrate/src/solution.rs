@@ -59,7 +59,7 @@ pub struct Solution {
     pub samples: Vec<State>,
     /// The states at the ends of some steps, evenly over them, at most 32: where [`GlobalError`](super::GlobalError) compares motions with few samples.
     pub waypoints: Vec<State>,
-    /// What crossed zero, in the order of time.
+    /// What crossed zero, and what joints with friction and limits did, in the order of time.
     pub events: Vec<Crossing>,
     /// The work done.
     pub statistics: Statistics,

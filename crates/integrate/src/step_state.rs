@@ -2,6 +2,7 @@
 
 use super::StepFailure;
 use super::compensation::{Compensation, add_exactly};
+use super::dense::Instant;
 use super::flow::{Flow, Rates, RatesMut, retract};
 use super::turns::Turns;
 use alloc::sync::Arc;
@@ -13,6 +14,7 @@ use alloc::vec::Vec;
 const FAR: f64 = 0.5;
 
 /// The state at the last accepted step, and the end of the one being tried.
+#[derive(Clone, Debug)]
 pub(super) struct StepState {
     /// Q at the state: `Φ(base, offset)`.
     pub(super) configuration: Vec<f64>,
@@ -74,6 +76,18 @@ impl StepState {
     /// v̄ at the state.
     pub(super) fn speeds(&self) -> &[f64] {
         &self.rates.speeds
+    }
+
+    /// The state, at `time`.
+    pub(super) fn instant(&self, time: f64) -> Instant<'_> {
+        Instant {
+            time,
+            configuration: &self.configuration,
+            speeds: self.speeds(),
+            y: &self.y,
+            base: &self.base,
+            phi: &self.offset,
+        }
     }
 
     /// Rates at the state.

@@ -31,6 +31,8 @@ impl Scene {
             || company.has_events
             || !self.mechanism.drives().is_empty()
             || !self.mechanism.constraints().is_empty()
+            || !self.mechanism.frictions().is_empty()
+            || !self.mechanism.stops().is_empty()
             || !self.events.is_empty()
             || settings.sampling == Sampling::Dense;
         let wanted = Wanted {

@@ -19,6 +19,10 @@ pub struct JointForces {
     pub effort: Option<Located<Vec<f64>>>,
     /// Prescribed motion.
     pub motion: Option<Located<Vec<Law>>>,
+    /// Dry friction.
+    pub friction: Option<Located<FrictionDescription>>,
+    /// Where the joint's range ends.
+    pub limit: Option<Located<LimitDescription>>,
 }
 
 impl JointForces {
@@ -26,6 +30,36 @@ impl JointForces {
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
+}
+
+/// Coulomb's friction at a joint with one degree of freedom, N m or N.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrictionDescription {
+    /// Effort in motion.
+    pub sliding: f64,
+    /// Largest effort at rest, not less than that in motion.
+    pub sticking: f64,
+}
+
+/// The range of a joint with one degree of freedom, rad or m; at least one end is given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LimitDescription {
+    /// Its lower end.
+    pub lower: Option<f64>,
+    /// Its upper end.
+    pub upper: Option<f64>,
+    /// What happens there.
+    pub kind: LimitKind,
+}
+
+/// What happens where a joint's range ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LimitKind {
+    /// An impact: the speed after it is `−restitution` times that before.
+    Impact {
+        /// From 0 to 1.
+        restitution: f64,
+    },
 }
 
 /// Numbers of at least 0, one per degree of freedom.

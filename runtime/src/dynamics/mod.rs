@@ -21,6 +21,7 @@ pub use recursive::{
 pub use reference::Reference;
 
 use crate::mechanism::Mechanism;
+use alloc::boxed::Box;
 use alloc::sync::Arc;
 
 /// Equations of motion of one mechanism.
@@ -32,6 +33,11 @@ use alloc::sync::Arc;
 pub trait Dynamics {
     /// The mechanism whose equations these are.
     fn mechanism(&self) -> &Arc<Mechanism>;
+
+    /// The equations of another mechanism: of this kind and in this arithmetic, or [`Recursive`] where the kind is bound to one mechanism.
+    fn of(&self, mechanism: Arc<Mechanism>) -> Box<dyn Dynamics> {
+        Box::new(Recursive::new(mechanism))
+    }
 
     /// The speeds that constraints couple to the others, into their entries of `speeds`; the others are read. Nothing to do where no
     /// constraint couples joints.

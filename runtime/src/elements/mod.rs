@@ -11,6 +11,7 @@ mod error;
 mod joint;
 mod slopes;
 mod spring;
+mod unilateral;
 mod view;
 
 pub use body::{BodySpring, BodyWrench, WrenchAxes};
@@ -22,6 +23,7 @@ pub use slopes::JointSlopes;
 pub(crate) use slopes::Target;
 pub use slopes::{End, PointForce, Slope, Slopes};
 pub use spring::{JointSpring, RotationSpring};
+pub use unilateral::{JointFriction, JointStop};
 pub use view::MotionList;
 pub use view::{Action, Motions, View};
 

@@ -1,9 +1,9 @@
-//! What a mechanism carries besides its bodies: elements, rotor inertias, drives.
+//! What a mechanism carries besides its bodies: elements, rotor inertias, drives, constraints that couple joints.
 
 use super::check::Space;
 use super::{Mechanism, MechanismError, MechanismErrors, StateError};
 use crate::dynamics::Recursive;
-use crate::elements::{Drive, Element, ElementError, PointConstraint};
+use crate::elements::{Drive, Element, ElementError, JointFriction, JointStop, PointConstraint};
 use alloc::format;
 use alloc::sync::Arc;
 use alloc::vec;
@@ -13,15 +13,17 @@ use nalgebra::DMatrix;
 /// Elements, rotor inertias and drives of a mechanism.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Actuation {
-    elements: Vec<Arc<dyn Element>>,
+    pub(super) elements: Vec<Arc<dyn Element>>,
     /// One entry a degree of freedom; empty where there is none.
     armature: Vec<f64>,
-    drives: Vec<Drive>,
+    pub(super) drives: Vec<Drive>,
     /// Whether the joint under each body is driven; empty where there are no drives.
     driven: Vec<bool>,
-    constraints: Vec<PointConstraint>,
+    pub(super) constraints: Vec<PointConstraint>,
     /// The speeds that depend on the others, one a constraint.
-    dependent: Vec<usize>,
+    pub(super) dependent: Vec<usize>,
+    pub(super) frictions: Vec<JointFriction>,
+    pub(super) stops: Vec<JointStop>,
 }
 
 /// How small a pivot may be next to the largest to be preferred because its joint is nearer to the tips of the tree: the speeds that people
@@ -158,23 +160,51 @@ impl Mechanism {
         self.actuation.constraints = constraints;
         self.actuation.dependent.clear();
         let matrix = Recursive::new(Arc::new(self.clone())).constraint_matrix(q);
-        let mut driven = vec![false; self.layout.speeds];
-        for drive in &self.actuation.drives {
-            driven[self.bodies[drive.body].ranges.speeds.clone()].fill(true);
-        }
-        let found = dependent_columns(matrix, |speed| driven[speed]);
+        let driven = self.speeds_of(self.actuation.drives.iter().map(|drive| drive.body));
+        let own = self.speeds_of(self.unilateral_joints());
+        // Joints that may stick or hit a limit keep speeds of their own.
+        let found = dependent_columns(matrix.clone(), |speed| driven[speed] || own[speed]);
         self.actuation.dependent = found.map_err(|rows| {
-            let refused = rows.into_iter().map(|(row, ratio)| {
-                let constraint = self.actuation.constraints[row].name.clone();
-                MechanismError::DependentConstraint {
-                    constraint,
-                    ratio,
-                    limit: INDEPENDENCE,
-                }
-            });
+            let takes_theirs = dependent_columns(matrix, |speed| driven[speed]).is_ok();
+            let refused = rows
+                .into_iter()
+                .map(|refused| self.refused(refused, takes_theirs));
             refused.collect::<MechanismErrors>()
         })?;
         Ok(self)
+    }
+
+    /// Which speeds are those of these bodies' joints.
+    fn speeds_of(&self, bodies: impl Iterator<Item = usize>) -> Vec<bool> {
+        let mut taken = vec![false; self.layout.speeds];
+        for body in bodies {
+            taken[self.bodies[body].ranges.speeds.clone()].fill(true);
+        }
+        taken
+    }
+
+    /// Bodies whose joints have friction or limits.
+    fn unilateral_joints(&self) -> impl Iterator<Item = usize> {
+        let frictions = self.actuation.frictions.iter().map(|own| own.body);
+        frictions.chain(self.actuation.stops.iter().map(|own| own.body))
+    }
+
+    /// A constraint that is refused, with its pivot; perhaps only as joints with friction and limits keep their speeds.
+    fn refused(&self, (row, ratio): (usize, f64), takes_theirs: bool) -> MechanismError {
+        let constraint = self.actuation.constraints[row].name.clone();
+        let joint = self.unilateral_joints().last();
+        match joint.filter(|_| takes_theirs) {
+            Some(body) => MechanismError::Element(ElementError::Joint {
+                element: format!("constraint `{constraint}`"),
+                joint: self.bodies[body].joint_name().into(),
+                reason: "has friction or limits, and so a speed of its own, and the constraint leaves no joint without them whose speed could depend on the others",
+            }),
+            None => MechanismError::DependentConstraint {
+                constraint,
+                ratio,
+                limit: INDEPENDENCE,
+            },
+        }
     }
 
     /// Constraints that couple joints.
@@ -257,7 +287,7 @@ impl Mechanism {
     }
 }
 
-fn refuse(failures: impl Iterator<Item = ElementError>) -> Result<(), MechanismErrors> {
+pub(super) fn refuse(failures: impl Iterator<Item = ElementError>) -> Result<(), MechanismErrors> {
     MechanismErrors::check(failures.map(MechanismError::Element).collect())
 }
 

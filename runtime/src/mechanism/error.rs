@@ -303,6 +303,23 @@ pub enum StateError {
         /// Largest residual allowed.
         limit: f64,
     },
+    /// A joint is beyond a limit of its own.
+    #[error(
+        "joint `{joint}`: its coordinate `{coordinate}` is {value}, beyond its {side} limit {limit}",
+        value = Number(*.value), limit = Number(*.limit)
+    )]
+    BeyondLimit {
+        /// The joint.
+        joint: String,
+        /// Name of the coordinate.
+        coordinate: &'static str,
+        /// Its value.
+        value: f64,
+        /// `lower` or `upper`.
+        side: &'static str,
+        /// The limit.
+        limit: f64,
+    },
     /// The configuration is singular.
     #[error("joint `{joint}`: it is singular where {loci} is 0, and the least of these is {value}", value = Number(*.value))]
     Singular {

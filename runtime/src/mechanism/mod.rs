@@ -13,6 +13,7 @@ mod initial;
 mod inverse_kinematics;
 mod kinematics;
 mod rigid;
+mod unilateral;
 
 pub use actuation::dependent_columns;
 pub use body::{Body, BodySpec, Ranges};

@@ -9,6 +9,7 @@ mod fuzz_scenes;
 mod methods;
 mod motions;
 mod orthonormality;
+mod pieces;
 mod plate_cart_arm;
 mod references;
 mod robots;

@@ -113,7 +113,11 @@ impl Plan {
     /// Whether anything but gravity can change the energy.
     pub fn does_work(&self) -> bool {
         let mechanism = &self.scene.mechanism;
-        self.control.is_some() || !mechanism.elements().is_empty() || !mechanism.drives().is_empty()
+        self.control.is_some()
+            || !mechanism.elements().is_empty()
+            || !mechanism.drives().is_empty()
+            || !mechanism.frictions().is_empty()
+            || !mechanism.stops().is_empty()
     }
 
     /// The files of the trajectory.

@@ -134,14 +134,25 @@ impl Summary<'_> {
     /// The first events, and how many follow.
     fn crossings(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for crossing in self.events.iter().take(MOST_EVENTS) {
-            let direction = if crossing.rising { "rising" } else { "falling" };
+            let direction = match (crossing.joint, crossing.rising) {
+                // The name of what a joint does tells it all.
+                (Some(_), _) => "",
+                (None, true) => ", rising",
+                (None, false) => ", falling",
+            };
             let (name, time) = (&crossing.name, crossing.state.time);
-            writeln!(f, "event       {name} at {time:.9} s, {direction}")?;
+            writeln!(f, "event       {name} at {time:.9} s{direction}")?;
         }
-        match self.events.len().saturating_sub(MOST_EVENTS) {
-            0 => Ok(()),
-            more => writeln!(f, "            and {more} more; --json tells all"),
+        let more = self.events.get(MOST_EVENTS..).unwrap_or_default();
+        if more.is_empty() {
+            return Ok(());
         }
+        writeln!(f, "            and {} more; --json tells all", more.len())?;
+        for (name, count, last) in by_name(more).into_iter().take(MOST_EVENTS) {
+            let times = counted(count, "time", "times");
+            writeln!(f, "            {name} {times}, the last at {last:.9} s")?;
+        }
+        Ok(())
     }
 
     fn energy(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -165,6 +176,19 @@ impl Summary<'_> {
             false => writeln!(f),
         }
     }
+}
+
+/// How often each name stands among these events, and when last.
+fn by_name(events: &[Crossing]) -> Vec<(&str, usize, f64)> {
+    let mut names: Vec<(&str, usize, f64)> = Vec::new();
+    for event in events {
+        let time = event.state.time;
+        match names.iter_mut().find(|(name, ..)| *name == event.name) {
+            Some((_, count, last)) => (*count, *last) = (*count + 1, time),
+            None => names.push((&event.name, 1, time)),
+        }
+    }
+    names
 }
 
 /// One line a body and axis, and one for the scalar of its quaternion.

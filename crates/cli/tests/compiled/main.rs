@@ -70,6 +70,8 @@ fn scenes_move_as_on_the_tree() {
         "tests/data/scenes/geodesic_springs.toml",
         // Efforts of a controller.
         "scenes/panda7_tracking.toml",
+        // Friction and limits, with joints that are held for some of the time.
+        "tests/data/scenes/held_joints.toml",
     ] {
         for form in ["lagrangian", "hamiltonian"] {
             moves_as_the_tree(&[

@@ -330,6 +330,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
         });
         let solution = solution.map_err(Doubt::Companion)?;
         self.evaluations += solution.statistics.evaluations;
+        self.compare_pieces(&solution);
         if solution.samples.len() < times.len() || paths.len() < times.len() {
             return Err(Doubt::Companion("it was ended before".into()));
         }
@@ -338,6 +339,23 @@ impl<'a, 'r> Estimation<'a, 'r> {
             states: solution.samples,
             paths,
         })
+    }
+
+    /// Whether a companion's joints hit limits, stick and slide in the same order.
+    fn compare_pieces(&mut self, companion: &Solution) {
+        let told = |solution: &Solution| {
+            let own = solution.events.iter().filter(|event| event.joint.is_some());
+            own.map(|event| event.name.clone()).collect::<Vec<_>>()
+        };
+        let [motion, companion] = [self.solution, companion].map(told);
+        let most = motion.len().max(companion.len());
+        let differs = |i: &usize| motion.get(*i) != companion.get(*i);
+        if let Some(first) = (0..most).find(differs) {
+            let [motion, companion] =
+                [motion, companion].map(|told| told.get(first).cloned().unwrap_or_default());
+            self.doubt
+                .get_or_insert(Doubt::Pieces { motion, companion });
+        }
     }
 
     /// The conditioning, and how much a relative change of the speeds has grown at each time.

@@ -10,6 +10,7 @@ mod estimation;
 mod request;
 
 use super::{Observer, Options, Solution, State};
+use alloc::format;
 use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -52,6 +53,13 @@ pub enum Doubt {
     Steps,
     /// Steps are longer than oscillations, whose rounding no companion tells.
     Oscillations,
+    /// A companion goes through other impacts, stops and starts of joints, or through them in another order.
+    Pieces {
+        /// What the motion does where they first differ; nothing where it has no more.
+        motion: String,
+        /// What the companion does there.
+        companion: String,
+    },
     /// A companion does not come to the end.
     Companion(String),
 }
@@ -70,6 +78,17 @@ impl Display for Doubt {
             Self::Oscillations => f.write_str(
                 "the method takes steps longer than oscillations: how rounding adds up over these is not known",
             ),
+            Self::Pieces { motion, companion } => {
+                let told = |what: &str| match what {
+                    "" => String::from("nothing more"),
+                    what => format!("`{what}`"),
+                };
+                let (motion, companion) = (told(motion), told(companion));
+                write!(
+                    f,
+                    "a motion of another tolerance goes through other impacts, stops and starts of joints: {companion} where this one has {motion}"
+                )
+            }
             Self::Companion(cause) => write!(f, "a coarser motion fails: {cause}"),
         }
     }

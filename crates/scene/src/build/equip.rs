@@ -2,16 +2,16 @@
 
 use super::forces::{Acting, Spring, Stiffness};
 use crate::description::{BodyDescription, SceneDescription};
-use crate::forces::{PointSpring, WrenchAxes, WrenchDescription};
+use crate::forces::{LimitKind, PointSpring, WrenchAxes, WrenchDescription};
 use hamel_runtime::dynamics::{Dynamics, DynamicsError, Recursive};
 use hamel_runtime::elements::{
-    BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointSpring, PointConstraint,
-    RotationSpring,
+    BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointFriction, JointSpring,
+    JointStop, PointConstraint, RotationSpring,
 };
 use hamel_runtime::mechanism::{Mechanism, MechanismErrors, NamedFrame};
 use std::sync::Arc;
 
-/// The mechanism with its elements, rotors, drives and named frames; `acting` goes with the bodies of `description`.
+/// The mechanism with its elements, rotors, drives, friction, limits and named frames; `acting` goes with the bodies of `description`.
 pub(super) fn equip(
     mut mechanism: Mechanism,
     description: &SceneDescription,
@@ -33,6 +33,8 @@ pub(super) fn equip(
     mechanism
         .with_elements(elements)?
         .with_drives(drives)?
+        .with_frictions(frictions(description, acting))?
+        .with_stops(stops(description, acting))?
         .with_frames(frames.collect())
 }
 
@@ -172,4 +174,34 @@ fn drives(description: &SceneDescription, acting: &[Acting]) -> Vec<Drive> {
         laws: acting.motion.clone(),
     });
     drives.collect()
+}
+
+fn frictions(description: &SceneDescription, acting: &[Acting]) -> Vec<JointFriction> {
+    let joints = description.bodies.iter().zip(acting).enumerate();
+    let frictions = joints.filter_map(|(body, (owner, acting))| {
+        let friction = acting.friction?;
+        Some(JointFriction {
+            name: format!("friction of joint `{}`", owner.joint.name.value),
+            body,
+            sliding: friction.sliding,
+            sticking: friction.sticking,
+        })
+    });
+    frictions.collect()
+}
+
+fn stops(description: &SceneDescription, acting: &[Acting]) -> Vec<JointStop> {
+    let joints = description.bodies.iter().zip(acting).enumerate();
+    let stops = joints.filter_map(|(body, (owner, acting))| {
+        let limit = acting.limit?;
+        let LimitKind::Impact { restitution } = limit.kind;
+        Some(JointStop {
+            name: format!("limit of joint `{}`", owner.joint.name.value),
+            body,
+            lower: limit.lower,
+            upper: limit.upper,
+            restitution,
+        })
+    });
+    stops.collect()
 }

@@ -3,10 +3,14 @@
 use super::state::Stand;
 use crate::description::{InitialDescription, Motion};
 use crate::diagnostics::Diagnostic;
-use crate::forces::{JointForces, JointSpring, PerFreedom, SpringEnergy};
+use crate::forces::{
+    FrictionDescription, JointForces, JointSpring, LimitDescription, PerFreedom, SpringEnergy,
+};
 use crate::read::Sink;
 use crate::source::{Located, Span};
 use hamel_runtime::elements::Law;
+use hamel_runtime::mechanism::CONFIGURATION_TOLERANCE;
+use hamel_runtime::shown::Number;
 use nalgebra::{DMatrix, DVector};
 
 /// What acts at one joint, in numbers that fit it.
@@ -22,6 +26,10 @@ pub(crate) struct Acting {
     pub(crate) effort: Vec<f64>,
     /// Prescribed speeds, one law a speed; empty without.
     pub(crate) motion: Vec<Law>,
+    /// Dry friction.
+    pub(crate) friction: Option<FrictionDescription>,
+    /// Ends of the joint's range.
+    pub(crate) limit: Option<LimitDescription>,
 }
 
 /// A spring at a joint.
@@ -62,6 +70,8 @@ pub(super) fn acting(
         effort: effort.map_err(&mut noted).unwrap_or_default(),
         spring: spring.transpose().map_err(&mut noted).unwrap_or_default(),
         motion: motion.map_err(&mut noted).unwrap_or_default(),
+        friction: forces.friction.as_ref().map(|friction| friction.value),
+        limit: forces.limit.as_ref().map(|limit| limit.value),
     };
     (sink.len() == errors_before).then_some(acting)
 }
@@ -160,4 +170,30 @@ fn motion(
         return Err(error.help("leave `velocity`, `speeds` and `twist` out of its `initial`"));
     }
     Ok(motion.value.clone())
+}
+
+/// Whether the joint begins within its limits.
+pub(super) fn check_limit(
+    stand: &Stand,
+    q: &[f64],
+    limit: &Located<LimitDescription>,
+) -> Result<(), Diagnostic> {
+    // Of other joints the mechanism says that they can have none.
+    let ([value], [coordinate]) = (q, stand.joint.coordinates()) else {
+        return Ok(());
+    };
+    let room = |limit: f64| CONFIGURATION_TOLERANCE * limit.abs().max(1.0);
+    let (lower, upper) = (limit.value.lower, limit.value.upper);
+    let below = lower.filter(|&lower| *value < lower - room(lower));
+    let above = upper.filter(|&upper| *value > upper + room(upper));
+    let (side, end) = match (below, above) {
+        (Some(lower), _) => ("lower", lower),
+        (_, Some(upper)) => ("upper", upper),
+        _ => return Ok(()),
+    };
+    let (name, value, end) = (&stand.name, Number(*value), Number(end));
+    let message = format!(
+        "joint `{name}`: its coordinate `{coordinate}` is {value:?} at time 0, beyond its {side} limit {end:?}"
+    );
+    Err(Diagnostic::new(limit.span.clone(), message))
 }

@@ -46,6 +46,11 @@ pub(crate) fn state(
     let solved = solved.map_err(|error| sink.push(error)).ok();
     let acting = forces::acting(&stand, initial, forces, sink);
     let (configuration, speeds) = solved?;
+    if let Some(limit) = &forces.limit {
+        forces::check_limit(&stand, &configuration, limit)
+            .map_err(|error| sink.push(error))
+            .ok()?;
+    }
     Some(State {
         joint,
         configuration,

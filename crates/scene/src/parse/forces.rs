@@ -1,12 +1,16 @@
-//! What acts at the joint of a body: `spring`, `damping`, `armature`, `effort`, `motion`.
+//! What acts at the joint of a body: `spring`, `damping`, `armature`, `effort`, `motion`, `friction`, `limit`.
 
 use super::initial;
 use crate::description::Position;
 use crate::diagnostics::Diagnostic;
-use crate::forces::{JointForces, JointSpring, PerFreedom, SpringEnergy};
+use crate::forces::{
+    FrictionDescription, JointForces, JointSpring, LimitDescription, LimitKind, PerFreedom,
+    SpringEnergy,
+};
 use crate::read::{Fields, Sink, Value};
 use crate::source::Located;
 use hamel_runtime::elements::Law;
+use hamel_runtime::shown::Number;
 use nalgebra::DMatrix;
 
 /// Asymmetry and negative eigenvalues of a stiffness that pass for rounding, in units of its largest entry.
@@ -19,12 +23,16 @@ pub(super) fn forces(fields: &mut Fields<'_>, sink: &mut Sink) -> Option<JointFo
     let armature = optional(fields, "armature", per_freedom, sink);
     let effort = optional(fields, "effort", |value, sink| value.numbers(sink), sink);
     let motion = optional(fields, "motion", motion, sink);
+    let friction = optional(fields, "friction", friction, sink);
+    let limit = optional(fields, "limit", limit, sink);
     Some(JointForces {
         spring: spring?,
         damping: damping?,
         armature: armature?,
         effort: effort?,
         motion: motion?,
+        friction: friction?,
+        limit: limit?,
     })
 }
 
@@ -113,6 +121,71 @@ fn motion(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Vec<Law>>> {
     let speeds: Vec<_> = items.iter().map(|item| speed(item, sink)).collect();
     let speeds: Option<Vec<Law>> = speeds.into_iter().collect();
     Some(Located::new(speeds?, value.span()))
+}
+
+/// One number for friction in motion and at rest, or a table of both.
+fn friction(value: &Value<'_>, sink: &mut Sink) -> Option<Located<FrictionDescription>> {
+    if !value.is_table() {
+        let sliding = value.not_negative(sink)?.value;
+        let friction = FrictionDescription {
+            sliding,
+            sticking: sliding,
+        };
+        return Some(Located::new(friction, value.span()));
+    }
+    let mut fields = value.table(sink)?;
+    let sliding = fields.required("sliding", sink);
+    let sticking = fields.required("sticking", sink);
+    fields.finish(sink);
+    let sliding = sliding?.not_negative(sink)?.value;
+    let limit = format!(
+        "at least `friction.sliding`, which is {:?}",
+        Number(sliding)
+    );
+    let sticking = sticking?.number_within(|number| number >= sliding, &limit, sink)?;
+    let friction = FrictionDescription {
+        sliding,
+        sticking: sticking.value,
+    };
+    Some(Located::new(friction, value.span()))
+}
+
+/// The ends of a range, and what happens there.
+fn limit(value: &Value<'_>, sink: &mut Sink) -> Option<Located<LimitDescription>> {
+    let mut fields = value.table(sink)?;
+    let lower = optional(&mut fields, "lower", |value, sink| value.number(sink), sink);
+    let upper = optional(&mut fields, "upper", |value, sink| value.number(sink), sink);
+    let restitution = fields.required("restitution", sink);
+    fields.finish(sink);
+    let restitution = restitution?.number_within(
+        |number| (0.0..=1.0).contains(&number),
+        "between 0 and 1",
+        sink,
+    );
+    let (lower, upper) = (lower?, upper?);
+    let wrong = match (&lower, &upper) {
+        (None, None) => Some((value.span(), "has neither `lower` nor `upper`".into())),
+        (Some(lower), Some(upper)) if upper.value <= lower.value => {
+            let [lower, above] = [lower.value, upper.value].map(Number);
+            let message = format!(
+                "has the upper limit {above:?}, which is not above the lower one, {lower:?}"
+            );
+            Some((upper.span.clone(), message))
+        }
+        _ => None,
+    };
+    if let Some((span, message)) = wrong {
+        sink.push(Diagnostic::new(span, format!("{} {message}", value.path())));
+        return None;
+    }
+    let limit = LimitDescription {
+        lower: lower.map(|lower| lower.value),
+        upper: upper.map(|upper| upper.value),
+        kind: LimitKind::Impact {
+            restitution: restitution?.value,
+        },
+    };
+    Some(Located::new(limit, value.span()))
 }
 
 /// One speed: a number, or the table of a swing.

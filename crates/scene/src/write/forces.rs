@@ -7,7 +7,10 @@ use crate::description::SceneDescription;
 use crate::event::{
     CONSEQUENCE_NAMES, DIRECTION_NAMES, EventDescription, PointAlong, QuantityDescription,
 };
-use crate::forces::{BodyPoint, JointForces, JointSpring, PerFreedom, SpringEnergy, WrenchAxes};
+use crate::forces::{
+    BodyPoint, FrictionDescription, JointForces, JointSpring, LimitDescription, LimitKind,
+    PerFreedom, SpringEnergy, WrenchAxes,
+};
 use hamel_integrate::Direction;
 use hamel_runtime::elements::Law;
 
@@ -30,6 +33,33 @@ pub(super) fn of_joint(out: &mut String, forces: &JointForces) {
         let speeds = format!("[{}]", speeds.join(", "));
         entry(out, "motion", &table(&[("speeds", speeds)]));
     }
+    if let Some(friction) = &forces.friction {
+        entry(out, "friction", &self::friction(&friction.value));
+    }
+    if let Some(limit) = &forces.limit {
+        entry(out, "limit", &self::limit(&limit.value));
+    }
+}
+
+fn friction(friction: &FrictionDescription) -> String {
+    if friction.sliding == friction.sticking {
+        return number(friction.sliding);
+    }
+    table(&[
+        ("sliding", number(friction.sliding)),
+        ("sticking", number(friction.sticking)),
+    ])
+}
+
+fn limit(limit: &LimitDescription) -> String {
+    let ends = [("lower", limit.lower), ("upper", limit.upper)];
+    let ends = ends
+        .into_iter()
+        .filter_map(|(key, end)| Some((key, number(end?))));
+    let mut entries: Vec<_> = ends.collect();
+    let LimitKind::Impact { restitution } = limit.kind;
+    entries.push(("restitution", number(restitution)));
+    table(&entries)
 }
 
 fn spring(spring: &JointSpring) -> String {

@@ -16,6 +16,7 @@ pub use expansion::Expansion;
 use super::{Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, Recursive};
 use crate::mechanism::{Mechanism, Space, StateError};
 use actuation::{ElementForces, driven, driven_freedoms};
+use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec;
 use nalgebra::DVector;
@@ -102,6 +103,10 @@ impl Reference {
 impl Dynamics for Reference {
     fn mechanism(&self) -> &Arc<Mechanism> {
         &self.mechanism
+    }
+
+    fn of(&self, mechanism: Arc<Mechanism>) -> Box<dyn Dynamics> {
+        Box::new(Self::new(mechanism))
     }
 
     fn complete_speeds(&mut self, q: &[f64], speeds: &mut [f64]) -> Result<(), DynamicsError> {

@@ -1,0 +1,156 @@
+//! Dry friction and limits of a joint: what makes a motion go by pieces.
+//!
+//! Neither is an [`Element`](super::Element): the equations of motion of a mechanism know nothing of them. A motion through them is made of smooth
+//! pieces, between which a joint begins or ceases to stick, or hits its limit; the integrator tells these apart.
+
+use super::ElementError;
+use super::error::body;
+use crate::mechanism::{Body, Mechanism};
+use alloc::string::String;
+use alloc::vec;
+
+/// Coulomb's dry friction at a joint with one degree of freedom.
+///
+/// While the joint moves, an effort of the size `sliding` acts against its speed. At rest the joint takes whatever effort holds it, up to `sticking`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointFriction {
+    /// Name, for messages.
+    pub name: String,
+    /// The body whose joint it is.
+    pub body: usize,
+    /// Effort of friction in motion, N m or N.
+    pub sliding: f64,
+    /// Largest effort of friction at rest, N m or N; not less than `sliding`.
+    pub sticking: f64,
+}
+
+/// Limits of a joint with one degree of freedom, with Newton's law of impact: the speed after it is `−restitution` times that before.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointStop {
+    /// Name, for messages.
+    pub name: String,
+    /// The body whose joint it is.
+    pub body: usize,
+    /// Least value of the coordinate, rad or m, if there is one.
+    pub lower: Option<f64>,
+    /// Largest value of the coordinate, rad or m, if there is one.
+    pub upper: Option<f64>,
+    /// From 0, which takes all of the joint's speed, to 1, which takes none.
+    pub restitution: f64,
+}
+
+impl JointFriction {
+    /// Whether the friction fits the mechanism.
+    ///
+    /// # Errors
+    /// A body that is not there; a joint of another kind, or one whose motion is prescribed; efforts out of range.
+    pub fn check(&self, mechanism: &Mechanism) -> Result<(), ElementError> {
+        let name = &self.name;
+        check_joint(name, mechanism, self.body)?;
+        let sliding = self.sliding;
+        let allowed = sliding.is_finite() && sliding >= 0.0;
+        require(name, "sliding", sliding, allowed, "finite and not negative")?;
+        let sticking = self.sticking;
+        let allowed = sticking.is_finite() && sticking >= sliding;
+        require(
+            name,
+            "sticking",
+            sticking,
+            allowed,
+            "finite and not less than the friction in motion",
+        )
+    }
+}
+
+impl JointStop {
+    /// Whether the limits fit the mechanism.
+    ///
+    /// # Errors
+    /// A body that is not there; a joint of another kind, or one whose motion is prescribed; limits that are not finite or out of order, or
+    /// none; a restitution out of range.
+    pub fn check(&self, mechanism: &Mechanism) -> Result<(), ElementError> {
+        let name = &self.name;
+        let owner = check_joint(name, mechanism, self.body)?;
+        if self.lower.is_none() && self.upper.is_none() {
+            return Err(ElementError::Joint {
+                element: name.clone(),
+                joint: owner.joint_name().into(),
+                reason: "has neither a lower nor an upper limit",
+            });
+        }
+        let lower = self.lower.unwrap_or(f64::MIN);
+        let upper = self.upper.unwrap_or(f64::MAX);
+        require(name, "lower", lower, lower.is_finite(), "finite")?;
+        let allowed = upper.is_finite() && upper > lower;
+        let requirement = "finite and above the lower limit";
+        require(name, "upper", upper, allowed, requirement)?;
+        let restitution = self.restitution;
+        let allowed = (0.0..=1.0).contains(&restitution);
+        require(name, "restitution", restitution, allowed, "from 0 to 1")
+    }
+}
+
+/// The body, if its joint has one coordinate whose rate is its speed, and moves freely.
+fn check_joint<'a>(
+    element: &str,
+    mechanism: &'a Mechanism,
+    index: usize,
+) -> Result<&'a Body, ElementError> {
+    let owner = body(element, mechanism, index)?;
+    let reason = if !has_one_coordinate(owner) {
+        "is not one of a single coordinate whose rate is its speed, as a revolute, a prismatic or a screw joint is"
+    } else if mechanism.is_driven(index) {
+        "has a prescribed motion, which neither friction nor limits can change"
+    } else if mechanism
+        .dependent_speeds()
+        .contains(&owner.ranges().speeds.start)
+    {
+        "has a speed that constraints make depend on others: give friction and limits before constraints"
+    } else {
+        return Ok(owner);
+    };
+    Err(ElementError::Joint {
+        element: element.into(),
+        joint: owner.joint_name().into(),
+        reason,
+    })
+}
+
+/// Whether Q is one number, v = Q̇, and Φ(Q, ϕ) = Q + ϕ.
+fn has_one_coordinate(body: &Body) -> bool {
+    let joint = body.joint();
+    let (layout, structures) = (joint.layout(), joint.structures());
+    let is_one = layout.configuration == 1 && layout.freedoms == 1 && layout.speeds == 1;
+    let is_flat = structures.velocity_map.is_identity()
+        && structures.speed_basis.is_identity()
+        && structures.retract_differential.is_identity();
+    if !(is_one && is_flat) {
+        return false;
+    }
+    // A chart of its own whose differential is the identity may still count in other units.
+    let mut home = vec![0.0];
+    joint.home(&mut home);
+    [0.5, -3.0].into_iter().all(|phi| {
+        let mut moved = [f64::NAN];
+        joint.retract(&home, &[phi], &mut moved);
+        (moved[0] - home[0] - phi).abs() <= 8.0 * f64::EPSILON * (home[0].abs() + 3.0)
+    })
+}
+
+fn require(
+    element: &str,
+    quantity: &'static str,
+    value: f64,
+    allowed: bool,
+    requirement: &'static str,
+) -> Result<(), ElementError> {
+    if allowed {
+        return Ok(());
+    }
+    Err(ElementError::Value {
+        element: element.into(),
+        quantity,
+        value,
+        requirement,
+    })
+}
