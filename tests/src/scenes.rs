@@ -46,6 +46,7 @@ pub fn all() -> Vec<Scene> {
         mechanism.elements().is_empty()
             && mechanism.drives().is_empty()
             && mechanism.constraints().is_empty()
+            && !mechanism.changes_with_time()
             && scene.control.is_none()
     });
     scenes

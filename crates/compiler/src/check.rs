@@ -12,6 +12,7 @@ pub(super) fn of_scene(scene: &SceneDescription) -> Vec<String> {
     let wrong = check_bodies(&scene.gravity, &bodies);
     let mut reasons: Vec<String> = wrong.iter().map(ToString::to_string).collect();
     reasons.extend(of_indices(scene));
+    reasons.extend(of_time(scene));
     reasons
 }
 
@@ -48,6 +49,18 @@ fn of_indices(scene: &SceneDescription) -> Vec<String> {
             format!("{element}: there is no body of index {body}, the scene has {count}")
         })
         .collect()
+}
+
+/// Wrenches that change with time: compiled equations are not told the time. Efforts that do are handed to them in τ.
+fn of_time(scene: &SceneDescription) -> impl Iterator<Item = String> {
+    let wrenches = scene.wrenches.iter().enumerate();
+    let timed = wrenches.filter(|(_, wrench)| wrench.constant().is_none());
+    timed.map(|(index, _)| {
+        format!(
+            "wrench {}: it changes with time, which is not compiled: simulate the scene as it is, or let an effort of a joint change with time",
+            index + 1
+        )
+    })
 }
 
 /// What is not a number in a function that is to be written, each with the element that makes it.

@@ -3,6 +3,7 @@
 use super::approach::Watch;
 use super::clock::Clock;
 use super::flow::Flow;
+use super::kinks::Kinks;
 use super::options::{StepControl, least_step};
 use super::outputs::Outputs;
 use super::rounding::Rounding;
@@ -54,6 +55,7 @@ pub(super) struct Driver<'a> {
     pub(super) stepper: Box<dyn Stepper>,
     pub(super) options: &'a Options,
     hold: Option<Hold>,
+    kinks: Kinks,
     pub(super) clock: Clock,
     start: f64,
     pub(super) statistics: Statistics,
@@ -86,6 +88,12 @@ impl<'a> Driver<'a> {
         let mut flow = Flow::new(dynamics, inputs, options.form);
         let watch = Watch::new(&flow.mechanism);
         let time = initial.time;
+        let kinks = Kinks::new(&mut flow, time, options.t_end);
+        let kinks = kinks.map_err(|cause| IntegrateError::AtState {
+            time,
+            cause: Box::new(cause.into()),
+            near: Near::default(),
+        })?;
         if period.is_some() {
             flow.hold(time, &initial.configuration, &initial.speeds);
         }
@@ -115,6 +123,7 @@ impl<'a> Driver<'a> {
                 period,
                 count: 1,
             }),
+            kinks,
             clock: Clock::new(time),
             start: time,
             statistics: Statistics::default(),
@@ -180,7 +189,7 @@ impl<'a> Driver<'a> {
         Ok((change / pace).min(0.01 * span).max(f64::MIN_POSITIVE))
     }
 
-    /// The next sample time, or the end, or the next instant for new inputs.
+    /// The next sample time, or the end, or the next instant for new inputs, or the next kink of what changes with time.
     fn target(&self) -> f64 {
         let is_dense = self
             .outputs
@@ -189,10 +198,11 @@ impl<'a> Driver<'a> {
         let sample = self.options.samples.get(self.samples.len()).copied();
         let sample = sample.filter(|_| !is_dense);
         let target = sample.unwrap_or(self.options.t_end);
-        match &self.hold {
+        let target = match &self.hold {
             Some(hold) if !hold.falls_on(target) => target.min(hold.next()),
             _ => target,
-        }
+        };
+        self.kinks.before(target)
     }
 
     /// One accepted step.
@@ -339,15 +349,19 @@ impl<'a> Driver<'a> {
         renewed.map_err(|cause| self.at_state(cause))
     }
 
-    /// Takes new inputs where it is time for them, and the rates that they make.
+    /// Takes new inputs and the next pieces of functions of time where it is time for them, and the rates that they make.
     fn renew_inputs(&mut self, time: f64) -> Result<(), StepFailure> {
-        let Some(hold) = self.hold.as_mut().filter(|hold| hold.falls_on(time)) else {
-            return Ok(());
-        };
-        hold.count += 1;
-        let (q, speeds) = (&self.step_state.configuration, self.step_state.speeds());
-        self.flow.hold(time, q, speeds);
-        self.step_state.evaluate(&mut self.flow, time)
+        let is_bent = self.kinks.pass(&mut self.flow, time)?;
+        let hold = self.hold.as_mut().filter(|hold| hold.falls_on(time));
+        let is_due = hold.map(|hold| hold.count += 1).is_some();
+        if is_due {
+            let (q, speeds) = (&self.step_state.configuration, self.step_state.speeds());
+            self.flow.hold(time, q, speeds);
+        }
+        match is_bent || is_due {
+            true => self.step_state.evaluate(&mut self.flow, time),
+            false => Ok(()),
+        }
     }
 
     fn at_state(&self, cause: StepFailure) -> IntegrateError {

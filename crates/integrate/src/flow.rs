@@ -10,6 +10,7 @@ use alloc::vec::Vec;
 use hamel_runtime::dynamics::{Dynamics, DynamicsError};
 use hamel_runtime::mechanism::{CONSTRAINT_TOLERANCE, Mechanism, Space};
 use hamel_runtime::scalar::all_finite;
+use hamel_runtime::time_function::Moment;
 
 /// ϕ̇, ẏ and v̄ at one stage.
 #[derive(Clone, Debug)]
@@ -88,6 +89,8 @@ pub(super) struct Flow<'a> {
     efforts: Vec<f64>,
     /// The inputs of the last [`Flow::hold`], which stand until the next; `None` where inputs follow the state.
     held: Option<Vec<f64>>,
+    /// A time within the piece of all functions of time that the present step is in.
+    pub(super) within: f64,
 }
 
 impl<'a> Flow<'a> {
@@ -106,6 +109,7 @@ impl<'a> Flow<'a> {
             configuration: vec![0.0; layout.configuration],
             efforts: vec![0.0; layout.freedoms],
             held: None,
+            within: 0.0,
             mechanism,
         }
     }
@@ -124,7 +128,15 @@ impl<'a> Flow<'a> {
     /// Whether the rates at a state are the same at all times, until the next [`Flow::hold`].
     pub(super) fn is_autonomous(&self) -> bool {
         let is_left_alone = self.inputs.is_none() || self.held.is_some();
-        is_left_alone && self.mechanism.drives().is_empty()
+        is_left_alone && !self.mechanism.changes_with_time()
+    }
+
+    /// A time of the present step, for functions of time.
+    pub(super) const fn moment(&self, time: f64) -> Moment {
+        Moment {
+            time,
+            within: self.within,
+        }
     }
 
     /// The equations of motion.
@@ -266,9 +278,10 @@ impl<'a> Flow<'a> {
 
     /// τ at time `time`, `q` and v̄, with the accelerations of driven joints, as [`Dynamics::forward_dynamics`] takes them.
     pub(super) fn efforts(&mut self, time: f64, q: &[f64], speeds: &[f64], efforts: &mut [f64]) {
-        let held = self.held.as_deref();
+        let (held, moment) = (self.held.as_deref(), self.moment(time));
         fill(&mut self.inputs, held, time, q, speeds, efforts);
-        self.mechanism.prescribe_accelerations(time, efforts);
+        add_timed(&self.mechanism, moment, efforts);
+        self.dynamics.set_moment(moment);
     }
 
     /// What one unit of each speed adds to y at `q`: 1, or what it adds to its own momentum.
@@ -298,6 +311,7 @@ impl<'a> Flow<'a> {
         y: &[f64],
         rates: &mut RatesMut<'_>,
     ) -> Result<(), DynamicsError> {
+        let moment = self.moment(time);
         let Self {
             dynamics,
             inputs,
@@ -307,10 +321,11 @@ impl<'a> Flow<'a> {
             held,
             ..
         } = self;
+        dynamics.set_moment(moment);
         let mut fill = |speeds: &[f64], efforts: &mut [f64]| {
             let held = held.as_deref();
             fill(inputs, held, time, configuration, speeds, efforts);
-            mechanism.prescribe_accelerations(time, efforts);
+            add_timed(mechanism, moment, efforts);
         };
         match self.form {
             Form::Lagrangian => {
@@ -363,6 +378,12 @@ fn fill(
             }
         }
     }
+}
+
+/// Adds the efforts that are functions of time, and puts the accelerations of driven joints in their places.
+fn add_timed(mechanism: &Mechanism, moment: Moment, efforts: &mut [f64]) {
+    mechanism.add_timed_efforts(moment, efforts);
+    mechanism.prescribe_accelerations(moment, efforts);
 }
 
 /// The largest number of degrees of freedom of a joint.

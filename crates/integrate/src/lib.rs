@@ -40,6 +40,7 @@ mod flow;
 mod global_error;
 mod integration;
 mod jacobian;
+mod kinks;
 mod linear;
 mod lobatto;
 mod options;

@@ -39,8 +39,8 @@ pub use description::{
 pub use diagnostics::{Diagnostic, Diagnostics};
 pub use event::{EventDescription, PointAlong, Quantity, QuantityDescription, SceneEvent};
 pub use forces::{
-    BodyPoint, ConstraintDescription, FrameDescription, JointForces, JointSpring, PerFreedom,
-    PointSpring, SpringEnergy, WrenchAxes, WrenchDescription,
+    BodyPoint, CompliantLimit, ConstraintDescription, FrameDescription, JointForces, JointSpring,
+    LimitDescription, PerFreedom, PointSpring, SpringEnergy, WrenchAxes, WrenchDescription,
 };
 pub use notice::{Notice, Severity};
 pub use samples::SampleError;

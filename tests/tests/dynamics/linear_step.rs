@@ -1,8 +1,9 @@
 //! Linearised steps of the integrators against central differences of the steps themselves, through Φ and its inverse.
 
 use chacha20::ChaCha8Rng;
-use hamel::elements::{Drive, Law};
+use hamel::elements::Drive;
 use hamel::integrate::{Form, LinearStep, Method, Scheme, StepControl, StepFailure, Tableau};
+use hamel::time_function::Law;
 use hamel_tests::differences::STEP;
 use hamel_tests::figures::Largest;
 use hamel_tests::linear_step::{self, BOUND, DT, FIXED, FORMS, place, stepping};

@@ -2,13 +2,14 @@
 
 use super::forces::{Acting, Spring, Stiffness};
 use crate::description::{BodyDescription, SceneDescription};
-use crate::forces::{PointSpring, WrenchAxes, WrenchDescription};
+use crate::forces::{CompliantLimit, LimitDescription, PointSpring, WrenchAxes, WrenchDescription};
 use hamel_runtime::dynamics::{Dynamics, DynamicsError, Recursive};
 use hamel_runtime::elements::{
-    BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointSpring, PointConstraint,
-    RotationSpring,
+    BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointLimit, JointSpring,
+    PointConstraint, RotationSpring, TimedEffort, TimedWrench,
 };
 use hamel_runtime::mechanism::{Mechanism, MechanismErrors, NamedFrame};
+use hamel_runtime::time_function::TimeFunction;
 use std::sync::Arc;
 
 /// The mechanism with its elements, rotors, drives and named frames; `acting` goes with the bodies of `description`.
@@ -33,6 +34,7 @@ pub(super) fn equip(
     mechanism
         .with_elements(elements)?
         .with_drives(drives)?
+        .with_timed_efforts(timed_efforts(description, acting))?
         .with_frames(frames.collect())
 }
 
@@ -83,7 +85,7 @@ fn elements(
         elements.push(Arc::new(point_spring(index, spring)));
     }
     for (index, wrench) in description.wrenches.iter().enumerate() {
-        elements.push(Arc::new(body_wrench(index, wrench)));
+        elements.push(body_wrench(index, wrench));
     }
     elements
 }
@@ -106,12 +108,45 @@ fn at_joint(
             coefficients: acting.damping.clone(),
         }));
     }
-    if !acting.effort.is_empty() {
+    if let Some(efforts) = constant(&acting.effort)
+        && !efforts.is_empty()
+    {
         elements.push(Arc::new(JointEffort {
             name: format!("effort of joint `{joint}`"),
             body,
-            efforts: acting.effort.clone(),
+            efforts,
         }));
+    }
+    if let Some(LimitDescription::Compliant(limit)) = &acting.limit {
+        elements.push(Arc::new(joint_limit(body, joint, limit)));
+    }
+}
+
+/// The efforts of a joint, if none of them changes with time.
+fn constant(efforts: &[TimeFunction]) -> Option<Vec<f64>> {
+    efforts.iter().map(TimeFunction::constant).collect()
+}
+
+/// Efforts of joints of which some change with time.
+fn timed_efforts(description: &SceneDescription, acting: &[Acting]) -> Vec<TimedEffort> {
+    let joints = description.bodies.iter().zip(acting).enumerate();
+    let timed = joints.filter(|(_, (_, acting))| constant(&acting.effort).is_none());
+    let efforts = timed.map(|(body, (owner, acting))| TimedEffort {
+        name: format!("effort of joint `{}`", owner.joint.name.value),
+        body,
+        efforts: acting.effort.clone(),
+    });
+    efforts.collect()
+}
+
+fn joint_limit(body: usize, joint: &str, limit: &CompliantLimit) -> JointLimit {
+    JointLimit {
+        name: format!("limit of joint `{joint}`"),
+        body,
+        lower: limit.lower,
+        upper: limit.upper,
+        stiffness: limit.stiffness,
+        damping: limit.damping,
     }
 }
 
@@ -149,18 +184,31 @@ fn point_spring(index: usize, spring: &PointSpring) -> BodySpring {
     }
 }
 
-fn body_wrench(index: usize, wrench: &WrenchDescription) -> BodyWrench {
-    BodyWrench {
-        name: format!("wrench {}", index + 1),
-        body: wrench.body,
-        point: wrench.point,
-        force: wrench.force,
-        moment: wrench.moment,
-        axes: match wrench.axes {
-            WrenchAxes::World => hamel_runtime::elements::WrenchAxes::World,
-            WrenchAxes::Body => hamel_runtime::elements::WrenchAxes::Body,
-        },
+fn body_wrench(index: usize, wrench: &WrenchDescription) -> Arc<dyn Element> {
+    let name = format!("wrench {}", index + 1);
+    let (body, point) = (wrench.body, wrench.point);
+    let axes = match wrench.axes {
+        WrenchAxes::World => hamel_runtime::elements::WrenchAxes::World,
+        WrenchAxes::Body => hamel_runtime::elements::WrenchAxes::Body,
+    };
+    if let Some([force, moment]) = wrench.constant() {
+        return Arc::new(BodyWrench {
+            name,
+            body,
+            point,
+            force,
+            moment,
+            axes,
+        });
     }
+    let ([fx, fy, fz], [mx, my, mz]) = (wrench.force.clone(), wrench.moment.clone());
+    Arc::new(TimedWrench {
+        name,
+        body,
+        point,
+        entries: [fx, fy, fz, mx, my, mz],
+        axes,
+    })
 }
 
 fn drives(description: &SceneDescription, acting: &[Acting]) -> Vec<Drive> {

@@ -3,10 +3,11 @@
 use super::state::Stand;
 use crate::description::{InitialDescription, Motion};
 use crate::diagnostics::Diagnostic;
-use crate::forces::{JointForces, JointSpring, PerFreedom, SpringEnergy};
+use crate::forces::{JointForces, JointSpring, LimitDescription, PerFreedom, SpringEnergy};
 use crate::read::Sink;
 use crate::source::{Located, Span};
-use hamel_runtime::elements::Law;
+use hamel_runtime::elements::is_one_coordinate;
+use hamel_runtime::time_function::TimeFunction;
 use nalgebra::{DMatrix, DVector};
 
 /// What acts at one joint, in numbers that fit it.
@@ -18,10 +19,12 @@ pub(crate) struct Acting {
     pub(crate) damping: Vec<f64>,
     /// Armature, one number per degree of freedom; empty without.
     pub(crate) armature: Vec<f64>,
-    /// Constant efforts τ, one per degree of freedom; empty without.
-    pub(crate) effort: Vec<f64>,
-    /// Prescribed speeds, one law a speed; empty without.
-    pub(crate) motion: Vec<Law>,
+    /// Efforts τ, one per degree of freedom; empty without.
+    pub(crate) effort: Vec<TimeFunction>,
+    /// Prescribed speeds, one function a speed; empty without.
+    pub(crate) motion: Vec<TimeFunction>,
+    /// What limits its coordinate.
+    pub(crate) limit: Option<LimitDescription>,
 }
 
 /// A spring at a joint.
@@ -56,12 +59,14 @@ pub(super) fn acting(
     let effort = effort(stand, forces.effort.as_ref());
     let spring = forces.spring.as_ref().map(|found| spring(stand, found));
     let motion = motion(stand, initial, forces.motion.as_ref());
+    let limit = limit(stand, forces.limit.as_ref());
     let acting = Acting {
         damping: damping.map_err(&mut noted).unwrap_or_default(),
         armature: armature.map_err(&mut noted).unwrap_or_default(),
         effort: effort.map_err(&mut noted).unwrap_or_default(),
         spring: spring.transpose().map_err(&mut noted).unwrap_or_default(),
         motion: motion.map_err(&mut noted).unwrap_or_default(),
+        limit: limit.map_err(&mut noted).unwrap_or_default(),
     };
     (sink.len() == errors_before).then_some(acting)
 }
@@ -105,7 +110,10 @@ fn each(
     Ok(numbers.spread(freedoms.len()).unwrap_or_default())
 }
 
-fn effort(stand: &Stand, effort: Option<&Located<Vec<f64>>>) -> Result<Vec<f64>, Diagnostic> {
+fn effort(
+    stand: &Stand,
+    effort: Option<&Located<Vec<TimeFunction>>>,
+) -> Result<Vec<TimeFunction>, Diagnostic> {
     let Some(effort) = effort else {
         return Ok(Vec::new());
     };
@@ -141,11 +149,29 @@ fn spring(stand: &Stand, spring: &Located<JointSpring>) -> Result<Spring, Diagno
     })
 }
 
+fn limit(
+    stand: &Stand,
+    limit: Option<&Located<LimitDescription>>,
+) -> Result<Option<LimitDescription>, Diagnostic> {
+    let Some(limit) = limit else {
+        return Ok(None);
+    };
+    if is_one_coordinate(&*stand.joint) {
+        return Ok(Some(limit.value.clone()));
+    }
+    let message = format!(
+        "joint `{}`: a limit is one of a single coordinate whose rate is the speed, and `{}` has no such coordinate",
+        stand.name,
+        stand.joint.name()
+    );
+    Err(Diagnostic::new(limit.span.clone(), message))
+}
+
 fn motion(
     stand: &Stand,
     initial: &InitialDescription,
-    motion: Option<&Located<Vec<Law>>>,
-) -> Result<Vec<Law>, Diagnostic> {
+    motion: Option<&Located<Vec<TimeFunction>>>,
+) -> Result<Vec<TimeFunction>, Diagnostic> {
     let Some(motion) = motion else {
         return Ok(Vec::new());
     };

@@ -1,12 +1,14 @@
-//! What acts at the joint of a body: `spring`, `damping`, `armature`, `effort`, `motion`.
+//! What acts at the joint of a body: `spring`, `damping`, `armature`, `effort`, `motion`, `limit`.
 
-use super::initial;
+use super::{initial, time};
 use crate::description::Position;
 use crate::diagnostics::Diagnostic;
-use crate::forces::{JointForces, JointSpring, PerFreedom, SpringEnergy};
+use crate::forces::{
+    CompliantLimit, JointForces, JointSpring, LimitDescription, PerFreedom, SpringEnergy,
+};
 use crate::read::{Fields, Sink, Value};
 use crate::source::Located;
-use hamel_runtime::elements::Law;
+use hamel_runtime::time_function::{Law, TimeFunction};
 use nalgebra::DMatrix;
 
 /// Asymmetry and negative eigenvalues of a stiffness that pass for rounding, in units of its largest entry.
@@ -17,14 +19,16 @@ pub(super) fn forces(fields: &mut Fields<'_>, sink: &mut Sink) -> Option<JointFo
     let spring = optional(fields, "spring", spring, sink);
     let damping = optional(fields, "damping", per_freedom, sink);
     let armature = optional(fields, "armature", per_freedom, sink);
-    let effort = optional(fields, "effort", |value, sink| value.numbers(sink), sink);
+    let effort = optional(fields, "effort", effort, sink);
     let motion = optional(fields, "motion", motion, sink);
+    let limit = optional(fields, "limit", limit, sink);
     Some(JointForces {
         spring: spring?,
         damping: damping?,
         armature: armature?,
         effort: effort?,
         motion: motion?,
+        limit: limit?,
     })
 }
 
@@ -105,14 +109,71 @@ fn full(value: &Value<'_>, sink: &mut Sink) -> Option<DMatrix<f64>> {
     None
 }
 
-fn motion(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Vec<Law>>> {
+fn effort(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Vec<TimeFunction>>> {
+    Some(Located::new(time::functions(value, sink)?, value.span()))
+}
+
+fn motion(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Vec<TimeFunction>>> {
     let mut fields = value.table(sink)?;
     let speeds = fields.required("speeds", sink);
     fields.finish(sink);
-    let items = speeds?.items("entry", "a list of numbers and tables", sink)?;
-    let speeds: Vec<_> = items.iter().map(|item| speed(item, sink)).collect();
-    let speeds: Option<Vec<Law>> = speeds.into_iter().collect();
+    let items = speeds?.items("entry", "a list of numbers, formulas and tables", sink)?;
+    let speeds: Vec<_> = items.iter().map(|item| driven(item, sink)).collect();
+    let speeds: Option<Vec<TimeFunction>> = speeds.into_iter().collect();
     Some(Located::new(speeds?, value.span()))
+}
+
+/// One prescribed speed: as [`speed`] reads it, or any other function of time that has a derivative.
+fn driven(value: &Value<'_>, sink: &mut Sink) -> Option<TimeFunction> {
+    let is_table_of_values = value.is_table() && value.table(sink)?.optional("times").is_some();
+    if !value.is_text() && !is_table_of_values {
+        return Some(speed(value, sink)?.into());
+    }
+    let found = time::function(value, sink)?;
+    let Some(what) = found.jump() else {
+        return Some(found);
+    };
+    let message = format!(
+        "{}: {what} jumps, and a prescribed speed must have a derivative",
+        value.path()
+    );
+    let error = Diagnostic::new(value.span(), message);
+    sink.push(error.help("a table of kind \"linear\", `max` and `abs` bend without a jump"));
+    None
+}
+
+fn limit(value: &Value<'_>, sink: &mut Sink) -> Option<Located<LimitDescription>> {
+    let mut fields = value.table(sink)?;
+    let mut number = |key| optional(&mut fields, key, |value, sink| value.number(sink), sink);
+    let (lower, upper) = (number("lower"), number("upper"));
+    let stiffness = fields.required("stiffness", sink);
+    let stiffness = stiffness.and_then(|stiffness| stiffness.not_negative(sink));
+    let damping = match fields.optional("damping") {
+        Some(damping) => damping.not_negative(sink).map(|damping| damping.value),
+        None => Some(0.0),
+    };
+    let owner = value.path();
+    fields.finish(sink);
+    let [lower, upper] = [lower?, upper?].map(|limit| limit.map(|limit| limit.value));
+    let wrong = match (lower, upper) {
+        (None, None) => Some("has neither `lower` nor `upper`".to_owned()),
+        (Some(lower), Some(upper)) if lower > upper => Some(format!(
+            "has the lower limit {lower} above the upper {upper}"
+        )),
+        _ => None,
+    };
+    if let Some(wrong) = wrong {
+        sink.push(Diagnostic::new(value.span(), format!("{owner} {wrong}")));
+        return None;
+    }
+    let limit = CompliantLimit {
+        lower,
+        upper,
+        stiffness: stiffness?.value,
+        damping: damping?,
+    };
+    let limit = LimitDescription::Compliant(limit);
+    Some(Located::new(limit, value.span()))
 }
 
 /// One speed: a number, or the table of a swing.

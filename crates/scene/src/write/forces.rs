@@ -2,14 +2,17 @@
 
 use super::body::{name_of, position};
 use super::value::{list, number, rows, table, text};
-use super::{entry, pose};
+use super::{entry, pose, time};
 use crate::description::SceneDescription;
 use crate::event::{
     CONSEQUENCE_NAMES, DIRECTION_NAMES, EventDescription, PointAlong, QuantityDescription,
 };
-use crate::forces::{BodyPoint, JointForces, JointSpring, PerFreedom, SpringEnergy, WrenchAxes};
+use crate::forces::{
+    BodyPoint, CompliantLimit, JointForces, JointSpring, LimitDescription, PerFreedom,
+    SpringEnergy, WrenchAxes,
+};
 use hamel_integrate::Direction;
-use hamel_runtime::elements::Law;
+use hamel_runtime::time_function::Law;
 
 /// Appends the keys of a body that say what acts at its joint.
 pub(super) fn of_joint(out: &mut String, forces: &JointForces) {
@@ -23,13 +26,26 @@ pub(super) fn of_joint(out: &mut String, forces: &JointForces) {
         entry(out, "armature", &per_freedom(&armature.value));
     }
     if let Some(effort) = &forces.effort {
-        entry(out, "effort", &list(&effort.value));
+        entry(out, "effort", &time::functions(&effort.value));
     }
     if let Some(motion) = &forces.motion {
-        let speeds: Vec<String> = motion.value.iter().map(speed).collect();
-        let speeds = format!("[{}]", speeds.join(", "));
+        let speeds = time::functions(&motion.value);
         entry(out, "motion", &table(&[("speeds", speeds)]));
     }
+    if let Some(LimitDescription::Compliant(found)) = forces.limit.as_ref().map(|l| &l.value) {
+        entry(out, "limit", &limit(found));
+    }
+}
+
+fn limit(limit: &CompliantLimit) -> String {
+    let sides = [("lower", limit.lower), ("upper", limit.upper)];
+    let mut entries: Vec<_> = sides
+        .into_iter()
+        .filter_map(|(key, side)| Some((key, number(side?))))
+        .collect();
+    entries.push(("stiffness", number(limit.stiffness)));
+    entries.push(("damping", number(limit.damping)));
+    table(&entries)
 }
 
 fn spring(spring: &JointSpring) -> String {
@@ -101,8 +117,8 @@ pub(super) fn elements(out: &mut String, scene: &SceneDescription) {
         out.push_str("\n[[wrench]]\n");
         entry(out, "body", &text(name_of(Some(wrench.body), bodies)));
         entry(out, "point", &list(&wrench.point));
-        entry(out, "force", &list(&wrench.force));
-        entry(out, "moment", &list(&wrench.moment));
+        entry(out, "force", &time::functions(&wrench.force));
+        entry(out, "moment", &time::functions(&wrench.moment));
         let axes = match wrench.axes {
             WrenchAxes::World => "world",
             WrenchAxes::Body => "body",

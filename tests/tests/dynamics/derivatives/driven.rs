@@ -2,8 +2,9 @@
 //! driven ones are inputs.
 
 use hamel::dynamics::{ForwardDerivatives, HamiltonianDerivatives, Recursive};
-use hamel::elements::{Drive, Law};
+use hamel::elements::Drive;
 use hamel::nalgebra::{DMatrix, DVector};
+use hamel::time_function::Law;
 use hamel_tests::derivatives::{
     Actuation, BOUND, Equipped, Expected, constants, derivatives, matrix, relative,
 };

@@ -13,6 +13,7 @@ use crate::dynamics::{Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDe
 use crate::mechanism::Mechanism;
 use crate::scalar::Extended;
 use crate::spatial::shift_wrench;
+use crate::time_function::Moment;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -167,6 +168,10 @@ impl Recursive {
 impl Dynamics for Refined {
     fn mechanism(&self) -> &Arc<Mechanism> {
         self.tree.mechanism()
+    }
+
+    fn set_moment(&mut self, moment: Moment) {
+        self.tree.set_moment(moment);
     }
 
     fn complete_speeds(&mut self, q: &[f64], speeds: &mut [f64]) -> Result<(), DynamicsError> {
