@@ -9,20 +9,30 @@ pub(super) struct Kinks {
     /// The next one, if there is one before the end.
     next: Option<f64>,
     end: f64,
+    /// Times that differ by no more are the same but for rounding, by which times of one instant differ that were computed in several ways.
+    rounding: f64,
 }
 
 impl Kinks {
     /// Those from `time` to `end`; the flow is in the piece that begins at `time`.
     pub(super) fn new(flow: &mut Flow<'_>, time: f64, end: f64) -> Result<Self, KinkError> {
-        let mut kinks = Self { next: None, end };
+        let mut kinks = Self {
+            next: None,
+            end,
+            rounding: least_step(time, end),
+        };
         kinks.find(flow, time)?;
         Ok(kinks)
+    }
+
+    fn is_same(&self, a: f64, b: f64) -> bool {
+        (a - b).abs() <= self.rounding
     }
 
     /// The first kink behind `time` by more than rounding, and the piece up to there.
     fn find(&mut self, flow: &mut Flow<'_>, time: f64) -> Result<(), KinkError> {
         let mut kink = flow.mechanism.next_kink(time, self.end)?;
-        while let Some(near) = kink.filter(|kink| is_same(*kink, time)) {
+        while let Some(near) = kink.filter(|kink| self.is_same(*kink, time)) {
             kink = flow.mechanism.next_kink(near, self.end)?;
         }
         self.next = kink;
@@ -34,7 +44,7 @@ impl Kinks {
     /// The next kink, if it comes before `target`; else `target`.
     pub(super) fn before(&self, target: f64) -> f64 {
         match self.next {
-            Some(kink) if kink < target && !is_same(kink, target) => kink,
+            Some(kink) if kink < target && !self.is_same(kink, target) => kink,
             _ => target,
         }
     }
@@ -43,15 +53,10 @@ impl Kinks {
     pub(super) fn pass(&mut self, flow: &mut Flow<'_>, time: f64) -> Result<bool, KinkError> {
         let has_come = self
             .next
-            .is_some_and(|kink| kink <= time || is_same(kink, time));
+            .is_some_and(|kink| kink <= time || self.is_same(kink, time));
         if has_come {
             self.find(flow, time)?;
         }
         Ok(has_come)
     }
-}
-
-/// Whether two times are the same but for rounding, by which times of one instant differ that were computed in several ways.
-fn is_same(a: f64, b: f64) -> bool {
-    (a - b).abs() <= least_step(a, b)
 }

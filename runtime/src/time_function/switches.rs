@@ -89,12 +89,7 @@ impl<'a> Switch<'a> {
         self.search(after, until, &mut search)
     }
 
-    fn search(
-        &self,
-        from: f64,
-        to: f64,
-        search: &mut Search,
-    ) -> Result<Option<f64>, &'static str> {
+    fn search(&self, from: f64, to: f64, search: &mut Search) -> Result<Option<f64>, &'static str> {
         if from >= to {
             return Ok(None);
         }
