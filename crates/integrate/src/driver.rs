@@ -1,6 +1,7 @@
 //! From the initial time to the last, by accepted steps, over the sample times.
 
 use super::approach::Watch;
+use super::bends::Bends;
 use super::clock::Clock;
 use super::flow::Flow;
 use super::kinks::Kinks;
@@ -56,6 +57,7 @@ pub(super) struct Driver<'a> {
     pub(super) options: &'a Options,
     hold: Option<Hold>,
     kinks: Kinks,
+    pub(super) bends: Bends,
     pub(super) clock: Clock,
     start: f64,
     pub(super) statistics: Statistics,
@@ -69,7 +71,7 @@ pub(super) struct Driver<'a> {
 }
 
 /// How the next step is chosen.
-struct Pacing {
+pub(super) struct Pacing {
     /// The step to try where no sample time is in the way.
     step: f64,
     controller: StepController,
@@ -112,6 +114,7 @@ impl<'a> Driver<'a> {
             near: watch.nearest_at(&flow.mechanism, time, &initial.configuration),
         })?;
         let tolerance = options.method.control().map(|control| control.tolerance);
+        let bends = Bends::new(&flow, &initial.configuration);
         Ok(Self {
             watch,
             stepper: stepper::new(options.method.scheme(), tolerance, &flow),
@@ -124,6 +127,7 @@ impl<'a> Driver<'a> {
                 count: 1,
             }),
             kinks,
+            bends,
             clock: Clock::new(time),
             start: time,
             statistics: Statistics::default(),
@@ -214,11 +218,14 @@ impl<'a> Driver<'a> {
         loop {
             let (step, lands) = self.choose_step(pacing.step);
             let attempt = self.attempt(pacing, step);
-            let Err(cause) = attempt else {
-                return self.accept(step, lands, observer);
-            };
-            self.statistics.rejected += 1;
-            self.refuse(pacing, step, cause)?;
+            let attempt = attempt.and_then(|()| self.land_on_bend(pacing, step));
+            match attempt {
+                Ok(taken) => return self.accept(taken, lands && taken == step, observer),
+                Err(cause) => {
+                    self.statistics.rejected += 1;
+                    self.refuse(pacing, step, cause)?;
+                }
+            }
         }
     }
 
@@ -235,7 +242,7 @@ impl<'a> Driver<'a> {
         }
     }
 
-    fn attempt(&mut self, pacing: &mut Pacing, step: f64) -> Result<(), StepFailure> {
+    pub(super) fn attempt(&mut self, pacing: &mut Pacing, step: f64) -> Result<(), StepFailure> {
         let span = Span {
             time: self.clock.time(),
             step,

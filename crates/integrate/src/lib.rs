@@ -21,6 +21,7 @@
 extern crate alloc;
 
 mod approach;
+mod bends;
 mod choice;
 mod clock;
 mod collocation;

@@ -136,6 +136,16 @@ impl Element for JointLimit {
         self.stiffness * beyond.by * beyond.rate * lost
     }
 
+    fn bends(&self, mechanism: &Mechanism, q: &[f64]) -> [f64; 2] {
+        let body = mechanism.bodies().get(self.body);
+        let own = body.and_then(|body| body.configuration(q).first());
+        let beyond = |limit: Option<f64>, side: f64| match (own, limit) {
+            (Some(own), Some(limit)) => side * (own - limit),
+            _ => f64::NAN,
+        };
+        [beyond(self.lower, -1.0), beyond(self.upper, 1.0)]
+    }
+
     fn slope(&self) -> Option<&dyn Slope> {
         Some(self)
     }

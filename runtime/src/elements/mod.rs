@@ -60,6 +60,11 @@ pub trait Element: Debug + Send + Sync {
         None
     }
 
+    /// Up to two functions of Q at whose zeros what it exerts bends, continuous as it is; NaN in place of those that it does not have. Steps end there.
+    fn bends(&self, _mechanism: &Mechanism, _q: &[f64]) -> [f64; 2] {
+        [f64::NAN; 2]
+    }
+
     /// The functions of time that it reads at the view's [`Moment`](crate::time_function::Moment); none where it does not change with time.
     fn functions(&self) -> &[TimeFunction] {
         &[]

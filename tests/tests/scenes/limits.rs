@@ -39,6 +39,7 @@ fn step_control_holds_the_tolerance_over_kinks() {
         Scheme::Radau5,
         Scheme::Exponential,
     ];
+    // The length of the last steps depends on where the limit is, so that errors do not fall from one tolerance to the next as evenly as they do elsewhere.
     for form in FORMS {
         for scheme in schemes {
             for tolerance in [1e-6, 1e-8, 1e-11] {
@@ -56,6 +57,33 @@ fn step_control_holds_the_tolerance_over_kinks() {
                     "{form:?}, {scheme:?}, {tolerance:e}: {found:e}, {steps} steps"
                 );
             }
+        }
+    }
+}
+
+/// Fixed steps end at the limit, whatever their length, and keep their order: halving them divides the error by 2^p, of which a tenth is left
+/// for what higher orders add.
+#[test]
+fn fixed_steps_keep_their_order_over_a_limit() {
+    for form in FORMS {
+        for (scheme, dt) in [
+            (Scheme::Rk4, 0.01),
+            (Scheme::CommutatorFree4, 0.01),
+            (Scheme::Midpoint, 5e-3),
+            (Scheme::Gauss2, 0.01),
+            (Scheme::Gauss3, 0.04),
+        ] {
+            let [coarse, fine] = [dt, 0.5 * dt].map(|dt| {
+                let solution = run(&bouncing(), form, Method::fixed(scheme, dt), &[4.0]);
+                error(&solution, bounced)
+            });
+            let order = (coarse / fine).log2();
+            println!("{scheme:?}, {form:?}: {coarse:.2e}, {fine:.2e}, order {order:.2}");
+            let least = f64::from(scheme.order()) - 0.3;
+            assert!(
+                order > least,
+                "{scheme:?}, {form:?}: order {order} from {coarse:e} and {fine:e}"
+            );
         }
     }
 }
