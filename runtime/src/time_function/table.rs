@@ -308,7 +308,7 @@ impl Table {
         match (self.kind, self.outside) {
             (TableKind::Constant, _) if steps => Some("a table of kind \"constant\""),
             (_, Outside::Zero) if first != 0.0 || last != 0.0 => {
-                Some("a table that does not begin and end with 0, and is \"zero\" outside")
+                Some("a table that is \"zero\" outside and does not begin and end with 0")
             }
             (_, Outside::Repeat) if first != last => {
                 Some("a table that repeats and does not end with the value that it begins with")

@@ -106,7 +106,7 @@ fn what_cannot_be_stepped_is_refused() {
     let drive = Drive {
         name: "shaker".to_owned(),
         body: 0,
-        laws: vec![Law::default(); case.speeds.len()],
+        laws: vec![Law::default().into(); case.speeds.len()],
     };
     let driven = (*case.mechanism).clone().with_drives(vec![drive]);
     let driven = Arc::new(driven.expect("it fits"));

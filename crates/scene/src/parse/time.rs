@@ -45,7 +45,7 @@ pub(super) fn vector(
     let count = found.len();
     let entries = found.try_into().ok();
     if entries.is_none() {
-        let message = format!("{} has {count} entries, but must have 3", value.path());
+        let message = format!("{} has length {count}, not 3", value.path());
         sink.push(Diagnostic::new(value.span(), message));
     }
     entries

@@ -74,7 +74,7 @@ fn driven(mechanism: Mechanism, body: usize) -> Mechanism {
     let drive = Drive {
         name: "drive".to_owned(),
         body,
-        laws: vec![Law::default(); mechanism.bodies()[body].ranges().speeds.len()],
+        laws: vec![Law::default().into(); mechanism.bodies()[body].ranges().speeds.len()],
     };
     mechanism.with_drives(vec![drive]).expect("it fits")
 }
