@@ -12,7 +12,6 @@ pub(super) fn of_scene(scene: &SceneDescription) -> Vec<String> {
     let wrong = check_bodies(&scene.gravity, &bodies);
     let mut reasons: Vec<String> = wrong.iter().map(ToString::to_string).collect();
     reasons.extend(of_indices(scene));
-    reasons.extend(of_time(scene));
     reasons
 }
 
@@ -52,7 +51,7 @@ fn of_indices(scene: &SceneDescription) -> Vec<String> {
 }
 
 /// Wrenches that change with time: compiled equations are not told the time. Efforts that do are handed to them in τ.
-fn of_time(scene: &SceneDescription) -> impl Iterator<Item = String> {
+pub(super) fn of_time(scene: &SceneDescription) -> impl Iterator<Item = String> {
     let wrenches = scene.wrenches.iter().enumerate();
     let timed = wrenches.filter(|(_, wrench)| wrench.constant().is_none());
     timed.map(|(index, _)| {

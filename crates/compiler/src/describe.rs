@@ -47,6 +47,7 @@ impl Model {
         if !reasons.is_empty() {
             return Err(refused(reasons));
         }
+        reasons.extend(check::of_time(scene));
         let mut elements = Elements {
             springs: scene.springs.iter().enumerate().map(spring).collect(),
             wrenches: scene
