@@ -138,7 +138,7 @@ fn wrenches_on_a_free_body_have_their_integrals() {
                     let at = scene
                         .mechanism
                         .kinematics(&state.configuration, &state.speeds);
-                    let body = at.expect("sizes fit").bodies[0].clone();
+                    let body = at.expect("sizes fit").bodies[0];
                     let ((speed, way), (rate, angle)) = (steps(state.time), rectified(state.time));
                     let (rate, angle) = (rate / 0.5, angle / 0.5);
                     let found = [
