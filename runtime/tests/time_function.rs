@@ -43,6 +43,7 @@ fn formulas_have_their_values() {
         ("step(t - 0.7) + step(t - 0.71)", 1.0),
         ("t^2.5 + t^t", t.powf(2.5) + t.powf(t)),
         ("(t - 1)^3", (t - 1.0).powi(3)),
+        ("2^-2147483648 + abs(t)^2147483647", 0.0),
     ];
     for (text, expected) in cases {
         let found = value(&formula(text), t);

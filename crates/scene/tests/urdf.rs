@@ -158,7 +158,8 @@ fn limits_of_position_are_compliant_ones_where_that_is_asked_for() {
         limits: Some(stops),
         ..Options::default()
     };
-    let limits = "<axis xyz=\"0 0 1\"/><limit lower=\"-1\" upper=\"2\"/>";
+    let limits =
+        "<axis xyz=\"0 0 1\"/><limit lower=\"-1\" upper=\"2\" effort=\"3\" velocity=\"4\"/>";
     for kind in ["revolute", "prismatic"] {
         let import = robot_with(kind, limits, "", &options);
         let limit = arm(&import).forces.limit.as_ref().map(|limit| &limit.value);
@@ -169,10 +170,20 @@ fn limits_of_position_are_compliant_ones_where_that_is_asked_for() {
             damping: 0.5,
         });
         assert_eq!(limit, Some(&wanted));
-        assert_eq!(notices(&import), [""; 0]);
+        assert_eq!(
+            notices(&import),
+            ["note: limits of velocity and effort are not simulated: joint `joint`"]
+        );
         let left_out = robot(kind, limits, "");
         assert!(arm(&left_out).forces.limit.is_none());
     }
+    let away =
+        "<axis xyz=\"0 0 1\"/><limit lower=\"0.5\" upper=\"2\" effort=\"3\" velocity=\"4\"/>";
+    let told = notices(&robot_with("revolute", away, "", &options));
+    assert_eq!(
+        told[0],
+        "warning: the joint begins at home, 0, which is beyond its limits: the stop pushes it back: joint `joint`"
+    );
     // One that does not count turns has no limits, and none of numbers that are none.
     assert!(
         arm(&robot_with("continuous", limits, "", &options))

@@ -8,6 +8,9 @@ use super::{KinkError, Moment};
 use alloc::boxed::Box;
 use alloc::string::String;
 
+/// The largest power that is taken as a product.
+const LARGEST_WHOLE: f64 = 1024.0;
+
 /// A function of one argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Function {
@@ -176,7 +179,7 @@ fn power<T: Real>(base: &Node, exponent: &Node, time: Jet<T>) -> Jet<T> {
         return exponent.evaluate(time).multiply(base.ln()).exp();
     };
     match number as i32 {
-        whole if f64::from(whole) == number => base.powi(whole),
+        whole if f64::from(whole) == number && number.abs() <= LARGEST_WHOLE => base.powi(whole),
         _ => base.powf(number),
     }
 }

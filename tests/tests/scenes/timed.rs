@@ -1,9 +1,11 @@
 //! Efforts, wrenches and prescribed motions as functions of time, against closed forms; and the order of methods over their kinks.
 
 use super::trials::{FORMS, error, fine_methods, run, scene, slide, times};
-use hamel::integrate::{Form, Method, Scheme};
+use hamel::dynamics::Recursive;
+use hamel::integrate::{Form, Integration, Method, Options, Sampling, Scheme};
 use hamel_scene::Scene;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// What is asked of errors; tolerances of the methods are a thousandth of it and less.
 const BOUND: f64 = 1e-9;
@@ -202,6 +204,40 @@ fn orders_are_kept_over_kinks() {
                 order > least,
                 "{scheme:?}, {form:?}: order {order} from {coarse:e} and {fine:e}"
             );
+        }
+    }
+}
+
+/// Samples from dense output lie in steps that end on kinks: each is of the piece of its own step, and as accurate as these.
+#[test]
+fn dense_samples_are_of_the_piece_of_their_step() {
+    for index in [1, 3, 4] {
+        let (force, integrals) = FORCES[index];
+        let scene = slide(&format!("effort = [{force}]"));
+        for form in FORMS {
+            let options = Options {
+                form,
+                method: Method::controlled(Scheme::DormandPrince8, 1e-12),
+                t_end: 2.0,
+                samples: (1..200).map(|i| f64::from(i) * 0.01).collect(),
+            };
+            let mut tree = Recursive::new(Arc::clone(&scene.mechanism));
+            let start = scene.start();
+            let integration = Integration::new(&mut tree, &start, &options);
+            let solution = integration
+                .sampling(Sampling::Dense)
+                .run()
+                .expect("it runs");
+            assert!(
+                solution.statistics.steps < 100,
+                "{} steps",
+                solution.statistics.steps
+            );
+            let found = error(&solution, |t| {
+                let (speed, way) = integrals(t);
+                (vec![way / 2.0], vec![speed / 2.0])
+            });
+            assert!(found < BOUND, "{force}, {form:?}: {found:e}");
         }
     }
 }

@@ -199,6 +199,11 @@ pub(super) fn stopped(
     })
 }
 
+/// Whether a joint is beyond its limits where it begins.
+fn is_beyond_at_home(limit: &CompliantLimit) -> bool {
+    limit.lower.is_some_and(|lower| lower > 0.0) || limit.upper.is_some_and(|upper| upper < 0.0)
+}
+
 /// Tells what of a moving joint is not simulated, and what URDF leaves open.
 pub(super) fn tell(
     joint: &Joint<'_, '_>,
@@ -217,6 +222,10 @@ pub(super) fn tell(
         (
             stop.is_none() && limits.is_some_and(|limits| limits.position.is_some()),
             "limits of position are not simulated: the joint moves past them",
+        ),
+        (
+            stop.as_ref().is_some_and(is_beyond_at_home),
+            "the joint begins at home, 0, which is beyond its limits: the stop pushes it back",
         ),
         (
             mimic == Some(true),
