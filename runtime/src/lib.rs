@@ -37,4 +37,6 @@ pub mod shown;
 pub mod spatial;
 #[cfg(feature = "alloc")]
 pub mod steps;
+#[cfg(feature = "alloc")]
+pub mod time_function;
 mod unrolled;

@@ -3,11 +3,12 @@
 use crate::random;
 use chacha20::ChaCha8Rng;
 use hamel::elements::{
-    BodySpring, BodyWrench, Drive, Element, JointSpring, Law, PointConstraint, RotationSpring,
+    BodySpring, BodyWrench, Drive, Element, JointSpring, PointConstraint, RotationSpring,
     WrenchAxes,
 };
 use hamel::mechanism::{Body as TreeBody, Mechanism};
 use hamel::nalgebra::{DMatrix, Vector3};
+use hamel::time_function::Law;
 use hamel_compiler::JointType;
 use hamel_compiler::functions::{Kind, Loops, compile_with};
 use hamel_compiler::graph::Argument;
@@ -213,7 +214,7 @@ pub fn driven(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Mechanism {
             drives.push(Drive {
                 name: format!("drive of {body}"),
                 body,
-                laws: vec![Law::default(); owner.joint().layout().speeds],
+                laws: vec![Law::default().into(); owner.joint().layout().speeds],
             });
         }
     }

@@ -48,6 +48,7 @@ pub fn all() -> Vec<Scene> {
             && mechanism.constraints().is_empty()
             && mechanism.frictions().is_empty()
             && mechanism.stops().is_empty()
+            && !mechanism.changes_with_time()
             && scene.control.is_none()
     });
     scenes

@@ -1,6 +1,6 @@
 //! `hamel compile`: a scene or a robot as Rust or C that holds nothing it does not need.
 
-use crate::input::Input;
+use crate::input::{Input, stops};
 use clap::ValueEnum;
 use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
@@ -8,6 +8,7 @@ use hamel_compiler::functions::Kind;
 use hamel_compiler::{Build, Error, Language, explain};
 use hamel_console::files::{Force, admit, first_line};
 use hamel_console::output::{self, Failure};
+use hamel_scene::urdf::Stops;
 use std::fs::File;
 use std::path::PathBuf;
 
@@ -61,6 +62,11 @@ pub struct Args {
     /// Let the root link of a robot in URDF move freely; otherwise it is fixed to the world
     #[arg(long)]
     pub floating_base: bool,
+
+    /// Simulate the limits of position of a robot in URDF as stops that give way: stiffness, N m/rad or N/m, and damping d, s/rad or s/m, of the effort
+    /// k x (1 + d ẋ) beyond them
+    #[arg(long, value_name = "STIFFNESS,DAMPING", value_parser = stops, allow_negative_numbers = true)]
+    pub limits: Option<Stops>,
 
     #[command(flatten)]
     pub force: Force,
@@ -129,7 +135,7 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
         return Err(Failure::Options(Error::Lanes.to_string()));
     }
     // Read once: what is checked is what is compiled.
-    let input = Input::read(&args.scene, args.floating_base)?;
+    let input = Input::read(&args.scene, args.floating_base, args.limits)?;
     // Checked as a whole, as for a simulation, with the joints of the registry: the compiler knows their specs alone.
     let scene = input.scene(registry)?;
     scene.check_start(&scene.settings, scene.control.as_ref())?;

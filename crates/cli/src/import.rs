@@ -1,9 +1,11 @@
 //! `hamel import`: a robot in URDF as a scene file.
 
+use crate::input::stops;
 use fnv::FnvHasher;
 use hamel::registry::JointRegistry;
 use hamel_console::files::{Force, admit};
 use hamel_console::output::{self, Failure, tell};
+use hamel_scene::urdf::Stops;
 use hamel_scene::{read_file, urdf};
 use std::fs::File;
 use std::hash::Hasher;
@@ -44,6 +46,11 @@ pub struct Args {
     #[arg(long)]
     pub floating_base: bool,
 
+    /// Simulate the limits of position of a robot in URDF as stops that give way: stiffness, N m/rad or N/m, and damping d, s/rad or s/m, of the effort
+    /// k x (1 + d ẋ) beyond them
+    #[arg(long, value_name = "STIFFNESS,DAMPING", value_parser = stops, allow_negative_numbers = true)]
+    pub limits: Option<Stops>,
+
     #[command(flatten)]
     pub force: Force,
 }
@@ -55,6 +62,7 @@ pub struct Args {
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let options = urdf::Options {
         floating_base: args.floating_base,
+        limits: args.limits,
         ..urdf::Options::default()
     };
     let (text, name) = read_file(&args.robot)?;

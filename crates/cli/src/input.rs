@@ -22,13 +22,23 @@ impl Input {
     /// The scene, or the robot: what is XML is read as URDF, whatever the file's ending, and so is what ends in `.urdf`.
     ///
     /// # Errors
-    /// A file that cannot be read; `floating_base` for what is no robot.
-    pub fn read(path: &Path, floating_base: bool) -> Result<Self, Failure> {
+    /// A file that cannot be read; `floating_base` or `limits` for what is no robot.
+    pub fn read(
+        path: &Path,
+        floating_base: bool,
+        limits: Option<urdf::Stops>,
+    ) -> Result<Self, Failure> {
         let (text, name) = read_file(path)?;
         let is_robot = urdf::is_robot(path, &text);
         if floating_base && !is_robot {
             return Err(Failure::Options(format!(
                 "--floating-base is for robots in URDF, and {} is none: a scene says itself how its bodies move",
+                path.display()
+            )));
+        }
+        if limits.is_some() && !is_robot {
+            return Err(Failure::Options(format!(
+                "--limits is for robots in URDF, and {} is none: a scene says itself what limits its joints",
                 path.display()
             )));
         }
@@ -39,6 +49,7 @@ impl Input {
             label: label.into_owned(),
             robot: is_robot.then(|| urdf::Options {
                 floating_base,
+                limits,
                 ..urdf::Options::default()
             }),
         })
@@ -72,4 +83,20 @@ impl Input {
         let build = hamel_compiler::scene_of(&self.label, description);
         Ok(build.library(hamel_joints::specs()))
     }
+}
+
+/// The numbers of `--limits`.
+///
+/// # Errors
+/// What is not two numbers of at least 0.
+pub fn stops(text: &str) -> Result<urdf::Stops, String> {
+    let number = |text: &str| {
+        let number: f64 = text.trim().parse().ok()?;
+        (number.is_finite() && number >= 0.0).then_some(number)
+    };
+    let pair = text.split_once(',');
+    let numbers = pair.and_then(|(k, d)| Some((number(k)?, number(d)?)));
+    let (stiffness, damping) =
+        numbers.ok_or("it must be two numbers of at least 0, such as 1e4,0.5")?;
+    Ok(urdf::Stops { stiffness, damping })
 }

@@ -10,6 +10,7 @@ use hamel_runtime::dynamics::{
 };
 use hamel_runtime::mechanism::{Mechanism, Space, StateError};
 use hamel_runtime::scalar::all_finite;
+use hamel_runtime::time_function::Moment;
 
 /// A module that does not belong to a mechanism.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -402,6 +403,10 @@ fn near_home(mechanism: &Mechanism, round: usize) -> Option<vec::Vec<f64>> {
 impl Dynamics for Compiled {
     fn mechanism(&self) -> &Arc<Mechanism> {
         self.tree.mechanism()
+    }
+
+    fn set_moment(&mut self, moment: Moment) {
+        self.tree.set_moment(moment);
     }
 
     fn complete_speeds(&mut self, q: &[f64], speeds: &mut [f64]) -> Result<(), DynamicsError> {

@@ -50,6 +50,18 @@ fn of_indices(scene: &SceneDescription) -> Vec<String> {
         .collect()
 }
 
+/// Wrenches that change with time: compiled equations are not told the time. Efforts that do are handed to them in τ.
+pub(super) fn of_time(scene: &SceneDescription) -> impl Iterator<Item = String> {
+    let wrenches = scene.wrenches.iter().enumerate();
+    let timed = wrenches.filter(|(_, wrench)| wrench.constant().is_none());
+    timed.map(|(index, _)| {
+        format!(
+            "wrench {}: it changes with time, which is not compiled: simulate the scene as it is, or let an effort of a joint change with time",
+            index + 1
+        )
+    })
+}
+
 /// What is not a number in a function that is to be written, each with the element that makes it.
 pub(super) fn of_function(model: &Model, function: &Function) -> Vec<String> {
     let faults = function.graph.faults(&function.outputs);

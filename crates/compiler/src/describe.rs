@@ -4,8 +4,8 @@ use super::acting::Held;
 use super::check;
 use super::model::{Body, Coupling, Elements, Model};
 use super::products::JointType;
-use hamel_runtime::elements::{BodySpring, BodyWrench, WrenchAxes};
-use hamel_scene::{BodyDescription, PointSpring, SceneDescription, WrenchDescription};
+use hamel_runtime::elements::{BodySpring, BodyWrench, JointLimit, WrenchAxes};
+use hamel_scene::{BodyDescription, LimitKind, PointSpring, SceneDescription, WrenchDescription};
 use std::rc::Rc;
 
 /// Why a scene cannot be compiled: one line for each reason.
@@ -45,9 +45,16 @@ impl Model {
         if !reasons.is_empty() {
             return Err(refused(reasons));
         }
+        reasons.extend(check::of_time(scene));
         let mut elements = Elements {
             springs: scene.springs.iter().enumerate().map(spring).collect(),
-            wrenches: scene.wrenches.iter().enumerate().map(wrench).collect(),
+            wrenches: scene
+                .wrenches
+                .iter()
+                .enumerate()
+                .filter_map(wrench)
+                .collect(),
+            limits: scene.bodies.iter().enumerate().filter_map(limit).collect(),
             ..Elements::default()
         };
         let bodies = scene.bodies.iter().enumerate();
@@ -104,18 +111,36 @@ fn spring((index, spring): (usize, &PointSpring)) -> BodySpring {
     }
 }
 
-fn wrench((index, wrench): (usize, &WrenchDescription)) -> BodyWrench {
-    BodyWrench {
+/// A constant wrench; any other is refused before.
+fn wrench((index, wrench): (usize, &WrenchDescription)) -> Option<BodyWrench> {
+    let [force, moment] = wrench.constant()?;
+    Some(BodyWrench {
         name: format!("wrench {}", index + 1),
         body: wrench.body,
         point: wrench.point,
-        force: wrench.force,
-        moment: wrench.moment,
+        force,
+        moment,
         axes: match wrench.axes {
             hamel_scene::WrenchAxes::World => WrenchAxes::World,
             hamel_scene::WrenchAxes::Body => WrenchAxes::Body,
         },
-    }
+    })
+}
+
+/// Stops that give way; impacts are no part of the equations.
+fn limit((index, body): (usize, &BodyDescription)) -> Option<JointLimit> {
+    let limit = body.forces.limit.as_ref()?.value;
+    let LimitKind::Compliant { stiffness, damping } = limit.kind else {
+        return None;
+    };
+    Some(JointLimit {
+        name: format!("limit of joint `{}`", body.joint.name.value),
+        body: index,
+        lower: limit.lower,
+        upper: limit.upper,
+        stiffness,
+        damping,
+    })
 }
 
 fn compiled(body: &BodyDescription, joint: Rc<JointType>) -> Result<Body, Vec<String>> {
@@ -137,10 +162,15 @@ fn compiled(body: &BodyDescription, joint: Rc<JointType>) -> Result<Body, Vec<St
         "armature",
         forces.armature.as_ref().map(|found| &found.value),
     );
-    let effort = forces
-        .effort
-        .as_ref()
-        .map_or(vec![], |found| found.value.clone());
+    // Efforts that change with time come in with τ.
+    let effort = forces.constant_effort().unwrap_or_default();
+    let shape = joint.derived.shape;
+    if forces.limit.is_some() && (shape.configuration, shape.freedoms, shape.speeds) != (1, 1, 1) {
+        reasons.push(format!(
+            "joint `{name}`: a limit is one of a single coordinate whose rate is the speed, and `{}` has no such coordinate",
+            body.joint.kind.value
+        ));
+    }
     if joint.derived.shape.constraints > 0 && armature.iter().any(|&rotor| rotor != 0.0) {
         reasons.push(format!(
             "joint `{name}`: a nonholonomic joint such as `{}` can have no armature",

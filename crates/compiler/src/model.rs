@@ -2,7 +2,7 @@
 
 use super::products::JointType;
 use hamel_runtime::elements::{
-    BodySpring, BodyWrench, JointSpring, PointConstraint, RotationSpring,
+    BodySpring, BodyWrench, JointLimit, JointSpring, PointConstraint, RotationSpring,
 };
 use hamel_runtime::spatial::{MassProperties, Pose};
 use nalgebra::{Matrix3, Vector3};
@@ -33,6 +33,8 @@ pub struct Elements {
     pub rotation_springs: Vec<RotationSpring>,
     /// Springs and dampers between points.
     pub springs: Vec<BodySpring>,
+    /// Compliant limits of joints.
+    pub limits: Vec<JointLimit>,
     /// Wrenches from outside.
     pub wrenches: Vec<BodyWrench>,
 }

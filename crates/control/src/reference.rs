@@ -7,8 +7,8 @@ use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 use hamel_integrate::Tableau;
-use hamel_runtime::elements::Law;
 use hamel_runtime::mechanism::{Body, Mechanism, Space};
+use hamel_runtime::time_function::Law;
 use num_traits::Float;
 
 /// By how much a joint moves between two knots at most, rad or m, and how far its laws turn, rad: one step of order 9 over

@@ -168,9 +168,9 @@ impl Dense {
         for (weight, coefficient) in weights[1..].iter().zip(&self.coefficients) {
             add(&mut self.point, *weight, coefficient);
         }
-        let time = self.time(tau);
+        let moment = flow.moment(self.time(tau));
         let y = &mut self.point[flow.mechanism.layout().freedoms..];
-        flow.mechanism.prescribe_speeds(time, y);
+        flow.mechanism.prescribe_speeds(moment, y);
     }
 
     /// Raises the degree to that of the scheme, unless it has been; `stages` is what an implicit scheme has to begin with.

@@ -17,7 +17,7 @@ use super::stepper::Span;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
-use hamel_runtime::dynamics::Recursive;
+use hamel_runtime::dynamics::{Dynamics, Recursive};
 use hamel_runtime::mechanism::Body;
 use hamel_runtime::spatial::bracket_dual_product;
 use nalgebra::Vector6;
@@ -149,6 +149,8 @@ impl Correction {
         flow.speeds_of(&self.middle, &self.change, &mut self.faster)?;
         self.speeds.copy_from_slice(&rates.speeds);
         add(&mut self.speeds, self.lambda, &self.faster);
+        self.dynamics
+            .set_moment(flow.moment(span.time + 0.5 * span.step));
         self.work = span.step * self.power(flow);
         self.dynamics
             .composite_momenta(&self.middle, &rates.speeds, &mut self.composites);

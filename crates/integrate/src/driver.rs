@@ -1,9 +1,11 @@
 //! From the initial time to the last, by accepted steps, over the sample times.
 
 use super::approach::Watch;
+use super::bends::Bends;
 use super::clock::Clock;
 use super::flow::Flow;
 use super::hybrid::{Guards, Hybrid};
+use super::kinks::Kinks;
 use super::options::{StepControl, least_step};
 use super::outputs::{Outputs, Passed};
 use super::pieces::{FirstPiece, resolving};
@@ -60,6 +62,8 @@ pub(super) struct Driver<'a> {
     pub(super) stepper: Box<dyn Stepper>,
     pub(super) options: &'a Options,
     hold: Option<Hold>,
+    kinks: Kinks,
+    pub(super) bends: Bends,
     pub(super) clock: Clock,
     pub(super) start: f64,
     pub(super) statistics: Statistics,
@@ -98,6 +102,12 @@ impl<'a> Driver<'a> {
         let mut flow = Flow::new(dynamics, inputs, options.form);
         let watch = Watch::new(&flow.mechanism);
         let time = initial.time;
+        let kinks = Kinks::new(&mut flow, time, options.t_end);
+        let kinks = kinks.map_err(|cause| IntegrateError::AtState {
+            time,
+            cause: Box::new(cause.into()),
+            near: Near::default(),
+        })?;
         if period.is_some() {
             flow.hold(time, &initial.configuration, &initial.speeds);
         }
@@ -126,6 +136,7 @@ impl<'a> Driver<'a> {
             near: watch.nearest_at(&flow.mechanism, time, &initial.configuration),
         })?;
         let tolerance = options.method.control().map(|control| control.tolerance);
+        let bends = Bends::new(&flow, &initial.configuration);
         Ok(Self {
             watch,
             waypoints: Waypoints::new(),
@@ -139,6 +150,8 @@ impl<'a> Driver<'a> {
                 period,
                 count: 1,
             }),
+            kinks,
+            bends,
             clock: Clock::new(time),
             start: time,
             statistics: Statistics::default(),
@@ -235,7 +248,7 @@ impl<'a> Driver<'a> {
         Ok((change / pace).min(0.01 * span).max(f64::MIN_POSITIVE))
     }
 
-    /// The next sample time, or the end, or the next instant for new inputs.
+    /// The next sample time, or the end, or the next instant for new inputs, or the next kink of what changes with time.
     fn target(&self) -> f64 {
         let is_dense = self
             .outputs
@@ -244,10 +257,11 @@ impl<'a> Driver<'a> {
         let sample = self.options.samples.get(self.samples.len()).copied();
         let sample = sample.filter(|_| !is_dense);
         let target = sample.unwrap_or(self.options.t_end);
-        match &self.hold {
+        let target = match &self.hold {
             Some(hold) if !hold.falls_on(target) => target.min(hold.next()),
             _ => target,
-        }
+        };
+        self.kinks.before(target)
     }
 
     /// One accepted step.
@@ -259,9 +273,11 @@ impl<'a> Driver<'a> {
         loop {
             let (step, lands) = self.choose_step(pacing.step);
             let attempt = self.attempt(pacing, step);
+            let attempt = attempt.and_then(|()| self.land_on_bend(pacing, step));
             match attempt {
-                Ok(()) => {
-                    if self.accept(pacing, (step, lands), observer)? {
+                Ok(taken) => {
+                    let lands = lands && taken == step;
+                    if self.accept(pacing, (taken, lands), observer)? {
                         return Ok(());
                     }
                     self.statistics.rejected += 1;
@@ -287,7 +303,7 @@ impl<'a> Driver<'a> {
         }
     }
 
-    fn attempt(&mut self, pacing: &mut Pacing, step: f64) -> Result<(), StepFailure> {
+    pub(super) fn attempt(&mut self, pacing: &mut Pacing, step: f64) -> Result<(), StepFailure> {
         let span = Span {
             time: self.clock.time(),
             step,
@@ -419,7 +435,7 @@ impl<'a> Driver<'a> {
         Ok(true)
     }
 
-    /// Takes new inputs where it is time for them; whether that ends a piece of the motion.
+    /// Takes new inputs and the next pieces of functions of time where it is time for them; whether that ends a piece of the motion.
     fn renew_and_go_on(&mut self) -> Result<bool, IntegrateError> {
         let renewed = self.renew_inputs(self.clock.time());
         let renewed = renewed.map_err(|cause| self.at_state(cause))?;
@@ -435,16 +451,19 @@ impl<'a> Driver<'a> {
         Ok(())
     }
 
-    /// Takes new inputs where it is time for them, and the rates that they make; whether it is.
+    /// Takes new inputs and the next pieces of functions of time where it is time for them, and the rates that they make; whether it is.
     fn renew_inputs(&mut self, time: f64) -> Result<bool, StepFailure> {
-        let Some(hold) = self.hold.as_mut().filter(|hold| hold.falls_on(time)) else {
-            return Ok(false);
-        };
-        hold.count += 1;
-        let (q, speeds) = (&self.step_state.configuration, self.step_state.speeds());
-        self.flow.hold(time, q, speeds);
-        self.step_state.evaluate(&mut self.flow, time)?;
-        Ok(true)
+        let is_bent = self.kinks.pass(&mut self.flow, time)?;
+        let hold = self.hold.as_mut().filter(|hold| hold.falls_on(time));
+        let is_due = hold.map(|hold| hold.count += 1).is_some();
+        if is_due {
+            let (q, speeds) = (&self.step_state.configuration, self.step_state.speeds());
+            self.flow.hold(time, q, speeds);
+        }
+        if is_bent || is_due {
+            self.step_state.evaluate(&mut self.flow, time)?;
+        }
+        Ok(is_bent || is_due)
     }
 
     pub(super) fn at_state(&self, cause: StepFailure) -> IntegrateError {

@@ -6,6 +6,7 @@ use alloc::string::String;
 use hamel_runtime::dynamics::DynamicsError;
 use hamel_runtime::mechanism::StateError;
 use hamel_runtime::shown::Number;
+use hamel_runtime::time_function::KinkError;
 
 /// Why a step cannot be taken, or is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -59,6 +60,9 @@ pub enum StepFailure {
         /// Its value.
         value: f64,
     },
+    /// The kinks of a function of time cannot be followed.
+    #[error(transparent)]
+    Kinks(#[from] KinkError),
     /// The coefficients of an explicit method are none.
     #[error("the method {reason}")]
     Tableau {
@@ -92,6 +96,7 @@ fn advice(cause: &StepFailure) -> &'static str {
         StepFailure::Length { .. }
         | StepFailure::Inaccurate { .. }
         | StepFailure::Event { .. }
+        | StepFailure::Kinks(_)
         | StepFailure::Tableau { .. }
         | StepFailure::Dynamics(_) => "",
     }

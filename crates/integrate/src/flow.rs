@@ -12,6 +12,7 @@ use core::ops::{Deref, DerefMut};
 use hamel_runtime::dynamics::{Dynamics, DynamicsError};
 use hamel_runtime::mechanism::{CONSTRAINT_TOLERANCE, Mechanism, Space};
 use hamel_runtime::scalar::all_finite;
+use hamel_runtime::time_function::Moment;
 
 /// ϕ̇, ẏ and v̄ at one stage.
 #[derive(Clone, Debug)]
@@ -118,6 +119,8 @@ pub(super) struct Flow<'a> {
     held: Option<Vec<f64>>,
     /// Efforts of friction at the joints that slide, by their freedoms: they are added to the inputs.
     friction: Vec<(usize, f64)>,
+    /// A time within the piece of all functions of time that the present step is in.
+    pub(super) within: f64,
 }
 
 impl<'a> Flow<'a> {
@@ -137,6 +140,7 @@ impl<'a> Flow<'a> {
             efforts: vec![0.0; layout.freedoms],
             held: None,
             friction: Vec::new(),
+            within: 0.0,
             mechanism,
         }
     }
@@ -155,7 +159,15 @@ impl<'a> Flow<'a> {
     /// Whether the rates at a state are the same at all times, until the next [`Flow::hold`].
     pub(super) fn is_autonomous(&self) -> bool {
         let is_left_alone = self.inputs.is_none() || self.held.is_some();
-        is_left_alone && self.mechanism.drives().is_empty()
+        is_left_alone && !self.mechanism.changes_with_time()
+    }
+
+    /// A time of the present step, for functions of time.
+    pub(super) const fn moment(&self, time: f64) -> Moment {
+        Moment {
+            time,
+            within: self.within,
+        }
     }
 
     /// The equations of motion.
@@ -306,7 +318,7 @@ impl<'a> Flow<'a> {
         self.local_rates(base, phi, &rates.speeds, &mut rates.phi);
     }
 
-    /// τ of inputs and friction at time `time`, `q` and v̄.
+    /// τ of inputs, friction and functions of time at time `time`, `q` and v̄.
     pub(super) fn given_efforts(
         &mut self,
         time: f64,
@@ -314,15 +326,18 @@ impl<'a> Flow<'a> {
         speeds: &[f64],
         efforts: &mut [f64],
     ) {
-        let held = self.held.as_deref();
+        let (held, moment) = (self.held.as_deref(), self.moment(time));
         fill(&mut self.inputs, held, time, q, speeds, efforts);
         add_friction(&self.friction, efforts);
+        self.mechanism.add_timed_efforts(moment, efforts);
+        self.dynamics.set_moment(moment);
     }
 
     /// τ at time `time`, `q` and v̄, with the accelerations of driven joints, as [`Dynamics::forward_dynamics`] takes them.
     pub(super) fn efforts(&mut self, time: f64, q: &[f64], speeds: &[f64], efforts: &mut [f64]) {
         self.given_efforts(time, q, speeds, efforts);
-        self.mechanism.prescribe_accelerations(time, efforts);
+        let moment = self.moment(time);
+        self.mechanism.prescribe_accelerations(moment, efforts);
     }
 
     /// What one unit of each speed adds to y at `q`: 1, or what it adds to its own momentum.
@@ -352,6 +367,7 @@ impl<'a> Flow<'a> {
         y: &[f64],
         rates: &mut RatesMut<'_>,
     ) -> Result<(), DynamicsError> {
+        let moment = self.moment(time);
         let Self {
             dynamics,
             inputs,
@@ -362,11 +378,13 @@ impl<'a> Flow<'a> {
             friction,
             ..
         } = self;
+        dynamics.set_moment(moment);
         let mut fill = |speeds: &[f64], efforts: &mut [f64]| {
             let held = held.as_deref();
             fill(inputs, held, time, configuration, speeds, efforts);
             add_friction(friction, efforts);
-            mechanism.prescribe_accelerations(time, efforts);
+            mechanism.add_timed_efforts(moment, efforts);
+            mechanism.prescribe_accelerations(moment, efforts);
         };
         match self.form {
             Form::Lagrangian => {

@@ -23,6 +23,7 @@
 extern crate alloc;
 
 mod approach;
+mod bends;
 mod choice;
 mod clock;
 mod collocation;
@@ -43,6 +44,7 @@ mod global_error;
 mod hybrid;
 mod integration;
 mod jacobian;
+mod kinks;
 mod linear;
 mod lobatto;
 mod options;

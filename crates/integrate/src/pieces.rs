@@ -44,7 +44,8 @@ impl<'a> FirstPiece<'a> {
         };
         if let Some(hybrid) = &mut first.hybrid {
             let speeds = &mut first.state.speeds;
-            flow.mechanism.prescribe_speeds(initial.time, speeds);
+            let moment = flow.moment(initial.time);
+            flow.mechanism.prescribe_speeds(moment, speeds);
             let (notes, guards) = hybrid.turn(flow, &mut first.state, &[], true)?;
             first.guards = Some(guards);
             first.crossings = crossings(notes, events, &first.state);

@@ -51,7 +51,8 @@ impl StepState {
         flow.mechanism.check_poses(configuration)?;
         flow.mechanism.check_speeds("speeds", speeds)?;
         let mut speeds = speeds.to_vec();
-        flow.mechanism.prescribe_speeds(time, &mut speeds);
+        let moment = flow.moment(time);
+        flow.mechanism.prescribe_speeds(moment, &mut speeds);
         let y = flow.initial(configuration, &speeds)?;
         let freedoms = flow.mechanism.layout().freedoms;
         let mut step_state = Self {
@@ -239,7 +240,8 @@ impl StepState {
             self.compensation.y[own].fill(0.0);
         }
         // Prescribed speeds are what their laws say, not what steps have made of them.
-        flow.mechanism.prescribe_speeds(time, &mut self.y);
+        let moment = flow.moment(time);
+        flow.mechanism.prescribe_speeds(moment, &mut self.y);
         let Some((y, speeds)) = last.filter(|_| drives.is_empty()) else {
             return self.evaluate(flow, time);
         };

@@ -12,6 +12,7 @@ use hamel_integrate::{
 };
 use hamel_runtime::dynamics::{Dynamics, MassMatrix, Recursive, Reference};
 use hamel_runtime::elements::{BodyWrench, Element, JointDamper, WrenchAxes};
+use hamel_runtime::time_function::TimeFunction;
 use nalgebra::{DVector, Vector3};
 use std::sync::Arc;
 
@@ -139,7 +140,9 @@ fn driven_joint_follows_its_law() {
     let mut dynamics = Recursive::new(Arc::clone(&mechanism));
     let integration = Integration::new(&mut dynamics, &initial, &options);
     let solution = integration.sampling(Sampling::Dense).run().expect("runs");
-    let law = mechanism.drives()[0].laws[0];
+    let TimeFunction::Sine(law) = mechanism.drives()[0].laws[0] else {
+        panic!("the motions of these tests are sines");
+    };
     let displacement =
         |t: f64| law.rate * t + law.amplitude * (law.frequency * t + law.phase).sin();
     let own = mechanism.bodies()[mechanism.drives()[0].body]

@@ -12,8 +12,8 @@ use hamel_control::{
     ComputedTorque, ControlError, Controller, Curve, EnergyShaping, Equilibrium, ErrorDynamics,
     PathFollower, PathGains, Port, PortSpring, Pump, Reference, Regulator, Weights,
 };
-use hamel_runtime::elements::Law;
 use hamel_runtime::mechanism::Mechanism;
+use hamel_runtime::time_function::Law;
 use std::path::Path;
 use std::sync::Arc;
 

@@ -26,7 +26,7 @@ pub struct SceneDescription {
     pub frames: Vec<FrameDescription>,
     /// Springs between points.
     pub springs: Vec<PointSpring>,
-    /// Constant wrenches on bodies.
+    /// Wrenches on bodies.
     pub wrenches: Vec<WrenchDescription>,
     /// Forbidden velocities of points.
     pub constraints: Vec<ConstraintDescription>,

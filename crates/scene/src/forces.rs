@@ -2,8 +2,8 @@
 
 use crate::description::Position;
 use crate::source::Located;
-use hamel_runtime::elements::Law;
 use hamel_runtime::spatial::Pose;
+use hamel_runtime::time_function::TimeFunction;
 use nalgebra::{DMatrix, Vector3};
 
 /// What acts at one joint.
@@ -15,10 +15,10 @@ pub struct JointForces {
     pub damping: Option<Located<PerFreedom>>,
     /// Inertia of what turns with the joint, such as a rotor: added to the diagonal of the joint's own block of M.
     pub armature: Option<Located<PerFreedom>>,
-    /// Constant efforts τ, one per degree of freedom.
-    pub effort: Option<Located<Vec<f64>>>,
-    /// Prescribed motion.
-    pub motion: Option<Located<Vec<Law>>>,
+    /// Efforts τ, one per degree of freedom.
+    pub effort: Option<Located<Vec<TimeFunction>>>,
+    /// Prescribed motion: the speeds v̄.
+    pub motion: Option<Located<Vec<TimeFunction>>>,
     /// Dry friction.
     pub friction: Option<Located<FrictionDescription>>,
     /// Where the joint's range ends.
@@ -26,6 +26,12 @@ pub struct JointForces {
 }
 
 impl JointForces {
+    /// The efforts, if none of them changes with time; none where there are none.
+    pub fn constant_effort(&self) -> Option<Vec<f64>> {
+        let efforts = self.effort.iter().flat_map(|effort| &effort.value);
+        efforts.map(TimeFunction::constant).collect()
+    }
+
     /// Whether nothing acts.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
@@ -59,6 +65,13 @@ pub enum LimitKind {
     Impact {
         /// From 0 to 1.
         restitution: f64,
+    },
+    /// A stop that gives way: beyond it by x the effort towards the inside is `k x max(0, 1 + d ẋ)`.
+    Compliant {
+        /// k, N m/rad or N/m.
+        stiffness: f64,
+        /// d, s/rad or s/m.
+        damping: f64,
     },
 }
 
@@ -136,7 +149,7 @@ pub struct PointSpring {
     pub length: f64,
 }
 
-/// A constant force and moment on a body.
+/// A force and moment on a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WrenchDescription {
     /// Index of the body.
@@ -144,14 +157,24 @@ pub struct WrenchDescription {
     /// Where the force acts, in the body frame, m.
     pub point: Vector3<f64>,
     /// Force, N.
-    pub force: Vector3<f64>,
+    pub force: [TimeFunction; 3],
     /// Moment, N m.
-    pub moment: Vector3<f64>,
+    pub moment: [TimeFunction; 3],
     /// Axes of force and moment.
     pub axes: WrenchAxes,
 }
 
-/// Axes in which a wrench is constant.
+impl WrenchDescription {
+    /// Force and moment, if neither changes with time.
+    pub fn constant(&self) -> Option<[Vector3<f64>; 2]> {
+        let vector = |[x, y, z]: &[TimeFunction; 3]| {
+            Some(Vector3::new(x.constant()?, y.constant()?, z.constant()?))
+        };
+        Some([vector(&self.force)?, vector(&self.moment)?])
+    }
+}
+
+/// Axes of a wrench.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WrenchAxes {
     /// Those of the world.

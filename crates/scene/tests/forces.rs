@@ -1,6 +1,6 @@
 //! What acts at joints and on bodies, as the description has it after reading.
 
-use hamel_runtime::elements::Law;
+use hamel_runtime::time_function::{Law, TimeFunction};
 use hamel_scene::{
     BodyPoint, PerFreedom, Position, Scene, SceneDescription, SpringEnergy, WrenchAxes,
 };
@@ -78,7 +78,7 @@ fn what_acts_at_joints_is_read_as_it_is_written() {
     assert_eq!(numbers(&hand.armature), Some(PerFreedom::All(0.5)));
     assert_eq!(
         hand.effort.as_ref().map(|effort| effort.value.clone()),
-        Some(vec![-1.0, 6.0])
+        Some([-1.0, 6.0].map(TimeFunction::from).to_vec())
     );
     assert_eq!(hand.motion, None);
     let spring = &arm.spring.as_ref().expect("a spring").value;
@@ -98,7 +98,7 @@ fn what_acts_at_joints_is_read_as_it_is_written() {
     };
     assert_eq!(
         arm.motion.as_ref().map(|motion| motion.value.clone()),
-        Some(vec![constant, swing])
+        Some(vec![constant.into(), swing.into()])
     );
     assert_eq!(
         (numbers(&arm.damping), numbers(&arm.armature)),
@@ -126,10 +126,8 @@ fn elements_find_their_bodies() {
     );
     let wrench = &scene.wrenches[0];
     assert_eq!((wrench.body, wrench.axes), (arm, WrenchAxes::Body));
-    assert_eq!(
-        (wrench.point, wrench.force, wrench.moment),
-        (Vector3::z(), Vector3::x(), Vector3::y())
-    );
+    assert_eq!(wrench.point, Vector3::z());
+    assert_eq!(wrench.constant(), Some([Vector3::x(), Vector3::y()]));
     let constraint = &scene.constraints[0];
     assert_eq!(
         (constraint.name.value.as_str(), constraint.body),

@@ -1,8 +1,8 @@
 //! Robots in URDF: what becomes of each kind of element, and the scene that is written of it.
 
 use hamel_runtime::spatial::Pose;
-use hamel_scene::urdf::{Import, Options, read};
-use hamel_scene::{BodyDescription, Geometry, PerFreedom};
+use hamel_scene::urdf::{Import, Options, Stops, read};
+use hamel_scene::{BodyDescription, Geometry, LimitDescription, LimitKind, PerFreedom};
 use nalgebra::{Matrix3, Vector3};
 
 /// A few roundings of numbers around 1.
@@ -146,6 +146,66 @@ fn a_floating_base_is_a_body_of_its_own() {
         (Pose::identity(), Pose::identity())
     );
     assert_eq!(arm.parent, Some(0));
+}
+
+#[test]
+fn limits_of_position_are_compliant_ones_where_that_is_asked_for() {
+    let stops = Stops {
+        stiffness: 1e4,
+        damping: 0.5,
+    };
+    let options = Options {
+        limits: Some(stops),
+        ..Options::default()
+    };
+    let limits =
+        "<axis xyz=\"0 0 1\"/><limit lower=\"-1\" upper=\"2\" effort=\"3\" velocity=\"4\"/>";
+    for kind in ["revolute", "prismatic"] {
+        let import = robot_with(kind, limits, "", &options);
+        let limit = arm(&import).forces.limit.as_ref().map(|limit| &limit.value);
+        let wanted = LimitDescription {
+            lower: Some(-1.0),
+            upper: Some(2.0),
+            kind: LimitKind::Compliant {
+                stiffness: 1e4,
+                damping: 0.5,
+            },
+        };
+        assert_eq!(limit, Some(&wanted));
+        assert_eq!(
+            notices(&import),
+            ["note: limits of velocity and effort are not simulated: joint `joint`"]
+        );
+        let left_out = robot(kind, limits, "");
+        assert!(arm(&left_out).forces.limit.is_none());
+    }
+    let away =
+        "<axis xyz=\"0 0 1\"/><limit lower=\"0.5\" upper=\"2\" effort=\"3\" velocity=\"4\"/>";
+    let told = notices(&robot_with("revolute", away, "", &options));
+    assert_eq!(
+        told[0],
+        "warning: the joint begins at home, 0, which is beyond its limits: the stop pushes it back: joint `joint`"
+    );
+    // One that does not count turns has no limits, and none of numbers that are none.
+    assert!(
+        arm(&robot_with("continuous", limits, "", &options))
+            .forces
+            .limit
+            .is_none()
+    );
+    let wrong = Options {
+        limits: Some(Stops {
+            damping: -0.5,
+            ..stops
+        }),
+        ..options
+    };
+    let errors = read("<robot/>", "r.urdf", &wrong).expect_err("it is negative");
+    let told = errors.to_string();
+    assert!(
+        told.contains("the damping of limits is -0.5: it must be finite and at least 0"),
+        "{told}"
+    );
 }
 
 #[test]

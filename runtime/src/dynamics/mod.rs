@@ -21,6 +21,7 @@ pub use recursive::{
 pub use reference::Reference;
 
 use crate::mechanism::Mechanism;
+use crate::time_function::Moment;
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 
@@ -38,6 +39,10 @@ pub trait Dynamics {
     fn of(&self, mechanism: Arc<Mechanism>) -> Box<dyn Dynamics> {
         Box::new(Recursive::new(mechanism))
     }
+
+    /// The time at which elements act from now on, for those that change with it ([`Element::functions`](crate::elements::Element::functions)); 0 at
+    /// first. Efforts that change with time are handed in as τ ([`Mechanism::add_timed_efforts`]).
+    fn set_moment(&mut self, _moment: Moment) {}
 
     /// The speeds that constraints couple to the others, into their entries of `speeds`; the others are read. Nothing to do where no
     /// constraint couples joints.

@@ -138,7 +138,16 @@ pub struct BodyWrench {
     pub axes: WrenchAxes,
 }
 
-impl BodyWrench {
+/// A force and a moment at one time.
+pub(super) struct Pull<'a> {
+    pub(super) body: usize,
+    pub(super) point: &'a Vector3<f64>,
+    pub(super) force: Vector3<f64>,
+    pub(super) moment: Vector3<f64>,
+    pub(super) axes: WrenchAxes,
+}
+
+impl Pull<'_> {
     /// Force and moment in world axes.
     fn in_the_world(&self, view: &View<'_>) -> (Vector3<f64>, Vector3<f64>) {
         if self.axes == WrenchAxes::World {
@@ -149,6 +158,33 @@ impl BodyWrench {
             apply(&rotation, &self.force),
             apply(&rotation, &self.moment),
         )
+    }
+
+    pub(super) fn act(&self, view: &View<'_>, action: &mut Action<'_>) {
+        let (force, moment) = self.in_the_world(view);
+        action.add_force(self.body, &view.arm(self.body, self.point), &force);
+        action.add_wrench(self.body, &moment, &Vector3::zeros());
+    }
+
+    pub(super) fn power(&self, view: &View<'_>) -> f64 {
+        let (force, moment) = self.in_the_world(view);
+        let (_, velocity) = view.point(Some(self.body), self.point);
+        let turn = view.motions.twist(self.body).map(|twist| split(twist).0);
+        turn.map_or(f64::NAN, |turn| {
+            dot(&force, &velocity) + dot(&moment, &turn)
+        })
+    }
+}
+
+impl BodyWrench {
+    fn pull(&self) -> Pull<'_> {
+        Pull {
+            body: self.body,
+            point: &self.point,
+            force: self.force,
+            moment: self.moment,
+            axes: self.axes,
+        }
     }
 }
 
@@ -165,9 +201,7 @@ impl Element for BodyWrench {
     }
 
     fn act(&self, view: &View<'_>, action: &mut Action<'_>) {
-        let (force, moment) = self.in_the_world(view);
-        action.add_force(self.body, &view.arm(self.body, &self.point), &force);
-        action.add_wrench(self.body, &moment, &Vector3::zeros());
+        self.pull().act(view, action);
     }
 
     /// Work depends on the path in general: none is counted.
@@ -176,12 +210,7 @@ impl Element for BodyWrench {
     }
 
     fn power(&self, view: &View<'_>) -> f64 {
-        let (force, moment) = self.in_the_world(view);
-        let (_, velocity) = view.point(Some(self.body), &self.point);
-        let turn = view.motions.twist(self.body).map(|twist| split(twist).0);
-        turn.map_or(f64::NAN, |turn| {
-            dot(&force, &velocity) + dot(&moment, &turn)
-        })
+        self.pull().power(view)
     }
 
     fn slope(&self) -> Option<&dyn Slope> {
@@ -190,18 +219,22 @@ impl Element for BodyWrench {
 }
 
 impl Slope for BodyWrench {
-    /// One in body axes is carried along with the body, so that nothing changes beside that.
     fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>) {
-        if self.axes == WrenchAxes::Body {
-            return;
-        }
-        let force = PointForce {
-            ends: [None, Some((self.body, view.arm(self.body, &self.point)))],
-            force: self.force,
-            by_way: Matrix3::zeros(),
-            by_rate: Matrix3::zeros(),
-        };
-        slopes.add_point_force(view, &force);
-        slopes.add_moment(view, self.body, &self.moment);
+        add_wrench_slopes(&self.pull(), view, slopes);
     }
+}
+
+/// A wrench in body axes is carried along with the body, so that nothing changes beside that.
+pub(super) fn add_wrench_slopes(pull: &Pull<'_>, view: &View<'_>, slopes: &mut Slopes<'_>) {
+    if pull.axes == WrenchAxes::Body {
+        return;
+    }
+    let force = PointForce {
+        ends: [None, Some((pull.body, view.arm(pull.body, pull.point)))],
+        force: pull.force,
+        by_way: Matrix3::zeros(),
+        by_rate: Matrix3::zeros(),
+    };
+    slopes.add_point_force(view, &force);
+    slopes.add_moment(view, pull.body, &pull.moment);
 }

@@ -2,6 +2,7 @@
 
 use crate::mechanism::Mechanism;
 use crate::shown::Number;
+use crate::time_function::TimeFunction;
 use alloc::string::String;
 
 /// Why an element does not fit its mechanism.
@@ -42,6 +43,14 @@ pub enum ElementError {
         /// Size given.
         found: usize,
     },
+    /// A prescribed speed that jumps.
+    #[error("{element}: {what} jumps, and a prescribed speed must have a derivative")]
+    Jump {
+        /// The element.
+        element: String,
+        /// What jumps.
+        what: &'static str,
+    },
     /// The joint is of a kind that the element is not defined for.
     #[error("{element}: joint `{joint}` {reason}")]
     Joint {
@@ -52,6 +61,32 @@ pub enum ElementError {
         /// What stands against it.
         reason: &'static str,
     },
+}
+
+/// Whether there are as many functions as there must be, with numbers that are finite.
+pub(super) fn functions(
+    element: &str,
+    quantity: &'static str,
+    functions: &[TimeFunction],
+    expected: usize,
+) -> Result<(), ElementError> {
+    if functions.len() != expected {
+        return Err(ElementError::Size {
+            element: element.into(),
+            quantity,
+            expected,
+            found: functions.len(),
+        });
+    }
+    match functions.iter().find_map(TimeFunction::infinite_number) {
+        None => Ok(()),
+        Some(value) => Err(ElementError::Value {
+            element: element.into(),
+            quantity,
+            value,
+            requirement: "finite",
+        }),
+    }
 }
 
 /// The body, if there is one of that index.

@@ -9,25 +9,30 @@ mod constraint;
 mod drive;
 mod error;
 mod joint;
+mod limit;
 mod slopes;
 mod spring;
+mod timed;
 mod unilateral;
 mod view;
 
 pub use body::{BodySpring, BodyWrench, WrenchAxes};
 pub use constraint::PointConstraint;
-pub use drive::{Drive, Law};
+pub use drive::Drive;
 pub use error::ElementError;
 pub use joint::{JointDamper, JointEffort};
+pub use limit::{JointLimit, is_one_coordinate};
 pub use slopes::JointSlopes;
 pub(crate) use slopes::Target;
 pub use slopes::{End, PointForce, Slope, Slopes};
 pub use spring::{JointSpring, RotationSpring};
+pub use timed::{TimedEffort, TimedWrench};
 pub use unilateral::{JointFriction, JointStop};
 pub use view::MotionList;
 pub use view::{Action, Motions, View};
 
 use crate::mechanism::Mechanism;
+use crate::time_function::TimeFunction;
 use core::fmt::Debug;
 
 /// Something that acts on a mechanism, and what energy it stores.
@@ -55,5 +60,15 @@ pub trait Element: Debug + Send + Sync {
     /// with it are refused.
     fn slope(&self) -> Option<&dyn Slope> {
         None
+    }
+
+    /// Up to two functions of Q at whose zeros what it exerts bends, continuous as it is; NaN in place of those that it does not have. Steps end there.
+    fn bends(&self, _mechanism: &Mechanism, _q: &[f64]) -> [f64; 2] {
+        [f64::NAN; 2]
+    }
+
+    /// The functions of time that it reads at the view's [`Moment`](crate::time_function::Moment); none where it does not change with time.
+    fn functions(&self) -> &[TimeFunction] {
+        &[]
     }
 }

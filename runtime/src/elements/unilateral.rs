@@ -5,9 +5,9 @@
 
 use super::ElementError;
 use super::error::body;
+use super::is_one_coordinate;
 use crate::mechanism::{Body, Mechanism};
 use alloc::string::String;
-use alloc::vec;
 
 /// Coulomb's dry friction at a joint with one degree of freedom.
 ///
@@ -97,7 +97,7 @@ fn check_joint<'a>(
     index: usize,
 ) -> Result<&'a Body, ElementError> {
     let owner = body(element, mechanism, index)?;
-    let reason = if !has_one_coordinate(owner) {
+    let reason = if !is_one_coordinate(owner.joint()) {
         "is not one of a single coordinate whose rate is its speed, as a revolute, a prismatic or a screw joint is"
     } else if mechanism.is_driven(index) {
         "has a prescribed motion, which neither friction nor limits can change"
@@ -113,27 +113,6 @@ fn check_joint<'a>(
         element: element.into(),
         joint: owner.joint_name().into(),
         reason,
-    })
-}
-
-/// Whether Q is one number, v = Q̇, and Φ(Q, ϕ) = Q + ϕ.
-fn has_one_coordinate(body: &Body) -> bool {
-    let joint = body.joint();
-    let (layout, structures) = (joint.layout(), joint.structures());
-    let is_one = layout.configuration == 1 && layout.freedoms == 1 && layout.speeds == 1;
-    let is_flat = structures.velocity_map.is_identity()
-        && structures.speed_basis.is_identity()
-        && structures.retract_differential.is_identity();
-    if !(is_one && is_flat) {
-        return false;
-    }
-    // A chart of its own whose differential is the identity may still count in other units.
-    let mut home = vec![0.0];
-    joint.home(&mut home);
-    [0.5, -3.0].into_iter().all(|phi| {
-        let mut moved = [f64::NAN];
-        joint.retract(&home, &[phi], &mut moved);
-        (moved[0] - home[0] - phi).abs() <= 8.0 * f64::EPSILON * (home[0].abs() + 3.0)
     })
 }
 

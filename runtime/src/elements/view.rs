@@ -5,6 +5,7 @@ use crate::mechanism::{Body, Mechanism};
 use crate::spatial::fused::{add_cross, apply, cross};
 use crate::spatial::{Pose, split};
 use crate::steps::Placement;
+use crate::time_function::Moment;
 use alloc::vec::Vec;
 use core::fmt::Debug;
 use nalgebra::{Matrix3, Vector3, Vector6};
@@ -44,6 +45,8 @@ pub struct View<'a> {
     pub speeds: &'a [f64],
     /// Where the bodies are and how they move.
     pub motions: &'a dyn Motions,
+    /// When it is so.
+    pub moment: Moment,
 }
 
 impl Debug for View<'_> {
@@ -56,7 +59,7 @@ impl Debug for View<'_> {
 }
 
 impl<'a> View<'a> {
-    /// A mechanism at Q and v̄, with where its bodies are and how they move.
+    /// A mechanism at Q and v̄, with where its bodies are and how they move, at time 0.
     pub const fn new(
         mechanism: &'a Mechanism,
         configuration: &'a [f64],
@@ -68,7 +71,17 @@ impl<'a> View<'a> {
             configuration,
             speeds,
             motions,
+            moment: Moment {
+                time: 0.0,
+                within: 0.0,
+            },
         }
+    }
+
+    /// The same at another time.
+    #[must_use]
+    pub const fn at(self, moment: Moment) -> Self {
+        Self { moment, ..self }
     }
 
     fn body(&self, body: usize) -> Option<&'a Body> {

@@ -3,7 +3,10 @@
 use super::check::Space;
 use super::{Mechanism, MechanismError, MechanismErrors, StateError};
 use crate::dynamics::Recursive;
-use crate::elements::{Drive, Element, ElementError, JointFriction, JointStop, PointConstraint};
+use crate::elements::{
+    Drive, Element, ElementError, JointFriction, JointStop, PointConstraint, TimedEffort,
+};
+use crate::time_function::{KinkError, Moment, TimeFunction, first_kink};
 use alloc::format;
 use alloc::sync::Arc;
 use alloc::vec;
@@ -19,6 +22,7 @@ pub(super) struct Actuation {
     pub(super) drives: Vec<Drive>,
     /// Whether the joint under each body is driven; empty where there are no drives.
     driven: Vec<bool>,
+    timed_efforts: Vec<TimedEffort>,
     pub(super) constraints: Vec<PointConstraint>,
     /// The speeds that depend on the others, one a constraint.
     pub(super) dependent: Vec<usize>,
@@ -137,6 +141,23 @@ impl Mechanism {
         Ok(self)
     }
 
+    /// The mechanism with these efforts as functions of time instead of those it had.
+    ///
+    /// # Errors
+    /// All that do not fit.
+    pub fn with_timed_efforts(
+        mut self,
+        efforts: Vec<TimedEffort>,
+    ) -> Result<Self, MechanismErrors> {
+        refuse(
+            efforts
+                .iter()
+                .filter_map(|effort| effort.check(&self).err()),
+        )?;
+        self.actuation.timed_efforts = efforts;
+        Ok(self)
+    }
+
     /// The mechanism with these constraints that couple joints, Theorem 3, instead of those it had; drives are to be given before.
     ///
     /// At `q` the speeds that depend on the others are chosen, by pivoting: of those that the constraints determine well, the nearest to the
@@ -238,6 +259,47 @@ impl Mechanism {
         &self.actuation.drives
     }
 
+    /// Efforts of joints as functions of time.
+    pub fn timed_efforts(&self) -> &[TimedEffort] {
+        &self.actuation.timed_efforts
+    }
+
+    /// Adds the efforts that are functions of time to τ.
+    pub fn add_timed_efforts(&self, at: Moment, efforts: &mut [f64]) {
+        for timed in &self.actuation.timed_efforts {
+            let own = &mut efforts[self.bodies[timed.body].ranges.freedoms.clone()];
+            for (effort, function) in own.iter_mut().zip(&timed.efforts) {
+                *effort += function.value(at);
+            }
+        }
+    }
+
+    /// Whether anything that acts on the mechanism, or moves it, changes with time.
+    pub fn changes_with_time(&self) -> bool {
+        self.time_functions().next().is_some()
+    }
+
+    /// The first time after `after`, up to `until`, at which an effort, a wrench or a prescribed acceleration may jump or bend.
+    ///
+    /// # Errors
+    /// An expression whose switches cannot be followed.
+    pub fn next_kink(&self, after: f64, until: f64) -> Result<Option<f64>, KinkError> {
+        first_kink(self.time_functions(), after, until)
+    }
+
+    fn time_functions(&self) -> impl Iterator<Item = &TimeFunction> {
+        let Actuation {
+            elements,
+            drives,
+            timed_efforts,
+            ..
+        } = &self.actuation;
+        let elements = elements.iter().flat_map(|element| element.functions());
+        let drives = drives.iter().flat_map(|drive| &drive.laws);
+        let efforts = timed_efforts.iter().flat_map(|timed| &timed.efforts);
+        elements.chain(drives).chain(efforts)
+    }
+
     /// Whether the motion of the joint under `body` is prescribed.
     pub fn is_driven(&self, body: usize) -> bool {
         self.actuation
@@ -252,7 +314,7 @@ impl Mechanism {
     /// When `speeds` has the wrong size.
     pub fn set_driven_speeds(&self, t: f64, speeds: &mut [f64]) -> Result<(), StateError> {
         self.check_room("speeds", Space::Speeds, speeds)?;
-        self.prescribe_speeds(t, speeds);
+        self.prescribe_speeds(t.into(), speeds);
         Ok(())
     }
 
@@ -262,26 +324,26 @@ impl Mechanism {
     /// When `efforts` has the wrong size.
     pub fn set_driven_accelerations(&self, t: f64, efforts: &mut [f64]) -> Result<(), StateError> {
         self.check_room("efforts", Space::Freedoms, efforts)?;
-        self.prescribe_accelerations(t, efforts);
+        self.prescribe_accelerations(t.into(), efforts);
         Ok(())
     }
 
     /// [`Mechanism::set_driven_speeds`] into speeds of the right size.
-    pub fn prescribe_speeds(&self, t: f64, speeds: &mut [f64]) {
+    pub fn prescribe_speeds(&self, at: Moment, speeds: &mut [f64]) {
         for drive in &self.actuation.drives {
             let own = &mut speeds[self.bodies[drive.body].ranges.speeds.clone()];
             for (speed, law) in own.iter_mut().zip(&drive.laws) {
-                *speed = law.velocity(t);
+                *speed = law.value(at);
             }
         }
     }
 
     /// [`Mechanism::set_driven_accelerations`] into efforts of the right size.
-    pub fn prescribe_accelerations(&self, t: f64, efforts: &mut [f64]) {
+    pub fn prescribe_accelerations(&self, at: Moment, efforts: &mut [f64]) {
         for drive in &self.actuation.drives {
             let own = &mut efforts[self.bodies[drive.body].ranges.freedoms.clone()];
             for (effort, law) in own.iter_mut().zip(&drive.laws) {
-                *effort = law.acceleration(t);
+                *effort = law.slope(at);
             }
         }
     }

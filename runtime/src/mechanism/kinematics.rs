@@ -180,12 +180,7 @@ impl Mechanism {
 
     fn element_energy(&self, q: &[f64], speeds: &[f64], bodies: &[BodyState]) -> f64 {
         let motions = joint_frames(&self.bodies, bodies);
-        let view = View {
-            mechanism: self,
-            configuration: q,
-            speeds,
-            motions: &motions,
-        };
+        let view = View::new(self, q, speeds, &motions);
         let elements = self.elements().iter();
         elements.map(|element| element.energy(&view)).sum()
     }

@@ -2,7 +2,8 @@
 
 use super::actuation::refuse;
 use super::{CONFIGURATION_TOLERANCE, Mechanism, MechanismErrors, StateError};
-use crate::elements::{Drive, ElementError, JointFriction, JointStop, Law};
+use crate::elements::{Drive, ElementError, JointFriction, JointStop};
+use crate::time_function::Law;
 use alloc::format;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -111,7 +112,7 @@ impl Mechanism {
             Drive {
                 name: format!("hold of joint `{joint}`"),
                 body,
-                laws: vec![Law::default(); speeds],
+                laws: vec![Law::default().into(); speeds],
             }
         }));
         let held = free.with_drives(drives)?;

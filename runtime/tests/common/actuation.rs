@@ -2,10 +2,11 @@
 
 use super::random::Random;
 use hamel_runtime::elements::{
-    BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointSpring, Law,
-    RotationSpring, WrenchAxes,
+    BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointSpring, RotationSpring,
+    WrenchAxes,
 };
 use hamel_runtime::mechanism::Mechanism;
+use hamel_runtime::time_function::Law;
 use nalgebra::Matrix3;
 use std::sync::Arc;
 
@@ -120,7 +121,7 @@ pub fn driven(mechanism: Mechanism) -> Mechanism {
     let drive = Drive {
         name: "drive".into(),
         body,
-        laws: vec![law; size],
+        laws: vec![law.into(); size],
     };
     mechanism.with_drives(vec![drive]).expect("fits")
 }

@@ -132,11 +132,17 @@ impl Oscillator {
         if body.mass.com != Vector3::zeros() {
             return Err(unknown("the centre of mass is not on the axis"));
         }
+        let Some(effort) = forces.constant_effort() else {
+            return Err(unknown("an effort that changes with time"));
+        };
+        if forces.limit.is_some() {
+            return Err(unknown("a limit"));
+        }
         Ok(Self {
             inertia: body.mass.inertia_com[(2, 2)],
             damping,
             stiffness,
-            effort: forces.effort.as_ref().map_or(0.0, |effort| effort.value[0]),
+            effort: effort.first().copied().unwrap_or(0.0),
             angle,
             rate,
         })

@@ -134,7 +134,10 @@ impl World {
     fn add(&mut self, body: &BodyDescription, parent: &Frame) -> Result<Frame, Unsupported> {
         let base = parent.placed(&body.at);
         if let Some(motion) = &body.forces.motion {
-            let rate = motion.value.first().map_or(0.0, |law| law.rate);
+            let constant = motion.value.first().map(|law| law.constant());
+            let Some(rate) = constant.unwrap_or(Some(0.0)) else {
+                return Err(Unsupported("a motion that is not uniform".into()));
+            };
             let turning = base.axes * Vector::z() * real(rate);
             return Ok(Frame {
                 driven: Some(real(rate)),

@@ -250,13 +250,30 @@ fn what_is_not_compiled_is_named() {
         inertia = [[0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1]]
         joint = { type = "ball", name = "wrist" }
         spring = { stiffness = 1.0, rest = { configuration = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.1, 1.0] } }
+        [[body]]
+        name = "hand"
+        parent = "tip"
+        mass = 1.0
+        inertia = [[0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1]]
+        joint = { type = "ball" }
+        limit = { lower = -1.0, stiffness = 1e3 }
+        [[wrench]]
+        body = "tip"
+        force = [0.0, 0.0, 1.0]
+        axes = "body"
+        [[wrench]]
+        body = "tip"
+        force = [0.0, 0.0, "sin(t)"]
+        axes = "body"
     "#;
     let description = Scene::from_toml(text, "reasons").unwrap_or_else(|errors| panic!("{errors}"));
-    let refused = Model::new(&description, compiled::joint).expect_err("three reasons");
+    let refused = Model::new(&description, compiled::joint).expect_err("there are reasons");
     let expected = [
+        "wrench 2: it changes with time, which is not compiled",
         "spring of joint `elbow`: to find the configuration of a pose takes iterations",
         "joint `wheel`: a nonholonomic joint such as `cart` can have no armature",
         "spring of joint `wrist`: it is off the joint's manifold",
+        "joint `hand`: a limit is one of a single coordinate",
     ];
     assert_eq!(refused.reasons.len(), expected.len(), "{refused}");
     for (reason, expected) in refused.reasons.iter().zip(expected) {

@@ -1,8 +1,9 @@
 //! Linearised steps of the integrators against central differences of the steps themselves, through Φ and its inverse.
 
 use chacha20::ChaCha8Rng;
-use hamel::elements::{Drive, Law};
+use hamel::elements::Drive;
 use hamel::integrate::{Form, LinearStep, Method, Scheme, StepControl, StepFailure, Tableau};
+use hamel::time_function::Law;
 use hamel_tests::differences::STEP;
 use hamel_tests::figures::Largest;
 use hamel_tests::linear_step::{self, BOUND, DT, FIXED, FORMS, place, stepping};
@@ -105,7 +106,7 @@ fn what_cannot_be_stepped_is_refused() {
     let drive = Drive {
         name: "shaker".to_owned(),
         body: 0,
-        laws: vec![Law::default(); case.speeds.len()],
+        laws: vec![Law::default().into(); case.speeds.len()],
     };
     let driven = (*case.mechanism).clone().with_drives(vec![drive]);
     let driven = Arc::new(driven.expect("it fits"));

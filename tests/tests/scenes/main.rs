@@ -2,10 +2,12 @@
 
 mod control;
 mod coupled_scenes;
+mod elastic;
 mod estimates;
 mod formats;
 mod forms_agree;
 mod fuzz_scenes;
+mod limits;
 mod methods;
 mod motions;
 mod orthonormality;
@@ -15,3 +17,5 @@ mod references;
 mod robots;
 mod scene_files;
 mod size;
+mod timed;
+mod trials;

@@ -51,7 +51,7 @@ impl Plan {
     /// # Errors
     /// Mistakes in the scene; options out of range; a first state to which no method can be chosen; files that must not be written.
     pub fn new(args: &Args, registry: &JointRegistry) -> Result<Self, Failure> {
-        let input = Input::read(&args.scene, args.floating_base)?;
+        let input = Input::read(&args.scene, args.floating_base, args.limits)?;
         let scene = input.scene(registry)?;
         let control = match &args.controller {
             Some(path) => Some(Control::load(path, &scene)?),
@@ -115,7 +115,7 @@ impl Plan {
         let mechanism = &self.scene.mechanism;
         self.control.is_some()
             || !mechanism.elements().is_empty()
-            || !mechanism.drives().is_empty()
+            || mechanism.changes_with_time()
             || !mechanism.frictions().is_empty()
             || !mechanism.stops().is_empty()
     }

@@ -1,10 +1,12 @@
 //! What springs and rotors at joints exert.
 
 use super::{Tree, number};
-use crate::graph::{Sym, about, section};
+use crate::graph::{Sym, about, call_two, section};
 use crate::joint::Joint;
 use crate::spatial::{Mat3, Twist, Vec3, Wrench, dot, product};
-use hamel_runtime::elements::{JointSpring, RotationSpring};
+use hamel_codegen::expr::Function;
+use hamel_runtime::elements::{JointLimit, JointSpring, RotationSpring};
+use num_traits::{One, Zero};
 
 /// A spring at a joint.
 struct Stretch<'a> {
@@ -17,7 +19,7 @@ struct Stretch<'a> {
 }
 
 impl Tree<'_> {
-    /// The efforts of the springs at a body's joint, one per degree of freedom; none where it has no spring.
+    /// The efforts of the springs and limits at a body's joint, one per degree of freedom; none where it has no spring.
     pub(super) fn spring_efforts(&self, index: usize) -> Vec<Sym> {
         let elements = &self.model.elements;
         let springs = elements.joint_springs.iter();
@@ -29,6 +31,10 @@ impl Tree<'_> {
             .chain(
                 turned.map(|spring| about(&spring.name, || self.rotation_spring(index, spring))),
             );
+        let limits = elements.limits.iter().filter(|limit| limit.body == index);
+        let limits =
+            limits.map(|limit| about(&limit.name, || vec![self.limit_effort(index, limit)]));
+        let each = each.chain(limits);
         let add =
             |sum: Vec<Sym>, next: Vec<Sym>| sum.into_iter().zip(next).map(|(a, b)| a + b).collect();
         each.reduce(add).unwrap_or_default()
@@ -58,7 +64,11 @@ impl Tree<'_> {
             .springs
             .iter()
             .map(|spring| about(&spring.name, || self.point_spring_energy(spring)));
-        joints.chain(turned).chain(points).sum()
+        let limits = elements.limits.iter().map(|limit| {
+            section(number(limit.body), "spring");
+            about(&limit.name, || self.limit_energy(limit))
+        });
+        joints.chain(turned).chain(points).chain(limits).sum()
     }
 
     /// ϕ of a spring and Kϕ.
@@ -113,6 +123,36 @@ impl Tree<'_> {
             .collect()
     }
 
+    /// How far the joint is beyond each of its limits, negative within, with the sign of the effort there.
+    fn beyond(&self, limit: &JointLimit) -> Vec<(Sym, f64)> {
+        let q = self.coordinates(limit.body)[0];
+        let upper = limit.upper.map(|upper| (q - Sym::from(upper), -1.0));
+        let lower = limit.lower.map(|lower| (Sym::from(lower) - q, 1.0));
+        upper.into_iter().chain(lower).collect()
+    }
+
+    /// `−k x max(0, 1 + d ẋ)` beyond the upper limit by x, and the opposite beyond the lower one.
+    fn limit_effort(&self, index: usize, limit: &JointLimit) -> Sym {
+        let rate = self.bodies[index].speeds[0];
+        let sides = self.beyond(limit).into_iter();
+        let efforts = sides.map(|(by, sign)| {
+            let press = Sym::from(sign * limit.stiffness) * positive(by);
+            if limit.damping == 0.0 {
+                return press;
+            }
+            let outwards = Sym::from(-sign * limit.damping) * rate;
+            press * positive(Sym::one() + outwards)
+        });
+        efforts.sum()
+    }
+
+    /// `½ k x²` beyond a limit by x.
+    fn limit_energy(&self, limit: &JointLimit) -> Sym {
+        let sides = self.beyond(limit).into_iter();
+        let squares = sides.map(|(by, _)| positive(by) * positive(by));
+        squares.sum::<Sym>() * Sym::from(0.5 * limit.stiffness)
+    }
+
     /// `Σ_k γ_k v_k (a v)` of the rotors at a body's joint, one per freedom: what their turning takes where velocities do not commute.
     pub(super) fn rotor_forces(&self, index: usize) -> Vec<Sym> {
         if !self.has_armature(index) {
@@ -132,6 +172,17 @@ impl Tree<'_> {
         let speeds = &self.bodies[index].speeds;
         self.joint_at(index, speeds).bias_momentum(momentum)
     }
+}
+
+/// What divides a number that is not positive, so that nothing is divided by 0: the smallest normal single.
+const NOTHING: f64 = f32::MIN_POSITIVE as f64;
+
+/// `max(0, x)`, as x times what is 1 where x is positive and 0 where it is not: exactly, but for x below the smallest single. That factor is made
+/// of scales, whose slopes count as 0, so that the slope of all is right as well.
+fn positive(x: Sym) -> Sym {
+    let larger = |a, b| call_two(Function::Larger, a, b);
+    let size = larger(larger(x, -x), Sym::from(NOTHING));
+    x * (larger(x, Sym::zero()) / size)
 }
 
 /// `Σ numbers · values`.

@@ -2,7 +2,7 @@
 
 use crate::ControlError;
 use crate::error::require;
-use hamel_runtime::elements::Law;
+use hamel_runtime::time_function::Law;
 use num_traits::Float;
 
 /// Below this speed (m/s) the direction of the path is that of rounding.

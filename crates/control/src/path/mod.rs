@@ -130,7 +130,7 @@ impl PathFollower {
     /// v̄̇ of the joint's own speeds under the efforts of `self.probe`.
     fn respond(&mut self, time: f64, q: &[f64], speeds: &[f64]) -> Result<[f64; 2], ControlError> {
         self.mechanism
-            .prescribe_accelerations(time, &mut self.probe);
+            .prescribe_accelerations(time.into(), &mut self.probe);
         self.dynamics
             .forward_dynamics(q, speeds, &self.probe, &mut self.rates)?;
         Ok(self.roller.own(&self.rates))

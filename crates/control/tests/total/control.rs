@@ -9,8 +9,8 @@ use hamel_control::{
     ComputedTorque, Controller, Curve, EnergyShaping, Equilibrium, ErrorDynamics, PathFollower,
     PathGains, Port, PortSpring, Pump, Reference, Regulator, Weights,
 };
-use hamel_runtime::elements::Law;
 use hamel_runtime::mechanism::Mechanism;
+use hamel_runtime::time_function::Law;
 use nalgebra::DMatrix;
 use std::sync::Arc;
 

@@ -5,9 +5,10 @@ use crate::common::trees::{GRAVITY, body};
 use crate::support::{
     NOT_FINITE, NOWHERE, at, bare, elements, equipped, refused, wrong, wrong_sizes,
 };
-use hamel_runtime::elements::{Drive, Law, PointConstraint};
+use hamel_runtime::elements::{Drive, PointConstraint};
 use hamel_runtime::mechanism::{Mechanism, MechanismError, NamedFrame, dependent_columns};
 use hamel_runtime::spatial::{MassProperties, Pose};
+use hamel_runtime::time_function::Law;
 use nalgebra::{DMatrix, Matrix3, Vector3, Vector6};
 
 fn ball(mass: f64) -> MassProperties {
@@ -98,7 +99,7 @@ fn bodies_that_are_not_there_are_errors() {
         let drive = Drive {
             name: "drive".into(),
             body: index,
-            laws: vec![Law::default()],
+            laws: vec![Law::default().into()],
         };
         assert!((*mechanism).clone().with_drives(vec![drive]).is_err());
         let constraint = PointConstraint {
@@ -179,7 +180,7 @@ fn actuation_of_other_sizes_or_not_finite_is_an_error() {
             let drive = Drive {
                 name: "drive".into(),
                 body: 3,
-                laws: vec![law],
+                laws: vec![law.into()],
             };
             assert!((*mechanism).clone().with_drives(vec![drive]).is_err());
         }

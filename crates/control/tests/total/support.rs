@@ -4,11 +4,12 @@ use crate::common::joints;
 use crate::common::random::Random;
 use crate::common::trees::{configuration, tree};
 use hamel_runtime::elements::{
-    BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointSpring, Law,
-    RotationSpring, WrenchAxes,
+    BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointSpring, RotationSpring,
+    WrenchAxes,
 };
 use hamel_runtime::mechanism::{Mechanism, NamedFrame};
 use hamel_runtime::spatial::Pose;
+use hamel_runtime::time_function::Law;
 use nalgebra::{Matrix3, Vector3};
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -115,7 +116,7 @@ pub fn equipped() -> Arc<Mechanism> {
     let drive = Drive {
         name: "drive".into(),
         body: 1,
-        laws: vec![Law::default(); 3],
+        laws: vec![Law::default().into(); 3],
     };
     let mechanism = (*bare()).clone();
     let mechanism = mechanism.with_armature(3, &[0.2]).expect("it fits");

@@ -60,8 +60,9 @@ impl Holding {
         flow.given_efforts(time, q, speeds, &mut self.tau);
         self.driven.copy_from_slice(&self.tau);
         let mechanism = Arc::clone(self.dynamics.mechanism());
-        mechanism.prescribe_accelerations(time, &mut self.driven);
+        mechanism.prescribe_accelerations(flow.moment(time), &mut self.driven);
         let dynamics = &mut self.dynamics;
+        dynamics.set_moment(flow.moment(time));
         dynamics.forward_dynamics(q, speeds, &self.driven, &mut self.rates)?;
         dynamics
             .inverse_dynamics(q, speeds, &self.rates, &mut self.missing)

@@ -222,7 +222,8 @@ impl<'a> Hybrid<'a> {
         let mut efforts = vec![0.0; layout.freedoms];
         flow.set_friction(self.sliding_efforts(phases));
         flow.given_efforts(time, q, speeds, &mut efforts);
-        mechanism.prescribe_accelerations(time, &mut efforts);
+        mechanism.prescribe_accelerations(flow.moment(time), &mut efforts);
+        self.free.set_moment(flow.moment(time));
         let mut rates = vec![0.0; layout.speeds];
         self.free
             .forward_dynamics(q, speeds, &efforts, &mut rates)?;

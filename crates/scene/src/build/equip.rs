@@ -5,10 +5,11 @@ use crate::description::{BodyDescription, SceneDescription};
 use crate::forces::{LimitKind, PointSpring, WrenchAxes, WrenchDescription};
 use hamel_runtime::dynamics::{Dynamics, DynamicsError, Recursive};
 use hamel_runtime::elements::{
-    BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointFriction, JointSpring,
-    JointStop, PointConstraint, RotationSpring,
+    BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointFriction, JointLimit,
+    JointSpring, JointStop, PointConstraint, RotationSpring, TimedEffort, TimedWrench,
 };
 use hamel_runtime::mechanism::{Mechanism, MechanismErrors, NamedFrame};
+use hamel_runtime::time_function::TimeFunction;
 use std::sync::Arc;
 
 /// The mechanism with its elements, rotors, drives, friction, limits and named frames; `acting` goes with the bodies of `description`.
@@ -35,6 +36,7 @@ pub(super) fn equip(
         .with_drives(drives)?
         .with_frictions(frictions(description, acting))?
         .with_stops(stops(description, acting))?
+        .with_timed_efforts(timed_efforts(description, acting))?
         .with_frames(frames.collect())
 }
 
@@ -85,7 +87,7 @@ fn elements(
         elements.push(Arc::new(point_spring(index, spring)));
     }
     for (index, wrench) in description.wrenches.iter().enumerate() {
-        elements.push(Arc::new(body_wrench(index, wrench)));
+        elements.push(body_wrench(index, wrench));
     }
     elements
 }
@@ -108,13 +110,44 @@ fn at_joint(
             coefficients: acting.damping.clone(),
         }));
     }
-    if !acting.effort.is_empty() {
+    if let Some(efforts) = constant(&acting.effort)
+        && !efforts.is_empty()
+    {
         elements.push(Arc::new(JointEffort {
             name: format!("effort of joint `{joint}`"),
             body,
-            efforts: acting.effort.clone(),
+            efforts,
         }));
     }
+    if let Some(limit) = &acting.limit
+        && let LimitKind::Compliant { stiffness, damping } = limit.kind
+    {
+        elements.push(Arc::new(JointLimit {
+            name: format!("limit of joint `{joint}`"),
+            body,
+            lower: limit.lower,
+            upper: limit.upper,
+            stiffness,
+            damping,
+        }));
+    }
+}
+
+/// The efforts of a joint, if none of them changes with time.
+fn constant(efforts: &[TimeFunction]) -> Option<Vec<f64>> {
+    efforts.iter().map(TimeFunction::constant).collect()
+}
+
+/// Efforts of joints of which some change with time.
+fn timed_efforts(description: &SceneDescription, acting: &[Acting]) -> Vec<TimedEffort> {
+    let joints = description.bodies.iter().zip(acting).enumerate();
+    let timed = joints.filter(|(_, (_, acting))| constant(&acting.effort).is_none());
+    let efforts = timed.map(|(body, (owner, acting))| TimedEffort {
+        name: format!("effort of joint `{}`", owner.joint.name.value),
+        body,
+        efforts: acting.effort.clone(),
+    });
+    efforts.collect()
 }
 
 fn joint_spring(
@@ -151,18 +184,31 @@ fn point_spring(index: usize, spring: &PointSpring) -> BodySpring {
     }
 }
 
-fn body_wrench(index: usize, wrench: &WrenchDescription) -> BodyWrench {
-    BodyWrench {
-        name: format!("wrench {}", index + 1),
-        body: wrench.body,
-        point: wrench.point,
-        force: wrench.force,
-        moment: wrench.moment,
-        axes: match wrench.axes {
-            WrenchAxes::World => hamel_runtime::elements::WrenchAxes::World,
-            WrenchAxes::Body => hamel_runtime::elements::WrenchAxes::Body,
-        },
+fn body_wrench(index: usize, wrench: &WrenchDescription) -> Arc<dyn Element> {
+    let name = format!("wrench {}", index + 1);
+    let (body, point) = (wrench.body, wrench.point);
+    let axes = match wrench.axes {
+        WrenchAxes::World => hamel_runtime::elements::WrenchAxes::World,
+        WrenchAxes::Body => hamel_runtime::elements::WrenchAxes::Body,
+    };
+    if let Some([force, moment]) = wrench.constant() {
+        return Arc::new(BodyWrench {
+            name,
+            body,
+            point,
+            force,
+            moment,
+            axes,
+        });
     }
+    let ([fx, fy, fz], [mx, my, mz]) = (wrench.force.clone(), wrench.moment.clone());
+    Arc::new(TimedWrench {
+        name,
+        body,
+        point,
+        entries: [fx, fy, fz, mx, my, mz],
+        axes,
+    })
 }
 
 fn drives(description: &SceneDescription, acting: &[Acting]) -> Vec<Drive> {
@@ -194,7 +240,9 @@ fn stops(description: &SceneDescription, acting: &[Acting]) -> Vec<JointStop> {
     let joints = description.bodies.iter().zip(acting).enumerate();
     let stops = joints.filter_map(|(body, (owner, acting))| {
         let limit = acting.limit?;
-        let LimitKind::Impact { restitution } = limit.kind;
+        let LimitKind::Impact { restitution } = limit.kind else {
+            return None;
+        };
         Some(JointStop {
             name: format!("limit of joint `{}`", owner.joint.name.value),
             body,

@@ -4,13 +4,15 @@ use super::state::Stand;
 use crate::description::{InitialDescription, Motion};
 use crate::diagnostics::Diagnostic;
 use crate::forces::{
-    FrictionDescription, JointForces, JointSpring, LimitDescription, PerFreedom, SpringEnergy,
+    FrictionDescription, JointForces, JointSpring, LimitDescription, LimitKind, PerFreedom,
+    SpringEnergy,
 };
 use crate::read::Sink;
 use crate::source::{Located, Span};
-use hamel_runtime::elements::Law;
+use hamel_runtime::elements::is_one_coordinate;
 use hamel_runtime::mechanism::CONFIGURATION_TOLERANCE;
 use hamel_runtime::shown::Number;
+use hamel_runtime::time_function::TimeFunction;
 use nalgebra::{DMatrix, DVector};
 
 /// What acts at one joint, in numbers that fit it.
@@ -22,10 +24,10 @@ pub(crate) struct Acting {
     pub(crate) damping: Vec<f64>,
     /// Armature, one number per degree of freedom; empty without.
     pub(crate) armature: Vec<f64>,
-    /// Constant efforts τ, one per degree of freedom; empty without.
-    pub(crate) effort: Vec<f64>,
-    /// Prescribed speeds, one law a speed; empty without.
-    pub(crate) motion: Vec<Law>,
+    /// Efforts τ, one per degree of freedom; empty without.
+    pub(crate) effort: Vec<TimeFunction>,
+    /// Prescribed speeds, one function a speed; empty without.
+    pub(crate) motion: Vec<TimeFunction>,
     /// Dry friction.
     pub(crate) friction: Option<FrictionDescription>,
     /// Ends of the joint's range.
@@ -64,14 +66,16 @@ pub(super) fn acting(
     let effort = effort(stand, forces.effort.as_ref());
     let spring = forces.spring.as_ref().map(|found| spring(stand, found));
     let motion = motion(stand, initial, forces.motion.as_ref());
+    let friction = of_one_coordinate(stand, "friction", forces.friction.as_ref());
+    let limit = of_one_coordinate(stand, "a limit", forces.limit.as_ref());
     let acting = Acting {
         damping: damping.map_err(&mut noted).unwrap_or_default(),
         armature: armature.map_err(&mut noted).unwrap_or_default(),
         effort: effort.map_err(&mut noted).unwrap_or_default(),
         spring: spring.transpose().map_err(&mut noted).unwrap_or_default(),
         motion: motion.map_err(&mut noted).unwrap_or_default(),
-        friction: forces.friction.as_ref().map(|friction| friction.value),
-        limit: forces.limit.as_ref().map(|limit| limit.value),
+        friction: friction.map_err(&mut noted).unwrap_or_default(),
+        limit: limit.map_err(&mut noted).unwrap_or_default(),
     };
     (sink.len() == errors_before).then_some(acting)
 }
@@ -115,7 +119,10 @@ fn each(
     Ok(numbers.spread(freedoms.len()).unwrap_or_default())
 }
 
-fn effort(stand: &Stand, effort: Option<&Located<Vec<f64>>>) -> Result<Vec<f64>, Diagnostic> {
+fn effort(
+    stand: &Stand,
+    effort: Option<&Located<Vec<TimeFunction>>>,
+) -> Result<Vec<TimeFunction>, Diagnostic> {
     let Some(effort) = effort else {
         return Ok(Vec::new());
     };
@@ -151,11 +158,31 @@ fn spring(stand: &Stand, spring: &Located<JointSpring>) -> Result<Spring, Diagno
     })
 }
 
+/// What joints with a single coordinate alone can have.
+fn of_one_coordinate<T: Copy>(
+    stand: &Stand,
+    what: &str,
+    found: Option<&Located<T>>,
+) -> Result<Option<T>, Diagnostic> {
+    let Some(found) = found else {
+        return Ok(None);
+    };
+    if is_one_coordinate(&*stand.joint) {
+        return Ok(Some(found.value));
+    }
+    let message = format!(
+        "joint `{}`: {what} is one of a single coordinate whose rate is the speed, and `{}` has no such coordinate",
+        stand.name,
+        stand.joint.name()
+    );
+    Err(Diagnostic::new(found.span.clone(), message))
+}
+
 fn motion(
     stand: &Stand,
     initial: &InitialDescription,
-    motion: Option<&Located<Vec<Law>>>,
-) -> Result<Vec<Law>, Diagnostic> {
+    motion: Option<&Located<Vec<TimeFunction>>>,
+) -> Result<Vec<TimeFunction>, Diagnostic> {
     let Some(motion) = motion else {
         return Ok(Vec::new());
     };
@@ -172,16 +199,19 @@ fn motion(
     Ok(motion.value.clone())
 }
 
-/// Whether the joint begins within its limits.
+/// Whether the joint begins within its limits, where these are hit; stops that give way may be pressed at first.
 pub(super) fn check_limit(
     stand: &Stand,
     q: &[f64],
     limit: &Located<LimitDescription>,
 ) -> Result<(), Diagnostic> {
-    // Of other joints the mechanism says that they can have none.
+    // Of other joints it is said elsewhere that they can have none.
     let ([value], [coordinate]) = (q, stand.joint.coordinates()) else {
         return Ok(());
     };
+    if let LimitKind::Compliant { .. } = limit.value.kind {
+        return Ok(());
+    }
     let room = |limit: f64| CONFIGURATION_TOLERANCE * limit.abs().max(1.0);
     let (lower, upper) = (limit.value.lower, limit.value.upper);
     let below = lower.filter(|&lower| *value < lower - room(lower));

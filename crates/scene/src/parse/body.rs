@@ -1,6 +1,6 @@
 //! One `[[body]]`.
 
-use super::{BodyDraft, forces, initial, joint, mass, placement};
+use super::{BodyDraft, elastic, forces, initial, joint, mass, placement};
 use crate::diagnostics::Diagnostic;
 use crate::read::{Fields, Sink};
 use crate::source::Located;
@@ -25,6 +25,9 @@ pub(super) fn body(mut fields: Fields<'_>, sink: &mut Sink) -> BodyDraft {
         body_at: pose(&mut fields, "body_at", sink),
         initial: initial::initial(&mut fields, sink),
         forces: forces::forces(&mut fields, sink),
+        elastic: fields
+            .optional("elastic")
+            .and_then(|value| elastic::elastic(&value, sink)),
         name,
     };
     fields.finish(sink);

@@ -12,7 +12,7 @@ use crate::forces::PerFreedom;
 use crate::read::{Fields, Sink, Value};
 use crate::source::Located;
 use hamel_control::{Curve, ErrorDynamics, PathGains, PortSpring};
-use hamel_runtime::elements::Law;
+use hamel_runtime::time_function::Law;
 use std::collections::HashSet;
 
 /// Periods that a horizon has at most: the optimisation is dense.

@@ -4,7 +4,7 @@ use super::body::WORLD;
 use super::controller::Joints;
 use super::event::event;
 use super::shape::shape;
-use super::{BodyDraft, Tree, placement, rotation};
+use super::{BodyDraft, Tree, placement, rotation, time};
 use crate::diagnostics::Diagnostic;
 use crate::event::EventDescription;
 use crate::forces::{
@@ -207,8 +207,8 @@ fn wrench(
     let body = fields.required("body", sink);
     let body = body.and_then(|body| bodies.find_moving(&body, "a force would not move it", sink));
     let point = vector(fields, "point", sink);
-    let force = vector(fields, "force", sink);
-    let moment = vector(fields, "moment", sink);
+    let force = time::vector(fields, "force", sink);
+    let moment = time::vector(fields, "moment", sink);
     let axes = fields.required("axes", sink);
     let axes = axes.and_then(|axes| axes.choice(&WrenchAxes::NAMES, sink));
     Some(WrenchDescription {

@@ -1,6 +1,6 @@
 //! What acts at the joint of a body: `spring`, `damping`, `armature`, `effort`, `motion`, `friction`, `limit`.
 
-use super::initial;
+use super::{initial, time};
 use crate::description::Position;
 use crate::diagnostics::Diagnostic;
 use crate::forces::{
@@ -9,8 +9,8 @@ use crate::forces::{
 };
 use crate::read::{Fields, Sink, Value};
 use crate::source::Located;
-use hamel_runtime::elements::Law;
 use hamel_runtime::shown::Number;
+use hamel_runtime::time_function::{Law, TimeFunction};
 use nalgebra::DMatrix;
 
 /// Asymmetry and negative eigenvalues of a stiffness that pass for rounding, in units of its largest entry.
@@ -21,7 +21,7 @@ pub(super) fn forces(fields: &mut Fields<'_>, sink: &mut Sink) -> Option<JointFo
     let spring = optional(fields, "spring", spring, sink);
     let damping = optional(fields, "damping", per_freedom, sink);
     let armature = optional(fields, "armature", per_freedom, sink);
-    let effort = optional(fields, "effort", |value, sink| value.numbers(sink), sink);
+    let effort = optional(fields, "effort", effort, sink);
     let motion = optional(fields, "motion", motion, sink);
     let friction = optional(fields, "friction", friction, sink);
     let limit = optional(fields, "limit", limit, sink);
@@ -113,13 +113,17 @@ fn full(value: &Value<'_>, sink: &mut Sink) -> Option<DMatrix<f64>> {
     None
 }
 
-fn motion(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Vec<Law>>> {
+fn effort(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Vec<TimeFunction>>> {
+    Some(Located::new(time::functions(value, sink)?, value.span()))
+}
+
+fn motion(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Vec<TimeFunction>>> {
     let mut fields = value.table(sink)?;
     let speeds = fields.required("speeds", sink);
     fields.finish(sink);
-    let items = speeds?.items("entry", "a list of numbers and tables", sink)?;
-    let speeds: Vec<_> = items.iter().map(|item| speed(item, sink)).collect();
-    let speeds: Option<Vec<Law>> = speeds.into_iter().collect();
+    let items = speeds?.items("entry", "a list of numbers, formulas and tables", sink)?;
+    let speeds: Vec<_> = items.iter().map(|item| driven(item, sink)).collect();
+    let speeds: Option<Vec<TimeFunction>> = speeds.into_iter().collect();
     Some(Located::new(speeds?, value.span()))
 }
 
@@ -150,18 +154,13 @@ fn friction(value: &Value<'_>, sink: &mut Sink) -> Option<Located<FrictionDescri
     Some(Located::new(friction, value.span()))
 }
 
-/// The ends of a range, and what happens there.
+/// The ends of a range, and what happens there: an impact, or a stop that gives way.
 fn limit(value: &Value<'_>, sink: &mut Sink) -> Option<Located<LimitDescription>> {
     let mut fields = value.table(sink)?;
     let lower = optional(&mut fields, "lower", |value, sink| value.number(sink), sink);
     let upper = optional(&mut fields, "upper", |value, sink| value.number(sink), sink);
-    let restitution = fields.required("restitution", sink);
+    let kind = limit_kind(&mut fields, sink);
     fields.finish(sink);
-    let restitution = restitution?.number_within(
-        |number| (0.0..=1.0).contains(&number),
-        "between 0 and 1",
-        sink,
-    );
     let (lower, upper) = (lower?, upper?);
     let wrong = match (&lower, &upper) {
         (None, None) => Some((value.span(), "has neither `lower` nor `upper`".into())),
@@ -181,11 +180,47 @@ fn limit(value: &Value<'_>, sink: &mut Sink) -> Option<Located<LimitDescription>
     let limit = LimitDescription {
         lower: lower.map(|lower| lower.value),
         upper: upper.map(|upper| upper.value),
-        kind: LimitKind::Impact {
-            restitution: restitution?.value,
-        },
+        kind: kind?,
     };
     Some(Located::new(limit, value.span()))
+}
+
+/// `restitution` of an impact; `stiffness`, and `damping` beside it, of a stop that gives way.
+fn limit_kind(fields: &mut Fields<'_>, sink: &mut Sink) -> Option<LimitKind> {
+    let (which, value) = fields.exactly_one(&["restitution", "stiffness"], sink)?;
+    if which == 0 {
+        let holds = |number| (0.0..=1.0).contains(&number);
+        let restitution = value.number_within(holds, "between 0 and 1", sink)?.value;
+        return Some(LimitKind::Impact { restitution });
+    }
+    let stiffness = value.not_negative(sink);
+    let damping = match fields.optional("damping") {
+        Some(damping) => damping.not_negative(sink).map(|damping| damping.value),
+        None => Some(0.0),
+    };
+    Some(LimitKind::Compliant {
+        stiffness: stiffness?.value,
+        damping: damping?,
+    })
+}
+
+/// One prescribed speed: as [`speed`] reads it, or any other function of time that has a derivative.
+fn driven(value: &Value<'_>, sink: &mut Sink) -> Option<TimeFunction> {
+    let is_table_of_values = value.is_table() && value.table(sink)?.optional("times").is_some();
+    if !value.is_text() && !is_table_of_values {
+        return Some(speed(value, sink)?.into());
+    }
+    let found = time::function(value, sink)?;
+    let Some(what) = found.jump() else {
+        return Some(found);
+    };
+    let message = format!(
+        "{}: {what} jumps, and a prescribed speed must have a derivative",
+        value.path()
+    );
+    let error = Diagnostic::new(value.span(), message);
+    sink.push(error.help("a table of kind \"linear\", `max` and `abs` bend without a jump"));
+    None
 }
 
 /// One speed: a number, or the table of a swing.

@@ -2,6 +2,7 @@
 
 mod body;
 mod controller;
+mod elastic;
 mod elements;
 mod event;
 mod forces;
@@ -13,6 +14,7 @@ pub(crate) mod rotation;
 mod shape;
 mod simulation;
 mod syntax;
+mod time;
 mod tree;
 
 pub(crate) use body::WORLD;
@@ -26,6 +28,7 @@ use crate::read::{Fields, Sink};
 use crate::settings::Settings;
 use crate::source::Located;
 pub(crate) use controller::Joints;
+use elastic::Elastic;
 use elements::Elements;
 use hamel_runtime::spatial::{MassProperties, Pose};
 use nalgebra::Vector3;
@@ -60,6 +63,8 @@ pub(crate) struct BodyDraft {
     pub(crate) body_at: Pose<f64>,
     pub(crate) initial: Option<InitialDescription>,
     pub(crate) forces: Option<JointForces>,
+    /// The motor behind a spring, until the body is made two.
+    pub(crate) elastic: Option<Located<Elastic>>,
 }
 
 /// The bodies as a tree.
@@ -130,7 +135,7 @@ fn scene(fields: &mut Fields<'_>, sink: &mut Sink) -> Draft {
     let name = fields.optional("name").and_then(|name| name.text(sink));
     let description = fields.optional("description");
     let gravity = gravity(fields, sink);
-    let bodies = bodies(fields, sink);
+    let bodies = elastic::expand(bodies(fields, sink), sink);
     let tree = tree::tree(&bodies, sink);
     let joints = joints(&bodies);
     let elements = elements::elements(fields, (&bodies, joints.as_ref()), tree.as_ref(), sink);

@@ -5,7 +5,7 @@ use super::joint::{self, JointFacts};
 use super::masses::Part;
 use super::robot::Robot;
 use super::tree::{self, Links, name_span};
-use super::{Import, Options, mass, masses, shapes};
+use super::{Import, Options, Stops, mass, masses, shapes};
 use crate::description::{
     BodyDescription, InitialDescription, JointDescription, SceneDescription, Source,
 };
@@ -40,7 +40,7 @@ pub(super) fn convert(
     let mut converter = Converter::new(robot, version, &mut notices, sink);
     converter.root(&links, options);
     for &link in links.order.iter().skip(1) {
-        converter.link(link, &links, &facts);
+        converter.link(link, &links, (&facts, options.limits));
     }
     let Converter {
         mut bodies,
@@ -168,7 +168,7 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
     }
 
     /// A link that hangs on a joint.
-    fn link(&mut self, link: usize, links: &Links, facts: &[JointFacts]) {
+    fn link(&mut self, link: usize, links: &Links, (facts, stops): (&[JointFacts], Option<Stops>)) {
         let Some((index, parent)) = links.parents[link] else {
             return;
         };
@@ -188,11 +188,16 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
             let body = parent.body;
             return self.attach(link, Anchor { body, pose: origin });
         };
-        joint::tell(&joint, self.robot, &facts[index], self.notices);
+        let limit = stops.and_then(|stops| joint::stopped(&joint, &facts[index], stops));
+        joint::tell(&joint, self.robot, (&facts[index], &limit), self.notices);
         let damping = Some(facts[index].damping).filter(|&damping| damping != 0.0);
         let span = place(joint.node, "dynamics", "damping");
         let forces = JointForces {
             damping: damping.map(|damping| Located::new(PerFreedom::All(damping), span)),
+            limit: limit.map(|limit| {
+                let span = place(joint.node, "limit", "lower");
+                Located::new(limit, span)
+            }),
             ..JointForces::default()
         };
         let joint = (joint.name.to_owned(), kind, tag(joint.node));

@@ -1,8 +1,10 @@
 //! Where a joint stands and how it moves, and what else a file says of it.
 
+use super::Stops;
 use super::document::{attribute, child, number, numbers, place, vector};
 use super::robot::{Joint, JointType, Robot};
 use crate::diagnostics::Diagnostic;
+use crate::forces::{LimitDescription, LimitKind};
 use crate::notice::Notices;
 use crate::parse::rotation;
 use crate::read::Sink;
@@ -12,7 +14,7 @@ use hamel_runtime::spatial::Pose;
 use nalgebra::{Matrix3, Vector3, Vector4};
 use roxmltree::Node;
 
-/// What a file says of a joint beyond its motion. None of it but `damping` is simulated.
+/// What a file says of a joint beyond its motion. None of it but `damping` is simulated, and limits of position where that is asked for.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointFacts {
     /// Name of the joint.
@@ -178,11 +180,37 @@ fn limits(joint: &Joint<'_, '_>, version: (u32, u32)) -> Limits {
     }
 }
 
+/// The limits of position of a joint that turns or slides, as compliant ones.
+pub(super) fn stopped(
+    joint: &Joint<'_, '_>,
+    facts: &JointFacts,
+    stops: Stops,
+) -> Option<LimitDescription> {
+    let has_one_coordinate = matches!(joint.kind, JointType::Revolute | JointType::Prismatic);
+    let limits = facts.limits.as_ref().filter(|_| has_one_coordinate)?;
+    let [lower, upper] = limits
+        .position?
+        .map(|end| Some(end).filter(|end| end.is_finite()));
+    (lower.is_some() || upper.is_some()).then_some(LimitDescription {
+        lower,
+        upper,
+        kind: LimitKind::Compliant {
+            stiffness: stops.stiffness,
+            damping: stops.damping,
+        },
+    })
+}
+
+/// Whether a joint is beyond its limits where it begins.
+fn is_beyond_at_home(limit: &LimitDescription) -> bool {
+    limit.lower.is_some_and(|lower| lower > 0.0) || limit.upper.is_some_and(|upper| upper < 0.0)
+}
+
 /// Tells what of a moving joint is not simulated, and what URDF leaves open.
 pub(super) fn tell(
     joint: &Joint<'_, '_>,
     robot: &Robot<'_, '_>,
-    facts: &JointFacts,
+    (facts, stop): (&JointFacts, &Option<LimitDescription>),
     notices: &mut Notices,
 ) {
     let limits = facts.limits.as_ref();
@@ -194,8 +222,12 @@ pub(super) fn tell(
     // What moves otherwise than the file says.
     for (holds, message) in [
         (
-            limits.is_some_and(|limits| limits.position.is_some()),
+            stop.is_none() && limits.is_some_and(|limits| limits.position.is_some()),
             "limits of position are not simulated: the joint moves past them",
+        ),
+        (
+            stop.as_ref().is_some_and(is_beyond_at_home),
+            "the joint begins at home, 0, which is beyond its limits: the stop pushes it back",
         ),
         (
             mimic == Some(true),

@@ -9,7 +9,8 @@
 //! | root link | fixed to the world, or on a `free` joint: [`Options::floating_base`] |
 //! | `<inertial>` absent | no mass |
 //! | `<visual>` of a box, a sphere, a cylinder or a capsule | a shape for pictures; meshes are told as [`Notice`]s |
-//! | limits, mimic, friction, safety controllers, transmissions, collision shapes, unknown elements | not simulated, and told as [`Notice`]s |
+//! | `<limit lower upper>` of `revolute` and `prismatic` | compliant limits, if [`Options::limits`] gives their numbers |
+//! | other limits, mimic, friction, safety controllers, transmissions, collision shapes, unknown elements | not simulated, and told as [`Notice`]s |
 //!
 //! A state is not part of a URDF: every joint is at home (angles, displacements 0) and at rest.
 
@@ -49,6 +50,17 @@ pub struct Options {
     pub floating_base: bool,
     /// Acceleration of free fall, world axes, m/s².
     pub gravity: Vector3<f64>,
+    /// What makes compliant limits of the joints' limits of position; `None` leaves these out.
+    pub limits: Option<Stops>,
+}
+
+/// Numbers of compliant limits, the same for all joints: see [`LimitKind::Compliant`](crate::LimitKind::Compliant).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stops {
+    /// k, N m/rad or N/m; at least 0.
+    pub stiffness: f64,
+    /// d, s/rad or s/m; at least 0.
+    pub damping: f64,
 }
 
 impl Default for Options {
@@ -57,6 +69,7 @@ impl Default for Options {
         Self {
             floating_base: false,
             gravity: Vector3::new(0.0, 0.0, -9.81),
+            limits: None,
         }
     }
 }
@@ -75,10 +88,21 @@ pub struct Import {
 /// The robot that a text in URDF describes. Messages call the text `source_name`.
 ///
 /// # Errors
-/// All mistakes of the text: XML that is not well-formed, or in another format (xacro, SDF and MJCF are told by name); missing or malformed elements and attributes; links and joints that
+/// Numbers of limits that are negative or not finite. All mistakes of the text: XML that is not well-formed, or in another format (xacro, SDF and MJCF are told by name); missing or malformed elements and attributes; links and joints that
 /// make no tree; mass properties that no body can have; a link without mass at the end of a moving joint.
 pub fn read(text: &str, source_name: &str, options: &Options) -> Result<Import, Diagnostics> {
     let mut sink = Sink::default();
+    if let Some(Stops { stiffness, damping }) = options.limits {
+        let numbers = [("stiffness", stiffness), ("damping", damping)];
+        let wrong = numbers
+            .into_iter()
+            .filter(|(_, number)| !(number.is_finite() && *number >= 0.0));
+        for (what, number) in wrong {
+            let message =
+                format!("the {what} of limits is {number}: it must be finite and at least 0");
+            sink.push(Diagnostic::without_place(message));
+        }
+    }
     let import = document::tree(text, &mut sink).and_then(|document| {
         let source = Source {
             name: source_name.to_owned(),

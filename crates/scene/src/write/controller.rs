@@ -9,7 +9,7 @@ use crate::control::{
     RegulatorDescription,
 };
 use hamel_control::PortSpring;
-use hamel_runtime::elements::Law;
+use hamel_runtime::time_function::Law;
 
 /// Appends the controller.
 pub(super) fn controller(out: &mut String, controller: &ControllerDescription) {

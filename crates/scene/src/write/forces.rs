@@ -2,7 +2,7 @@
 
 use super::body::{name_of, position};
 use super::value::{list, number, rows, table, text};
-use super::{entry, pose};
+use super::{entry, pose, time};
 use crate::description::SceneDescription;
 use crate::event::{
     CONSEQUENCE_NAMES, DIRECTION_NAMES, EventDescription, PointAlong, QuantityDescription,
@@ -12,7 +12,7 @@ use crate::forces::{
     PerFreedom, SpringEnergy, WrenchAxes,
 };
 use hamel_integrate::Direction;
-use hamel_runtime::elements::Law;
+use hamel_runtime::time_function::Law;
 
 /// Appends the keys of a body that say what acts at its joint.
 pub(super) fn of_joint(out: &mut String, forces: &JointForces) {
@@ -26,11 +26,10 @@ pub(super) fn of_joint(out: &mut String, forces: &JointForces) {
         entry(out, "armature", &per_freedom(&armature.value));
     }
     if let Some(effort) = &forces.effort {
-        entry(out, "effort", &list(&effort.value));
+        entry(out, "effort", &time::functions(&effort.value));
     }
     if let Some(motion) = &forces.motion {
-        let speeds: Vec<String> = motion.value.iter().map(speed).collect();
-        let speeds = format!("[{}]", speeds.join(", "));
+        let speeds = time::functions(&motion.value);
         entry(out, "motion", &table(&[("speeds", speeds)]));
     }
     if let Some(friction) = &forces.friction {
@@ -57,8 +56,13 @@ fn limit(limit: &LimitDescription) -> String {
         .into_iter()
         .filter_map(|(key, end)| Some((key, number(end?))));
     let mut entries: Vec<_> = ends.collect();
-    let LimitKind::Impact { restitution } = limit.kind;
-    entries.push(("restitution", number(restitution)));
+    match limit.kind {
+        LimitKind::Impact { restitution } => entries.push(("restitution", number(restitution))),
+        LimitKind::Compliant { stiffness, damping } => {
+            entries.push(("stiffness", number(stiffness)));
+            entries.push(("damping", number(damping)));
+        }
+    }
     table(&entries)
 }
 
@@ -131,8 +135,8 @@ pub(super) fn elements(out: &mut String, scene: &SceneDescription) {
         out.push_str("\n[[wrench]]\n");
         entry(out, "body", &text(name_of(Some(wrench.body), bodies)));
         entry(out, "point", &list(&wrench.point));
-        entry(out, "force", &list(&wrench.force));
-        entry(out, "moment", &list(&wrench.moment));
+        entry(out, "force", &time::functions(&wrench.force));
+        entry(out, "moment", &time::functions(&wrench.moment));
         let axes = match wrench.axes {
             WrenchAxes::World => "world",
             WrenchAxes::Body => "body",

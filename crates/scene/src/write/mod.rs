@@ -5,6 +5,7 @@ mod controller;
 mod forces;
 mod pose;
 mod shape;
+mod time;
 mod value;
 
 use crate::description::SceneDescription;

@@ -47,6 +47,7 @@ impl Recursive {
             configuration: q,
             speeds,
             motions: &Seen(&self.nodes),
+            moment: self.moment,
         };
         let mut action = Action {
             wrenches: &mut self.external,
@@ -104,6 +105,7 @@ impl Recursive {
             configuration: q,
             speeds,
             motions: &Seen(&self.nodes),
+            moment: self.moment,
         };
         let elements = self.mechanism.elements().iter();
         elements.map(|element| quantity(&**element, &view)).sum()

@@ -40,6 +40,7 @@ use super::{Dynamics, DynamicsError};
 use crate::mechanism::{Body, Mechanism, Space, StateError};
 use crate::spatial::ArticulatedInertia;
 use crate::steps::Pivot;
+use crate::time_function::Moment;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -85,6 +86,8 @@ pub struct Recursive {
     /// Prescribed rates of driven joints, one entry per speed; zero for the others.
     driven: Vec<f64>,
     coupling: Option<Coupling>,
+    /// When elements act.
+    moment: Moment,
 }
 
 impl Recursive {
@@ -118,6 +121,7 @@ impl Recursive {
             external: vec![Vector6::zeros(); count],
             driven: vec![0.0; speeds],
             coupling: Coupling::new(&mechanism),
+            moment: Moment::default(),
             mechanism,
         }
         .classified()
@@ -347,6 +351,10 @@ const RESTING: &[f64] = &[];
 impl Dynamics for Recursive {
     fn mechanism(&self) -> &Arc<Mechanism> {
         &self.mechanism
+    }
+
+    fn set_moment(&mut self, moment: Moment) {
+        self.moment = moment;
     }
 
     fn complete_speeds(&mut self, q: &[f64], speeds: &mut [f64]) -> Result<(), DynamicsError> {

@@ -7,6 +7,7 @@ use crate::elements::{Action, View};
 use crate::mechanism::Mechanism;
 use crate::spatial::fused::apply_transposed;
 use crate::spatial::{join, split};
+use crate::time_function::Moment;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -24,8 +25,8 @@ impl ElementForces {
     pub(super) fn new(
         mechanism: &Arc<Mechanism>,
         expansion: &Expansion,
-        q: &[f64],
-        speeds: &[f64],
+        (q, speeds): (&[f64], &[f64]),
+        moment: Moment,
     ) -> Result<Self, StateError> {
         let mut forces = Self {
             efforts: DVector::zeros(mechanism.layout().freedoms),
@@ -36,12 +37,7 @@ impl ElementForces {
         }
         // Elements see the bodies where the recursive form has them: its kinematics are tested against others.
         let motions = Recursive::new(Arc::clone(mechanism)).motions(q, speeds)?;
-        let view = View {
-            mechanism,
-            configuration: q,
-            speeds,
-            motions: &motions,
-        };
+        let view = View::new(mechanism, q, speeds, &motions).at(moment);
         let mut wrenches = vec![Vector6::zeros(); mechanism.bodies().len()];
         let mut action = Action {
             wrenches: &mut wrenches,

@@ -15,6 +15,7 @@ pub use expansion::Expansion;
 
 use super::{Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, Recursive};
 use crate::mechanism::{Mechanism, Space, StateError};
+use crate::time_function::Moment;
 use actuation::{ElementForces, driven, driven_freedoms};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
@@ -25,12 +26,20 @@ use nalgebra::DVector;
 #[derive(Clone, Debug)]
 pub struct Reference {
     mechanism: Arc<Mechanism>,
+    /// When elements act.
+    moment: Moment,
 }
 
 impl Reference {
     /// The reference form of `mechanism`.
     pub const fn new(mechanism: Arc<Mechanism>) -> Self {
-        Self { mechanism }
+        Self {
+            mechanism,
+            moment: Moment {
+                time: 0.0,
+                within: 0.0,
+            },
+        }
     }
 
     /// All that Theorems 2 and 3 need at `q`, to first order in ϕ.
@@ -55,7 +64,7 @@ impl Reference {
         let speeds = self.speeds_of("speeds", speeds)?;
         let efforts = self.efforts_of(efforts)?;
         let expansion = self.expansion(q)?;
-        let elements = ElementForces::new(&self.mechanism, &expansion, q, speeds)?;
+        let elements = ElementForces::new(&self.mechanism, &expansion, (q, speeds), self.moment)?;
         let reduced = expansion.select(speeds);
         expansion.constraint_force(&self.mechanism, &reduced, &(efforts + elements.efforts))
     }
@@ -109,6 +118,10 @@ impl Dynamics for Reference {
         Box::new(Self::new(mechanism))
     }
 
+    fn set_moment(&mut self, moment: Moment) {
+        self.moment = moment;
+    }
+
     fn complete_speeds(&mut self, q: &[f64], speeds: &mut [f64]) -> Result<(), DynamicsError> {
         self.speeds_of("speeds", speeds)?;
         let expansion = self.expansion(q)?;
@@ -131,7 +144,7 @@ impl Dynamics for Reference {
         let efforts = self.efforts_of(efforts)?;
         self.check_room("rates", rates)?;
         let expansion = self.expansion(q)?;
-        let elements = ElementForces::new(&self.mechanism, &expansion, q, speeds)?;
+        let elements = ElementForces::new(&self.mechanism, &expansion, (q, speeds), self.moment)?;
         let known = driven_freedoms(&self.mechanism, &expansion, efforts.as_slice());
         let efforts = efforts + elements.efforts;
         let reduced = expansion.select(speeds);
@@ -190,7 +203,7 @@ impl Dynamics for Reference {
         efforts(speeds, &mut tau);
         self.efforts_of(&tau)?;
         let known = driven_freedoms(&self.mechanism, &expansion, &tau);
-        let elements = ElementForces::new(&self.mechanism, &expansion, q, speeds)?;
+        let elements = ElementForces::new(&self.mechanism, &expansion, (q, speeds), self.moment)?;
         let tau = DVector::from_vec(tau) + elements.efforts;
         let mut solution = expansion.reduced_momentum_rate(&reduced, &tau);
         for (index, rate) in known {
@@ -204,7 +217,12 @@ impl Dynamics for Reference {
         let momenta = self.speeds_of("momenta", momenta)?;
         let expansion = self.expansion(q)?;
         let (whole, reduced) = self.solve_speeds(&expansion, q, momenta)?;
-        let elements = ElementForces::new(&self.mechanism, &expansion, q, whole.as_slice())?;
+        let elements = ElementForces::new(
+            &self.mechanism,
+            &expansion,
+            (q, whole.as_slice()),
+            self.moment,
+        )?;
         let kinetic = 0.5 * reduced.dot(&(expansion.reduced_mass_matrix() * &reduced));
         Ok(kinetic + expansion.potential + elements.energy)
     }

@@ -4,9 +4,10 @@ use chacha20::ChaCha8Rng;
 use hamel::dynamics::{
     Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, Recursive,
 };
-use hamel::elements::{Drive, Law, PointConstraint};
+use hamel::elements::{Drive, PointConstraint};
 use hamel::mechanism::Mechanism;
 use hamel::nalgebra::{DMatrix, Vector3};
+use hamel::time_function::Law;
 use hamel_tests::derivatives::{Actuation, Equipped, matrix};
 use hamel_tests::differences::{STEP, derivative, moved};
 use hamel_tests::figures::{Largest, difference, size};
@@ -73,7 +74,7 @@ fn driven(mechanism: Mechanism, body: usize) -> Mechanism {
     let drive = Drive {
         name: "drive".to_owned(),
         body,
-        laws: vec![Law::default(); mechanism.bodies()[body].ranges().speeds.len()],
+        laws: vec![Law::default().into(); mechanism.bodies()[body].ranges().speeds.len()],
     };
     mechanism.with_drives(vec![drive]).expect("it fits")
 }

@@ -2,8 +2,9 @@
 //! driven ones are inputs.
 
 use hamel::dynamics::{ForwardDerivatives, HamiltonianDerivatives, Recursive};
-use hamel::elements::{Drive, Law};
+use hamel::elements::Drive;
 use hamel::nalgebra::{DMatrix, DVector};
+use hamel::time_function::Law;
 use hamel_tests::derivatives::{
     Actuation, BOUND, Equipped, Expected, constants, derivatives, matrix, relative,
 };
@@ -22,7 +23,7 @@ fn all() -> Vec<Equipped> {
         let drive = |body: usize| Drive {
             name: format!("drive {body}"),
             body,
-            laws: vec![Law::default(); mechanism.bodies()[body].ranges().speeds.len()],
+            laws: vec![Law::default().into(); mechanism.bodies()[body].ranges().speeds.len()],
         };
         let first = case.seed as usize % 3;
         let drives = (first..mechanism.bodies().len()).step_by(3).map(drive);

@@ -3,9 +3,9 @@
 use super::{EXACT, Reading, largest, last, parse, run, text};
 use hamel::control::{ComputedTorque, Controller, ErrorDynamics, Feedback, Reference};
 use hamel::dynamics::{Dynamics, Recursive};
-use hamel::elements::Law;
 use hamel::erased::AnyJoint;
 use hamel::integrate::{Form, Method, Options, Scheme, Step, integrate};
+use hamel::time_function::Law;
 use hamel_scene::Scene;
 use hamel_tests::random::library;
 use std::f64::consts::{E, TAU};

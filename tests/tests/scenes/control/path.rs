@@ -2,8 +2,8 @@
 
 use super::{EXACT, largest, last, parse, run, scene, text};
 use hamel::control::{ControlError, Curve, PathFollower, PathGains};
-use hamel::elements::Law;
 use hamel::integrate::{Method, Scheme};
+use hamel::time_function::Law;
 use std::sync::Arc;
 
 const METHOD: Method = Method::controlled(Scheme::DormandPrince8, 1e-10);

@@ -106,6 +106,7 @@ impl Recursive {
             configuration: q,
             speeds,
             motions: &Seen(&self.nodes),
+            moment: self.moment,
         };
         let mut slopes = Slopes {
             columns: &self.columns,

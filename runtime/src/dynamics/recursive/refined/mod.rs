@@ -13,6 +13,7 @@ use crate::dynamics::{Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDe
 use crate::mechanism::Mechanism;
 use crate::scalar::Extended;
 use crate::spatial::shift_wrench;
+use crate::time_function::Moment;
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec;
@@ -172,6 +173,10 @@ impl Dynamics for Refined {
 
     fn of(&self, mechanism: Arc<Mechanism>) -> Box<dyn Dynamics> {
         Box::new(Self::new(mechanism))
+    }
+
+    fn set_moment(&mut self, moment: Moment) {
+        self.tree.set_moment(moment);
     }
 
     fn complete_speeds(&mut self, q: &[f64], speeds: &mut [f64]) -> Result<(), DynamicsError> {
