@@ -115,15 +115,17 @@ impl Bends {
         }
     }
 
-    /// The step is taken; `crossed` is the function on whose zero it ends.
+    /// The step is taken; `crossed` is the function on whose zero it ends. Of any other that is near its zero the next step tells the side.
     fn settle(&mut self, crossed: Option<usize>) {
-        for (i, side) in self.sides.iter_mut().enumerate() {
+        for i in 0..self.sides.len() {
             let end = self.end[i];
-            if crossed == Some(i) {
-                *side = -*side;
-            } else if end != 0.0 && !end.is_nan() {
-                *side = end.signum();
-            }
+            self.sides[i] = if crossed == Some(i) {
+                -self.sides[i]
+            } else if end.is_nan() || self.is_near(i) {
+                0.0
+            } else {
+                end.signum()
+            };
         }
         self.start.copy_from_slice(&self.end);
     }

@@ -1,6 +1,6 @@
 //! Compliant limits, against pieces of sines and a first integral.
 
-use super::trials::{FORMS, error, run, slide, times};
+use super::trials::{FORMS, error, run, scene, slide, times};
 use hamel::integrate::{Form, Method, Scheme};
 use hamel_scene::Scene;
 use std::f64::consts::PI;
@@ -85,6 +85,35 @@ fn fixed_steps_keep_their_order_over_a_limit() {
                 "{scheme:?}, {form:?}: order {order} from {coarse:e} and {fine:e}"
             );
         }
+    }
+}
+
+/// Two alike that meet their limits at the same time take the steps of one.
+#[test]
+fn limits_are_met_together() {
+    let one = |name: &str| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nparent = \"world\"\nmass = 2.0\njoint = {{ type = \"prismatic\" }}\n\
+             inertia_xx_yy_zz_xy_xz_yz = [0.1, 0.1, 0.1, 0.0, 0.0, 0.0]\nspring = {{ stiffness = 8.0 }}\n\
+             limit = {{ upper = 0.0, stiffness = 792.0 }}\ninitial.phi = [-1.0]\n"
+        )
+    };
+    let two = scene(&(one("first") + &one("second")));
+    for form in FORMS {
+        let method = Method::controlled(Scheme::Verner9, 1e-13);
+        let solution = run(&two, form, method, &times(5.0));
+        let found = error(&solution, |t| {
+            let (q, v) = bounced(t);
+            ([q.clone(), q].concat(), [v.clone(), v].concat())
+        });
+        assert!(found < 1e-9, "{form:?}: {found:e}");
+        let alone = run(&bouncing(), form, method, &times(5.0));
+        let (steps, single) = (solution.statistics.steps, alone.statistics.steps);
+        println!("{form:?}: {steps} steps, {single} of one");
+        assert!(
+            steps <= single + 10,
+            "{form:?}: {steps} steps, {single} of one"
+        );
     }
 }
 
