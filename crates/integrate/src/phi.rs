@@ -258,7 +258,7 @@ mod tests {
             let mut phi = Phi::new(2);
             let entries = [[0.0, 1.0], [-stiffness, -stiffness]];
             assert!(phi.evaluate(|i, j| entries[i][j]));
-            let root = (1.0 - 4.0 / stiffness as f64).sqrt();
+            let root = (1.0_f64 - 4.0 / stiffness).sqrt();
             let fast = 0.5 * stiffness * (1.0 + root);
             let slow = stiffness / fast;
             // From x = 1 at rest: (fast e^(−slow) − slow e^(−fast))/(fast − slow), at time 1.

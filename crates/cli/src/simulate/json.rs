@@ -158,6 +158,7 @@ mod tests {
             form: "lagrangian",
             method: "rk4",
             reason: None,
+            accuracy: None,
             unresolved: None,
             columns: &[],
             samples: &[],
