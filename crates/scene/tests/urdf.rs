@@ -221,7 +221,6 @@ fn what_is_not_simulated_is_told_and_kept() {
     let wanted = [
         "warning: limits of position are not simulated: the joint moves past them: joint `joint`",
         "warning: mimic joints are not coupled: the joint moves by itself: joint `joint`",
-        "warning: dry friction is not simulated: joint `joint`",
         "note: attributes `current` of <limit> are not read: joint `joint`",
         "note: transmissions are not simulated: transmission `t`",
         "note: elements <gear> in <robot> are not read: gear 1",
@@ -251,6 +250,19 @@ fn what_is_not_simulated_is_told_and_kept() {
     assert_eq!(
         (damping, facts.friction),
         (Some(&PerFreedom::All(0.1)), 0.2)
+    );
+    let friction = arm(&import).forces.friction.as_ref();
+    let friction = friction.map(|friction| (friction.value.sliding, friction.value.sticking));
+    assert_eq!(friction, Some((0.2, 0.2)));
+    // A joint that does not count turns can have none.
+    let turning = "<axis xyz=\"0 0 1\"/><dynamics friction=\"0.2\"/>";
+    let import = robot("continuous", turning, "");
+    assert!(arm(&import).forces.friction.is_none());
+    assert_eq!(
+        notices(&import),
+        [
+            "warning: dry friction is simulated of revolute and prismatic joints alone: joint `joint`"
+        ]
     );
 }
 

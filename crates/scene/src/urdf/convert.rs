@@ -198,6 +198,8 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
                 let span = place(joint.node, "limit", "lower");
                 Located::new(limit, span)
             }),
+            friction: joint::friction(&joint, &facts[index])
+                .map(|friction| Located::new(friction, place(joint.node, "dynamics", "friction"))),
             ..JointForces::default()
         };
         let joint = (joint.name.to_owned(), kind, tag(joint.node));

@@ -4,7 +4,7 @@ use super::Stops;
 use super::document::{attribute, child, number, numbers, place, vector};
 use super::robot::{Joint, JointType, Robot};
 use crate::diagnostics::Diagnostic;
-use crate::forces::{LimitDescription, LimitKind};
+use crate::forces::{FrictionDescription, LimitDescription, LimitKind};
 use crate::notice::Notices;
 use crate::parse::rotation;
 use crate::read::Sink;
@@ -14,7 +14,7 @@ use hamel_runtime::spatial::Pose;
 use nalgebra::{Matrix3, Vector3, Vector4};
 use roxmltree::Node;
 
-/// What a file says of a joint beyond its motion. None of it but `damping` is simulated, and limits of position where that is asked for.
+/// What a file says of a joint beyond its motion. Of it `damping` and `friction` are simulated, and limits of position where that is asked for.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointFacts {
     /// Name of the joint.
@@ -47,9 +47,6 @@ impl JointFacts {
                 Number(*multiplier),
                 Number(*offset)
             ));
-        }
-        if self.friction != 0.0 {
-            lines.push(format!("dry friction {:?}", Number(self.friction)));
         }
         lines
     }
@@ -186,8 +183,8 @@ pub(super) fn stopped(
     facts: &JointFacts,
     stops: Stops,
 ) -> Option<LimitDescription> {
-    let has_one_coordinate = matches!(joint.kind, JointType::Revolute | JointType::Prismatic);
-    let limits = facts.limits.as_ref().filter(|_| has_one_coordinate)?;
+    let limits = facts.limits.as_ref();
+    let limits = limits.filter(|_| has_one_coordinate(joint))?;
     let [lower, upper] = limits
         .position?
         .map(|end| Some(end).filter(|end| end.is_finite()));
@@ -199,6 +196,19 @@ pub(super) fn stopped(
             damping: stops.damping,
         },
     })
+}
+
+/// Its dry friction, where it is of a kind that can have some.
+pub(super) fn friction(joint: &Joint<'_, '_>, facts: &JointFacts) -> Option<FrictionDescription> {
+    (facts.friction != 0.0 && has_one_coordinate(joint)).then_some(FrictionDescription {
+        sliding: facts.friction,
+        sticking: facts.friction,
+    })
+}
+
+/// Whether it becomes a joint with a single coordinate, which limits and friction need.
+fn has_one_coordinate(joint: &Joint<'_, '_>) -> bool {
+    matches!(joint.kind, JointType::Revolute | JointType::Prismatic)
 }
 
 /// Whether a joint is beyond its limits where it begins.
@@ -237,7 +247,10 @@ pub(super) fn tell(
             mimic == Some(false),
             "mimic joints follow no other joint of the robot: the joint moves by itself",
         ),
-        (facts.friction != 0.0, "dry friction is not simulated"),
+        (
+            facts.friction != 0.0 && !has_one_coordinate(joint),
+            "dry friction is simulated of revolute and prismatic joints alone",
+        ),
     ] {
         if holds {
             notices.warn(message, &owner);

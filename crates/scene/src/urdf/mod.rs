@@ -10,7 +10,8 @@
 //! | `<inertial>` absent | no mass |
 //! | `<visual>` of a box, a sphere, a cylinder or a capsule | a shape for pictures; meshes are told as [`Notice`]s |
 //! | `<limit lower upper>` of `revolute` and `prismatic` | compliant limits, if [`Options::limits`] gives their numbers |
-//! | other limits, mimic, friction, safety controllers, transmissions, collision shapes, unknown elements | not simulated, and told as [`Notice`]s |
+//! | `<dynamics damping friction>` | damping; dry friction of `revolute` and `prismatic` |
+//! | other limits, mimic, safety controllers, transmissions, collision shapes, unknown elements | not simulated, and told as [`Notice`]s |
 //!
 //! A state is not part of a URDF: every joint is at home (angles, displacements 0) and at rest.
 
