@@ -216,6 +216,9 @@ impl<'a> Simulation<'a> {
                 }
                 observer(step)
             });
+        if self.settings.chooses {
+            motion = motion.choosing();
+        }
         for event in events {
             motion = motion.event(event);
         }

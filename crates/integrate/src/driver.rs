@@ -10,6 +10,7 @@ use super::options::{StepControl, least_step};
 use super::outputs::{Outputs, Passed};
 use super::pieces::{FirstPiece, resolving};
 use super::prospect::{Prospect, other_method};
+use super::reconsider::Reconsideration;
 use super::rounding::Rounding;
 use super::step_control::StepController;
 use super::step_state::StepState;
@@ -17,7 +18,7 @@ use super::stepper::{self, Span, Stepper};
 use super::waypoints::Waypoints;
 use super::{
     Crossing, Event, Form, Inputs, IntegrateError, Method, Near, Observer, Options, Sampling,
-    Solution, State, Statistics, Step, StepFailure,
+    Scheme, Solution, State, Statistics, Step, StepFailure,
 };
 use alloc::boxed::Box;
 use alloc::format;
@@ -60,6 +61,10 @@ pub(super) struct Driver<'a> {
     pub(super) flow: Flow<'a>,
     pub(super) step_state: StepState,
     pub(super) stepper: Box<dyn Stepper>,
+    /// That of the stepper.
+    pub(super) scheme: Scheme,
+    /// The choice of the scheme, where it was left open.
+    pub(super) reconsideration: Option<Reconsideration>,
     pub(super) options: &'a Options,
     hold: Option<Hold>,
     kinks: Kinks,
@@ -85,8 +90,8 @@ pub(super) struct Driver<'a> {
 /// How the next step is chosen.
 pub(super) struct Pacing {
     /// The step to try where no sample time is in the way.
-    step: f64,
-    controller: StepController,
+    pub(super) step: f64,
+    pub(super) controller: StepController,
     rounding: Rounding,
 }
 
@@ -97,7 +102,7 @@ impl<'a> Driver<'a> {
         options: &'a Options,
         period: Option<f64>,
         inputs: Option<&'a mut Inputs<'a>>,
-        (sampling, events): (Sampling, Vec<Event<'a>>),
+        (sampling, events, is_open): (Sampling, Vec<Event<'a>>, bool),
     ) -> Result<Self, IntegrateError> {
         let mut flow = Flow::new(dynamics, inputs, options.form);
         let watch = Watch::new(&flow.mechanism);
@@ -142,6 +147,8 @@ impl<'a> Driver<'a> {
             waypoints: Waypoints::new(),
             prospect: Prospect::new(time),
             stepper: stepper::new(options.method.scheme(), tolerance, &flow),
+            scheme: *options.method.scheme(),
+            reconsideration: is_open.then(Reconsideration::new),
             flow,
             step_state,
             options,
@@ -176,6 +183,7 @@ impl<'a> Driver<'a> {
             stopped = is_past || self.report(observer) || self.end.is_some();
             if !stopped {
                 self.look_ahead()?;
+                self.reconsider(&mut pacing)?;
             }
         }
         self.count_solves();
@@ -184,6 +192,9 @@ impl<'a> Driver<'a> {
             state: self.end.take().unwrap_or_else(|| self.state()),
             samples: self.samples,
             waypoints: self.waypoints.finish(),
+            method_changes: self
+                .reconsideration
+                .map_or_else(Vec::new, |own| own.changes),
             events: self.crossings,
             statistics: self.statistics,
             approaches: self.watch.finish(),
@@ -239,7 +250,7 @@ impl<'a> Driver<'a> {
     }
 
     /// A step over which the state changes by about `tolerance^(1/order)`.
-    fn first_step(&mut self, tolerance: f64, order: u32) -> Result<f64, IntegrateError> {
+    pub(super) fn first_step(&mut self, tolerance: f64, order: u32) -> Result<f64, IntegrateError> {
         let span = self.options.t_end - self.start;
         let change = 0.3 * Float::powf(tolerance, 1.0 / f64::from(order));
         let pace = self.step_state.pace(&mut self.flow);
@@ -509,7 +520,7 @@ impl<'a> Driver<'a> {
         observer(&step).is_break()
     }
 
-    fn state(&self) -> State {
+    pub(super) fn state(&self) -> State {
         State {
             time: self.clock.time(),
             configuration: self.step_state.configuration.clone(),

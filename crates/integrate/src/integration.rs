@@ -46,6 +46,7 @@ pub struct Integration<'a> {
     observer: Box<Observer<'a>>,
     sampling: Sampling,
     events: Vec<Event<'a>>,
+    is_open: bool,
 }
 
 impl<'a> Integration<'a> {
@@ -60,6 +61,7 @@ impl<'a> Integration<'a> {
             observer: Box::new(no_observer),
             sampling: Sampling::Landing,
             events: Vec::new(),
+            is_open: false,
         }
     }
 
@@ -85,6 +87,13 @@ impl<'a> Integration<'a> {
     /// With samples from there.
     pub const fn sampling(mut self, sampling: Sampling) -> Self {
         self.sampling = sampling;
+        self
+    }
+
+    /// With a method that is looked at again on the way, by [`Choice`](super::Choice): where springs stiffen, stops are met or joints fold, an explicit method gives way
+    /// to Radau IIA, and the other way round; [`Solution::method_changes`] tells of it. Dense output and events keep the method.
+    pub const fn choosing(mut self) -> Self {
+        self.is_open = true;
         self
     }
 
@@ -128,7 +137,7 @@ impl<'a> Integration<'a> {
         let inputs = self.inputs.as_mut();
         let inputs = inputs.map(|inputs| -> &mut Inputs<'_> { &mut **inputs });
         let (dynamics, options) = (self.dynamics, self.options);
-        let wanted = (self.sampling, self.events);
+        let wanted = (self.sampling, self.events, self.is_open);
         then(Driver::new(
             dynamics,
             self.initial,

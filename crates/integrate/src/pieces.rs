@@ -102,11 +102,11 @@ impl Driver<'_> {
         self.renew_stepper();
     }
 
-    fn renew_stepper(&mut self) {
+    pub(super) fn renew_stepper(&mut self) {
         self.count_solves();
         let method = &self.options.method;
         let tolerance = method.control().map(|control| control.tolerance);
-        self.stepper = stepper::new(method.scheme(), tolerance, &self.flow);
+        self.stepper = stepper::new(&self.scheme, tolerance, &self.flow);
     }
 
     /// Ends the piece within the step just made, and begins the next; `clock` at that part of the step.

@@ -1,6 +1,6 @@
 //! What an integration starts from, shows on the way, and returns.
 
-use super::{Approach, Crossing, RoundingLimit};
+use super::{Approach, Crossing, MethodChange, RoundingLimit};
 use alloc::vec::Vec;
 
 /// State of a mechanism at one time.
@@ -61,6 +61,8 @@ pub struct Solution {
     pub waypoints: Vec<State>,
     /// What crossed zero, and what joints with friction and limits did, in the order of time.
     pub events: Vec<Crossing>,
+    /// The methods that took over on the way, where [`Integration::choosing`](super::Integration::choosing) allowed it.
+    pub method_changes: Vec<MethodChange>,
     /// The work done.
     pub statistics: Statistics,
     /// How near each joint that has singular sets came to them, in the order of the joints.

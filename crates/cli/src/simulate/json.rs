@@ -24,6 +24,9 @@ pub struct Report<'a> {
     /// Why the method was chosen; absent where it was named.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<&'a str>,
+    /// The methods that took over on the way, where the choice was left open; absent where none did.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    pub method_changes: &'a [MethodChange<'a>],
     /// What came of the accuracy that was asked for; absent where a tolerance or a step was.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<&'a Request>,
@@ -68,6 +71,28 @@ impl<'a> Rounding<'a> {
             steps: limit.steps,
             joint: &limit.joint,
             error: limit.error,
+        }
+    }
+}
+
+/// A method that took over.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct MethodChange<'a> {
+    /// When, s.
+    pub t: f64,
+    /// Its name.
+    pub method: &'static str,
+    /// Why.
+    pub reason: &'a str,
+}
+
+impl<'a> MethodChange<'a> {
+    /// What is told of it.
+    pub fn of(change: &'a hamel::integrate::MethodChange) -> Self {
+        Self {
+            t: change.time,
+            method: change.scheme.name(),
+            reason: &change.reason,
         }
     }
 }
@@ -159,6 +184,7 @@ mod tests {
             method: "rk4",
             reason: None,
             accuracy: None,
+            method_changes: &[],
             unresolved: None,
             columns: &[],
             samples: &[],

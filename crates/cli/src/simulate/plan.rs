@@ -23,6 +23,8 @@ pub struct Plan {
     pub settings: Settings,
     /// Why the method was chosen, where the choice was left open.
     pub reason: Option<String>,
+    /// Whether the choice of the method is looked at again on the way; compiled equations have what one method needs.
+    pub is_open: bool,
     /// What came of the accuracy that was asked for, if one was.
     pub request: Option<Request>,
     /// What controls the mechanism, if anything does.
@@ -77,6 +79,7 @@ impl Plan {
             settings,
             reason: None,
             request: None,
+            is_open: settings.chooses && !args.compiled,
             control,
             times,
             csv,

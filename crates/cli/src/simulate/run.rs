@@ -176,6 +176,9 @@ pub fn move_on(
     let plan = motion.plan;
     let mut integration =
         Integration::new(dynamics, motion.initial, motion.options).observer(observer);
+    if plan.is_open {
+        integration = integration.choosing();
+    }
     if !motion.is_companion {
         integration = integration.sampling(plan.settings.sampling);
         for event in &plan.scene.events {
@@ -208,6 +211,12 @@ fn print_json(plan: &Plan, columns: &Columns<'_>, run: &Run) -> Result<(), Failu
         method: plan.settings.method.scheme().name(),
         reason: plan.reason.as_deref(),
         accuracy: plan.request.as_ref(),
+        method_changes: &run
+            .solution
+            .method_changes
+            .iter()
+            .map(json::MethodChange::of)
+            .collect::<Vec<_>>(),
         unresolved: unresolved::unresolved(plan, run.statistics.steps, run.solution.state.time)?,
         columns: columns.list(),
         samples: &samples,
@@ -247,6 +256,7 @@ fn print_summary(plan: &Plan, run: &Run) -> Result<(), Failure> {
         statistics: run.statistics,
         approaches: &solution.approaches,
         rounding: solution.rounding.as_ref(),
+        method_changes: &solution.method_changes,
         events: &solution.events,
     };
     output::print(&summary.to_string())

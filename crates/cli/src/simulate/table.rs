@@ -6,7 +6,7 @@ use super::control::Outcome;
 use super::json::Statistics;
 use super::plan::Plan;
 use comfy_table::{Cell, CellAlignment, Table, presets};
-use hamel::integrate::{Approach, Crossing, RoundingLimit};
+use hamel::integrate::{Approach, Crossing, MethodChange, RoundingLimit};
 use hamel::mechanism::{BodyState, Kinematics, Mechanism};
 use std::fmt;
 
@@ -43,6 +43,8 @@ pub struct Summary<'a> {
     pub unresolved: Option<&'a str>,
     /// What the scene's events came to.
     pub events: &'a [Crossing],
+    /// The methods that took over on the way.
+    pub method_changes: &'a [MethodChange],
     /// Where rounding decided how long steps are.
     pub rounding: Option<&'a RoundingLimit>,
     /// How near joints came to singular sets.
@@ -124,6 +126,10 @@ impl Summary<'_> {
         writeln!(f, "{bodies}, {freedoms}, {speeds}; {form} form; {method}")?;
         if let Some(reason) = &self.plan.reason {
             writeln!(f, "method      {reason}")?;
+        }
+        for change in self.method_changes {
+            let (time, name, reason) = (change.time, change.scheme.name(), &change.reason);
+            writeln!(f, "            from {time:.6} s on {name}: {reason}")?;
         }
         if let Some(equations) = self.equations {
             writeln!(f, "equations   {equations}")?;

@@ -1,8 +1,11 @@
 //! The method chosen where springs are stiff, and the reason given.
 
 use crate::support::{on_axis, options, run};
-use hamel_integrate::{Choice, Form, Method, Scheme, State, Wanted};
-use hamel_runtime::elements::{BodySpring, Element, JointDamper, JointSpring};
+use hamel_integrate::{Choice, Form, Integration, Method, Scheme, State, Wanted};
+use hamel_runtime::dynamics::Recursive;
+use hamel_runtime::elements::{
+    BodySpring, Element, JointDamper, JointEffort, JointLimit, JointSpring,
+};
 use hamel_runtime::mechanism::{BodySpec, Mechanism};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
@@ -119,5 +122,56 @@ fn slow_oscillations_do_not_keep_radau_from_what_is_damped() {
     assert_eq!(
         chosen(&mechanism, &state, false).scheme,
         Scheme::Exponential
+    );
+}
+
+/// A wheel is driven onto a stiff stop and comes to rest on it: an explicit method up to there, Radau IIA on the stop, where steps of the explicit one would
+/// be held to some 1e-4 s.
+#[test]
+fn the_choice_is_looked_at_again_on_the_way() {
+    let drive: Arc<dyn Element> = Arc::new(JointEffort {
+        name: "drive".into(),
+        body: 0,
+        efforts: vec![-9.81],
+    });
+    let stop: Arc<dyn Element> = Arc::new(JointLimit {
+        name: "stop".into(),
+        body: 0,
+        lower: Some(0.0),
+        upper: None,
+        stiffness: 1e8,
+        damping: 1e3,
+    });
+    let body = on_axis(Vector3::zeros(), Matrix3::identity());
+    let mechanism = with(vec![body], vec![drive, stop]);
+    let initial = State {
+        time: 0.0,
+        configuration: vec![1.0],
+        speeds: vec![0.0],
+    };
+    let method = Method::controlled(Scheme::DormandPrince, 1e-6);
+    let options = options(Form::Lagrangian, method, 40.0);
+    let run = |is_open: bool| {
+        let mut dynamics = Recursive::new(Arc::clone(&mechanism));
+        let motion = Integration::new(&mut dynamics, &initial, &options);
+        let motion = match is_open {
+            true => motion.choosing(),
+            false => motion,
+        };
+        motion.run().expect("it goes on")
+    };
+    let (kept, open) = (run(false), run(true));
+    assert!(kept.method_changes.is_empty());
+    let change = open.method_changes.first().expect("Radau IIA takes over");
+    assert_eq!(change.scheme, Scheme::Radau5, "{}", change.reason);
+    assert!(change.time > 0.4, "{}", change.time);
+    // At rest where the stop carries the effort.
+    let expected = -9.81 / 1e8;
+    assert!((open.state.configuration[0] - expected).abs() < 1e-9);
+    let (kept, open) = (kept.statistics, open.statistics);
+    println!("{kept:?}, {open:?}");
+    assert!(
+        3 * open.evaluations < kept.evaluations,
+        "{open:?}, {kept:?}"
     );
 }
