@@ -167,7 +167,7 @@ fn compiled(body: &BodyDescription, joint: Rc<JointType>) -> Result<Body, Vec<St
     let shape = joint.derived.shape;
     if forces.limit.is_some() && (shape.configuration, shape.freedoms, shape.speeds) != (1, 1, 1) {
         reasons.push(format!(
-            "joint `{name}`: a limit is one of a single coordinate whose rate is the speed, and `{}` has no such coordinate",
+            "joint `{name}`: a limit needs a single coordinate whose rate is the speed, and `{}` has none",
             body.joint.kind.value
         ));
     }

@@ -17,6 +17,9 @@ const HOPELESS: f64 = 3e3;
 /// As many steps are too many from the first look on: of the smallest mechanism, half a month.
 const ENDLESS: f64 = 1e13;
 
+/// Steps that are less than this part of those before still shrink.
+const SHRINKS: f64 = 0.1;
+
 /// What is known of the pace of a motion.
 #[derive(Debug)]
 pub(super) struct Prospect {
@@ -24,11 +27,17 @@ pub(super) struct Prospect {
     time: f64,
     /// How many steps there were by then.
     steps: usize,
+    /// The mean of those before, s.
+    step: f64,
 }
 
 impl Prospect {
     pub(super) const fn new(time: f64) -> Self {
-        Self { time, steps: 0 }
+        Self {
+            time,
+            steps: 0,
+            step: 0.0,
+        }
     }
 
     /// Whether the steps so far have led far enough to `time`.
@@ -49,6 +58,11 @@ impl Prospect {
         }
         let step = (time - self.time) / taken as f64;
         (self.time, self.steps) = (time, steps);
+        let before = core::mem::replace(&mut self.step, step);
+        // Steps that still shrink come to their own end soon, which tells what they shrink for.
+        if step < SHRINKS * before || before == 0.0 {
+            return Ok(());
+        }
         let to_go = (options.t_end - time) / step;
         let bodies = flow.mechanism.bodies().len();
         let work = flow.evaluations as f64 * bodies as f64;

@@ -11,7 +11,53 @@ fn nothing_but_the_files_stays() {
     place.done("compile top.toml --function momenta -o d.c");
     let mut names = place.names();
     names.retain(|name| !before.contains(name));
-    assert_eq!(names, ["a.csv", "b.parquet", "c.html", "d.c", "d.h"]);
+    let written = [
+        "a.csv",
+        "a.csv-metadata.json",
+        "b.parquet",
+        "c.html",
+        "d.c",
+        "d.h",
+    ];
+    assert_eq!(names, written);
+}
+
+/// As the W3C's metadata vocabulary for tabular data has it.
+#[test]
+fn metadata_of_a_csv_tell_its_columns_and_its_error() {
+    let place = Place::new();
+    place.done("simulate top.toml --t-end 0.1 --csv a.csv");
+    let text = place.read("a.csv-metadata.json");
+    let metadata: serde_json::Value = serde_json::from_slice(&text).expect("JSON");
+    assert_eq!(metadata["@context"], "http://www.w3.org/ns/csvw");
+    assert_eq!(metadata["url"], "a.csv");
+    let csv = String::from_utf8(place.read("a.csv")).expect("text");
+    let columns = metadata["tableSchema"]["columns"]
+        .as_array()
+        .expect("a list");
+    let titles: Vec<&str> = columns
+        .iter()
+        .filter_map(|c| c["titles"].as_str())
+        .collect();
+    assert_eq!(csv.lines().next(), Some(titles.join(",").as_str()));
+    assert_eq!(columns[0]["schema:unitText"], "s");
+    let error = &metadata["notes"][0]["error"];
+    assert!(error["end"]["total"].as_f64().is_some(), "{error}");
+    assert_eq!(
+        error["samples"].as_array().map(Vec::len),
+        Some(csv.lines().count() - 1)
+    );
+    // One of another program is not replaced.
+    place.write(
+        "b.csv-metadata.json",
+        "{\"@context\": \"http://www.w3.org/ns/csvw\"}",
+    );
+    let told = place.refused("simulate top.toml --t-end 0.1 --csv b.csv", 2);
+    assert!(
+        told.contains("b.csv-metadata.json is there already"),
+        "{told}"
+    );
+    assert!(!place.names().contains(&"b.csv".to_owned()));
 }
 
 #[test]

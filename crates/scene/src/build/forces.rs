@@ -171,7 +171,7 @@ fn of_one_coordinate<T: Copy>(
         return Ok(Some(found.value));
     }
     let message = format!(
-        "joint `{}`: {what} is one of a single coordinate whose rate is the speed, and `{}` has no such coordinate",
+        "joint `{}`: {what} needs a single coordinate whose rate is the speed, and `{}` has none",
         stand.name,
         stand.joint.name()
     );
