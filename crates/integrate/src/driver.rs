@@ -144,7 +144,7 @@ impl<'a> Driver<'a> {
         let bends = Bends::new(&flow, &initial.configuration);
         Ok(Self {
             watch,
-            waypoints: Waypoints::new(),
+            waypoints: Waypoints::new(flow.mechanism.layout()),
             prospect: Prospect::new(time),
             stepper: stepper::new(options.method.scheme(), tolerance, &flow),
             scheme: *options.method.scheme(),
@@ -437,7 +437,7 @@ impl<'a> Driver<'a> {
             }
             _ if self.end.is_some() => {}
             _ => {
-                self.resolving *= 2.0;
+                self.widen();
                 if self.renew_and_go_on()? {
                     self.pace_anew(pacing)?;
                 }
@@ -497,12 +497,8 @@ impl<'a> Driver<'a> {
         let time = self.clock.time();
         self.watch
             .see(&self.flow.mechanism, time, &self.step_state.configuration);
-        let (step_state, clock) = (&self.step_state, &self.clock);
-        self.waypoints.see(self.statistics.steps, || State {
-            time: clock.time(),
-            configuration: step_state.configuration.clone(),
-            speeds: step_state.speeds().to_vec(),
-        });
+        let at = (&*self.step_state.configuration, self.step_state.speeds());
+        self.waypoints.see(self.statistics.steps, time, at);
         let mut sample = None;
         while self.options.samples.get(self.samples.len()) == Some(&self.clock.time()) {
             sample = Some(self.samples.len());

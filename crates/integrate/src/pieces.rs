@@ -102,6 +102,16 @@ impl Driver<'_> {
         self.renew_stepper();
     }
 
+    /// Lets steps grow that have told of all ends of pieces. Where joints are held and what acts changes with time by itself, they stay short: it may come and go
+    /// within a longer one.
+    pub(super) fn widen(&mut self) {
+        let longest = match self.flow.is_autonomous() || !self.resolving.is_finite() {
+            true => f64::INFINITY,
+            false => FIRST * (self.options.t_end - self.start),
+        };
+        self.resolving = (2.0 * self.resolving).min(longest);
+    }
+
     pub(super) fn renew_stepper(&mut self) {
         self.count_solves();
         let method = &self.options.method;

@@ -373,7 +373,7 @@ body = \"world\"
 
 [simulation]
 t_end = 1.0
-method = \"dopri5\"
+method = \"auto\"
 tol = 1e-10
 form = \"lagrangian\"
 sample_step = 0.01
