@@ -273,7 +273,7 @@ fn what_is_not_compiled_is_named() {
         "spring of joint `elbow`: to find the configuration of a pose takes iterations",
         "joint `wheel`: a nonholonomic joint such as `cart` can have no armature",
         "spring of joint `wrist`: it is off the joint's manifold",
-        "joint `hand`: a limit is one of a single coordinate",
+        "joint `hand`: a limit needs a single coordinate",
     ];
     assert_eq!(refused.reasons.len(), expected.len(), "{refused}");
     for (reason, expected) in refused.reasons.iter().zip(expected) {

@@ -200,7 +200,7 @@ fn limits_fit_joints_with_one_coordinate() {
             .expect("a ball has no single coordinate")
             .to_string();
         assert!(
-            errors.contains("joint `a`: a limit is one of a single coordinate"),
+            errors.contains("joint `a`: a limit needs a single coordinate"),
             "{errors}"
         );
     }
