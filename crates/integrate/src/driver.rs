@@ -90,7 +90,7 @@ pub(super) struct Driver<'a> {
 /// How the next step is chosen.
 pub(super) struct Pacing {
     /// The step to try where no sample time is in the way.
-    pub(super) step: f64,
+    step: f64,
     pub(super) controller: StepController,
     rounding: Rounding,
 }
@@ -250,7 +250,7 @@ impl<'a> Driver<'a> {
     }
 
     /// A step over which the state changes by about `tolerance^(1/order)`.
-    pub(super) fn first_step(&mut self, tolerance: f64, order: u32) -> Result<f64, IntegrateError> {
+    fn first_step(&mut self, tolerance: f64, order: u32) -> Result<f64, IntegrateError> {
         let span = self.options.t_end - self.start;
         let change = 0.3 * Float::powf(tolerance, 1.0 / f64::from(order));
         let pace = self.step_state.pace(&mut self.flow);
@@ -454,7 +454,7 @@ impl<'a> Driver<'a> {
     }
 
     /// The first step of a piece of the motion.
-    fn pace_anew(&mut self, pacing: &mut Pacing) -> Result<(), IntegrateError> {
+    pub(super) fn pace_anew(&mut self, pacing: &mut Pacing) -> Result<(), IntegrateError> {
         if let Some(control) = self.options.method.control() {
             let first = self.first_step(control.tolerance, self.stepper.order())?;
             pacing.step = first.min(control.max_step);

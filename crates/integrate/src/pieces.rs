@@ -149,12 +149,7 @@ impl Driver<'_> {
         if broken.is_empty() {
             return Ok(false);
         }
-        let state = State {
-            time,
-            configuration: self.step_state.configuration.clone(),
-            speeds: self.step_state.speeds().to_vec(),
-        };
-        self.begin_piece(state, &broken)?;
+        self.begin_piece(self.state(), &broken)?;
         Ok(true)
     }
 

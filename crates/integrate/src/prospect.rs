@@ -1,7 +1,7 @@
 //! Whether a motion comes to its end in a time that anybody waits for.
 
 use super::flow::Flow;
-use super::{Choice, IntegrateError, Method, Options, Scheme, State, Statistics, Wanted};
+use super::{Choice, IntegrateError, Method, Options, State, Statistics, Wanted};
 use alloc::format;
 use alloc::string::String;
 
@@ -100,9 +100,7 @@ pub(super) fn other_method(flow: &Flow<'_>, options: &Options, state: &State) ->
         is_bound: true,
     };
     let choice = Choice::new(&flow.mechanism, state, wanted).ok()?;
-    let is_stiff =
-        !matches!(choice.scheme, Scheme::Explicit(_)) && choice.scheme.tableau().is_none();
-    (is_stiff && choice.scheme != scheme).then(|| {
+    (choice.scheme.takes_derivatives() && choice.scheme != scheme).then(|| {
         format!(
             "{}: take the method `{}`",
             choice.reason,

@@ -2,7 +2,7 @@
 
 use super::driver::{Driver, Pacing};
 use super::step_control::StepController;
-use super::{Choice, IntegrateError, Method, Scheme, State, Wanted};
+use super::{Choice, IntegrateError, Method, Scheme, Wanted};
 use alloc::string::String;
 use alloc::vec::Vec;
 
@@ -61,7 +61,7 @@ impl Driver<'_> {
         if is_kept || self.flow.mechanism.layout().speeds > MOST_SPEEDS {
             return Ok(());
         }
-        let state: State = self.state();
+        let state = self.state();
         let wanted = Wanted {
             tolerance: control.tolerance,
             span: self.options.t_end - state.time,
@@ -76,11 +76,8 @@ impl Driver<'_> {
         }
         self.scheme = choice.scheme;
         self.renew_stepper();
-        let order = self.stepper.order();
-        pacing.controller = StepController::new(order);
-        pacing.step = self
-            .first_step(control.tolerance, order)?
-            .min(control.max_step);
+        pacing.controller = StepController::new(self.stepper.order());
+        self.pace_anew(pacing)?;
         if let Some(own) = &mut self.reconsideration {
             own.changes.push(MethodChange {
                 time: state.time,

@@ -1,16 +1,14 @@
 //! The error of a motion, estimated by companion motions, as the summary and JSON tell it.
 
 use super::plan::Plan;
-use super::run::move_on;
+use super::run::move_unrecorded;
 use super::{control::Loop, run::Motion};
 use hamel::dynamics::Dynamics;
 use hamel::integrate::{
     ErrorParts, GlobalError, IntegrateError, Observer, Options, Solution, State,
 };
-use hamel_console::interrupt;
 use serde::Serialize;
 use std::fmt;
-use std::ops::ControlFlow;
 
 /// The estimate of the error of a motion.
 #[derive(Clone, Debug, Serialize)]
@@ -100,15 +98,7 @@ fn run(
         control: control.as_ref(),
         is_companion: true,
     };
-    move_on(&motion, dynamics, &mut |step| {
-        if let Some(control) = &control {
-            control.see(step);
-        }
-        match interrupt::is_requested() {
-            true => ControlFlow::Break(()),
-            false => observer(step),
-        }
-    })
+    move_unrecorded(&motion, dynamics, observer)
 }
 
 impl From<GlobalError> for Accuracy {

@@ -90,8 +90,10 @@ impl Plan {
             picture,
             instants: args.instants.into(),
         };
-        let tolerance = settings.accuracy.unwrap_or_else(|| tolerance(&settings));
-        plan.choose(tolerance)?;
+        // For an accuracy, the tolerance is searched for first.
+        if settings.accuracy.is_none() {
+            plan.choose(tolerance(&settings))?;
+        }
         Ok(plan)
     }
 

@@ -4,14 +4,13 @@ use super::accuracy::estimate;
 use super::control::Loop;
 use super::plan::Plan;
 use super::progress;
-use super::run::{Motion, move_on};
-use hamel::integrate::{IntegrateError, Solution, Tuned};
+use super::run::{Motion, move_unrecorded};
+use hamel::integrate::{GlobalError, IntegrateError, Solution, Tuned, no_observer};
 use hamel_console::interrupt::{self, Heed};
 use hamel_console::output::Failure;
 use hamel_scene::Arithmetic;
 use serde::Serialize;
 use std::fmt;
-use std::ops::ControlFlow;
 
 /// What came of an accuracy that was asked for.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -66,7 +65,7 @@ impl Request {
 }
 
 /// The motion of `plan`, unrecorded, and the estimate of its error.
-fn attempt(plan: &Plan) -> Result<hamel::integrate::GlobalError, Failure> {
+fn attempt(plan: &Plan) -> Result<GlobalError, Failure> {
     let mut dynamics = plan.settings.arithmetic.dynamics(&plan.scene.mechanism);
     let control = Loop::new(plan)?;
     let (initial, options) = (plan.scene.start(), plan.options());
@@ -77,15 +76,7 @@ fn attempt(plan: &Plan) -> Result<hamel::integrate::GlobalError, Failure> {
         control: control.as_ref(),
         is_companion: false,
     };
-    let moved = move_on(&motion, &mut *dynamics, &mut |step| {
-        if let Some(control) = &control {
-            control.see(step);
-        }
-        match interrupt::is_requested() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
-    });
+    let moved = move_unrecorded(&motion, &mut *dynamics, &mut no_observer);
     let solution = solution(moved, control.as_ref())?;
     Ok(estimate(plan, &mut *dynamics, &solution))
 }

@@ -16,8 +16,9 @@ use hamel::dynamics::Dynamics;
 use hamel::integrate::{IntegrateError, Integration, Observer, Options, Solution, State};
 use hamel::mechanism::{Kinematics, Mechanism};
 use hamel::registry::JointRegistry;
-use hamel_console::interrupt::Heed;
+use hamel_console::interrupt::{self, Heed};
 use hamel_console::output::{self, Failure};
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// Simulates the scene of `args`.
@@ -194,6 +195,26 @@ pub fn move_on(
         }
     }
     integration.run()
+}
+
+/// The same without a record, until the user ends it; the controller and `observer` see every step.
+///
+/// # Errors
+/// Those of [`move_on`].
+pub fn move_unrecorded(
+    motion: &Motion<'_>,
+    dynamics: &mut dyn Dynamics,
+    observer: &mut Observer<'_>,
+) -> Result<Solution, IntegrateError> {
+    move_on(motion, dynamics, &mut |step| {
+        if let Some(control) = motion.control {
+            control.see(step);
+        }
+        match interrupt::is_requested() {
+            true => ControlFlow::Break(()),
+            false => observer(step),
+        }
+    })
 }
 
 fn kinematics(mechanism: &Mechanism, state: &State) -> Result<Kinematics, Failure> {
