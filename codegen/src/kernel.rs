@@ -39,6 +39,14 @@ pub enum KernelKind {
     Retract,
     /// ϕ(Q, Q′).
     Local,
+    /// B(Q): v to the displacement rate Q⁻¹Q̇, where relations alone say how Q moves.
+    TangentBasis,
+    /// N(Q): the displacements along which Φ comes back onto the manifold of the relations.
+    NormalBasis,
+    /// Q exp(ξ) at a finite displacement ξ.
+    Displaced,
+    /// ξ = log(Q⁻¹Q′).
+    Displacement,
     /// Differential D of Φ at finite ϕ.
     RetractDifferential,
     /// Inverse differential of Φ at finite ϕ.
@@ -188,6 +196,8 @@ pub struct Shape {
     pub speeds: usize,
     /// C: nonholonomic constraints.
     pub constraints: usize,
+    /// G: dimension of the group in which a manifold of relations lies; 0 where Φ needs none.
+    pub displacements: usize,
 }
 
 /// The symbols that stand for the arguments of the kernels.
@@ -199,6 +209,8 @@ pub struct Arguments {
     pub target: Vec<Symbol>,
     /// ϕ.
     pub local: Vec<Symbol>,
+    /// ξ; none where Φ is not by relations alone.
+    pub displacement: Vec<Symbol>,
     /// v; also the `rate` of [`KernelKind::RetractDifferentialInverse`].
     pub velocity: Vec<Symbol>,
     /// v̄.

@@ -121,8 +121,18 @@ pub struct Freedom {
     /// The factor that it moves.
     pub factor: usize,
     /// Its generator: coordinates in the standard basis of that factor's algebra; rational or of parameters. Empty for a
-    /// degree of freedom of `local`, which only Φ gives a meaning.
+    /// degree of freedom to which only Φ gives a meaning: one of `local`, or one on a manifold of relations.
     pub generator: Vec<Expr>,
+}
+
+/// How v moves Q where the spec declares relations and no Φ.
+#[derive(Clone, Debug)]
+pub enum Implicit {
+    /// Along these directions of factors, each with its generator in the standard basis of that factor's algebra. All other directions
+    /// follow by the relations.
+    Independent(Vec<(usize, Vec<Expr>)>),
+    /// Along the generalised cross product of the relations' gradients: one degree of freedom.
+    CrossProduct,
 }
 
 /// The frame in which v is read.
@@ -158,6 +168,8 @@ pub struct ConfigurationSpace {
     pub loci: Vec<Declared<Locus>>,
     /// The stored scalars at home, in order.
     pub home: Vec<Expr>,
+    /// Whether they are a guess, off the relations.
+    pub home_is_guess: bool,
 }
 
 impl ConfigurationSpace {
@@ -169,6 +181,7 @@ impl ConfigurationSpace {
             requirements: spec.requirements.clone(),
             manifold: spec.manifold.value.clone(),
             loci: spec.loci.clone(),
+            home_is_guess: spec.home_is_guess,
             home: declared.unwrap_or_else(|| spec.manifold.value.home()),
         }
     }
@@ -179,8 +192,11 @@ impl ConfigurationSpace {
         parameters.chain(self.manifold.coordinates()).collect()
     }
 
-    /// Each stored scalar at home.
+    /// Each stored scalar at home; none where that is a guess, so that nothing is concluded from it.
     pub(crate) fn home_values(&self) -> BTreeMap<Symbol, Expr> {
+        if self.home_is_guess {
+            return BTreeMap::new();
+        }
         let coordinates = self.manifold.coordinates().into_iter();
         coordinates.zip(self.home.iter().cloned()).collect()
     }
@@ -205,6 +221,8 @@ pub struct JointSpec {
     pub loci: Vec<Declared<Locus>>,
     /// The stored scalars of the home configuration, where declared.
     pub home: Option<Declared<Vec<Expr>>>,
+    /// Whether these are a guess, from which home is found by projection onto the relations.
+    pub home_is_guess: bool,
     /// Local coordinates, in order: those of a `basis`, else the coordinates of the real factors.
     pub freedoms: Declared<Vec<Freedom>>,
     /// Frame of v.
@@ -213,6 +231,8 @@ pub struct JointSpec {
     pub pose: Declared<PoseExpr>,
     /// Φ(Q, ϕ) as stored scalars, where declared.
     pub retract: Option<Declared<Vec<Expr>>>,
+    /// How v moves Q on the manifold of the relations, where these say more than the basis and Φ is not declared.
+    pub implicit: Option<Implicit>,
     /// X(Q), 6×k, where declared.
     pub twist_map: Option<Declared<Matrix>>,
     /// A(Q), k×(k−k̄), where declared.

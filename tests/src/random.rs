@@ -239,6 +239,9 @@ fn mass(random: &mut ChaCha8Rng) -> MassProperties {
 /// Least distance from a singular set, in the value of its function: nearer, derivatives of high order grow beyond what differences resolve.
 const CLEARANCE: f64 = 0.3;
 
+/// Most configurations that are drawn for one joint.
+const MOST_DRAWS: usize = 1000;
+
 /// Φ(home, ϕ) for every joint, |ϕ| up to 2.5, away from where a joint ends.
 ///
 /// # Panics
@@ -249,14 +252,14 @@ pub fn configuration(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Vec<f64>
         let norm = phi.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
         let scale = random.random_range(0.0..REACH) / norm.max(1e-3);
         phi.iter_mut().for_each(|entry| *entry *= scale);
-        let moved = mechanism.configuration_from_local(index, &phi);
-        moved.expect("phi is finite and of the joint's size")
+        // Where relations alone give Φ, it has a value for ϕ that is not too long.
+        mechanism.configuration_from_local(index, &phi).ok()
     };
     let own = |(index, size): (usize, usize)| {
         let joint = mechanism.bodies()[index].joint();
         let is_clear = |q: &Vec<f64>| joint.singularity(q) >= CLEARANCE;
-        let mut draws = std::iter::repeat_with(|| draw(index, size));
-        draws.find(is_clear).expect("endless draws")
+        let mut draws = std::iter::repeat_with(|| draw(index, size)).take(MOST_DRAWS).flatten();
+        draws.find(is_clear).expect("a configuration that the joint can be moved to")
     };
     let sizes = mechanism
         .bodies()

@@ -13,6 +13,7 @@ mod sign;
 mod squares;
 mod subdivision;
 mod unit_vectors;
+mod univariate;
 
 pub use self::constant::{ConstantSign, LAST_PRECISION, sign as sign_of_constant};
 pub use self::critical::{Critical, Smooth};
@@ -50,6 +51,11 @@ pub enum Certificate {
     Constant(Expr),
     /// One of them is a sum of positive terms, or bounded away from zero.
     Positive(Expr),
+    /// With the relations they generate a polynomial in one scalar that has no zero where that scalar lies.
+    OneScalar {
+        /// How many functions there are.
+        functions: usize,
+    },
     /// They and the relations generate 1.
     NoCommonZero {
         /// How many functions there are.
@@ -71,6 +77,16 @@ impl std::fmt::Display for Certificate {
         match self {
             Self::Constant(value) => write!(f, "= {value}"),
             Self::Positive(value) => write!(f, "= {value}, which is of one sign"),
+            Self::OneScalar { functions } => {
+                let what = match functions {
+                    1 => "it".to_owned(),
+                    count => format!("{count} functions"),
+                };
+                write!(
+                    f,
+                    "where {what} vanished, so would a polynomial in one scalar between −1 and 1, and it has no zero there"
+                )
+            }
             Self::NoCommonZero { functions, except } => {
                 let what = match functions {
                     1 => "it".to_owned(),
@@ -175,11 +191,18 @@ impl<'a> Domain<'a> {
         if let Some(unit) = all.iter().find(|e| self.is_unit(e)) {
             return Some(Certificate::Constant(unit.clone()));
         }
+        let functions = all.len();
         let of_one_sign = |e: &&Expr| self.signs.is_positive(e) || self.signs.is_positive(&-*e);
+        // On a manifold of relations sums have no sign that their terms show, and to look for one takes long.
+        let bounded = self.signs.bounded();
+        let sign = |e: &Expr| self.signs.of(e);
+        let alone = |e: &Expr| univariate::is_never_zero(self.ideal, e, bounded, sign);
+        if self.vanishing.is_empty() && !self.connected && all.iter().any(alone) {
+            return Some(Certificate::OneScalar { functions });
+        }
         if let Some(signed) = expressions.iter().chain(&all).find(of_one_sign) {
             return Some(Certificate::Positive(signed.clone()));
         }
-        let functions = all.len();
         let conditions = || self.signs.positive_conditions();
         let essential = |e: &Expr| {
             let rest = factors::without(&factors::arguments_of_odd(e), conditions());
@@ -217,9 +240,16 @@ impl<'a> Domain<'a> {
         if functions > 0 && has_no_zero(&generators) {
             return found(false);
         }
+        let essential = generators.clone();
         generators.extend(self.loci.iter().enumerate().map(away_from));
         if !self.loci.is_empty() && has_no_zero(&generators) {
             return found(true);
+        }
+        if functions > 0
+            && self.vanishing.is_empty()
+            && univariate::exclude(self.ideal, &essential, bounded, sign)
+        {
+            return Some(Certificate::OneScalar { functions });
         }
         let on_cells =
             |e: &&Expr| self.signs.is_positive_on_cells(e) || self.signs.is_positive_on_cells(&-*e);

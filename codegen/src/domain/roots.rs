@@ -14,6 +14,29 @@ pub fn is_positive(expression: &Expr) -> bool {
     })
 }
 
+/// Whether the polynomial with rational coefficients, from that of degree 0 on, has no real root from −1 to 1.
+pub fn has_none_in_unit_interval(polynomial: &[Rational]) -> bool {
+    let at = |polynomial: &[Rational], end: i64| -> Rational {
+        let end = Rational::from_integer(end.into());
+        let sum = |sum: Rational, c: &Rational| &(&sum * &end) + c;
+        polynomial.iter().rev().fold(Rational::zero(), sum)
+    };
+    let ends_at_root = [-1, 1].into_iter().any(|end| at(polynomial, end).is_zero());
+    match polynomial {
+        [] => false,
+        [constant] => !constant.is_zero(),
+        _ if ends_at_root => false,
+        _ => {
+            let sequence = sturm_sequence(polynomial.to_vec());
+            let changes = |end| {
+                let values = sequence.iter().map(|p| at(p, end));
+                changes_of_sign(values.filter(|value| !value.is_zero()))
+            };
+            changes(-1) == changes(1) && !budget::is_exhausted()
+        }
+    }
+}
+
 /// The coefficients, from that of degree 0 on, where there is one unknown.
 fn coefficients(expression: &Expr) -> Option<Vec<Rational>> {
     let mut unknown: Option<&Atom> = None;
@@ -40,6 +63,24 @@ fn coefficients(expression: &Expr) -> Option<Vec<Rational>> {
 
 /// The number of different real roots of a polynomial that is not constant: changes of sign in Sturm's sequence, at −∞ less those at +∞.
 fn roots(polynomial: Vec<Rational>) -> usize {
+    let sequence = sturm_sequence(polynomial);
+    let changes = |at_minus: bool| {
+        changes_of_sign(sequence.iter().filter_map(|p| {
+            let leading = p.last()?;
+            let flips = at_minus && p.len() % 2 == 0;
+            Some(if flips { -leading } else { leading.clone() })
+        }))
+    };
+    changes(true).saturating_sub(changes(false))
+}
+
+fn changes_of_sign(numbers: impl Iterator<Item = Rational>) -> usize {
+    let signs: Vec<bool> = numbers.map(|number| number.is_negative()).collect();
+    signs.windows(2).filter(|pair| pair[0] != pair[1]).count()
+}
+
+/// Sturm's sequence: the polynomial, its derivative, and the negative remainders.
+fn sturm_sequence(polynomial: Vec<Rational>) -> Vec<Vec<Rational>> {
     let slope = polynomial.iter().enumerate().skip(1);
     let slope = slope.map(|(n, c)| c * Rational::from(n as i64)).collect();
     let mut sequence = vec![polynomial, slope];
@@ -50,15 +91,7 @@ fn roots(polynomial: Vec<Rational>) -> usize {
         }
         sequence.push(rest.iter().map(|c| -c).collect());
     }
-    let changes = |at_minus: bool| {
-        let signs = sequence.iter().filter_map(|p| {
-            let flips = at_minus && p.len() % 2 == 0;
-            p.last().map(|leading| leading.is_negative() != flips)
-        });
-        let signs: Vec<bool> = signs.collect();
-        signs.windows(2).filter(|pair| pair[0] != pair[1]).count()
-    };
-    changes(true).saturating_sub(changes(false))
+    sequence
 }
 
 /// The remainder of the division by a polynomial that is not 0, without leading zeros.

@@ -1,6 +1,7 @@
 //! Signs of expressions, from even powers, ranges of parameters, and atoms that are bounded by 1.
 
 use super::constant::{self, ConstantSign};
+use super::factors;
 use super::harmonics;
 use super::subdivision;
 use super::unit_vectors;
@@ -23,6 +24,9 @@ const MOST_CONDITIONS: usize = 8;
 const MOST_FACTORS: usize = 6;
 /// Most combinations of conditions that are tried.
 const MOST_TRIES: usize = 400;
+
+/// Most term operations for showing that an expression has one sign, where both are tried.
+const OF_ONE_SIGN: u64 = 6_000;
 
 /// How many bounds by unit vectors are nested: each squares what is left.
 const DEEPEST_BOUND: usize = 2;
@@ -109,6 +113,11 @@ impl Signs {
         }
     }
 
+    /// Stored scalars whose absolute value is at most 1.
+    pub fn bounded(&self) -> &BTreeSet<Symbol> {
+        &self.bounded
+    }
+
     /// Functions of the parameters that are positive.
     pub fn positive_conditions(&self) -> impl Iterator<Item = &Expr> {
         let strict = self.conditions.iter().filter(|(_, strict)| *strict);
@@ -129,6 +138,23 @@ impl Signs {
                     })
             }
         }
+    }
+
+    /// Whether the expression is positive, or negative, everywhere; what divides it and is positive by a condition is left out before.
+    pub fn of(&self, expression: &Expr) -> Option<bool> {
+        let rest = factors::without(expression, self.positive_conditions());
+        let opposite = -&rest;
+        let by_terms = |e: &Expr| {
+            let positive = |(m, _): (&Monomial, &Rational)| self.sign(m) == Sign::Positive;
+            self.has_one_sign(e, true) && e.terms().any(positive)
+        };
+        // To look for the sign that it has not may take all of the work.
+        let searched =
+            |e: &Expr| budget::scope(OF_ONE_SIGN, || self.is_positive(e)).unwrap_or(false);
+        let both = [(true, &rest), (false, &opposite)];
+        let found =
+            |has: &dyn Fn(&Expr) -> bool| both.iter().find(|(_, e)| has(e)).map(|(s, _)| *s);
+        found(&by_terms).or_else(|| found(&searched))
     }
 
     /// Whether it is positive on every cell of a partition; dearer than other means.

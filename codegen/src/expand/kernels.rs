@@ -1,6 +1,6 @@
 //! The kernels of a joint from its expansion, in the order in which they are emitted.
 
-use super::{Expansion, finite, general, hamel};
+use super::{Expansion, Flow, finite, general, hamel, implicit};
 use crate::diagnostic::Diagnostic;
 use crate::domain::{Critical, Domain};
 use crate::expr::Symbol;
@@ -67,8 +67,12 @@ impl Maker<'_> {
         let inverse = &self.x.velocity_map_inverse;
         let home = self.joint.spec.home.as_ref().map(|home| home.value.clone());
         let home = Matrix::column_vector(home.unwrap_or_else(|| self.joint.space.manifold.home()));
+        let mut home = plain(KernelKind::Home, vec![home]);
+        if self.joint.spec.home_is_guess {
+            home.method = Method::Newton;
+        }
         vec![
-            plain(KernelKind::Home, vec![home]),
+            home,
             plain(
                 KernelKind::Pose,
                 vec![pose.rotation.clone(), pose.translation.clone()],
@@ -105,11 +109,14 @@ impl Maker<'_> {
     }
 
     fn finite_maps(&self) -> Result<Vec<Kernel>, Vec<Diagnostic>> {
-        let moving = match self.x.exponential {
-            true => self
+        let moving = match (&self.x.flow, self.x.exponential) {
+            (Some(flow), _) => self
+                .implicit_maps(flow)
+                .ok_or_else(|| vec![no_closed_form(self.joint)])?,
+            (None, true) => self
                 .exponential_maps()
                 .ok_or_else(|| vec![no_closed_form(self.joint)])?,
-            false => self.general_maps(),
+            (None, false) => self.general_maps(),
         };
         Ok([moving, self.manifold_maps()].concat())
     }
@@ -164,6 +171,34 @@ impl Maker<'_> {
             .into_iter()
             .chain(solved.map(|(kind, method)| by_runtime(kind, method)))
             .collect()
+    }
+
+    /// Φ on a manifold of relations alone: by Newton's method, from closed forms of Q exp(ξ).
+    fn implicit_maps(&self, flow: &Flow) -> Option<Vec<Kernel>> {
+        let free = implicit::freely(self.joint);
+        let (steps, displaced) = finite::retract(&free)?;
+        let displaced = with(KernelKind::Displaced, steps, displaced, Structure::General);
+        let (steps, displacement) = finite::local(&free, &free.space.manifold.target())?;
+        let displacement = with(
+            KernelKind::Displacement,
+            steps,
+            displacement,
+            Structure::General,
+        );
+        let solved = [
+            (KernelKind::Retract, Method::Newton),
+            (KernelKind::Local, Method::Solve),
+            (KernelKind::RetractDifferential, Method::Solve),
+            (KernelKind::RetractDifferentialInverse, Method::Solve),
+        ];
+        let bases = [
+            plain(KernelKind::TangentBasis, vec![flow.tangent.clone()]),
+            plain(KernelKind::NormalBasis, vec![flow.normal.clone()]),
+            displaced,
+            displacement,
+        ];
+        let solved = solved.map(|(kind, method)| by_runtime(kind, method));
+        Some(bases.into_iter().chain(solved).collect())
     }
 
     /// Projection and residual; Newton's method where the spec declares relations.

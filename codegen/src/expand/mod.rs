@@ -9,6 +9,7 @@ mod elimination;
 pub(crate) mod finite;
 mod general;
 mod hamel;
+mod implicit;
 mod kernels;
 mod motion;
 mod nonholonomic;
@@ -20,6 +21,7 @@ mod unidentifiable;
 mod velocity;
 
 pub use dimension::Confinement;
+pub use implicit::Flow;
 
 pub use kernels::{kernels, speed_map};
 pub use motion::Motion;
@@ -50,6 +52,8 @@ pub struct Expansion {
     pub exponential: bool,
     /// Φ to second order.
     pub motion: Motion,
+    /// How v moves Q, where relations alone say so.
+    pub flow: Option<Flow>,
     /// Structure constants: slice k is `ad_{b_k}` in the declared basis, entry (i, j) = c^i_kj.
     pub structure_constants: Vec<Matrix>,
     /// J to first order.
@@ -78,9 +82,13 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
     dimension::check(joint, exponential)?;
     let arguments = arguments(joint);
     budget::begin(task::MOTION);
-    let motion = match (&joint.spec.retract, exponential) {
-        (Some(declared), false) => Motion::of_map(joint, &declared.value),
-        _ => Motion::of_exponential(joint),
+    let (motion, flow) = match (&joint.spec.implicit, &joint.spec.retract) {
+        (Some(implicit), _) => {
+            let (motion, flow) = implicit::expand(joint, implicit, &domain)?;
+            (motion, Some(flow))
+        }
+        (None, Some(declared)) if !exponential => (Motion::of_map(joint, &declared.value), None),
+        _ => (Motion::of_exponential(joint), None),
     };
     let structure_constants = structure_constants(joint);
     budget::begin(task::TWIST);
@@ -99,6 +107,7 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
         child: &twist_map_child,
         to_child: &to_child,
         motion: &motion,
+        flow: flow.as_ref(),
         domain: &domain,
         structure_constants: exponential.then_some(&structure_constants),
     }
@@ -120,11 +129,13 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
             freedoms: motion.freedoms(),
             speeds: nonholonomic.speed_basis.columns(),
             constraints: nonholonomic.constraint.columns(),
+            displacements: arguments.displacement.len(),
         },
         unidentifiable: unidentifiable::unidentifiable(&twist_map_child, &jacobian.child, ideal),
         arguments,
         exponential,
         motion,
+        flow,
         structure_constants,
         jacobian,
         twist_map,
@@ -157,6 +168,7 @@ fn arguments(joint: &Prepared) -> Arguments {
             .iter()
             .map(|freedom| freedom.local.clone())
             .collect(),
+        displacement: implicit::displacement(joint),
         velocity: named(Role::Velocity, "v"),
         speeds: speeds
             .iter()

@@ -25,6 +25,19 @@ fn turned(factor: &Factor, axis: &[Expr]) -> Vec<Expr> {
 }
 
 impl Motion {
+    /// Φ with these derivatives of the stored scalars at ϕ = 0.
+    pub fn new(
+        coordinates: Vec<Symbol>,
+        first: Vec<Vec<Expr>>,
+        second: Vec<Vec<Vec<Expr>>>,
+    ) -> Self {
+        Self {
+            coordinates,
+            first,
+            second,
+        }
+    }
+
     /// Φ = Q exp(Σ b_k ϕ_k) on every factor, exp taken to second order.
     pub fn of_exponential(joint: &Prepared) -> Self {
         let factors = joint.space.manifold.factors().iter().enumerate();

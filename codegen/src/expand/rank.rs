@@ -24,6 +24,9 @@ pub fn full_column_rank(m: &Matrix, domain: &Domain<'_>) -> Result<String, Expr>
     if domain.is_unit(&gram) && gram.leading().is_some_and(|(_, c)| c.is_positive()) {
         return Ok(format!("det(MᵀM) = {gram}"));
     }
+    if let Some(certificate) = of_half(m, domain) {
+        return Ok(certificate);
+    }
     if minors.is_empty() {
         return Err(gram);
     }
@@ -35,6 +38,21 @@ pub fn full_column_rank(m: &Matrix, domain: &Domain<'_>) -> Result<String, Expr>
         None if domain.is_positive(&gram) => Ok(format!("det(MᵀM) = {gram}, which is of one sign")),
         None => behind_pivots(m, domain).ok_or(gram),
     }
+}
+
+/// The same for the angular or the linear rows of a twist map: the speed of a point may be constant.
+fn of_half(m: &Matrix, domain: &Domain<'_>) -> Option<String> {
+    let simplify = |e: &Expr| domain.ideal().normal_form(e);
+    let half = |first: usize| {
+        let rows = m.block(first, 0, 3, m.columns());
+        let gram = simplify(&rows.transpose().times(&rows).determinant(&simplify));
+        let (from, to) = (first + 1, first + 3);
+        let certificate = domain.nonzero(&gram)?;
+        Some(format!("det(MᵀM) of rows {from} to {to}: {certificate}"))
+    };
+    (m.rows() == 6 && m.columns() <= 3)
+        .then(|| [0, 3].into_iter().find_map(half))
+        .flatten()
 }
 
 /// The same for what is left behind constant pivots.

@@ -1,5 +1,6 @@
 //! The paper's step: J, X and S to first order in ϕ, (23).
 
+use super::implicit::Flow;
 use super::motion::Motion;
 use super::{directions, elimination};
 use crate::domain::Domain;
@@ -134,6 +135,8 @@ pub struct Solver<'a, 'b> {
     pub to_child: &'a Matrix,
     /// Φ to second order.
     pub motion: &'a Motion,
+    /// How v moves Q, where relations alone say so.
+    pub flow: Option<&'a Flow>,
     /// Where the joint lives.
     pub domain: &'a Domain<'b>,
     /// Structure constants, where Φ = Q exp(ϕ).
@@ -162,13 +165,15 @@ impl Solver<'_, '_> {
         }
         // v = ϕ̇ at ϕ = 0, so that S₀ = I.
         let base = Matrix::identity(self.motion.freedoms());
-        let slopes = match self.structure_constants {
+        let slopes = match (self.structure_constants, self.flow) {
             // S = I − ½ ad_ϕ.
-            Some(constants) => constants
+            (Some(constants), _) => constants
                 .iter()
                 .map(|ad| ad.scale(&Expr::fraction(-1, 2)))
                 .collect(),
-            None => self.slopes_of_rates(&base)?,
+            // S belongs to Q and v alone: H does not come in.
+            (None, Some(flow)) => flow.slopes.clone(),
+            (None, None) => self.slopes_of_rates(&base)?,
         };
         Some(VelocityMap {
             base,

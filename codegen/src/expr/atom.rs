@@ -20,6 +20,8 @@ pub enum Role {
     Target,
     /// A local coordinate ϕ.
     Local,
+    /// A displacement ξ of Q in the group in which a manifold of relations lies: Q′ = Q exp(ξ).
+    Displacement,
     /// A joint velocity v.
     Velocity,
     /// A speed v̄.

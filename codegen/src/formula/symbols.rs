@@ -53,6 +53,7 @@ fn role_name(role: Role) -> &'static str {
         Role::Coordinate => "coordinate",
         Role::Target => "target",
         Role::Local => "local",
+        Role::Displacement => "displacement",
         Role::Velocity => "velocity",
         Role::Speed => "speed",
         Role::Momentum => "momentum",
@@ -78,6 +79,7 @@ impl Names {
         let others = [
             &arguments.target,
             &arguments.local,
+            &arguments.displacement,
             &arguments.velocity,
             &arguments.speeds,
             &arguments.momentum,

@@ -1,5 +1,6 @@
 //! Equality on a manifold: normal forms modulo its relations and those of the functions that occur.
 
+use super::dependence;
 use super::reduction::Reduction;
 use super::{angles, canonical};
 use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, Role, Symbol, budget};
@@ -314,6 +315,33 @@ impl Ideal {
             .filter(|e| !divides(e, vanishing));
         let polynomials: Vec<Expr> = undivided.map(|e| indeterminate(&e, vanishing)).collect();
         Reduction::new(&polynomials).is_trivial()
+    }
+
+    /// The coefficients, from that of degree 0 on, of a polynomial in one stored scalar that vanishes wherever the expressions do on the
+    /// manifold: functions of parameters, not all 0. `None` where there is none of that degree or less, or functions occur.
+    pub fn in_one_scalar(
+        &self,
+        expressions: &[Expr],
+        scalar: &Symbol,
+        degree: usize,
+    ) -> Option<Vec<Expr>> {
+        let numerators: Vec<Expr> = expressions.iter().map(|e| self.numerator(e)).collect();
+        let polynomial = |e: &Expr| e.related_functions().is_empty();
+        if !numerators.iter().all(polynomial) {
+            return None;
+        }
+        let reduction = self.own.with(&numerators, &[], &BTreeSet::new());
+        let scalar = Expr::symbol(scalar);
+        let mut power = Expr::one();
+        let mut rows: Vec<dependence::Row> = vec![];
+        for n in 0..=degree {
+            let normal = reduction.normal_form(&power);
+            if let Some(found) = dependence::add(&mut rows, &normal, n) {
+                return Some(found);
+            }
+            power = &normal * &scalar;
+        }
+        None
     }
 
     /// Whether its basis holds where those parameters are 0, too: whether it follows from the relations without division by them.

@@ -2,6 +2,7 @@
 
 mod angles;
 mod canonical;
+mod dependence;
 mod factor;
 mod groebner;
 mod ideal;

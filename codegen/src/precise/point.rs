@@ -156,5 +156,6 @@ fn role_number(role: Role) -> u8 {
         Role::Inertia => 8,
         Role::Intermediate => 9,
         Role::Constant => 10,
+        Role::Displacement => 11,
     }
 }

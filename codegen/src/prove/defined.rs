@@ -117,7 +117,8 @@ impl Prover<'_> {
             .chain([&x.jacobian.base, &x.jacobian.child])
             .chain([&x.velocity_map.base, &x.velocity_map_inverse])
             .chain(&x.velocity_map.slopes)
-            .chain([&x.nonholonomic.constraint, &x.nonholonomic.speed_basis]);
+            .chain([&x.nonholonomic.constraint, &x.nonholonomic.speed_basis])
+            .chain(x.flow.iter().flat_map(|flow| [&flow.tangent, &flow.normal]));
         collect(matrices, &mut found);
         found
     }
@@ -140,6 +141,13 @@ impl Prover<'_> {
                     (Function::Atan2, [y, x]) if of_quotient => vec![&y.square() + &x.square()],
                     _ => vec![],
                 });
+        // Of what relations alone say was shown before that it is divided by nothing that may be 0.
+        if let Some(flow) = self.x.flow.as_ref().filter(|_| of_quotient)
+            && (self.ideal.vanishes(&(&flow.regular - argument))
+                || self.are_multiples(&flow.regular, argument))
+        {
+            return true;
+        }
         // A quotient needs no sign; roots and logarithms do, which a multiple may not have.
         known.any(|x| {
             x == *argument

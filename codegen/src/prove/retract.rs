@@ -3,9 +3,10 @@
 use super::Proof;
 use super::{Attempt, Identities, Prover, certified, refuted, symbolic};
 use crate::diagnostic::Diagnostic;
-use crate::expand::{Confinement, Motion, dimension};
+use crate::expand::{Confinement, Flow, Motion, dimension, rank};
 use crate::expr::{Expr, Symbol, budget};
 use crate::matrix::Matrix;
+use crate::model::Implicit;
 use crate::precise::Sampler;
 use crate::prepare::exponential;
 use crate::spec::code;
@@ -38,6 +39,11 @@ impl Identities<'_> {
     }
 
     pub(super) fn retract_starts_at_q(&self) -> Attempt {
+        if self.joint.spec.implicit.is_some() {
+            let why = "at ϕ = 0 the relations hold with λ = 0, where Φ(Q, ϕ) = Q exp(B ϕ + N λ)";
+            let proof = Proof::NormalForm;
+            return Ok(Some(symbolic("retract_at_zero", "Φ(Q, 0) = Q", proof, why)));
+        }
         let manifold = &self.joint.space.manifold;
         let (moved, span) = self.retract().unwrap_or_else(|| {
             (
@@ -102,10 +108,20 @@ impl Prover<'_> {
                     "derivatives of the relations along ϕ that do not vanish:\n{}",
                     Matrix::column_vector(left)
                 ))
+                .help("without `Phi` and `local`, directions that a `basis` names are independent, and all others follow by the relations")
             },
         );
         let moved = moved.filter(|_| !self.exponential);
         match (attempt, moved) {
+            (Ok(Some(claim)), None) if self.x.flow.is_some() => Ok(Some(match claim.proof {
+                Proof::NormalForm => symbolic(
+                    "retract_on_manifold",
+                    STAYS,
+                    Proof::NormalForm,
+                    "Φ solves the relations; its derivatives to second order do so by normal forms",
+                ),
+                _ => claim,
+            })),
             // Its relations g have derivatives Σ a g along the flow t ↦ Q exp(tξ), so that they stay 0.
             (Ok(Some(claim)), None) if claim.proof == Proof::NormalForm => Ok(Some(symbolic(
                 "retract_on_manifold",
@@ -180,6 +196,7 @@ impl Prover<'_> {
     /// How the finite maps of Φ are evaluated.
     pub(super) fn declared_retract(&self) -> Attempt {
         match (&self.joint.spec.retract, self.exponential) {
+            // Where relations alone give Φ, that is said with the dimension of the manifold.
             (None, _) => Ok(None),
             (Some(_), true) => Ok(Some(symbolic(
                 "retract_is_exponential",
@@ -195,8 +212,58 @@ impl Prover<'_> {
         }
     }
 
+    /// Relations alone determine Φ: their derivatives have full rank, and a column of them, or all, is solved for.
+    fn implicit_retract(&self, flow: &Flow) -> Attempt {
+        let is_cross_product = matches!(self.joint.spec.implicit, Some(Implicit::CrossProduct));
+        let claim = |certificate: String| {
+            let what = match is_cross_product {
+                true => "the relations cut out a manifold of one dimension: B = 0 nowhere",
+                false => {
+                    "the relations cut out a manifold of k dimensions, and determine all other directions: det(∂φ N) = 0 nowhere"
+                }
+            };
+            let statement = self.where_it_holds(what);
+            Ok(Some(certified(
+                "retract_by_relations",
+                &statement,
+                &certificate,
+            )))
+        };
+        if let Some(certificate) = self.domain.nonzero(&flow.regular) {
+            return claim(certificate.to_string());
+        }
+        if is_cross_product {
+            let entries = flow.tangent.entries().iter().enumerate();
+            let single = entries.clone().find_map(|(n, entry)| {
+                let certificate = self.domain.nonzero(entry)?;
+                Some(format!("entry {} of B: {certificate}", n + 1))
+            });
+            if let Some(certificate) =
+                single.or_else(|| rank::full_column_rank(&flow.tangent, &self.domain).ok())
+            {
+                return claim(certificate);
+            }
+        }
+        let regular = &flow.regular;
+        let message = "the relations are not shown to determine how Q moves";
+        let error = refuted(
+            code::DIMENSION,
+            &self.joint.spec.freedoms.span,
+            message,
+            "with these degrees of freedom",
+        );
+        Err(Box::new(
+            error
+                .note(format!("they do not where {regular} = 0"))
+                .help("if the joint ends there, declare it: `except … = 0;`; other independent directions, named by `basis`, end elsewhere"),
+        ))
+    }
+
     /// The manifold has as many dimensions as there are degrees of freedom.
     pub(super) fn has_dimension(&self) -> Attempt {
+        if let Some(flow) = &self.x.flow {
+            return self.implicit_retract(flow);
+        }
         let found = dimension::confinement(self.joint, &self.domain, self.exponential);
         match found {
             Ok(Confinement::Known) => Ok(None),

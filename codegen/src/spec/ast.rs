@@ -151,6 +151,8 @@ pub(super) struct Basis {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Target {
     Home,
+    /// `home near …;`: a guess of home, which is projected onto the relations.
+    Near,
     Retract,
     Pose,
     TwistMap,
@@ -159,8 +161,9 @@ pub(super) enum Target {
 }
 
 impl Target {
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Home,
+        Self::Near,
         Self::Retract,
         Self::Pose,
         Self::TwistMap,
@@ -171,6 +174,7 @@ impl Target {
     pub fn name(self) -> &'static str {
         match self {
             Self::Home => "home",
+            Self::Near => "home near",
             Self::Retract => "Phi",
             Self::Pose => "H",
             Self::TwistMap => "X",

@@ -1,16 +1,20 @@
-//! Finite maps of joints that have no closed form: the inverse of Φ, its differential, projection onto relations.
+//! Finite maps of joints that have no closed form: the inverse of Φ, its differential, Φ and projection on manifolds of relations.
 //!
 //! Generated joints call these functions with their own Φ and relations as functions of dual numbers, which give the values and
 //! the derivatives. Everything is generic over [`Scalar`], allocates nothing, and does the same operations whatever the data:
 //! iteration counts are fixed, choices go through [`Scalar::select`]. What fails comes back as NaN in every entry of the lane that
 //! fails.
 
+mod implicit;
 mod invert;
 mod project;
 mod solve;
 #[cfg(test)]
 mod tests;
 
+pub use implicit::{
+    RETRACT_ITERATIONS, along_tangent, retract, retract_differential, retract_differential_inverse,
+};
 pub use invert::{LOCAL_ITERATIONS, differential, differential_inverse, local};
 pub use project::{PROJECT_ITERATIONS, project};
 pub use solve::{inverse, least_squares};

@@ -3,8 +3,8 @@
 use hamel::erased::AnyJoint;
 use hamel::registry::JointRegistry;
 use hamel_downstream::joints::{
-    BallCayley, BallTurns, Bead, Catenary, CatenaryLength, DirectionSensor, ENTRIES, PlanarTurns,
-    PowerGuide, RollingBallCayley, Scara, SkateHeading, SkewScrew, SpherePoint,
+    BallCayley, BallTurns, Bead, Catenary, CatenaryLength, DirectionSensor, ENTRIES, FourBar,
+    FourBarThrough, PlanarTurns, PowerGuide, RollingBallCayley, Scara, SkateHeading, SkewScrew, SliderCrankRod, SpherePoint,
 };
 use hamel_tests::derivatives::{self, Equipped, Kernels, bare_and_equipped, behind, of};
 use hamel_tests::differences::STEP;
@@ -35,12 +35,15 @@ fn kernels(joint: &dyn AnyJoint) -> Box<dyn Kernels> {
         of(Catenary::new(0.7)),
         of(CatenaryLength::new(0.7)),
         of(DirectionSensor::new(0.7)),
+        of(FourBar::new(0.7, 0.7, 0.7, 0.7)),
+        of(FourBarThrough),
         of(PlanarTurns),
         of(PowerGuide::new(0.7)),
         of(RollingBallCayley::new(0.7)),
         of(Scara),
         of(SkateHeading),
         of(SkewScrew),
+        of(SliderCrankRod),
         of(SpherePoint::new(0.7)),
     ];
     behind(joint, all)

@@ -12,6 +12,8 @@ pub enum Argument {
     Target,
     /// ϕ.
     Local,
+    /// ξ.
+    Displacement,
     /// v.
     Velocity,
     /// S₀⁻¹ v at the moved configuration: the symbols of v under another name.
@@ -31,6 +33,7 @@ impl Argument {
             Self::Configuration => "q",
             Self::Target => "target",
             Self::Local => "phi",
+            Self::Displacement => "xi",
             Self::Velocity => "v",
             Self::Rate => "rate",
             Self::Momentum => "p",
@@ -44,6 +47,7 @@ impl Argument {
         match self {
             Self::Configuration | Self::Target => shape.configuration,
             Self::Local | Self::Velocity | Self::Rate | Self::Momentum => shape.freedoms,
+            Self::Displacement => shape.displacements,
             Self::Speeds => shape.speeds,
             Self::Wrench => 6,
         }
@@ -55,6 +59,7 @@ impl Argument {
             Self::Configuration => &arguments.configuration,
             Self::Target => &arguments.target,
             Self::Local => &arguments.local,
+            Self::Displacement => &arguments.displacement,
             Self::Velocity | Self::Rate => &arguments.velocity,
             Self::Momentum => &arguments.momentum,
             Self::Speeds => &arguments.speeds,
@@ -92,7 +97,9 @@ pub struct Signature {
 impl Signature {
     /// The signature of a kernel.
     pub fn new(kernel: &Kernel, shape: Shape) -> Self {
-        use Argument::{Configuration, Local, Momentum, Rate, Speeds, Target, Velocity, Wrench};
+        use Argument::{
+            Configuration, Displacement, Local, Momentum, Rate, Speeds, Target, Velocity, Wrench,
+        };
         use Output::{Matrix, Pose, Scalar, Slices, Vector};
         let (n, k, s, c) = (
             shape.configuration,
@@ -100,7 +107,7 @@ impl Signature {
             shape.speeds,
             shape.constraints,
         );
-        let q = || vec![Configuration];
+        let (g, q) = (shape.displacements, || vec![Configuration]);
         let relations = kernel
             .outputs
             .first()
@@ -126,6 +133,10 @@ impl Signature {
             ),
             KernelKind::Retract => ("retract", vec![Configuration, Local], Vector(n)),
             KernelKind::Local => ("local", vec![Configuration, Target], Vector(k)),
+            KernelKind::TangentBasis => ("tangent_basis", q(), Matrix(g, k)),
+            KernelKind::NormalBasis => ("normal_basis", q(), Matrix(g, g - k)),
+            KernelKind::Displaced => ("displaced", vec![Configuration, Displacement], Vector(n)),
+            KernelKind::Displacement => ("displacement", vec![Configuration, Target], Vector(g)),
             KernelKind::RetractDifferential => (
                 "retract_differential",
                 vec![Configuration, Local],
@@ -182,6 +193,12 @@ pub fn meaning(kind: KernelKind) -> &'static str {
             "Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration."
         }
         KernelKind::Local => "The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.",
+        KernelKind::TangentBasis => "B(Q): v to the displacement rate Q⁻¹Q̇.",
+        KernelKind::NormalBasis => {
+            "N(Q): displacements along which Φ comes back onto the manifold of the relations."
+        }
+        KernelKind::Displaced => "Q exp(ξ) at a finite displacement ξ.",
+        KernelKind::Displacement => "The displacement ξ with Q exp(ξ) = `target`.",
         KernelKind::RetractDifferential => {
             "D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D."
         }

@@ -14,11 +14,15 @@ pub struct FiniteRow {
     pub method: String,
 }
 
-const FINITE: [KernelKind; 8] = [
+const FINITE: [KernelKind; 12] = [
     KernelKind::Retract,
     KernelKind::Local,
     KernelKind::RetractDifferential,
     KernelKind::RetractDifferentialInverse,
+    KernelKind::TangentBasis,
+    KernelKind::NormalBasis,
+    KernelKind::Displaced,
+    KernelKind::Displacement,
     KernelKind::Relations,
     KernelKind::Project,
     KernelKind::Residual,

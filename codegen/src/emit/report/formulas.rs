@@ -93,6 +93,8 @@ pub(super) fn formulas(derived: &Derived, notation: &Notation) -> Vec<Formula> {
         KernelKind::SpeedBasisGradient,
         KernelKind::ConfigurationRate,
         KernelKind::Relations,
+        KernelKind::TangentBasis,
+        KernelKind::NormalBasis,
         KernelKind::BiasAcceleration,
         KernelKind::BiasMomentum,
     ];
@@ -215,6 +217,11 @@ fn heading(kind: KernelKind) -> Option<(Math, &'static str)> {
             "Rate of the stored scalars, (31)",
         ),
         KernelKind::Relations => (letter('r'), "Relations that Q meets: r = 0"),
+        KernelKind::TangentBasis => (letter('B'), "Directions of v: Q⁻¹Q̇ = B v"),
+        KernelKind::NormalBasis => (
+            letter('N'),
+            "Directions along which Φ comes back onto the relations: Φ = Q exp(B ϕ + N λ)",
+        ),
         KernelKind::BiasAcceleration => (
             letter('c'),
             "Velocity product term of the recursive forms, in the child frame",

@@ -29,6 +29,7 @@ impl Notation {
         }
         let numbered = [
             (&arguments.local, Math::Letter('ϕ')),
+            (&arguments.displacement, Math::Letter('ξ')),
             (&arguments.velocity, Math::Letter('v')),
             (&arguments.momentum, Math::Letter('p')),
             (&arguments.speeds, Math::Letter('v').marked(Mark::Bar)),

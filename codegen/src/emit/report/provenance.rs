@@ -128,6 +128,10 @@ fn parts(spec: &JointSpec, kind: KernelKind) -> Vec<Part> {
         KernelKind::SpeedBasisGradient if speeds.is_empty() => vec![],
         KernelKind::SpeedBasisGradient => vec![speeds, &[Motion]],
         KernelKind::Retract
+        | KernelKind::TangentBasis
+        | KernelKind::NormalBasis
+        | KernelKind::Displaced
+        | KernelKind::Displacement
         | KernelKind::Local
         | KernelKind::RetractDifferential
         | KernelKind::RetractDifferentialInverse => vec![&[Manifold, Motion]],

@@ -11,7 +11,27 @@ pub fn call(derived: &Derived, kernel: &Kernel, start: &TokenStream) -> Option<T
         return None;
     }
     let retract = quote! { |q, phi| self.retract(q, phi) };
+    let bases = quote! { (self.tangent_basis(q), self.normal_basis(q)) };
+    let [declared, own] = relations(derived).map(Literal::usize_unsuffixed);
+    let implicit = quote! {
+        |q| #bases,
+        |q, xi| self.displaced(q, xi),
+        |q| self.relations(q).fixed_rows::<#declared>(#own).into_owned(),
+    };
+    let is_implicit = derived.spec.implicit.is_some();
     Some(match kernel.kind {
+        KernelKind::Retract => quote! {
+            ::hamel::finite::retract((q, phi), #implicit)
+        },
+        KernelKind::Local if is_implicit => quote! {
+            ::hamel::finite::along_tangent(&self.displacement(q, target), #bases)
+        },
+        KernelKind::RetractDifferential if is_implicit => quote! {
+            ::hamel::finite::retract_differential((q, phi), #implicit)
+        },
+        KernelKind::RetractDifferentialInverse if is_implicit => quote! {
+            ::hamel::finite::retract_differential_inverse((q, phi, rate), #implicit)
+        },
         KernelKind::Local => quote! {
             ::hamel::finite::local(q, target, #retract)
         },
@@ -21,7 +41,7 @@ pub fn call(derived: &Derived, kernel: &Kernel, start: &TokenStream) -> Option<T
         KernelKind::RetractDifferentialInverse => quote! {
             ::hamel::finite::differential_inverse(q, phi, rate, #retract)
         },
-        KernelKind::Project => {
+        KernelKind::Home | KernelKind::Project => {
             let codimension = Literal::usize_unsuffixed(codimension(derived));
             quote! { ::hamel::finite::project(#start, #codimension, |q| self.relations(q)) }
         }
@@ -29,9 +49,24 @@ pub fn call(derived: &Derived, kernel: &Kernel, start: &TokenStream) -> Option<T
     })
 }
 
-/// Whether a kernel is a method of the joint's type alone: the one that only these calls need.
+/// How many relations the spec declares, and how many those of the factors are, which stand before them.
+fn relations(derived: &Derived) -> [usize; 2] {
+    let declared = derived.space.manifold.declared().len();
+    let relations = derived.kernel(KernelKind::Relations);
+    let all = relations.and_then(|kernel| kernel.outputs.first());
+    [declared, all.map_or(0, |column| column.rows() - declared)]
+}
+
+/// Whether a kernel is a method of the joint's type alone: one that only these calls need.
 pub fn is_beside_the_trait(kind: KernelKind) -> bool {
-    kind == KernelKind::Relations
+    matches!(
+        kind,
+        KernelKind::Relations
+            | KernelKind::TangentBasis
+            | KernelKind::NormalBasis
+            | KernelKind::Displaced
+            | KernelKind::Displacement
+    )
 }
 
 /// Rank of the derivatives of the relations on the manifold: N less the dimension that they cut out, without what known factors
@@ -59,10 +94,21 @@ pub fn sentence(kernel: &Kernel) -> Option<&'static str> {
             "By Newton's method from ϕ = 0, in at most `finite::LOCAL_ITERATIONS` steps; NaN where it \
              does not converge.",
         ),
+        (Method::Newton, KernelKind::Home) => Some(
+            "The configuration nearest to these numbers, by Newton's method in at most \
+             `finite::PROJECT_ITERATIONS` steps; NaN where it does not converge.",
+        ),
         (Method::Newton, KernelKind::Project) => Some(
             "By Newton's method, in at most `finite::PROJECT_ITERATIONS` steps; NaN where it does \
              not converge.",
         ),
+        (Method::Newton, KernelKind::Retract) => Some(
+            "Q exp(B ϕ + N λ), with λ by Newton's method from 0 so that the relations hold, in \
+             `finite::RETRACT_ITERATIONS` steps; NaN where it does not converge.",
+        ),
+        (Method::Solve, KernelKind::Local) => {
+            Some("The part along B of the displacement from Q to Q′, by a solve with [B, N].")
+        }
         _ => Some("By a least-squares solve with ∂Φ/∂ϕ at (Q, ϕ) and at (Q′, 0)."),
     }
 }

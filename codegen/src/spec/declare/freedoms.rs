@@ -6,11 +6,11 @@ use super::super::evaluate::Evaluator;
 use super::super::names::Form;
 use super::once::At;
 use super::scope::Scope;
-use super::{Context, basis, frame};
+use super::{Context, basis, frame, implicit};
 use crate::diagnostic::Diagnostic;
 use crate::expr::{Expr, Role, Symbol};
 use crate::manifold::{Factor, Kind};
-use crate::model::{Declared, Freedom, VelocityFrame};
+use crate::model::{Declared, Freedom, Implicit, VelocityFrame};
 use std::ops::Range;
 
 /// Most freedoms: those of a free body.
@@ -21,17 +21,26 @@ pub(super) struct Freedoms {
     pub list: Declared<Vec<Freedom>>,
     /// Whether some are those of `local`, which only Phi gives a meaning.
     pub local: bool,
+    /// How they move Q on the manifold of the relations, where Phi is not declared.
+    pub implicit: Option<Implicit>,
 }
 
 /// All degrees of freedom, in order; `None` where they cannot be told.
 pub(super) fn freedoms(context: &Context<'_>, scope: &mut Scope<'_, '_, '_>) -> Option<Freedoms> {
-    let bases = basis_freedoms(context, scope);
+    let mut bases = basis_freedoms(context, scope);
     let local = context.statements.local;
-    let list = match local {
-        Some(local) => local_freedoms(context, local, bases, scope)?,
-        None => coordinate_freedoms(context, bases, scope)?,
+    let implicit = implicit::implicit(context, &bases.list, local.is_some());
+    if implicit.is_some() {
+        implicit::without_generators(&mut bases.list);
+    }
+    let list = match (local, &implicit) {
+        (None, Some(Implicit::CrossProduct)) => vec![freedom(implicit::ALONG, 0, 0, vec![])],
+        (None, Some(_)) => bases.complete.then_some(bases.list)?,
+        (Some(local), _) => local_freedoms(context, local, bases, scope)?,
+        (None, None) => coordinate_freedoms(context, bases, scope)?,
     };
     let first = context.statements.bases.first().map(|at| at.span);
+    let local_or_implicit = local.is_some() || implicit.is_some();
     let span = first
         .or(local.map(|at| at.span))
         .unwrap_or(&context.manifold.span);
@@ -44,7 +53,8 @@ pub(super) fn freedoms(context: &Context<'_>, scope: &mut Scope<'_, '_, '_>) -> 
             value: list,
             span: span.clone(),
         },
-        local: local.is_some(),
+        local: local_or_implicit,
+        implicit,
     })
 }
 
@@ -58,7 +68,7 @@ fn too_many(context: &Context<'_>, count: usize, span: &Range<usize>) -> Option<
             "{count} degrees of freedom, and relations leave fewer than {dimension} of the factors"
         );
         return Some(error(message).help(
-            "name the degrees of freedom that are left by `local a, b;`, and say by Phi how they move Q",
+            "name the directions that are independent by `basis`, or, for one degree of freedom, none; the others follow by the relations",
         ));
     }
     if count > MOST_FREEDOMS {
@@ -200,7 +210,9 @@ fn local_freedoms(
     scope: &mut Scope<'_, '_, '_>,
 ) -> Option<Vec<Freedom>> {
     claim(local.value.iter(), scope);
-    if context.statements.target(Target::Retract).is_none() && !context.file.partial {
+    let related = !context.statements.relations.is_empty();
+    let declared = context.statements.target(Target::Retract).is_some();
+    if !declared && !related && !context.file.partial {
         let error = Diagnostic::new(
             code::MISSING,
             local.span.clone(),

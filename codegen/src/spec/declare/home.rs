@@ -11,12 +11,52 @@ use crate::manifold::{Ideal, Manifold};
 use crate::model::Declared;
 use std::collections::BTreeMap;
 
-/// The stored scalars of home, where declared; the identity of each factor serves where it is not, and no relation forbids that.
-pub(super) fn home(
+/// Home as it is declared.
+#[derive(Debug, Default)]
+pub(super) struct Home {
+    /// Its stored scalars; the identity of each factor serves where there are none, and no relation forbids that.
+    pub declared: Option<Declared<Vec<Expr>>>,
+    /// Whether they are a guess.
+    pub is_guess: bool,
+}
+
+/// Home, where declared.
+pub(super) fn home(context: &Context<'_>, evaluator: &mut Evaluator<'_>) -> Home {
+    let near = context.statements.target(Target::Near);
+    if let Some(near) = near
+        && let Some(error) = needless(context, near)
+    {
+        evaluator.report(error);
+        return Home::default();
+    }
+    let target = near.map_or(Target::Home, |_| Target::Near);
+    Home {
+        declared: declared(context, target, evaluator),
+        is_guess: near.is_some(),
+    }
+}
+
+/// The error that a guess stands beside home, or where there are no relations onto which it is projected.
+fn needless(context: &Context<'_>, near: At<'_, [Node]>) -> Option<Diagnostic> {
+    let statements = context.statements;
+    if statements.target(Target::Home).is_some() {
+        let message = "`home` is declared, and guessed by `home near`";
+        let error = Diagnostic::new(code::DUPLICATE_STATEMENT, near.span.clone(), message);
+        return Some(error.label("a second home").help("leave out one of them"));
+    }
+    (statements.relations.is_empty() && !context.file.partial).then(|| {
+        let message = "`home near` is projected onto relations, and there are none";
+        let error = Diagnostic::new(code::HOME, near.span.clone(), message);
+        error.label("a guess").help("write `home = …;`")
+    })
+}
+
+fn declared(
     context: &Context<'_>,
+    target: Target,
     evaluator: &mut Evaluator<'_>,
 ) -> Option<Declared<Vec<Expr>>> {
-    let Some(statement) = context.statements.target(Target::Home) else {
+    let Some(statement) = context.statements.target(target) else {
         if let Some(relation) = context.statements.relations.first()
             && !context.file.partial
         {
@@ -24,7 +64,7 @@ pub(super) fn home(
             let error = Diagnostic::new(code::MISSING, relation.span.clone(), message)
                 .label("home is missing");
             evaluator.report(
-                error.help("add `home = …;`, a configuration that satisfies all relations"),
+                error.help("add `home = …;`, a configuration that satisfies all relations, or `home near …;`, one that is near such a configuration"),
             );
         }
         return None;
@@ -32,11 +72,11 @@ pub(super) fn home(
     let manifold = &context.manifold.value;
     let value = evaluator.bounded("home", statement.span, |evaluator| {
         let factors = manifold.factors();
-        if !stored::complete(Target::Home, statement, factors, evaluator) {
+        if !stored::complete(target, statement, factors, evaluator) {
             return None;
         }
-        let scalars = stored::scalars(Target::Home, statement.value, factors, evaluator)?;
-        match check(statement, &scalars, manifold) {
+        let scalars = stored::scalars(target, statement.value, factors, evaluator)?;
+        match check(target, statement, &scalars, manifold) {
             None => Some(scalars),
             Some(error) => {
                 evaluator.report(error);
@@ -50,7 +90,12 @@ pub(super) fn home(
     })
 }
 
-fn check(statement: At<'_, [Node]>, home: &[Expr], manifold: &Manifold) -> Option<Diagnostic> {
+fn check(
+    target: Target,
+    statement: At<'_, [Node]>,
+    home: &[Expr],
+    manifold: &Manifold,
+) -> Option<Diagnostic> {
     let error = |message| Diagnostic::new(code::HOME, statement.span.clone(), message);
     if !home.iter().all(Expr::is_constant) {
         return Some(
@@ -58,6 +103,9 @@ fn check(statement: At<'_, [Node]>, home: &[Expr], manifold: &Manifold) -> Optio
                 .label("depends on the configuration")
                 .help("write numbers and parameters"),
         );
+    }
+    if target == Target::Near {
+        return None;
     }
     let residuals = residuals(home, manifold);
     (!residuals.is_empty()).then(|| {

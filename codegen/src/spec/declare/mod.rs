@@ -6,6 +6,7 @@ mod division;
 mod equation;
 mod freedoms;
 mod home;
+mod implicit;
 mod loci;
 mod matrices;
 mod once;
@@ -104,7 +105,8 @@ fn declare(
         names,
     };
     let home = home::home(&context, scope.evaluator);
-    let declared_home = home.as_ref().map(|home| home.value.as_slice());
+    let declared_home = home.declared.as_ref().filter(|_| !home.is_guess);
+    let declared_home = declared_home.map(|home| home.value.as_slice());
     let loci = loci::loci(&context, declared_home, source, scope.evaluator);
     let requirements = parameter::requirements(statements, source, scope.evaluator);
     let freedoms = freedoms::freedoms(&context, &mut scope);
@@ -139,11 +141,13 @@ fn declare(
         requirements,
         manifold,
         loci,
-        home,
+        home_is_guess: home.is_guess,
+        home: home.declared,
         freedoms: freedoms.list,
         velocity: velocity?,
         pose: pose?,
         retract,
+        implicit: freedoms.implicit,
         twist_map: matrices.twist_map,
         constraint: matrices.constraint,
         speed_basis: matrices.speed_basis,

@@ -75,7 +75,7 @@ fn part(
 
 fn advice(target: Target, factor: &Factor) -> String {
     match (target, factor.kind) {
-        (Target::Home, kind) => match kind {
+        (Target::Home | Target::Near, kind) => match kind {
             Kind::Real(1) => "a number, say".to_owned(),
             Kind::So3 => "`I(3)`, say".to_owned(),
             Kind::Se3 => "`pose(I(3), [0, 0, 0])`, say".to_owned(),

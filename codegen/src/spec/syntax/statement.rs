@@ -227,9 +227,20 @@ fn keyword(tokens: &mut Tokens<'_>, word: &str) -> Fallible<()> {
 }
 
 fn assignment(tokens: &mut Tokens<'_>, target: Target) -> Fallible<StatementKind> {
-    tokens.expect('=', "`=`")?;
+    let is_guess =
+        target == Target::Home && tokens.peek_name().is_some_and(|name| name.text == "near");
+    let target = match is_guess {
+        true => {
+            tokens.name();
+            Target::Near
+        }
+        false => {
+            tokens.expect('=', "`=`")?;
+            target
+        }
+    };
     let values = match target {
-        Target::Retract | Target::Home => list(tokens, expression::expression)?,
+        Target::Retract | Target::Home | Target::Near => list(tokens, expression::expression)?,
         _ => vec![expression::expression(tokens)?],
     };
     Ok(StatementKind::Assign(target, values))
