@@ -220,16 +220,13 @@ pub fn equipped(cases: impl Iterator<Item = Case>, change: f64) {
 ///
 /// # Panics
 /// As [`steps_of_rk4`], and where fewer do.
-pub fn constrained(cases: impl Iterator<Item = Case>, least: usize) {
+pub fn constrained(cases: impl Iterator<Item = Case>, least: usize, change: f64) {
     let cases: Vec<Case> = cases.filter_map(coupled).collect();
     let count = cases.len();
     assert!(count >= least, "{count} trees take an edge");
-    // Where a constraint nearly loses a speed, motions bend over lengths of a tenth: a fourth of the step takes h⁶ f⁽⁷⁾ down by 4096.
-    steps_of_rk4(
-        "A and B where a constraint couples joints",
-        &cases,
-        STEP / 4.0,
-    );
+    // Where a constraint nearly loses a speed, motions bend over lengths of a tenth: `change` is a fourth of the usual step or less, which takes h⁶ f⁽⁷⁾ down by 4096.
+    let title = "A and B where a constraint couples joints";
+    steps_of_rk4(title, &cases, change);
 }
 
 /// The tree of a case with an edge on its last body; `None` where its joints allow nothing that the edge forbids, or where it hardly determines a speed,

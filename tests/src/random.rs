@@ -50,7 +50,13 @@ pub fn kinds(registry: &JointRegistry) -> Vec<Arc<dyn AnyJoint>> {
             .map(|i| 0.7 + 0.15 * i as f64)
             .collect();
         let descending: Vec<f64> = ascending.iter().rev().copied().collect();
-        let built = (entry.build)(&ascending).or_else(|_| (entry.build)(&descending));
+        // A second one that is much smaller than the others, as a crank beside its ground.
+        let small_second: Vec<f64> = (0..entry.parameters.len())
+            .map(|i| if i == 1 { 0.2 } else { 0.9 + 0.1 * i as f64 })
+            .collect();
+        let built = (entry.build)(&ascending)
+            .or_else(|_| (entry.build)(&descending))
+            .or_else(|_| (entry.build)(&small_second));
         built.unwrap_or_else(|error| panic!("{error}"))
     };
     registry.entries().map(build).collect()
@@ -258,8 +264,12 @@ pub fn configuration(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Vec<f64>
     let own = |(index, size): (usize, usize)| {
         let joint = mechanism.bodies()[index].joint();
         let is_clear = |q: &Vec<f64>| joint.singularity(q) >= CLEARANCE;
-        let mut draws = std::iter::repeat_with(|| draw(index, size)).take(MOST_DRAWS).flatten();
-        draws.find(is_clear).expect("a configuration that the joint can be moved to")
+        let mut draws = std::iter::repeat_with(|| draw(index, size))
+            .take(MOST_DRAWS)
+            .flatten();
+        draws
+            .find(is_clear)
+            .expect("a configuration that the joint can be moved to")
     };
     let sizes = mechanism
         .bodies()

@@ -310,17 +310,19 @@ fn check(joint: &Prepared, implicit: &Implicit) -> Result<(), Vec<Diagnostic>> {
     if freedoms + count == dimension {
         return Ok(());
     }
+    let left = dimension.saturating_sub(count);
+    let named = match implicit {
+        Implicit::CrossProduct => 0,
+        Implicit::Independent(_) => freedoms,
+    };
     let message = format!(
-        "{count} relations on factors of {dimension} dimensions, and {freedoms} degrees of freedom"
+        "{dimension} dimensions of the factors less {count} of relations leave {left} degrees of freedom; named: {named}"
     );
-    let help = match implicit {
-        Implicit::CrossProduct if count + 1 < dimension => {
-            let left = dimension - count.min(dimension);
-            format!(
-                "name {left} independent directions by `basis`, as in `basis turn of so2(a);`; all others follow by the relations"
-            )
-        }
-        _ => "relations and degrees of freedom together are as many as the factors have dimensions: leave out relations that follow from \
+    let help = match left > freedoms {
+        true => format!(
+            "name {left} independent directions by `basis`, as in `basis turn of so2(a);`; all others follow by the relations"
+        ),
+        false => "relations and degrees of freedom together are as many as the factors have dimensions: leave out relations that follow from \
               others, name independent directions by `basis`, or declare Phi"
             .to_owned(),
     };

@@ -7,9 +7,18 @@ use super::{inverse, least_squares, norm, unless_apart, with_jacobian};
 use crate::scalar::{Dual, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-/// Newton steps of [`retract`]. λ begins with second order in ϕ; from an error of a tenth five steps reach rounding, and each of the
-/// others makes derivatives of one more order exact where the scalars are dual numbers, or serves a longer ϕ.
-pub const RETRACT_ITERATIONS: usize = 8;
+/// Parts of ϕ by which [`retract`] goes from Q to Φ(Q, ϕ), so that it stays on the branch of Q where ϕ is long.
+const PARTS: usize = 4;
+
+/// Newton steps after each part: from the third on a part of some tenths is followed to what the next one needs.
+const STEPS: usize = 2;
+
+/// Newton steps at the end: two or three reach rounding, and each of the others makes derivatives of one more order exact where the scalars
+/// are dual numbers.
+const POLISHING: usize = 4;
+
+/// Newton steps of [`retract`].
+pub const RETRACT_ITERATIONS: usize = PARTS * STEPS + POLISHING;
 
 /// B and N at a configuration.
 type Bases<T, const K: usize, const G: usize, const C: usize> =
@@ -18,13 +27,7 @@ type Bases<T, const K: usize, const G: usize, const C: usize> =
 /// Φ(Q, ϕ) by Newton's method from λ = 0; NaN in every entry where it does not converge within [`RETRACT_ITERATIONS`].
 ///
 /// `moving` is (Q, ϕ).
-pub fn retract<
-    T: Scalar,
-    const N: usize,
-    const K: usize,
-    const G: usize,
-    const C: usize,
->(
+pub fn retract<T: Scalar, const N: usize, const K: usize, const G: usize, const C: usize>(
     moving: (&SVector<T, N>, &SVector<T, K>),
     bases: impl Fn(&SVector<T, N>) -> Bases<T, K, G, C>,
     displaced: impl Fn(&SVector<Dual<T>, N>, &SVector<Dual<T>, G>) -> SVector<Dual<T>, N>,
@@ -37,33 +40,35 @@ pub fn retract<
 }
 
 /// ξ = B ϕ + N λ with the λ for which the relations hold; NaN where Newton's method does not converge.
-fn displacement<
-    T: Scalar,
-    const N: usize,
-    const K: usize,
-    const G: usize,
-    const C: usize,
->(
+fn displacement<T: Scalar, const N: usize, const K: usize, const G: usize, const C: usize>(
     (q, phi): (&SVector<T, N>, &SVector<T, K>),
     (tangent, normal): &Bases<T, K, G, C>,
     displaced: impl Fn(&SVector<Dual<T>, N>, &SVector<Dual<T>, G>) -> SVector<Dual<T>, N>,
     relations: impl Fn(&SVector<Dual<T>, N>) -> SVector<Dual<T>, C>,
 ) -> SVector<T, G> {
     let base = q.map(Dual::constant);
-    let straight = tangent * phi;
-    let (along, back) = (straight.map(Dual::constant), normal.map(Dual::constant));
-    let step_at = |lambda: &SVector<T, C>| {
-        let at = |lambda: &SVector<Dual<T>, C>| relations(&displaced(&base, &(along + back * lambda)));
+    let (straight, back) = (tangent * phi, normal.map(Dual::constant));
+    let step_at = |along: &SVector<T, G>, lambda: &SVector<T, C>| {
+        let along = along.map(Dual::constant);
+        let at =
+            |lambda: &SVector<Dual<T>, C>| relations(&displaced(&base, &(along + back * lambda)));
         let (values, slopes) = with_jacobian(at, lambda);
         least_squares(&slopes, &values)
     };
     let mut lambda = SVector::<T, C>::zeros();
-    for _ in 0..RETRACT_ITERATIONS {
-        lambda -= step_at(&lambda);
+    for part in 1..=PARTS {
+        let along = straight * T::from_f64(part as f64 / PARTS as f64);
+        for _ in 0..STEPS {
+            lambda -= step_at(&along, &lambda);
+        }
     }
-    let xi = straight + normal * lambda;
+    for _ in 0..POLISHING {
+        lambda -= step_at(&straight, &lambda);
+    }
+    let last = step_at(&straight, &lambda);
+    let xi = straight + normal * (lambda - last);
     // The scale of a displacement is that of a turn by one radian, or its own where that is larger.
-    unless_apart(&xi, norm(&step_at(&lambda)), T::one() + norm(&xi))
+    unless_apart(&xi, norm(&last), T::one() + norm(&xi))
 }
 
 /// The ϕ of a displacement ξ = B ϕ + N λ: the inverse of [`retract`] where ξ leads to a point of the manifold.
@@ -118,13 +123,7 @@ pub fn retract_differential_inverse<
 /// ∂Φ/∂ϕ at (Q, ϕ) and at (Q′, 0), both N×K of the stored scalars.
 ///
 /// The derivative of λ is that of an implicit function: `(∂r/∂ξ N) λ′ = −∂r/∂ξ B` for the relations r.
-fn tangents<
-    T: Scalar,
-    const N: usize,
-    const K: usize,
-    const G: usize,
-    const C: usize,
->(
+fn tangents<T: Scalar, const N: usize, const K: usize, const G: usize, const C: usize>(
     moving: (&SVector<T, N>, &SVector<T, K>),
     bases: impl Fn(&SVector<T, N>) -> Bases<T, K, G, C>,
     displaced: impl Fn(&SVector<Dual<T>, N>, &SVector<Dual<T>, G>) -> SVector<Dual<T>, N>,

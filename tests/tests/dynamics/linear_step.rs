@@ -35,7 +35,7 @@ fn equipped_trees() {
 
 #[test]
 fn coupled_trees() {
-    linear_step::constrained(cases(&library(), 5, 30), 20);
+    linear_step::constrained(cases(&library(), 5, 30), 20, STEP / 4.0);
 }
 
 #[test]

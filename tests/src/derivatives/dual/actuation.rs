@@ -42,16 +42,19 @@ fn stiffness(random: &mut ChaCha8Rng, size: usize) -> Vec<f64> {
         .collect()
 }
 
-/// A place about `near` of the joint's own, nearer where ϕ would not be found back from there.
+/// A place about `near` of the joint's own, nearer where ϕ would not be found back from there: half as far as it is found from, because
+/// motions go on from Q.
 fn rest(owner: &Body, q: &[f64], mut near: Vec<f64>) -> Vec<f64> {
     let (joint, q) = (owner.joint(), owner.configuration(q));
     let (mut rest, mut back) = (vec![0.0; q.len()], near.clone());
     loop {
         joint.retract(q, &near, &mut rest);
-        if joint.local(&rest, q, &mut back).is_ok() {
+        let is_found = joint.local(&rest, q, &mut back).is_ok();
+        near.iter_mut().for_each(|entry| *entry *= 0.5);
+        if is_found {
+            joint.retract(q, &near, &mut rest);
             return rest;
         }
-        near.iter_mut().for_each(|entry| *entry *= 0.5);
     }
 }
 
