@@ -4,7 +4,7 @@
 
 mod complement;
 pub(crate) mod dimension;
-mod directions;
+pub(crate) mod directions;
 mod elimination;
 pub(crate) mod finite;
 mod general;

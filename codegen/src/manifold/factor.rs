@@ -27,7 +27,7 @@ pub enum Kind {
 /// The longest real vector that a joint may have: a joint has at most six degrees of freedom.
 pub const LARGEST_REAL: usize = 6;
 /// The longest real vector of a joint whose relations leave at most six degrees of freedom of it.
-pub const LARGEST_CONSTRAINED_REAL: usize = 24;
+pub const LARGEST_CONSTRAINED_REAL: usize = 96;
 
 impl Kind {
     /// The manifold of that name in the spec language; real vectors longer than [`LARGEST_REAL`] need relations.

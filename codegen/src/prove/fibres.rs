@@ -49,9 +49,25 @@ impl<'a> Fibres<'a> {
             let reason = "every stored scalar can be read off H";
             return Some(("one pose has one Q".into(), reason.into()));
         }
+        if let Some(apart) = self.apart(&rest) {
+            return Some(apart);
+        }
         self.double_cover(&rest)
             .or_else(|| self.full_turns(&rest, &known))
             .or_else(|| self.negated(&rest))
+    }
+
+    /// H does not depend on what is left, such as a steering angle.
+    fn apart(&self, rest: &[Symbol]) -> Option<(String, String)> {
+        let occurs = |symbol: &Symbol| self.entries.iter().any(|e| e.symbols().contains(symbol));
+        if rest.iter().any(occurs) {
+            return None;
+        }
+        let names: Vec<&str> = rest.iter().map(|symbol| &*symbol.spelling).collect();
+        Some((
+            format!("one pose has one Q but for {}", names.join(", ")),
+            "every other stored scalar can be read off H, which does not depend on these".into(),
+        ))
     }
 
     /// Scalars, and sines and cosines of them, that a pose determines: those that are linear in an entry of H of which

@@ -62,6 +62,7 @@ pub fn prove(joint: &Prepared, expansion: &Expansion) -> Result<Vec<Claim>, Vec<
     claims.extend(prover.settled([
         prover.is_defined(),
         prover.slopes_agree(),
+        prover.rates_agree(),
         prover.velocity_map_is_inverted(),
         prover.child_twist_map_agrees(),
     ])?);
@@ -75,6 +76,7 @@ fn place(name: &str) -> usize {
     let order = [
         "defined",
         "manifold_dimension",
+        "retract_by_relations",
         "manifold_orbit",
         "retract_on_manifold",
         "retract_is_exponential",
@@ -82,6 +84,7 @@ fn place(name: &str) -> usize {
         "twist_map_in_frame",
         "twist_map_matches_pose",
         "velocity_map_first_order",
+        "velocity_map_of_motion",
         "velocity_map_invertible",
         "velocity_map_inverse",
         "twist_map_child",

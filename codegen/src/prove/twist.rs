@@ -2,7 +2,7 @@
 
 use super::{Attempt, Prover, certified, degenerate, refuted};
 use crate::diagnostic::Diagnostic;
-use crate::expand::{adjoint_inverse, rank, twist_map_in_frame};
+use crate::expand::{adjoint_inverse, directions, rank, twist_map_in_frame};
 use crate::expr::Expr;
 use crate::matrix::Matrix;
 use crate::model::VelocityFrame;
@@ -92,6 +92,35 @@ impl Prover<'_> {
                     &self.twist_map_span(),
                     "X does not span the velocities of H near Q",
                     "no ∂S/∂ϕ solves X S = J",
+                )
+            },
+        )
+    }
+
+    /// S is that of the motion of Q, where X does not tell all of it: of what moves no body, and where relations alone give Φ.
+    ///
+    /// With S₀ = I, v is read along the directions δ_k of Q: `Σ_j δ_j (S_l)_jk = ∂²Φ/∂ϕ_l∂ϕ_k − ∂δ_k/∂ϕ_l`.
+    pub(super) fn rates_agree(&self) -> Attempt {
+        if self.x.flow.is_none() && self.beside_still_freedoms().is_none() {
+            return Ok(None);
+        }
+        let s = &self.x.velocity_map;
+        let tangent = self.x.motion.tangent();
+        let bends = directions::bends(&self.x.motion);
+        let slices = s.slopes.iter().zip(&bends);
+        let first = tangent.times(&s.base).minus(&tangent).entries().to_vec();
+        let residuals = slices.flat_map(|(s, bend)| tangent.times(s).minus(bend).entries().to_vec());
+        let residual = Matrix::column_vector(first.into_iter().chain(residuals).collect());
+        self.identity(
+            "velocity_map_of_motion",
+            "Q̇ along Φ(Q, ϕ) is that of v = S ϕ̇ to first order in ϕ, (31)",
+            &residual,
+            |_| {
+                refuted(
+                    code::TWIST_MAP_SLOPE,
+                    &self.joint.spec.freedoms.span,
+                    "S is not that of the motion of Q",
+                    "v does not tell how these move",
                 )
             },
         )
@@ -200,6 +229,16 @@ impl Prover<'_> {
 
     pub(super) fn twist_map_has_full_rank(&self) -> Attempt {
         // Ad is invertible, so that X and X^c have the same rank: the simpler one is certified.
+        if let Some((moving, statement)) = self.beside_still_freedoms() {
+            return self.rank_claim(
+                &moving,
+                "twist_map_rank",
+                &statement,
+                code::TWIST_MAP_LOCUS,
+                self.twist_map_span(),
+                "X without the columns of what moves no body",
+            );
+        }
         let child = &self.x.twist_map_child;
         let shown = |m: &Matrix| rank::full_column_rank(m, &self.domain).is_ok();
         let (m, statement) =
@@ -218,6 +257,30 @@ impl Prover<'_> {
             self.twist_map_span(),
             "X",
         )
+    }
+}
+
+impl Prover<'_> {
+    /// The columns of X of the degrees of freedom that move the body, and the claim about them, where others move it at no configuration, as a
+    /// steering angle does: the rates of those are rows of their own, E, so that v follows from the twist and from them.
+    fn beside_still_freedoms(&self) -> Option<(Matrix, String)> {
+        let x = &self.x.twist_map;
+        let freedoms = &self.joint.spec.freedoms.value;
+        let is_still = |k: &usize| {
+            let columns = [x.column(*k), self.x.jacobian.base.column(*k)];
+            columns.iter().flatten().all(|entry| self.ideal.vanishes(entry))
+        };
+        let (still, moving): (Vec<usize>, Vec<usize>) = (0..x.columns()).partition(is_still);
+        if still.is_empty() || moving.is_empty() {
+            return None;
+        }
+        let names: Vec<&str> = still.iter().map(|k| freedoms[*k].name.as_str()).collect();
+        let columns: Vec<Vec<Expr>> = moving.iter().map(|k| x.column(*k)).collect();
+        let statement = format!(
+            "rank [X; E] = k, E: the rates of {}, which move no body",
+            names.join(", ")
+        );
+        Some((Matrix::from_columns(x.rows(), &columns), statement))
     }
 }
 

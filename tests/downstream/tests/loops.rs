@@ -121,7 +121,7 @@ fn accelerations_are_those_with_multipliers() {
     let mechanism = four_bar("four_bar", &LINKS);
     let mut recursive = Recursive::new(Arc::clone(&mechanism));
     let mut reference = Reference::new(Arc::clone(&mechanism));
-    for state in run(&mechanism, 9.0, Form::Lagrangian, 10.0, quarters(10.0)) {
+    for state in run(&mechanism, 9.0, Form::Lagrangian, 4.0, quarters(4.0)) {
         let expected = with_multipliers(&state.configuration, state.speeds[0]);
         let all: [&mut dyn Dynamics; 2] = [&mut recursive, &mut reference];
         for dynamics in all {
@@ -150,7 +150,7 @@ fn energy_and_relations_are_kept() {
             kinematics.expect("sizes fit").energy()
         };
         for form in [Form::Lagrangian, Form::Hamiltonian] {
-            let states = run(&mechanism, speed, form, 20.0, quarters(20.0));
+            let states = run(&mechanism, speed, form, 4.0, quarters(4.0));
             let first = energy(&states[0]);
             for state in &states {
                 let own = mechanism.bodies()[0].joint();
@@ -168,7 +168,7 @@ fn energy_and_relations_are_kept() {
 #[test]
 fn dead_points_of_a_crank_are_passed() {
     let mechanism = four_bar("four_bar_through", &[]);
-    let states = run(&mechanism, 100.0, Form::Lagrangian, 20.0, quarters(20.0));
+    let states = run(&mechanism, 100.0, Form::Lagrangian, 6.0, quarters(6.0));
     let crank = |state: &State| state.configuration[1].atan2(state.configuration[0]);
     let steps: Vec<f64> = states
         .windows(2)

@@ -102,10 +102,19 @@ fn no_factor(basis: &Basis, factors: &[Factor]) -> Diagnostic {
     error.note(factors.iter().map(describe).collect::<Vec<_>>().join(", "))
 }
 
-/// The generators: coordinates in the standard basis of `kind`, independent and closed under the bracket.
+/// Whether the span of the generators is closed under the bracket.
+pub(super) fn closes(generators: &[Vec<Expr>], kind: Kind) -> bool {
+    let names = vec![""; generators.len()];
+    let is_full = generators.len() == kind.dimension();
+    is_full || open_bracket(generators, &names, kind, &(0..0)).is_none()
+}
+
+/// The generators: coordinates in the standard basis of `kind`, independent, and closed under the bracket where they are to be those of a
+/// subgroup.
 pub(super) fn generators(
     at: At<'_, Basis>,
     kind: Kind,
+    of_subgroup: bool,
     evaluator: &mut Evaluator<'_>,
 ) -> Option<Vec<Vec<Expr>>> {
     let dimension = kind.dimension();
@@ -126,7 +135,7 @@ pub(super) fn generators(
         .iter()
         .map(|(name, _)| name.text.as_str())
         .collect();
-    let partial = elements.len() < dimension;
+    let partial = of_subgroup && elements.len() < dimension;
     let open = || {
         partial
             .then(|| open_bracket(&generators, &names, kind, at.span))

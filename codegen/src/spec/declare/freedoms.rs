@@ -94,6 +94,9 @@ struct Bases {
 
 fn basis_freedoms(context: &Context<'_>, scope: &mut Scope<'_, '_, '_>) -> Bases {
     let factors = context.manifold.value.factors();
+    // Where relations alone say how Q moves, a basis names independent directions.
+    let declared = context.statements.target(Target::Retract).is_some();
+    let of_subgroup = declared || context.statements.relations.is_empty();
     let (mut list, mut taken, mut complete) = (vec![], vec![], true);
     for at in &context.statements.bases {
         claim(at.value.elements.iter().map(|(name, _)| name), scope);
@@ -104,7 +107,7 @@ fn basis_freedoms(context: &Context<'_>, scope: &mut Scope<'_, '_, '_>) -> Bases
         taken.push(factor);
         let kind = factors[factor].kind;
         match scope.evaluator.bounded("basis", at.span, |evaluator| {
-            basis::generators(*at, kind, evaluator)
+            basis::generators(*at, kind, of_subgroup, evaluator)
         }) {
             Some(generators) => list.extend(named(at.value, factor, generators, list.len())),
             None => complete = false,

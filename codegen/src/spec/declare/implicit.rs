@@ -1,7 +1,7 @@
 //! Relations without Phi: which directions of the factors are independent, so that the others follow by the relations.
 
 use super::super::ast::Target;
-use super::Context;
+use super::{Context, basis};
 use crate::algebra;
 use crate::expr::Expr;
 use crate::manifold::{Factor, Kind, Manifold};
@@ -62,8 +62,14 @@ fn flows_stay(manifold: &Manifold, bases: &[Freedom]) -> bool {
     let in_bases = bases
         .iter()
         .all(|freedom| stays(&factors[freedom.factor], &freedom.generator));
+    let closes = |(n, factor): (usize, &Factor)| {
+        let own = bases.iter().filter(|freedom| freedom.factor == n);
+        let generators: Vec<Vec<Expr>> = own.map(|freedom| freedom.generator.clone()).collect();
+        basis::closes(&generators, factor.kind)
+    };
     let mut others = factors.iter().enumerate();
     in_bases
+        && factors.iter().enumerate().all(closes)
         && others.all(|(n, factor)| match factor.kind {
             _ if has_basis(n) => true,
             Kind::Real(size) => (0..size).all(|k| stays(factor, &unit(size, k))),
