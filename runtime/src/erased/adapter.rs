@@ -3,7 +3,7 @@
 use super::kernels::{kernels, passed_on};
 use super::slices::{Store, array, array_mut, nan, vector};
 use super::{AnyJoint, FiniteMapError, Layout, Sizes};
-use crate::joint::{Joint, Products, Structures, VelocityFrame};
+use crate::joint::{Entry, Joint, Products, Structures, VelocityFrame};
 use crate::scalar::{Extended, Native, Scalar};
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
 use crate::steps::{
@@ -183,6 +183,11 @@ where
         let slopes = Steps(&self.0).rotor_slopes(&vector(q), &velocity, &inertia);
         slopes[0].store(by_local);
         slopes[1].store(by_velocity);
+    }
+
+    fn moves_body(&self, freedom: usize) -> bool {
+        let rows = &J::PATTERNS.twist_map_child;
+        freedom < K && rows.iter().any(|row| !matches!(row[freedom], Entry::Zero))
     }
 
     fn parts(&self) -> (bool, bool) {

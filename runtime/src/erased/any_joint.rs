@@ -92,6 +92,8 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     ) where
         T: Native;
 
+    /// Whether the velocity of a degree of freedom moves the body at some configuration: a steering angle does not.
+    fn moves_body(&self, freedom: usize) -> bool;
     /// Whether any column of X̄ has an angular part, and whether any has a linear one.
     fn parts(&self) -> (bool, bool);
     /// [`AnyJoint::parts`] of the column of one speed; none of a speed that is not there.

@@ -56,6 +56,9 @@ fn check_joint(body: &BodySpec, errors: &mut Vec<MechanismError>) {
     }
     let mut twist_map = DMatrix::zeros(6, size.freedoms);
     joint.twist_map_child(&home, twist_map.as_mut_slice());
+    // What moves no body has a row of its own in the rank condition.
+    let still = (0..size.freedoms).filter(|&freedom| !joint.moves_body(freedom));
+    let twist_map = twist_map.remove_columns_at(&still.collect::<Vec<_>>());
     let mut speed_basis = DMatrix::zeros(size.freedoms, size.speeds);
     joint.speed_basis(&home, speed_basis.as_mut_slice());
     for (which, matrix) in [("twist map", twist_map), ("speed basis", speed_basis)] {

@@ -84,7 +84,6 @@ macro_rules! laws_alone {
 
 laws_alone! {
     car_steering: CarSteering::new(0.7);
-    drive_wheels: DriveWheels::new(0.7, 0.85);
     gear_train: GearTrain;
     leaning_body: LeaningBody;
 }

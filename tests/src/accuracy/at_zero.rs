@@ -50,13 +50,16 @@ pub struct Arguments {
 
 impl AtZero {
     /// The definitions at Q.
-    pub fn new(declared: &Declared, q: &[Node]) -> Self {
+    ///
+    /// The velocities of `still` degrees of freedom move no body: they are the rates of their coordinates, as rows of their own say beside X and J.
+    pub fn new(declared: &Declared, still: &[usize], q: &[Node]) -> Self {
         let base = constants(q);
         let moving = declared.moved(&base, &declared.variables(&declared.zero(), 0, DEGREE));
         let pose = declared.pose(&moving);
         let jacobian = declared.jacobian(&pose, 0);
         let x = declared.twist_map(&moving);
-        let (velocity_map, slopes) = velocity_map(&x, &jacobian);
+        let rates = |map: &Grid<Jet>| with_rates(map, still);
+        let (velocity_map, slopes) = velocity_map(&rates(&x), &rates(&jacobian));
         let mismatch = mismatch(&x, &jacobian, &velocity_map, &slopes);
         Self {
             mismatch,
@@ -193,6 +196,14 @@ fn mismatch(
     };
     let rest = slices.iter().enumerate().map(slice);
     std::iter::once(first).chain(rest).collect()
+}
+
+/// The map with a unit row for each of these degrees of freedom.
+fn with_rates(map: &Grid<Jet>, still: &[usize]) -> Grid<Jet> {
+    Grid::from_fn(map.rows + still.len(), map.columns, |i, k| match i < map.rows {
+        true => map.at(i, k).clone(),
+        false => Jet::input(f64::from(still[i - map.rows] == k)),
+    })
 }
 
 /// X₀ S₀ = J₀ and X₀ S_k = J_k − X_k S₀, (23) order by order.

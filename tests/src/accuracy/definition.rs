@@ -16,6 +16,8 @@ pub struct Definition {
     space: ConfigurationSpace,
     configuration: usize,
     speeds: usize,
+    /// Degrees of freedom that move no body.
+    still: Vec<usize>,
     /// Q, v, v̄ and h to the kernels at ϕ = 0.
     kernels: Program,
     /// Q and ϕ to Φ(Q, ϕ).
@@ -64,6 +66,9 @@ impl Definition {
         let relations = derived.kernel(KernelKind::Residual);
         let relations = relations.map_or(&[][..], |kernel| kernel.outputs[0].entries());
         let zero = declared.zero();
+        let map = &derived.local_twist_map;
+        let is_still = |k: &usize| map.column(*k).iter().all(Expr::is_zero);
+        let still: Vec<usize> = (0..k).filter(is_still).collect();
         let loci = derived.space.loci.iter();
         let loci: Vec<Expr> = loci.map(|locus| locus.value.function.clone()).collect();
         Self {
@@ -76,7 +81,7 @@ impl Definition {
                     speeds: column(speeds),
                     wrench: column(wrench),
                 };
-                AtZero::new(&declared, q).kernels(&arguments)
+                AtZero::new(&declared, &still, q).kernels(&arguments)
             }),
             moved: Program::new(n + k, |all| {
                 let (q, phi) = all.split_at(n);
@@ -90,6 +95,7 @@ impl Definition {
             functions: Program::new(n, |q| functions(&declared, &loci, relations, q)),
             configuration: n,
             speeds,
+            still,
             declared,
             space: derived.space.clone(),
         }
@@ -135,7 +141,7 @@ impl Definition {
         let n = self.configuration;
         Program::new(n + self.freedoms(), |all| {
             let (q, v) = all.split_at(n);
-            AtZero::new(&self.declared, q).derivatives(&column(v))
+            AtZero::new(&self.declared, &self.still, q).derivatives(&column(v))
         })
     }
 
