@@ -8,8 +8,14 @@ use crate::prepare::Prepared;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What is known of the configurations that share a pose; `None` where it was not decided.
-pub fn claim(joint: &Prepared, domain: &Domain<'_>) -> Option<Claim> {
-    let (statement, detail) = Fibres::new(joint, domain).statement()?;
+///
+/// Coordinates that move no body are known of no pose, and are named apart.
+pub fn claim(joint: &Prepared, domain: &Domain<'_>, still: &[Symbol]) -> Option<Claim> {
+    let (statement, detail) = Fibres::new(joint, domain, still).statement()?;
+    let statement = match still {
+        [] => statement,
+        _ => format!("{statement}, apart from {}", names(still)),
+    };
     Some(Claim {
         name: "fibres",
         statement,
@@ -24,16 +30,18 @@ struct Fibres<'a> {
     joint: &'a Prepared,
     domain: &'a Domain<'a>,
     entries: Vec<Expr>,
+    still: &'a [Symbol],
 }
 
 impl<'a> Fibres<'a> {
-    fn new(joint: &'a Prepared, domain: &'a Domain<'a>) -> Self {
+    fn new(joint: &'a Prepared, domain: &'a Domain<'a>, still: &'a [Symbol]) -> Self {
         let pose = &joint.spec.pose.value;
         let entries = pose.rotation.entries().iter();
         let entries = entries.chain(pose.translation.entries());
         Self {
             joint,
             domain,
+            still,
             entries: entries.map(|e| domain.ideal().normal_form(e)).collect(),
         }
     }
@@ -44,9 +52,13 @@ impl<'a> Fibres<'a> {
         let coordinates = self.joint.space.manifold.coordinates().into_iter();
         let rest: Vec<Symbol> = coordinates
             .filter(|symbol| !known.contains(&Atom::Symbol(symbol.clone())))
+            .filter(|symbol| !self.still.contains(symbol))
             .collect();
         if rest.is_empty() {
-            let reason = "every stored scalar can be read off H";
+            let reason = match self.still {
+                [] => "every stored scalar can be read off H",
+                _ => "every other stored scalar can be read off H",
+            };
             return Some(("one pose has one Q".into(), reason.into()));
         }
         self.double_cover(&rest)
@@ -257,7 +269,7 @@ mod tests {
         );
         let joint = spec::parse(&source, "test.joint").expect("a valid spec");
         let joint = Prepared::new(joint).expect("its conditions say something");
-        claim(&joint, &Domain::new(&joint.space)).map(|claim| claim.statement)
+        claim(&joint, &Domain::new(&joint.space), &[]).map(|claim| claim.statement)
     }
 
     #[test]

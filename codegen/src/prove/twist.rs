@@ -47,11 +47,15 @@ impl Prover<'_> {
     }
 
     pub(super) fn twists_agree(&self) -> Attempt {
-        let j = &self.x.jacobian.base;
-        let difference = self.x.twist_map.times(&self.x.velocity_map.base).minus(j);
+        let j = &self.x.still.below(&self.x.jacobian.base);
+        let x = self.x.still.below(&self.x.twist_map);
+        let difference = x.times(&self.x.velocity_map.base).minus(j);
         self.identity(
             "twist_map_matches_pose",
-            "X S₀ = J₀",
+            &match self.x.still.is_empty() {
+                true => "X S₀ = J₀".to_owned(),
+                false => format!("[X; E] S₀ = [J₀; E], {}", self.rates_beside()),
+            },
             &difference,
             |residual| {
                 refuted(
@@ -69,15 +73,13 @@ impl Prover<'_> {
     pub(super) fn slopes_agree(&self) -> Attempt {
         let s = &self.x.velocity_map;
         let k = self.x.shape.freedoms;
+        let x = self.x.still.below(&self.x.twist_map);
+        let jacobian = self.x.still.below_jacobian(&self.x.jacobian);
         let residuals = (0..k).flat_map(|l| {
-            let left = self.x.twist_map.times(&s.slopes[l]);
-            let right = self
-                .x
-                .motion
-                .along_each(&self.x.twist_map, l)
-                .times(&s.base);
+            let left = x.times(&s.slopes[l]);
+            let right = self.x.motion.along_each(&x, l).times(&s.base);
             left.plus(&right)
-                .minus(&self.x.jacobian.slopes[l])
+                .minus(&jacobian.slopes[l])
                 .entries()
                 .to_vec()
         });
@@ -201,23 +203,34 @@ impl Prover<'_> {
     pub(super) fn twist_map_has_full_rank(&self) -> Attempt {
         // Ad is invertible, so that X and X^c have the same rank: the simpler one is certified.
         let child = &self.x.twist_map_child;
-        let shown = |m: &Matrix| rank::full_column_rank(m, &self.domain).is_ok();
-        let (m, statement) =
-            match child.is_constant() || (!shown(&self.x.twist_map) && shown(child)) {
-                true => (
-                    &self.x.twist_map_child,
-                    "rank X = k (shown for X^c = Ad_{H⁻¹} X)",
-                ),
-                false => (&self.x.twist_map, "rank X = k"),
-            };
+        let shown =
+            |m: &Matrix| rank::full_column_rank(&self.x.still.below(m), &self.domain).is_ok();
+        let still = &self.x.still;
+        let in_child = child.is_constant() || (!shown(&self.x.twist_map) && shown(child));
+        let (m, shown_for) = match in_child {
+            true => (child, " (shown for X^c = Ad_{H⁻¹} X)"),
+            false => (&self.x.twist_map, ""),
+        };
+        let (statement, what) = match still.is_empty() {
+            true => (format!("rank X = k{shown_for}"), "X"),
+            false => (
+                format!("rank [X; E] = k, {}{shown_for}", self.rates_beside()),
+                "[X; E]",
+            ),
+        };
         self.rank_claim(
-            m,
+            &still.below(m),
             "twist_map_rank",
-            statement,
+            &statement,
             code::TWIST_MAP_LOCUS,
             self.twist_map_span(),
-            "X",
+            what,
         )
+    }
+
+    /// What stands below X.
+    fn rates_beside(&self) -> String {
+        format!("E: rates of {}", self.x.still.names())
     }
 }
 

@@ -10,8 +10,8 @@ use crate::model::Declared;
 use std::ops::Range;
 
 /// Most factors, and most stored scalars, of a configuration.
-const MOST_FACTORS: usize = 6;
-const MOST_SCALARS: usize = 24;
+const MOST_FACTORS: usize = 16;
+const MOST_SCALARS: usize = 96;
 
 /// The manifold, if it is declared and known.
 pub(super) fn manifold(
