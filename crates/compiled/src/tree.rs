@@ -1,5 +1,6 @@
 //! Compiled equations of a mechanism, with the tree for what they do not hold.
 
+use hamel_runtime::joint::MOST_FREEDOMS;
 use super::Equations;
 use alloc::string::String;
 use alloc::sync::Arc;
@@ -366,7 +367,7 @@ impl Compiled {
     fn add_inputs(&self, q: &[f64], rates: &mut [f64]) {
         for (index, body) in self.tree.mechanism().bodies().iter().enumerate() {
             let ranges = body.ranges();
-            let mut reduced = [0.0; 6];
+            let mut reduced = [0.0; MOST_FREEDOMS];
             let reduced = &mut reduced[..ranges.speeds.len()];
             let tau = &self.inputs[0][ranges.freedoms.clone()];
             if self.tree.mechanism().is_driven(index) {

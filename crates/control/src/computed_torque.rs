@@ -1,5 +1,6 @@
 //! Computed torque: inverse dynamics at the accelerations of a reference, corrected by the error.
 
+use hamel_runtime::joint::MOST_FREEDOMS;
 use super::error::{positive, require};
 use super::state::{check_state, deviation, largest, store_measures};
 use super::{ControlError, Controller, DEVIATIONS, Measure, Reference};
@@ -53,7 +54,7 @@ impl ComputedTorque {
             wanted: vec![0.0; layout.configuration],
             error: vec![0.0; layout.freedoms],
             accelerations: vec![0.0; layout.speeds],
-            map: vec![0.0; 36],
+            map: vec![0.0; MOST_FREEDOMS * MOST_FREEDOMS],
         })
     }
 

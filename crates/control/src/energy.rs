@@ -1,5 +1,6 @@
 //! Energy shaping and damping injection through the ports of the Hamiltonian form.
 
+use hamel_runtime::joint::MOST_FREEDOMS;
 use super::error::require;
 use super::state::{check_state, store_measures};
 use super::{ControlError, Controller, Measure};
@@ -211,7 +212,7 @@ impl Controller for EnergyShaping {
         let view = View::new(&self.mechanism, q, speeds, &self.motions);
         for (port, spring) in self.ports.iter().zip(&self.springs) {
             spring.act(&view, &mut Action::new(&mut self.wrenches, efforts));
-            let mut buffer = [0.0; 6];
+            let mut buffer = [0.0; MOST_FREEDOMS];
             let output = view.joint_velocity(port.body, &mut buffer);
             let own = self.mechanism.bodies()[port.body].ranges().freedoms.clone();
             inject(port, port.damping + surplus, output, &mut efforts[own]);

@@ -9,6 +9,7 @@
 //! λ is chosen such that the energy at the end is what it shall be. The energy error has the derivative `−p̄ᵀv̄ − Δp̄ᵀM̄⁻¹Δp̄` by λ, which is zero only at rest: at top speed Δp̄ is small, at turning points p̄ is. The energy is held against that at the beginning of all steps and the work done since, so
 //! that rounding does not add up.
 
+use hamel_runtime::joint::MOST_FREEDOMS;
 use super::StepFailure;
 use super::compensation::add_exactly;
 use super::flow::{Flow, Rates, multiply, retract};
@@ -96,11 +97,11 @@ impl Correction {
             moved: flow.new_rates(),
             composites: vec![Vector6::zeros(); mechanism.bodies().len()],
             matrices: Matrices {
-                structure: vec![0.0; 36],
-                basis: vec![0.0; 36],
-                twists: vec![0.0; 36],
-                gradient: vec![0.0; 36],
-                inverse: vec![0.0; 36],
+                structure: vec![0.0; MOST_FREEDOMS * MOST_FREEDOMS],
+                basis: vec![0.0; MOST_FREEDOMS * MOST_FREEDOMS],
+                twists: vec![0.0; MOST_FREEDOMS * MOST_FREEDOMS],
+                gradient: vec![0.0; MOST_FREEDOMS * MOST_FREEDOMS],
+                inverse: vec![0.0; MOST_FREEDOMS * MOST_FREEDOMS],
             },
         }
     }
@@ -264,7 +265,7 @@ impl Matrices {
             Vector6::from(sum)
         };
         for (b, own) in columns().enumerate() {
-            let (mut rate, mut moved) = ([0.0; 6], [0.0; 6]);
+            let (mut rate, mut moved) = ([0.0; MOST_FREEDOMS], [0.0; MOST_FREEDOMS]);
             let (rate, moved) = (&mut rate[..freedoms], &mut moved[..speeds]);
             multiply(inverse, own, rate);
             multiply(gradient, rate, moved);

@@ -5,6 +5,7 @@
 //! its Crout factors, stage after stage (P. J. van der Houwen and J. J. B. de Swart, *Triangularly implicit iteration methods for
 //! ODE-IVP solvers*, 1997), so that all of it is real.
 
+use hamel_runtime::joint::MOST_FREEDOMS;
 use super::coefficients::Coefficients;
 use crate::flow::{Flow, multiply};
 use crate::linear::Charts;
@@ -86,7 +87,7 @@ struct Room {
     /// One entry a speed.
     speeds: Vec<f64>,
     /// One joint's.
-    own: [f64; 6],
+    own: [f64; MOST_FREEDOMS],
 }
 
 impl Tree {
@@ -115,7 +116,7 @@ impl Tree {
             lower,
             room: Room {
                 speeds: vec![0.0; layout.speeds],
-                own: [0.0; 6],
+                own: [0.0; MOST_FREEDOMS],
             },
             freedoms: layout.freedoms,
         }
