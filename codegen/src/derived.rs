@@ -89,6 +89,20 @@ impl Derived {
         self.kernels.sort_by_key(|kernel| kernel.kind);
     }
 
+    /// Whether row k of S̄ is that of a unit matrix, and row k of S does not change with ϕ: v_k is a speed, and the rate of its own coordinate.
+    pub fn rate_is_a_speed(&self, k: usize) -> bool {
+        let row = |m: &Matrix| -> Vec<Expr> { (0..m.columns()).map(|j| m.at(k, j).clone()).collect() };
+        let is_unit = |m: &Matrix| {
+            let row = row(m);
+            let zeros = row.iter().filter(|entry| entry.is_zero()).count();
+            row.contains(&Expr::one()) && zeros + 1 == row.len()
+        };
+        let is_zero = |m: &Matrix| row(m).iter().all(Expr::is_zero);
+        let outputs = |kind| self.kernel(kind).map_or(&[][..], |kernel| &kernel.outputs);
+        outputs(KernelKind::SpeedBasis).iter().all(is_unit)
+            && outputs(KernelKind::VelocityMapGradient).iter().all(is_zero)
+    }
+
     /// What moves no body, in words: degrees of freedom, and the speeds that make these alone. `None` where everything moves it.
     pub fn still_in_words(&self) -> Option<String> {
         let named = |k: &usize| {

@@ -2,9 +2,11 @@
 
 use super::body::singular_value;
 use super::check::CONFIGURATION_TOLERANCE;
+use super::rotor::aside;
 use super::rigid::{RigidBody, check_bodies};
 use super::{Body, BodySpec, Loci, MechanismError, Ranges};
-use crate::erased::Layout;
+use crate::erased::{AnyJoint, Layout};
+use crate::joint::MOST_FREEDOMS;
 use crate::spatial::{Pose, SpatialInertia};
 use alloc::vec;
 use alloc::vec::Vec;
@@ -25,7 +27,7 @@ pub(super) fn check(gravity: &Vector3<f64>, bodies: &[BodySpec]) -> Vec<Mechanis
 
 fn check_joint(body: &BodySpec, errors: &mut Vec<MechanismError>) {
     let (joint, size) = (&body.joint, body.joint.layout());
-    if size.freedoms > 6 || size.speeds + size.constraints != size.freedoms {
+    if size.freedoms > MOST_FREEDOMS || size.speeds + size.constraints != size.freedoms {
         errors.push(MechanismError::Layout {
             joint: body.joint_name.clone(),
             freedoms: size.freedoms,
@@ -54,8 +56,7 @@ fn check_joint(body: &BodySpec, errors: &mut Vec<MechanismError>) {
         });
         return;
     }
-    let mut twist_map = DMatrix::zeros(6, size.freedoms);
-    joint.twist_map_child(&home, twist_map.as_mut_slice());
+    let twist_map = moving_columns(&**joint, &home);
     let mut speed_basis = DMatrix::zeros(size.freedoms, size.speeds);
     joint.speed_basis(&home, speed_basis.as_mut_slice());
     for (which, matrix) in [("twist map", twist_map), ("speed basis", speed_basis)] {
@@ -68,6 +69,22 @@ fn check_joint(body: &BodySpec, errors: &mut Vec<MechanismError>) {
                 limit: RANK_TOLERANCE,
             });
         }
+    }
+}
+
+/// X^c at home without the columns of what moves no body, a steering angle say: those that are zero at home and aside.
+fn moving_columns(joint: &dyn AnyJoint<f64>, home: &[f64]) -> DMatrix<f64> {
+    let twist_map = |q: &[f64]| {
+        let mut map = DMatrix::zeros(6, joint.layout().freedoms);
+        joint.twist_map_child(q, map.as_mut_slice());
+        map
+    };
+    let (here, there) = (twist_map(home), twist_map(&aside(joint, home)));
+    let moves = |&k: &usize| [&here, &there].iter().any(|map| map.column(k).amax() != 0.0);
+    let moving: Vec<usize> = (0..here.ncols()).filter(moves).collect();
+    match moving.is_empty() {
+        true => here,
+        false => here.select_columns(&moving),
     }
 }
 
