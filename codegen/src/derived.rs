@@ -1,6 +1,6 @@
 //! What is derived from a spec: kernels in symbols, and the claims that were proved. The border between derivation and output.
 
-use crate::expr::Rational;
+use crate::expr::{Expr, Rational};
 use crate::formula::{Names, Program};
 use crate::matrix::Matrix;
 use crate::model::{ConfigurationSpace, JointSpec};
@@ -38,6 +38,8 @@ pub struct Derived {
     pub speed_map: Matrix,
     /// S to first order in ϕ, (32): S₀ + Σ S_k ϕ_k, in S₀-factored form where that is shorter: `(left, right)` with `S = left · right`.
     pub velocity_map_series: (Matrix, Matrix),
+    /// The degrees of freedom that move no body, by their places.
+    pub still: Vec<usize>,
     /// N_X: basis of the inertias that do not affect the joint, `[m, mc_x, mc_y, mc_z, Ixx, Iyy, Izz, Ixy, Ixz, Iyz]`.
     pub unidentifiable: Vec<[Rational; 10]>,
     /// All that was proved, and what was checked instead.
@@ -85,6 +87,48 @@ impl Derived {
         self.kernels.retain(|other| other.kind != kernel.kind);
         self.kernels.push(kernel);
         self.kernels.sort_by_key(|kernel| kernel.kind);
+    }
+
+    /// Whether row k of S̄ is that of a unit matrix, and row k of S does not change with ϕ: v_k is a speed, and the rate of its own coordinate.
+    pub fn rate_is_a_speed(&self, k: usize) -> bool {
+        let row =
+            |m: &Matrix| -> Vec<Expr> { (0..m.columns()).map(|j| m.at(k, j).clone()).collect() };
+        let is_unit = |m: &Matrix| {
+            let row = row(m);
+            let zeros = row.iter().filter(|entry| entry.is_zero()).count();
+            row.contains(&Expr::one()) && zeros + 1 == row.len()
+        };
+        let is_zero = |m: &Matrix| row(m).iter().all(Expr::is_zero);
+        let outputs = |kind| self.kernel(kind).map_or(&[][..], |kernel| &kernel.outputs);
+        outputs(KernelKind::SpeedBasis).iter().all(is_unit)
+            && outputs(KernelKind::VelocityMapGradient).iter().all(is_zero)
+    }
+
+    /// What moves no body, in words: degrees of freedom, and the speeds that make these alone. `None` where everything moves it.
+    pub fn still_in_words(&self) -> Option<String> {
+        let named = |k: &usize| {
+            let freedom = self.spec.freedoms.value.get(*k)?;
+            Some(freedom.name.clone())
+        };
+        let freedoms: Vec<String> = self.still.iter().filter_map(named).collect();
+        let is_still = |j: usize| self.speed_map.column(j).iter().all(Expr::is_zero);
+        let speeds = self.speed_names.iter().enumerate();
+        let speeds: Vec<&str> = speeds
+            .filter(|(j, _)| is_still(*j))
+            .map(|(_, name)| name.as_str())
+            .collect();
+        (!freedoms.is_empty()).then(|| {
+            let speeds = match speeds.as_slice() {
+                [] => "every speed moves it".to_owned(),
+                [speed] => format!("the speed {speed} moves nothing else"),
+                _ => format!("the speeds {} move nothing else", speeds.join(", ")),
+            };
+            let move_none = match freedoms.as_slice() {
+                [freedom] => format!("{freedom} moves no body"),
+                _ => format!("{} move no body", freedoms.join(", ")),
+            };
+            format!("{move_none}; {speeds}")
+        })
     }
 
     /// The kernel of that kind.

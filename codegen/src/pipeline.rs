@@ -97,6 +97,7 @@ fn derive_spec(spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
         speed_map: expand::speed_map(&joint, &expansion),
         velocity_map_series: series(ideal, &expansion),
         arguments: expansion.arguments,
+        still: expansion.still.freedoms,
         unidentifiable: expansion.unidentifiable,
         kernels,
         words,

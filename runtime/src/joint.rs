@@ -33,6 +33,9 @@ mod products;
 mod slices;
 mod structure;
 
+/// Most degrees of freedom of a joint.
+pub const MOST_FREEDOMS: usize = 16;
+
 pub use patterns::{Entry, Patterns};
 pub use products::{FirstOrder, Products};
 pub use structure::{Structure, Structures};

@@ -16,6 +16,7 @@ mod nonholonomic;
 mod numbers;
 pub(crate) mod rank;
 mod steps;
+mod still;
 pub(crate) mod task;
 mod unidentifiable;
 mod velocity;
@@ -28,6 +29,7 @@ pub use motion::Motion;
 pub use nonholonomic::{Nonholonomic, speed_names};
 pub use numbers::beyond_doubles;
 pub use steps::Steps;
+pub use still::Still;
 pub use velocity::{TwistJacobian, VelocityMap, adjoint_inverse, bracket};
 
 use crate::algebra;
@@ -70,6 +72,8 @@ pub struct Expansion {
     pub velocity_map_inverse: Matrix,
     /// A, S̄ and ∂S̄/∂ϕ.
     pub nonholonomic: Nonholonomic,
+    /// The degrees of freedom that move no body.
+    pub still: Still,
     /// N_X.
     pub unidentifiable: Vec<[crate::expr::Rational; 10]>,
 }
@@ -101,11 +105,13 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
         false => ideal.simplest_entries(&to_child.times(&twist_map)),
     };
     budget::begin(task::VELOCITY_MAP);
+    let still = Still::new(joint, &motion);
+    read_in_child(joint, &still, &structure_constants)?;
     let velocity_map = velocity::Solver {
-        jacobian: &jacobian,
-        twist_map: &twist_map,
-        child: &twist_map_child,
-        to_child: &to_child,
+        jacobian: &still.below_jacobian(&jacobian),
+        twist_map: &still.below(&twist_map),
+        child: &still.below(&twist_map_child),
+        to_child: &still.beside(&to_child),
         motion: &motion,
         flow: flow.as_ref(),
         domain: &domain,
@@ -144,6 +150,7 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
         determinant,
         velocity_map_inverse,
         nonholonomic,
+        still,
     })
 }
 
@@ -250,6 +257,29 @@ pub(crate) fn twist_map_in_frame(
             .help("declare X, the twist of the child in the parent frame for each velocity"),
         ]),
     }
+}
+
+/// Refuses velocities in parent axes of what moves no body where these axes make a difference: there is no body to read them of.
+fn read_in_child(
+    joint: &Prepared,
+    still: &Still,
+    structure_constants: &[Matrix],
+) -> Result<(), Vec<Diagnostic>> {
+    let turns = |&k: &usize| !structure_constants[k].is_zero();
+    let found = still.freedoms.iter().copied().find(turns);
+    let Some(k) = found.filter(|_| joint.spec.velocity.value == VelocityFrame::Parent) else {
+        return Ok(());
+    };
+    let name = &joint.spec.freedoms.value[k].name;
+    Err(vec![
+        Diagnostic::new(
+            code::PARENT_FRAME,
+            joint.spec.velocity.span.clone(),
+            format!("`{name}` moves no body whose velocity could be read in the parent frame"),
+        )
+        .label("declared here")
+        .help("read v in the child frame, or let H depend on what it moves"),
+    ])
 }
 
 fn singular_twist_map(joint: &Prepared, twist_map: &Matrix) -> Diagnostic {

@@ -1,5 +1,6 @@
 //! Certificates that a matrix has full rank at every configuration.
 
+use super::complement::parts;
 use super::elimination;
 use crate::domain::Domain;
 use crate::expr::Expr;
@@ -7,12 +8,47 @@ use crate::matrix::{Matrix, combinations};
 
 /// Why the columns are independent everywhere, in words; `Err` holds det(MᵀM), whose zeros are where they may not be.
 pub fn full_column_rank(m: &Matrix, domain: &Domain<'_>) -> Result<String, Expr> {
+    let rows: Vec<usize> = (0..m.rows()).collect();
+    match m.rows() > LONGEST_WHOLE {
+        true => by_parts(m, domain),
+        false => whole(m, &rows, domain),
+    }
+}
+
+/// Most rows of a matrix of which the minors are looked at as a whole.
+const LONGEST_WHOLE: usize = 6;
+
+/// The same for a long matrix, which has many minors: connected parts have their columns to themselves.
+fn by_parts(m: &Matrix, domain: &Domain<'_>) -> Result<String, Expr> {
+    let parts = parts(m);
+    let touched: usize = parts.iter().map(|(_, columns)| columns.len()).sum();
+    if touched < m.columns() {
+        return Err(Expr::zero());
+    }
+    let mut certificates: Vec<String> = vec![];
+    for (rows, columns) in parts.iter().filter(|(_, columns)| !columns.is_empty()) {
+        let part = Matrix::from_fn(rows.len(), columns.len(), |i, j| {
+            m.at(rows[i], columns[j]).clone()
+        });
+        let certificate = whole(&part, rows, domain)?;
+        if !certificates.contains(&certificate) {
+            certificates.push(certificate);
+        }
+    }
+    Ok(certificates.join("; "))
+}
+
+/// The same by all minors, whose rows have these places.
+fn whole(m: &Matrix, places: &[usize], domain: &Domain<'_>) -> Result<String, Expr> {
     let simplify = |e: &Expr| domain.ideal().normal_form(e);
     let mut minors = vec![];
     for rows in combinations(m.rows(), m.columns()) {
         let minor = m.select_rows(&rows).determinant(&simplify);
         if domain.is_unit(&minor) {
-            let rows: Vec<String> = rows.iter().map(|row| (row + 1).to_string()).collect();
+            let rows: Vec<String> = rows
+                .iter()
+                .map(|&row| (places[row] + 1).to_string())
+                .collect();
             return Ok(format!("the minor of rows {} is {minor}", rows.join(", ")));
         }
         if !minor.is_zero() {

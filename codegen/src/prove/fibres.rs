@@ -8,8 +8,14 @@ use crate::prepare::Prepared;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What is known of the configurations that share a pose; `None` where it was not decided.
-pub fn claim(joint: &Prepared, domain: &Domain<'_>) -> Option<Claim> {
-    let (statement, detail) = Fibres::new(joint, domain).statement()?;
+///
+/// Coordinates that move no body are known of no pose, and are named apart.
+pub fn claim(joint: &Prepared, domain: &Domain<'_>, still: &[Symbol]) -> Option<Claim> {
+    let (statement, detail) = Fibres::new(joint, domain, still).statement()?;
+    let statement = match still {
+        [] => statement,
+        _ => format!("{statement}, apart from {}", names(still)),
+    };
     Some(Claim {
         name: "fibres",
         statement,
@@ -24,16 +30,18 @@ struct Fibres<'a> {
     joint: &'a Prepared,
     domain: &'a Domain<'a>,
     entries: Vec<Expr>,
+    still: &'a [Symbol],
 }
 
 impl<'a> Fibres<'a> {
-    fn new(joint: &'a Prepared, domain: &'a Domain<'a>) -> Self {
+    fn new(joint: &'a Prepared, domain: &'a Domain<'a>, still: &'a [Symbol]) -> Self {
         let pose = &joint.spec.pose.value;
         let entries = pose.rotation.entries().iter();
         let entries = entries.chain(pose.translation.entries());
         Self {
             joint,
             domain,
+            still,
             entries: entries.map(|e| domain.ideal().normal_form(e)).collect(),
         }
     }
@@ -44,30 +52,18 @@ impl<'a> Fibres<'a> {
         let coordinates = self.joint.space.manifold.coordinates().into_iter();
         let rest: Vec<Symbol> = coordinates
             .filter(|symbol| !known.contains(&Atom::Symbol(symbol.clone())))
+            .filter(|symbol| !self.still.contains(symbol))
             .collect();
         if rest.is_empty() {
-            let reason = "every stored scalar can be read off H";
+            let reason = match self.still {
+                [] => "every stored scalar can be read off H",
+                _ => "every other stored scalar can be read off H",
+            };
             return Some(("one pose has one Q".into(), reason.into()));
-        }
-        if let Some(apart) = self.apart(&rest) {
-            return Some(apart);
         }
         self.double_cover(&rest)
             .or_else(|| self.full_turns(&rest, &known))
             .or_else(|| self.negated(&rest))
-    }
-
-    /// H does not depend on what is left, such as a steering angle.
-    fn apart(&self, rest: &[Symbol]) -> Option<(String, String)> {
-        let occurs = |symbol: &Symbol| self.entries.iter().any(|e| e.symbols().contains(symbol));
-        if rest.iter().any(occurs) {
-            return None;
-        }
-        let names: Vec<&str> = rest.iter().map(|symbol| &*symbol.spelling).collect();
-        Some((
-            format!("one pose has one Q but for {}", names.join(", ")),
-            "every other stored scalar can be read off H, which does not depend on these".into(),
-        ))
     }
 
     /// Scalars, and sines and cosines of them, that a pose determines: those that are linear in an entry of H of which
@@ -273,7 +269,7 @@ mod tests {
         );
         let joint = spec::parse(&source, "test.joint").expect("a valid spec");
         let joint = Prepared::new(joint).expect("its conditions say something");
-        claim(&joint, &Domain::new(&joint.space)).map(|claim| claim.statement)
+        claim(&joint, &Domain::new(&joint.space), &[]).map(|claim| claim.statement)
     }
 
     #[test]

@@ -67,7 +67,11 @@ pub fn prove(joint: &Prepared, expansion: &Expansion) -> Result<Vec<Claim>, Vec<
         prover.child_twist_map_agrees(),
     ])?);
     claims.sort_by_key(|claim| place(claim.name));
-    claims.extend(fibres::claim(joint, &prover.domain));
+    claims.extend(fibres::claim(
+        joint,
+        &prover.domain,
+        &expansion.still.scalars,
+    ));
     Ok(claims)
 }
 

@@ -47,11 +47,15 @@ impl Prover<'_> {
     }
 
     pub(super) fn twists_agree(&self) -> Attempt {
-        let j = &self.x.jacobian.base;
-        let difference = self.x.twist_map.times(&self.x.velocity_map.base).minus(j);
+        let j = &self.x.still.below(&self.x.jacobian.base);
+        let x = self.x.still.below(&self.x.twist_map);
+        let difference = x.times(&self.x.velocity_map.base).minus(j);
         self.identity(
             "twist_map_matches_pose",
-            "X S₀ = J₀",
+            &match self.x.still.is_empty() {
+                true => "X S₀ = J₀".to_owned(),
+                false => format!("[X; E] S₀ = [J₀; E], {}", self.rates_beside()),
+            },
             &difference,
             |residual| {
                 refuted(
@@ -69,15 +73,13 @@ impl Prover<'_> {
     pub(super) fn slopes_agree(&self) -> Attempt {
         let s = &self.x.velocity_map;
         let k = self.x.shape.freedoms;
+        let x = self.x.still.below(&self.x.twist_map);
+        let jacobian = self.x.still.below_jacobian(&self.x.jacobian);
         let residuals = (0..k).flat_map(|l| {
-            let left = self.x.twist_map.times(&s.slopes[l]);
-            let right = self
-                .x
-                .motion
-                .along_each(&self.x.twist_map, l)
-                .times(&s.base);
+            let left = x.times(&s.slopes[l]);
+            let right = self.x.motion.along_each(&x, l).times(&s.base);
             left.plus(&right)
-                .minus(&self.x.jacobian.slopes[l])
+                .minus(&jacobian.slopes[l])
                 .entries()
                 .to_vec()
         });
@@ -97,20 +99,20 @@ impl Prover<'_> {
         )
     }
 
-    /// S is that of the motion of Q, where X does not tell all of it: of what moves no body, and where relations alone give Φ.
+    /// S is that of the motion of Q, from which it is found where relations alone give Φ.
     ///
     /// With S₀ = I, v is read along the directions δ_k of Q: `Σ_j δ_j (S_l)_jk = ∂²Φ/∂ϕ_l∂ϕ_k − ∂δ_k/∂ϕ_l`.
     pub(super) fn rates_agree(&self) -> Attempt {
-        if self.x.flow.is_none() && self.beside_still_freedoms().is_none() {
+        let s = &self.x.velocity_map;
+        if self.x.flow.is_none() || !s.base.is_identity() {
             return Ok(None);
         }
-        let s = &self.x.velocity_map;
         let tangent = self.x.motion.tangent();
         let bends = directions::bends(&self.x.motion);
         let slices = s.slopes.iter().zip(&bends);
-        let first = tangent.times(&s.base).minus(&tangent).entries().to_vec();
-        let residuals = slices.flat_map(|(s, bend)| tangent.times(s).minus(bend).entries().to_vec());
-        let residual = Matrix::column_vector(first.into_iter().chain(residuals).collect());
+        let residuals =
+            slices.flat_map(|(s, bend)| tangent.times(s).minus(bend).entries().to_vec());
+        let residual = Matrix::column_vector(residuals.collect());
         self.identity(
             "velocity_map_of_motion",
             "Q̇ along Φ(Q, ϕ) is that of v = S ϕ̇ to first order in ϕ, (31)",
@@ -229,58 +231,35 @@ impl Prover<'_> {
 
     pub(super) fn twist_map_has_full_rank(&self) -> Attempt {
         // Ad is invertible, so that X and X^c have the same rank: the simpler one is certified.
-        if let Some((moving, statement)) = self.beside_still_freedoms() {
-            return self.rank_claim(
-                &moving,
-                "twist_map_rank",
-                &statement,
-                code::TWIST_MAP_LOCUS,
-                self.twist_map_span(),
-                "X without the columns of what moves no body",
-            );
-        }
         let child = &self.x.twist_map_child;
-        let shown = |m: &Matrix| rank::full_column_rank(m, &self.domain).is_ok();
-        let (m, statement) =
-            match child.is_constant() || (!shown(&self.x.twist_map) && shown(child)) {
-                true => (
-                    &self.x.twist_map_child,
-                    "rank X = k (shown for X^c = Ad_{H⁻¹} X)",
-                ),
-                false => (&self.x.twist_map, "rank X = k"),
-            };
+        let shown =
+            |m: &Matrix| rank::full_column_rank(&self.x.still.below(m), &self.domain).is_ok();
+        let still = &self.x.still;
+        let in_child = child.is_constant() || (!shown(&self.x.twist_map) && shown(child));
+        let (m, shown_for) = match in_child {
+            true => (child, " (shown for X^c = Ad_{H⁻¹} X)"),
+            false => (&self.x.twist_map, ""),
+        };
+        let (statement, what) = match still.is_empty() {
+            true => (format!("rank X = k{shown_for}"), "X"),
+            false => (
+                format!("rank [X; E] = k, {}{shown_for}", self.rates_beside()),
+                "[X; E]",
+            ),
+        };
         self.rank_claim(
-            m,
+            &still.below(m),
             "twist_map_rank",
-            statement,
+            &statement,
             code::TWIST_MAP_LOCUS,
             self.twist_map_span(),
-            "X",
+            what,
         )
     }
-}
 
-impl Prover<'_> {
-    /// The columns of X of the degrees of freedom that move the body, and the claim about them, where others move it at no configuration, as a
-    /// steering angle does: the rates of those are rows of their own, E, so that v follows from the twist and from them.
-    fn beside_still_freedoms(&self) -> Option<(Matrix, String)> {
-        let x = &self.x.twist_map;
-        let freedoms = &self.joint.spec.freedoms.value;
-        let is_still = |k: &usize| {
-            let columns = [x.column(*k), self.x.jacobian.base.column(*k)];
-            columns.iter().flatten().all(|entry| self.ideal.vanishes(entry))
-        };
-        let (still, moving): (Vec<usize>, Vec<usize>) = (0..x.columns()).partition(is_still);
-        if still.is_empty() || moving.is_empty() {
-            return None;
-        }
-        let names: Vec<&str> = still.iter().map(|k| freedoms[*k].name.as_str()).collect();
-        let columns: Vec<Vec<Expr>> = moving.iter().map(|k| x.column(*k)).collect();
-        let statement = format!(
-            "rank [X; E] = k, E: the rates of {}, which move no body",
-            names.join(", ")
-        );
-        Some((Matrix::from_columns(x.rows(), &columns), statement))
+    /// What stands below X.
+    fn rates_beside(&self) -> String {
+        format!("E: rates of {}", self.x.still.names())
     }
 }
 

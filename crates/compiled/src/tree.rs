@@ -8,6 +8,7 @@ use hamel_runtime::dynamics::{
     Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives,
     Recursive,
 };
+use hamel_runtime::joint::MOST_FREEDOMS;
 use hamel_runtime::mechanism::{Mechanism, Space, StateError};
 use hamel_runtime::scalar::all_finite;
 use hamel_runtime::time_function::Moment;
@@ -366,7 +367,7 @@ impl Compiled {
     fn add_inputs(&self, q: &[f64], rates: &mut [f64]) {
         for (index, body) in self.tree.mechanism().bodies().iter().enumerate() {
             let ranges = body.ranges();
-            let mut reduced = [0.0; 6];
+            let mut reduced = [0.0; MOST_FREEDOMS];
             let reduced = &mut reduced[..ranges.speeds.len()];
             let tau = &self.inputs[0][ranges.freedoms.clone()];
             if self.tree.mechanism().is_driven(index) {

@@ -171,11 +171,14 @@ fn compiled(body: &BodyDescription, joint: Rc<JointType>) -> Result<Body, Vec<St
             body.joint.kind.value
         ));
     }
-    if joint.derived.shape.constraints > 0 && armature.iter().any(|&rotor| rotor != 0.0) {
-        reasons.push(format!(
-            "joint `{name}`: a nonholonomic joint such as `{}` can have no armature",
-            body.joint.kind.value
-        ));
+    let rotors = armature.iter().enumerate();
+    for (k, _) in rotors.filter(|(_, rotor)| **rotor != 0.0) {
+        if joint.derived.shape.constraints > 0 && !joint.derived.rate_is_a_speed(k) {
+            reasons.push(format!(
+                "joint `{name}`: a nonholonomic joint such as `{}` can have an armature only at degrees of freedom whose rate is one of its speeds",
+                body.joint.kind.value
+            ));
+        }
     }
     let parameters = parameters(body, &joint, &mut reasons);
     match reasons.is_empty() {

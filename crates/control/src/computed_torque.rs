@@ -7,6 +7,7 @@ use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 use hamel_runtime::dynamics::Recursive;
+use hamel_runtime::joint::MOST_FREEDOMS;
 
 /// How errors are to fade: as `ë + 2 ζ ω ė + ω² e = 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +54,7 @@ impl ComputedTorque {
             wanted: vec![0.0; layout.configuration],
             error: vec![0.0; layout.freedoms],
             accelerations: vec![0.0; layout.speeds],
-            map: vec![0.0; 36],
+            map: vec![0.0; MOST_FREEDOMS * MOST_FREEDOMS],
         })
     }
 

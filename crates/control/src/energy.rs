@@ -10,6 +10,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use hamel_runtime::dynamics::{Dynamics, Recursive};
 use hamel_runtime::elements::{Action, Element, JointSpring, MotionList, RotationSpring, View};
+use hamel_runtime::joint::MOST_FREEDOMS;
 use hamel_runtime::mechanism::Mechanism;
 
 /// The energy that a port adds to the mechanism's.
@@ -211,7 +212,7 @@ impl Controller for EnergyShaping {
         let view = View::new(&self.mechanism, q, speeds, &self.motions);
         for (port, spring) in self.ports.iter().zip(&self.springs) {
             spring.act(&view, &mut Action::new(&mut self.wrenches, efforts));
-            let mut buffer = [0.0; 6];
+            let mut buffer = [0.0; MOST_FREEDOMS];
             let output = view.joint_velocity(port.body, &mut buffer);
             let own = self.mechanism.bodies()[port.body].ranges().freedoms.clone();
             inject(port, port.damping + surplus, output, &mut efforts[own]);

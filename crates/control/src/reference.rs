@@ -7,6 +7,7 @@ use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 use hamel_integrate::Tableau;
+use hamel_runtime::joint::MOST_FREEDOMS;
 use hamel_runtime::mechanism::{Body, Mechanism, Space};
 use hamel_runtime::time_function::Law;
 use num_traits::Float;
@@ -177,7 +178,7 @@ struct Span {
 struct Carrier {
     tableau: &'static Tableau,
     /// ϕ̇ of one joint at each stage.
-    stages: Vec<[f64; 6]>,
+    stages: Vec<[f64; MOST_FREEDOMS]>,
     /// S₀⁻¹ of one joint.
     inverse: Vec<f64>,
     /// Q of all joints at a stage.
@@ -189,8 +190,8 @@ impl Carrier {
         let tableau = &Tableau::VERNER_9;
         Self {
             tableau,
-            stages: vec![[0.0; 6]; tableau.nodes.len()],
-            inverse: vec![0.0; 36],
+            stages: vec![[0.0; MOST_FREEDOMS]; tableau.nodes.len()],
+            inverse: vec![0.0; MOST_FREEDOMS * MOST_FREEDOMS],
             moved: vec![0.0; mechanism.layout().configuration],
         }
     }
@@ -228,8 +229,8 @@ impl Carrier {
         body.joint().retract(from, &phi[..size], to);
     }
 
-    fn combine(&self, weights: &[f64], step: f64) -> [f64; 6] {
-        let mut phi = [0.0; 6];
+    fn combine(&self, weights: &[f64], step: f64) -> [f64; MOST_FREEDOMS] {
+        let mut phi = [0.0; MOST_FREEDOMS];
         for (weight, stage) in weights.iter().zip(&self.stages) {
             for (phi, rate) in phi.iter_mut().zip(stage) {
                 *phi += step * weight * rate;
@@ -246,13 +247,13 @@ impl Carrier {
         time: f64,
         from: &[f64],
         phi: &[f64],
-    ) -> [f64; 6] {
+    ) -> [f64; MOST_FREEDOMS] {
         let (joint, size) = (body.joint(), phi.len());
         let moved = &mut self.moved[..from.len()];
         joint.retract(from, phi, moved);
         let inverse = &mut self.inverse[..size * size];
         joint.velocity_map_inverse(moved, inverse);
-        let (mut local, mut rate) = ([0.0; 6], [0.0; 6]);
+        let (mut local, mut rate) = ([0.0; MOST_FREEDOMS], [0.0; MOST_FREEDOMS]);
         for (column, law) in inverse.chunks_exact(size.max(1)).zip(laws) {
             let velocity = law.velocity(time);
             for (sum, entry) in local.iter_mut().zip(column) {

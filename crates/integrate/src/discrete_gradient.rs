@@ -18,6 +18,7 @@ use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 use hamel_runtime::dynamics::{Dynamics, Recursive};
+use hamel_runtime::joint::MOST_FREEDOMS;
 use hamel_runtime::mechanism::Body;
 use hamel_runtime::spatial::bracket_dual_product;
 use nalgebra::Vector6;
@@ -96,11 +97,11 @@ impl Correction {
             moved: flow.new_rates(),
             composites: vec![Vector6::zeros(); mechanism.bodies().len()],
             matrices: Matrices {
-                structure: vec![0.0; 36],
-                basis: vec![0.0; 36],
-                twists: vec![0.0; 36],
-                gradient: vec![0.0; 36],
-                inverse: vec![0.0; 36],
+                structure: vec![0.0; MOST_FREEDOMS * MOST_FREEDOMS],
+                basis: vec![0.0; MOST_FREEDOMS * MOST_FREEDOMS],
+                twists: vec![0.0; MOST_FREEDOMS * MOST_FREEDOMS],
+                gradient: vec![0.0; MOST_FREEDOMS * MOST_FREEDOMS],
+                inverse: vec![0.0; MOST_FREEDOMS * MOST_FREEDOMS],
             },
         }
     }
@@ -264,7 +265,7 @@ impl Matrices {
             Vector6::from(sum)
         };
         for (b, own) in columns().enumerate() {
-            let (mut rate, mut moved) = ([0.0; 6], [0.0; 6]);
+            let (mut rate, mut moved) = ([0.0; MOST_FREEDOMS], [0.0; MOST_FREEDOMS]);
             let (rate, moved) = (&mut rate[..freedoms], &mut moved[..speeds]);
             multiply(inverse, own, rate);
             multiply(gradient, rate, moved);

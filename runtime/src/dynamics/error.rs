@@ -10,7 +10,7 @@ pub enum DynamicsError {
     /// Some motion carries no inertia.
     #[error(
         "the mass matrix is singular at joint `{joint}`, speed `{speed}`: its pivot {pivot:e} is not above {limit:e}; give \
-         mass or inertia to the bodies that this joint moves"
+         mass or inertia to the bodies that this joint moves, an armature to the joint, or a prescribed motion"
     )]
     SingularMass {
         /// The joint.

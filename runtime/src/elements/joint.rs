@@ -2,6 +2,7 @@
 
 use super::error::{body, values};
 use super::{Action, Element, ElementError, Slope, Slopes, View};
+use crate::joint::MOST_FREEDOMS;
 use crate::mechanism::Mechanism;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -31,7 +32,7 @@ impl Element for JointDamper {
     }
 
     fn act(&self, view: &View<'_>, action: &mut Action<'_>) {
-        let (mut velocity, mut effort) = ([0.0; 6], [0.0; 6]);
+        let (mut velocity, mut effort) = ([0.0; MOST_FREEDOMS], [0.0; MOST_FREEDOMS]);
         let velocity = view.joint_velocity(self.body, &mut velocity);
         let effort = &mut effort[..velocity.len()];
         for ((effort, c), v) in effort.iter_mut().zip(&self.coefficients).zip(velocity) {
@@ -45,7 +46,7 @@ impl Element for JointDamper {
     }
 
     fn power(&self, view: &View<'_>) -> f64 {
-        let mut velocity = [0.0; 6];
+        let mut velocity = [0.0; MOST_FREEDOMS];
         let velocity = view.joint_velocity(self.body, &mut velocity);
         let losses = self.coefficients.iter().zip(velocity);
         -losses.map(|(c, v)| c * v * v).sum::<f64>()
@@ -59,12 +60,17 @@ impl Element for JointDamper {
 impl Slope for JointDamper {
     fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>) {
         let size = self.coefficients.len();
-        let mut by_velocity = [0.0; 36];
+        let mut by_velocity = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];
         let diagonal = by_velocity.iter_mut().step_by(size + 1);
         for (entry, c) in diagonal.zip(&self.coefficients) {
             *entry = -c;
         }
-        slopes.add_effort(view, self.body, &[0.0; 36], &by_velocity);
+        slopes.add_effort(
+            view,
+            self.body,
+            &[0.0; MOST_FREEDOMS * MOST_FREEDOMS],
+            &by_velocity,
+        );
     }
 }
 
@@ -101,7 +107,7 @@ impl Element for JointEffort {
     }
 
     fn power(&self, view: &View<'_>) -> f64 {
-        let mut velocity = [0.0; 6];
+        let mut velocity = [0.0; MOST_FREEDOMS];
         let velocity = view.joint_velocity(self.body, &mut velocity);
         self.efforts.iter().zip(velocity).map(|(t, v)| t * v).sum()
     }

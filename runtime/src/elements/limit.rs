@@ -3,6 +3,7 @@
 use super::error::{body, values};
 use super::{Action, Element, ElementError, Slope, Slopes, View};
 use crate::erased::AnyJoint;
+use crate::joint::MOST_FREEDOMS;
 use crate::mechanism::Mechanism;
 use alloc::string::String;
 
@@ -40,7 +41,7 @@ struct Beyond {
 impl JointLimit {
     /// NaN of a body that is not there.
     fn beyond(&self, view: &View<'_>) -> Option<Beyond> {
-        let mut velocity = [0.0; 6];
+        let mut velocity = [0.0; MOST_FREEDOMS];
         let velocity = view.joint_velocity(self.body, &mut velocity);
         let (q, v) = match (view.joint_configuration(self.body), velocity) {
             (&[q], &[v]) => (q, v),

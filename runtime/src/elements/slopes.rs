@@ -6,6 +6,7 @@
 
 use super::View;
 use crate::dynamics::Sensitivity;
+use crate::joint::MOST_FREEDOMS;
 use crate::mechanism::Mechanism;
 use crate::spatial::fused::{add_cross, cross, dot};
 use crate::spatial::split;
@@ -202,7 +203,10 @@ impl Slopes<'_> {
         if by_local.len() < size * size || by_velocity.len() < size * size {
             return self.spoil();
         }
-        let (mut basis, mut turned) = ([0.0; 36], [0.0; 216]);
+        let (mut basis, mut turned) = (
+            [0.0; MOST_FREEDOMS * MOST_FREEDOMS],
+            [0.0; MOST_FREEDOMS * MOST_FREEDOMS * MOST_FREEDOMS],
+        );
         let basis = &mut basis[..size * speeds.len()];
         let turned = &mut turned[..size * basis.len()];
         joint.speed_basis(q, basis);
@@ -377,8 +381,8 @@ fn at(twist: &Vector6<f64>, arm: &Vector3<f64>) -> Vector3<f64> {
 }
 
 /// The columns of a matrix of `rows` rows, weighted.
-fn combination(matrix: &[f64], weights: &[f64], rows: usize) -> [f64; 6] {
-    let mut sum = [0.0; 6];
+fn combination(matrix: &[f64], weights: &[f64], rows: usize) -> [f64; MOST_FREEDOMS] {
+    let mut sum = [0.0; MOST_FREEDOMS];
     for (column, weight) in matrix.chunks_exact(rows.max(1)).zip(weights) {
         for (sum, entry) in sum.iter_mut().zip(column) {
             *sum += entry * weight;

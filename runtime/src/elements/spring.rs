@@ -2,6 +2,7 @@
 
 use super::error::{body, values};
 use super::{Action, Element, ElementError, Slope, Slopes, View};
+use crate::joint::MOST_FREEDOMS;
 use crate::mechanism::{CONFIGURATION_TOLERANCE, Mechanism};
 use crate::spatial::fused::product;
 use crate::spatial::vee;
@@ -27,12 +28,12 @@ pub struct JointSpring {
 
 impl JointSpring {
     /// ϕ and Kϕ; NaN where ϕ cannot be found.
-    fn stretch(&self, view: &View<'_>) -> ([f64; 6], [f64; 6]) {
+    fn stretch(&self, view: &View<'_>) -> ([f64; MOST_FREEDOMS], [f64; MOST_FREEDOMS]) {
         let Some((joint, q)) = view.joint_and_configuration(self.body) else {
-            return ([f64::NAN; 6], [f64::NAN; 6]);
+            return ([f64::NAN; MOST_FREEDOMS], [f64::NAN; MOST_FREEDOMS]);
         };
         let size = joint.layout().freedoms;
-        let (mut phi, mut load) = ([0.0; 6], [0.0; 6]);
+        let (mut phi, mut load) = ([0.0; MOST_FREEDOMS], [0.0; MOST_FREEDOMS]);
         // Where it fails, ϕ is NaN, and so is what follows from it.
         _ = joint.local(&self.rest, q, &mut phi[..size]);
         let rows = self.stiffness.chunks_exact(size.max(1));
@@ -107,10 +108,10 @@ impl Element for JointSpring {
             return action.add_effort(view, self.body, &[]);
         };
         let size = joint.layout().freedoms;
-        let mut inverse = [0.0; 36];
+        let mut inverse = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];
         let inverse = &mut inverse[..size * size];
         joint.velocity_map_inverse(q, inverse);
-        let (mut effort, mut rate) = ([0.0; 6], [0.0; 6]);
+        let (mut effort, mut rate) = ([0.0; MOST_FREEDOMS], [0.0; MOST_FREEDOMS]);
         for (effort, column) in effort.iter_mut().zip(inverse.chunks_exact(size.max(1))) {
             let rate = &mut rate[..size];
             joint.retract_differential_inverse(&self.rest, &phi[..size], column, rate);
@@ -138,10 +139,18 @@ impl Slope for JointSpring {
         let Some((joint, q)) = view.joint_and_configuration(self.body) else {
             return slopes.add_effort(view, self.body, &[], &[]);
         };
-        let (mut by_local, size) = ([f64::NAN; 36], joint.layout().freedoms);
+        let (mut by_local, size) = (
+            [f64::NAN; MOST_FREEDOMS * MOST_FREEDOMS],
+            joint.layout().freedoms,
+        );
         let own = &mut by_local[..size * size];
         joint.spring_slope(q, &self.rest, &self.stiffness, own);
-        slopes.add_effort(view, self.body, &by_local, &[0.0; 36]);
+        slopes.add_effort(
+            view,
+            self.body,
+            &by_local,
+            &[0.0; MOST_FREEDOMS * MOST_FREEDOMS],
+        );
     }
 }
 
@@ -198,7 +207,7 @@ impl Element for RotationSpring {
             return action.add_effort(view, self.body, &[]);
         };
         let size = joint.layout().freedoms;
-        let (mut map, mut effort) = ([0.0; 36], [0.0; 6]);
+        let (mut map, mut effort) = ([0.0; MOST_FREEDOMS * MOST_FREEDOMS], [0.0; MOST_FREEDOMS]);
         let map = &mut map[..6 * size];
         joint.twist_map(q, map);
         for (effort, column) in effort.iter_mut().zip(map.chunks_exact(6)) {
@@ -228,9 +237,14 @@ impl Slope for RotationSpring {
             return slopes.add_effort(view, self.body, &[], &[]);
         };
         let size = joint.layout().freedoms;
-        let mut by_local = [0.0; 36];
+        let mut by_local = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];
         let own = &mut by_local[..size * size];
         joint.turn_slope(q, &self.rest, self.stiffness, own);
-        slopes.add_effort(view, self.body, &by_local, &[0.0; 36]);
+        slopes.add_effort(
+            view,
+            self.body,
+            &by_local,
+            &[0.0; MOST_FREEDOMS * MOST_FREEDOMS],
+        );
     }
 }

@@ -1,6 +1,7 @@
 //! What an element sees of a mechanism, and how it acts on it.
 
 use crate::erased::AnyJoint;
+use crate::joint::MOST_FREEDOMS;
 use crate::mechanism::{Body, Mechanism};
 use crate::spatial::fused::{add_cross, apply, cross};
 use crate::spatial::{Pose, split};
@@ -109,7 +110,11 @@ impl<'a> View<'a> {
     }
 
     /// Its velocity `v = S̄ v̄`, in the first entries of `buffer`.
-    pub fn joint_velocity<'b>(&self, body: usize, buffer: &'b mut [f64; 6]) -> &'b [f64] {
+    pub fn joint_velocity<'b>(
+        &self,
+        body: usize,
+        buffer: &'b mut [f64; MOST_FREEDOMS],
+    ) -> &'b [f64] {
         let Some(own) = self.body(body) else {
             return &[];
         };
@@ -120,7 +125,7 @@ impl<'a> View<'a> {
             velocity.copy_from_slice(speeds);
             return velocity;
         }
-        let mut basis = [0.0; 36];
+        let mut basis = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];
         let basis = &mut basis[..velocity.len() * speeds.len()];
         joint.speed_basis(self.joint_configuration(body), basis);
         for (i, entry) in velocity.iter_mut().enumerate() {

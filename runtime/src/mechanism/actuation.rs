@@ -1,6 +1,7 @@
 //! What a mechanism carries besides its bodies: elements, rotor inertias, drives, constraints that couple joints.
 
 use super::check::Space;
+use super::rotor::speed_of_rotor;
 use super::{Mechanism, MechanismError, MechanismErrors, StateError};
 use crate::dynamics::Recursive;
 use crate::elements::{
@@ -61,7 +62,8 @@ impl Mechanism {
     /// gear. Kinetic energy grows by `½ Σ a v²`, and with γ ≠ 0 the equations by `Σ_k γ_k v_k (a v)`, as (16) has it.
     ///
     /// # Errors
-    /// No such body; a wrong size; a negative inertia; a nonholonomic joint.
+    /// No such body; a wrong size; a negative inertia; at a nonholonomic joint, a degree of freedom whose rate is not one of the speeds at every
+    /// configuration, [`speed_of_rotor`].
     pub fn with_armature(mut self, body: usize, inertia: &[f64]) -> Result<Self, MechanismError> {
         let element = || format!("armature of body {body}");
         let Some(owner) = self.bodies.get(body) else {
@@ -89,11 +91,15 @@ impl Mechanism {
                 requirement: "finite and not negative",
             }));
         }
-        if !owner.joint().structures().speed_basis.is_identity() {
+        let is_felt_alike = |k: usize| speed_of_rotor(owner.joint(), k).is_some();
+        let mut rotors = inertia.iter().enumerate().filter(|(_, a)| **a > 0.0);
+        if !owner.joint().structures().speed_basis.is_identity()
+            && !rotors.all(|(k, _)| is_felt_alike(k))
+        {
             return Err(MechanismError::Element(ElementError::Joint {
                 element: element(),
                 joint: owner.joint_name().into(),
-                reason: "is nonholonomic: only a holonomic joint can have an armature",
+                reason: "is nonholonomic: an armature goes with degrees of freedom whose rate is one of the speeds",
             }));
         }
         if self.actuation.armature.is_empty() {
@@ -252,6 +258,24 @@ impl Mechanism {
             true => &[],
             false => own,
         }
+    }
+
+    /// The same for each speed, with which rotors turn; empty where there are none.
+    pub fn speed_armature(&self, body: usize) -> Vec<f64> {
+        let inertia = self.armature(body);
+        let Some(owner) = self.bodies.get(body).filter(|_| !inertia.is_empty()) else {
+            return Vec::new();
+        };
+        if owner.joint().structures().speed_basis.is_identity() {
+            return inertia.to_vec();
+        }
+        let mut felt = vec![0.0; owner.ranges.speeds.len()];
+        for (k, &value) in inertia.iter().enumerate().filter(|(_, a)| **a > 0.0) {
+            if let Some(speed) = speed_of_rotor(owner.joint(), k) {
+                felt[speed] += value;
+            }
+        }
+        felt
     }
 
     /// Joints whose motion is prescribed.

@@ -5,6 +5,7 @@ use super::check::CONFIGURATION_TOLERANCE;
 use super::rigid::{RigidBody, check_bodies};
 use super::{Body, BodySpec, Loci, MechanismError, Ranges};
 use crate::erased::Layout;
+use crate::joint::MOST_FREEDOMS;
 use crate::spatial::{Pose, SpatialInertia};
 use alloc::vec;
 use alloc::vec::Vec;
@@ -25,7 +26,7 @@ pub(super) fn check(gravity: &Vector3<f64>, bodies: &[BodySpec]) -> Vec<Mechanis
 
 fn check_joint(body: &BodySpec, errors: &mut Vec<MechanismError>) {
     let (joint, size) = (&body.joint, body.joint.layout());
-    if size.freedoms > 6 || size.speeds + size.constraints != size.freedoms {
+    if size.freedoms > MOST_FREEDOMS || size.speeds + size.constraints != size.freedoms {
         errors.push(MechanismError::Layout {
             joint: body.joint_name.clone(),
             freedoms: size.freedoms,

@@ -2,6 +2,7 @@
 
 use super::{Body, Loci, Mechanism, Ranges, StateError};
 use crate::erased::{AnyJoint, FiniteMapError};
+use crate::joint::MOST_FREEDOMS;
 use crate::scalar::all_finite;
 use alloc::string::String;
 use core::ops::Range;
@@ -132,7 +133,7 @@ impl Body {
     /// The first of the joint's kernels that is not finite at its own `q` and v̄.
     fn no_value(&self, q: &[f64], speeds: &[f64]) -> Option<&'static str> {
         let finite = |size: usize, fill: &dyn Fn(&mut [f64])| {
-            let mut entries = [0.0; 36];
+            let mut entries = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];
             fill(&mut entries[..size]);
             all_finite(&entries[..size])
         };

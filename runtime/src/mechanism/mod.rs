@@ -13,6 +13,7 @@ mod initial;
 mod inverse_kinematics;
 mod kinematics;
 mod rigid;
+mod rotor;
 mod unilateral;
 
 pub use actuation::dependent_columns;
@@ -25,6 +26,7 @@ pub use initial::CONSTRAINT_TOLERANCE;
 pub use inverse_kinematics::REACH_TOLERANCE;
 pub use kinematics::{BodyState, Kinematics};
 pub use rigid::{RigidBody, check_bodies};
+pub use rotor::speed_of_rotor;
 
 use crate::erased::Layout;
 use alloc::vec;

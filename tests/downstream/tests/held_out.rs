@@ -83,7 +83,6 @@ macro_rules! laws_alone {
 }
 
 laws_alone! {
-    car_steering: CarSteering::new(0.7);
     gear_train: GearTrain;
     leaning_body: LeaningBody;
 }

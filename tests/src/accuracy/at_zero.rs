@@ -200,9 +200,11 @@ fn mismatch(
 
 /// The map with a unit row for each of these degrees of freedom.
 fn with_rates(map: &Grid<Jet>, still: &[usize]) -> Grid<Jet> {
-    Grid::from_fn(map.rows + still.len(), map.columns, |i, k| match i < map.rows {
-        true => map.at(i, k).clone(),
-        false => Jet::input(f64::from(still[i - map.rows] == k)),
+    Grid::from_fn(map.rows + still.len(), map.columns, |i, k| {
+        match i < map.rows {
+            true => map.at(i, k).clone(),
+            false => Jet::input(f64::from(still[i - map.rows] == k)),
+        }
     })
 }
 

@@ -66,9 +66,7 @@ impl Definition {
         let relations = derived.kernel(KernelKind::Residual);
         let relations = relations.map_or(&[][..], |kernel| kernel.outputs[0].entries());
         let zero = declared.zero();
-        let map = &derived.local_twist_map;
-        let is_still = |k: &usize| map.column(*k).iter().all(Expr::is_zero);
-        let still: Vec<usize> = (0..k).filter(is_still).collect();
+        let still = derived.still.clone();
         let loci = derived.space.loci.iter();
         let loci: Vec<Expr> = loci.map(|locus| locus.value.function.clone()).collect();
         Self {

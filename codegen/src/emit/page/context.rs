@@ -113,6 +113,7 @@ pub fn context(report: &Report, medium: Medium) -> Context {
     context.insert("home", &report.home);
     context.insert("velocity_frame", report.velocity_frame.as_str());
     context.insert("speeds", &report.speeds);
+    context.insert("still", &medium.text(&report.still));
     context.insert("unidentifiable", &report.unidentifiable);
     let spec = visible(&report.spec.trim().replace("\r\n", "\n"));
     context.insert("fence", &fence(&spec));

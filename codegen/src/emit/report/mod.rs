@@ -53,6 +53,8 @@ pub struct Report {
     pub freedoms: Vec<FreedomRow>,
     /// Speeds in order.
     pub speeds: Vec<String>,
+    /// What moves no body, in words; empty where everything does.
+    pub still: String,
     /// The frame in which v is read, in words.
     pub velocity_frame: String,
     /// The formulas.
@@ -104,6 +106,7 @@ impl Report {
             home: home(spec, &notation),
             freedoms: tables::freedoms(derived, &notation),
             speeds: derived.speed_names.clone(),
+            still: derived.still_in_words().unwrap_or_default(),
             velocity_frame: velocity_frame(spec).to_owned(),
             formulas: vec![],
             singularities: singularities(derived, &notation),

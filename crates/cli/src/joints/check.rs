@@ -87,5 +87,7 @@ fn text(joint: &Derived) -> String {
         )
     };
     let lines: String = joint.claims.iter().map(line).collect();
-    format!("{}\n{lines}\n", joint.spec.name.value)
+    let still = joint.still_in_words();
+    let note = still.map_or_else(String::new, |still| format!("  note: {still}\n"));
+    format!("{}\n{lines}{note}\n", joint.spec.name.value)
 }

@@ -155,7 +155,9 @@ impl Tree<'_> {
 
     /// `Σ_k γ_k v_k (a v)` of the rotors at a body's joint, one per freedom: what their turning takes where velocities do not commute.
     pub(super) fn rotor_forces(&self, index: usize) -> Vec<Sym> {
-        if !self.has_armature(index) {
+        // Rotors of a nonholonomic joint turn with the rates of their own coordinates, and have no such forces.
+        let is_nonholonomic = self.model.bodies[index].joint.derived.shape.constraints > 0;
+        if !self.has_armature(index) || is_nonholonomic {
             return vec![];
         }
         let speeds = &self.bodies[index].speeds;

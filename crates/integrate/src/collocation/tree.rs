@@ -15,6 +15,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use hamel_runtime::dynamics::{Dynamics, LoadedMass, Recursive};
 use hamel_runtime::elements::JointSlopes;
+use hamel_runtime::joint::MOST_FREEDOMS;
 use hamel_runtime::mechanism::Ranges;
 use hamel_runtime::steps::Variation;
 
@@ -86,7 +87,7 @@ struct Room {
     /// One entry a speed.
     speeds: Vec<f64>,
     /// One joint's.
-    own: [f64; 6],
+    own: [f64; MOST_FREEDOMS],
 }
 
 impl Tree {
@@ -115,7 +116,7 @@ impl Tree {
             lower,
             room: Room {
                 speeds: vec![0.0; layout.speeds],
-                own: [0.0; 6],
+                own: [0.0; MOST_FREEDOMS],
             },
             freedoms: layout.freedoms,
         }

@@ -10,7 +10,7 @@ use crate::forces::{
 use crate::read::Sink;
 use crate::source::{Located, Span};
 use hamel_runtime::elements::is_one_coordinate;
-use hamel_runtime::mechanism::CONFIGURATION_TOLERANCE;
+use hamel_runtime::mechanism::{CONFIGURATION_TOLERANCE, speed_of_rotor};
 use hamel_runtime::shown::Number;
 use hamel_runtime::time_function::TimeFunction;
 use nalgebra::{DMatrix, DVector};
@@ -91,13 +91,21 @@ fn spread(
     }
 }
 
-/// Armatures turn with v; the inertia that a nonholonomic joint feels of one depends on its S̄, and is not simulated.
+/// Armatures turn with v; at a nonholonomic joint only with what is a speed, as what it feels of others depends on its S̄, and is not simulated.
 fn armature(stand: &Stand, numbers: Option<&Located<PerFreedom>>) -> Result<Vec<f64>, Diagnostic> {
     match numbers {
         Some(numbers) if stand.joint.layout().constraints > 0 => {
+            let inertia = spread(stand, "armature", Some(numbers))?;
+            let varies =
+                |&(k, a): &(usize, &f64)| *a != 0.0 && speed_of_rotor(&*stand.joint, k).is_none();
+            let Some((k, a)) = inertia.iter().enumerate().find(varies) else {
+                return Ok(inertia);
+            };
             let (name, kind) = (&stand.name, stand.joint.name());
+            let freedom = stand.joint.freedoms().get(k).copied().unwrap_or_default();
             let message = format!(
-                "joint `{name}`: a nonholonomic joint such as `{kind}` can have no armature"
+                "joint `{name}`: armature {a} at `{freedom}` of the nonholonomic joint `{kind}`, whose rate is not one of its speeds; it \
+                 must be 0 there"
             );
             Err(Diagnostic::new(numbers.span.clone(), message))
         }

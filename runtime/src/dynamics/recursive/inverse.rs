@@ -7,7 +7,7 @@ use crate::spatial::turn_back;
 use nalgebra::{Cholesky, Matrix6, Vector6};
 
 /// A joint moves a body in six ways at most.
-pub(super) const MOST_FREEDOMS: usize = 6;
+pub(super) use crate::joint::MOST_FREEDOMS;
 
 impl Recursive {
     /// `S̄ᵀτ` into `efforts` (one entry per speed): what inputs must exert, beside the elements, for the mechanism to accelerate with

@@ -22,7 +22,7 @@ pub(super) struct Link {
     pub(super) frame: Pose<f64>,
     /// Inertia in the joint's child frame.
     pub(super) inertia: SpatialInertia<f64>,
-    /// Rotor inertias, one per degree of freedom; empty where there are none.
+    /// Rotor inertias, one per speed; empty where there are none.
     pub(super) armature: Vec<f64>,
     /// Whether the joint's motion is prescribed.
     pub(super) driven: bool,
@@ -39,7 +39,7 @@ impl Link {
         let bodies = mechanism.bodies().iter().enumerate();
         let mut links: Vec<Self> = bodies
             .map(|(index, body)| Self {
-                armature: mechanism.armature(index).to_vec(),
+                armature: mechanism.speed_armature(index),
                 driven: mechanism.is_driven(index),
                 ..Self::new(body)
             })
@@ -57,9 +57,13 @@ impl Link {
         links
     }
 
-    /// Whether it has rotors whose v are not the rates of coordinates: they add velocity terms.
+    /// Whether it has rotors whose v are not the rates of coordinates: they add velocity terms. At a nonholonomic joint
+    /// they are the rates of their own coordinates.
     pub(super) fn turns_rotors(&self) -> bool {
-        !self.armature.is_empty() && !self.joint.structures().gamma.is_zero()
+        let structures = self.joint.structures();
+        !self.armature.is_empty()
+            && !structures.gamma.is_zero()
+            && structures.speed_basis.is_identity()
     }
 
     fn new(body: &Body) -> Self {

@@ -32,6 +32,9 @@ struct Block {
     order: [usize; MOST_FREEDOMS],
 }
 
+/// Most rows of several joints in one block.
+const TOGETHER: usize = 6;
+
 impl Block {
     const EMPTY: Self = Self {
         start: 0,
@@ -45,7 +48,7 @@ impl Block {
         let mut blocks: Vec<Self> = Vec::new();
         for (branch, &end) in branches.iter().zip(ends).rev() {
             let (start, own) = (branch.speeds.0, branch.speeds.1 - branch.speeds.0);
-            let fits = |last: &&mut Self| last.rows + own <= MOST_FREEDOMS;
+            let fits = |last: &&mut Self| last.rows + own <= TOGETHER;
             let mut block = match blocks.last_mut().filter(fits) {
                 Some(last) => core::mem::replace(last, Self::EMPTY),
                 None => {
@@ -102,6 +105,7 @@ impl Factors {
                 3 => rows::<3>(block, lower, roots),
                 4 => rows::<4>(block, lower, roots),
                 5 => rows::<5>(block, lower, roots),
+                TOGETHER => rows::<TOGETHER>(block, lower, roots),
                 _ => rows::<MOST_FREEDOMS>(block, lower, roots),
             }
         }
