@@ -99,7 +99,6 @@ fn slender(case: Case) -> Case {
     });
     let gravity = *case.mechanism.gravity();
     let mechanism = Mechanism::new(gravity, specs.collect()).expect("valid by construction");
-    let mechanism = with_rotors(mechanism);
     Case {
         mechanism: Arc::new(mechanism),
         ..case
@@ -159,21 +158,6 @@ fn rooted(
         efforts: numbers(&mut random, layout.freedoms),
         mechanism,
     }
-}
-
-/// The mechanism with a rotor on each degree of freedom that moves no body, which has no other inertia.
-fn with_rotors(mut mechanism: Mechanism) -> Mechanism {
-    for index in 0..mechanism.bodies().len() {
-        let joint = mechanism.bodies()[index].joint();
-        let still = |freedom| !joint.moves_body(freedom);
-        let rotors = (0..joint.layout().freedoms).map(|k| 0.4 * f64::from(still(k)));
-        let rotors: Vec<f64> = rotors.collect();
-        if rotors.iter().any(|rotor| *rotor > 0.0) {
-            let with_rotors = mechanism.with_armature(index, &rotors);
-            mechanism = with_rotors.expect("their rates are speeds");
-        }
-    }
-    mechanism
 }
 
 /// Numbers in [−1, 1).
@@ -240,8 +224,7 @@ fn grow(
         mass: mass(random),
     };
     let bodies = joints.iter().enumerate().map(body).collect();
-    let mechanism = Mechanism::new(gravity, bodies).expect("valid by construction");
-    Arc::new(with_rotors(mechanism))
+    Arc::new(Mechanism::new(gravity, bodies).expect("valid by construction"))
 }
 
 fn pose(random: &mut ChaCha8Rng) -> Pose<f64> {

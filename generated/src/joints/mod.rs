@@ -6,10 +6,8 @@ pub mod ball_child;
 pub mod ball_on_plane;
 pub mod ball_quaternion;
 pub mod ball_quaternion_child;
-pub mod car_steering;
 pub mod cart;
 pub mod cylindrical;
-pub mod differential_drive;
 pub mod ellipse;
 pub mod ellipsoid;
 pub mod falling_disk;
@@ -34,10 +32,8 @@ pub use self::ball_child::BallChild;
 pub use self::ball_on_plane::BallOnPlane;
 pub use self::ball_quaternion::BallQuaternion;
 pub use self::ball_quaternion_child::BallQuaternionChild;
-pub use self::car_steering::CarSteering;
 pub use self::cart::Cart;
 pub use self::cylindrical::Cylindrical;
-pub use self::differential_drive::DifferentialDrive;
 pub use self::ellipse::Ellipse;
 pub use self::ellipsoid::Ellipsoid;
 pub use self::falling_disk::FallingDisk;
@@ -64,10 +60,8 @@ pub const ENTRIES: &[::hamel_runtime::registry::JointEntry] = &[
     self::ball_on_plane::ENTRY,
     self::ball_quaternion::ENTRY,
     self::ball_quaternion_child::ENTRY,
-    self::car_steering::ENTRY,
     self::cart::ENTRY,
     self::cylindrical::ENTRY,
-    self::differential_drive::ENTRY,
     self::ellipse::ENTRY,
     self::ellipsoid::ENTRY,
     self::falling_disk::ENTRY,
@@ -95,10 +89,8 @@ pub const SPECS: &[(&::core::primitive::str, &::core::primitive::str)] = &[
     ("ball_on_plane", self::ball_on_plane::SPEC),
     ("ball_quaternion", self::ball_quaternion::SPEC),
     ("ball_quaternion_child", self::ball_quaternion_child::SPEC),
-    ("car_steering", self::car_steering::SPEC),
     ("cart", self::cart::SPEC),
     ("cylindrical", self::cylindrical::SPEC),
-    ("differential_drive", self::differential_drive::SPEC),
     ("ellipse", self::ellipse::SPEC),
     ("ellipsoid", self::ellipsoid::SPEC),
     ("falling_disk", self::falling_disk::SPEC),
@@ -129,10 +121,8 @@ macro_rules! for_each_joint {
         $callback!(ball_on_plane, $crate::joints::BallOnPlane, $crate::joints::BallOnPlane::new(0.7f64), 11, 5, 3, 2);
         $callback!(ball_quaternion, $crate::joints::BallQuaternion, $crate::joints::BallQuaternion, 4, 3, 3, 0);
         $callback!(ball_quaternion_child, $crate::joints::BallQuaternionChild, $crate::joints::BallQuaternionChild, 4, 3, 3, 0);
-        $callback!(car_steering, $crate::joints::CarSteering, $crate::joints::CarSteering::new(0.7f64), 7, 4, 2, 2);
         $callback!(cart, $crate::joints::Cart, $crate::joints::Cart, 6, 3, 2, 1);
         $callback!(cylindrical, $crate::joints::Cylindrical, $crate::joints::Cylindrical, 2, 2, 2, 0);
-        $callback!(differential_drive, $crate::joints::DifferentialDrive, $crate::joints::DifferentialDrive::new(0.7f64, 0.85f64), 8, 5, 2, 3);
         $callback!(ellipse, $crate::joints::Ellipse, $crate::joints::Ellipse::new(0.7f64, 0.85f64), 2, 1, 1, 0);
         $callback!(ellipsoid, $crate::joints::Ellipsoid, $crate::joints::Ellipsoid::new(0.7f64, 0.85f64, 1f64), 9, 3, 3, 0);
         $callback!(falling_disk, $crate::joints::FallingDisk, $crate::joints::FallingDisk::new(0.7f64), 11, 5, 3, 2);

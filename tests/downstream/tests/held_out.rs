@@ -83,6 +83,8 @@ macro_rules! laws_alone {
 }
 
 laws_alone! {
+    car_steering: CarSteering::new(0.7);
+    differential_drive: DifferentialDrive::new(0.7, 0.85);
     gear_train: GearTrain;
     leaning_body: LeaningBody;
 }

@@ -2,6 +2,7 @@
 
 use hamel::dynamics::{Dynamics, Recursive, Reference};
 use hamel::mechanism::{BodySpec, Mechanism};
+use hamel::registry::JointRegistry;
 use hamel::spatial::{MassProperties, Pose};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
@@ -11,7 +12,7 @@ const MASS: f64 = 1.3;
 const INERTIA: f64 = 0.4;
 
 fn on_wheels(joint: &str, parameters: &[f64]) -> Arc<Mechanism> {
-    let mut registry = hamel_joints::registry();
+    let mut registry = JointRegistry::new();
     registry
         .extend(hamel_downstream::held_out::ENTRIES.iter().copied())
         .expect("distinct names");
@@ -67,6 +68,36 @@ fn torques_on_wheels_drive_and_turn() {
             }
         }
     }
+}
+
+/// A rotor behind the steering: its own effort alone turns it, and while it turns both forms agree on what the car does.
+#[test]
+fn an_armature_carries_a_steering_angle() {
+    let rotor = 0.4;
+    let mechanism = (*on_wheels("car_steering", &[2.5])).clone();
+    let mechanism = mechanism.with_armature(0, &[0.0, 0.0, 0.0, rotor]);
+    let mechanism = Arc::new(mechanism.expect("the rate of steering is a speed"));
+    let forms: [&mut dyn Dynamics; 2] = [
+        &mut Recursive::new(Arc::clone(&mechanism)),
+        &mut Reference::new(Arc::clone(&mechanism)),
+    ];
+    let mut q = mechanism.home();
+    let joint = mechanism.bodies()[0].joint();
+    let from = q.clone();
+    joint.retract(&from, &[0.3, 0.1, 0.2, 0.4], &mut q);
+    let found = forms.map(|dynamics| {
+        let mut found = [0.0; 2];
+        dynamics
+            .forward_dynamics(&q, &[3.0, 0.7], &[0.0, 0.0, 0.0, 1.2], &mut found)
+            .expect("regular");
+        found
+    });
+    for rates in found {
+        assert!((rates[1] - 1.2 / rotor).abs() < 1e-14, "{rates:?}");
+    }
+    // A dozen operations on numbers of order 1.
+    assert!((found[0][0] - found[1][0]).abs() < 1e-14, "{found:?}");
+    assert!(found[0][0].abs() > 1e-3, "it yaws faster as the wheels turn: {found:?}");
 }
 
 /// A steering angle of no inertia has no acceleration; the error says which speed that is, and what helps.
