@@ -91,7 +91,8 @@ impl Derived {
 
     /// Whether row k of S̄ is that of a unit matrix, and row k of S does not change with ϕ: v_k is a speed, and the rate of its own coordinate.
     pub fn rate_is_a_speed(&self, k: usize) -> bool {
-        let row = |m: &Matrix| -> Vec<Expr> { (0..m.columns()).map(|j| m.at(k, j).clone()).collect() };
+        let row =
+            |m: &Matrix| -> Vec<Expr> { (0..m.columns()).map(|j| m.at(k, j).clone()).collect() };
         let is_unit = |m: &Matrix| {
             let row = row(m);
             let zeros = row.iter().filter(|entry| entry.is_zero()).count();

@@ -12,6 +12,9 @@ use std::sync::Arc;
 /// Longest ϕ from home, rad and m: most of a half turn.
 const REACH: f64 = 2.5;
 
+/// Inertia of a rotor, kg m².
+const ROTOR: f64 = 0.4;
+
 /// Slanted, m/s².
 const GRAVITY: Vector3<f64> = Vector3::new(0.8, -1.1, -9.7);
 
@@ -94,7 +97,7 @@ fn slender(case: Case) -> Case {
     let gravity = *case.mechanism.gravity();
     let mechanism = Mechanism::new(gravity, specs.collect()).expect("valid by construction");
     Case {
-        mechanism: Arc::new(mechanism),
+        mechanism: Arc::new(with_rotors(mechanism)),
         ..case
     }
 }
@@ -110,6 +113,28 @@ fn spec(body: &Body) -> BodySpec {
         child_placement: *body.child_placement(),
         mass: *body.mass(),
     }
+}
+
+/// The mechanism with a rotor at each degree of freedom that moves no body, which nothing else gives inertia.
+fn with_rotors(mechanism: Mechanism) -> Mechanism {
+    let bodies = mechanism.bodies().iter().enumerate();
+    let rotors = bodies.map(|(index, body)| {
+        let count = body.ranges().freedoms.len();
+        let mut twist_map = vec![0.0; 6 * count];
+        body.joint().twist_map_child(&body.home(), &mut twist_map);
+        let columns = twist_map.chunks_exact(6);
+        let is_still = |column: &[f64]| column.iter().all(|&entry| entry == 0.0);
+        let inertia = columns.map(|column| if is_still(column) { ROTOR } else { 0.0 });
+        (index, inertia.collect::<Vec<f64>>())
+    });
+    let rotors: Vec<(usize, Vec<f64>)> = rotors.collect();
+    let needed = rotors
+        .iter()
+        .filter(|(_, inertia)| inertia.iter().any(|&a| a != 0.0));
+    needed.fold(mechanism, |mechanism, (index, inertia)| {
+        let with = mechanism.with_armature(*index, inertia);
+        with.expect("what moves no body is the rate of its own coordinate")
+    })
 }
 
 fn needle(random: &mut ChaCha8Rng) -> MassProperties {
@@ -218,7 +243,8 @@ fn grow(
         mass: mass(random),
     };
     let bodies = joints.iter().enumerate().map(body).collect();
-    Arc::new(Mechanism::new(gravity, bodies).expect("valid by construction"))
+    let mechanism = Mechanism::new(gravity, bodies).expect("valid by construction");
+    Arc::new(with_rotors(mechanism))
 }
 
 fn pose(random: &mut ChaCha8Rng) -> Pose<f64> {

@@ -1,6 +1,5 @@
 //! Compiled equations of a mechanism, with the tree for what they do not hold.
 
-use hamel_runtime::joint::MOST_FREEDOMS;
 use super::Equations;
 use alloc::string::String;
 use alloc::sync::Arc;
@@ -9,6 +8,7 @@ use hamel_runtime::dynamics::{
     Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives,
     Recursive,
 };
+use hamel_runtime::joint::MOST_FREEDOMS;
 use hamel_runtime::mechanism::{Mechanism, Space, StateError};
 use hamel_runtime::scalar::all_finite;
 use hamel_runtime::time_function::Moment;

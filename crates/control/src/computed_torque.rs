@@ -1,6 +1,5 @@
 //! Computed torque: inverse dynamics at the accelerations of a reference, corrected by the error.
 
-use hamel_runtime::joint::MOST_FREEDOMS;
 use super::error::{positive, require};
 use super::state::{check_state, deviation, largest, store_measures};
 use super::{ControlError, Controller, DEVIATIONS, Measure, Reference};
@@ -8,6 +7,7 @@ use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 use hamel_runtime::dynamics::Recursive;
+use hamel_runtime::joint::MOST_FREEDOMS;
 
 /// How errors are to fade: as `ë + 2 ζ ω ė + ω² e = 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,5 @@
 //! Energy shaping and damping injection through the ports of the Hamiltonian form.
 
-use hamel_runtime::joint::MOST_FREEDOMS;
 use super::error::require;
 use super::state::{check_state, store_measures};
 use super::{ControlError, Controller, Measure};
@@ -11,6 +10,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use hamel_runtime::dynamics::{Dynamics, Recursive};
 use hamel_runtime::elements::{Action, Element, JointSpring, MotionList, RotationSpring, View};
+use hamel_runtime::joint::MOST_FREEDOMS;
 use hamel_runtime::mechanism::Mechanism;
 
 /// The energy that a port adds to the mechanism's.

@@ -1,6 +1,5 @@
 //! Where a mechanism is wanted, as a function of time: speeds by laws, and the configuration that they lead to.
 
-use hamel_runtime::joint::MOST_FREEDOMS;
 use super::ControlError;
 use super::error::{require, size};
 use super::state::{check_free, is_holonomic};
@@ -8,6 +7,7 @@ use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 use hamel_integrate::Tableau;
+use hamel_runtime::joint::MOST_FREEDOMS;
 use hamel_runtime::mechanism::{Body, Mechanism, Space};
 use hamel_runtime::time_function::Law;
 use num_traits::Float;

@@ -9,7 +9,6 @@
 //! λ is chosen such that the energy at the end is what it shall be. The energy error has the derivative `−p̄ᵀv̄ − Δp̄ᵀM̄⁻¹Δp̄` by λ, which is zero only at rest: at top speed Δp̄ is small, at turning points p̄ is. The energy is held against that at the beginning of all steps and the work done since, so
 //! that rounding does not add up.
 
-use hamel_runtime::joint::MOST_FREEDOMS;
 use super::StepFailure;
 use super::compensation::add_exactly;
 use super::flow::{Flow, Rates, multiply, retract};
@@ -19,6 +18,7 @@ use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 use hamel_runtime::dynamics::{Dynamics, Recursive};
+use hamel_runtime::joint::MOST_FREEDOMS;
 use hamel_runtime::mechanism::Body;
 use hamel_runtime::spatial::bracket_dual_product;
 use nalgebra::Vector6;

@@ -1,8 +1,8 @@
 //! Dampers and actuators at a joint.
 
-use crate::joint::MOST_FREEDOMS;
 use super::error::{body, values};
 use super::{Action, Element, ElementError, Slope, Slopes, View};
+use crate::joint::MOST_FREEDOMS;
 use crate::mechanism::Mechanism;
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -65,7 +65,12 @@ impl Slope for JointDamper {
         for (entry, c) in diagonal.zip(&self.coefficients) {
             *entry = -c;
         }
-        slopes.add_effort(view, self.body, &[0.0; MOST_FREEDOMS * MOST_FREEDOMS], &by_velocity);
+        slopes.add_effort(
+            view,
+            self.body,
+            &[0.0; MOST_FREEDOMS * MOST_FREEDOMS],
+            &by_velocity,
+        );
     }
 }
 

@@ -1,9 +1,9 @@
 //! Compliant limits of a joint's coordinate.
 
-use crate::joint::MOST_FREEDOMS;
 use super::error::{body, values};
 use super::{Action, Element, ElementError, Slope, Slopes, View};
 use crate::erased::AnyJoint;
+use crate::joint::MOST_FREEDOMS;
 use crate::mechanism::Mechanism;
 use alloc::string::String;
 

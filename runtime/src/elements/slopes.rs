@@ -4,9 +4,9 @@
 //! one that is carried along with the body; what an element adds here is how its wrench changes beside that, projected on all speeds that move
 //! the body.
 
-use crate::joint::MOST_FREEDOMS;
 use super::View;
 use crate::dynamics::Sensitivity;
+use crate::joint::MOST_FREEDOMS;
 use crate::mechanism::Mechanism;
 use crate::spatial::fused::{add_cross, cross, dot};
 use crate::spatial::split;

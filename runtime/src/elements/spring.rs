@@ -1,8 +1,8 @@
 //! Springs at a joint, measured on the joint's own manifold.
 
-use crate::joint::MOST_FREEDOMS;
 use super::error::{body, values};
 use super::{Action, Element, ElementError, Slope, Slopes, View};
+use crate::joint::MOST_FREEDOMS;
 use crate::mechanism::{CONFIGURATION_TOLERANCE, Mechanism};
 use crate::spatial::fused::product;
 use crate::spatial::vee;
@@ -139,10 +139,18 @@ impl Slope for JointSpring {
         let Some((joint, q)) = view.joint_and_configuration(self.body) else {
             return slopes.add_effort(view, self.body, &[], &[]);
         };
-        let (mut by_local, size) = ([f64::NAN; MOST_FREEDOMS * MOST_FREEDOMS], joint.layout().freedoms);
+        let (mut by_local, size) = (
+            [f64::NAN; MOST_FREEDOMS * MOST_FREEDOMS],
+            joint.layout().freedoms,
+        );
         let own = &mut by_local[..size * size];
         joint.spring_slope(q, &self.rest, &self.stiffness, own);
-        slopes.add_effort(view, self.body, &by_local, &[0.0; MOST_FREEDOMS * MOST_FREEDOMS]);
+        slopes.add_effort(
+            view,
+            self.body,
+            &by_local,
+            &[0.0; MOST_FREEDOMS * MOST_FREEDOMS],
+        );
     }
 }
 
@@ -232,6 +240,11 @@ impl Slope for RotationSpring {
         let mut by_local = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];
         let own = &mut by_local[..size * size];
         joint.turn_slope(q, &self.rest, self.stiffness, own);
-        slopes.add_effort(view, self.body, &by_local, &[0.0; MOST_FREEDOMS * MOST_FREEDOMS]);
+        slopes.add_effort(
+            view,
+            self.body,
+            &by_local,
+            &[0.0; MOST_FREEDOMS * MOST_FREEDOMS],
+        );
     }
 }

@@ -1,7 +1,7 @@
 //! What an element sees of a mechanism, and how it acts on it.
 
-use crate::joint::MOST_FREEDOMS;
 use crate::erased::AnyJoint;
+use crate::joint::MOST_FREEDOMS;
 use crate::mechanism::{Body, Mechanism};
 use crate::spatial::fused::{add_cross, apply, cross};
 use crate::spatial::{Pose, split};
@@ -110,7 +110,11 @@ impl<'a> View<'a> {
     }
 
     /// Its velocity `v = S̄ v̄`, in the first entries of `buffer`.
-    pub fn joint_velocity<'b>(&self, body: usize, buffer: &'b mut [f64; MOST_FREEDOMS]) -> &'b [f64] {
+    pub fn joint_velocity<'b>(
+        &self,
+        body: usize,
+        buffer: &'b mut [f64; MOST_FREEDOMS],
+    ) -> &'b [f64] {
         let Some(own) = self.body(body) else {
             return &[];
         };

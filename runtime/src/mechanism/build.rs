@@ -2,8 +2,8 @@
 
 use super::body::singular_value;
 use super::check::CONFIGURATION_TOLERANCE;
-use super::rotor::aside;
 use super::rigid::{RigidBody, check_bodies};
+use super::rotor::aside;
 use super::{Body, BodySpec, Loci, MechanismError, Ranges};
 use crate::erased::{AnyJoint, Layout};
 use crate::joint::MOST_FREEDOMS;
@@ -80,7 +80,11 @@ fn moving_columns(joint: &dyn AnyJoint<f64>, home: &[f64]) -> DMatrix<f64> {
         map
     };
     let (here, there) = (twist_map(home), twist_map(&aside(joint, home)));
-    let moves = |&k: &usize| [&here, &there].iter().any(|map| map.column(k).amax() != 0.0);
+    let moves = |&k: &usize| {
+        [&here, &there]
+            .iter()
+            .any(|map| map.column(k).amax() != 0.0)
+    };
     let moving: Vec<usize> = (0..here.ncols()).filter(moves).collect();
     match moving.is_empty() {
         true => here,

@@ -1,8 +1,8 @@
 //! Checks of a state against its mechanism, what is not finite of it, and projection onto the joints' manifolds.
 
-use crate::joint::MOST_FREEDOMS;
 use super::{Body, Loci, Mechanism, Ranges, StateError};
 use crate::erased::{AnyJoint, FiniteMapError};
+use crate::joint::MOST_FREEDOMS;
 use crate::scalar::all_finite;
 use alloc::string::String;
 use core::ops::Range;

@@ -5,7 +5,6 @@
 //! its Crout factors, stage after stage (P. J. van der Houwen and J. J. B. de Swart, *Triangularly implicit iteration methods for
 //! ODE-IVP solvers*, 1997), so that all of it is real.
 
-use hamel_runtime::joint::MOST_FREEDOMS;
 use super::coefficients::Coefficients;
 use crate::flow::{Flow, multiply};
 use crate::linear::Charts;
@@ -16,6 +15,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use hamel_runtime::dynamics::{Dynamics, LoadedMass, Recursive};
 use hamel_runtime::elements::JointSlopes;
+use hamel_runtime::joint::MOST_FREEDOMS;
 use hamel_runtime::mechanism::Ranges;
 use hamel_runtime::steps::Variation;
 

@@ -96,9 +96,8 @@ fn armature(stand: &Stand, numbers: Option<&Located<PerFreedom>>) -> Result<Vec<
     match numbers {
         Some(numbers) if stand.joint.layout().constraints > 0 => {
             let inertia = spread(stand, "armature", Some(numbers))?;
-            let varies = |&(k, a): &(usize, &f64)| {
-                *a != 0.0 && speed_of_rotor(&*stand.joint, k).is_none()
-            };
+            let varies =
+                |&(k, a): &(usize, &f64)| *a != 0.0 && speed_of_rotor(&*stand.joint, k).is_none();
             let Some((k, a)) = inertia.iter().enumerate().find(varies) else {
                 return Ok(inertia);
             };

@@ -141,7 +141,10 @@ impl Recursive {
         }
         let size = link.freedoms.len();
         let square = size * size;
-        let (mut by_local, mut by_velocity) = ([0.0; MOST_FREEDOMS * MOST_FREEDOMS], [0.0; MOST_FREEDOMS * MOST_FREEDOMS]);
+        let (mut by_local, mut by_velocity) = (
+            [0.0; MOST_FREEDOMS * MOST_FREEDOMS],
+            [0.0; MOST_FREEDOMS * MOST_FREEDOMS],
+        );
         let (by_local, by_velocity) = (&mut by_local[..square], &mut by_velocity[..square]);
         let (q, v) = (&q[link.configuration.clone()], &speeds[link.speeds.clone()]);
         link.joint
