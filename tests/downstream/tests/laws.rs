@@ -50,6 +50,7 @@ law_tests! {
     catenary: Catenary::new(0.7), HalfTurn;
     catenary_length: CatenaryLength::new(0.7), HalfTurn;
     direction_sensor: DirectionSensor::new(0.7), Entries(1.0);
+    motor_platform: MotorPlatform, HalfTurn;
     planar_turns: PlanarTurns, HalfTurn;
     power_guide: PowerGuide::new(0.7), Entries(1.0);
     rolling_ball_cayley: RollingBallCayley::new(0.7), HalfTurn;
