@@ -16,7 +16,7 @@ const ERROR: f64 = 1e-9;
 
 fn car(lines: &str) -> Scene {
     let text = format!(
-        "hamel = 1\nname = \"car\"\ngravity = [0.0, 0.0, -9.81]\n[[body]]\nname = \"car\"\nmass = 900.0\ncom = [1.1, 0.0, 0.4]\n\
+        "hamel = 1\nname = \"car\"\ngravity = [0.0, 0.0, -9.81]\n[[body]]\nname = \"car\"\nparent = \"world\"\nmass = 900.0\ncom = [1.1, 0.0, 0.4]\n\
          inertia_xx_yy_zz_xy_xz_yz = [250.0, 1100.0, 1200.0, 0.0, 0.0, 0.0]\n\
          joint = {{ type = \"car_steering\", base = {BASE} }}\ninitial.phi = [0.0, 0.0, 0.0, {STEER}]\n{lines}\n"
     );
