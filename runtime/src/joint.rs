@@ -34,7 +34,7 @@ mod slices;
 mod structure;
 
 /// Most degrees of freedom of a joint.
-pub const MOST_FREEDOMS: usize = 16;
+pub const MOST_FREEDOMS: usize = 8;
 
 pub use patterns::{Entry, Patterns};
 pub use products::{FirstOrder, Products};

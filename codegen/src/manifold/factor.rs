@@ -24,9 +24,9 @@ pub enum Kind {
     S2,
 }
 
-/// The longest real vector that a joint may have: a joint has at most six degrees of freedom.
+/// The longest real vector that a joint may have: without relations.
 pub const LARGEST_REAL: usize = 6;
-/// The longest real vector of a joint whose relations leave at most six degrees of freedom of it.
+/// The longest real vector of a joint whose relations leave fewer degrees of freedom of it.
 pub const LARGEST_CONSTRAINED_REAL: usize = 96;
 
 impl Kind {

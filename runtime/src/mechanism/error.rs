@@ -93,7 +93,7 @@ pub enum MechanismError {
     },
     /// A joint that has not as many speeds and constraints as degrees of freedom, or more than six of these.
     #[error(
-        "joint `{joint}`: it has {freedoms} degrees of freedom, {speeds} speeds and {constraints} constraints: there must be at most six \
+        "joint `{joint}`: it has {freedoms} degrees of freedom, {speeds} speeds and {constraints} constraints: there must be at most 16 \
          degrees of freedom, as many as speeds and constraints together"
     )]
     Layout {

@@ -87,6 +87,7 @@ laws_alone! {
     differential_drive: DifferentialDrive::new(0.7, 0.85);
     gear_train: GearTrain;
     leaning_body: LeaningBody;
+    motor_platform: MotorPlatform;
 }
 
 #[test]

@@ -97,7 +97,10 @@ fn an_armature_carries_a_steering_angle() {
     }
     // A dozen operations on numbers of order 1.
     assert!((found[0][0] - found[1][0]).abs() < 1e-14, "{found:?}");
-    assert!(found[0][0].abs() > 1e-3, "it yaws faster as the wheels turn: {found:?}");
+    assert!(
+        found[0][0].abs() > 1e-3,
+        "it yaws faster as the wheels turn: {found:?}"
+    );
 }
 
 /// A steering angle of no inertia has no acceleration; the error says which speed that is, and what helps.

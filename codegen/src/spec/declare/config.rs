@@ -75,7 +75,7 @@ pub(super) fn manifold(
 
 fn too_long(kind: Kind, span: &Range<usize>) -> Diagnostic {
     let message = format!(
-        "{} has more degrees of freedom than the {LARGEST_REAL} of a joint",
+        "{} has more degrees of freedom than the {LARGEST_REAL} of one factor",
         kind.name()
     );
     let error = Diagnostic::new(code::FREEDOMS, span.clone(), message).label("too large");
