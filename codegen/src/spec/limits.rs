@@ -14,7 +14,7 @@ pub(super) const RELATIONS_BUDGET_OF_WRONG: u64 = 2_000;
 /// Products of terms that one file may take.
 pub(super) const FILE_BUDGET: u64 = 1_000_000;
 /// Largest number of rows or columns.
-pub(super) const LARGEST_MATRIX: usize = 16;
+pub(super) const LARGEST_MATRIX: usize = 12;
 /// Largest exponent of `pow`, up or down.
 pub(super) const LARGEST_POWER: u32 = 16;
 
