@@ -171,14 +171,20 @@ fn compiled(body: &BodyDescription, joint: Rc<JointType>) -> Result<Body, Vec<St
             body.joint.kind.value
         ));
     }
-    let rotors = armature.iter().enumerate();
-    for (k, _) in rotors.filter(|(_, rotor)| **rotor != 0.0) {
-        if joint.derived.shape.constraints > 0 && !joint.derived.rate_is_a_speed(k) {
-            reasons.push(format!(
-                "joint `{name}`: a nonholonomic joint such as `{}` can have an armature only at degrees of freedom whose rate is one of its speeds",
-                body.joint.kind.value
-            ));
-        }
+    let is_nonholonomic = joint.derived.shape.constraints > 0;
+    let freedoms = joint.derived.spec.freedoms.value.iter().enumerate();
+    let rotors = freedoms.zip(&armature).filter(|(_, rotor)| **rotor != 0.0);
+    let elsewhere =
+        rotors.filter(|((k, _), _)| is_nonholonomic && !joint.derived.rate_is_a_speed(*k));
+    let elsewhere: Vec<String> = elsewhere
+        .map(|((_, freedom), _)| format!("`{}`", freedom.name))
+        .collect();
+    if !elsewhere.is_empty() {
+        reasons.push(format!(
+            "joint `{name}`: a nonholonomic joint such as `{}` can have an armature only at degrees of freedom whose rate is one of its speeds, not at {}",
+            body.joint.kind.value,
+            elsewhere.join(", ")
+        ));
     }
     let parameters = parameters(body, &joint, &mut reasons);
     match reasons.is_empty() {

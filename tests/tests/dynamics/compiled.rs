@@ -271,7 +271,7 @@ fn what_is_not_compiled_is_named() {
     let expected = [
         "wrench 2: it changes with time, which is not compiled",
         "spring of joint `elbow`: to find the configuration of a pose takes iterations",
-        "joint `wheel`: a nonholonomic joint such as `cart` can have no armature",
+        "joint `wheel`: a nonholonomic joint such as `cart` can have an armature only at degrees of freedom whose rate is one of its speeds, not at `forward`, `sideways`",
         "spring of joint `wrist`: it is off the joint's manifold",
         "joint `hand`: a limit needs a single coordinate",
     ];
