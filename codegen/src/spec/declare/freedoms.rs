@@ -29,14 +29,16 @@ pub(super) struct Freedoms {
 pub(super) fn freedoms(context: &Context<'_>, scope: &mut Scope<'_, '_, '_>) -> Option<Freedoms> {
     let mut bases = basis_freedoms(context, scope);
     let local = context.statements.local;
-    let implicit = implicit::implicit(context, &bases.list, local.is_some());
+    let implicit = implicit::implicit(context, &bases.list, local.map(|names| names.value.len()));
     if implicit.is_some() {
         implicit::without_generators(&mut bases.list);
     }
     let list = match (local, &implicit) {
         (None, Some(Implicit::CrossProduct)) => vec![freedom(implicit::ALONG, 0, 0, vec![])],
         (None, Some(_)) => bases.complete.then_some(bases.list)?,
-        (Some(local), _) => local_freedoms(context, local, bases, scope)?,
+        (Some(local), by_relations) => {
+            local_freedoms(context, local, bases, by_relations.is_some(), scope)?
+        }
         (None, None) => coordinate_freedoms(context, bases, scope)?,
     };
     let first = context.statements.bases.first().map(|at| at.span);
@@ -210,12 +212,12 @@ fn local_freedoms(
     context: &Context<'_>,
     local: At<'_, [Name]>,
     bases: Bases,
+    by_relations: bool,
     scope: &mut Scope<'_, '_, '_>,
 ) -> Option<Vec<Freedom>> {
     claim(local.value.iter(), scope);
-    let related = !context.statements.relations.is_empty();
     let declared = context.statements.target(Target::Retract).is_some();
-    if !declared && !related && !context.file.partial {
+    if !declared && !by_relations && !context.file.partial {
         let error = Diagnostic::new(
             code::MISSING,
             local.span.clone(),

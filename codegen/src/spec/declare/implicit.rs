@@ -11,20 +11,20 @@ use crate::model::{Freedom, Implicit};
 pub(super) const ALONG: &str = "along";
 
 /// How v moves Q on the manifold of the relations; `None` where Phi is declared, or where the directions of the bases and of real factors
-/// leave every relation as it is, so that Q exp(ϕ) stays on the manifold.
+/// leave every relation as it is, so that Q exp(ϕ) stays on the manifold. `local` is the number of names that stand there.
 pub(super) fn implicit(
     context: &Context<'_>,
     bases: &[Freedom],
-    has_local: bool,
+    local: Option<usize>,
 ) -> Option<Implicit> {
     let statements = context.statements;
     let manifold = &context.manifold.value;
     if statements.relations.is_empty() || statements.target(Target::Retract).is_some() {
         return None;
     }
-    if has_local {
-        // The names beside a basis have a meaning by Phi alone, of which more is said elsewhere.
-        return bases.is_empty().then_some(Implicit::CrossProduct);
+    if let Some(names) = local {
+        // Several names, and those beside a basis, have a meaning by Phi alone.
+        return (names == 1 && bases.is_empty()).then_some(Implicit::CrossProduct);
     }
     if flows_stay(manifold, bases) {
         return None;
