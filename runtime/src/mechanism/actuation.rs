@@ -20,6 +20,8 @@ pub(super) struct Actuation {
     pub(super) elements: Vec<Arc<dyn Element>>,
     /// One entry a degree of freedom; empty where there is none.
     armature: Vec<f64>,
+    /// The same with one entry a speed, the rate of the rotors.
+    speed_armature: Vec<f64>,
     pub(super) drives: Vec<Drive>,
     /// Whether the joint under each body is driven; empty where there are no drives.
     driven: Vec<bool>,
@@ -91,11 +93,19 @@ impl Mechanism {
                 requirement: "finite and not negative",
             }));
         }
-        let is_felt_alike = |k: usize| speed_of_rotor(owner.joint(), k).is_some();
+        let is_holonomic = owner.joint().structures().speed_basis.is_identity();
+        let speed = |k: usize| match is_holonomic {
+            true => Some(k),
+            false => speed_of_rotor(owner.joint(), k),
+        };
+        let speeds = owner.ranges.speeds.clone();
+        let mut felt = vec![0.0; speeds.len()];
         let mut rotors = inertia.iter().enumerate().filter(|(_, a)| **a > 0.0);
-        if !owner.joint().structures().speed_basis.is_identity()
-            && !rotors.all(|(k, _)| is_felt_alike(k))
-        {
+        let is_felt_alike = rotors.all(|(k, a)| {
+            let entry = speed(k).and_then(|speed| felt.get_mut(speed));
+            entry.map(|entry| *entry += a).is_some()
+        });
+        if !is_felt_alike {
             return Err(MechanismError::Element(ElementError::Joint {
                 element: element(),
                 joint: owner.joint_name().into(),
@@ -104,7 +114,9 @@ impl Mechanism {
         }
         if self.actuation.armature.is_empty() {
             self.actuation.armature = vec![0.0; self.layout.freedoms];
+            self.actuation.speed_armature = vec![0.0; self.layout.speeds];
         }
+        self.actuation.speed_armature[speeds].copy_from_slice(&felt);
         self.actuation.armature[freedoms].copy_from_slice(inertia);
         Ok(self)
     }
@@ -261,21 +273,11 @@ impl Mechanism {
     }
 
     /// The same for each speed, with which rotors turn; empty where there are none.
-    pub fn speed_armature(&self, body: usize) -> Vec<f64> {
-        let inertia = self.armature(body);
-        let Some(owner) = self.bodies.get(body).filter(|_| !inertia.is_empty()) else {
-            return Vec::new();
-        };
-        if owner.joint().structures().speed_basis.is_identity() {
-            return inertia.to_vec();
-        }
-        let mut felt = vec![0.0; owner.ranges.speeds.len()];
-        for (k, &value) in inertia.iter().enumerate().filter(|(_, a)| **a > 0.0) {
-            if let Some(speed) = speed_of_rotor(owner.joint(), k) {
-                felt[speed] += value;
-            }
-        }
-        felt
+    pub fn speed_armature(&self, body: usize) -> &[f64] {
+        let speeds = self.bodies.get(body).map(|own| own.ranges.speeds.clone());
+        let own = speeds.and_then(|speeds| self.actuation.speed_armature.get(speeds));
+        own.filter(|_| !self.armature(body).is_empty())
+            .unwrap_or(&[])
     }
 
     /// Joints whose motion is prescribed.

@@ -2,6 +2,7 @@
 
 use super::FrameFault;
 use crate::erased::FiniteMapError;
+use crate::joint::MOST_FREEDOMS;
 use crate::shown::Number;
 use crate::spatial::{MassError, PoseError};
 use alloc::string::String;
@@ -91,9 +92,9 @@ pub enum MechanismError {
         /// What is too large.
         what: &'static str,
     },
-    /// A joint that has not as many speeds and constraints as degrees of freedom, or more than six of these.
+    /// A joint that has not as many speeds and constraints as degrees of freedom, or more than [`MOST_FREEDOMS`] of these.
     #[error(
-        "joint `{joint}`: it has {freedoms} degrees of freedom, {speeds} speeds and {constraints} constraints: there must be at most 16 \
+        "joint `{joint}`: it has {freedoms} degrees of freedom, {speeds} speeds and {constraints} constraints: there must be at most {MOST_FREEDOMS} \
          degrees of freedom, as many as speeds and constraints together"
     )]
     Layout {

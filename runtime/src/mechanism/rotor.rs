@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 const ASIDE: f64 = 0.37;
 
 /// A configuration aside from home, in all directions.
-pub(super) fn aside(joint: &dyn AnyJoint<f64>, home: &[f64]) -> Vec<f64> {
+fn aside(joint: &dyn AnyJoint<f64>, home: &[f64]) -> Vec<f64> {
     let mut step = vec![0.0; joint.layout().freedoms];
     let mut length = ASIDE;
     for entry in &mut step {

@@ -39,7 +39,7 @@ impl Link {
         let bodies = mechanism.bodies().iter().enumerate();
         let mut links: Vec<Self> = bodies
             .map(|(index, body)| Self {
-                armature: mechanism.speed_armature(index),
+                armature: mechanism.speed_armature(index).to_vec(),
                 driven: mechanism.is_driven(index),
                 ..Self::new(body)
             })
