@@ -30,6 +30,7 @@
 
 mod patterns;
 mod products;
+mod several;
 mod slices;
 mod structure;
 
@@ -38,8 +39,10 @@ pub const MOST_FREEDOMS: usize = 8;
 
 pub use patterns::{Entry, Patterns};
 pub use products::{FirstOrder, Products};
+pub use several::{Carries, Member};
 pub use structure::{Structure, Structures};
 
+use crate::erased::Shared;
 use crate::scalar::Scalar;
 use crate::spatial::Pose;
 use core::fmt::Debug;
@@ -118,6 +121,22 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     /// The functions of Q that [`Joint::singularity`] takes the least absolute value of, as the spec writes them: H, X, Φ, A
     /// or S̄ lose their meaning or their rank where one of them is 0. Empty for a joint that is global.
     const SINGULARITIES: &'static [&'static str];
+
+    /// Names of the bodies that the joint carries; empty where it carries one that has no name.
+    const BODIES: &'static [&'static str] = &[];
+
+    /// Which of them this is the joint of: 0 but for a [`Member`].
+    const BODY: usize = 0;
+
+    /// Hands the joint as each further body sees it, a [`Member`], to `visit`, in the order of [`Joint::BODIES`].
+    fn more(&self, _visit: &mut dyn FnMut(Shared)) {
+        const {
+            assert!(
+                Self::BODIES.len() <= 1,
+                "the joint carries several bodies: it must implement more"
+            )
+        };
+    }
 
     /// Names and values of the joint's parameters.
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {

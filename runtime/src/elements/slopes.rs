@@ -25,9 +25,9 @@ pub trait Slope {
 /// Where elements put how what they exert changes. What is said of a body that is not there makes all of it NaN.
 #[derive(Debug)]
 pub struct Slopes<'a> {
-    /// X̄, one column per speed.
+    /// X̄ of each body, one column per speed of its joint.
     pub(crate) columns: &'a [Vector6<f64>],
-    /// One a degree of freedom.
+    /// One for each body and each degree of freedom of its joint.
     pub(crate) variations: &'a [Variation<f64>],
     pub(crate) into: Target<'a>,
 }
@@ -233,8 +233,10 @@ impl Slopes<'_> {
             return self.spoil();
         }
         for index in path(view.mechanism, body) {
-            for freedom in view.mechanism.bodies()[index].ranges().freedoms.clone() {
-                let (turn, _) = split(&self.variations[freedom].local);
+            let ranges = view.mechanism.bodies()[index].ranges();
+            let own = ranges.freedoms.clone().zip(ranges.variations.clone());
+            for (freedom, variation) in own {
+                let (turn, _) = split(&self.variations[variation].local);
                 let change = -cross(&turn, moment);
                 let power =
                     |column: &Vector6<f64>, _: &Vector3<f64>| dot(&split(column).0, &change);
@@ -262,8 +264,9 @@ impl Slopes<'_> {
                     return self.spoil();
                 };
                 let arm = place.position - placement.origin;
-                for freedom in ranges.freedoms.clone() {
-                    let Variation { local, drift, .. } = &self.variations[freedom];
+                let own = ranges.freedoms.clone().zip(ranges.variations.clone());
+                for (freedom, variation) in own {
+                    let Variation { local, drift, .. } = &self.variations[variation];
                     let (turn, moved) = (split(local).0, at(local, &arm));
                     let rate = add_cross(&at(drift, &arm), &turn, &place.velocity);
                     let change = (force.by_way * moved + force.by_rate * rate) * sign;
@@ -272,8 +275,8 @@ impl Slopes<'_> {
                     self.project_force(view, &places, column, &change);
                     self.project_point(view, place, column, &-carried);
                 }
-                for speed in ranges.speeds.clone() {
-                    let rate = at(&self.columns[speed], &arm);
+                for (speed, column) in ranges.speeds.clone().zip(ranges.columns.clone()) {
+                    let rate = at(&self.columns[column], &arm);
                     let change = force.by_rate * rate * sign;
                     self.project_force(view, &places, Column::Speed(speed), &change);
                 }
@@ -336,8 +339,9 @@ impl Slopes<'_> {
             let Some(Placement { origin, .. }) = view.motions.placement(index) else {
                 return self.spoil();
             };
-            for speed in view.mechanism.bodies()[index].ranges().speeds.clone() {
-                let entry = power(&self.columns[speed], origin);
+            let ranges = view.mechanism.bodies()[index].ranges();
+            for (speed, own) in ranges.speeds.clone().zip(ranges.columns.clone()) {
+                let entry = power(&self.columns[own], origin);
                 self.add(speed, column, entry);
             }
         }

@@ -2,7 +2,7 @@
 
 use super::kernels::{kernels, passed_on};
 use super::slices::{Store, array, array_mut, nan, vector};
-use super::{AnyJoint, FiniteMapError, Layout, Sizes};
+use super::{AnyJoint, FiniteMapError, Layout, Shared, Sizes};
 use crate::joint::{Entry, Joint, Products, Structures, VelocityFrame};
 use crate::scalar::{Extended, Native, Scalar};
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
@@ -10,6 +10,7 @@ use crate::steps::{
     ChartDerivatives, Field, Motion, Pivot, PivotFailure, Placement, Steps, Variation,
 };
 use alloc::sync::Arc;
+use alloc::vec::Vec;
 use nalgebra::{Matrix3, SVector, Vector6};
 
 /// The error of a finite map unless there are `size` values, all finite.
@@ -48,6 +49,20 @@ where
             speeds: S,
             constraints: C,
         }
+    }
+
+    fn bodies(&self) -> &'static [&'static str] {
+        J::BODIES
+    }
+
+    fn body(&self) -> usize {
+        J::BODY
+    }
+
+    fn more(&self) -> Vec<Shared> {
+        let mut more = Vec::new();
+        self.0.more(&mut |joint| more.push(joint));
+        more
     }
 
     fn structures(&self) -> Structures {

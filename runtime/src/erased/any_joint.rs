@@ -1,7 +1,7 @@
 //! The trait [`AnyJoint`]: what a mechanism knows of a joint.
 
 use super::kernels::{declared, kernels};
-use super::{FiniteMapError, Layout};
+use super::{FiniteMapError, Layout, Shared};
 #[cfg(doc)]
 use crate::joint::{Joint, Products};
 use crate::joint::{Structures, VelocityFrame};
@@ -9,6 +9,7 @@ use crate::scalar::{Extended, Native, Scalar};
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
 use crate::steps::{ChartDerivatives, Motion, Pivot, PivotFailure, Placement, Variation};
 use alloc::sync::Arc;
+use alloc::vec::Vec;
 use core::fmt::Debug;
 use nalgebra::{Matrix3, Vector6};
 
@@ -28,6 +29,12 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     fn name(&self) -> &'static str;
     /// N, K, S and C.
     fn layout(&self) -> Layout;
+    /// Names of the bodies that the joint carries, [`Joint::BODIES`].
+    fn bodies(&self) -> &'static [&'static str];
+    /// Which of them this is the joint of, [`Joint::BODY`].
+    fn body(&self) -> usize;
+    /// The joint as each further body sees it, [`Joint::more`].
+    fn more(&self) -> Vec<Shared>;
     /// Which kernels are trivial.
     fn structures(&self) -> Structures;
     /// Frame in which v is read.

@@ -133,7 +133,7 @@ impl Mechanism {
         }
         let failures = drives.iter().filter_map(|drive| {
             let twice = driven
-                .get_mut(drive.body)
+                .get_mut(self.leader(drive.body))
                 .is_some_and(|driven| core::mem::replace(driven, true));
             let twice = twice.then(|| ElementError::Joint {
                 element: drive.name.clone(),
@@ -330,7 +330,7 @@ impl Mechanism {
     pub fn is_driven(&self, body: usize) -> bool {
         self.actuation
             .driven
-            .get(body)
+            .get(self.leader(body))
             .is_some_and(|&driven| driven)
     }
 

@@ -40,17 +40,39 @@ pub struct Ranges {
     pub speeds: Range<usize>,
     /// In λ.
     pub constraints: Range<usize>,
+    /// In vectors with an entry for each body and each degree of freedom of its joint.
+    pub variations: Range<usize>,
+    /// In vectors with an entry for each body and each speed of its joint: the columns of its X̄.
+    pub columns: Range<usize>,
 }
 
 impl Ranges {
-    /// The ranges of a joint of the given sizes that begins where `offset` ends.
-    pub(super) fn new(offset: &Layout, size: &Layout) -> Self {
+    /// The ranges of the first body, or of the only one, of a joint of the given sizes that begins where `offset` ends.
+    pub(super) fn new(offset: &Layout, size: &Layout, before: Option<&Self>) -> Self {
+        let (variations, columns) = Self::ends(before);
         Self {
+            variations: variations..variations + size.freedoms,
+            columns: columns..columns + size.speeds,
             configuration: offset.configuration..offset.configuration + size.configuration,
             freedoms: offset.freedoms..offset.freedoms + size.freedoms,
             speeds: offset.speeds..offset.speeds + size.speeds,
             constraints: offset.constraints..offset.constraints + size.constraints,
         }
+    }
+
+    /// The ranges of the next body of the same joint.
+    pub(super) fn next(&self) -> Self {
+        let (variations, columns) = Self::ends(Some(self));
+        Self {
+            variations: variations..variations + self.freedoms.len(),
+            columns: columns..columns + self.speeds.len(),
+            ..self.clone()
+        }
+    }
+
+    /// Where the entries of bodies end.
+    fn ends(before: Option<&Self>) -> (usize, usize) {
+        before.map_or((0, 0), |last| (last.variations.end, last.columns.end))
     }
 }
 

@@ -3,6 +3,7 @@
 use super::body::singular_value;
 use super::check::CONFIGURATION_TOLERANCE;
 use super::rigid::{RigidBody, check_bodies};
+use super::several;
 use super::{Body, BodySpec, Loci, MechanismError, Ranges};
 use crate::erased::Layout;
 use crate::joint::MOST_FREEDOMS;
@@ -18,13 +19,22 @@ const RANK_TOLERANCE: f64 = 1e-10;
 pub(super) fn check(gravity: &Vector3<f64>, bodies: &[BodySpec]) -> Vec<MechanismError> {
     let rigid: Vec<RigidBody<'_>> = bodies.iter().map(RigidBody::from).collect();
     let mut errors = check_bodies(gravity, &rigid);
-    for body in bodies {
-        check_joint(body, &mut errors);
+    let disordered = several::check(bodies);
+    if !disordered.is_empty() {
+        errors.extend(disordered);
+        return errors;
+    }
+    for (index, body) in bodies.iter().enumerate() {
+        if body.joint.body() == 0 {
+            check_joint(&bodies[index..index + several::count(body)], &mut errors);
+        }
     }
     errors
 }
 
-fn check_joint(body: &BodySpec, errors: &mut Vec<MechanismError>) {
+/// What is wrong with the joint that carries these bodies.
+fn check_joint(bodies: &[BodySpec], errors: &mut Vec<MechanismError>) {
+    let Some(body) = bodies.first() else { return };
     let (joint, size) = (&body.joint, body.joint.layout());
     if size.freedoms > MOST_FREEDOMS || size.speeds + size.constraints != size.freedoms {
         errors.push(MechanismError::Layout {
@@ -55,10 +65,16 @@ fn check_joint(body: &BodySpec, errors: &mut Vec<MechanismError>) {
         });
         return;
     }
-    let mut twist_map = DMatrix::zeros(6, size.freedoms);
-    joint.twist_map_child(&home, twist_map.as_mut_slice());
+    // Of all bodies, below one another.
+    let mut twist_map = DMatrix::zeros(6 * bodies.len(), size.freedoms);
+    for (number, member) in bodies.iter().enumerate() {
+        let mut own = DMatrix::zeros(6, size.freedoms);
+        member.joint.twist_map_child(&home, own.as_mut_slice());
+        twist_map.rows_mut(6 * number, 6).copy_from(&own);
+    }
     // What moves no body has a row of its own in the rank condition.
-    let still = (0..size.freedoms).filter(|&freedom| !joint.moves_body(freedom));
+    let moves = |freedom| bodies.iter().any(|own| own.joint.moves_body(freedom));
+    let still = (0..size.freedoms).filter(|&freedom| !moves(freedom));
     let twist_map = twist_map.remove_columns_at(&still.collect::<Vec<_>>());
     let mut speed_basis = DMatrix::zeros(size.freedoms, size.speeds);
     joint.speed_basis(&home, speed_basis.as_mut_slice());
@@ -94,7 +110,11 @@ pub(super) fn assemble(specs: Vec<BodySpec>) -> (Vec<Body>, Layout) {
     let mut layout = Layout::default();
     let mut bodies: Vec<Body> = Vec::with_capacity(specs.len());
     for spec in specs {
-        let ranges = Ranges::new(&layout, &spec.joint.layout());
+        let size = spec.joint.layout();
+        let ranges = match (spec.joint.body(), bodies.last()) {
+            (1.., Some(last)) => last.ranges().next(),
+            (_, last) => Ranges::new(&layout, &size, last.map(Body::ranges)),
+        };
         layout = Layout {
             configuration: ranges.configuration.end,
             freedoms: ranges.freedoms.end,

@@ -272,9 +272,8 @@ impl Mechanism {
     /// The first joint that is refused, with its residual and the limit, or with the functions that vanish.
     pub fn check_configuration(&self, q: &[f64]) -> Result<(), StateError> {
         check_size(WHOLE, "configuration", self.layout.configuration, q.len())?;
-        self.bodies
-            .iter()
-            .try_for_each(|body| body.check_configuration(body.configuration(q)))
+        self.joints()
+            .try_for_each(|(_, body)| body.check_configuration(body.configuration(q)))
     }
 
     /// Whether `speeds` (or momenta: `quantity` says which) has the right size and is finite.
@@ -291,7 +290,7 @@ impl Mechanism {
     /// When `q` has the wrong size; when a projection fails, with the name of the joint.
     pub fn project(&self, q: &mut [f64]) -> Result<(), StateError> {
         check_size(WHOLE, "configuration", self.layout.configuration, q.len())?;
-        for body in &self.bodies {
+        for (_, body) in self.joints() {
             let own = &mut q[body.ranges.configuration.clone()];
             body.joint()
                 .project(own)

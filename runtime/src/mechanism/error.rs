@@ -1,6 +1,6 @@
 //! What a mechanism refuses, in its construction and in its state.
 
-use super::FrameFault;
+use super::{FrameFault, SeveralFault};
 use crate::erased::FiniteMapError;
 use crate::joint::MOST_FREEDOMS;
 use crate::shown::Number;
@@ -106,6 +106,14 @@ pub enum MechanismError {
         speeds: usize,
         /// C.
         constraints: usize,
+    },
+    /// A body of a joint that carries several does not stand with the others.
+    #[error("body `{body}`: {fault}")]
+    Several {
+        /// The body.
+        body: String,
+        /// What is wrong with it.
+        fault: SeveralFault,
     },
     /// The joint's home is not on its own manifold, or not finite.
     #[error(

@@ -103,7 +103,7 @@ impl Mechanism {
         self.check_vector("configuration", Space::Configuration, q)?;
         self.check_vector("speeds", Space::Speeds, speeds)?;
         let mut velocity = vec![0.0; self.layout.freedoms];
-        for body in &self.bodies {
+        for (_, body) in self.joints() {
             let own = DVectorView::from_slice(
                 &speeds[body.ranges.speeds.clone()],
                 body.ranges.speeds.len(),

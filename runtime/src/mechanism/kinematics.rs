@@ -170,7 +170,7 @@ impl Mechanism {
     }
 
     fn rotor_energy(&self, speeds: &[f64]) -> f64 {
-        let joints = self.bodies.iter().enumerate().map(|(index, body)| {
+        let joints = self.joints().map(|(index, body)| {
             let own = &speeds[body.ranges.speeds.clone()];
             let terms = self.speed_armature(index).iter().zip(own);
             terms.map(|(a, v)| 0.5 * a * v * v).sum::<f64>()

@@ -14,6 +14,7 @@ mod inverse_kinematics;
 mod kinematics;
 mod rigid;
 mod rotor;
+mod several;
 mod unilateral;
 
 pub use actuation::dependent_columns;
@@ -27,6 +28,7 @@ pub use inverse_kinematics::REACH_TOLERANCE;
 pub use kinematics::{BodyState, Kinematics};
 pub use rigid::{RigidBody, check_bodies};
 pub use rotor::speed_of_rotor;
+pub use several::SeveralFault;
 
 use crate::erased::Layout;
 use alloc::vec;
@@ -94,7 +96,7 @@ impl Mechanism {
     /// The configuration with every joint at home.
     pub fn home(&self) -> Vec<f64> {
         let mut q = vec![0.0; self.layout.configuration];
-        for body in &self.bodies {
+        for (_, body) in self.joints() {
             body.joint().home(&mut q[body.ranges.configuration.clone()]);
         }
         q

@@ -49,7 +49,7 @@ impl Mechanism {
 
     fn twice(&self, taken: &mut [bool], body: usize, element: &str) -> Option<ElementError> {
         let before = taken
-            .get_mut(body)
+            .get_mut(self.leader(body))
             .map(|taken| core::mem::replace(taken, true));
         let owner = self.bodies.get(body).filter(|_| before == Some(true))?;
         Some(ElementError::Joint {

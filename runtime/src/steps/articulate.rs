@@ -93,6 +93,14 @@ impl<T: Scalar> Inertia<T> for SpatialInertia<T> {
     }
 }
 
+/// What rounding can make of `Xᵀ I X`.
+pub(crate) fn rounding<T: Scalar>(inertia: &ArticulatedInertia<T>, column: &Vector6<T>) -> T {
+    let (angular, linear) = split(column);
+    let size = dot(&angular, &angular) * inertia.angular.trace()
+        + dot(&linear, &linear) * inertia.linear.trace();
+    T::from_f64(ROUNDINGS) * T::epsilon() * size
+}
+
 impl<J, const N: usize, const K: usize, const S: usize, const C: usize> Steps<'_, J, N, K, S, C>
 where
     J: Joint<N, K, S, C>,

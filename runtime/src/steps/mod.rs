@@ -16,6 +16,7 @@ mod place;
 mod slopes;
 mod vary;
 
+pub(crate) use articulate::rounding;
 pub use articulate::{Pivot, PivotFailure};
 pub use chart::ChartDerivatives;
 pub(crate) use chart::Field;

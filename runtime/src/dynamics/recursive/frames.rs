@@ -118,7 +118,7 @@ impl FrameReadings<'_> {
     fn own_bias(&self, index: usize) -> Vector6<f64> {
         let (link, node) = (&self.recursive.links[index], &self.recursive.nodes[index]);
         let speeds = &self.speeds[link.speeds.clone()];
-        let columns = &self.recursive.columns[link.speeds.clone()];
+        let columns = &self.recursive.columns[link.columns.clone()];
         let columns = columns.iter().zip(speeds);
         let relative = columns.fold(Vector6::zeros(), |sum, (x, v)| sum + x * *v);
         let mut bias = bracket_product(&node.motion.twist, &relative);

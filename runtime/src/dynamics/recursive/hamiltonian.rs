@@ -41,25 +41,30 @@ impl Recursive {
 
     /// Inward, after [`Recursive::prepare_rates`]: the composites, and p̄̇ from them.
     pub(super) fn gather_rates(&mut self, q: &[f64], speeds: &[f64], rates: &mut [f64]) {
+        self.folded(rates, |dynamics, rates| {
+            dynamics.gather_rate_columns(q, speeds, rates);
+        });
+        for (rate, force) in rates.iter_mut().zip(&self.forces) {
+            *rate += force;
+        }
+    }
+
+    /// [`Recursive::gather_rates`] without inputs, with one entry for each body and each speed of its joint.
+    fn gather_rate_columns(&mut self, q: &[f64], speeds: &[f64], rates: &mut [f64]) {
         for index in (0..self.links.len()).rev() {
             let link = &self.links[index];
-            let speed_range = link.speeds.clone();
-            let out = &mut rates[speed_range.clone()];
+            let out = &mut rates[link.columns.clone()];
             let momentum = match link.slender {
                 None => self.turned_momenta(index, out),
                 Some(number) => self.turned_momenta_slender(index, number, out),
             };
             let link = &self.links[index];
-            let forces = &self.forces[speed_range.clone()];
-            for (rate, force) in out.iter_mut().zip(forces) {
-                *rate += force;
-            }
             if !link.joint.structures().bias_momentum.is_zero() {
                 let q = &q[link.configuration.clone()];
                 let mut moved = [0.0; MOST_FREEDOMS];
                 let moved = &mut moved[..out.len()];
                 link.joint
-                    .bias_momentum(q, &speeds[speed_range], &momentum, moved);
+                    .bias_momentum(q, &speeds[link.speeds.clone()], &momentum, moved);
                 for (rate, moved) in out.iter_mut().zip(moved) {
                     *rate += *moved;
                 }
@@ -80,7 +85,7 @@ impl Recursive {
         let (link, own) = (&self.links[index], &self.nodes[index]);
         let turned = own.motion.rate + bracket_dual_product(&own.motion.twist, &own.wrench);
         link.joint
-            .gather(&turned, &self.columns[link.speeds.clone()], out);
+            .gather(&turned, &self.columns[link.columns.clone()], out);
         turn_back(&own.motion.placement.rotation, &own.wrench)
     }
 

@@ -88,22 +88,25 @@ impl Recursive {
         self.check(q, &[])?;
         self.mechanism
             .check_room("efforts", Space::Freedoms, efforts)?;
-        for (index, link) in self.links.iter().enumerate() {
-            self.joint_effort(index, q, &mut efforts[link.freedoms.clone()]);
+        for (index, body) in self.mechanism.joints() {
+            self.joint_effort(index, q, &mut efforts[body.ranges().freedoms.clone()]);
         }
         Ok(())
     }
 
-    /// `X^cᵀF` of one joint.
+    /// `X^cᵀF` of one joint, summed over the bodies that it carries.
     fn joint_effort(&self, index: usize, q: &[f64], effort: &mut [f64]) {
-        let link = &self.links[index];
-        let wrench = self.joint_wrench(index).unwrap_or_default();
-        let mut map = [0.0; 6 * MOST_FREEDOMS];
-        let map = &mut map[..6 * effort.len()];
-        let q = &q[link.configuration.clone()];
-        link.joint.twist_map_child(q, map);
-        for (effort, column) in effort.iter_mut().zip(map.chunks_exact(6)) {
-            *effort = column.iter().zip(&wrench).map(|(x, f)| x * f).sum();
+        effort.fill(0.0);
+        for index in self.mechanism.carried(index) {
+            let link = &self.links[index];
+            let wrench = self.joint_wrench(index).unwrap_or_default();
+            let mut map = [0.0; 6 * MOST_FREEDOMS];
+            let map = &mut map[..6 * effort.len()];
+            let q = &q[link.configuration.clone()];
+            link.joint.twist_map_child(q, map);
+            for (effort, column) in effort.iter_mut().zip(map.chunks_exact(6)) {
+                *effort += column.iter().zip(&wrench).map(|(x, f)| x * f).sum::<f64>();
+            }
         }
     }
 
@@ -123,7 +126,7 @@ impl Recursive {
         self.check(q, &[])?;
         self.check_efforts(q, &[], efforts)?;
         check_size(WHOLE, "constraint forces", layout.constraints, forces.len())?;
-        for (index, body) in self.mechanism.bodies().iter().enumerate() {
+        for (index, body) in self.mechanism.joints() {
             let ranges = body.ranges();
             let mut carried = [0.0; MOST_FREEDOMS];
             let carried = &mut carried[..ranges.freedoms.len()];

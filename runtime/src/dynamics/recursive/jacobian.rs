@@ -57,8 +57,8 @@ impl FrameReadings<'_> {
         let pose = self.pose();
         out.fill(0.0);
         for (index, arm) in self.path() {
-            for speed in self.recursive.links[index].speeds.clone() {
-                let seen = read(axes, &pose, &arm, &self.recursive.columns[speed]);
+            for (speed, column) in self.recursive.columns_of(index) {
+                let seen = read(axes, &pose, &arm, column);
                 out[6 * speed..6 * speed + 6].copy_from_slice(seen.as_slice());
             }
         }
@@ -79,8 +79,7 @@ impl FrameReadings<'_> {
         let pose = self.pose();
         let mut twist = Vector6::zeros();
         for (index, arm) in self.path() {
-            for speed in self.recursive.links[index].speeds.clone() {
-                let column = &self.recursive.columns[speed];
+            for (speed, column) in self.recursive.columns_of(index) {
                 twist += read(axes, &pose, &arm, column) * weights[speed];
             }
         }
@@ -102,8 +101,8 @@ impl FrameReadings<'_> {
         let (moment, force) = split(&self.at_origin(axes, wrench));
         efforts.fill(0.0);
         for (index, arm) in self.path() {
-            for speed in self.recursive.links[index].speeds.clone() {
-                let (turn, slide) = split(&self.recursive.columns[speed]);
+            for (speed, column) in self.recursive.columns_of(index) {
+                let (turn, slide) = split(column);
                 // Power at the frame's origin: its velocity is `slide + turn × arm`.
                 let velocity = slide + turn.cross(&arm);
                 efforts[speed] = dot(&turn, &moment) + dot(&velocity, &force);
@@ -114,6 +113,15 @@ impl FrameReadings<'_> {
 }
 
 impl Recursive {
+    /// The speeds of the joint under a body, each with its column of the body's X̄.
+    pub(super) fn columns_of(
+        &self,
+        body: usize,
+    ) -> impl Iterator<Item = (usize, &Vector6<f64>)> {
+        let link = &self.links[body];
+        link.speeds.clone().zip(&self.columns[link.columns.clone()])
+    }
+
     /// The 6×S̄ matrix that takes v̄ to the momentum of all bodies about their common centre of mass into `out`, column by column,
     /// world axes, (angular; linear).
     ///
@@ -131,12 +139,15 @@ impl Recursive {
         };
         let center = readings.center_of_mass();
         self.compose();
+        out.fill(0.0);
         for (link, node) in self.links.iter().zip(&self.nodes) {
             let speeds = link.speeds.clone();
             let out = out[6 * speeds.start..6 * speeds.end].chunks_exact_mut(6);
-            for (out, momentum) in out.zip(&self.momenta[speeds]) {
+            for (out, momentum) in out.zip(&self.momenta[link.columns.clone()]) {
                 let seen = shift_wrench(momentum, &(node.motion.placement.origin - center));
-                out.copy_from_slice(seen.as_slice());
+                for (sum, entry) in out.iter_mut().zip(&seen) {
+                    *sum += entry;
+                }
             }
         }
         Ok(())

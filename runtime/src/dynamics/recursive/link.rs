@@ -18,11 +18,19 @@ pub(super) struct Link {
     pub(super) configuration: Range<usize>,
     pub(super) freedoms: Range<usize>,
     pub(super) speeds: Range<usize>,
+    /// Where the body's columns of X̄ are.
+    pub(super) columns: Range<usize>,
+    /// Where its variations are.
+    pub(super) variations: Range<usize>,
+    /// Whether it stands for its joint: it is the only body, or the first.
+    pub(super) leads: bool,
+    /// Which of the joints that carry several bodies carries it, if one does.
+    pub(super) group: Option<usize>,
     /// The joint's parent frame in the child frame of the parent's joint.
     pub(super) frame: Pose<f64>,
     /// Inertia in the joint's child frame.
     pub(super) inertia: SpatialInertia<f64>,
-    /// Rotor inertias, one per speed; empty where there are none.
+    /// Rotor inertias, one per speed; empty where there are none, and at further bodies of a joint.
     pub(super) armature: Vec<f64>,
     /// Whether the joint's motion is prescribed.
     pub(super) driven: bool,
@@ -39,12 +47,23 @@ impl Link {
         let bodies = mechanism.bodies().iter().enumerate();
         let mut links: Vec<Self> = bodies
             .map(|(index, body)| Self {
-                armature: mechanism.speed_armature(index).to_vec(),
+                armature: match body.leads() {
+                    true => mechanism.speed_armature(index).to_vec(),
+                    false => Vec::new(),
+                },
                 driven: mechanism.is_driven(index),
                 ..Self::new(body)
             })
             .collect();
-        let slender = links.iter_mut().filter(|link| is_slender(&link.inertia));
+        let several = mechanism.joints().map(|(index, _)| mechanism.carried(index));
+        for (group, bodies) in several.filter(|bodies| bodies.len() > 1).enumerate() {
+            for link in &mut links[bodies] {
+                link.group = Some(group);
+            }
+        }
+        let alone = |link: &&mut Self| link.group.is_none();
+        let slender = links.iter_mut().filter(alone);
+        let slender = slender.filter(|link| is_slender(&link.inertia));
         for (number, link) in slender.enumerate() {
             link.slender = Some(number);
         }
@@ -74,6 +93,10 @@ impl Link {
             configuration: ranges.configuration.clone(),
             freedoms: ranges.freedoms.clone(),
             speeds: ranges.speeds.clone(),
+            columns: ranges.columns.clone(),
+            variations: ranges.variations.clone(),
+            leads: body.leads(),
+            group: None,
             frame: *body.joint_frame(),
             inertia: *body.joint_inertia(),
             armature: Vec::new(),
@@ -108,9 +131,9 @@ impl Link {
 #[derive(Clone, Debug)]
 pub(super) struct Rung {
     pub(super) parent: Option<usize>,
-    /// First speed of the joint.
+    /// First column of its X̄.
     pub(super) start: usize,
-    /// The speed after its last.
+    /// The column after its last.
     pub(super) end: usize,
     /// What the columns of X̄ consist of.
     pub(super) kind: Kind,
@@ -121,31 +144,31 @@ pub(super) struct Rung {
 pub(super) enum Kind {
     /// One column, without a linear part.
     TurnsOnce,
-    /// Columns before this speed have no linear part, those from it on no angular part.
+    /// Columns before this one have no linear part, those from it on no angular part.
     Apart(usize),
     /// Any.
     Mixed,
 }
 
 impl Kind {
-    /// Whether the column of one of the joint's speeds has an angular, and whether it has a linear part.
+    /// Whether a column has an angular, and whether it has a linear part.
     #[inline(always)]
-    pub(super) fn parts(self, speed: usize) -> (bool, bool) {
+    pub(super) fn parts(self, column: usize) -> (bool, bool) {
         match self {
             Self::TurnsOnce => (true, false),
-            Self::Apart(middle) => (speed < middle, speed >= middle),
+            Self::Apart(middle) => (column < middle, column >= middle),
             Self::Mixed => (true, true),
         }
     }
 
     fn new(body: &Body) -> Self {
-        let (speeds, joint) = (&body.ranges().speeds, body.joint());
+        let (columns, joint) = (&body.ranges().columns, body.joint());
         let turns = |j: usize| !joint.column_parts(j).1;
         let slides = |j: usize| !joint.column_parts(j).0;
-        let first = (0..speeds.len()).take_while(|&j| turns(j)).count();
-        match (first, speeds.len()) {
+        let first = (0..columns.len()).take_while(|&j| turns(j)).count();
+        match (first, columns.len()) {
             (1, 1) => Self::TurnsOnce,
-            (first, all) if (first..all).all(slides) => Self::Apart(speeds.start + first),
+            (first, all) if (first..all).all(slides) => Self::Apart(columns.start + first),
             _ => Self::Mixed,
         }
     }
@@ -153,11 +176,11 @@ impl Kind {
 
 impl Rung {
     pub(super) fn new(body: &Body) -> Self {
-        let speeds = &body.ranges().speeds;
+        let columns = &body.ranges().columns;
         Self {
             parent: body.parent(),
-            start: speeds.start,
-            end: speeds.end,
+            start: columns.start,
+            end: columns.end,
             kind: Kind::new(body),
         }
     }
@@ -187,4 +210,25 @@ impl Node {
             wrench: Vector6::zeros(),
         }
     }
+}
+
+/// The next column towards the root, for each column of X̄.
+pub(super) fn parents(rungs: &[Rung]) -> Vec<Option<usize>> {
+    let mut parents = Vec::new();
+    for rung in rungs {
+        let mut above = rung.parent;
+        let mut nearest = None;
+        while let (None, Some(index)) = (nearest, above) {
+            let Rung {
+                parent, start, end, ..
+            } = &rungs[index];
+            nearest = (start < end).then(|| end - 1);
+            above = *parent;
+        }
+        for column in rung.start..rung.end {
+            parents.push(nearest);
+            nearest = Some(column);
+        }
+    }
+    parents
 }

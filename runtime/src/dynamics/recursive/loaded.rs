@@ -4,7 +4,11 @@
 //! is never a difference.
 
 use super::Recursive;
+use super::block::{factorize, reduce_inertia, solve};
 use super::inverse::MOST_FREEDOMS;
+use super::link::Link;
+use super::several::Group;
+use super::sweeps::{combine, whole};
 use crate::dynamics::DynamicsError;
 use crate::elements::{JointSlopes, Target};
 use crate::mechanism::Mechanism;
@@ -17,13 +21,16 @@ use nalgebra::Vector6;
 /// The factors of M̄ + W, and room for solving with them.
 #[derive(Clone, Debug)]
 pub struct LoadedMass {
-    /// Y, one column per speed.
+    /// Y, one column per speed; of joints that carry several bodies, `groups` have it.
     yields: Vec<Vector6<f64>>,
     /// LDLᵀ of each joint's block, S×S row by row: D on the diagonal, L below.
     blocks: Vec<Vec<f64>>,
     inertias: Vec<ArticulatedInertia<f64>>,
     wrenches: Vec<Vector6<f64>>,
     motions: Vec<Vector6<f64>>,
+    /// Joints that carry several bodies.
+    groups: Vec<Group>,
+    loads: Vec<f64>,
 }
 
 impl LoadedMass {
@@ -40,6 +47,8 @@ impl LoadedMass {
             inertias: vec![ArticulatedInertia::zero(); count],
             wrenches: vec![Vector6::zeros(); count],
             motions: vec![Vector6::zeros(); count],
+            groups: Group::all(&Link::all(mechanism)),
+            loads: vec![0.0; mechanism.layout().speeds],
         }
     }
 }
@@ -55,7 +64,7 @@ impl Recursive {
     ) {
         self.advance(q, speeds, None);
         for index in 0..self.links.len() {
-            let own = self.links[index].freedoms.clone();
+            let own = self.links[index].variations.clone();
             self.vary(index, (q, speeds, &[]), &mut variations[own]);
         }
         slopes.clear();
@@ -73,10 +82,14 @@ impl Recursive {
     ) -> Result<(), DynamicsError> {
         for index in (0..self.links.len()).rev() {
             let (link, node) = (&self.links[index], &self.nodes[index]);
-            let mut inertia = match link.carries {
-                true => out.inertias[index].with_rigid(&node.rigid),
-                false => ArticulatedInertia::from(&node.rigid),
-            };
+            let mut inertia = whole(link, node, &out.inertias[index]);
+            if let Some(group) = link.group {
+                let own = &mut out.groups[group];
+                let joint = own.bodies.start;
+                let symmetric = |i, j| 0.5 * (load(joint, i, j) + load(joint, j, i));
+                self.take_inertia(index, &inertia, (own, &mut out.inertias), symmetric, false)?;
+                continue;
+            }
             if !link.driven {
                 let symmetric = |i, j| 0.5 * (load(index, i, j) + load(index, j, i));
                 self.yield_joint(index, symmetric, &mut inertia, out)
@@ -102,7 +115,7 @@ impl Recursive {
         out: &mut LoadedMass,
     ) -> Result<(), PivotFailure> {
         let link = &self.links[index];
-        let columns = &self.columns[link.speeds.clone()];
+        let columns = &self.columns[link.columns.clone()];
         let yields = &mut out.yields[link.speeds.clone()];
         for (column, own) in columns.iter().zip(&mut *yields) {
             *own = inertia.apply(column);
@@ -114,15 +127,8 @@ impl Recursive {
             }
             block[i * size + i] += link.armature.get(i).copied().unwrap_or(0.0);
         }
-        factorize(block, size)?;
-        let mut reduced = [Vector6::zeros(); MOST_FREEDOMS];
-        for i in 0..size {
-            let lower = &block[i * size..i * size + i];
-            let known = lower.iter().zip(&reduced);
-            let own = known.fold(yields[i], |sum, (l, before)| sum - before * *l);
-            inertia.add_outer(&own, -1.0 / block[i * size + i]);
-            reduced[i] = own;
-        }
+        factorize(block, size, |_| 0.0)?;
+        reduce_inertia(inertia, yields, block);
         Ok(())
     }
 
@@ -131,12 +137,22 @@ impl Recursive {
         factors.wrenches.fill(Vector6::zeros());
         for index in (0..self.links.len()).rev() {
             let link = &self.links[index];
+            if let Some(group) = link.group {
+                let own = &mut factors.groups[group];
+                let wrench = factors.wrenches[index];
+                let taken = (x.as_ref(), &mut factors.loads[..]);
+                let felt = self.take_wrench(index, &wrench, own, taken);
+                if let (Some(felt), Some(parent)) = (felt, link.parent) {
+                    factors.wrenches[parent] += felt;
+                }
+                continue;
+            }
             let own = &mut x[link.speeds.clone()];
             if link.driven {
                 own.fill(0.0);
             } else {
                 let wrench = &mut factors.wrenches[index];
-                for (entry, column) in own.iter_mut().zip(&self.columns[link.speeds.clone()]) {
+                for (entry, column) in own.iter_mut().zip(&self.columns[link.columns.clone()]) {
                     *entry -= column.dot(wrench);
                 }
                 solve(&factors.blocks[index], own);
@@ -157,10 +173,18 @@ impl Recursive {
     fn carry_outward(&self, factors: &mut LoadedMass, x: &mut [f64]) {
         for (index, link) in self.links.iter().enumerate() {
             let offset = &self.nodes[index].motion.placement.offset;
-            let mut motion = match link.parent {
-                Some(parent) => shift_twist(&factors.motions[parent], offset),
-                None => Vector6::zeros(),
-            };
+            let above = link.parent.map(|parent| factors.motions[parent]);
+            let above = above.unwrap_or_default();
+            let mut motion = shift_twist(&above, offset);
+            if let Some(group) = link.group {
+                let (own, x) = (&factors.groups[group], &mut x[link.speeds.clone()]);
+                if link.leads {
+                    own.resolve(&above, &factors.loads[link.speeds.clone()], x);
+                }
+                factors.motions[index] =
+                    combine(motion, &self.columns[link.columns.clone()], x);
+                continue;
+            }
             if !link.driven {
                 let (own, mut carried) = (&mut x[link.speeds.clone()], [0.0; MOST_FREEDOMS]);
                 let carried = &mut carried[..own.len()];
@@ -172,52 +196,13 @@ impl Recursive {
                 for ((entry, carried), column) in own
                     .iter_mut()
                     .zip(carried)
-                    .zip(&self.columns[link.speeds.clone()])
+                    .zip(&self.columns[link.columns.clone()])
                 {
                     *entry -= *carried;
                     motion += column * *entry;
                 }
             }
             factors.motions[index] = motion;
-        }
-    }
-}
-
-/// LDLᵀ of a symmetric matrix, of which the lower triangle is read, in place.
-fn factorize(block: &mut [f64], size: usize) -> Result<(), PivotFailure> {
-    for i in 0..size {
-        for j in 0..=i {
-            let known =
-                (0..j).map(|k| block[i * size + k] * block[j * size + k] * block[k * size + k]);
-            let entry = block[i * size + j] - known.sum::<f64>();
-            if i > j {
-                block[i * size + j] = entry / block[j * size + j];
-            } else if entry > 0.0 {
-                block[i * size + i] = entry;
-            } else {
-                return Err(PivotFailure {
-                    speed: i,
-                    pivot: entry,
-                    limit: 0.0,
-                });
-            }
-        }
-    }
-    Ok(())
-}
-
-/// `(L D Lᵀ)⁻¹ x` in place.
-fn solve(block: &[f64], x: &mut [f64]) {
-    let size = x.len();
-    for i in 0..size {
-        for j in 0..i {
-            x[i] -= block[i * size + j] * x[j];
-        }
-    }
-    for i in (0..size).rev() {
-        x[i] /= block[i * size + i];
-        for j in i + 1..size {
-            x[i] -= block[j * size + i] * x[j];
         }
     }
 }

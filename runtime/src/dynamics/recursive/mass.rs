@@ -5,12 +5,10 @@ use super::inverse::MOST_FREEDOMS;
 use super::link::{Kind, Node};
 use crate::dynamics::DynamicsError;
 use crate::mechanism::{Mechanism, Space, StateError, WHOLE, check_size};
-use crate::spatial::fused::{add_cross, dot};
 use crate::spatial::{SpatialInertia, shift_wrench, split};
 use alloc::vec;
 use alloc::vec::Vec;
-use core::ops::Range;
-use nalgebra::{DMatrix, Vector3, Vector6};
+use nalgebra::{DMatrix, Vector6};
 
 /// How many roundings of its own diagonal entry a pivot must stand above, for each row: those of one update and a margin of four.
 const ROUNDINGS: f64 = 8.0;
@@ -139,7 +137,7 @@ fn subtract(target: &mut [f64], row: &[f64], weight: f64, parents: &[Option<usiz
 }
 
 /// The next speed towards the root, for each speed.
-pub(super) fn parents(mechanism: &Mechanism) -> Vec<Option<usize>> {
+fn parents(mechanism: &Mechanism) -> Vec<Option<usize>> {
     let mut parents = vec![None; mechanism.layout().speeds];
     for body in mechanism.bodies() {
         let mut nearest = nearest_speed(mechanism, body.parent());
@@ -182,15 +180,19 @@ impl Recursive {
         self.with_inputs(q, &[], |dynamics| {
             dynamics.stand(q);
             dynamics.compose();
-            dynamics.fill_rows(&mut mass.rows);
-            Ok::<_, StateError>(())
-        })?;
+            dynamics.fill_mass_matrix(mass);
+            Ok(())
+        })
+    }
+
+    /// M̄ of the tree, after [`Recursive::compose`].
+    pub(super) fn fill_mass_matrix(&mut self, mass: &mut MassMatrix) {
+        self.fill_mass(&mut mass.rows);
         for link in &self.links {
             for (speed, armature) in link.speeds.clone().zip(&link.armature) {
                 mass.rows[speed * mass.size + speed] += armature;
             }
         }
-        Ok(())
     }
 
     /// Inward, after [`Recursive::stand`]: the rigid inertia N of each body and of all that hangs on it, and N X̄.
@@ -207,15 +209,14 @@ impl Recursive {
             }
             let whole = link.inertia.rotated(&placement.rotation).combine(&held);
             *rigid = whole;
-            let speeds = link.speeds.clone();
+            let own = link.columns.clone();
             match self.rungs[index].kind {
                 Kind::TurnsOnce => {
-                    let (turn, _) = split(&self.columns[speeds.start]);
-                    self.momenta[speeds.start] = whole.apply_angular(&turn);
+                    let (turn, _) = split(&self.columns[own.start]);
+                    self.momenta[own.start] = whole.apply_angular(&turn);
                 }
                 _ => {
-                    let (columns, momenta) =
-                        (&self.columns[speeds.clone()], &mut self.momenta[speeds]);
+                    let (columns, momenta) = (&self.columns[own.clone()], &mut self.momenta[own]);
                     link.joint.momenta(rigid, columns, momenta);
                 }
             }
@@ -251,6 +252,9 @@ impl Recursive {
         self.articulate()?;
         inverse.full = true;
         for body in 0..self.links.len() {
+            if !self.links[body].leads {
+                continue;
+            }
             for speed in self.links[body].speeds.clone() {
                 let row = speed * inverse.size;
                 let row = &mut inverse.rows[row..row + self.links[body].speeds.end];
@@ -261,7 +265,7 @@ impl Recursive {
     }
 
     /// One row of M̄⁻¹, up to the last speed of `body`: the rates under a unit force on `speed`, one of its joint's.
-    fn inverse_row(&mut self, row: &mut [f64], body: usize, speed: usize) {
+    pub(super) fn inverse_row(&mut self, row: &mut [f64], body: usize, speed: usize) {
         let (mut next, mut wrench) = (Some(body), Vector6::zeros());
         self.loads[..row.len()].fill(0.0);
         while let Some(index) = next {
@@ -273,10 +277,14 @@ impl Recursive {
             }
             next = link.parent;
             let unit = &unit[..speeds.len()];
+            if let Some(group) = link.group {
+                wrench = self.yield_member(index, group, &wrench, unit);
+                continue;
+            }
             match link.slender {
                 None => link.joint.reduce(
                     &mut wrench,
-                    &self.columns[speeds.clone()],
+                    &self.columns[link.columns.clone()],
                     &self.pivots[speeds.clone()],
                     unit,
                     &mut self.loads[speeds],
@@ -288,48 +296,44 @@ impl Recursive {
         self.resolve_up_to(body, row);
     }
 
-    /// `X_kᵀ F` for all speeds k from `body` to the root, and up to the length of the row.
+    /// `X_kᵀ F` for all speeds k from `body` to the root into their entries of `row`.
     pub(super) fn fill_row(&self, row: &mut [f64], mut body: usize, momentum: &Vector6<f64>) {
-        let (mut moment, force) = split(momentum);
-        let own = self.rungs[body].start..row.len();
-        self.fill_block(row, body, own, &moment, &force);
-        while let Some(parent) = self.rungs[body].parent {
-            let offset = &self.nodes[body].motion.placement.offset;
-            moment = add_cross(&moment, offset, &force);
-            let speeds = self.rungs[parent].start..self.rungs[parent].end;
-            self.fill_block(row, parent, speeds, &moment, &force);
+        let mut momentum = *momentum;
+        loop {
+            let link = &self.links[body];
+            let columns = &self.columns[link.columns.clone()];
+            for (entry, column) in row[link.speeds.clone()].iter_mut().zip(columns) {
+                *entry = column.dot(&momentum);
+            }
+            let Some(parent) = link.parent else { return };
+            momentum = shift_wrench(&momentum, &self.nodes[body].motion.placement.offset);
             body = parent;
         }
     }
 
-    /// `X_kᵀ F` for the speeds k of one joint.
-    #[inline(always)]
-    fn fill_block(
-        &self,
-        row: &mut [f64],
-        body: usize,
-        speeds: Range<usize>,
-        moment: &Vector3<f64>,
-        force: &Vector3<f64>,
-    ) {
-        let angular = |speed: usize| dot(&split(&self.columns[speed]).0, moment);
-        let linear = |speed: usize| dot(&split(&self.columns[speed]).1, force);
-        match self.rungs[body].kind {
-            Kind::TurnsOnce => row[speeds.start] = angular(speeds.start),
-            Kind::Apart(middle) => {
-                let middle = middle.min(speeds.end);
-                fill(row, speeds.start..middle, angular);
-                fill(row, middle..speeds.end, linear);
-            }
-            Kind::Mixed => fill(row, speeds, |speed| angular(speed) + linear(speed)),
+    /// The lower triangle of M̄ without rotors, after [`Recursive::compose`]; where joints carry several bodies, summed over these.
+    fn fill_mass(&mut self, rows: &mut [f64]) {
+        if self.groups.is_empty() {
+            return self.fill_rows(rows);
         }
-    }
-}
-
-/// The entries of `row` at `speeds`.
-#[inline(always)]
-fn fill(row: &mut [f64], speeds: Range<usize>, entry: impl Fn(usize) -> f64) {
-    for (target, speed) in row[speeds.clone()].iter_mut().zip(speeds) {
-        *target = entry(speed);
+        let (size, width) = (self.mechanism.layout().speeds, self.momenta.len());
+        let mut whole = core::mem::take(&mut self.unfolded_rows);
+        whole.resize(width * width, 0.0);
+        self.fill_rows(&mut whole);
+        rows.fill(0.0);
+        for own in &self.links {
+            for (speed, column) in own.speeds.clone().zip(own.columns.clone()) {
+                let row = &whole[column * width..(column + 1) * width];
+                let mut next = Some(own);
+                while let Some(link) = next {
+                    let sums = &mut rows[speed * size..][link.speeds.clone()];
+                    for (sum, entry) in sums.iter_mut().zip(&row[link.columns.clone()]) {
+                        *sum += entry;
+                    }
+                    next = link.parent.map(|parent| &self.links[parent]);
+                }
+            }
+        }
+        self.unfolded_rows = whole;
     }
 }

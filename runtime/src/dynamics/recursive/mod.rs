@@ -10,6 +10,7 @@
 //!
 //! After construction nothing allocates.
 
+mod block;
 mod coupling;
 mod derivatives;
 mod elements;
@@ -24,6 +25,7 @@ mod operational;
 mod readings;
 mod refined;
 mod rows;
+mod several;
 mod slender;
 mod sweeps;
 
@@ -48,6 +50,7 @@ use coupling::Coupling;
 use link::{Link, Node, Rung};
 use nalgebra::Vector6;
 use rows::Climb;
+use several::Group;
 use slender::Slender;
 
 /// The recursive form of a mechanism's dynamics, with its workspace: one for each thread.
@@ -65,11 +68,17 @@ pub struct Recursive {
     climbs: Vec<Climb>,
     world: Node,
     nodes: Vec<Node>,
-    /// X̄, one column per speed.
+    /// X̄ of each body, one column per speed of its joint.
     columns: Vec<Vector6<f64>>,
-    /// Composite momenta of the columns, one per speed.
+    /// Composite momenta of the columns.
     momenta: Vec<Vector6<f64>>,
     slender: Vec<Slender>,
+    /// Joints that carry several bodies.
+    groups: Vec<Group>,
+    /// Room for entries with one for each body and each speed of its joint.
+    unfolded: Vec<f64>,
+    /// The same, squared, once a mass matrix is asked for.
+    unfolded_rows: Vec<f64>,
     inertias: Vec<ArticulatedInertia<f64>>,
     pivots: Vec<Pivot<f64>>,
     loads: Vec<f64>,
@@ -97,6 +106,7 @@ impl Recursive {
         let count = mechanism.bodies().len();
         let holonomic = |body: &Body| body.joint().structures().speed_basis.is_identity();
         let (speeds, freedoms) = (mechanism.layout().speeds, mechanism.layout().freedoms);
+        let columns = mechanism.columns();
         let links = Link::all(&mechanism);
         let rungs: Vec<Rung> = mechanism.bodies().iter().map(Rung::new).collect();
         Self {
@@ -104,13 +114,16 @@ impl Recursive {
             plain: false,
             acted_on: false,
             slender: Slender::all(&links),
+            groups: Group::all(&links),
+            unfolded: vec![0.0; columns],
+            unfolded_rows: Vec::new(),
             links,
-            climbs: Climb::all(&rungs, &mass::parents(&mechanism)),
+            climbs: Climb::all(&rungs, &link::parents(&rungs)),
             rungs,
             nodes: vec![world.clone(); count],
             world,
-            columns: vec![Vector6::zeros(); speeds],
-            momenta: vec![Vector6::zeros(); speeds],
+            columns: vec![Vector6::zeros(); columns],
+            momenta: vec![Vector6::zeros(); columns],
             inertias: vec![ArticulatedInertia::zero(); count],
             pivots: vec![Pivot::zero(); speeds],
             loads: vec![0.0; speeds],

@@ -97,8 +97,15 @@ impl FrameReadings<'_> {
             if link.driven {
                 continue;
             }
-            for speed in link.speeds.clone() {
-                let column = &self.recursive.columns[speed];
+            if let Some(group) = link.group {
+                mobility += self.recursive.groups[group].yield_wrenches(
+                    &self.recursive.columns[link.columns.clone()],
+                    &self.recursive.nodes[index].motion.placement.offset,
+                    &mut wrenches,
+                );
+                continue;
+            }
+            for (speed, column) in self.recursive.columns_of(index) {
                 let pivot = &self.recursive.pivots[speed];
                 let loads = Vector6::from_fn(|i, _| wrenches[i].dot(column));
                 mobility += loads * loads.transpose() * pivot.inverse;

@@ -1,6 +1,7 @@
 //! Rows of M̄ four at a time: neighbouring speeds on one branch climb it side by side.
 //!
-//! Row i has the entries `X_kᵀ F_i` for the speeds k from i to the root, F_i the momentum of one unit of speed i, shifted on the way. Rows of speeds
+//! Row i has the entries `X_kᵀ F_i` for the speeds k from i to the root, F_i the momentum of one unit of speed i, shifted on the way. (Where joints carry
+//! several bodies there is a row, and a column, for each body and each speed of its joint.) Rows of speeds
 //! that follow each other on one way to the root meet the same joints from there on, so that shift and products are those of vectors of four.
 
 use super::Recursive;
@@ -29,26 +30,26 @@ const UNITS: [Lane; LANES] = [
 /// Rows that climb side by side, each the next towards the root of the one after it.
 #[derive(Clone, Debug)]
 pub(super) struct Climb {
-    speeds: Range<usize>,
+    columns: Range<usize>,
     /// Whose joint has the last of them.
     body: usize,
 }
 
 impl Climb {
-    /// All rows, for the next speeds towards the root: as many as can climb side by side from the tips on.
+    /// All rows, for the next columns towards the root: as many as can climb side by side from the tips on.
     pub(super) fn all(rungs: &[Rung], parents: &[Option<usize>]) -> Vec<Self> {
         let mut climbs = Vec::new();
         for (body, rung) in rungs.iter().enumerate().rev() {
             let mut end = climbs
                 .last()
-                .map_or(parents.len(), |last: &Self| last.speeds.start);
+                .map_or(parents.len(), |last: &Self| last.columns.start);
             while end > rung.start {
                 let least = end.saturating_sub(LANES);
-                let follows = |speed: &usize| parents[*speed] == Some(*speed - 1);
+                let follows = |column: &usize| parents[*column] == Some(*column - 1);
                 let more = (least + 1..end).rev().take_while(follows).count();
-                let speeds = end - 1 - more..end;
-                end = speeds.start;
-                climbs.push(Self { speeds, body });
+                let columns = end - 1 - more..end;
+                end = columns.start;
+                climbs.push(Self { columns, body });
             }
         }
         climbs
@@ -135,19 +136,19 @@ fn products(weights: &Vector3<f64>, [x, y, z]: &[Lane; 3]) -> Lane {
 }
 
 impl Recursive {
-    /// `X_kᵀ F_i` into row i of `rows`, square, for the wrench or momentum `F_i` of each speed in [`Recursive::momenta`], all speeds k of joints
+    /// `X_kᵀ F_i` into row i of `rows`, square, for the wrench or momentum `F_i` of each column in [`Recursive::momenta`], all columns k of joints
     /// between the root and i, and those of its own joint. To the right of those stands what nobody reads.
     pub(super) fn fill_rows(&self, rows: &mut [f64]) {
         let size = self.momenta.len();
         for climb in &self.climbs {
-            let rows = &mut rows[climb.speeds.start * size..climb.speeds.end * size];
+            let rows = &mut rows[climb.columns.start * size..climb.columns.end * size];
             self.climb(climb, rows, size);
         }
     }
 
     /// The rows of one climb, of `size` entries each.
     fn climb(&self, climb: &Climb, rows: &mut [f64], size: usize) {
-        let own = &climb.speeds;
+        let own = &climb.columns;
         let mut rows = rows.chunks_exact_mut(size);
         // What has no row ends in none, so that vectors stay whole.
         let mut rows: [&mut [f64]; LANES] = from_fn(|_| rows.next().unwrap_or_default());
@@ -159,15 +160,15 @@ impl Recursive {
             let rung = &self.rungs[body];
             if below > own.start {
                 below = rung.start.max(own.start);
-                for speed in below..rung.end.min(own.end) {
-                    wrenches.set(speed - own.start, &self.momenta[speed]);
+                for column in below..rung.end.min(own.end) {
+                    wrenches.set(column - own.start, &self.momenta[column]);
                 }
             }
-            let speeds = rung.start..rung.end;
-            for (speed, column) in speeds.clone().zip(&self.columns[speeds]) {
-                let entries = wrenches.against(column, rung.kind.parts(speed));
+            let places = rung.start..rung.end;
+            for (place, column) in places.clone().zip(&self.columns[places]) {
+                let entries = wrenches.against(column, rung.kind.parts(place));
                 for (row, entry) in rows.iter_mut().zip(entries) {
-                    if let Some(place) = row.get_mut(speed) {
+                    if let Some(place) = row.get_mut(place) {
                         *place = entry;
                     }
                 }

@@ -36,7 +36,7 @@ impl Recursive {
             let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
             let (from, to) = (&parent.motion.placement, &mut own.motion.placement);
             let q = &q[link.configuration.clone()];
-            let columns = &mut self.columns[link.speeds.clone()];
+            let columns = &mut self.columns[link.columns.clone()];
             link.joint.stand(q, &link.frame, from, to, columns);
         }
     }
@@ -68,7 +68,7 @@ impl Recursive {
     pub(super) fn advance(&mut self, q: &[f64], speeds: &[f64], accelerations: Option<&[f64]>) {
         for (index, link) in self.links.iter().enumerate() {
             let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
-            let columns = &mut self.columns[link.speeds.clone()];
+            let columns = &mut self.columns[link.columns.clone()];
             let accelerations = accelerations.map_or(&[][..], |all| &all[link.speeds.clone()]);
             let state = (
                 &q[link.configuration.clone()],
@@ -112,7 +112,7 @@ impl Recursive {
             let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
             let carried = shift_twist(&parent.motion.twist, &own.motion.placement.offset);
             let (columns, speeds) = (
-                &self.columns[link.speeds.clone()],
+                &self.columns[link.columns.clone()],
                 &speeds[link.speeds.clone()],
             );
             own.motion.twist = combine(carried, columns, speeds);
@@ -125,6 +125,10 @@ impl Recursive {
     /// Inward: the articulated inertias, and the pivots of every joint.
     pub(super) fn articulate(&mut self) -> Result<(), DynamicsError> {
         for index in (0..self.links.len()).rev() {
+            if let Some(group) = self.links[index].group {
+                self.articulate_member(index, group)?;
+                continue;
+            }
             let inertia = match self.links[index].slender {
                 None => self.articulate_body(index)?,
                 Some(number) => self.articulate_slender(index, number)?,
@@ -138,7 +142,10 @@ impl Recursive {
     fn articulate_body(&mut self, index: usize) -> Result<ArticulatedInertia<f64>, DynamicsError> {
         let link = &self.links[index];
         let speeds = link.speeds.clone();
-        let (columns, pivots) = (&self.columns[speeds.clone()], &mut self.pivots[speeds]);
+        let (columns, pivots) = (
+            &self.columns[link.columns.clone()],
+            &mut self.pivots[speeds],
+        );
         let mut inertia = whole(link, &self.nodes[index], &self.inertias[index]);
         if !link.driven {
             link.joint
@@ -164,6 +171,11 @@ impl Recursive {
     /// Inward: [`Recursive::articulate`], and the loads of generalised `forces` (one entry per speed) against the wrenches of the nodes.
     pub(super) fn eliminate(&mut self, forces: &[f64]) -> Result<(), DynamicsError> {
         for index in (0..self.links.len()).rev() {
+            if let Some(group) = self.links[index].group {
+                self.articulate_member(index, group)?;
+                self.load_node(index, group, forces);
+                continue;
+            }
             let inertia = match self.links[index].slender {
                 None => self.eliminate_body(index, forces)?,
                 Some(number) => self.eliminate_slender(index, number, forces)?,
@@ -187,7 +199,7 @@ impl Recursive {
             link.joint
                 .eliminate(
                     (&mut inertia, &mut node.wrench),
-                    &self.columns[speeds.clone()],
+                    &self.columns[link.columns.clone()],
                     (&link.armature, &forces[speeds.clone()]),
                     &mut self.pivots[speeds.clone()],
                     &mut self.loads[speeds],
@@ -207,6 +219,15 @@ impl Recursive {
         }
     }
 
+    /// Takes the wrench of one body of a group, and hands over what the parent feels of all of them.
+    pub(super) fn load_node(&mut self, index: usize, group: usize, forces: &[f64]) {
+        let wrench = self.nodes[index].wrench;
+        let felt = self.load_member(index, group, &wrench, forces);
+        if let (Some(felt), Some(parent)) = (felt, self.links[index].parent) {
+            self.nodes[parent].wrench += felt;
+        }
+    }
+
     /// Outward, after [`Recursive::eliminate`]: the rates that the loads amount to. The twists become those of the rates.
     pub(super) fn resolve(&mut self, rates: &mut [f64]) {
         if let Some(last) = self.links.len().checked_sub(1) {
@@ -218,9 +239,16 @@ impl Recursive {
     pub(super) fn resolve_up_to(&mut self, last: usize, rates: &mut [f64]) {
         for index in 0..=last {
             let link = &self.links[index];
+            if let Some(group) = link.group {
+                self.resolve_member(index, group, rates);
+                continue;
+            }
             let (parent, own) = with_parent(&mut self.nodes, &self.world, link.parent, index);
             let speeds = link.speeds.clone();
-            let (columns, pivots) = (&self.columns[speeds.clone()], &self.pivots[speeds.clone()]);
+            let (columns, pivots) = (
+                &self.columns[link.columns.clone()],
+                &self.pivots[speeds.clone()],
+            );
             let loads = &self.loads[speeds.clone()];
             let carried = shift_twist(&parent.motion.twist, &own.motion.placement.offset);
             let rates = &mut rates[speeds];
@@ -251,17 +279,33 @@ impl Recursive {
             *rate += *twist;
             let carried = shift_twist(&parent.motion.twist, &placement.offset);
             let speeds = &speeds[link.speeds.clone()];
-            *twist = combine(carried, &self.columns[link.speeds.clone()], speeds);
+            *twist = combine(carried, &self.columns[link.columns.clone()], speeds);
             own.wrench = own.rigid.wrench(twist, rate);
         }
     }
 
     /// Inward: the wrench of each node and of all that hangs on it; `X̄ᵀ` of it into `out`, one entry per speed.
     pub(super) fn gather(&mut self, out: &mut [f64]) {
+        self.folded(out, Self::gather_columns);
+    }
+
+    /// `task` into `out`, one entry per speed, where it gives one for each body and each speed of its joint.
+    pub(super) fn folded(&mut self, out: &mut [f64], task: impl FnOnce(&mut Self, &mut [f64])) {
+        if self.groups.is_empty() {
+            return task(self, out);
+        }
+        let mut columns = core::mem::take(&mut self.unfolded);
+        task(self, &mut columns);
+        self.fold(&columns, out);
+        self.unfolded = columns;
+    }
+
+    /// [`Recursive::gather`] with one entry for each body and each speed of its joint.
+    fn gather_columns(&mut self, out: &mut [f64]) {
         for index in (0..self.links.len()).rev() {
             let link = &self.links[index];
-            let (own, columns) = (&self.nodes[index], &self.columns[link.speeds.clone()]);
-            let out = &mut out[link.speeds.clone()];
+            let (own, columns) = (&self.nodes[index], &self.columns[link.columns.clone()]);
+            let out = &mut out[link.columns.clone()];
             match link.slender {
                 None => link.joint.gather(&own.wrench, columns, out),
                 Some(number) => self.gather_slender(index, number, out),
@@ -273,7 +317,7 @@ impl Recursive {
 
 /// What a joint carries: the body itself and what its children have handed over.
 #[inline(always)]
-fn whole(link: &Link, node: &Node, handed: &ArticulatedInertia<f64>) -> ArticulatedInertia<f64> {
+pub(super) fn whole(link: &Link, node: &Node, handed: &ArticulatedInertia<f64>) -> ArticulatedInertia<f64> {
     match link.carries {
         true => handed.with_rigid(&node.rigid),
         false => ArticulatedInertia::from(&node.rigid),

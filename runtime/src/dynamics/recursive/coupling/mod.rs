@@ -218,8 +218,7 @@ impl Recursive {
             let arm = apply(rotation, &row.point);
             row.wrench = join(&cross(&arm, &direction), &direction);
             entries.fill(0.0);
-            let end = self.links[row.body].speeds.end;
-            self.fill_row(&mut entries[..end], row.body, &row.wrench);
+            self.fill_row(entries, row.body, &row.wrench);
         }
     }
 

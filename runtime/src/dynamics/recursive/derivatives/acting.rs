@@ -21,7 +21,7 @@ use alloc::vec::Vec;
 pub(super) struct Acting {
     pub(super) by_local: Sensitivity,
     pub(super) by_speeds: Sensitivity,
-    /// One a degree of freedom.
+    /// One for each body and each degree of freedom of its joint.
     variations: Vec<Variation<f64>>,
 }
 
@@ -39,7 +39,7 @@ impl Acting {
         Self {
             by_local: Sensitivity::new(speeds, freedoms),
             by_speeds: Sensitivity::new(speeds, speeds),
-            variations: vec![Variation::zero(); freedoms],
+            variations: vec![Variation::zero(); mechanism.variations()],
         }
     }
 }
@@ -74,7 +74,7 @@ impl Recursive {
         out.by_local.clear();
         out.by_speeds.clear();
         for index in 0..self.links.len() {
-            let own = self.links[index].freedoms.clone();
+            let own = self.links[index].variations.clone();
             self.vary(index, (q, speeds, &[]), &mut out.variations[own]);
         }
         self.add_element_slopes(q, speeds, out);

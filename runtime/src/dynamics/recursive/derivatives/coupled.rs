@@ -155,8 +155,8 @@ impl Recursive {
         while let Some(body) = next {
             let link = &self.links[body];
             let (_, force) = split(&wrench);
-            for slot in link.freedoms.clone() {
-                let variation = &work.inverse.variations[slot];
+            let variations = &work.inverse.variations[link.variations.clone()];
+            for (slot, variation) in link.freedoms.clone().zip(variations) {
                 // W holds that the base accelerates with −g, which e does not see.
                 let fall = cross(gravity, &split(&variation.local).0);
                 let asked = wrench.dot(&variation.rate) + force.dot(&fall);
@@ -164,9 +164,9 @@ impl Recursive {
                 work.asked_by_local.set(row, slot, asked);
                 work.slipping.set(row, slot, wrench.dot(&variation.drift));
             }
-            let variations = &work.inverse.variations[link.freedoms.clone()];
-            for (speed, variation) in link.speeds.clone().zip(variations) {
-                let column = &self.columns[speed];
+            let columns = &self.columns[link.columns.clone()];
+            let own = link.speeds.clone().zip(columns).zip(variations);
+            for ((speed, column), variation) in own {
                 let asked = wrench.dot(&variation.speed_rate) + turned.dot(column);
                 work.asked_by_speeds.set(row, speed, asked);
             }
@@ -187,6 +187,9 @@ impl Recursive {
     ) {
         for index in 0..self.links.len() {
             let link = &self.links[index];
+            if !link.leads {
+                continue;
+            }
             let count = link.speeds.len();
             let mut inputs = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];
             let inputs = &mut inputs[..count * link.freedoms.len()];
@@ -225,7 +228,7 @@ impl Recursive {
         out: &mut Sensitivity,
     ) {
         out.clear();
-        for link in &self.links {
+        for link in self.links.iter().filter(|link| link.leads) {
             let (count, q) = (link.speeds.len(), &q[link.configuration.clone()]);
             for (b, slot) in link.freedoms.clone().enumerate() {
                 work.column.needed.fill(0.0);

@@ -33,8 +33,6 @@ use nalgebra::Vector6;
 /// Workspace, and what changes on the way.
 #[derive(Clone, Debug)]
 pub(super) struct CoupledMomenta {
-    /// r: a row a speed, a column a degree of freedom.
-    pub(super) needed: Sensitivity,
     /// `Fᵀ U`: a row a constraint, a column a degree of freedom.
     slipping: Sensitivity,
     /// `Ȧᵀ`: a row a constraint, a column a speed.
@@ -61,7 +59,6 @@ impl CoupledMomenta {
         let (count, layout) = (mechanism.constraints().len(), mechanism.layout());
         let (speeds, freedoms) = (layout.speeds, layout.freedoms);
         (count > 0).then(|| Self {
-            needed: Sensitivity::new(speeds, freedoms),
             slipping: Sensitivity::new(count, freedoms),
             turning: Sensitivity::new(count, speeds),
             mass: Sensitivity::new(count, speeds),
@@ -195,12 +192,13 @@ impl Recursive {
             let mut next = Some(body);
             while let Some(body) = next {
                 let link = &self.links[body];
-                for slot in link.freedoms.clone() {
-                    let slipped = wrench.dot(&variations[slot].drift);
+                let own = &variations[link.variations.clone()];
+                for (slot, variation) in link.freedoms.clone().zip(own) {
+                    let slipped = wrench.dot(&variation.drift);
                     work.slipping.set(row, slot, slipped);
                 }
-                for speed in link.speeds.clone() {
-                    let entry = moving[speed][0].dot(&wrench) + self.columns[speed].dot(&turned);
+                for (speed, own) in link.speeds.clone().zip(link.columns.clone()) {
+                    let entry = moving[own][0].dot(&wrench) + self.columns[own].dot(&turned);
                     work.turning.set(row, speed, entry);
                 }
                 let offset = &self.nodes[body].motion.placement.offset;
@@ -220,7 +218,9 @@ impl Recursive {
             for (row, value) in work.dependent.iter_mut().enumerate() {
                 *value = -work.slipping.entry(row, slot);
             }
-            work.needed.copy_column(slot, &mut work.asked);
+            if let Some(needed) = &out.needed {
+                needed.copy_column(slot, &mut work.asked);
+            }
             out.rates_by_local.copy_column(slot, &mut work.rates);
             work.answer(coupling, &out.rates_by_speeds, None);
             out.speeds_by_local.set_column(slot, &work.faster);
@@ -228,7 +228,7 @@ impl Recursive {
         }
         out.speeds_by_momenta.clear();
         out.rates_by_momenta.clear();
-        for link in &self.links {
+        for link in self.links.iter().filter(|link| link.leads) {
             for speed in link.speeds.clone() {
                 if coupling.dependent.contains(&speed) {
                     continue;

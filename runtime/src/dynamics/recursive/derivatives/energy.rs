@@ -25,14 +25,16 @@ impl Recursive {
         check_size(WHOLE, "kinetic gradient", freedoms, kinetic.len())?;
         self.advance(q, speeds, None);
         self.sum_momenta(false);
+        potential.fill(0.0);
+        kinetic.fill(0.0);
         for index in 0..self.links.len() {
             let mut variations = [Variation::zero(); MOST_FREEDOMS];
             let own = self.links[index].freedoms.clone();
             self.vary(index, (q, speeds, &[]), &mut variations[..own.len()]);
             let node = &self.nodes[index];
             for (freedom, variation) in own.zip(&variations) {
-                potential[freedom] = -variation.local.dot(&node.motion.rate);
-                kinetic[freedom] = variation.drift.dot(&node.wrench);
+                potential[freedom] -= variation.local.dot(&node.motion.rate);
+                kinetic[freedom] += variation.drift.dot(&node.wrench);
             }
         }
         Ok(())

@@ -3,13 +3,16 @@
 use super::acting::{Acting, Yielding, add_response};
 use super::coriolis::{ArticulatedCoriolis, Coriolis};
 use super::coupled::Coupled;
+use super::dense::Dense;
 use super::factor::Factors;
+use super::fold::is_folded;
 use super::inverse::InverseDerivatives;
 use super::product::negative_product;
 use super::sweep::{Push, Sweep, Tree};
 use super::{Branch, Sensitivity, branches, in_child};
 use crate::dynamics::recursive::Recursive;
 use crate::dynamics::recursive::inverse::MOST_FREEDOMS;
+use crate::dynamics::recursive::sweeps::whole;
 use crate::dynamics::{Dynamics, DynamicsError};
 use crate::mechanism::Mechanism;
 use crate::spatial::{ArticulatedInertia, bracket_dual_product, shift_wrench, split};
@@ -27,6 +30,8 @@ pub struct ForwardDerivatives {
     pub(super) by_efforts: Sensitivity,
     /// For mechanisms of few speeds.
     few: Option<(InverseDerivatives, Factors)>,
+    /// For joints that carry several bodies.
+    dense: Option<Dense>,
     /// For constraints that couple joints.
     pub(super) coupled: Option<Coupled>,
     pub(super) responses: Responses,
@@ -80,12 +85,13 @@ impl ForwardDerivatives {
             by_local: Sensitivity::new(speeds, freedoms),
             by_speeds: Sensitivity::new(speeds, speeds),
             by_efforts: Sensitivity::new(speeds, freedoms),
-            few: (speeds <= FEW && speeds == freedoms).then(|| {
+            few: (speeds <= FEW && speeds == freedoms && !is_folded(mechanism)).then(|| {
                 (
                     InverseDerivatives::new(mechanism),
                     Factors::new(&responses.branches, speeds),
                 )
             }),
+            dense: Dense::new(mechanism),
             coupled: Coupled::new(mechanism),
             responses,
             acting: Acting::new(mechanism),
@@ -185,6 +191,11 @@ impl Recursive {
         if !self.mechanism.constraints().is_empty() {
             return self.differentiate_coupled((q, speeds, efforts), out);
         }
+        if let Some(mut dense) = out.dense.take() {
+            self.differentiate_dense((q, speeds, efforts), &mut dense, out);
+            out.dense = Some(dense);
+            return Ok(());
+        }
         self.set_accelerations(q, speeds, &out.rates);
         let yields = self.holonomic && self.mechanism.drives().is_empty();
         if let (true, Some((inverse, factors))) = (yields, &mut out.few) {
@@ -240,9 +251,9 @@ impl Recursive {
             let dragging = &mut responses.dragging[index];
             dragging.add_rigid(&Coriolis::of(&own.rigid, &own.motion.twist));
             let mut left = *dragging;
-            for speed in link.speeds.clone() {
+            for (speed, own) in link.speeds.clone().zip(link.columns.clone()) {
                 let pivot = &self.pivots[speed];
-                let column = &self.columns[speed];
+                let column = &self.columns[own];
                 responses.drags[speed] = left.eliminate(column, &pivot.momentum, pivot.inverse);
             }
             if let Some(parent) = link.parent {
@@ -255,11 +266,11 @@ impl Recursive {
 
     /// The articulated inertia of a body before its joint gives way, after [`Recursive::forward_dynamics`].
     pub(super) fn articulated(&self, index: usize) -> ArticulatedInertia<f64> {
-        let rigid = &self.nodes[index].rigid;
-        match self.links[index].carries {
-            true => self.inertias[index].with_rigid(rigid),
-            false => ArticulatedInertia::from(rigid),
-        }
+        whole(
+            &self.links[index],
+            &self.nodes[index],
+            &self.inertias[index],
+        )
     }
 
     /// What one unit of each ϕ, speed and effort of a joint pushes.
@@ -322,7 +333,8 @@ impl Recursive {
     /// What is left of a unit force on one of a joint's speeds: [`Recursive::pushed`] without a wrench.
     pub(super) fn pushed_unit(&self, index: usize, first: usize) -> Push {
         let speeds = self.links[index].speeds.clone();
-        let (columns, pivots) = (&self.columns[speeds.clone()], &self.pivots[speeds]);
+        let columns = &self.columns[self.links[index].columns.clone()];
+        let pivots = &self.pivots[speeds];
         let load = pivots[first].inverse;
         let mut push = Push {
             body: index,
@@ -347,7 +359,7 @@ impl Recursive {
             body: index,
             ..Push::none()
         });
-        let columns = &self.columns[link.speeds.clone()];
+        let columns = &self.columns[link.columns.clone()];
         for (push, column) in pushes.iter_mut().zip(columns) {
             (push.wrench, push.rate) = (inertia.apply(column), *column);
         }
@@ -363,7 +375,7 @@ impl Recursive {
         };
         link.joint.reduce(
             &mut wrench,
-            &self.columns[speeds.clone()],
+            &self.columns[link.columns.clone()],
             &self.pivots[speeds.clone()],
             forces,
             &mut push.loads[..speeds.len()],
@@ -388,7 +400,7 @@ impl Recursive {
         self.add_input_slopes(index, q, efforts, forces);
     }
 
-    /// Adds `∂S̄ᵀ τ` of one joint at its own q, column by column.
+    /// Adds `∂S̄ᵀ τ` of one joint at its own q, column by column; nothing for its further bodies.
     pub(super) fn add_input_slopes(
         &self,
         index: usize,
@@ -397,7 +409,7 @@ impl Recursive {
         forces: &mut [f64],
     ) {
         let link = &self.links[index];
-        if link.joint.structures().speed_basis_gradient.is_zero() {
+        if !link.leads || link.joint.structures().speed_basis_gradient.is_zero() {
             return;
         }
         let (rows, columns) = (link.freedoms.len(), link.speeds.len());

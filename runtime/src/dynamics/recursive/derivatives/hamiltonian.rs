@@ -12,6 +12,8 @@
 
 use super::acting::Acting;
 use super::coupled_momenta::CoupledMomenta;
+use super::dense::Dense;
+use super::fold;
 use super::forward::Responses;
 use super::product::add_product;
 use super::sweep::{Push, Tree};
@@ -39,13 +41,19 @@ pub struct HamiltonianDerivatives {
     pub(super) rates_by_speeds: Sensitivity,
     responses: Responses,
     by_momenta: Vec<Push>,
-    /// One a degree of freedom.
+    /// One for each body and each degree of freedom of its joint.
     pub(super) variations: Vec<Variation<f64>>,
-    /// One a speed: X°, and `N X° − ad_Xᵀ (h + m)`.
+    /// One for each body and each speed of its joint: X°, and `N X° − ad_Xᵀ (h + m)`.
     pub(super) moving: Vec<[Vector6<f64>; 2]>,
     /// One a body: m.
     pub(super) carried: Vec<Vector6<f64>>,
     pub(super) acting: Acting,
+    /// `∂(M̄ v̄)/∂ϕ` at fixed v̄ of the tree, less what constraints that couple joints exert, where sweeps do not find what it makes of v̄.
+    pub(super) needed: Option<Sensitivity>,
+    /// For joints that carry several bodies.
+    dense: Option<Dense>,
+    /// Derivatives at fixed v̄ before they are summed over the bodies of each joint, where joints carry several: p̄̇ in ϕ and in v̄, and what is needed.
+    unfolded: Option<([Sensitivity; 2], Sensitivity)>,
     /// For constraints that couple joints.
     pub(super) coupled: Option<CoupledMomenta>,
 }
@@ -54,6 +62,7 @@ impl HamiltonianDerivatives {
     /// Room for the derivatives of `mechanism`.
     pub fn new(mechanism: &Mechanism) -> Self {
         let (speeds, freedoms) = (mechanism.layout().speeds, mechanism.layout().freedoms);
+        let needs = fold::is_folded(mechanism) || !mechanism.constraints().is_empty();
         Self {
             speeds: vec![0.0; speeds],
             speeds_by_local: Sensitivity::new(speeds, freedoms),
@@ -64,20 +73,39 @@ impl HamiltonianDerivatives {
             rates_by_speeds: Sensitivity::new(speeds, speeds),
             responses: Responses::new(mechanism),
             by_momenta: vec![Push::none(); speeds],
-            variations: vec![Variation::zero(); freedoms],
-            moving: vec![[Vector6::zeros(); 2]; speeds],
+            variations: vec![Variation::zero(); mechanism.variations()],
+            moving: vec![[Vector6::zeros(); 2]; mechanism.columns()],
             carried: vec![Vector6::zeros(); mechanism.bodies().len()],
             acting: Acting::new(mechanism),
+            needed: needs.then(|| Sensitivity::new(speeds, freedoms)),
+            dense: Dense::new(mechanism),
+            unfolded: fold::room(mechanism).map(|both| {
+                let needed = Sensitivity::new(mechanism.columns(), mechanism.variations());
+                (both, needed)
+            }),
             coupled: CoupledMomenta::new(mechanism),
         }
     }
 
-    /// One entry of the derivatives of the tree's momenta, which constraints that couple joints ask for.
+    /// One entry of the derivatives of the tree's momenta, where they are asked for.
     #[inline(always)]
     pub(super) fn set_needed(&mut self, speed: usize, slot: usize, value: f64) {
-        if let Some(coupled) = &mut self.coupled {
-            coupled.needed.set(speed, slot, value);
+        if let Some(needed) = &mut self.needed {
+            needed.set(speed, slot, value);
         }
+    }
+
+    /// Puts these in the place of derivatives at fixed v̄, which it gives back.
+    fn exchange(
+        &mut self,
+        (both, needed): ([Sensitivity; 2], Sensitivity),
+    ) -> ([Sensitivity; 2], Sensitivity) {
+        let [by_local, by_speeds] = both;
+        let by_local = core::mem::replace(&mut self.rates_by_local, by_local);
+        let by_speeds = core::mem::replace(&mut self.rates_by_speeds, by_speeds);
+        let own = self.needed.as_mut();
+        let needed = own.map_or(Sensitivity::new(0, 0), |own| core::mem::replace(own, needed));
+        ([by_local, by_speeds], needed)
     }
 
     /// v̄.
@@ -133,17 +161,29 @@ impl Recursive {
         if !self.mechanism.constraints().is_empty() {
             return self.differentiate_coupled_momenta(q, efforts, out);
         }
+        if let Some(dense) = &mut out.dense {
+            self.invert_mass(dense);
+        }
         self.advance(q, &out.speeds, None);
         if self.acted_on {
             self.act_and_vary(q, &out.speeds, &mut out.acting);
         }
         self.sum_momenta(self.acted_on);
         self.vary_momenta(q, out);
-        for index in 0..self.links.len() {
-            self.push_momenta(index, q, out);
+        match out.dense.take() {
+            Some(dense) => {
+                self.differentiate_tree_rates(q, efforts, out);
+                self.answer_momenta_densely(&dense, out);
+                out.dense = Some(dense);
+            }
+            None => {
+                for index in 0..self.links.len() {
+                    self.push_momenta(index, q, out);
+                }
+                self.respond_to_momenta(out);
+                self.differentiate_tree_rates(q, efforts, out);
+            }
         }
-        self.respond_to_momenta(out);
-        self.differentiate_tree_rates(q, efforts, out);
         let rates_by_speeds = &out.rates_by_speeds;
         out.rates_by_momenta.clear();
         add_product(
@@ -163,7 +203,7 @@ impl Recursive {
     /// The variations of all joints at (q, v̄).
     pub(super) fn vary_momenta(&self, q: &[f64], out: &mut HamiltonianDerivatives) {
         for index in 0..self.links.len() {
-            let own = &mut out.variations[self.links[index].freedoms.clone()];
+            let own = &mut out.variations[self.links[index].variations.clone()];
             self.vary(index, (q, &out.speeds, &[]), own);
         }
     }
@@ -179,8 +219,19 @@ impl Recursive {
         // Joints on different branches meet in the products alone, and in elements between bodies.
         out.rates_by_local.clear();
         out.rates_by_speeds.clear();
+        let unfolded = out.unfolded.take();
+        let unfolded = unfolded.map(|unfolded| out.exchange(unfolded));
         for index in 0..self.links.len() {
             self.differentiate_rates(index, q, efforts, out);
+        }
+        if let Some(folded) = unfolded {
+            let (both, needed) = out.exchange(folded);
+            self.fold_locals(&both[0], &mut out.rates_by_local);
+            self.fold_speeds(&both[1], &mut out.rates_by_speeds);
+            if let Some(own) = &mut out.needed {
+                self.fold_locals(&needed, own);
+            }
+            out.unfolded = Some((both, needed));
         }
         if self.acted_on {
             out.rates_by_local.add_all(&out.acting.by_local);

@@ -2,7 +2,7 @@
 
 use super::acting::Acting;
 use super::coriolis::Coriolis;
-use super::{Branch, Sensitivity, WORLD, branches, in_child};
+use super::{Branch, Sensitivity, WORLD, branches, fold, in_child};
 use crate::dynamics::DynamicsError;
 use crate::dynamics::recursive::Recursive;
 use crate::dynamics::recursive::inverse::MOST_FREEDOMS;
@@ -36,11 +36,10 @@ pub struct InverseDerivatives {
     pub(super) by_local: Sensitivity,
     pub(super) by_speeds: Sensitivity,
     branches: Vec<Branch>,
-    /// One a degree of freedom.
+    /// One for each body and each degree of freedom of its joint, as the next two.
     pub(super) variations: Vec<Variation<f64>>,
-    /// One a degree of freedom.
     above: Vec<Above>,
-    /// One a freedom: its products with one below.
+    /// Products with one below.
     met: Vec<Four>,
     /// One a body.
     coriolis: Vec<Coriolis>,
@@ -48,6 +47,8 @@ pub struct InverseDerivatives {
     offsets: Vec<Vector3<f64>>,
     /// Whether each degree of freedom is a speed, at the same place.
     square: bool,
+    /// Both derivatives before they are summed over the bodies of each joint, where joints carry several.
+    unfolded: Option<[Sensitivity; 2]>,
     acting: Acting,
 }
 
@@ -55,7 +56,7 @@ impl InverseDerivatives {
     /// Room for the derivatives of `mechanism`.
     pub fn new(mechanism: &Mechanism) -> Self {
         let (speeds, freedoms) = (mechanism.layout().speeds, mechanism.layout().freedoms);
-        let branches = branches(mechanism);
+        let (branches, variations) = (branches(mechanism), mechanism.variations());
         Self {
             by_local: Sensitivity::new(speeds, freedoms),
             by_speeds: Sensitivity::new(speeds, speeds),
@@ -64,9 +65,10 @@ impl InverseDerivatives {
                 .all(|branch| branch.freedoms == branch.speeds),
             offsets: vec![Vector3::zeros(); branches.len()],
             branches,
-            variations: vec![Variation::zero(); freedoms],
-            above: vec![[Four::ZERO; 9]; freedoms],
-            met: vec![Four::ZERO; freedoms],
+            unfolded: fold::room(mechanism),
+            variations: vec![Variation::zero(); variations],
+            above: vec![[Four::ZERO; 9]; variations],
+            met: vec![Four::ZERO; variations],
             coriolis: vec![Coriolis::zero(); mechanism.bodies().len()],
             acting: Acting::new(mechanism),
         }
@@ -80,6 +82,12 @@ impl InverseDerivatives {
     /// `∂τ̄/∂v̄`: a row and a column a speed.
     pub const fn by_speeds(&self) -> &Sensitivity {
         &self.by_speeds
+    }
+
+    /// Swaps both derivatives.
+    fn swap(&mut self, other: &mut [Sensitivity; 2]) {
+        core::mem::swap(&mut self.by_local, &mut other[0]);
+        core::mem::swap(&mut self.by_speeds, &mut other[1]);
     }
 
     /// How one effort changes as all of ϕ and v̄ grow alike.
@@ -141,7 +149,17 @@ impl Recursive {
             out.by_local.clear();
             out.by_speeds.clear();
         }
-        self.differentiate_pairs(q, speeds, accelerations, out);
+        match out.unfolded.take() {
+            None => self.differentiate_pairs(q, speeds, accelerations, out),
+            Some(mut unfolded) => {
+                out.swap(&mut unfolded);
+                self.differentiate_pairs(q, speeds, accelerations, out);
+                out.swap(&mut unfolded);
+                self.fold_locals(&unfolded[0], &mut out.by_local);
+                self.fold_speeds(&unfolded[1], &mut out.by_speeds);
+                out.unfolded = Some(unfolded);
+            }
+        }
         if self.acted_on {
             out.by_local.subtract(&out.acting.by_local);
             out.by_speeds.subtract(&out.acting.by_speeds);
@@ -162,7 +180,7 @@ impl Recursive {
         }
         self.sum_subtrees(&mut out.coriolis);
         for index in 0..self.links.len() {
-            let own = &mut out.variations[self.links[index].freedoms.clone()];
+            let own = &mut out.variations[self.links[index].variations.clone()];
             self.vary(index, (q, speeds, accelerations), own);
             self.differentiate_joint(index, q, out);
         }
@@ -188,13 +206,13 @@ impl Recursive {
     fn differentiate_joint(&self, index: usize, q: &[f64], out: &mut InverseDerivatives) {
         let (link, node, coriolis) = (&self.links[index], &self.nodes[index], out.coriolis[index]);
         let branch = out.branches[index];
-        let columns = &self.columns[link.speeds.clone()];
+        let columns = &self.columns[link.columns.clone()];
         for slot in branch.freedoms.0..branch.freedoms.1 {
             let variation = &out.variations[slot];
             let b = slot - branch.freedoms.0;
             let (drift, _) = split(&variation.drift);
             let raised = node.rigid.apply(&variation.rate) + coriolis.apply(&drift);
-            for (speed, column) in link.speeds.clone().zip(columns) {
+            for (speed, column) in link.columns.clone().zip(columns) {
                 out.by_local.set(speed, slot, column.dot(&raised));
             }
             let turned = raised - bracket_dual_product(&variation.local, &node.wrench);
@@ -208,7 +226,7 @@ impl Recursive {
                 Some(column) => {
                     let (turn, _) = split(column);
                     let faster = node.rigid.apply(&variation.speed_rate) + coriolis.apply(&turn);
-                    for (speed, column) in link.speeds.clone().zip(columns) {
+                    for (speed, column) in link.columns.clone().zip(columns) {
                         out.by_speeds
                             .set(speed, branch.speeds.0 + b, column.dot(&faster));
                     }
@@ -239,11 +257,11 @@ impl Recursive {
         let q = &q[link.configuration.clone()];
         link.joint.effort_gradient(q, &wrench, gradient);
         for (slot, column) in link
-            .freedoms
+            .variations
             .clone()
             .zip(gradient.chunks_exact(rows.max(1)))
         {
-            for (speed, entry) in link.speeds.clone().zip(column) {
+            for (speed, entry) in link.columns.clone().zip(column) {
                 let entry = out.by_local.entry(speed, slot) + entry;
                 out.by_local.set(speed, slot, entry);
             }

@@ -34,8 +34,10 @@ mod acting;
 mod coriolis;
 mod coupled;
 mod coupled_momenta;
+mod dense;
 mod energy;
 mod factor;
+mod fold;
 mod forward;
 mod hamiltonian;
 mod inverse;
@@ -171,8 +173,8 @@ impl Recursive {
     fn check_differentiable(&self, branches: &[Branch]) -> Result<(), DynamicsError> {
         let fits = |(branch, link): (&Branch, &Link)| {
             branch.parent == link.parent.unwrap_or(WORLD)
-                && branch.freedoms == (link.freedoms.start, link.freedoms.end)
-                && branch.speeds == (link.speeds.start, link.speeds.end)
+                && branch.freedoms == (link.variations.start, link.variations.end)
+                && branch.speeds == (link.columns.start, link.columns.end)
         };
         let is_own = branches.len() == self.links.len();
         if !(is_own && branches.iter().zip(&self.links).all(fits)) {
@@ -219,7 +221,7 @@ impl Recursive {
                 accelerations,
             ),
             (&self.nodes[index].motion, &parent.motion),
-            &self.columns[link.speeds.clone()],
+            &self.columns[link.columns.clone()],
             out,
         );
     }
@@ -230,7 +232,7 @@ fn in_child(node: &Node, wrench: &nalgebra::Vector6<f64>) -> nalgebra::Vector6<f
     crate::spatial::turn_back(&node.motion.placement.rotation, wrench)
 }
 
-/// Where the degrees of freedom and speeds of each joint stand, and what it hangs on.
+/// Where the degrees of freedom and speeds of each body's joint stand among the variations and columns of all bodies, and what it hangs on.
 #[derive(Clone, Copy, Debug)]
 struct Branch {
     /// `usize::MAX` for the world.
@@ -251,8 +253,8 @@ fn branches(mechanism: &Mechanism) -> Vec<Branch> {
         let ranges = body.ranges();
         Branch {
             parent: body.parent().unwrap_or(WORLD),
-            freedoms: (ranges.freedoms.start, ranges.freedoms.end),
-            speeds: (ranges.speeds.start, ranges.speeds.end),
+            freedoms: (ranges.variations.start, ranges.variations.end),
+            speeds: (ranges.columns.start, ranges.columns.end),
             parts: body.joint().parts(),
             forks: false,
         }

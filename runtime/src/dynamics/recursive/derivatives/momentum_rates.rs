@@ -29,7 +29,7 @@ impl Recursive {
             link.joint.twist_map_rate(q, speeds, rates);
         }
         let rotation = &node.motion.placement.rotation;
-        for (speed, own) in link.speeds.clone().zip(rates.chunks_exact(6)) {
+        for (speed, own) in link.columns.clone().zip(rates.chunks_exact(6)) {
             let column = &self.columns[speed];
             let turned = join(
                 &apply(rotation, &Vector3::new(own[0], own[1], own[2])),
@@ -55,13 +55,13 @@ impl Recursive {
         let gravity = self.mechanism.gravity();
         let carried = out.carried[index];
         let whole = node.wrench + carried;
-        for slot in link.freedoms.clone() {
+        for slot in link.variations.clone() {
             let variation = out.variations[slot];
             let momentum = node.rigid.apply(&variation.drift);
             let fall = cross(&split(&variation.local).0, gravity);
             let weight = -node.rigid.apply(&join(&Vector3::zeros(), &fall));
             let own = weight + bracket_dual_product(&variation.drift, &whole);
-            for speed in link.speeds.clone() {
+            for speed in link.columns.clone() {
                 let column = &self.columns[speed];
                 let entry = column.dot(&own) + out.moving[speed][0].dot(&momentum);
                 out.rates_by_local.set(speed, slot, entry);
@@ -76,15 +76,15 @@ impl Recursive {
                 of_speed: Vector6::zeros(),
                 moving: Vector6::zeros(),
             };
-            let a = slot - link.freedoms.start;
-            let own_speed = (a < link.speeds.len()).then(|| link.speeds.start + a);
+            let a = slot - link.variations.start;
+            let own_speed = (a < link.columns.len()).then(|| link.columns.start + a);
             if let Some(own) = own_speed {
                 let column = &self.columns[own];
                 raised.of_speed = node.rigid.apply(column);
                 raised.moving = out.moving[own][1];
                 raised.dragged = bracket_dual_product(column, &carried);
                 let turned = bracket_dual_product(column, &whole);
-                for speed in link.speeds.clone() {
+                for speed in link.columns.clone() {
                     let entry = self.columns[speed].dot(&turned)
                         + out.moving[speed][0].dot(&raised.of_speed);
                     out.rates_by_speeds.set(speed, own, entry);
@@ -114,7 +114,7 @@ impl Recursive {
             raised.moving = shift_wrench(&raised.moving, offset);
             body = parent;
             let link = &self.links[body];
-            for speed in link.speeds.clone() {
+            for speed in link.columns.clone() {
                 let (column, [moving, _]) = (&self.columns[speed], &out.moving[speed]);
                 let entry = column.dot(&raised.weight) + moving.dot(&raised.momentum);
                 let needed = column.dot(&raised.momentum);
@@ -130,7 +130,7 @@ impl Recursive {
             let Some(own) = own_speed else {
                 continue;
             };
-            for other in link.freedoms.clone() {
+            for other in link.variations.clone() {
                 let variation = &out.variations[other];
                 let fall = cross(&split(&variation.local).0, gravity);
                 let (_, force) = split(&raised.of_speed);
@@ -159,13 +159,13 @@ impl Recursive {
         let mut sum = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];
         let mut more = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];
         if !structures.speed_map.is_constant() {
-            if let Some(coupled) = &mut out.coupled {
+            if let Some(needed) = &mut out.needed {
                 let more = &mut more[..rows * freedoms];
                 link.joint.effort_gradient(q, &momentum, more);
                 for (n, entry) in more.iter().enumerate() {
                     let (row, column) =
-                        (link.speeds.start + n % rows, link.freedoms.start + n / rows);
-                    coupled.needed.add(row, column, *entry);
+                        (link.columns.start + n % rows, link.variations.start + n / rows);
+                    needed.add(row, column, *entry);
                 }
             }
             let turned = bracket_dual_product(&node.motion.twist, &node.wrench);
@@ -183,14 +183,14 @@ impl Recursive {
         }
         self.add_input_slopes(index, q, efforts, &mut sum[..rows * freedoms]);
         for (n, entry) in sum[..rows * freedoms].iter().enumerate() {
-            let (row, column) = (link.speeds.start + n % rows, link.freedoms.start + n / rows);
+            let (row, column) = (link.columns.start + n % rows, link.variations.start + n / rows);
             out.rates_by_local.entries[row * out.rates_by_local.columns + column] += entry;
         }
         if !structures.bias_momentum.is_zero() {
             let more = &mut more[..rows * rows];
             link.joint.bias_momentum_slope(q, &momentum, more);
             for (n, entry) in more.iter().enumerate() {
-                let (row, column) = (link.speeds.start + n % rows, link.speeds.start + n / rows);
+                let (row, column) = (link.columns.start + n % rows, link.columns.start + n / rows);
                 out.rates_by_speeds.entries[row * out.rates_by_speeds.columns + column] += entry;
             }
         }

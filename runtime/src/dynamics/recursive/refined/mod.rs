@@ -134,6 +134,10 @@ impl Recursive {
         }
         for index in (0..self.links.len()).rev() {
             let mut wrench = self.nodes[index].wrench;
+            if let Some(group) = self.links[index].group {
+                self.load_node(index, group, forces);
+                continue;
+            }
             let link = &self.links[index];
             let speeds = link.speeds.clone();
             let parent = link.parent;
@@ -144,7 +148,7 @@ impl Recursive {
                 }
                 None => link.joint.reduce(
                     &mut wrench,
-                    &self.columns[speeds.clone()],
+                    &self.columns[link.columns.clone()],
                     &self.pivots[speeds.clone()],
                     &forces[speeds.clone()],
                     &mut self.loads[speeds],

@@ -1,6 +1,7 @@
 //! Inverse dynamics in extended numbers: what rates leave of what acts.
 
 use super::super::Recursive;
+use super::super::inverse::MOST_FREEDOMS;
 use super::super::link::Link;
 use crate::erased::AnyJoint;
 use crate::scalar::Extended;
@@ -21,6 +22,7 @@ struct Body {
     parent: Option<usize>,
     configuration: Range<usize>,
     speeds: Range<usize>,
+    columns: Range<usize>,
     frame: Pose<E>,
     inertia: SpatialInertia<E>,
     armature: Vec<f64>,
@@ -52,6 +54,7 @@ impl Body {
             parent: link.parent,
             configuration: link.configuration.clone(),
             speeds: link.speeds.clone(),
+            columns: link.columns.clone(),
             // A placement whose entries are doubles is a rotation to 53 bits alone.
             frame: Pose::new(
                 nearest_rotation(&frame.rotation.map(E::from)),
@@ -84,7 +87,7 @@ impl Residual {
             motions: vec![still; bodies.len()],
             wrenches: vec![Vector6::zeros(); bodies.len()],
             external: vec![Vector6::zeros(); bodies.len()],
-            columns: vec![Vector6::zeros(); layout.speeds],
+            columns: vec![Vector6::zeros(); tree.mechanism.columns()],
             configuration: vec![zero; layout.configuration],
             speeds: vec![zero; layout.speeds],
             forces: vec![0.0; layout.speeds],
@@ -161,7 +164,7 @@ impl Residual {
                 &self.speeds[speeds.clone()],
                 &rates[speeds.clone()],
             );
-            let columns = &mut self.columns[speeds];
+            let columns = &mut self.columns[body.columns.clone()];
             body.joint.advance(state, &body.frame, parent, own, columns);
             let inertia = body.inertia.rotated(&own.placement.rotation);
             self.wrenches[index] = inertia.wrench(&own.twist, &own.rate);
@@ -170,15 +173,22 @@ impl Residual {
 
     /// Inward: `X̄ᵀ` of what each joint carries, and what its rotors take.
     fn gather(&mut self, rates: &[E]) {
+        self.gathered.fill(E::from(0.0));
         for (index, body) in self.bodies.iter().enumerate().rev() {
             let own = body.speeds.clone();
-            let (columns, out) = (&self.columns[own.clone()], &mut self.gathered[own.clone()]);
+            let mut taken = [E::from(0.0); MOST_FREEDOMS];
+            let taken = &mut taken[..own.len()];
             let wrench = self.wrenches[index];
-            body.joint.gather(&wrench, columns, out);
-            for (out, (&inertia, &rate)) in
-                out.iter_mut().zip(body.armature.iter().zip(&rates[own]))
+            body.joint
+                .gather(&wrench, &self.columns[body.columns.clone()], taken);
+            for (taken, (&inertia, &rate)) in taken
+                .iter_mut()
+                .zip(body.armature.iter().zip(&rates[own.clone()]))
             {
-                *out += E::from(inertia) * rate;
+                *taken += E::from(inertia) * rate;
+            }
+            for (out, taken) in self.gathered[own].iter_mut().zip(taken) {
+                *out += *taken;
             }
             if let Some(parent) = body.parent {
                 self.wrenches[parent] +=
