@@ -186,6 +186,14 @@ fn compiled(body: &BodyDescription, joint: Rc<JointType>) -> Result<Body, Vec<St
             elsewhere.join(", ")
         ));
     }
+    if !joint.derived.more.is_empty() {
+        reasons.push(format!(
+            "joint `{name}` of body `{}`: the joint type `{}` carries several bodies ({}), and compiled scenes have joints that carry one",
+            body.name.value,
+            body.joint.kind.value,
+            joint.derived.spec.bodies.join(", ")
+        ));
+    }
     let parameters = parameters(body, &joint, &mut reasons);
     match reasons.is_empty() {
         false => Err(reasons),

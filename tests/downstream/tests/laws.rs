@@ -1,9 +1,10 @@
 //! The law suite of the library's joints over this crate's: general Φ, declared manifolds, subgroups.
 
+use hamel::joint::Member;
 use hamel_downstream::joints::{
-    BallCayley, BallTurns, Bead, Catenary, CatenaryLength, DirectionSensor, ENTRIES, FourBar,
-    FourBarThrough, PlanarTurns, PowerGuide, RollingBallCayley, Scara, SkateHeading, SkewScrew,
-    SliderCrankRod, SpherePoint,
+    BallCayley, BallTurns, Bead, CarWheels, Catenary, CatenaryLength, CrankRocker, DirectionSensor,
+    ENTRIES, FourBar, FourBarThrough, GearedRotor, PlanarTurns, PowerGuide, RollingBallCayley,
+    Scara, SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint,
 };
 use hamel_tests::laws::Reach::{self, Entries, HalfTurn};
 use hamel_tests::laws::check_within;
@@ -79,10 +80,40 @@ laws_by_relations! {
     slider_crank_rod: SliderCrankRod;
 }
 
+/// The law suite of joints that carry several bodies: of the joint as each of them sees it. The first is the joint itself.
+macro_rules! laws_of_bodies {
+    ($($name:ident: $joint:expr, [$($body:literal),*];)*) => {
+        const OF_BODIES: &[&str] = &[$(stringify!($name)),*];
+        $(
+            #[test]
+            fn $name() {
+                let joint = $joint;
+                check_within(&joint, Entries(0.5));
+                $(check_within(&Member::<_, $body>(joint), Entries(0.5));)*
+                assert_eq!(bodies_of(stringify!($name)), [0, $($body),*]);
+            }
+        )*
+    };
+}
+
+laws_of_bodies! {
+    car_wheels: CarWheels::new(1.1, 0.7, 0.4), [1, 2, 3, 4];
+    crank_rocker: CrankRocker::new(0.9, 0.4, 1.1, 1.2), [1, 2];
+    geared_rotor: GearedRotor::new(5.5), [1];
+    slider_crank_links: SliderCrankLinks::new(0.4, 1.1, 0.2), [1, 2];
+}
+
+/// The places of the bodies that the spec of a joint names.
+fn bodies_of(name: &str) -> Vec<usize> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("joints");
+    let derived = hamel_tests::derived_in(&folder, name);
+    derived.bodies().map(|body| body.body).collect()
+}
+
 #[test]
 fn every_joint_has_a_test() {
     let names: Vec<&str> = ENTRIES.iter().map(|entry| entry.name).collect();
-    let mut tested = [TESTED, BY_RELATIONS].concat();
+    let mut tested = [TESTED, BY_RELATIONS, OF_BODIES].concat();
     tested.sort_unstable();
     assert_eq!(names, tested);
 }

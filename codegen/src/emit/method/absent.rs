@@ -42,6 +42,19 @@ pub fn absent(derived: &Derived, kernel: &Kernel) -> Option<Absent> {
     }
 }
 
+/// The kernels that are written of a body after the first: its own, but c and its dual, which come by products.
+pub fn of_further_body(derived: &Derived) -> impl Iterator<Item = &Kernel> {
+    let is_product = |kind| {
+        matches!(
+            kind,
+            KernelKind::BiasAcceleration | KernelKind::BiasMomentum
+        )
+    };
+    derived.kernels.iter().filter(move |kernel| {
+        kernel.kind.is_of_body() && !is_product(kernel.kind) && absent(derived, kernel).is_none()
+    })
+}
+
 fn zero(kernel: &Kernel) -> Option<Absent> {
     (kernel.structure == Structure::Zero).then_some(Absent::Zero)
 }

@@ -5,7 +5,7 @@ mod bias;
 pub mod group;
 mod signature;
 
-pub use absent::{Absent, absent, in_words as absent_in_words};
+pub use absent::{Absent, absent, in_words as absent_in_words, of_further_body};
 pub use bias::{WORTH_WRITING, operations as operations_by_products, products};
 pub use signature::{Argument, Output, Signature, meaning};
 

@@ -108,6 +108,7 @@ pub fn context(report: &Report, medium: Medium) -> Context {
     context.insert("scalar_count", &report.shape.configuration);
     context.insert("constraint_count", &report.shape.constraints);
     context.insert("requirements", &list(&report.requirements));
+    context.insert("bodies", &report.bodies);
     context.insert("manifold", &report.manifold);
     context.insert("coordinates", &report.coordinates);
     context.insert("home", &report.home);

@@ -42,12 +42,15 @@ impl Formula {
 
 /// H, X and S: what the documentation of a module shows.
 pub fn main_formulas(derived: &Derived) -> Vec<Formula> {
-    let notation = Notation::new(derived);
     let kernels = [KernelKind::Pose, KernelKind::TwistMap];
-    let of = |kind: &KernelKind| of_kernel(derived, &notation, *kind);
-    let names = names(derived, &notation, &kernels);
-    let formulas = kernels.iter().filter_map(of).chain(names);
-    let series = std::iter::once(velocity_map(derived, &notation));
+    let formulas = derived.bodies().flat_map(|body| {
+        let notation = Notation::new(body);
+        let of = |kind: &KernelKind| of_kernel(body, &notation, *kind);
+        let formulas = kernels.iter().filter_map(of);
+        let names = names(body, &notation, &kernels);
+        formulas.chain(names).collect::<Vec<_>>()
+    });
+    let series = std::iter::once(velocity_map(derived, &Notation::new(derived)));
     formulas.chain(series).collect()
 }
 
@@ -105,9 +108,15 @@ pub(super) fn formulas(derived: &Derived, notation: &Notation) -> Vec<Formula> {
         .into_iter()
         .chain(before.iter().filter_map(of))
         .collect();
+    let others = derived.more.iter().flat_map(|body| {
+        let notation = Notation::new(body);
+        let of = |kind: &KernelKind| of_kernel(body, &notation, *kind);
+        before.iter().filter_map(of).collect::<Vec<_>>()
+    });
     let series = std::iter::once(velocity_map(derived, notation));
     first
         .into_iter()
+        .chain(others)
         .chain(series)
         .chain(after.iter().filter_map(of))
         .collect()
@@ -143,7 +152,12 @@ fn of_kernel(derived: &Derived, notation: &Notation, kind: KernelKind) -> Option
     let kernel = derived
         .kernel(kind)
         .filter(|kernel| !kernel.outputs.is_empty())?;
-    let (name, title) = heading(kind)?;
+    let body = derived.body_name().filter(|_| kind.is_of_body());
+    let (name, title) = heading(kind, body)?;
+    let title = match body {
+        Some(body) => format!("{body}. {title}"),
+        None => title.to_owned(),
+    };
     let only_nonholonomic = [
         KernelKind::Constraint,
         KernelKind::SpeedBasis,
@@ -158,7 +172,7 @@ fn of_kernel(derived: &Derived, notation: &Notation, kind: KernelKind) -> Option
     };
     let equations = equations(derived, notation, kernel, &name);
     let statement = statement(derived, kind).unwrap_or_default();
-    (!equations.is_empty()).then(|| Formula::new(title, equations, statement))
+    (!equations.is_empty()).then(|| Formula::new(&title, equations, statement))
 }
 
 /// `p~` or `−v~`, where a Boltzmann–Hamel term is a cross product, as (32) makes it for a ball.
@@ -179,16 +193,24 @@ fn cross_product(derived: &Derived, kernel: &Kernel) -> Option<Math> {
     }
 }
 
-fn heading(kind: KernelKind) -> Option<(Math, &'static str)> {
+/// What a kernel is called, and what it is; `body` is the name of the body that it belongs to, where that has one.
+fn heading(kind: KernelKind, body: Option<&str>) -> Option<(Math, &'static str)> {
     let letter = Math::Letter;
+    let of_body = |c| match body {
+        Some(body) => letter(c).with_index(Math::Word(body.into())),
+        None => letter(c),
+    };
     let partial = |of: Math| Math::Partial(Box::new(of), Box::new(letter('ϕ')));
     let basis = || letter('S').marked(Mark::Bar);
     Some(match kind {
-        KernelKind::Pose => (letter('H'), "Pose: child coordinates to parent coordinates"),
-        KernelKind::TwistMap => (letter('X'), "v to twist, in the parent frame"),
+        KernelKind::Pose => (
+            of_body('H'),
+            "Pose: child coordinates to parent coordinates",
+        ),
+        KernelKind::TwistMap => (of_body('X'), "v to twist, in the parent frame"),
         KernelKind::TwistMapChild => {
-            let adjoint = Math::Word("Ad".into()).with_index(letter('H').inverse());
-            let product = Math::product([adjoint, letter('X')]);
+            let adjoint = Math::Word("Ad".into()).with_index(of_body('H').inverse());
+            let product = Math::product([adjoint, of_body('X')]);
             (product, "v to twist, in the child frame")
         }
         KernelKind::VelocityMapInverse => {

@@ -39,6 +39,8 @@ pub struct Report {
     pub docs: Vec<String>,
     /// Sizes.
     pub shape: Shape,
+    /// Names of the bodies, where the spec gives some.
+    pub bodies: Vec<String>,
     /// Parameters.
     pub parameters: Vec<ParameterRow>,
     /// Conditions on several parameters, as the spec writes them.
@@ -96,6 +98,7 @@ impl Report {
             summary: summary(&spec.docs, &spec.name.value),
             docs: spec.docs.clone(),
             shape: derived.shape,
+            bodies: spec.bodies.clone(),
             parameters: tables::parameters(derived),
             requirements: requirements(spec),
             manifold: manifold(derived),

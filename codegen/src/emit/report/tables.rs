@@ -4,7 +4,7 @@ use super::notation::Notation;
 use super::ranges;
 use super::units;
 use crate::derived::{Claim, Derived, Kernel, Method as FoundBy, Structure};
-use crate::emit::method::{Method, products};
+use crate::emit::method::{Method, of_further_body, products};
 use crate::expr::Rational;
 use crate::formula::Counts;
 use crate::model::Parameter;
@@ -148,7 +148,25 @@ pub(super) fn counts(derived: &Derived) -> Vec<CountRow> {
             ),
         }
     };
-    derived.kernels.iter().map(row).collect()
+    let own = derived.kernels.iter().map(row);
+    let others = derived.more.iter().flat_map(counts_of_body);
+    own.chain(others).collect()
+}
+
+/// The rows of what is emitted for a further body, with its name.
+fn counts_of_body(derived: &Derived) -> Vec<CountRow> {
+    let names = derived.names();
+    let row = |kernel: &Kernel| {
+        let method = Method::new(derived, kernel, &names);
+        let name = derived.body_name().unwrap_or_default();
+        CountRow {
+            kernel: format!("{} of {name}", method.signature.name),
+            structure: structure_in_words(kernel.structure).to_owned(),
+            operations: method.counts(),
+            besides: None,
+        }
+    };
+    of_further_body(derived).map(row).collect()
 }
 
 fn besides(found: FoundBy) -> Option<&'static str> {
@@ -174,7 +192,14 @@ const INERTIA: [&str; 10] = [
 
 /// Each element of the basis of N_X as a sum of parameters of an inertia.
 pub(super) fn unidentifiable(derived: &Derived) -> Vec<String> {
-    derived.unidentifiable.iter().map(combination).collect()
+    let of_body = |body: &Derived| -> Vec<String> {
+        let sums = body.unidentifiable.iter().map(combination);
+        match body.body_name() {
+            Some(name) => sums.map(|sum| format!("{name}: {sum}")).collect(),
+            None => sums.collect(),
+        }
+    };
+    derived.bodies().flat_map(of_body).collect()
 }
 
 fn combination(weights: &[Rational; 10]) -> String {

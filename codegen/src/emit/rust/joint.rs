@@ -1,5 +1,6 @@
 //! The type of a joint and its implementation of the trait.
 
+use super::bodies;
 use super::docs;
 use super::limits;
 use super::numeric;
@@ -22,6 +23,8 @@ pub fn tokens(derived: &Derived) -> TokenStream {
     let name = type_ident(derived);
     let [n, k, s, c] = sizes(derived);
     let constants = constants(derived);
+    let bodies = bodies::names(derived);
+    let carried = bodies::carried(derived);
     let parameters = parameters(derived);
     let names = derived.names();
     let method = |kernel: &Kernel| {
@@ -41,9 +44,11 @@ pub fn tokens(derived: &Derived) -> TokenStream {
         #own
         impl Joint<#n, #k, #s, #c> for #name {
             #constants
+            #bodies
             #parameters
             #(#methods)*
         }
+        #carried
     }
 }
 
@@ -168,7 +173,7 @@ fn constants(derived: &Derived) -> TokenStream {
     });
     let structures = structures(derived);
     let patterns = patterns::tokens(derived);
-    let inertias = derived.unidentifiable.iter().map(inertia);
+    let inertias = inertias(derived);
     let loci = derived.space.loci.iter().map(|locus| &locus.value.text);
     quote! {
         const NAME: &'static str = #name;
@@ -178,9 +183,15 @@ fn constants(derived: &Derived) -> TokenStream {
         const VELOCITY_FRAME: VelocityFrame = VelocityFrame::#frame;
         const STRUCTURES: Structures = #structures;
         #patterns
-        const UNIDENTIFIABLE: &'static [[f64; 10]] = &[#(#inertias),*];
+        #inertias
         const SINGULARITIES: &'static [&'static str] = &[#(#loci),*];
     }
+}
+
+/// The constant `UNIDENTIFIABLE`.
+pub fn inertias(derived: &Derived) -> TokenStream {
+    let inertias = derived.unidentifiable.iter().map(inertia);
+    quote! { const UNIDENTIFIABLE: &'static [[f64; 10]] = &[#(#inertias),*]; }
 }
 
 fn inertia(weights: &[Rational; 10]) -> TokenStream {
@@ -189,7 +200,7 @@ fn inertia(weights: &[Rational; 10]) -> TokenStream {
 }
 
 /// The structure of each kernel that differs from the nearer one of `Structures::TRIVIAL` and `Structures::GENERAL`.
-fn structures(derived: &Derived) -> TokenStream {
+pub fn structures(derived: &Derived) -> TokenStream {
     let of_kernel = |kind| {
         let kernel = derived.kernel(kind);
         kernel.map_or(Structure::General, |kernel| kernel.structure)

@@ -1,5 +1,6 @@
 //! Rust source of a joint: one module with its type, its kernels and its registry entry.
 
+mod bodies;
 mod comment;
 mod docs;
 mod entry;

@@ -89,5 +89,9 @@ fn text(joint: &Derived) -> String {
     let lines: String = joint.claims.iter().map(line).collect();
     let still = joint.still_in_words();
     let note = still.map_or_else(String::new, |still| format!("  note: {still}\n"));
-    format!("{}\n{lines}{note}\n", joint.spec.name.value)
+    let bodies = match joint.spec.bodies.as_slice() {
+        [] => String::new(),
+        names => format!(" (bodies {})", names.join(", ")),
+    };
+    format!("{}{bodies}\n{lines}{note}\n", joint.spec.name.value)
 }

@@ -68,6 +68,7 @@ joint {name} {{
     config  theta: R1, x: R1;           // rad, m: the stored scalars of Q
     // A group instead: config Q: SO3; basis e1, e2, e3 of so3; velocity in child;
     H     = trans_x(x) * rot_z(theta);  // child coordinates to parent coordinates
+    // Several bodies instead: bodies slot, pin; H.slot = …; H.pin = …;
     // Declared where they differ from what is derived: Phi, X. Nonholonomic: A, S_bar.
 }}
 "
