@@ -83,10 +83,10 @@ pub(crate) fn scene(
     })
 }
 
-/// The bodies by the names of their joints.
+/// The bodies that stand for joints, by the names of these.
 fn by_joint(mechanism: &Mechanism) -> HashMap<&str, usize> {
-    let bodies = mechanism.bodies().iter().enumerate();
-    bodies
+    mechanism
+        .joints()
         .map(|(index, body)| (body.joint_name(), index))
         .collect()
 }
