@@ -5,10 +5,12 @@ mod equip;
 mod event;
 mod forces;
 mod joint;
+mod parts;
 mod place;
 mod state;
 
 pub(crate) use control::control;
+pub(crate) use parts::states;
 pub(crate) use state::{State, state};
 
 use crate::description::SceneDescription;
