@@ -12,10 +12,17 @@ pub use crate::kernel::{
 pub use crate::prove::{Claim, Proof};
 
 /// A joint with all that follows from its spec.
+///
+/// Where it carries several bodies, this is the joint as the first of them sees it; `more` holds it as the others do. What belongs to Q and v
+/// alone is the same in all.
 #[derive(Clone, Debug)]
 pub struct Derived {
-    /// The spec.
+    /// The spec, with the pose and the declared twists of this body alone.
     pub spec: JointSpec,
+    /// Which of its bodies this is.
+    pub body: usize,
+    /// The joint as each further body sees it.
+    pub more: Vec<Derived>,
     /// Where the joint lives. It must not come to what the spec excepts, or else to the border of the side on which its functions have a value.
     pub space: ConfigurationSpace,
     /// Sizes.
@@ -40,6 +47,8 @@ pub struct Derived {
     pub velocity_map_series: (Matrix, Matrix),
     /// The degrees of freedom that move no body, by their places.
     pub still: Vec<usize>,
+    /// The speeds that move no body, by their places.
+    pub still_speeds: Vec<usize>,
     /// N_X: basis of the inertias that do not affect the joint, `[m, mc_x, mc_y, mc_z, Ixx, Iyy, Izz, Ixy, Ixz, Iyz]`.
     pub unidentifiable: Vec<[Rational; 10]>,
     /// All that was proved, and what was checked instead.
@@ -70,6 +79,16 @@ const NOTHING: &Program = &Program {
 };
 
 impl Derived {
+    /// The name of this body, where the spec gives it one.
+    pub fn body_name(&self) -> Option<&str> {
+        self.spec.bodies.get(self.body).map(String::as_str)
+    }
+
+    /// The joint as each of its bodies sees it, in order.
+    pub fn bodies(&self) -> impl Iterator<Item = &Self> {
+        std::iter::once(self).chain(&self.more)
+    }
+
     /// The formulas of one of its kernels.
     pub fn program(&self, kernel: &Kernel) -> &Program {
         self.programs.get(&kernel.kind).unwrap_or(NOTHING)
@@ -111,11 +130,10 @@ impl Derived {
             Some(freedom.name.clone())
         };
         let freedoms: Vec<String> = self.still.iter().filter_map(named).collect();
-        let is_still = |j: usize| self.speed_map.column(j).iter().all(Expr::is_zero);
-        let speeds = self.speed_names.iter().enumerate();
+        let speeds = self.still_speeds.iter();
         let speeds: Vec<&str> = speeds
-            .filter(|(j, _)| is_still(*j))
-            .map(|(_, name)| name.as_str())
+            .filter_map(|&j| self.speed_names.get(j))
+            .map(String::as_str)
             .collect();
         (!freedoms.is_empty()).then(|| {
             let speeds = match speeds.as_slice() {

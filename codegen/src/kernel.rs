@@ -65,6 +65,21 @@ pub enum KernelKind {
     BiasMomentum,
 }
 
+impl KernelKind {
+    /// Whether it is different for each body of a joint; others belong to Q and v alone.
+    pub fn is_of_body(self) -> bool {
+        matches!(
+            self,
+            Self::Pose
+                | Self::TwistMap
+                | Self::TwistMapChild
+                | Self::TwistMapChildGradient
+                | Self::BiasAcceleration
+                | Self::BiasMomentum
+        )
+    }
+}
+
 /// What is known of a kernel's value at compile time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Structure {

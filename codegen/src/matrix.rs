@@ -123,6 +123,11 @@ impl Matrix {
         Self::from_fn(rows.len(), self.columns, |i, j| self.at(rows[i], j).clone())
     }
 
+    /// The six rows of one body in a stack of twists.
+    pub fn rows_of_body(&self, body: usize) -> Self {
+        self.block(6 * body, 0, 6, self.columns)
+    }
+
     /// Columns side by side.
     pub fn from_columns(rows: usize, columns: &[Vec<Expr>]) -> Self {
         Self::from_fn(rows, columns.len(), |i, j| columns[j][i].clone())
@@ -301,6 +306,14 @@ pub fn combinations(count: usize, size: usize) -> Vec<Vec<usize>> {
                 })
         })
         .collect()
+}
+
+/// How many there are, or the largest number where they are more.
+pub fn count_combinations(count: usize, size: usize) -> usize {
+    let factors = (0..size.min(count)).map(|n| (count - n, n + 1));
+    factors.fold(1, |all: usize, (above, below)| {
+        all.checked_mul(above).map_or(usize::MAX, |all| all / below)
+    })
 }
 
 #[cfg(test)]

@@ -101,8 +101,8 @@ pub struct Named {
 pub struct Worded {
     /// The `let`s, entry by entry, in order.
     pub named: Vec<Named>,
-    /// H.
-    pub pose: Option<PoseExpr>,
+    /// H of each body; empty where one of them cannot be said in names.
+    pub poses: Vec<PoseExpr>,
     /// X, where declared.
     pub twist_map: Option<Matrix>,
     /// A, where declared.
@@ -153,6 +153,14 @@ pub struct PoseExpr {
     pub rotation: Matrix,
     /// 3×1.
     pub translation: Matrix,
+}
+
+impl PoseExpr {
+    /// The entries of both.
+    pub fn entries(&self) -> impl Iterator<Item = &Expr> {
+        let rotation = self.rotation.entries().iter();
+        rotation.chain(self.translation.entries())
+    }
 }
 
 /// Where a joint lives: its manifold without the exceptions, for the values that its parameters may take.
@@ -227,13 +235,17 @@ pub struct JointSpec {
     pub freedoms: Declared<Vec<Freedom>>,
     /// Frame of v.
     pub velocity: Declared<VelocityFrame>,
+    /// Names of the bodies, where the spec gives some; `pose` is that of the first.
+    pub bodies: Vec<String>,
     /// H(Q).
     pub pose: Declared<PoseExpr>,
+    /// H(Q) of the bodies after the first.
+    pub more: Vec<Declared<PoseExpr>>,
     /// Φ(Q, ϕ) as stored scalars, where declared.
     pub retract: Option<Declared<Vec<Expr>>>,
     /// How v moves Q on the manifold of the relations, where these say more than the basis and Φ is not declared.
     pub implicit: Option<Implicit>,
-    /// X(Q), 6×k, where declared.
+    /// X(Q), 6×k, where declared; of several bodies one below the other.
     pub twist_map: Option<Declared<Matrix>>,
     /// A(Q), k×(k−k̄), where declared.
     pub constraint: Option<Declared<Matrix>>,
@@ -270,6 +282,36 @@ pub struct Unproved {
 }
 
 impl JointSpec {
+    /// H of every body, in order.
+    pub fn poses(&self) -> impl Iterator<Item = &Declared<PoseExpr>> {
+        std::iter::once(&self.pose).chain(&self.more)
+    }
+
+    /// The same joint as if it carried that body alone; as it is where there is no such body.
+    pub fn carrying(&self, body: usize) -> Self {
+        let mut alone = self.clone();
+        if let Some(pose) = self.poses().nth(body) {
+            alone.pose = pose.clone();
+            alone.more = vec![];
+            let own = |map: &mut Matrix| *map = map.rows_of_body(body);
+            alone.twist_map.iter_mut().for_each(|x| own(&mut x.value));
+            alone.worded.twist_map.iter_mut().for_each(own);
+            let pose = self.worded.poses.get(body).cloned();
+            alone.worded.poses = pose.into_iter().collect();
+        }
+        alone
+    }
+
+    /// What is declared of Q in matrices: H of every body, X, A and S̄.
+    pub(crate) fn matrices(&self) -> impl Iterator<Item = &Matrix> {
+        let poses = self
+            .poses()
+            .flat_map(|pose| [&pose.value.rotation, &pose.value.translation]);
+        let others = [&self.twist_map, &self.constraint, &self.speed_basis];
+        let others = others.into_iter().flatten().map(|matrix| &matrix.value);
+        poses.chain(others)
+    }
+
     /// The degrees of freedom of one factor.
     pub(crate) fn freedoms_of(&self, factor: usize) -> impl Iterator<Item = &Freedom> {
         let freedoms = self.freedoms.value.iter();

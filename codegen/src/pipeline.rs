@@ -1,6 +1,6 @@
 //! The whole pipeline: text in, proven kernels out.
 
-use crate::derived::{Derived, programs};
+use crate::derived::{Claim, Derived, programs};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::expand::task;
 use crate::expand::{self, Expansion};
@@ -11,6 +11,7 @@ use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use crate::model::{ConfigurationSpace, Declared, JointSpec, Locus};
 use crate::prepare::Prepared;
+use crate::simplify::{View, Written};
 use crate::{prove, spec};
 use num_bigint::BigInt;
 use std::path::Path;
@@ -79,36 +80,88 @@ fn derive_spec(spec: JointSpec) -> Result<Derived, Vec<Diagnostic>> {
     }
     let loci = loci(&joint);
     budget::begin(task::KERNELS);
-    let kernels = expand::kernels(&joint, &expansion, &loci)?;
-    let (kernels, words) = crate::simplify::in_words(&joint, &expansion, kernels);
-    if let Some(number) = expand::beyond_doubles(&kernels) {
+    let written = kernels(&joint, &expansion, &loci)?;
+    let speed_map = expand::speed_map(&joint, &expansion);
+    let is_still = |j: &usize| speed_map.column(*j).iter().all(Expr::is_zero);
+    let known = Known {
+        still_speeds: (0..speed_map.columns()).filter(is_still).collect(),
+        space: ConfigurationSpace {
+            loci,
+            ..joint.space.clone()
+        },
+        joint,
+        expansion,
+        claims,
+    };
+    let (first, others) = written;
+    let others = others.into_iter().zip(1..);
+    Ok(Derived {
+        more: others
+            .map(|(written, body)| known.of_body(body, written))
+            .collect(),
+        ..known.of_body(0, first)
+    })
+}
+
+/// The kernels of each body, as they are written: of the first and of all others.
+fn kernels(
+    joint: &Prepared,
+    expansion: &Expansion,
+    loci: &[Declared<Locus>],
+) -> Result<(Written, Vec<Written>), Vec<Diagnostic>> {
+    let view = |body| View::of_body(joint, expansion, body);
+    let mut first = view(0);
+    first.kernels = expand::kernels(&first.joint, &first.expansion, loci)?;
+    let others: Vec<View> = (1..=joint.spec.more.len()).map(view).collect();
+    let (first, others) = crate::simplify::in_words(joint, &first, &others);
+    let all = || std::iter::once(&first).chain(&others);
+    if let Some(number) = all().find_map(|(kernels, _)| expand::beyond_doubles(kernels)) {
         return Err(vec![beyond_doubles(&joint.spec, &number)]);
     }
     budget::begin(task::FORMULAS);
-    kernels.iter().for_each(spend_on_formulas);
-    let programs = programs(&joint.spec, &expansion.arguments, &words, &kernels);
-    let ideal = joint.space.manifold.ideal();
-    Ok(Derived {
-        shape: expansion.shape,
-        cut_out: expand::dimension::cut_out(&joint),
-        speed_names: expand::speed_names(&joint.spec),
-        tangent: expansion.motion.tangent(),
-        local_twist_map: ideal.simplest_entries(&expansion.jacobian.child),
-        speed_map: expand::speed_map(&joint, &expansion),
-        velocity_map_series: series(ideal, &expansion),
-        arguments: expansion.arguments,
-        still: expansion.still.freedoms,
-        unidentifiable: expansion.unidentifiable,
-        kernels,
-        words,
-        claims,
-        programs,
-        spec: joint.spec,
-        space: ConfigurationSpace {
-            loci,
-            ..joint.space
-        },
-    })
+    first.0.iter().for_each(spend_on_formulas);
+    let of_others = others.iter().flat_map(|(kernels, _)| kernels);
+    let of_others = of_others.filter(|kernel| kernel.kind.is_of_body());
+    of_others.for_each(spend_on_formulas);
+    Ok((first, others))
+}
+
+/// What is known of a joint once it is proved.
+struct Known {
+    joint: Prepared,
+    space: ConfigurationSpace,
+    expansion: Expansion,
+    claims: Vec<Claim>,
+    still_speeds: Vec<usize>,
+}
+
+impl Known {
+    /// The joint as one of its bodies sees it.
+    fn of_body(&self, body: usize, (kernels, words): Written) -> Derived {
+        let (joint, expansion) = (self.joint.carrying(body), self.expansion.carrying(body));
+        let ideal = joint.space.manifold.ideal();
+        Derived {
+            body,
+            more: vec![],
+            shape: expansion.shape,
+            cut_out: expand::dimension::cut_out(&joint),
+            speed_names: expand::speed_names(&joint.spec),
+            tangent: expansion.motion.tangent(),
+            local_twist_map: ideal.simplest_entries(&expansion.jacobian.child),
+            speed_map: expand::speed_map(&joint, &expansion),
+            velocity_map_series: series(ideal, &expansion),
+            unidentifiable: expand::unidentifiable(&expansion, ideal),
+            programs: programs(&joint.spec, &expansion.arguments, &words, &kernels),
+            arguments: expansion.arguments,
+            still: expansion.still.freedoms,
+            still_speeds: self.still_speeds.clone(),
+            kernels,
+            words,
+            claims: self.claims.clone(),
+            spec: joint.spec,
+            space: self.space.clone(),
+        }
+    }
 }
 
 /// The exceptions. Where functions have a value on one component of the manifold alone and nothing is excepted, its border is one: the

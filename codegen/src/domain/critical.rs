@@ -26,11 +26,7 @@ impl Critical {
             true => BTreeSet::new(),
             false => Self::in_retract(spec),
         };
-        let pose = &spec.pose.value;
-        let declared = [&spec.twist_map, &spec.constraint, &spec.speed_basis];
-        let matrices = [&pose.rotation, &pose.translation].into_iter();
-        let matrices = matrices.chain(declared.into_iter().flatten().map(|d| &d.value));
-        matrices
+        spec.matrices()
             .flat_map(Matrix::entries)
             .chain(spec.loci.iter().map(|locus| &locus.value.function))
             .for_each(|e| Self::collect(e, &[], &mut found));

@@ -26,15 +26,9 @@ fn arguments(spec: &JointSpec) -> BTreeSet<Expr> {
         .iter()
         .map(|freedom| freedom.local.clone())
         .collect();
-    let pose = &spec.pose.value;
-    let declared = [&spec.twist_map, &spec.constraint, &spec.speed_basis];
-    let declared = declared.into_iter().flatten().map(|d| &d.value);
-    let matrices = [&pose.rotation, &pose.translation]
-        .into_iter()
-        .chain(declared);
     let retract = spec.retract.iter().flat_map(|declared| &declared.value);
     let mut found = BTreeSet::new();
-    let entries = matrices.flat_map(Matrix::entries).chain(retract);
+    let entries = spec.matrices().flat_map(Matrix::entries).chain(retract);
     entries.for_each(|entry| collect(entry, &mut found));
     found
         .iter()

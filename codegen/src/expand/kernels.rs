@@ -22,13 +22,31 @@ pub fn kernels(
         loci,
         x: expansion,
         ideal: joint.space.manifold.ideal(),
-        child_slopes: child_slopes(joint, expansion),
     };
-    let mut kernels = maker.pose_and_velocity();
+    let mut kernels = of_body(joint, expansion);
+    kernels.extend(maker.velocity());
     kernels.extend(maker.nonholonomic());
     kernels.extend(maker.finite_maps()?);
     kernels.sort_by_key(|kernel| kernel.kind);
     Ok(kernels)
+}
+
+/// The kernels that are different for each body of a joint: H, X, X^c and ∂X^c/∂ϕ of the one that it carries.
+pub fn of_body(joint: &Prepared, expansion: &Expansion) -> Vec<Kernel> {
+    let pose = &joint.spec.pose.value;
+    let child = &expansion.twist_map_child;
+    vec![
+        plain(
+            KernelKind::Pose,
+            vec![pose.rotation.clone(), pose.translation.clone()],
+        ),
+        plain(KernelKind::TwistMap, vec![expansion.twist_map.clone()]),
+        plain(KernelKind::TwistMapChild, vec![child.clone()]),
+        plain(
+            KernelKind::TwistMapChildGradient,
+            child_slopes(joint, expansion),
+        ),
+    ]
 }
 
 struct Maker<'a> {
@@ -36,7 +54,6 @@ struct Maker<'a> {
     loci: &'a [Declared<Locus>],
     x: &'a Expansion,
     ideal: &'a Ideal,
-    child_slopes: Vec<Matrix>,
 }
 
 /// X̄^c = X^c S̄.
@@ -59,8 +76,7 @@ impl Maker<'_> {
         self.ideal.simplest_entries(matrix)
     }
 
-    fn pose_and_velocity(&self) -> Vec<Kernel> {
-        let pose = &self.joint.spec.pose.value;
+    fn velocity(&self) -> Vec<Kernel> {
         let s = &self.x.velocity_map;
         let velocity = Matrix::symbols(&self.x.arguments.velocity);
         let momentum = Matrix::symbols(&self.x.arguments.momentum);
@@ -73,16 +89,6 @@ impl Maker<'_> {
         }
         vec![
             home,
-            plain(
-                KernelKind::Pose,
-                vec![pose.rotation.clone(), pose.translation.clone()],
-            ),
-            plain(KernelKind::TwistMap, vec![self.x.twist_map.clone()]),
-            plain(
-                KernelKind::TwistMapChild,
-                vec![self.x.twist_map_child.clone()],
-            ),
-            plain(KernelKind::TwistMapChildGradient, self.child_slopes.clone()),
             plain(KernelKind::VelocityMap, vec![s.base.clone()]),
             // Always a formula: adj S₀ / det S₀ exists, its sums are shared, and Γ, J22 and the rates are made of it. Where it is too
             // long for the bound on work, so are they, and det S₀ has no certificate: the spec is refused.

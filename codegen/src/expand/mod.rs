@@ -18,19 +18,22 @@ pub(crate) mod rank;
 mod steps;
 mod still;
 pub(crate) mod task;
+mod twist;
 mod unidentifiable;
 mod velocity;
 
 pub use dimension::Confinement;
 pub use implicit::Flow;
 
-pub use kernels::{kernels, speed_map};
+pub use kernels::{kernels, of_body, speed_map};
 pub use motion::Motion;
 pub use nonholonomic::{Nonholonomic, speed_names};
 pub use numbers::beyond_doubles;
 pub use steps::Steps;
 pub use still::Still;
-pub use velocity::{TwistJacobian, VelocityMap, adjoint_inverse, bracket};
+pub use twist::{TwistJacobian, bracket, in_child_frames};
+pub use unidentifiable::unidentifiable;
+pub use velocity::VelocityMap;
 
 use crate::algebra;
 use crate::diagnostic::Diagnostic;
@@ -58,7 +61,7 @@ pub struct Expansion {
     pub flow: Option<Flow>,
     /// Structure constants: slice k is `ad_{b_k}` in the declared basis, entry (i, j) = c^i_kj.
     pub structure_constants: Vec<Matrix>,
-    /// J to first order.
+    /// J to first order; of several bodies one below the other, as X and X^c.
     pub jacobian: TwistJacobian,
     /// X.
     pub twist_map: Matrix,
@@ -74,8 +77,18 @@ pub struct Expansion {
     pub nonholonomic: Nonholonomic,
     /// The degrees of freedom that move no body.
     pub still: Still,
-    /// N_X.
-    pub unidentifiable: Vec<[crate::expr::Rational; 10]>,
+}
+
+impl Expansion {
+    /// That of the joint as if it carried that body alone: what belongs to Q and v stays as it is.
+    pub fn carrying(&self, body: usize) -> Self {
+        Self {
+            jacobian: self.jacobian.rows_of_body(body),
+            twist_map: self.twist_map.rows_of_body(body),
+            twist_map_child: self.twist_map_child.rows_of_body(body),
+            ..self.clone()
+        }
+    }
 }
 
 /// Expands a joint.spec.
@@ -96,13 +109,12 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
     };
     let structure_constants = structure_constants(joint);
     budget::begin(task::TWIST);
-    let jacobian = TwistJacobian::new(&joint.spec.pose.value, &motion, ideal);
+    let jacobian = TwistJacobian::of_bodies(&joint.spec, &motion, ideal);
     budget::begin(task::TWIST_MAP);
-    let to_child = adjoint_inverse(&joint.spec.pose.value);
     let twist_map = twist_map(joint, &jacobian, ideal)?;
     let twist_map_child = match twist_map == jacobian.base {
         true => jacobian.child.clone(),
-        false => ideal.simplest_entries(&to_child.times(&twist_map)),
+        false => ideal.simplest_entries(&in_child_frames(&joint.spec, &twist_map)),
     };
     budget::begin(task::VELOCITY_MAP);
     let still = Still::new(joint, &motion);
@@ -111,7 +123,7 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
         jacobian: &still.below_jacobian(&jacobian),
         twist_map: &still.below(&twist_map),
         child: &still.below(&twist_map_child),
-        to_child: &still.beside(&to_child),
+        to_child: &still.beside(&twist::adjoint_inverses(&joint.spec)),
         motion: &motion,
         flow: flow.as_ref(),
         domain: &domain,
@@ -137,7 +149,6 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
             constraints: nonholonomic.constraint.columns(),
             displacements: arguments.displacement.len(),
         },
-        unidentifiable: unidentifiable::unidentifiable(&twist_map_child, &jacobian.child, ideal),
         arguments,
         exponential,
         motion,

@@ -4,7 +4,7 @@ use super::complement::parts;
 use super::elimination;
 use crate::domain::Domain;
 use crate::expr::Expr;
-use crate::matrix::{Matrix, combinations};
+use crate::matrix::{Matrix, combinations, count_combinations};
 
 /// Why the columns are independent everywhere, in words; `Err` holds det(MᵀM), whose zeros are where they may not be.
 pub fn full_column_rank(m: &Matrix, domain: &Domain<'_>) -> Result<String, Expr> {
@@ -30,12 +30,37 @@ fn by_parts(m: &Matrix, domain: &Domain<'_>) -> Result<String, Expr> {
         let part = Matrix::from_fn(rows.len(), columns.len(), |i, j| {
             m.at(rows[i], columns[j]).clone()
         });
-        let certificate = whole(&part, rows, domain)?;
+        let certificate = of_part(&part, rows, domain)?;
         if !certificates.contains(&certificate) {
             certificates.push(certificate);
         }
     }
     Ok(certificates.join("; "))
+}
+
+/// Most minors that are looked at as a whole.
+pub(super) const MOST_MINORS: usize = 5_000;
+
+/// The same for a connected part, whose rows have these places: of rows that are alike one, and behind constant pivots where there are very
+/// many minors.
+fn of_part(m: &Matrix, places: &[usize], domain: &Domain<'_>) -> Result<String, Expr> {
+    let row = |i: usize| (0..m.columns()).map(move |j| m.at(i, j));
+    let is_new = |&i: &usize| (0..i).all(|other| !row(i).eq(row(other)));
+    let rows: Vec<usize> = (0..m.rows()).filter(is_new).collect();
+    let (short, places): (Matrix, Vec<usize>) = (
+        m.select_rows(&rows),
+        rows.iter().map(|&i| places[i]).collect(),
+    );
+    if count_combinations(short.rows(), short.columns()) <= MOST_MINORS {
+        return whole(&short, &places, domain);
+    }
+    behind_pivots(&short, domain).ok_or_else(|| {
+        let simplify = |e: &Expr| domain.ideal().normal_form(e);
+        let gram = domain
+            .ideal()
+            .normal_forms(&short.transpose().times(&short));
+        gram.determinant(&simplify)
+    })
 }
 
 /// The same by all minors, whose rows have these places.

@@ -4,7 +4,7 @@
 //! `[X; E] S = [J; E_J]`. Dynamics never see them.
 
 use super::Motion;
-use super::velocity::TwistJacobian;
+use super::twist::TwistJacobian;
 use crate::expr::{Expr, Symbol};
 use crate::matrix::Matrix;
 use crate::prepare::Prepared;
@@ -26,9 +26,7 @@ pub struct Still {
 impl Still {
     /// Those of the joint. None where H is constant: a joint moves a body.
     pub fn new(joint: &Prepared, motion: &Motion) -> Self {
-        let pose = &joint.spec.pose.value;
-        let entries = pose.rotation.entries().iter();
-        let entries = entries.chain(pose.translation.entries());
+        let entries = joint.spec.poses().flat_map(|pose| pose.value.entries());
         let in_pose: BTreeSet<Symbol> = entries.flat_map(Expr::symbols).collect();
         let coordinates = joint.space.manifold.coordinates();
         let moves = |k: usize, n: usize| !motion.direction(k)[n].is_zero();

@@ -3,7 +3,8 @@
 //! `N = [I mc~; −mc~ m1]` in the child frame with `N X^c = 0`, and constant when read in the parent frame:
 //! `ad_Tᵀ N + N ad_T = 0` for each twist T of the joint. Linear in the ten parameters; solved over the rationals.
 
-use super::velocity::bracket;
+use super::Expansion;
+use super::twist::bracket;
 use crate::expr::{Expr, Monomial, Rational, Role, Symbol};
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
@@ -12,9 +13,11 @@ use std::collections::BTreeMap;
 
 /// A basis of N_X; each element `[m, mc_x, mc_y, mc_z, Ixx, Iyy, Izz, Ixy, Ixz, Iyz]`.
 ///
-/// `child` is X^c, `twists` the twists by ϕ̇ in the child frame. What holds only at special parameter values does not count. Conditions
+/// Of a joint with one body. What holds only at special parameter values does not count. Conditions
 /// are met one after the other, so that the first ones, which are short, leave little for the others.
-pub fn unidentifiable(child: &Matrix, twists: &Matrix, ideal: &Ideal) -> Vec<[Rational; 10]> {
+pub fn unidentifiable(expansion: &Expansion, ideal: &Ideal) -> Vec<[Rational; 10]> {
+    // The second are twists by ϕ̇.
+    let (child, twists) = (&expansion.twist_map_child, &expansion.jacobian.child);
     let whole: Vec<[Rational; 10]> = (0..10).map(unit).collect();
     let columns = (0..child.columns()).map(|j| Matrix::column_vector(child.column(j)));
     // Forces before moments: they hold mass and first moment alone.

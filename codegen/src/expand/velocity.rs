@@ -1,100 +1,13 @@
-//! The paper's step: J, X and S to first order in ϕ, (23).
+//! The paper's step: S to first order in ϕ from X and J, (23).
 
 use super::implicit::Flow;
 use super::motion::Motion;
+use super::rank::MOST_MINORS;
+use super::twist::TwistJacobian;
 use super::{directions, elimination};
 use crate::domain::Domain;
 use crate::expr::{Expr, budget};
-use crate::manifold::Ideal;
-use crate::matrix::{Matrix, combinations};
-use crate::model::PoseExpr;
-
-/// `Ad_{H⁻¹} = [Rᵀ 0; −Rᵀp~ Rᵀ]`.
-pub fn adjoint_inverse(pose: &PoseExpr) -> Matrix {
-    let (r, p) = (pose.rotation.transpose(), pose.translation.entries());
-    let zero = Matrix::zeros(3, 3);
-    let lower = r.times(&Matrix::tilde(p)).map(|entry| -entry);
-    r.beside(&zero).stack(&lower.beside(&r))
-}
-
-/// `ad_T = [ω~ 0; v~ ω~]`.
-pub fn bracket(twist: &[Expr]) -> Matrix {
-    let (omega, v) = (Matrix::tilde(&twist[..3]), Matrix::tilde(&twist[3..]));
-    omega.beside(&Matrix::zeros(3, 3)).stack(&v.beside(&omega))
-}
-
-/// J(Q, ϕ) to first order: twist of H(Φ(Q, ϕ)) in the parent frame, by ϕ̇.
-#[derive(Clone, Debug)]
-pub struct TwistJacobian {
-    /// J₀, 6×k.
-    pub base: Matrix,
-    /// J₀ in the child frame.
-    pub child: Matrix,
-    /// J_l = ∂J/∂ϕ_l.
-    pub slopes: Vec<Matrix>,
-}
-
-impl TwistJacobian {
-    /// `J ϕ̇ = vee(Ḣ H⁻¹)`: angular part `∂R Rᵀ`, linear part `∂p − ω × p`.
-    pub fn new(pose: &PoseExpr, motion: &Motion, ideal: &Ideal) -> Self {
-        let k = motion.freedoms();
-        let r_t = pose.rotation.transpose();
-        let p = pose.translation.entries();
-        let rotations: Vec<Matrix> = (0..k)
-            .map(|i| motion.along_each(&pose.rotation, i))
-            .collect();
-        let translations: Vec<Matrix> = (0..k)
-            .map(|i| motion.along_each(&pose.translation, i))
-            .collect();
-        let omegas: Vec<Vec<Expr>> = rotations
-            .iter()
-            .map(|dr| vee(&ideal.simplest_entries(&dr.times(&r_t))))
-            .collect();
-        let child_column = |i: usize| {
-            let omega = vee(&ideal.simplest_entries(&r_t.times(&rotations[i])));
-            join(
-                &omega,
-                &ideal.simplest_entries(&r_t.times(&translations[i])),
-            )
-        };
-        let column = |i: usize| {
-            let linear = translations[i].minus(&cross(&omegas[i], p));
-            join(&omegas[i], &ideal.simplest_entries(&linear))
-        };
-        let slope_column = |i: usize, l: usize| {
-            let curved = pose.rotation.map(|entry| motion.along_both(entry, i, l));
-            let omega_slope = curved
-                .times(&r_t)
-                .plus(&rotations[i].times(&rotations[l].transpose()));
-            let omega_slope = vee(&ideal.simplest_entries(&omega_slope));
-            let linear = pose.translation.map(|entry| motion.along_both(entry, i, l));
-            let linear = linear
-                .minus(&cross(&omega_slope, p))
-                .minus(&cross(&omegas[i], translations[l].entries()));
-            join(&omega_slope, &ideal.simplest_entries(&linear))
-        };
-        let slope = |l: usize| {
-            Matrix::from_columns(6, &(0..k).map(|i| slope_column(i, l)).collect::<Vec<_>>())
-        };
-        Self {
-            base: Matrix::from_columns(6, &(0..k).map(column).collect::<Vec<_>>()),
-            child: Matrix::from_columns(6, &(0..k).map(child_column).collect::<Vec<_>>()),
-            slopes: (0..k).map(slope).collect(),
-        }
-    }
-}
-
-fn vee(m: &Matrix) -> Vec<Expr> {
-    vec![m.at(2, 1).clone(), m.at(0, 2).clone(), m.at(1, 0).clone()]
-}
-
-fn cross(a: &[Expr], b: &[Expr]) -> Matrix {
-    Matrix::tilde(a).times(&Matrix::column_vector(b.to_vec()))
-}
-
-fn join(angular: &[Expr], linear: &Matrix) -> Vec<Expr> {
-    angular.iter().chain(linear.entries()).cloned().collect()
-}
+use crate::matrix::{Matrix, combinations, count_combinations};
 
 /// S to first order: `X S = J`, so `X₀ S₀ = J₀` and `X₀ S_l = J_l − X_l S₀`.
 #[derive(Clone, Debug)]
@@ -272,8 +185,11 @@ impl Solver<'_, '_> {
         })
     }
 
-    /// The inverse of the first rows with a good determinant, zero elsewhere.
+    /// The inverse of the first rows with a good determinant, zero elsewhere; not looked for where there are very many choices.
     fn row_inverse(&self, m: &Matrix, good: &dyn Fn(&Expr) -> bool) -> Option<Matrix> {
+        if count_combinations(m.rows(), m.columns()) > MOST_MINORS {
+            return None;
+        }
         let simplify = |e: &Expr| self.domain.ideal().normal_form(e);
         combinations(m.rows(), m.columns())
             .into_iter()

@@ -55,6 +55,14 @@ impl Prepared {
         })
     }
 
+    /// The same joint as if it carried that body alone.
+    pub fn carrying(&self, body: usize) -> Self {
+        Self {
+            spec: self.spec.carrying(body),
+            ..self.clone()
+        }
+    }
+
     /// The functions in what the spec declares that are not smooth at every argument.
     pub fn critical(&self) -> BTreeSet<Critical> {
         Critical::declared(&self.spec, self.exponential)

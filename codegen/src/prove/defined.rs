@@ -5,7 +5,7 @@ use crate::diagnostic::Diagnostic;
 use crate::domain::{Critical, Domain};
 use crate::expr::{Expr, Function};
 use crate::matrix::Matrix;
-use crate::model::{Declared, Locus};
+use crate::model::{Declared, Locus, PoseExpr};
 use crate::prepare::Prepared;
 use crate::spec::code;
 use std::collections::BTreeSet;
@@ -76,8 +76,9 @@ impl Prover<'_> {
         let of_matrix = |declared: &Declared<Matrix>| {
             (declared.value.entries().to_vec(), declared.span.clone())
         };
-        let pose = &joint.spec.pose.value;
-        let of_pose = [pose.rotation.entries(), pose.translation.entries()].concat();
+        let of_pose = |pose: &Declared<PoseExpr>| {
+            (pose.value.entries().cloned().collect(), pose.span.clone())
+        };
         let matrices = [
             &joint.spec.twist_map,
             &joint.spec.constraint,
@@ -85,8 +86,8 @@ impl Prover<'_> {
         ];
         let of_locus =
             |locus: &Declared<Locus>| (vec![locus.value.function.clone()], locus.span.clone());
-        let statements = [(of_pose, joint.spec.pose.span.clone())]
-            .into_iter()
+        let poses = joint.spec.poses().map(of_pose);
+        let statements = poses
             .chain(matrices.into_iter().flatten().map(of_matrix))
             .chain(joint.space.loci.iter().map(of_locus));
         let holds = |entries: &[Expr]| {

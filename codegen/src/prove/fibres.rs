@@ -16,6 +16,10 @@ pub fn claim(joint: &Prepared, domain: &Domain<'_>, still: &[Symbol]) -> Option<
         [] => statement,
         _ => format!("{statement}, apart from {}", names(still)),
     };
+    let statement = match joint.spec.more.is_empty() {
+        true => statement,
+        false => format!("{statement}; the poses of all bodies count as one"),
+    };
     Some(Claim {
         name: "fibres",
         statement,
@@ -35,9 +39,7 @@ struct Fibres<'a> {
 
 impl<'a> Fibres<'a> {
     fn new(joint: &'a Prepared, domain: &'a Domain<'a>, still: &'a [Symbol]) -> Self {
-        let pose = &joint.spec.pose.value;
-        let entries = pose.rotation.entries().iter();
-        let entries = entries.chain(pose.translation.entries());
+        let entries = joint.spec.poses().flat_map(|pose| pose.value.entries());
         Self {
             joint,
             domain,

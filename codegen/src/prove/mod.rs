@@ -269,14 +269,23 @@ impl<'a> Identities<'a> {
     }
 
     fn pose_is_rigid(&self) -> Attempt {
-        let pose = &self.joint.spec.pose;
-        let r = &pose.value.rotation;
-        let gram = r.transpose().times(r).minus(&Matrix::identity(3));
-        let volume = &r.determinant(&Expr::clone) - &Expr::one();
-        let residual =
-            Matrix::column_vector(gram.entries().iter().cloned().chain([volume]).collect());
-        self.identity("pose_in_se3", "H(Q) ∈ SE(3)", &residual, |residual| {
-            let entries = residual.entries().to_vec();
+        let spec = &self.joint.spec;
+        let conditions = spec.poses().flat_map(|pose| {
+            let r = &pose.value.rotation;
+            let gram = r.transpose().times(r).minus(&Matrix::identity(3));
+            let volume = &r.determinant(&Expr::clone) - &Expr::one();
+            [gram.entries(), &[volume]].concat()
+        });
+        let residual = Matrix::column_vector(conditions.collect());
+        let statement = match spec.more.is_empty() {
+            true => "H(Q) ∈ SE(3)",
+            false => "H(Q) ∈ SE(3), of each body",
+        };
+        self.identity("pose_in_se3", statement, &residual, |residual| {
+            let bodies = spec.poses().zip(residual.entries().chunks(RIGID));
+            let is_wrong = |entries: &&[Expr]| !entries.iter().all(Expr::is_zero);
+            let found = bodies.into_iter().find(|(_, entries)| is_wrong(entries));
+            let (pose, entries) = found.unwrap_or((&spec.pose, residual.entries()));
             let gram = Matrix::from_fn(3, 3, |i, j| entries[3 * i + j].clone());
             refuted(
                 code::NOT_RIGID,
@@ -288,6 +297,9 @@ impl<'a> Identities<'a> {
         })
     }
 }
+
+/// How many conditions make H a rigid motion: those of `RᵀR = I` and `det R = 1`.
+const RIGID: usize = 10;
 
 fn refuted(code: &'static str, span: &Range<usize>, message: &str, label: &str) -> Diagnostic {
     Diagnostic::new(code, span.clone(), message).label(label)

@@ -2,7 +2,7 @@
 
 use super::{Attempt, Prover, certified, degenerate, refuted};
 use crate::diagnostic::Diagnostic;
-use crate::expand::{adjoint_inverse, directions, rank, twist_map_in_frame};
+use crate::expand::{directions, in_child_frames, rank, twist_map_in_frame};
 use crate::expr::Expr;
 use crate::matrix::Matrix;
 use crate::model::VelocityFrame;
@@ -130,7 +130,7 @@ impl Prover<'_> {
 
     /// X^c is found from H where X is J₀, not from X: ranks and the kernels of the child frame rest on it.
     pub(super) fn child_twist_map_agrees(&self) -> Attempt {
-        let moved = adjoint_inverse(&self.joint.spec.pose.value).times(&self.x.twist_map);
+        let moved = in_child_frames(&self.joint.spec, &self.x.twist_map);
         self.identity(
             "twist_map_child",
             "X^c = Ad_{H⁻¹} X",
@@ -235,7 +235,11 @@ impl Prover<'_> {
         let shown =
             |m: &Matrix| rank::full_column_rank(&self.x.still.below(m), &self.domain).is_ok();
         let still = &self.x.still;
-        let in_child = child.is_constant() || (!shown(&self.x.twist_map) && shown(child));
+        // In its own frame the first of several bodies has what others have moved about.
+        let several = !self.joint.spec.more.is_empty();
+        let in_child = child.is_constant()
+            || (several && shown(child))
+            || (!several && !shown(&self.x.twist_map) && shown(child));
         let (m, shown_for) = match in_child {
             true => (child, " (shown for X^c = Ad_{H⁻¹} X)"),
             false => (&self.x.twist_map, ""),

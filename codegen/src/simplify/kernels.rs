@@ -1,7 +1,6 @@
 //! The kernels of a joint in the words of its author.
 
 use super::twists;
-use super::verify::have_values_of;
 use super::words::{Words, opened};
 use crate::expand::{self, Expansion};
 use crate::expr::{Expr, Symbol, budget};
@@ -26,27 +25,8 @@ const OF_CONFIGURATION: [KernelKind; 9] = [
     KernelKind::ConfigurationRate,
 ];
 
-/// The kernels with what they compute in few operations, and under the names that the spec gives.
-///
-/// Where the result has another value than what was derived, it is dropped: the kernels are then those that were derived.
-pub fn in_words(
-    joint: &Prepared,
-    expansion: &Expansion,
-    kernels: Vec<Kernel>,
-) -> (Vec<Kernel>, Vec<Word>) {
-    let words = Words::new(joint, &expansion.motion);
-    if words.are_used() {
-        let (written, used) = shortened(joint, expansion, words.clone(), kernels.clone());
-        if have_values_of(&written, &kernels, joint, expansion) {
-            return (written, used);
-        }
-    }
-    let words = words.without_names();
-    (as_derived(joint, expansion, kernels, &words), vec![])
-}
-
 /// The kernels in words, and the words that they use.
-fn shortened(
+pub(super) fn shortened(
     joint: &Prepared,
     expansion: &Expansion,
     mut words: Words<'_>,
@@ -91,7 +71,7 @@ fn shortened(
 }
 
 /// The kernels as they were derived, with c and its dual.
-fn as_derived(
+pub(super) fn as_derived(
     joint: &Prepared,
     expansion: &Expansion,
     mut kernels: Vec<Kernel>,
@@ -202,7 +182,7 @@ fn declared(joint: &Prepared, kind: KernelKind) -> Option<Vec<Matrix>> {
     let worded = &joint.spec.worded;
     match kind {
         KernelKind::Pose => {
-            let pose = worded.pose.clone()?;
+            let pose = worded.poses.first().cloned()?;
             Some(vec![pose.rotation, pose.translation])
         }
         KernelKind::TwistMap => Some(vec![worded.twist_map.clone()?]),

@@ -11,9 +11,10 @@ mod laurent;
 mod search;
 mod twists;
 mod verify;
+mod views;
 mod words;
 
-pub use kernels::in_words;
+pub use views::{View, Written, in_words};
 
 use crate::expr::{Atom, Expr, Function, Symbol};
 use laurent::{Relation, Ring};

@@ -68,7 +68,9 @@ fn a_kernel_with_another_value_is_found() {
     let joint = crate::prepare::Prepared::new(spec).expect("a joint");
     let expansion = crate::expand::expand(&joint).expect("it can be expanded");
     let derived = crate::expand::kernels(&joint, &expansion, &[]).expect("kernels");
-    let (written, words) = super::in_words(&joint, &expansion, derived.clone());
+    let mut view = super::View::of_body(&joint, &expansion, 0);
+    view.kernels.clone_from(&derived);
+    let ((written, words), _) = super::in_words(&joint, &view, &[]);
     assert!(words.iter().any(|word| &*word.symbol.name == "length"));
     let is_right =
         |kernels: &[Kernel]| verify::have_values_of(kernels, &derived, &joint, &expansion);

@@ -30,8 +30,8 @@ pub fn of_pose(joint: &Prepared, expansion: &Expansion, words: &mut Words<'_>) -
     let pose = joint
         .spec
         .worded
-        .pose
-        .as_ref()
+        .poses
+        .first()
         .unwrap_or(&joint.spec.pose.value);
     let rotation = words.shorten_each(&pose.rotation);
     let position = words.shorten_each(&pose.translation);

@@ -385,22 +385,12 @@ pub(super) fn opened(expression: &Expr) -> Expr {
 
 /// Whether exponentials, or functions that are made of them, occur in what the spec declares.
 fn has_exponentials(joint: &Prepared) -> bool {
-    let pose = [
-        &joint.spec.pose.value.rotation,
-        &joint.spec.pose.value.translation,
-    ];
-    let others = [
-        &joint.spec.twist_map,
-        &joint.spec.constraint,
-        &joint.spec.speed_basis,
-    ];
-    let others = others.into_iter().flatten().map(|declared| &declared.value);
-    let matrices = pose.into_iter().chain(others);
     let moved = joint
         .spec
         .retract
         .iter()
         .flat_map(|declared| &declared.value);
+    let matrices = joint.spec.matrices();
     let mut entries = matrices.flat_map(Matrix::entries).chain(moved);
     entries.any(holds_exponential)
 }

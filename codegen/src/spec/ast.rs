@@ -78,7 +78,9 @@ impl Statement {
                 vec![&equation.left, &equation.right]
             }
             StatementKind::Require(requirement) => vec![&requirement.larger, &requirement.smaller],
-            StatementKind::Assign(_, values) => values.iter().collect(),
+            StatementKind::Assign(_, values) | StatementKind::BodyPose(_, values) => {
+                values.iter().collect()
+            }
             _ => vec![],
         }
     }
@@ -96,6 +98,8 @@ pub(super) enum StatementKind {
     Velocity { child: bool },
     /// `speeds a, b;`
     Speeds(Vec<Name>),
+    /// `bodies a, b;`
+    Bodies(Vec<Name>),
     /// `let a = …;`
     Let(Name, Node),
     /// `relation a = b;`
@@ -108,6 +112,8 @@ pub(super) enum StatementKind {
     Unproved(Name, Name),
     /// `H = …;` and its like; Phi and home have one value for each factor.
     Assign(Target, Vec<Node>),
+    /// `H.a = …;`, the pose of one of several bodies: one value.
+    BodyPose(Name, Vec<Node>),
 }
 
 /// `left = right`, with the doc comment before the statement.

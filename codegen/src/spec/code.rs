@@ -47,7 +47,7 @@ codes! {
     NOT_CLOSED "E0305" "A basis that does not close under the bracket."
     DEPENDENT "E0306" "A basis whose elements are dependent, or too many or too few."
     NOT_CONSTANT "E0307" "A basis element that is not constant."
-    FREEDOMS "E0308" "Too many degrees of freedom, factors or stored scalars."
+    FREEDOMS "E0308" "Too many degrees of freedom, factors, stored scalars or bodies."
     UNUSED "E0309" "A parameter or a let that nothing uses."
     UNDEFINED_VALUE "E0310" "Division by zero, or a function outside its domain."
     TOO_LARGE "E0311" "A value that is too large to work with."
@@ -63,6 +63,7 @@ codes! {
     FILE_NAME "E0321" "The file is not named after its joint."
     MAY_VANISH "E0322" "Division by a parameter that may be zero."
     UNPROVED "E0323" "An `unproved` of something that is no such claim, or that is proved."
+    BODIES "E0324" "`H` beside `bodies`, or `H.name` without them."
 
     DIMENSION "E0401" "The number of local coordinates is not the dimension of the manifold."
     PARENT_FRAME "E0402" "No constant directions to read in the parent frame."

@@ -13,8 +13,12 @@ pub(super) const RELATIONS_BUDGET: u64 = 500_000;
 pub(super) const RELATIONS_BUDGET_OF_WRONG: u64 = 2_000;
 /// Products of terms that one file may take.
 pub(super) const FILE_BUDGET: u64 = 1_000_000;
-/// Largest number of rows or columns.
+/// Largest number of columns, and of rows but where twists of several bodies stand one below the other.
 pub(super) const LARGEST_MATRIX: usize = 12;
+/// Largest number of rows of a matrix that is written out: twists of all bodies.
+pub(super) const TALLEST_MATRIX: usize = 6 * MOST_BODIES;
+/// Most bodies of a joint.
+pub(super) const MOST_BODIES: usize = 16;
 /// Largest exponent of `pow`, up or down.
 pub(super) const LARGEST_POWER: u32 = 16;
 

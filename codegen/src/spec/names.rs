@@ -8,7 +8,7 @@ use proc_macro2::{Ident, Span, TokenTree};
 /// Words that begin the statements of the language.
 pub const STATEMENTS: &[&str] = &[
     "config", "relation", "home", "except", "require", "basis", "local", "velocity", "speeds",
-    "let", "Phi", "H", "X", "A", "S_bar", "unproved",
+    "bodies", "let", "Phi", "H", "X", "A", "S_bar", "unproved",
 ];
 
 /// Words that belong to the language.
@@ -50,6 +50,11 @@ pub(super) fn check_parameter(name: &Name) -> Option<Diagnostic> {
 pub(super) fn check_joint(name: &Name) -> Option<Diagnostic> {
     let taken = || is_rust_keyword(&name.text).then(|| reserved(name, "a keyword of Rust"));
     form_error(name, Form::Snake).or_else(taken)
+}
+
+/// Whether a body may have the name; else why not. No expression speaks of bodies, and no name in Rust is made of theirs.
+pub(super) fn check_body(name: &Name) -> Option<Diagnostic> {
+    form_error(name, Form::Snake)
 }
 
 fn form_error(name: &Name, form: Form) -> Option<Diagnostic> {

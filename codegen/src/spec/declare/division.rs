@@ -60,7 +60,7 @@ fn values<'a>(
     spec: &'a JointSpec,
     relations: &'a Range<usize>,
 ) -> Vec<(&'a Range<usize>, Vec<&'a Expr>)> {
-    let (manifold, pose) = (&spec.manifold.value, &spec.pose);
+    let manifold = &spec.manifold.value;
     let generators = spec.freedoms.value.iter();
     let mut values = vec![
         (relations, manifold.ideal().basis().iter().collect()),
@@ -68,16 +68,10 @@ fn values<'a>(
             &spec.freedoms.span,
             generators.flat_map(|freedom| &freedom.generator).collect(),
         ),
-        (
-            &pose.span,
-            pose.value
-                .rotation
-                .entries()
-                .iter()
-                .chain(pose.value.translation.entries())
-                .collect(),
-        ),
     ];
+    for pose in spec.poses() {
+        values.push((&pose.span, pose.value.entries().collect()));
+    }
     for scalars in [&spec.home, &spec.retract].into_iter().flatten() {
         values.push((&scalars.span, scalars.value.iter().collect()));
     }

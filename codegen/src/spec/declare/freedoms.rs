@@ -249,6 +249,8 @@ pub(super) fn velocity(
         (Some(velocity), _) => {
             if !needed {
                 evaluator.report(meaningless(velocity, freedoms.local));
+            } else if !velocity.value && statements.body_count() > 1 {
+                evaluator.report(of_no_body(velocity));
             }
             Declared {
                 value: frame(*velocity.value),
@@ -280,6 +282,15 @@ fn meaningless(velocity: At<'_, bool>, local: bool) -> Diagnostic {
     error
         .label("means nothing here")
         .help("remove this statement")
+}
+
+/// The error that velocities in parent axes are those of one body.
+fn of_no_body(velocity: At<'_, bool>) -> Diagnostic {
+    let message =
+        "the parent frame in which v is read is that of one body, and this joint carries several";
+    Diagnostic::new(code::PARENT_FRAME, velocity.span.clone(), message)
+        .label("of which body?")
+        .help("read v in the child frame, or declare X in its place, the twists of all bodies one below the other")
 }
 
 fn undeclared(freedoms: &Freedoms) -> Diagnostic {

@@ -23,7 +23,7 @@ pub(super) struct Matrices {
 pub(super) fn evaluate_only(statements: &Once<'_>, evaluator: &mut Evaluator<'_>) {
     for target in [Target::TwistMap, Target::Constraint, Target::SpeedBasis] {
         if let Some(statement) = statements.target(target) {
-            value(target, statement, evaluator);
+            value(target.name(), statement, evaluator);
         }
     }
 }
@@ -34,11 +34,12 @@ pub(super) fn matrices(
     freedoms: &[&str],
     evaluator: &mut Evaluator<'_>,
 ) -> Matrices {
+    let bodies = context.statements.body_count();
     let mut read = |target| {
         context
             .statements
             .target(target)
-            .and_then(|statement| matrix(target, statement, freedoms, evaluator))
+            .and_then(|statement| matrix(target, statement, (freedoms, bodies), evaluator))
     };
     let (twist_map, constraint, speed_basis) = (
         read(Target::TwistMap),
@@ -60,20 +61,18 @@ pub(super) fn matrices(
 }
 
 /// The only value of a statement other than Phi.
-fn value(
-    target: Target,
-    statement: At<'_, [Node]>,
-    evaluator: &mut Evaluator<'_>,
-) -> Option<Value> {
+fn value(name: &str, statement: At<'_, [Node]>, evaluator: &mut Evaluator<'_>) -> Option<Value> {
     let node = statement.value.first()?;
-    evaluator.bounded(target.name(), statement.span, |evaluator| {
-        evaluator.value(node)
-    })
+    evaluator.bounded(name, statement.span, |evaluator| evaluator.value(node))
 }
 
-/// H: a pose, a rotation alone, or a homogeneous 4×4 matrix.
-pub(super) fn pose(statement: At<'_, [Node]>, evaluator: &mut Evaluator<'_>) -> Option<PoseExpr> {
-    let value = value(Target::Pose, statement, evaluator)?;
+/// H, or H of one body, as `name` says: a pose, a rotation alone, or a homogeneous 4×4 matrix.
+pub(super) fn pose(
+    name: &str,
+    statement: At<'_, [Node]>,
+    evaluator: &mut Evaluator<'_>,
+) -> Option<PoseExpr> {
+    let value = value(name, statement, evaluator)?;
     if let Some(pose) = value.as_pose() {
         return Some(pose);
     }
@@ -86,7 +85,7 @@ pub(super) fn pose(statement: At<'_, [Node]>, evaluator: &mut Evaluator<'_>) -> 
         let error = Diagnostic::new(
             code::DECLARED_SHAPE,
             span,
-            format!("H is a pose, found {}", value.describe()),
+            format!("{name} is a pose, found {}", value.describe()),
         )
         .label("not a pose");
         evaluator.report(
@@ -110,13 +109,13 @@ pub(super) fn pose(statement: At<'_, [Node]>, evaluator: &mut Evaluator<'_>) -> 
 fn matrix(
     target: Target,
     statement: At<'_, [Node]>,
-    freedoms: &[&str],
+    (freedoms, bodies): (&[&str], usize),
     evaluator: &mut Evaluator<'_>,
 ) -> Option<Declared<Matrix>> {
     let k = freedoms.len();
-    let value = value(target, statement, evaluator)?;
+    let value = value(target.name(), statement, evaluator)?;
     let matrix = match (target, &value) {
-        (Target::TwistMap, _) => value.as_shape(6, k),
+        (Target::TwistMap, _) => value.as_shape(6 * bodies, k),
         (_, Value::List(entries)) if entries.len() == k => value.as_shape(k, 1),
         _ => value
             .as_matrix()
@@ -129,6 +128,10 @@ fn matrix(
             .map_or(statement.span, |node| &node.span)
             .clone();
         let shape = match target {
+            Target::TwistMap if bodies > 1 => format!(
+                "the shape {}×{k}, a twist of each body, one below the other, for each degree of freedom",
+                6 * bodies
+            ),
             Target::TwistMap => format!("the shape 6×{k}, a twist for each degree of freedom"),
             Target::Constraint => format!(
                 "{k} rows, one for each degree of freedom, and fewer columns, one for each constraint"

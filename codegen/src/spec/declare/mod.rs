@@ -1,6 +1,7 @@
 //! Tree to joint: what each statement declares, checked against the others.
 
 mod basis;
+mod bodies;
 mod config;
 mod division;
 mod equation;
@@ -19,16 +20,17 @@ mod unit;
 mod unproved;
 mod words;
 
+use self::bodies::Bodies;
 use self::freedoms::Freedoms;
 use self::once::Once;
 use self::scope::Scope;
-use super::ast::{File, Target};
+use super::ast::File;
 use super::evaluate::Evaluator;
 use super::{code, limits};
 use crate::diagnostic::Diagnostic;
 use crate::expr::budget;
 use crate::manifold::Manifold;
-use crate::model::{Declared, JointSpec, PoseExpr, VelocityFrame, Worded};
+use crate::model::{Declared, JointSpec, VelocityFrame, Worded};
 use std::collections::BTreeSet;
 
 /// The joint that the file declares; `None` where something essential is wrong. Reasons are among the errors.
@@ -70,7 +72,7 @@ fn without_manifold(
     scope.parameters(&file.parameters);
     scope.unknown_factors(statements.config);
     scope.lets(&statements.lets);
-    pose(file, statements, evaluator);
+    bodies::bodies(source, file, statements, evaluator);
     matrices::evaluate_only(statements, evaluator);
     scope::report_unused(file, statements, evaluator);
 }
@@ -116,7 +118,7 @@ fn declare(
     let retract = freedoms
         .as_ref()
         .and_then(|freedoms| retract::retract(&context, freedoms, evaluator));
-    let pose = pose(file, statements, evaluator);
+    let bodies = bodies::bodies(source, file, statements, evaluator);
     let matrices = match &freedoms {
         Some(freedoms) => Some(matrices::matrices(&context, &freedoms.names(), evaluator)),
         None => {
@@ -130,6 +132,8 @@ fn declare(
         true => words::worded(&context, source, &freedoms.names()),
         false => Worded::default(),
     };
+    let Bodies { names, poses } = bodies?;
+    let mut poses = poses.into_iter();
     let spec = JointSpec {
         name: Declared {
             value: file.name.text.clone(),
@@ -145,7 +149,9 @@ fn declare(
         home: home.declared,
         freedoms: freedoms.list,
         velocity: velocity?,
-        pose: pose?,
+        bodies: names,
+        pose: poses.next()?,
+        more: poses.collect(),
         retract,
         implicit: freedoms.implicit,
         twist_map: matrices.twist_map,
@@ -159,34 +165,6 @@ fn declare(
         .errors
         .extend(division::errors(&spec, statements.relations_span()));
     Some(spec)
-}
-
-fn pose(
-    file: &File,
-    statements: &Once<'_>,
-    evaluator: &mut Evaluator<'_>,
-) -> Option<Declared<PoseExpr>> {
-    let Some(statement) = statements.target(Target::Pose) else {
-        if !file.partial {
-            let name = &file.name;
-            let error = Diagnostic::new(
-                code::MISSING,
-                name.span.clone(),
-                format!("joint `{}` declares no H", name.text),
-            );
-            evaluator.report(
-                error
-                    .label("H is missing")
-                    .help("add `H = …;`, the pose of the child in the parent as a function of Q"),
-            );
-        }
-        return None;
-    };
-    let value = matrices::pose(statement, evaluator)?;
-    Some(Declared {
-        value,
-        span: statement.span.clone(),
-    })
 }
 
 impl Freedoms {

@@ -28,6 +28,9 @@ pub(super) struct Once<'a> {
     pub local: Option<At<'a, [Name]>>,
     pub velocity: Option<At<'a, bool>>,
     pub speeds: Option<At<'a, [Name]>>,
+    pub bodies: Option<At<'a, [Name]>>,
+    /// H of each of them.
+    pub body_poses: Vec<(&'a Name, At<'a, [Node]>)>,
     pub bases: Vec<At<'a, Basis>>,
     pub lets: Vec<(&'a Name, &'a Node)>,
     pub relations: Vec<At<'a, Equation>>,
@@ -41,6 +44,11 @@ pub(super) struct Once<'a> {
 impl<'a> Once<'a> {
     pub fn target(&self, target: Target) -> Option<At<'a, [Node]>> {
         self.targets.get(&target).copied()
+    }
+
+    /// How many bodies the joint carries.
+    pub fn body_count(&self) -> usize {
+        self.bodies.map_or(1, |bodies| bodies.value.len())
     }
 
     /// From the first relation to the last.
@@ -67,6 +75,24 @@ pub(super) fn collect<'a>(source: &str, file: &'a File, errors: &mut Vec<Diagnos
             }
             StatementKind::Speeds(value) => {
                 ("speeds", replace(&mut once.speeds, value.as_slice(), span))
+            }
+            StatementKind::Bodies(value) => {
+                ("bodies", replace(&mut once.bodies, value.as_slice(), span))
+            }
+            StatementKind::BodyPose(body, values) => {
+                let mut known = once.body_poses.iter();
+                let known = known.find(|(other, _)| other.text == body.text);
+                match known.map(|(_, at)| at.span) {
+                    Some(first) => {
+                        let word = format!("H.{}", body.text);
+                        errors.push(twice(source, &word, first, span));
+                    }
+                    None => {
+                        let value = values.as_slice();
+                        once.body_poses.push((body, At { value, span }));
+                    }
+                }
+                continue;
             }
             StatementKind::Basis(value) => {
                 once.bases.push(At { value, span });

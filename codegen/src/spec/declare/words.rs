@@ -2,9 +2,8 @@
 
 use super::super::evaluate::{Evaluator, Words};
 use super::scope::Scope;
-use super::{Context, matrices};
+use super::{Context, bodies, matrices};
 use crate::model::Worded;
-use crate::spec::ast::Target;
 
 /// The declarations once more. They are known to be right, so that errors mean only that something cannot be said in names.
 pub(super) fn worded(context: &Context<'_>, source: &str, freedoms: &[&str]) -> Worded {
@@ -15,8 +14,7 @@ pub(super) fn worded(context: &Context<'_>, source: &str, freedoms: &[&str]) -> 
     scope.factors(context.statements.config, context.manifold.value.factors());
     evaluator.words = Some(Words::new(context.names.clone()));
     lets(context, &mut evaluator);
-    let pose = context.statements.target(Target::Pose);
-    let pose = pose.and_then(|statement| matrices::pose(statement, &mut evaluator));
+    let poses = bodies::poses(context.statements, &mut evaluator).unwrap_or_default();
     let matrices = matrices::matrices(context, freedoms, &mut evaluator);
     Worded {
         named: evaluator
@@ -24,7 +22,7 @@ pub(super) fn worded(context: &Context<'_>, source: &str, freedoms: &[&str]) -> 
             .take()
             .map(Words::finish)
             .unwrap_or_default(),
-        pose,
+        poses: poses.into_iter().map(|pose| pose.value).collect(),
         twist_map: matrices.twist_map.map(|declared| declared.value),
         constraint: matrices.constraint.map(|declared| declared.value),
         speed_basis: matrices.speed_basis.map(|declared| declared.value),

@@ -16,7 +16,7 @@ pub(super) fn matrix(rows: &[Vec<Value>], span: &Range<usize>) -> Fallible<Value
             .collect::<Option<Vec<_>>>()
     {
         let column = Matrix::column_vector(entries.clone());
-        bounded(&column, span)?;
+        bounded(&column.transpose(), span)?;
         return Ok(if entries.len() == 1 {
             Value::matrix(column)
         } else {
@@ -107,12 +107,12 @@ fn block(value: &Value, height: Option<usize>) -> Option<Matrix> {
 
 fn bounded(matrix: &Matrix, span: &Range<usize>) -> Fallible<()> {
     let (rows, columns) = matrix.shape();
-    match rows.max(columns) > limits::LARGEST_MATRIX {
+    let (tallest, limit) = (limits::TALLEST_MATRIX, limits::LARGEST_MATRIX);
+    match rows > tallest || columns > limit {
         false => Ok(()),
         true => {
-            let limit = limits::LARGEST_MATRIX;
             let message =
-                format!("a matrix of {rows}×{columns}, at most {limit}×{limit} is possible");
+                format!("a matrix of {rows}×{columns}, at most {tallest}×{limit} is possible");
             Err(Box::new(
                 Diagnostic::new(code::TOO_LARGE, span.clone(), message).label("too large"),
             ))

@@ -57,6 +57,7 @@ fn statement(tokens: &mut Tokens<'_>, docs: Vec<String>) -> Fallible<StatementKi
             t.expect_name("the name of a local coordinate")
         })?),
         "speeds" => StatementKind::Speeds(list(tokens, |t| t.expect_name("the name of a speed"))?),
+        "bodies" => StatementKind::Bodies(list(tokens, |t| t.expect_name("the name of a body"))?),
         "velocity" => velocity(tokens)?,
         "relation" => StatementKind::Relation(equation(tokens, docs)?),
         "except" => StatementKind::Except(equation(tokens, docs)?),
@@ -70,6 +71,11 @@ fn statement(tokens: &mut Tokens<'_>, docs: Vec<String>) -> Fallible<StatementKi
             let name = tokens.expect_name("a name")?;
             tokens.expect('=', "`=`")?;
             StatementKind::Let(name, expression::expression(tokens)?)
+        }
+        "H" if tokens.eat('.') => {
+            let body = tokens.expect_name("the name of a body")?;
+            tokens.expect('=', "`=`")?;
+            StatementKind::BodyPose(body, vec![expression::expression(tokens)?])
         }
         other => match Target::ALL
             .into_iter()
