@@ -97,7 +97,7 @@ fn kinematics_are_consistent() {
             .expect("sizes fit");
         let at = |time: f64| {
             let mut moved = q.clone();
-            for body in mechanism.bodies() {
+            for (_, body) in mechanism.joints() {
                 let ranges = body.ranges();
                 let own = body.configuration(&q);
                 let mut rate = vec![0.0; own.len()];

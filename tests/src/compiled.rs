@@ -105,7 +105,7 @@ pub fn evaluate(
 /// other or the world, and wrenches in both axes.
 pub fn elements(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Elements {
     let mut elements = Elements::default();
-    for (body, owner) in mechanism.bodies().iter().enumerate() {
+    for (body, owner) in mechanism.joints() {
         let rest = random::configuration(random, mechanism);
         let rest = owner.configuration(&rest).to_vec();
         if random.random_bool(0.5) {
@@ -191,7 +191,7 @@ pub fn equipped(mechanism: &Mechanism, elements: &Elements) -> Arc<Mechanism> {
 /// Never: they fit.
 pub fn geared(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Mechanism {
     let mut geared = mechanism.clone();
-    for (body, owner) in mechanism.bodies().iter().enumerate() {
+    for (body, owner) in mechanism.joints() {
         let layout = owner.joint().layout();
         if layout.constraints == 0 && random.random_bool(0.5) {
             let rotors = random::numbers(random, layout.freedoms);
@@ -209,7 +209,7 @@ pub fn geared(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Mechanism {
 /// Never: they fit.
 pub fn driven(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Mechanism {
     let mut drives = vec![];
-    for (body, owner) in mechanism.bodies().iter().enumerate() {
+    for (body, owner) in mechanism.joints() {
         if random.random_bool(0.25) {
             drives.push(Drive {
                 name: format!("drive of {body}"),

@@ -29,7 +29,7 @@ pub fn derivative(step: f64, f: impl Fn(f64) -> DMatrix<f64>) -> DMatrix<f64> {
 /// Φ(q, ϕ) of all joints, `phi` one entry per degree of freedom.
 pub fn moved(mechanism: &Mechanism, q: &[f64], phi: &[f64]) -> Vec<f64> {
     let mut target = q.to_vec();
-    for body in mechanism.bodies() {
+    for (_, body) in mechanism.joints() {
         let ranges = body.ranges();
         let own = &mut target[ranges.configuration.clone()];
         body.joint()
@@ -41,7 +41,7 @@ pub fn moved(mechanism: &Mechanism, q: &[f64], phi: &[f64]) -> Vec<f64> {
 /// The ϕ with Φ(q, ϕ) = `target`, all joints.
 pub fn local(mechanism: &Mechanism, q: &[f64], target: &[f64]) -> Vec<f64> {
     let mut phi = vec![0.0; mechanism.layout().freedoms];
-    for body in mechanism.bodies() {
+    for (_, body) in mechanism.joints() {
         let own = &mut phi[body.ranges().freedoms.clone()];
         body.joint()
             .local(body.configuration(q), body.configuration(target), own)
@@ -152,7 +152,7 @@ mod tests {
                 .map(|(slice, rate)| slice * *rate);
             let found = found.fold(DMatrix::zeros(case.q.len(), 1), |sum, term| sum + term);
             let mut expected = vec![0.0; case.q.len()];
-            for body in case.mechanism.bodies() {
+            for (_, body) in case.mechanism.joints() {
                 let (ranges, q) = (body.ranges(), body.configuration(&case.q));
                 let size = ranges.freedoms.len();
                 let mut map = DMatrix::zeros(size, size);

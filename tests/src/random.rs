@@ -214,16 +214,29 @@ fn grow(
     joints: &[Arc<dyn AnyJoint>],
     parent: impl Fn(&mut ChaCha8Rng, usize) -> usize,
 ) -> Arc<Mechanism> {
-    let body = |(index, joint): (usize, &Arc<dyn AnyJoint>)| BodySpec {
-        name: format!("body {index}"),
-        joint_name: format!("{} {index}", joint.name()),
-        parent: index.checked_sub(1).map(|last| parent(random, last)),
-        joint: Arc::clone(joint),
-        placement: pose(random),
-        child_placement: pose(random),
-        mass: mass(random),
-    };
-    let bodies = joints.iter().enumerate().map(body).collect();
+    let mut bodies: Vec<BodySpec> = Vec::new();
+    for joint in joints {
+        let index = bodies.len();
+        let first = BodySpec {
+            name: format!("body {index}"),
+            joint_name: format!("{} {index}", joint.name()),
+            parent: index.checked_sub(1).map(|last| parent(random, last)),
+            joint: Arc::clone(joint),
+            placement: pose(random),
+            child_placement: pose(random),
+            mass: mass(random),
+        };
+        bodies.push(first.clone());
+        for joint in joint.more() {
+            bodies.push(BodySpec {
+                name: format!("body {}", bodies.len()),
+                joint,
+                child_placement: pose(random),
+                mass: mass(random),
+                ..first.clone()
+            });
+        }
+    }
     Arc::new(Mechanism::new(gravity, bodies).expect("valid by construction"))
 }
 
@@ -271,9 +284,7 @@ pub fn configuration(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Vec<f64>
             .find(is_clear)
             .expect("a configuration that the joint can be moved to")
     };
-    let sizes = mechanism
-        .bodies()
-        .iter()
-        .map(|body| body.ranges().freedoms.len());
-    sizes.enumerate().flat_map(own).collect()
+    let joints = mechanism.joints();
+    let sizes = joints.map(|(index, body)| (index, body.ranges().freedoms.len()));
+    sizes.flat_map(own).collect()
 }

@@ -365,7 +365,7 @@ impl Compiled {
 
     /// `p̄̇ += S̄ᵀτ`: they are affine in τ, which depends on the v̄ that come with them.
     fn add_inputs(&self, q: &[f64], rates: &mut [f64]) {
-        for (index, body) in self.tree.mechanism().bodies().iter().enumerate() {
+        for (index, body) in self.tree.mechanism().joints() {
             let ranges = body.ranges();
             let mut reduced = [0.0; MOST_FREEDOMS];
             let reduced = &mut reduced[..ranges.speeds.len()];
@@ -388,7 +388,7 @@ fn near_home(mechanism: &Mechanism, round: usize) -> Option<vec::Vec<f64>> {
     // Multiples of the golden section lie without pattern, so that no joint stands as another does.
     let part = |freedom: usize| (0.618_034 * (freedom + round * 17) as f64) % 1.0;
     let mut near = mechanism.home();
-    for (index, body) in mechanism.bodies().iter().enumerate() {
+    for (index, body) in mechanism.joints() {
         let ranges = body.ranges();
         let phi: vec::Vec<f64> = ranges
             .freedoms

@@ -77,7 +77,7 @@ impl ComputedTorque {
         for (acceleration, ((wanted, speed), rate)) in self.accelerations.iter_mut().zip(wanted) {
             *acceleration = rate + damper * (wanted - speed);
         }
-        for body in self.reference.mechanism().bodies() {
+        for (_, body) in self.reference.mechanism().joints() {
             let own = body.ranges().freedoms.clone();
             let map = &mut self.map[..own.len() * own.len()];
             body.joint().velocity_map(body.configuration(q), map);

@@ -361,7 +361,7 @@ fn columns(step: &LinearStep, equilibrium: &Equilibrium) -> DMatrix<f64> {
 fn seen_from(equilibrium: &Equilibrium, x: &[f64]) -> DMatrix<f64> {
     let mut map = DMatrix::identity(x.len(), x.len());
     let mechanism: &Arc<Mechanism> = equilibrium.mechanism();
-    for body in mechanism.bodies() {
+    for (_, body) in mechanism.joints() {
         let own = body.ranges().freedoms.clone();
         let (start, size) = (own.start, own.len());
         let goal = body.configuration(equilibrium.goal());

@@ -205,7 +205,7 @@ impl Carrier {
         from: &[f64],
         to: &mut [f64],
     ) {
-        for body in mechanism.bodies() {
+        for (_, body) in mechanism.joints() {
             let own = &laws[body.ranges().speeds.clone()];
             let configuration = body.ranges().configuration.clone();
             self.carry_joint(

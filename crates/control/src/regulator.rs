@@ -149,7 +149,7 @@ impl Equilibrium {
             &mut derivatives,
         )?;
         let mut a = DMatrix::zeros(freedoms + speeds, freedoms + speeds);
-        for body in self.mechanism.bodies() {
+        for (_, body) in self.mechanism.joints() {
             let (own, rates) = (body.ranges().freedoms.start, body.ranges().speeds.start);
             let map = self.kinematics(body);
             let (rows, columns) = map.shape();
@@ -217,7 +217,7 @@ fn held(
     let mut efforts = vec![0.0; layout.freedoms];
     // The speed without input that feels the most.
     let mut free: Option<(&Body, usize, f64)> = None;
-    for body in mechanism.bodies() {
+    for (_, body) in mechanism.joints() {
         let ranges = body.ranges();
         // Joints with inputs are holonomic: each degree of freedom has its speed.
         let has_inputs = inputs.contains(&ranges.freedoms.start);

@@ -11,7 +11,7 @@ pub(super) fn deviation(
     to: &[f64],
     phi: &mut [f64],
 ) -> Result<(), StateError> {
-    for body in mechanism.bodies() {
+    for (_, body) in mechanism.joints() {
         let own = &mut phi[body.ranges().freedoms.clone()];
         let found = body
             .joint()

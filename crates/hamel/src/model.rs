@@ -78,10 +78,10 @@ impl Model {
 
     /// Names of the joints, in the order of their entries.
     pub fn joints(&self) -> impl Iterator<Item = &str> + Clone {
-        self.mechanism().bodies().iter().map(Body::joint_name)
+        self.mechanism().joints().map(|(_, body)| body.joint_name())
     }
 
-    /// Names of the bodies, one per joint.
+    /// Names of the bodies: one per joint, but for joints that carry several.
     pub fn bodies(&self) -> impl Iterator<Item = &str> + Clone {
         self.mechanism().bodies().iter().map(Body::name)
     }
@@ -100,7 +100,9 @@ impl Model {
     }
 
     fn joint_index(&self, name: &str) -> Result<usize, UnknownName> {
-        let found = self.joints().position(|joint| joint == name);
+        let mut joints = self.mechanism().joints();
+        let found = joints.find(|(_, body)| body.joint_name() == name);
+        let found = found.map(|(index, _)| index);
         let found = found.or_else(|| self.mechanism().body_index(name));
         found.ok_or_else(|| {
             UnknownName::new("joint or body", name, self.joints().chain(self.bodies()))

@@ -58,8 +58,8 @@ pub(super) struct Watch {
 
 impl Watch {
     pub(super) fn new(mechanism: &Mechanism) -> Self {
-        let bodies = mechanism.bodies().iter().enumerate();
-        let watched = bodies.filter(|(_, body)| !body.joint().singularities().is_empty());
+        let joints = mechanism.joints();
+        let watched = joints.filter(|(_, body)| !body.joint().singularities().is_empty());
         let far = |(index, body): (usize, &Body)| (index, approach(body, f64::INFINITY, 0.0));
         Self {
             nearest: watched.map(far).collect(),

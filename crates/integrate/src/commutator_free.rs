@@ -74,7 +74,7 @@ impl CommutatorFree {
     ) -> Result<(), StepFailure> {
         let mut outcome = Ok(());
         self.phi.fill(0.0);
-        for (index, body) in flow.mechanism.bodies().iter().enumerate() {
+        for (index, body) in flow.mechanism.joints() {
             if self.flows[index] && outcome.is_ok() {
                 outcome = self.compose(body, step_state, step, path);
             }
@@ -91,7 +91,7 @@ impl CommutatorFree {
             let rates = core::iter::once(first).chain(&*stages);
             for (weight, rates) in weights.iter().zip(rates) {
                 add(y, step * weight, &rates.y);
-                for (index, body) in flow.mechanism.bodies().iter().enumerate() {
+                for (index, body) in flow.mechanism.joints() {
                     if !flows[index] {
                         let own = body.ranges().freedoms.clone();
                         add(&mut phi[own.clone()], step * weight, &rates.phi[own]);
@@ -144,7 +144,7 @@ impl CommutatorFree {
             0 => (&step_state.rates, &step_state.offset),
             _ => (&self.stages[i - 1], &step_state.phi),
         };
-        for body in flow.mechanism.bodies() {
+        for (_, body) in flow.mechanism.joints() {
             let own = body.ranges().freedoms.clone();
             let differential = &mut self.differential[..own.len() * own.len()];
             let base = body.configuration(&step_state.base);

@@ -207,7 +207,7 @@ impl Correction {
                 .composite_momenta(&self.middle, &self.speeds, &mut self.composites);
             power += self.dynamics.element_power_here(&self.middle, &self.speeds);
         }
-        for body in flow.mechanism.bodies() {
+        for (_, body) in flow.mechanism.joints() {
             let efforts = flow.last_efforts();
             power += self
                 .matrices
@@ -220,11 +220,13 @@ impl Correction {
     fn move_by_structure(&mut self, step_state: &StepState, flow: &mut Flow<'_>, step: f64) {
         let (base, phi) = (&step_state.base, &step_state.phi);
         flow.local_rates(base, phi, &self.faster, &mut self.moved.phi);
-        for (index, body) in flow.mechanism.bodies().iter().enumerate() {
+        for (index, body) in flow.mechanism.joints() {
             let own = body.ranges().speeds.clone();
-            let momenta = (&step_state.next_y[own.clone()], &self.composites[index]);
+            let carried = &self.composites[flow.mechanism.carried(index)];
+            let bodies = &flow.mechanism.bodies()[flow.mechanism.carried(index)];
+            let momenta = (&step_state.next_y[own.clone()], carried);
             let (faster, out) = (&self.faster[own.clone()], &mut self.moved.y[own]);
-            let structure = self.matrices.structure(body, &self.middle, momenta);
+            let structure = self.matrices.structure((body, bodies), &self.middle, momenta);
             multiply(structure, faster, out);
         }
         add(&mut self.moved.y, -1.0 / step, &step_state.next_y);
@@ -232,13 +234,13 @@ impl Correction {
 }
 
 impl Matrices {
-    /// J̄22 of one joint, S×S, of its own p̄ and the momentum of all that hangs on it, which a joint with constraints feels in full:
-    /// `X̄ᵀ ad*_{X̄} h + E T − TᵀEᵀ` with `E = ∂(X̄ᵀh)/∂ϕ` and `T = S₀⁻¹S̄`.
+    /// J̄22 of one joint, S×S, of its own p̄ and the momenta of all that hangs on each of its bodies, which a joint with constraints feels in full:
+    /// the sum over the bodies of `X̄ᵀ ad*_{X̄} h + E T − TᵀEᵀ` with `E = ∂(X̄ᵀh)/∂ϕ` and `T = S₀⁻¹S̄`.
     fn structure(
         &mut self,
-        body: &Body,
+        (body, carried): (&Body, &[Body]),
         q: &[f64],
-        (momenta, composite): (&[f64], &Vector6<f64>),
+        (momenta, composites): (&[f64], &[Vector6<f64>]),
     ) -> &[f64] {
         let (joint, q) = (body.joint(), body.configuration(q));
         let (freedoms, speeds) = (body.ranges().freedoms.len(), body.ranges().speeds.len());
@@ -256,23 +258,25 @@ impl Matrices {
         let gradient = &mut self.gradient[..speeds * freedoms];
         joint.speed_basis(q, basis);
         joint.velocity_map_inverse(q, inverse);
-        joint.twist_map_child(q, twists);
-        joint.effort_gradient(q, composite, gradient);
         let columns = || basis.chunks_exact(freedoms.max(1));
-        let twist = |own: &[f64]| {
-            let mut sum = [0.0; 6];
-            multiply(twists, own, &mut sum);
-            Vector6::from(sum)
-        };
-        for (b, own) in columns().enumerate() {
-            let (mut rate, mut moved) = ([0.0; MOST_FREEDOMS], [0.0; MOST_FREEDOMS]);
-            let (rate, moved) = (&mut rate[..freedoms], &mut moved[..speeds]);
-            multiply(inverse, own, rate);
-            multiply(gradient, rate, moved);
-            let turned = bracket_dual_product(&twist(own), composite);
-            for (a, other) in columns().enumerate() {
-                out[b * speeds + a] += moved[a] + twist(other).dot(&turned);
-                out[a * speeds + b] -= moved[a];
+        for (body, composite) in carried.iter().zip(composites) {
+            body.joint().twist_map_child(q, twists);
+            body.joint().effort_gradient(q, composite, gradient);
+            let twist = |own: &[f64]| {
+                let mut sum = [0.0; 6];
+                multiply(twists, own, &mut sum);
+                Vector6::from(sum)
+            };
+            for (b, own) in columns().enumerate() {
+                let (mut rate, mut moved) = ([0.0; MOST_FREEDOMS], [0.0; MOST_FREEDOMS]);
+                let (rate, moved) = (&mut rate[..freedoms], &mut moved[..speeds]);
+                multiply(inverse, own, rate);
+                multiply(gradient, rate, moved);
+                let turned = bracket_dual_product(&twist(own), composite);
+                for (a, other) in columns().enumerate() {
+                    out[b * speeds + a] += moved[a] + twist(other).dot(&turned);
+                    out[a * speeds + b] -= moved[a];
+                }
             }
         }
         out

@@ -405,7 +405,7 @@ impl<'a> Flow<'a> {
 
     /// ϕ̇ of all joints, at the Q at which the equations were evaluated last: `Φ(base, phi)`.
     pub(super) fn local_rates(&self, base: &[f64], phi: &[f64], speeds: &[f64], rates: &mut [f64]) {
-        for body in self.mechanism.bodies() {
+        for (_, body) in self.mechanism.joints() {
             let ranges = body.ranges();
             let own = ranges.freedoms.clone();
             body.joint().local_rate(
@@ -454,7 +454,7 @@ pub(super) fn widest(mechanism: &Mechanism) -> usize {
 
 /// `Φ(base, phi)` of all joints.
 pub(super) fn retract(mechanism: &Mechanism, base: &[f64], phi: &[f64], moved: &mut [f64]) {
-    for body in mechanism.bodies() {
+    for (_, body) in mechanism.joints() {
         let ranges = body.ranges();
         body.joint().retract(
             body.configuration(base),

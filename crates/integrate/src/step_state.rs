@@ -200,7 +200,7 @@ impl StepState {
             part => part,
         };
         let mut worst = (0.0, 0);
-        for (index, body) in flow.mechanism.bodies().iter().enumerate() {
+        for (index, body) in flow.mechanism.joints() {
             let (freedoms, speeds) = (body.ranges().freedoms.clone(), body.ranges().speeds.clone());
             // No sum resolves a part of a step that is longer than 1 better than relative to it.
             let local = freedoms.map(|i| part(errors.phi[i], phi[i].abs()));
@@ -258,7 +258,7 @@ impl StepState {
         let mechanism = Arc::clone(&flow.mechanism);
         let far = |phi: &[f64]| phi.iter().any(|entry| entry.abs() > FAR);
         let mut moved = false;
-        for body in mechanism.bodies() {
+        for (_, body) in mechanism.joints() {
             let (freedoms, own) = (&body.ranges().freedoms, &body.ranges().configuration);
             if !far(&self.offset[freedoms.clone()]) {
                 continue;

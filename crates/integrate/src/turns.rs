@@ -26,12 +26,12 @@ impl Turns {
     /// Room for the joints of `mechanism`.
     pub(super) fn new(mechanism: &Mechanism) -> Self {
         let widest = widest(mechanism);
-        let bodies = mechanism.bodies().iter().enumerate();
+        let joints = mechanism.joints();
         let is_bent = |body: &Body| {
             let structures = body.joint().structures();
             !structures.retract_differential.is_identity()
         };
-        let bent = bodies.filter(|(_, body)| is_bent(body));
+        let bent = joints.filter(|(_, body)| is_bent(body));
         Self {
             bent: bent.map(|(index, _)| (index, 0.0)).collect(),
             maps: vec![0.0; 3 * mechanism.layout().freedoms],
@@ -42,7 +42,7 @@ impl Turns {
 
     /// Makes `base` the base points.
     pub(super) fn set(&mut self, mechanism: &Mechanism, base: &[f64]) {
-        for body in mechanism.bodies() {
+        for (_, body) in mechanism.joints() {
             let (own, size) = (&body.ranges().freedoms, body.ranges().freedoms.len());
             let twist_map = &mut self.twist_map[..6 * size];
             let velocity_map = &mut self.velocity_map[..size * size];

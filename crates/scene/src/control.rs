@@ -198,8 +198,8 @@ impl Control {
     pub fn parse(text: &str, source_name: &str, scene: &Scene) -> Result<Self, Diagnostics> {
         let mut sink = Sink::default();
         let begin = (scene.configuration.as_slice(), scene.settings.t_end);
-        let bodies = scene.mechanism.bodies().iter();
-        let joints = bodies.map(|body| body.joint_name()).collect();
+        let joints = scene.mechanism.joints();
+        let joints = joints.map(|(_, body)| body.joint_name()).collect();
         let found = match parse::controller(text, &joints, &mut sink) {
             Some(description) if sink.len() == 0 => {
                 build::control(&description, &scene.mechanism, begin, &mut sink)

@@ -80,8 +80,10 @@ pub struct BodyDescription {
     pub parent: Option<usize>,
     /// Mass, centre of mass and inertia.
     pub mass: MassProperties,
-    /// The joint.
+    /// The joint; of a joint that carries several bodies, each of them has it.
     pub joint: JointDescription,
+    /// Which body of its joint it is, where the joint carries several.
+    pub part: Option<Part>,
     /// The joint's parent frame in the parent body's frame.
     pub at: Pose<f64>,
     /// The body's frame in the joint's child frame.
@@ -90,6 +92,22 @@ pub struct BodyDescription {
     pub initial: InitialDescription,
     /// What acts at the joint.
     pub forces: JointForces,
+}
+
+/// One of several bodies of a joint. They follow each other, in the order of the file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// What the joint calls the body; the body's own name is that of the joint, a point, and this.
+    pub name: Located<String>,
+    /// Its place among the bodies of the joint, from 0.
+    pub number: usize,
+}
+
+impl BodyDescription {
+    /// Whether the state of its joint, and what acts there, are its own: it is the only body of the joint, or the first.
+    pub(crate) fn leads(&self) -> bool {
+        self.part.as_ref().is_none_or(|part| part.number == 0)
+    }
 }
 
 /// A joint by name, with its parameters.

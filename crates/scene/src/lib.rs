@@ -33,7 +33,7 @@ pub use control::{
     ReferenceDescription, RegulatorDescription,
 };
 pub use description::{
-    BodyDescription, InitialDescription, JointDescription, Motion, Position, SceneDescription,
+    BodyDescription, InitialDescription, JointDescription, Motion, Part, Position, SceneDescription,
     TwistDescription, TwistFrame,
 };
 pub use diagnostics::{Diagnostic, Diagnostics};

@@ -156,20 +156,7 @@ impl SceneDescription {
     /// at once.
     pub fn build(&self, registry: &JointRegistry) -> Result<Scene, Diagnostics> {
         let mut sink = Sink::default();
-        let states: Vec<Option<build::State>> = self
-            .bodies
-            .iter()
-            .map(|body| {
-                build::state(
-                    &body.joint,
-                    &body.initial,
-                    &body.forces,
-                    registry,
-                    &mut sink,
-                )
-            })
-            .collect();
-        let states: Option<Vec<build::State>> = states.into_iter().collect();
+        let states = build::states(&self.bodies, registry, &mut sink);
         let scene = states.and_then(|states| build::scene(self, states, &mut sink));
         scene.ok_or_else(|| self.refuse(sink))
     }
@@ -181,7 +168,7 @@ impl SceneDescription {
 
 /// Looks for errors about joints where other errors have been found already.
 fn check_joints(draft: &Draft, registry: &JointRegistry, sink: &mut Sink) {
-    for body in &draft.bodies {
+    for body in draft.bodies.iter().filter(|body| body.leads()) {
         if let Some(joint) = &body.joint {
             let initial = body.initial.clone().unwrap_or_default();
             let forces = body.forces.clone().unwrap_or_default();
@@ -235,6 +222,7 @@ fn complete(mut draft: Draft) -> Option<(Draft, Vec<BodyDescription>)> {
             parent,
             mass: body.mass?,
             joint: body.joint?,
+            part: body.part,
             at: body.at,
             body_at: body.body_at,
             initial: body.initial?,

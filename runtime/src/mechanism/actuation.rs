@@ -261,9 +261,11 @@ impl Mechanism {
         &self.actuation.elements
     }
 
-    /// Rotor inertias of the joint under `body`, one entry per degree of freedom; empty where it has none, and where there is no such body.
+    /// Rotor inertias of the joint that `body` stands for, one entry per degree of freedom; empty where it has none, for further bodies of a joint, and
+    /// where there is no such body.
     pub fn armature(&self, body: usize) -> &[f64] {
-        let freedoms = self.bodies.get(body).map(|own| own.ranges.freedoms.clone());
+        let leader = self.bodies.get(body).filter(|own| own.leads());
+        let freedoms = leader.map(|own| own.ranges.freedoms.clone());
         let own = freedoms.and_then(|freedoms| self.actuation.armature.get(freedoms));
         let own = own.unwrap_or(&[]);
         match own.iter().all(|a| *a == 0.0) {

@@ -4,7 +4,8 @@
 
 use super::dual::{along, constant, slope, solve, unit};
 use core::array;
-use hamel_runtime::joint::{Joint, Patterns, Structure, Structures, VelocityFrame};
+use hamel_runtime::erased::Shared;
+use hamel_runtime::joint::{Carries, Joint, Patterns, Structure, Structures, VelocityFrame};
 use hamel_runtime::scalar::{Dual, Scalar};
 use hamel_runtime::spatial::{Pose, join, vee};
 use nalgebra::{SMatrix, SVector, Vector6};
@@ -19,7 +20,18 @@ pub trait Declared<const N: usize, const K: usize, const S: usize, const C: usiz
     const SPEEDS: [&'static str; S];
     const VELOCITY_FRAME: VelocityFrame;
     const SINGULARITIES: &'static [&'static str] = &[];
+    const BODIES: &'static [&'static str] = &[];
 
+    /// The further bodies, as [`Joint::more`] hands them over.
+    fn more(&self, _visit: &mut dyn FnMut(Shared)) {}
+    /// S(Q, ϕ) of (23): `X(Φ) S = J`, by least squares.
+    fn velocity_map_at<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        phi: &SVector<T, K>,
+    ) -> SMatrix<T, K, K> {
+        by_twists(self, q, phi)
+    }
     fn home<T: Scalar>(&self) -> SVector<T, N>;
     fn pose<T: Scalar>(&self, q: &SVector<T, N>) -> Pose<T>;
     /// X in the parent frame.
@@ -35,37 +47,70 @@ pub trait Declared<const N: usize, const K: usize, const S: usize, const C: usiz
     }
 }
 
+/// `X(Φ) S = J` by least squares.
+fn by_twists<
+    T: Scalar,
+    D,
+    const N: usize,
+    const K: usize,
+    const S: usize,
+    const C: usize,
+>(
+    joint: &D,
+    q: &SVector<T, N>,
+    phi: &SVector<T, K>,
+) -> SMatrix<T, K, K>
+where
+    D: Declared<N, K, S, C>,
+{
+    let jacobian = columns(|k| {
+        let moved = joint.retract(&constant(q), &along(phi, &unit(k)));
+        velocity(&joint.pose(&moved))
+    });
+    let x = joint.twist_map(&joint.retract(q, phi));
+    solve(x.transpose() * x, x.transpose() * jacobian)
+}
+
+/// The matrix of these columns.
+fn columns<T: Scalar, const R: usize, const K: usize>(
+    column: impl FnMut(usize) -> SVector<T, R>,
+) -> SMatrix<T, R, K> {
+    SMatrix::from_columns(&array::from_fn::<_, K, _>(column))
+}
+
+/// The twist with which a pose moves, in the parent frame.
+pub fn velocity<T: Scalar>(pose: &Pose<Dual<T>>) -> SVector<T, 6> {
+    let (rotation, rate) = (
+        pose.rotation.map(|entry| entry.value),
+        pose.rotation.map(|entry| entry.derivative()),
+    );
+    let omega = vee(&(rate * rotation.transpose()));
+    let origin = pose.translation.map(|entry| entry.value);
+    join(&omega, &(slope(&pose.translation) - omega.cross(&origin)))
+}
+
+/// X where v are the rates of the coordinates: how the pose moves with each of them.
+pub fn twists_of_rates<T: Scalar, const K: usize>(
+    q: &SVector<T, K>,
+    pose: impl Fn(&SVector<Dual<T>, K>) -> Pose<Dual<T>>,
+) -> SMatrix<T, 6, K> {
+    columns(|k| velocity(&pose(&along(q, &unit(k)))))
+}
+
+/// What the author declares of the second body of a joint.
+pub trait DeclaredSecond<const N: usize, const K: usize, const S: usize, const C: usize>:
+    Declared<N, K, S, C>
+{
+    fn second_pose<T: Scalar>(&self, q: &SVector<T, N>) -> Pose<T>;
+    /// X of the second body in the parent frame.
+    fn second_twist_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K>;
+}
+
 /// The joint that a declaration amounts to.
 #[derive(Clone, Debug)]
 pub struct Derived<D>(pub D);
 
 impl<D> Derived<D> {
-    /// S(Q, ϕ) of (23): `X(Φ) S = J`, by least squares.
-    fn map_at<T: Scalar, const N: usize, const K: usize, const S: usize, const C: usize>(
-        &self,
-        q: &SVector<T, N>,
-        phi: &SVector<T, K>,
-    ) -> SMatrix<T, K, K>
-    where
-        D: Declared<N, K, S, C>,
-    {
-        let mut jacobian = SMatrix::<T, 6, K>::zeros();
-        for k in 0..K {
-            let moved = self.0.retract(&constant(q), &along(phi, &unit(k)));
-            let pose = self.0.pose(&moved);
-            let (rotation, rate) = (
-                pose.rotation.map(|entry| entry.value),
-                pose.rotation.map(|entry| entry.derivative()),
-            );
-            let omega = vee(&(rate * rotation.transpose()));
-            let origin = pose.translation.map(|entry| entry.value);
-            let linear = slope(&pose.translation) - omega.cross(&origin);
-            jacobian.set_column(k, &join(&omega, &linear));
-        }
-        let x = self.0.twist_map(&self.0.retract(q, phi));
-        solve(x.transpose() * x, x.transpose() * jacobian)
-    }
-
     /// Derivative of `function` of Q along ϕ = direction.
     fn slope_along<
         T: Scalar,
@@ -127,7 +172,51 @@ impl<D> Derived<D> {
         let v = self.0.speed_basis(q) * speeds;
         let rate = self.velocity_map_inverse(q) * v;
         self.slope_along(q, &rate, |q| {
-            self.twist_map_child(q) * self.0.speed_basis(q)
+            Joint::twist_map_child(self, q) * self.0.speed_basis(q)
+        })
+    }
+}
+
+/// Nothing but S̄ of a holonomic joint is trivial.
+const fn structures(constraints: usize) -> Structures {
+    let speed_basis = match constraints {
+        0 => Structure::Identity,
+        _ => Structure::General,
+    };
+    Structures {
+        speed_basis,
+        ..Structures::GENERAL
+    }
+}
+
+impl<D, const N: usize, const K: usize, const S: usize, const C: usize> Carries<1, N, K, S, C>
+    for Derived<D>
+where
+    D: DeclaredSecond<N, K, S, C>,
+{
+    const STRUCTURES: Structures = structures(C);
+    const PATTERNS: Patterns<K, S> = Patterns::DENSE;
+    const UNIDENTIFIABLE: &'static [[f64; 10]] = &[];
+
+    fn pose<T: Scalar>(&self, q: &SVector<T, N>) -> Pose<T> {
+        self.0.second_pose(q)
+    }
+
+    fn twist_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K> {
+        self.0.second_twist_map(q)
+    }
+
+    fn twist_map_child<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K> {
+        self.0
+            .second_pose(q)
+            .act_twist_inverse_columns(&self.0.second_twist_map(q))
+    }
+
+    fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, N>) -> [SMatrix<T, 6, K>; K] {
+        array::from_fn(|k| {
+            self.slope_along(q, &unit(k), |q| {
+                <Self as Carries<1, N, K, S, C>>::twist_map_child(self, q)
+            })
         })
     }
 }
@@ -142,29 +231,15 @@ where
     const FREEDOMS: [&'static str; K] = D::FREEDOMS;
     const SPEEDS: [&'static str; S] = D::SPEEDS;
     const VELOCITY_FRAME: VelocityFrame = D::VELOCITY_FRAME;
-    const STRUCTURES: Structures = Structures {
-        twist_map: Structure::General,
-        twist_map_child: Structure::General,
-        twist_map_child_gradient: Structure::General,
-        velocity_map: Structure::General,
-        velocity_map_gradient: Structure::General,
-        gamma: Structure::General,
-        speed_basis: if C == 0 {
-            Structure::Identity
-        } else {
-            Structure::General
-        },
-        speed_basis_gradient: Structure::General,
-        retract_differential: Structure::General,
-        project: Structure::General,
-        residual: Structure::General,
-        bias_acceleration: Structure::General,
-        bias_momentum: Structure::General,
-        speed_map: Structure::General,
-    };
+    const STRUCTURES: Structures = structures(C);
     const PATTERNS: Patterns<K, S> = Patterns::DENSE;
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = D::SINGULARITIES;
+    const BODIES: &'static [&'static str] = D::BODIES;
+
+    fn more(&self, visit: &mut dyn FnMut(Shared)) {
+        self.0.more(visit);
+    }
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
         core::iter::empty()
@@ -189,11 +264,11 @@ where
     }
 
     fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, N>) -> [SMatrix<T, 6, K>; K] {
-        array::from_fn(|k| self.slope_along(q, &unit(k), |q| self.twist_map_child(q)))
+        array::from_fn(|k| self.slope_along(q, &unit(k), |q| Joint::twist_map_child(self, q)))
     }
 
     fn velocity_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, K, K> {
-        self.map_at(q, &SVector::zeros())
+        self.0.velocity_map_at(q, &SVector::zeros())
     }
 
     fn velocity_map_inverse<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, K, K> {
@@ -203,7 +278,7 @@ where
     }
 
     fn velocity_map_gradient<T: Scalar>(&self, q: &SVector<T, N>) -> [SMatrix<T, K, K>; K] {
-        array::from_fn(|k| slope(&self.map_at(&constant(q), &along(&SVector::zeros(), &unit(k)))))
+        array::from_fn(|k| slope(&self.0.velocity_map_at(&constant(q), &along(&SVector::zeros(), &unit(k)))))
     }
 
     fn gamma<T: Scalar>(&self, q: &SVector<T, N>, v: &SVector<T, K>) -> SMatrix<T, K, K> {
@@ -255,7 +330,7 @@ where
         q: &SVector<T, N>,
         phi: &SVector<T, K>,
     ) -> SMatrix<T, K, K> {
-        self.velocity_map_inverse(&self.0.retract(q, phi)) * self.map_at(q, phi)
+        self.velocity_map_inverse(&self.0.retract(q, phi)) * self.0.velocity_map_at(q, phi)
     }
 
     fn retract_differential_inverse<T: Scalar>(
@@ -264,7 +339,7 @@ where
         phi: &SVector<T, K>,
         rate: &SVector<T, K>,
     ) -> SVector<T, K> {
-        let map = self.map_at(q, phi);
+        let map = self.0.velocity_map_at(q, phi);
         let v = self.velocity_map(&self.0.retract(q, phi)) * rate;
         solve(map.transpose() * map, map.transpose() * v)
     }

@@ -8,5 +8,6 @@ pub mod joints;
 pub mod polar;
 pub mod random;
 pub mod readings;
+pub mod several;
 pub mod trees;
 pub mod wall;

@@ -1,7 +1,7 @@
 //! Random mechanisms from the joints of this module, and random states of them.
 
-use super::joints;
 use super::random::Random;
+use super::{joints, several};
 use hamel_runtime::erased::AnyJoint;
 use hamel_runtime::mechanism::{BodySpec, Mechanism};
 use hamel_runtime::spatial::{MassProperties, Pose, so3};
@@ -65,25 +65,59 @@ pub fn slender_tree(random: &mut Random, joints: &[Arc<dyn AnyJoint>]) -> Arc<Me
 }
 
 fn specs(random: &mut Random, joints: &[Arc<dyn AnyJoint>]) -> Vec<BodySpec> {
-    let bodies = joints.iter().enumerate().map(|(i, joint)| {
-        let choice = ((random.next() + 1.0) * 0.5 * (i + 1) as f64) as usize;
-        let parent = (i > 0).then(|| choice.min(i - 1));
+    let mut bodies: Vec<BodySpec> = Vec::new();
+    for joint in joints {
+        let before = bodies.len();
+        let choice = ((random.next() + 1.0) * 0.5 * (before + 1) as f64) as usize;
+        let parent = (before > 0).then(|| choice.min(before - 1));
         let mut spec = body(
-            &format!("body {i}"),
+            &format!("body {before}"),
             parent,
             Arc::clone(joint),
             pose(random),
             mass(random),
         );
         spec.child_placement = pose(random);
-        spec
-    });
-    bodies.collect()
+        for (place, joint) in joint.more().into_iter().enumerate() {
+            bodies.push(BodySpec {
+                name: format!("body {}", before + 1 + place),
+                joint,
+                child_placement: pose(random),
+                mass: mass(random),
+                ..spec.clone()
+            });
+        }
+        bodies.insert(before, spec);
+    }
+    bodies
 }
 
-/// One to six joints, mixed, every type at the root of some tree.
+/// One to six joints, mixed, every type at the root of some tree; then others in which some joints carry several bodies.
 pub fn trees() -> Vec<Arc<Mechanism>> {
-    mixed_trees(tree)
+    let mut trees = mixed_trees(tree);
+    trees.extend(trees_of_several());
+    trees
+}
+
+/// Joints that carry several bodies, among others, at the root and within.
+fn trees_of_several() -> Vec<Arc<Mechanism>> {
+    let all = [
+        several::linkage(),
+        joints::revolute(),
+        several::carriage(),
+        joints::ball(),
+        joints::cart(),
+    ];
+    (0..10)
+        .map(|seed| {
+            let mut random = Random::new(50 + seed);
+            let count = 1 + seed as usize % 5;
+            let chosen: Vec<_> = (0..count)
+                .map(|i| Arc::clone(&all[(2 * seed as usize + 3 * i) % all.len()]))
+                .collect();
+            tree(&mut random, &chosen)
+        })
+        .collect()
 }
 
 /// [`trees`] of [`slender_tree`]s.
@@ -117,9 +151,7 @@ fn mixed_trees(
 /// A configuration far from home on every joint.
 pub fn configuration(random: &mut Random, mechanism: &Mechanism) -> Vec<f64> {
     mechanism
-        .bodies()
-        .iter()
-        .enumerate()
+        .joints()
         .flat_map(|(i, body)| {
             let phi = random.vec(body.ranges().freedoms.len());
             mechanism.configuration_from_local(i, &phi).expect("finite")

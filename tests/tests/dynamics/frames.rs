@@ -137,7 +137,7 @@ fn local_rates(case: &Case) -> DVector<f64> {
         .velocity_from_speeds(&case.q, &case.speeds)
         .expect("sizes fit");
     let mut rates = DVector::zeros(velocity.len());
-    for body in case.mechanism.bodies() {
+    for (_, body) in case.mechanism.joints() {
         let own = body.ranges().freedoms.clone();
         let mut inverse = DMatrix::zeros(own.len(), own.len());
         body.joint()

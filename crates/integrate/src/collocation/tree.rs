@@ -108,7 +108,7 @@ impl Tree {
             form: flow.form,
             charts: Charts::new(mechanism),
             slopes: JointSlopes::new(mechanism),
-            variations: vec![Variation::zero(); layout.freedoms],
+            variations: vec![Variation::zero(); mechanism.variations()],
             blocks: bodies.map(|body| Block::new(body.ranges())).collect(),
             stages: (0..lower.len()).map(|i| factors(lower[i][i])).collect(),
             filter: first.map(|value| factors(1.0 / value)),
@@ -135,8 +135,8 @@ impl Tree {
         let mechanism = self.dynamics.mechanism();
         self.charts
             .set(mechanism, &step_state.base, &step_state.offset, speeds);
-        for (index, block) in self.blocks.iter_mut().enumerate() {
-            let body = &mechanism.bodies()[index];
+        for (index, body) in mechanism.joints() {
+            let block = &mut self.blocks[index];
             let (freedoms, count) = (body.ranges().freedoms.len(), body.ranges().speeds.len());
             let (by_local, by_speeds) = self.slopes.of(index);
             let (moved, rated) = self.charts.of(index);
@@ -231,11 +231,8 @@ impl Tree {
         let (turned, pushed) = x.split_at_mut(*freedoms);
         let mechanism = Arc::clone(dynamics.mechanism());
         let joints = || {
-            mechanism
-                .bodies()
-                .iter()
-                .map(|body| body.ranges())
-                .enumerate()
+            let joints = mechanism.joints();
+            joints.map(|(index, body)| (index, body.ranges()))
         };
         // What the springs give way to: −τ K D r_ϕ, and what loads the mass beside M̄.
         for (index, ranges) in joints() {

@@ -386,7 +386,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
                 .for_each(|speed| *speed *= 1.0 + change);
             return from;
         }
-        for body in self.mechanism.bodies() {
+        for (_, body) in self.mechanism.joints() {
             let speeds = &mut from.speeds[body.ranges().speeds.clone()];
             let largest = speeds.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
             let signs = [change, -change].into_iter().cycle();

@@ -75,11 +75,11 @@ pub(super) struct Friction {
 }
 
 impl Contact {
-    /// All of a mechanism, in the order of its bodies.
+    /// All of a mechanism, in the order of its joints.
     pub(super) fn all(mechanism: &Mechanism) -> Vec<Self> {
-        let bodies = mechanism.bodies().iter().enumerate();
-        let contacts = bodies.filter_map(|(index, body)| {
-            let own = |at: usize| at == index;
+        let joints = mechanism.joints();
+        let contacts = joints.filter_map(|(index, body)| {
+            let own = |at: usize| mechanism.leader(at) == index;
             let frictions = mechanism.frictions().iter();
             // Friction that holds nothing is none.
             let friction = frictions

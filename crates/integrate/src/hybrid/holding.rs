@@ -68,7 +68,7 @@ impl Holding {
             .inverse_dynamics(q, speeds, &self.rates, &mut self.missing)
             .map_err(StepFailure::State)?;
         self.couple(q, speeds)?;
-        for body in mechanism.bodies() {
+        for (_, body) in mechanism.joints() {
             let ranges = body.ranges();
             // Only joints with one coordinate are held, and only theirs are read.
             if let [tau] = self.tau[ranges.freedoms.clone()] {
@@ -87,7 +87,7 @@ impl Holding {
         dynamics.joint_efforts(q, &mut coupling.alone)?;
         dynamics.coupling_force(q, speeds, &self.rates, &self.driven, &mut coupling.forces)?;
         dynamics.joint_efforts(q, &mut coupling.coupled)?;
-        for body in dynamics.mechanism().bodies() {
+        for (_, body) in dynamics.mechanism().joints() {
             let ranges = body.ranges();
             if ranges.freedoms.len() == 1 && ranges.speeds.len() == 1 {
                 let own = ranges.freedoms.start;

@@ -24,8 +24,12 @@ struct Own {
 }
 
 impl Own {
+    /// Room for the joint that a body stands for; none for its further bodies.
     fn new(body: &Body) -> Self {
-        let (freedoms, speeds) = (body.ranges().freedoms.clone(), body.ranges().speeds.clone());
+        let (freedoms, speeds) = match body.leads() {
+            true => (body.ranges().freedoms.clone(), body.ranges().speeds.clone()),
+            false => (0..0, 0..0),
+        };
         let square = vec![0.0; freedoms.len() * freedoms.len()];
         Self {
             carried: square.clone(),
@@ -46,7 +50,8 @@ impl Charts {
 
     /// Evaluates them at base point `base`, `phi` and `speeds`.
     pub(crate) fn set(&mut self, mechanism: &Mechanism, base: &[f64], phi: &[f64], speeds: &[f64]) {
-        for (own, body) in self.0.iter_mut().zip(mechanism.bodies()) {
+        for (index, body) in mechanism.joints() {
+            let own = &mut self.0[index];
             let mut out = ChartDerivatives {
                 carried: &mut own.carried,
                 moved: &mut own.moved,

@@ -192,7 +192,7 @@ impl Fit<'_> {
 
     fn goal(&self, regulator: &RegulatorDescription, sink: &mut Sink) -> Option<Goal> {
         let configuration = self.configuration(&regulator.goals, sink);
-        let all: Vec<usize> = (0..self.mechanism.bodies().len()).collect();
+        let all: Vec<usize> = self.mechanism.joints().map(|(index, _)| index).collect();
         let actuated = match &regulator.actuated {
             None => Some(all),
             Some(names) => {

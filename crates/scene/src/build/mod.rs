@@ -5,10 +5,12 @@ mod equip;
 mod event;
 mod forces;
 mod joint;
+mod parts;
 mod place;
 mod state;
 
 pub(crate) use control::control;
+pub(crate) use parts::states;
 pub(crate) use state::{State, state};
 
 use crate::description::SceneDescription;
@@ -83,10 +85,10 @@ pub(crate) fn scene(
     })
 }
 
-/// The bodies by the names of their joints.
+/// The bodies that stand for joints, by the names of these.
 fn by_joint(mechanism: &Mechanism) -> HashMap<&str, usize> {
-    let bodies = mechanism.bodies().iter().enumerate();
-    bodies
+    mechanism
+        .joints()
         .map(|(index, body)| (body.joint_name(), index))
         .collect()
 }

@@ -44,6 +44,7 @@ impl<'a> Places<'a> {
             MechanismError::DuplicateName { body, .. }
             | MechanismError::Parent { body, .. }
             | MechanismError::Overflow { body, .. }
+            | MechanismError::Several { body, .. }
             | MechanismError::Placement { body, .. }
             | MechanismError::Mass { body, .. } => self.body(body),
             MechanismError::Frame { frame, .. } => self.frame(frame),

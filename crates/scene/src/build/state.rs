@@ -59,7 +59,7 @@ pub(crate) fn state(
     })
 }
 
-/// The joint alone, between the world and a body without mass: its state is solved there, so that the errors of one joint do
+/// The joint alone, between the world and bodies without mass: its state is solved there, so that the errors of one joint do
 /// not hide those of another.
 pub(super) struct Stand {
     pub(super) name: String,
@@ -79,16 +79,20 @@ impl Stand {
         span: &Span,
     ) -> Result<Self, Diagnostic> {
         let name = String::from(name);
-        let body = BodySpec {
-            name: name.clone(),
+        let all = core::iter::once(Arc::clone(&joint)).chain(joint.more());
+        let bodies = all.enumerate().map(|(number, joint)| BodySpec {
+            name: match number {
+                0 => name.clone(),
+                _ => format!("{name} {number}"),
+            },
             joint_name: name.clone(),
             parent: None,
-            joint: Arc::clone(&joint),
+            joint,
             placement: Pose::identity(),
             child_placement: Pose::identity(),
             mass: MassProperties::massless(),
-        };
-        let mechanism = Mechanism::new(Vector3::zeros(), vec![body]).map_err(|errors| {
+        });
+        let mechanism = Mechanism::new(Vector3::zeros(), bodies.collect()).map_err(|errors| {
             let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
             Diagnostic::new(span.clone(), errors.join("; "))
         })?;

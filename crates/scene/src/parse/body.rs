@@ -1,16 +1,72 @@
-//! One `[[body]]`.
+//! One `[[body]]`: a body and its joint, or a joint and the bodies that it carries.
 
 use super::{BodyDraft, elastic, forces, initial, joint, mass, placement};
+use crate::description::Part;
 use crate::diagnostics::Diagnostic;
-use crate::read::{Fields, Sink};
+use crate::read::{Fields, Sink, Value};
 use crate::source::Located;
 use hamel_runtime::spatial::Pose;
 
 /// Name by which a body's `parent` means the inertial frame.
 pub(crate) const WORLD: &str = "world";
 
-/// Reads a body.
-pub(super) fn body(mut fields: Fields<'_>, sink: &mut Sink) -> BodyDraft {
+/// Reads a body, or all bodies of a joint that carries several: those under `bodies`, each with its mass and `body_at`.
+pub(super) fn bodies(mut fields: Fields<'_>, sink: &mut Sink) -> Vec<BodyDraft> {
+    match fields.optional("bodies") {
+        None => vec![body(fields, sink)],
+        Some(value) => parts(fields, &value, sink),
+    }
+}
+
+/// Reads the bodies of a joint, under `value`; the first of them has what belongs to the joint.
+fn parts(mut fields: Fields<'_>, value: &Value<'_>, sink: &mut Sink) -> Vec<BodyDraft> {
+    let name = name(&mut fields, sink);
+    if let Some(name) = &name {
+        fields.set_owner(format!("joint `{}`: ", name.value));
+    }
+    let parent = fields.required("parent", sink);
+    let parent = parent.and_then(|parent| parent.text(sink));
+    let joint = joint::joint(&mut fields, name.as_ref(), sink);
+    let at = pose(&mut fields, "at", sink);
+    let mut initial = Some(initial::initial(&mut fields, sink));
+    let mut forces = Some(forces::forces(&mut fields, sink));
+    let mut all = Vec::new();
+    let tables = value.table(sink).map(|bodies| bodies.unclaimed());
+    for (number, (key, value)) in tables.into_iter().flatten().enumerate() {
+        let called = |name: &Located<String>| {
+            Located::new(format!("{}.{}", name.value, key.value), key.span.clone())
+        };
+        let Some(mut own) = value.table(sink) else {
+            continue;
+        };
+        let full = name.as_ref().map(called);
+        if let Some(full) = &full {
+            own.set_owner(format!("body `{}`: ", full.value));
+        }
+        all.push(BodyDraft {
+            name: full,
+            parent: parent.clone(),
+            mass: mass::mass(&mut own, sink),
+            joint: joint.clone(),
+            at,
+            body_at: pose(&mut own, "body_at", sink),
+            initial: initial.take().unwrap_or_else(|| Some(Default::default())),
+            forces: forces.take().unwrap_or_else(|| Some(Default::default())),
+            elastic: None,
+            part: Some(Part { name: key, number }),
+        });
+        own.finish(sink);
+    }
+    if all.is_empty() && sink.len() == 0 {
+        let error = Diagnostic::new(value.span(), format!("{}`bodies` is empty", fields.owner()));
+        sink.push(error.help("give each body of the joint: `bodies.NAME = { mass = …, inertia = … }`"));
+    }
+    fields.finish(sink);
+    all
+}
+
+/// Reads a body that its joint carries alone.
+fn body(mut fields: Fields<'_>, sink: &mut Sink) -> BodyDraft {
     let name = name(&mut fields, sink);
     if let Some(name) = &name {
         fields.set_owner(format!("body `{}`: ", name.value));
@@ -28,6 +84,7 @@ pub(super) fn body(mut fields: Fields<'_>, sink: &mut Sink) -> BodyDraft {
         elastic: fields
             .optional("elastic")
             .and_then(|value| elastic::elastic(&value, sink)),
+        part: None,
         name,
     };
     fields.finish(sink);

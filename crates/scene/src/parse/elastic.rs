@@ -122,6 +122,7 @@ fn motor(draft: &mut BodyDraft, elastic: &Located<Elastic>, sink: &mut Sink) -> 
         }),
         forces: Some(forces),
         elastic: None,
+        part: None,
         name: Some(name),
     };
     draft.forces = Some(behind(&elastic.value, span));

@@ -21,7 +21,7 @@ pub(crate) use body::WORLD;
 pub(crate) use tree::{cycles, order};
 
 use crate::control::ControllerDescription;
-use crate::description::{InitialDescription, JointDescription};
+use crate::description::{InitialDescription, JointDescription, Part};
 use crate::diagnostics::Diagnostic;
 use crate::forces::JointForces;
 use crate::read::{Fields, Sink};
@@ -59,12 +59,21 @@ pub(crate) struct BodyDraft {
     pub(crate) parent: Option<Located<String>>,
     pub(crate) mass: Option<MassProperties>,
     pub(crate) joint: Option<JointDescription>,
+    /// Which body of its joint it is, where the joint carries several.
+    pub(crate) part: Option<Part>,
     pub(crate) at: Pose<f64>,
     pub(crate) body_at: Pose<f64>,
     pub(crate) initial: Option<InitialDescription>,
     pub(crate) forces: Option<JointForces>,
     /// The motor behind a spring, until the body is made two.
     pub(crate) elastic: Option<Located<Elastic>>,
+}
+
+impl BodyDraft {
+    /// Whether it is the only body of its joint, or the first.
+    pub(crate) fn leads(&self) -> bool {
+        self.part.as_ref().is_none_or(|part| part.number == 0)
+    }
 }
 
 /// The bodies as a tree.
@@ -106,7 +115,8 @@ fn table<'a>(text: &'a str, sink: &mut Sink) -> Option<Spanned<DeTable<'a>>> {
 
 /// The joints of bodies; `None` where some could not be read, which may be the ones that are spoken of.
 fn joints(bodies: &[BodyDraft]) -> Option<Joints<'_>> {
-    let joints = bodies.iter().map(|body| body.joint.as_ref());
+    let joints = bodies.iter().filter(|body| body.leads());
+    let joints = joints.map(|body| body.joint.as_ref());
     joints
         .map(|joint| Some(joint?.name.value.as_str()))
         .collect()
@@ -191,9 +201,9 @@ fn bodies(fields: &mut Fields<'_>, sink: &mut Sink) -> Vec<BodyDraft> {
     let tables = value.tables(sink).unwrap_or_default();
     let tables = tables.into_iter().enumerate();
     tables
-        .map(|(index, (span, table))| {
+        .flat_map(|(index, (span, table))| {
             let fields = Fields::new(format!("body {}: ", index + 1), span, table);
-            body::body(fields, sink)
+            body::bodies(fields, sink)
         })
         .collect()
 }

@@ -17,7 +17,7 @@ pub(super) fn tree(bodies: &[BodyDraft], sink: &mut Sink) -> Option<Tree> {
     let errors_before = sink.len();
     let places = unique(bodies.iter().map(|body| body.name.as_ref()), "bodies", sink);
     let joints = bodies.iter().enumerate().map(|(place, body)| {
-        let name = &body.joint.as_ref()?.name;
+        let name = &body.joint.as_ref().filter(|_| body.leads())?.name;
         // A joint that took its name from its body shares the body's error.
         let inherited = body.name.as_ref() == Some(name);
         let told = inherited && places.get(name.value.as_str()) != Some(&place);
@@ -25,7 +25,7 @@ pub(super) fn tree(bodies: &[BodyDraft], sink: &mut Sink) -> Option<Tree> {
     });
     unique(joints, "joints", sink);
     let parents = parents(bodies, &places, sink)?;
-    let order = order(&parents);
+    let order = order(&last_parents(bodies, &parents));
     for cycle in cycles(&parents, &order) {
         sink.push(cycle_error(bodies, &cycle));
     }
@@ -104,6 +104,20 @@ fn parent(
     let error = Diagnostic::new(parent.span.clone(), message);
     sink.unknown(error, &parent.value, names, "a parent is");
     None
+}
+
+/// The parents, but the last body of its joint in place of each: what hangs on any of them comes after all of them.
+fn last_parents(bodies: &[BodyDraft], parents: &[Option<usize>]) -> Vec<Option<usize>> {
+    let number = |place: usize| bodies.get(place)?.part.as_ref().map(|part| part.number);
+    let last = |place: usize| {
+        let own = number(place)?;
+        let follow = (place + 1..).take_while(|&next| number(next).is_some_and(|next| next > own));
+        Some(place + follow.count())
+    };
+    let parents = parents.iter();
+    parents
+        .map(|parent| parent.map(|place| last(place).unwrap_or(place)))
+        .collect()
 }
 
 /// Every body whose ancestors lead to the world, parents first; among those that could come next, the first in the file.

@@ -223,6 +223,7 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
     ) {
         let body = self.bodies.len();
         self.bodies.push(BodyDescription {
+            part: None,
             name: self.name(link),
             parent,
             mass: MassProperties::massless(),

@@ -1,6 +1,6 @@
-//! One `[[body]]`.
+//! One `[[body]]`: a joint and what it carries.
 
-use super::value::{list, number, rows, table, text};
+use super::value::{key, list, number, rows, table, text};
 use super::{entry, forces, pose};
 use crate::description::{
     BodyDescription, InitialDescription, JointDescription, Motion, Position, TwistFrame,
@@ -8,23 +8,49 @@ use crate::description::{
 use crate::parse::WORLD;
 use hamel_runtime::spatial::{MassProperties, split};
 
-/// Appends a body of `bodies`.
-pub(super) fn body(out: &mut String, body: &BodyDescription, bodies: &[BodyDescription]) {
-    out.push_str("[[body]]\n");
-    entry(out, "name", &text(&body.name.value));
-    entry(out, "parent", &text(name_of(body.parent, bodies)));
-    mass(out, &body.mass);
-    entry(out, "joint", &joint(&body.joint, &body.name.value));
-    for (key, pose) in [("at", &body.at), ("body_at", &body.body_at)] {
-        if let Some(value) = pose::pose(pose) {
-            entry(out, key, &value);
+/// Appends a joint and the bodies that it carries, `group`, of which `first` is the first; parents are among `bodies`.
+pub(super) fn bodies(
+    out: &mut String,
+    first: &BodyDescription,
+    group: &[BodyDescription],
+    bodies: &[BodyDescription],
+) {
+    let name = match &first.part {
+        None => &first.name.value,
+        Some(part) => {
+            let own = first.name.value.strip_suffix(&part.name.value);
+            own.and_then(|own| own.strip_suffix('.')).unwrap_or("")
         }
+    };
+    out.push_str("[[body]]\n");
+    entry(out, "name", &text(name));
+    entry(out, "parent", &text(name_of(first.parent, bodies)));
+    if first.part.is_none() {
+        let entries = mass(&first.mass);
+        entries.iter().for_each(|(key, value)| entry(out, key, value));
     }
-    if let Some(value) = initial(&body.initial) {
+    entry(out, "joint", &joint(&first.joint, name));
+    if let Some(value) = pose::pose(&first.at) {
+        entry(out, "at", &value);
+    }
+    if first.part.is_none()
+        && let Some(value) = pose::pose(&first.body_at)
+    {
+        entry(out, "body_at", &value);
+    }
+    if let Some(value) = initial(&first.initial) {
         entry(out, "initial", &value);
     }
-    forces::of_joint(out, &body.forces);
+    forces::of_joint(out, &first.forces);
+    for own in group {
+        if let Some(part) = &own.part {
+            let mut entries = mass(&own.mass);
+            entries.extend(pose::pose(&own.body_at).map(|value| ("body_at", value)));
+            entry(out, &format!("bodies.{}", key(&part.name.value)), &table(&entries));
+        }
+    }
 }
+
 
 /// Name of a body of `bodies`, or of the world.
 pub(super) fn name_of(body: Option<usize>, bodies: &[BodyDescription]) -> &str {
@@ -33,23 +59,24 @@ pub(super) fn name_of(body: Option<usize>, bodies: &[BodyDescription]) -> &str {
     body.map_or(WORLD, name)
 }
 
-fn mass(out: &mut String, mass: &MassProperties) {
-    entry(out, "mass", &number(mass.mass));
+fn mass(mass: &MassProperties) -> Vec<(&'static str, String)> {
+    let mut entries = vec![("mass", number(mass.mass))];
     if mass.com != nalgebra::Vector3::zeros() {
-        entry(out, "com", &list(&mass.com));
+        entries.push(("com", list(&mass.com)));
     }
     let i = &mass.inertia_com;
     if *i == i.transpose() {
         let places = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
         let six = places.map(|place| i[place]);
-        entry(out, "inertia_xx_yy_zz_xy_xz_yz", &list(&six));
+        entries.push(("inertia_xx_yy_zz_xy_xz_yz", list(&six)));
     } else {
         let matrix = i
             .row_iter()
             .map(|row| row.iter().copied().collect::<Vec<_>>());
         let matrix: Vec<_> = matrix.collect();
-        entry(out, "inertia", &rows(&matrix));
+        entries.push(("inertia", rows(&matrix)));
     }
+    entries
 }
 
 fn joint(joint: &JointDescription, body: &str) -> String {

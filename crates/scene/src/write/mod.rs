@@ -28,10 +28,11 @@ impl SceneDescription {
             out.push_str(&format!("description = {}\n", text(&self.description)));
         }
         out.push_str(&format!("gravity = {}\n", list(&self.gravity)));
-        for body in &self.bodies {
+        for group in self.bodies.chunk_by(|_, next| !next.leads()) {
+            let Some(first) = group.first() else { continue };
             out.push('\n');
-            comments(&mut out, &beside(&body.joint.name.value));
-            body::body(&mut out, body, &self.bodies);
+            comments(&mut out, &beside(&first.joint.name.value));
+            body::bodies(&mut out, first, group, &self.bodies);
         }
         forces::elements(&mut out, self);
         shape::shapes(&mut out, self);

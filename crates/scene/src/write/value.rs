@@ -39,16 +39,16 @@ where
     format!("[{}]", rows.join(", "))
 }
 
+/// A name as a key: bare where TOML allows.
+pub(super) fn key(name: &str) -> String {
+    TomlKeyBuilder::new(name).as_default().to_toml_key()
+}
+
 /// A table in one line.
 pub(super) fn table(entries: &[(&str, String)]) -> String {
     let entries: Vec<String> = entries
         .iter()
-        .map(|(key, value)| {
-            format!(
-                "{} = {value}",
-                TomlKeyBuilder::new(key).as_default().to_toml_key()
-            )
-        })
+        .map(|(name, value)| format!("{} = {value}", key(name)))
         .collect();
     format!("{{ {} }}", entries.join(", "))
 }

@@ -47,10 +47,7 @@ impl Link {
         let bodies = mechanism.bodies().iter().enumerate();
         let mut links: Vec<Self> = bodies
             .map(|(index, body)| Self {
-                armature: match body.leads() {
-                    true => mechanism.speed_armature(index).to_vec(),
-                    false => Vec::new(),
-                },
+                armature: mechanism.speed_armature(index).to_vec(),
                 driven: mechanism.is_driven(index),
                 ..Self::new(body)
             })

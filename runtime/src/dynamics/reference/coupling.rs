@@ -110,7 +110,7 @@ impl Expansion {
     ) -> DVector<f64> {
         let velocity = &self.speed_basis * reduced;
         let mut speeds = DVector::zeros(mechanism.layout().speeds);
-        for body in mechanism.bodies() {
+        for (_, body) in mechanism.joints() {
             let ranges = body.ranges();
             let own = velocity.rows_range(ranges.freedoms.clone()).into_owned();
             let mut basis = DMatrix::zeros(ranges.freedoms.len(), ranges.speeds.len());

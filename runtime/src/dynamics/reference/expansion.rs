@@ -59,7 +59,7 @@ impl Expansion {
                 .filter(|speed| !mechanism.dependent_speeds().contains(speed))
                 .collect(),
         };
-        for body in mechanism.bodies() {
+        for (_, body) in mechanism.joints() {
             expansion.add_velocity_maps(body, body.configuration(q));
             expansion.add_constraint(body, body.configuration(q));
         }
@@ -103,7 +103,7 @@ impl Expansion {
     /// Rotor inertias on the diagonal of M. They are constant in Q, so that ∂M/∂ϕ has no part of theirs; where v is no rate of coordinates,
     /// S and ∂S/∂ϕ bring in what a rotor exerts, as they do for every other part of M.
     fn add_armature(&mut self, mechanism: &Mechanism) {
-        for (index, body) in mechanism.bodies().iter().enumerate() {
+        for (index, body) in mechanism.joints() {
             let freedoms = body.ranges().freedoms.clone();
             for (k, inertia) in freedoms.zip(mechanism.armature(index)) {
                 self.mass_matrix[(k, k)] += inertia;

@@ -111,6 +111,9 @@ impl Actuation {
                     axes,
                 });
             }
+            if !owner.leads() {
+                continue;
+            }
             let holonomic = owner.joint().structures().speed_basis.is_identity();
             let inertia = numbers(&mut random, ranges.speeds.len());
             let inertia = inertia.iter().map(|a| f64::from(holonomic) * a.abs());
@@ -138,7 +141,7 @@ impl Actuation {
         ];
         let equipped = mechanism.clone().with_elements(elements.concat());
         let mut equipped = equipped.expect("it fits");
-        for (body, owner) in mechanism.bodies().iter().enumerate() {
+        for (body, owner) in mechanism.joints() {
             let holonomic = owner.joint().structures().speed_basis.is_identity();
             let own = self.armature.get(owner.ranges().speeds.clone());
             if let Some(own) = own.filter(|_| holonomic) {
@@ -169,6 +172,7 @@ impl Actuation {
                 *force += column.dot(wrench);
             }
             if let Some(inertia) = self.armature.get(body.speeds.clone())
+                && body.leads
                 && body.speeds.len() == body.freedoms.len()
             {
                 let (q, v) = (&q[body.configuration.clone()], &speeds[body.speeds.clone()]);
@@ -183,7 +187,7 @@ impl Actuation {
 
     /// τ of all joints.
     fn efforts(&self, form: &DualForm, q: &[D], speeds: &[D]) -> Vec<D> {
-        let size = form.bodies.iter().map(|body| body.freedoms.len()).sum();
+        let size = form.joints().map(|body| body.freedoms.len()).sum();
         let mut efforts = vec![Dual::constant(0.0); size];
         let mut add = |body: usize, own: Vec<D>| {
             let sum = efforts[form.bodies[body].freedoms.clone()].iter_mut();

@@ -9,8 +9,8 @@ use hamel::spatial::Pose;
 
 /// The kernels of one joint in dual numbers.
 pub trait Kernels {
-    /// The joint's name and the values of its parameters.
-    fn identity(&self) -> (&'static str, Vec<f64>);
+    /// The joint's name, which of its bodies it is the joint of, and the values of its parameters.
+    fn identity(&self) -> (&'static str, usize, Vec<f64>);
     /// Φ(Q, ϕ).
     fn retract(&self, q: &[f64], phi: &[D]) -> Vec<D>;
     /// H.
@@ -46,9 +46,9 @@ pub(super) fn constants(values: &[f64]) -> Vec<D> {
 impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const C: usize> Kernels
     for Of<J, N, K, S, C>
 {
-    fn identity(&self) -> (&'static str, Vec<f64>) {
+    fn identity(&self) -> (&'static str, usize, Vec<f64>) {
         let parameters = self.0.parameters().map(|(_, value)| value);
-        (J::NAME, parameters.collect())
+        (J::NAME, J::BODY, parameters.collect())
     }
 
     fn retract(&self, q: &[f64], phi: &[D]) -> Vec<D> {
@@ -138,7 +138,7 @@ pub fn behind(
     let mut parameters = vec![];
     joint.parameters(&mut |_, value| parameters.push(value));
     let mut all = all.into_iter();
-    let found = all.find(|own| own.identity() == (joint.name(), parameters.clone()));
+    let found = all.find(|own| own.identity() == (joint.name(), joint.body(), parameters.clone()));
     found.unwrap_or_else(|| panic!("no kernels of `{}` with {parameters:?}", joint.name()))
 }
 

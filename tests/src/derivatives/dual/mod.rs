@@ -19,6 +19,8 @@ type D = Dual<f64>;
 
 struct Body {
     joint: Box<dyn Kernels>,
+    /// Whether it stands for its joint: it is the only body, or the first.
+    leads: bool,
     parent: Option<usize>,
     frame: Pose<D>,
     /// The body frame in the joint's child frame.
@@ -80,6 +82,7 @@ impl DualForm {
             (lifted_inertia.inertia.yz, lifted_inertia.inertia.zz) = (lift(i.yz), lift(i.zz));
             Body {
                 joint: lookup(body.joint()),
+                leads: body.leads(),
                 parent: body.parent(),
                 frame: lifted(&(above * *body.placement())),
                 fixed: lifted(body.child_placement()),
@@ -105,9 +108,13 @@ impl DualForm {
         }
     }
 
+    fn joints(&self) -> impl Iterator<Item = &Body> {
+        self.bodies.iter().filter(|body| body.leads)
+    }
+
     /// Q moved along one ϕ.
     pub fn moved(&self, q: &[f64], freedom: usize) -> Vec<D> {
-        let each = self.bodies.iter().flat_map(|body| {
+        let each = self.joints().flat_map(|body| {
             let unit = |k: usize| Dual::new(0.0, f64::from(u8::from(k == freedom)));
             let phi: Vec<D> = body.freedoms.clone().map(unit).collect();
             body.joint.retract(&q[body.configuration.clone()], &phi)
@@ -134,7 +141,7 @@ impl DualForm {
         for (body, wrench) in self.bodies.iter().zip(&wrenches) {
             let columns = body.joint.columns(&q[body.configuration.clone()]);
             for (effort, column) in efforts[body.speeds.clone()].iter_mut().zip(&columns) {
-                *effort = column.dot(wrench);
+                *effort += column.dot(wrench);
             }
         }
         self.actuation.add_rotors(accelerations, &mut efforts);
@@ -172,7 +179,7 @@ impl DualForm {
 
     /// S̄ᵀ τ.
     pub fn reduced(&self, q: &[D], efforts: &[D]) -> Vec<D> {
-        let own = self.bodies.iter().flat_map(|body| {
+        let own = self.joints().flat_map(|body| {
             let efforts = &efforts[body.freedoms.clone()];
             body.joint.reduce(&q[body.configuration.clone()], efforts)
         });

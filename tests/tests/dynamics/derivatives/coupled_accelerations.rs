@@ -128,8 +128,8 @@ impl<'a> Oracle<'a> {
 
 fn driven(system: &System<'_>) -> Vec<(usize, usize)> {
     let mechanism = &system.case.mechanism;
-    let bodies = mechanism.bodies().iter().enumerate();
-    let driven = bodies.filter(|(body, _)| mechanism.is_driven(*body));
+    let joints = mechanism.joints();
+    let driven = joints.filter(|(body, _)| mechanism.is_driven(*body));
     let inputs = driven.flat_map(|(_, body)| {
         let ranges = body.ranges();
         ranges.speeds.clone().zip(ranges.freedoms.clone())

@@ -26,7 +26,8 @@ fn all() -> Vec<Equipped> {
             laws: vec![Law::default().into(); mechanism.bodies()[body].ranges().speeds.len()],
         };
         let first = case.seed as usize % 3;
-        let drives = (first..mechanism.bodies().len()).step_by(3).map(drive);
+        let joints = mechanism.joints().map(|(index, _)| index);
+        let drives = joints.skip(first).step_by(3).map(drive);
         let mechanism = (*mechanism).clone().with_drives(drives.collect());
         let mechanism = Arc::new(mechanism.expect("they fit"));
         let case = Case { mechanism, ..case };
@@ -37,8 +38,8 @@ fn all() -> Vec<Equipped> {
 
 /// The speeds of joints that are driven, or of those that are not.
 fn speeds(case: &Case, driven: bool) -> Vec<usize> {
-    let bodies = case.mechanism.bodies().iter().enumerate();
-    let chosen = bodies.filter(|(body, _)| case.mechanism.is_driven(*body) == driven);
+    let joints = case.mechanism.joints();
+    let chosen = joints.filter(|(body, _)| case.mechanism.is_driven(*body) == driven);
     chosen
         .flat_map(|(_, body)| body.ranges().speeds.clone())
         .collect()
@@ -69,7 +70,7 @@ fn answer(case: &Case, mass: &DMatrix<f64>, forces: &DMatrix<f64>) -> DMatrix<f6
 /// `∂v̄̇/∂τ` times M̄ of the free: S̄ᵀ, with the accelerations of driven joints in place of their efforts.
 fn inputs(case: &Case, mass: &DMatrix<f64>, basis: &DMatrix<f64>) -> DMatrix<f64> {
     let mut inputs = basis.clone();
-    for (body, owner) in case.mechanism.bodies().iter().enumerate() {
+    for (body, owner) in case.mechanism.joints() {
         if case.mechanism.is_driven(body) {
             let ranges = owner.ranges();
             inputs
@@ -115,7 +116,7 @@ fn free_joints_answer() {
 
 /// The accelerations of driven joints are their inputs, whatever else.
 fn driven_obey(case: &Case, [by_local, by_speeds, by_efforts]: &[DMatrix<f64>; 3]) {
-    for (body, owner) in case.mechanism.bodies().iter().enumerate() {
+    for (body, owner) in case.mechanism.joints() {
         if case.mechanism.is_driven(body) {
             let (speeds, freedoms) = (&owner.ranges().speeds, &owner.ranges().freedoms);
             for (speed, effort) in speeds.clone().zip(freedoms.clone()) {
@@ -146,7 +147,7 @@ fn port_hamiltonian(equipped: &Equipped, oracle: &Expected) -> [DMatrix<f64>; 5]
     let [along, faster] = oracle.rates_of_momenta(case, &by_local, &by_momenta);
     let [_, basis] = oracle.inputs(case);
     let mut rates = [along, faster, basis];
-    for (body, owner) in case.mechanism.bodies().iter().enumerate() {
+    for (body, owner) in case.mechanism.joints() {
         if case.mechanism.is_driven(body) {
             let ranges = owner.ranges();
             for (speed, effort) in ranges.speeds.clone().zip(ranges.freedoms.clone()) {

@@ -9,7 +9,7 @@ use hamel::mechanism::{Body, Mechanism};
 impl<'a> Columns<'a> {
     /// Coordinates and speeds of all joints.
     pub(super) fn joints(&mut self, mechanism: &'a Mechanism) {
-        for (index, body) in mechanism.bodies().iter().enumerate() {
+        for (index, body) in mechanism.joints() {
             let units = Units::of(body.joint());
             self.enter(Some(List::Joints), body.joint_name());
             self.coordinates(index, body, &units);
@@ -22,7 +22,7 @@ impl<'a> Columns<'a> {
 
     /// τ of all joints.
     pub(super) fn efforts(&mut self, mechanism: &'a Mechanism) {
-        for body in mechanism.bodies() {
+        for (_, body) in mechanism.joints() {
             let units = Units::of(body.joint());
             self.enter(Some(List::Efforts), body.joint_name());
             let freedoms = body.ranges().freedoms.clone();

@@ -60,9 +60,8 @@ impl<'a> Charts<'a> {
             first_energy: None,
             steps: Steps::default(),
             followed: mechanism
-                .bodies()
-                .iter()
-                .map(|body| Unwrapped::new(body.joint(), body.home()))
+                .joints()
+                .map(|(_, body)| Unwrapped::new(body.joint(), body.home()))
                 .collect(),
             coordinates: Vec::new(),
         }
@@ -95,8 +94,8 @@ impl<'a> Charts<'a> {
 
     /// Follows the coordinates to a sample, also to one that is no frame: the fewer turn between two, the surer.
     pub fn follow(&mut self, configuration: &[f64]) {
-        let bodies = self.mechanism.bodies().iter().zip(&mut self.followed);
-        let coordinates = bodies.flat_map(|(body, followed)| {
+        let joints = self.mechanism.joints().zip(&mut self.followed);
+        let coordinates = joints.flat_map(|((_, body), followed)| {
             followed.follow(body.joint(), body.configuration(configuration))
         });
         self.coordinates = coordinates.collect();
@@ -174,8 +173,7 @@ fn described(plan: &Plan, next: &mut usize) -> Vec<Chart> {
     let joints = |names: fn(&Body) -> &[&'static str],
                   units: fn(&Units) -> Vec<&'static str>,
                   next: &mut usize| {
-        let bodies = mechanism.bodies().iter().enumerate();
-        let variants = bodies.map(|(index, body)| {
+        let variants = mechanism.joints().map(|(index, body)| {
             let columns = numbered(names(body).iter().copied(), next);
             let unit = distinct(units(&Units::of(body.joint())));
             variant(body.joint_name(), &unit, Some(index), columns)

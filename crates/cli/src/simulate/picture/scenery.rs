@@ -160,7 +160,8 @@ fn rods(mechanism: &Mechanism) -> (Vec<[Point; 2]>, Vec<Point>) {
         }
         rods.push([joint, (Some(index), body.mass().com)]);
         rods.extend(body.parent().map(|parent| [own_joint(parent), before]));
-        if freedoms <= 2 {
+        // How the bodies of a linkage stand to one another, its shapes may show.
+        if freedoms <= 2 && body.joint().bodies().len() <= 1 {
             rods.push([before, joint]);
         }
     }
