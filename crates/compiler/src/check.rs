@@ -3,6 +3,7 @@
 use super::emit::Function;
 use super::graph::{Cause, Fault};
 use super::model::Model;
+use hamel_codegen::derived::Derived;
 use hamel_runtime::mechanism::{RigidBody, check_bodies};
 use hamel_scene::{BodyDescription, SceneDescription};
 
@@ -48,6 +49,37 @@ fn of_indices(scene: &SceneDescription) -> Vec<String> {
             format!("{element}: there is no body of index {body}, the scene has {count}")
         })
         .collect()
+}
+
+/// Whether the bodies that the scene gives for a joint are those that its type carries, in their order, and hang where the first of them does.
+pub(super) fn of_joint(group: &[BodyDescription], joint: &Derived) -> Result<(), String> {
+    let Some(first) = group.first() else {
+        return Ok(());
+    };
+    let (name, kind) = (&first.joint.name.value, &first.joint.kind.value);
+    let parts = group.iter().filter_map(|body| body.part.as_ref());
+    let parts: Vec<&str> = parts.map(|part| part.name.value.as_str()).collect();
+    let carried: Vec<&str> = joint.bodies().filter_map(Derived::body_name).collect();
+    let several = !joint.more.is_empty();
+    if several && parts != carried || !several && !parts.is_empty() {
+        let listed = |names: &[&str]| match names {
+            [] => "one body without a name".to_owned(),
+            names => format!("`{}`", names.join("`, `")),
+        };
+        return Err(format!(
+            "joint `{name}`: a joint of type `{kind}` carries {}, and the scene gives it {}",
+            listed(if several { &carried } else { &[] }),
+            listed(&parts)
+        ));
+    }
+    let place = |body: &BodyDescription| (body.parent, body.at, body.joint.clone());
+    match group.iter().find(|body| place(body) != place(first)) {
+        None => Ok(()),
+        Some(other) => Err(format!(
+            "body `{}`: its parent, its placement and its joint are not those of `{}`, the first body of its joint `{name}`",
+            other.name.value, first.name.value
+        )),
+    }
 }
 
 /// Wrenches that change with time: compiled equations are not told the time. Efforts that do are handed to them in τ.
