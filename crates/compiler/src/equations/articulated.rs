@@ -151,7 +151,11 @@ impl Tree<'_> {
                 section(number(index), "articulated inertia");
                 let mut carried = Carried::new(&body.columns, inertia, wrench);
                 pivots[index] = self.eliminate(index, &mut carried, &efforts);
-                Carried { inertia, wrench, .. } = carried;
+                Carried {
+                    inertia,
+                    wrench,
+                    ..
+                } = carried;
             }
             if let Some(parent) = body.parent {
                 let wrench = self.loaded(index, &inertia, wrench, &start.biases[index]);
@@ -165,13 +169,7 @@ impl Tree<'_> {
     }
 
     /// The wrench that a body with this inertia takes at v̄̇ = 0 under a parent that stands still: `p + A c`.
-    fn loaded(
-        &self,
-        index: usize,
-        inertia: &Articulated,
-        wrench: Wrench,
-        bias: &Twist,
-    ) -> Wrench {
+    fn loaded(&self, index: usize, inertia: &Articulated, wrench: Wrench, bias: &Twist) -> Wrench {
         section(number(index), "seen by parent");
         wrench.plus(&inertia.of(bias))
     }

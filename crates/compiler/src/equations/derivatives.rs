@@ -149,30 +149,28 @@ impl Tree<'_> {
             let parent = self.bodies[body].parent?;
             Some((parent, shown.to_parent(&self.bodies[body].steps)))
         });
-        let add = |(parent, sum): (usize, Shown), (_, shown): (usize, Shown)| (parent, sum.plus(shown));
+        let add =
+            |(parent, sum): (usize, Shown), (_, shown): (usize, Shown)| (parent, sum.plus(shown));
         let mut carrier = shown.collect::<Vec<_>>().into_iter().flatten().reduce(add);
         while let Some((above, shown)) = carrier {
             self.meet((index, above), &shown, &variations[above], rows);
             let body = &self.bodies[above];
-            carrier = body.parent.map(|parent| (parent, shown.to_parent(&body.steps)));
+            carrier = body
+                .parent
+                .map(|parent| (parent, shown.to_parent(&body.steps)));
         }
     }
 
     /// Rows and columns of one body's joint against itself, and what the body shows.
-    fn shown(
-        &self,
-        index: usize,
-        carried: &Carried,
-        own: &[Variation],
-        rows: &mut Rows,
-    ) -> Shown {
+    fn shown(&self, index: usize, carried: &Carried, own: &[Variation], rows: &mut Rows) -> Shown {
         let body = &self.bodies[index];
         let mut raised: Vec<Wrench> = own.iter().map(|own| carried.raised(own)).collect();
         let gradient = self.joint_at(index, &[]).effort_gradient(&carried.wrench);
         for (b, (&place, raised)) in self.places(index).iter().zip(&raised).enumerate() {
             for (j, speed) in body.share.speeds.clone().enumerate() {
                 let turned = gradient.get(j).and_then(|row| row.get(b).copied());
-                rows[speed][place] += body.columns[j].dot(raised) + turned.unwrap_or_else(Sym::zero);
+                rows[speed][place] +=
+                    body.columns[j].dot(raised) + turned.unwrap_or_else(Sym::zero);
             }
         }
         for (raised, own) in raised.iter_mut().zip(own) {

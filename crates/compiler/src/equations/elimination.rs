@@ -94,7 +94,10 @@ impl Tree<'_> {
             taken,
         } = carried;
         let count = momenta.len();
-        let efforts = given.iter().zip(taken).map(|(&tau, &mut taken)| tau - taken);
+        let efforts = given
+            .iter()
+            .zip(taken)
+            .map(|(&tau, &mut taken)| tau - taken);
         let mut efforts: Vec<Sym> = efforts.collect();
         for (j, row) in matrix.iter_mut().enumerate() {
             for (k, entry) in row.iter_mut().enumerate() {
