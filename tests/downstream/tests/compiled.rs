@@ -148,6 +148,17 @@ fn what_two_joints_take_one_takes_with_few_operations_more() {
         let [one, two] = [&joined, &apart].map(|model| flops(model, kind));
         println!("{kind:?}: as one joint {one}, as two {two}");
     }
+    let kinds = kinds();
+    for case in random::cases(&kinds, 1, kinds.len() as u64) {
+        let name = case.mechanism.bodies()[0].joint().name();
+        let model = model(name, &case.mechanism);
+        let tried = [Kind::ForwardDynamics, Kind::Speeds].map(|kind| compile(&model, kind, Loops::default()).expect("short").tried);
+        println!("{name}: {tried:?}");
+    }
+    for (what, model) in [("one", &joined), ("two", &apart)] {
+        let tried = [Kind::ForwardDynamics, Kind::Speeds].map(|kind| compile(model, kind, Loops::default()).expect("short").tried);
+        println!("{what}: {tried:?}");
+    }
 }
 
 /// One tree for each joint that carries several bodies, and the pair.

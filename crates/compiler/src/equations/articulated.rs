@@ -121,8 +121,10 @@ impl Tree<'_> {
         let mut together: Option<Carried> = None;
         for (index, body) in self.bodies.iter().enumerate().rev() {
             section(number(index), "carried");
-            let mut inertia = Articulated::rigid(&self.links[index].inertia.on_graph());
+            let rigid = self.links[index].inertia.on_graph();
+            let mut inertia = Articulated::rigid(&rigid);
             let mut wrench = start.wrenches[index].clone();
+            let is_leaf = seen[index].is_empty();
             for (other, more) in std::mem::take(&mut seen[index]) {
                 inertia = inertia.plus(&other);
                 wrench = wrench.plus(&more);
@@ -132,7 +134,11 @@ impl Tree<'_> {
                 start.biases[index] = start.biases[index].plus(&self.along(index, given));
             } else if self.carries_several(index) {
                 let own = self.loaded(index, &inertia, wrench, &start.biases[index]);
-                let own = Carried::new(&body.columns, inertia, own).to_parent(&body.steps);
+                let mut own = Carried::new(&body.columns, inertia, own).to_parent(&body.steps);
+                if is_leaf {
+                    // A rigid body takes fewer operations.
+                    own.inertia = Articulated::rigid(&rigid.to_parent(&body.steps));
+                }
                 let mut carried = match together.take() {
                     Some(others) => others.plus(&own),
                     None => own,
