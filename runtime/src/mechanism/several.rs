@@ -1,7 +1,8 @@
 //! Joints that carry several bodies, in a mechanism: their bodies follow one another, in the order in which the joint names them.
 //!
-//! All of them have the same parent and the same placement, and share the joint's coordinates, degrees of freedom and speeds. The first
-//! of them stands for the joint.
+//! All of them have the same parent, and share the joint's coordinates, degrees of freedom and speeds. The first of them stands for the joint. Each
+//! may have a placement of its own in the parent, as the rotor of a gear beside its shaft, unless the coordinates obey relations: those of a loop are
+//! written for one frame.
 
 use super::{Body, BodySpec, Mechanism, MechanismError};
 use alloc::string::String;
@@ -34,14 +35,14 @@ pub enum SeveralFault {
         /// What the joint calls the body before it.
         before: &'static str,
     },
-    /// Its parent or its joint's placement is not that of the first body.
+    /// Its parent, its placement or a parameter of its joint is not that of the first body.
     #[error("its {what} is not that of `{first}`, the first body of its joint `{joint}`")]
     Differs {
         /// The joint.
         joint: String,
         /// The first body of the joint.
         first: String,
-        /// `parent`, `placement` or `parameters`.
+        /// `parent`, `placement` or `value of a parameter`.
         what: &'static str,
     },
 }
@@ -114,6 +115,11 @@ fn follows(first: &BodySpec, next: &BodySpec, number: usize) -> bool {
     next.joint.body() == number && next.joint.name() == first.joint.name()
 }
 
+/// Whether the coordinates of its joint obey relations.
+fn obeys_relations(spec: &BodySpec) -> bool {
+    !spec.joint.structures().residual.is_zero()
+}
+
 /// In what a body differs from the first one of its joint where it must not.
 fn difference(first: &BodySpec, other: &BodySpec) -> Option<&'static str> {
     let parameters = |spec: &BodySpec| {
@@ -124,7 +130,7 @@ fn difference(first: &BodySpec, other: &BodySpec) -> Option<&'static str> {
     };
     if first.parent != other.parent {
         Some("parent")
-    } else if first.placement != other.placement {
+    } else if first.placement != other.placement && obeys_relations(first) {
         Some("placement")
     } else if parameters(first) != parameters(other) {
         Some("value of a parameter")

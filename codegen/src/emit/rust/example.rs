@@ -9,14 +9,17 @@ use num_traits::ToPrimitive;
 const FIRST: f64 = 0.7;
 const STEP: f64 = 0.15;
 
-/// Sizes that are tried for each parameter where neither order of sizes meets the requirements.
+/// A value well below the others, as the length of a crank beside those of its linkage.
+const SMALL: f64 = 0.2;
+
+/// Sizes that are tried for each parameter where none of the simple choices meets the requirements.
 const SIZES: [f64; 9] = [0.7, 1.9, 0.3, 4.5, 0.1, 12.0, 0.02, 40.0, 1.1];
 
 /// Most combinations of sizes that are tried.
 const MOST_TRIED: usize = 60_000;
 
-/// Values inside the ranges of the parameters that meet the requirements, no two alike: in ascending order, in descending order, or in the
-/// first combination that does; `None` where none was found.
+/// Values inside the ranges of the parameters that meet the requirements, no two alike: in ascending order, in descending order, in ascending order with one
+/// that is small, or in the first combination that does; `None` where none was found.
 pub fn parameters(spec: &JointSpec) -> Option<Vec<f64>> {
     let count = spec.parameters.len();
     let of_place = |place: usize| {
@@ -31,12 +34,17 @@ pub fn parameters(spec: &JointSpec) -> Option<Vec<f64>> {
         inside.collect()
     };
     let ordered = [values(&|i| i), values(&|i| count - 1 - i)];
+    let with_small = (0..count).map(|small| {
+        let mut values = values(&|i| i);
+        values[small] = within(&spec.parameters[small].range, SMALL);
+        values
+    });
     let ranges = spec.parameters.iter().map(|parameter| &parameter.range);
     let choices: Vec<Vec<f64>> = ranges
         .map(|range| SIZES.map(|size| within(range, size)).to_vec())
         .collect();
     let others = combinations(&choices, MOST_TRIED).filter(|values| differ(values));
-    let mut tried = ordered.into_iter().chain(others);
+    let mut tried = ordered.into_iter().chain(with_small).chain(others);
     tried.find(|values| is_allowed(spec, values))
 }
 
@@ -98,6 +106,7 @@ mod tests {
             "require a > b + c;",
             "require c > a + b;",
             "require b > 10 * a; require b > 10 * c;",
+            "require a > b; require c > a; require c < a + b;",
         ] {
             assert!(found(three, require).is_some(), "{require}");
         }

@@ -109,7 +109,7 @@ fn is_runtime(tokens: &[TokenTree], at: usize) -> bool {
     let is_colon = |index: usize| matches!(tokens.get(index), Some(TokenTree::Punct(punct)) if punct.as_char() == ':');
     let is_named = matches!(tokens.get(at + 2), Some(TokenTree::Ident(ident)) if ident == WRITTEN);
     let continues = at.checked_sub(1).is_some_and(
-        |before| matches!(tokens[before], TokenTree::Ident(ref word) if word != "use"),
+        |before| matches!(tokens[before], TokenTree::Ident(ref word) if word != "use" && word != "impl"),
     );
     is_colon(at) && is_colon(at + 1) && is_named && is_colon(at + 3) && !continues
 }

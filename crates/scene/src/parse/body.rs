@@ -48,7 +48,7 @@ fn parts(mut fields: Fields<'_>, value: &Value<'_>, sink: &mut Sink) -> Vec<Body
             parent: parent.clone(),
             mass: mass::mass(&mut own, sink),
             joint: joint.clone(),
-            at,
+            at: own_pose(&mut own, "at", sink).unwrap_or(at),
             body_at: pose(&mut own, "body_at", sink),
             initial: initial.take().unwrap_or_else(|| Some(Default::default())),
             forces: forces.take().unwrap_or_else(|| Some(Default::default())),
@@ -106,8 +106,11 @@ fn name(fields: &mut Fields<'_>, sink: &mut Sink) -> Option<Located<String>> {
 
 /// The pose under `key`; the identity where it is absent or in error.
 fn pose(fields: &mut Fields<'_>, key: &'static str, sink: &mut Sink) -> Pose<f64> {
-    fields
-        .optional(key)
-        .and_then(|value| placement::pose(&value, sink))
-        .map_or_else(Pose::identity, |pose| pose.value)
+    own_pose(fields, key, sink).unwrap_or_else(Pose::identity)
+}
+
+/// The pose under `key`; `None` where it is absent or in error.
+fn own_pose(fields: &mut Fields<'_>, key: &'static str, sink: &mut Sink) -> Option<Pose<f64>> {
+    let value = fields.optional(key)?;
+    placement::pose(&value, sink).map(|pose| pose.value)
 }

@@ -45,6 +45,10 @@ pub(super) fn bodies(
     for own in group {
         if let Some(part) = &own.part {
             let mut entries = mass(&own.mass);
+            if own.at != first.at {
+                let at = pose::pose(&own.at).unwrap_or_else(|| String::from("{}"));
+                entries.push(("at", at));
+            }
             entries.extend(pose::pose(&own.body_at).map(|value| ("body_at", value)));
             entry(out, &format!("bodies.{}", key(&part.name.value)), &table(&entries));
         }
