@@ -50,7 +50,7 @@ pub struct Coupling {
 
 /// One body and the joint that it hangs on.
 ///
-/// A joint may carry several bodies, all with its parent, its placement and its coordinates. The first of them stands for the joint: what acts at
+/// A joint may carry several bodies, all with its parent and its coordinates. The first of them stands for the joint: what acts at
 /// the joint is found there alone.
 #[derive(Clone, Debug)]
 pub struct Body {
@@ -64,7 +64,7 @@ pub struct Body {
     pub joint: Rc<JointType>,
     /// Values of the type's parameters, in the order of its spec.
     pub parameters: Vec<f64>,
-    /// The joint's parent frame in the parent's body frame.
+    /// The joint's parent frame, as this body sees it, in the parent's body frame.
     pub placement: Pose<f64>,
     /// The body frame in the joint's child frame.
     pub child_placement: Pose<f64>,

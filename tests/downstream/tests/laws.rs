@@ -2,10 +2,9 @@
 
 use hamel::joint::Member;
 use hamel_downstream::joints::{
-    ArmPair, BallCayley, BallTurns, Bead, CarWheels, Catenary, CatenaryLength, CrankRocker,
-    DirectionSensor, ENTRIES, FourBar, FourBarThrough, GearedRotor, PlanarTurns, PowerGuide,
-    RollingBallCayley, Scara, SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod,
-    SpherePoint,
+    BallCayley, BallTurns, Bead, CarWheels, Catenary, CatenaryLength, CrankRocker, DirectionSensor,
+    ENTRIES, FourBar, FourBarThrough, GearedRotor, PlanarTurns, PowerGuide, RollingBallCayley,
+    Scara, SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint,
 };
 use hamel_tests::laws::Reach::{self, Entries, HalfTurn};
 use hamel_tests::laws::check_within;
@@ -98,7 +97,6 @@ macro_rules! laws_of_bodies {
 }
 
 laws_of_bodies! {
-    arm_pair: ArmPair::new(0.8), [1];
     car_wheels: CarWheels::new(1.1, 0.7, 0.4), [1, 2, 3, 4];
     crank_rocker: CrankRocker::new(0.9, 0.4, 1.1, 1.2), [1, 2];
     geared_rotor: GearedRotor::new(5.5), [1];

@@ -23,41 +23,34 @@ use hamel_compiler::prune::{Pruning, prune};
 use rand::RngExt;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
 
 thread_local! {
-    /// Joints, each derived when it is first asked for.
-    static JOINTS: RefCell<BTreeMap<String, Rc<JointType>>> = RefCell::default();
+    /// The library's joints, each derived when it is first asked for.
+    static JOINTS: RefCell<BTreeMap<&'static str, Rc<JointType>>> = RefCell::default();
 }
 
-/// The joint type of the library, or of the folder of specs `downstream/joints`.
+/// The joint type of the library.
 ///
 /// # Panics
 /// Where its spec is not sound.
 pub fn joint(name: &str) -> Option<Rc<JointType>> {
-    if let Some(known) = JOINTS.with_borrow(|joints| joints.get(name).cloned()) {
-        return Some(known);
-    }
-    let downstream = Path::new(env!("CARGO_MANIFEST_DIR")).join("downstream/joints");
-    let library = hamel_joints::specs().any(|(known, _)| known == name);
-    let derived = match library {
-        true => crate::derived(name),
-        false if downstream.join(format!("{name}.joint")).exists() => {
-            crate::derived_in(&downstream, name)
-        }
-        false => return None,
-    };
-    let joint = Rc::new(JointType::new(derived).expect("its products take little work"));
-    JOINTS.with_borrow_mut(|joints| joints.insert(name.to_owned(), Rc::clone(&joint)));
-    Some(joint)
+    let (name, text) = hamel_joints::specs().find(|(known, _)| *known == name)?;
+    JOINTS.with_borrow_mut(|joints| {
+        let entry = joints.entry(name).or_insert_with(|| {
+            let derived = hamel_codegen::derive(text, &format!("{name}.joint"));
+            let derived = derived.unwrap_or_else(|errors| panic!("{errors}"));
+            Rc::new(JointType::new(derived).expect("its products take little work"))
+        });
+        Some(Rc::clone(entry))
+    })
 }
 
-/// A mechanism of joints that [`joint`] finds, on which gravity alone acts, with its rotors and drives.
+/// A mechanism of the library's joints on which gravity alone acts, with its rotors and drives.
 ///
 /// # Panics
-/// Where it does not find one.
+/// Where a joint is not of the library.
 pub fn model(name: &str, mechanism: &Mechanism) -> Model {
     let bodies = mechanism.bodies().iter().enumerate();
     Model {
@@ -81,7 +74,7 @@ fn body(body: &TreeBody, armature: &[f64], driven: bool) -> Body {
     body.joint()
         .parameters(&mut |_, value| parameters.push(value));
     let kind = body.joint().name();
-    let first = joint(kind).unwrap_or_else(|| panic!("there is no spec of `{kind}`"));
+    let first = joint(kind).unwrap_or_else(|| panic!("`{kind}` is not of the library"));
     Body {
         name: body.name().to_owned(),
         joint_name: body.joint_name().to_owned(),
@@ -178,7 +171,7 @@ pub fn elements(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Elements {
 
 /// Whether the local coordinates of a joint have a closed form: springs in others are not compiled.
 fn has_closed_coordinates(name: &str) -> bool {
-    let joint = joint(name).unwrap_or_else(|| panic!("there is no spec of `{name}`"));
+    let joint = joint(name).unwrap_or_else(|| panic!("`{name}` is not of the library"));
     let kernels = [KernelKind::Local, KernelKind::RetractDifferentialInverse];
     kernels.into_iter().all(|kind| {
         let kernel = joint.derived.kernel(kind);

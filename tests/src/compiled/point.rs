@@ -3,7 +3,7 @@
 use super::evaluate;
 use crate::random;
 use chacha20::ChaCha8Rng;
-use hamel::dynamics::{Dynamics, MassMatrix, Recursive};
+use hamel::dynamics::{Dynamics, MassMatrix, Recursive, Reference};
 use hamel::mechanism::Mechanism;
 use hamel::nalgebra::DMatrix;
 use hamel_compiler::functions::{Kind, Loops};
@@ -150,8 +150,28 @@ impl Point {
         self.places_agree(by);
     }
 
+    /// Both forms have the values of the reference form.
+    ///
+    /// # Panics
+    /// Where one has not.
+    pub fn agrees_with_reference(self) {
+        let (q, speeds) = (&self.q, &self.speeds);
+        let mut mass = MassMatrix::new(&self.mechanism);
+        let mut tree = Recursive::new(Arc::clone(&self.mechanism));
+        tree.mass_matrix(q, &mut mass).expect("sizes fit");
+        let bound = of_solutions(mass.matrix());
+        let mut reference = Reference::new(Arc::clone(&self.mechanism));
+        let mut expected = vec![0.0; speeds.len()];
+        reference
+            .forward_dynamics(q, speeds, &self.inputs, &mut expected)
+            .expect("M̄ is regular");
+        let inputs = &self.inputs;
+        self.agree(&evaluate, Kind::ForwardDynamics, inputs, &expected, bound);
+        self.forms_agree(&evaluate, &mut reference, bound);
+    }
+
     /// The port-Hamiltonian form; `bound` is that of solutions with M̄.
-    fn forms_agree(&self, by: Evaluate<'_>, tree: &mut Recursive, bound: f64) {
+    fn forms_agree(&self, by: Evaluate<'_>, tree: &mut dyn Dynamics, bound: f64) {
         let (q, speeds) = (&self.q, &self.speeds);
         let mut momenta = vec![0.0; speeds.len()];
         tree.momenta(q, speeds, &mut momenta).expect("sizes fit");

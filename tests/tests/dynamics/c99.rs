@@ -1,6 +1,6 @@
 //! Compiled modules in C: every scene that is compiled, bit by bit as its lines are evaluated here and as Rust computes them, and against the tree.
 
-use super::compiled::scene_files;
+use super::compiled::{scene_files, several};
 use chacha20::ChaCha8Rng;
 use hamel::nalgebra::{Rotation3, Vector3};
 use hamel::scalar::Dual;
@@ -30,6 +30,18 @@ fn scenes_agree() {
         (scene.mechanism, model)
     });
     agree(&folder("scenes"), &scenes.collect::<Vec<_>>());
+}
+
+/// The same of trees on each joint of the library that carries several bodies.
+#[test]
+fn joints_with_several_bodies_agree() {
+    let kinds = several::kinds();
+    let cases = random::cases(&kinds, 2, kinds.len() as u64);
+    let scenes = cases.map(|case| {
+        let model = hamel_tests::compiled::model("tree", &case.mechanism);
+        (case.mechanism, model)
+    });
+    agree(&folder("several"), &scenes.collect::<Vec<_>>());
 }
 
 /// As numbers whose sines and cosines are the standard functions, one by one.

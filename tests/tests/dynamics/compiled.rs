@@ -4,6 +4,7 @@
 mod derivatives;
 mod loops;
 mod moments;
+pub mod several;
 
 use chacha20::ChaCha8Rng;
 use hamel::elements::BodySpring;
