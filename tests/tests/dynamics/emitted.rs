@@ -4,8 +4,8 @@
 use chacha20::ChaCha8Rng;
 use hamel::compiled::{Batch, Compiled, CompiledError, Equations};
 use hamel::dynamics::{Dynamics, DynamicsError, ForwardDerivatives, InverseDerivatives, Recursive};
-use hamel::mechanism::Mechanism;
 use hamel::integrate::{Form, Integration, Method, Options, Scheme, StepControl};
+use hamel::mechanism::Mechanism;
 use hamel::scalar::F64x4;
 use hamel_compiler::functions::Kind;
 use hamel_compiler::{Build, scene};

@@ -35,11 +35,7 @@ fn arms() -> Arc<Mechanism> {
         let number = bodies.len() as f64;
         let moments = Vector3::new(0.3, 0.4 + 0.05 * number, 0.5);
         let com = Vector3::new(0.1 * number, -0.2, 0.3);
-        let mass = MassProperties::new(
-            1.0 + 0.1 * number,
-            com,
-            Matrix3::from_diagonal(&moments),
-        );
+        let mass = MassProperties::new(1.0 + 0.1 * number, com, Matrix3::from_diagonal(&moments));
         let child_placement = Pose::new(
             so3::exp(&Vector3::new(0.3 * number, -0.2, 0.5)),
             Vector3::new(0.1, 0.2 * number, -0.3),
