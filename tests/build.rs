@@ -22,7 +22,10 @@ fn main() -> Result<(), Error> {
         "data/scenes/ball_chain.toml",
         [Kind::ForwardDynamics, Kind::InverseDynamics],
     )
-    .compile()
+    .compile()?;
+    compiled("data/scenes/linkages.toml", Kind::ALL)
+        .lanes()
+        .compile()
 }
 
 fn compiled(path: &str, functions: impl IntoIterator<Item = Kind>) -> Build {

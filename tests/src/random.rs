@@ -54,9 +54,14 @@ pub fn kinds(registry: &JointRegistry) -> Vec<Arc<dyn AnyJoint>> {
         let small_second: Vec<f64> = (0..entry.parameters.len())
             .map(|i| if i == 1 { 0.2 } else { 0.9 + 0.1 * i as f64 })
             .collect();
+        // And one that is larger than two others together, as a rod beside its crank.
+        let large_second: Vec<f64> = (0..entry.parameters.len())
+            .map(|i| if i == 1 { 2.5 } else { 0.9 + 0.1 * i as f64 })
+            .collect();
         let built = (entry.build)(&ascending)
             .or_else(|_| (entry.build)(&descending))
-            .or_else(|_| (entry.build)(&small_second));
+            .or_else(|_| (entry.build)(&small_second))
+            .or_else(|_| (entry.build)(&large_second));
         built.unwrap_or_else(|error| panic!("{error}"))
     };
     registry.entries().map(build).collect()
