@@ -245,3 +245,6 @@ fn parameters(body: &BodyDescription, joint: &JointType, reasons: &mut Vec<Strin
     };
     known.iter().filter_map(value).collect()
 }
+
+#[cfg(test)]
+mod tests;

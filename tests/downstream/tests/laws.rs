@@ -100,7 +100,7 @@ laws_of_bodies! {
     car_wheels: CarWheels::new(1.1, 0.7, 0.4), [1, 2, 3, 4];
     crank_rocker: CrankRocker::new(0.9, 0.4, 1.1, 1.2), [1, 2];
     geared_rotor: GearedRotor::new(5.5), [1];
-    slider_crank_links: SliderCrankLinks::new(0.4, 1.1, 0.2), [1, 2];
+    slider_crank_links: SliderCrankLinks::new(1.1, 0.4, 0.2), [1, 2];
 }
 
 /// What is emitted of the second body, against the definition of a joint with that body alone.
