@@ -22,10 +22,7 @@ fn main() -> Result<(), Error> {
         "data/scenes/ball_chain.toml",
         [Kind::ForwardDynamics, Kind::InverseDynamics],
     )
-    .compile()?;
-    compiled("data/scenes/linkages.toml", Kind::ALL)
-        .lanes()
-        .compile()
+    .compile()
 }
 
 fn compiled(path: &str, functions: impl IntoIterator<Item = Kind>) -> Build {

@@ -253,3 +253,4 @@ fn parameters(body: &BodyDescription, joint: &JointType, reasons: &mut Vec<Strin
     };
     known.iter().filter_map(value).collect()
 }
+

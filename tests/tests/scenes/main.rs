@@ -8,7 +8,6 @@ mod formats;
 mod forms_agree;
 mod fuzz_scenes;
 mod limits;
-mod linkages;
 mod methods;
 mod motions;
 mod orthonormality;

@@ -52,17 +52,15 @@ fn every_scene_loads_at_home_on_its_manifolds() -> Result<(), Box<dyn Error>> {
 #[test]
 fn examples_of_the_description_load() -> Result<(), Box<dyn Error>> {
     for example in examples()? {
-        Scene::parse(&example, "example.toml", &hamel_joints::registry())
-            .map_err(|error| format!("in a document:\n{error}"))?;
+        Scene::parse(&example, "scenes/README.md", &hamel_joints::registry())
+            .map_err(|error| format!("in scenes/README.md:\n{error}"))?;
     }
     Ok(())
 }
 
-/// The examples of the description and of the chapter on loops, each a whole scene.
+/// The examples of the description, each a whole scene.
 fn examples() -> Result<Vec<String>, Box<dyn Error>> {
-    let texts = ["scenes/README.md", "docs/loops.md"].map(|own| fs::read_to_string(root().join(own)));
-    let [description, loops] = texts;
-    let text = description? + &loops?;
+    let text = fs::read_to_string(root().join("scenes/README.md"))?;
     let examples = text
         .split("```toml\n")
         .skip(1)

@@ -107,7 +107,7 @@ joint {name}(
     bodies  {names};
 {poses}    // A loop has a coordinate for each link, and relations that close it: `config a: S1, b: S1, s: R1;`,
     // `relation crank * a.c + rod * b.c = s;`, `basis turn of so2(a);` names what is independent.
-    // The library's slider_crank.joint shows all of one.
+    // docs/loops.md makes one.
 }}
 "
     )

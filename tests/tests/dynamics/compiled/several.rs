@@ -1,16 +1,14 @@
-//! Joints that carry several bodies: two hinges as one joint are two joints, and compiled equations are those of the reference form.
+//! Joints that carry several bodies: two hinges as one joint are two joints.
 
 use super::flops;
-use hamel::erased::AnyJoint;
 use hamel::mechanism::{BodySpec, Mechanism};
 use hamel::nalgebra::{Matrix3, Vector3};
 use hamel::spatial::{MassProperties, Pose, so3};
 use hamel_compiler::JointType;
 use hamel_compiler::functions::Kind;
 use hamel_compiler::model::Model;
-use hamel_scene::Scene;
 use hamel_tests::compiled::Point;
-use hamel_tests::{compiled, random};
+use hamel_tests::compiled;
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -112,83 +110,8 @@ fn two_hinges_as_one_joint_take_few_operations_more() {
     }
 }
 
-/// The joints of the library that carry several bodies.
-pub fn kinds() -> Vec<Arc<dyn AnyJoint>> {
-    let mut kinds = random::library();
-    kinds.retain(|joint| joint.bodies().len() > 1);
-    assert!(kinds.len() >= 7);
-    kinds
-}
-
-#[test]
-fn equations_are_those_of_the_reference_form() {
-    let kinds = kinds();
-    for case in random::cases(&kinds, 3, 4 * kinds.len() as u64) {
-        Point::bare(case).agrees_with_reference();
-    }
-}
-
-/// The reason why a scene with one joint at the world is refused.
-fn refused(change: impl Fn(&mut hamel_scene::SceneDescription)) -> String {
-    let text = r#"
-        hamel = 1
-        gravity = [0.0, 0.0, -9.81]
-        [[body]]
-        name = "linkage"
-        parent = "world"
-        joint = { type = "four_bar", ground = 0.4, crank = 0.12, coupler = 0.35, rocker = 0.3 }
-        bodies.crank = { mass = 1.0, inertia = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] }
-        bodies.coupler = { mass = 1.0, inertia = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] }
-        bodies.rocker = { mass = 1.0, inertia = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] }
-    "#;
-    let scene = Scene::from_toml(text, "linkage");
-    let mut scene = scene.unwrap_or_else(|errors| panic!("{errors}"));
-    assert!(Model::new(&scene, compiled::joint).is_ok());
-    change(&mut scene);
-    let refused = Model::new(&scene, compiled::joint).expect_err("there is a reason");
-    let [reason] = refused.reasons.as_slice() else {
-        panic!("{refused}")
-    };
-    reason.clone()
-}
-
-#[test]
-fn other_bodies_than_those_of_the_joint_are_named() {
-    let carried = "joint `linkage`: a joint of type `four_bar` carries `crank`, `coupler`, `rocker`, and the scene gives it";
-    let reason = refused(|scene| {
-        scene.bodies.pop();
-    });
-    assert_eq!(reason, format!("{carried} `crank`, `coupler`"));
-    let reason = refused(|scene| {
-        scene.bodies.truncate(1);
-        scene.bodies[0].part = None;
-    });
-    assert_eq!(reason, format!("{carried} one body without a name"));
-    let reason = refused(|scene| {
-        let [_, coupler, rocker] = &mut scene.bodies[..] else {
-            panic!("three bodies")
-        };
-        std::mem::swap(&mut coupler.part, &mut rocker.part);
-    });
-    assert_eq!(reason, format!("{carried} `crank`, `rocker`, `coupler`"));
-    let reason = refused(|scene| {
-        for body in &mut scene.bodies {
-            body.joint.kind.value = "revolute".into();
-            body.joint.parameters.clear();
-        }
-    });
-    let one = "joint `linkage`: a joint of type `revolute` carries one body without a name, and the scene gives it";
-    assert_eq!(reason, format!("{one} `crank`, `coupler`, `rocker`"));
-}
-
-#[test]
-fn bodies_of_a_loop_that_stand_apart_are_named() {
-    let first = "is not that of `linkage.crank`, the first body of its joint `linkage`";
-    let reason = refused(|scene| scene.bodies[1].at.translation.x = 0.1);
-    let of = "body `linkage.coupler`: its";
-    assert_eq!(reason, format!("{of} placement {first}"));
-    let reason = refused(|scene| scene.bodies[1].parent = Some(0));
-    assert_eq!(reason, format!("{of} parent {first}"));
-    let reason = refused(|scene| scene.bodies[1].joint.parameters[0].1 = 0.5);
-    assert_eq!(reason, format!("{of} joint {first}"));
+/// The mechanism of two joints, and the model of it with one.
+pub fn hinges() -> (Arc<Mechanism>, Model) {
+    let [joined, _] = joined_and_apart();
+    (arms(), joined)
 }
