@@ -9,10 +9,6 @@ pub mod ball_chain {
 pub mod geodesic_springs {
     include!(concat!(env!("OUT_DIR"), "/geodesic_springs.rs"));
 }
-/// All functions of `data/scenes/linkages.toml`, with lanes: joints that carry several bodies.
-pub mod linkages {
-    include!(concat!(env!("OUT_DIR"), "/linkages.rs"));
-}
 /// `tests/data/scenes/pendulum.toml`: one joint in general position.
 #[rustfmt::skip]
 pub mod pendulum;

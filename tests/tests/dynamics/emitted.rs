@@ -2,17 +2,14 @@
 //! integrators take them.
 
 use chacha20::ChaCha8Rng;
-use hamel::compiled::{Batch, Compiled, CompiledError, Equations};
+use hamel::compiled::{Compiled, CompiledError, Equations};
 use hamel::dynamics::{Dynamics, DynamicsError, ForwardDerivatives, InverseDerivatives, Recursive};
 use hamel::integrate::{Form, Integration, Method, Options, Scheme, StepControl};
-use hamel::mechanism::Mechanism;
 use hamel::scalar::F64x4;
 use hamel_compiler::functions::Kind;
 use hamel_compiler::{Build, scene};
 use hamel_scene::Scene;
-use hamel_tests::emitted::{
-    ball_chain, geodesic_springs, linkages, plate_cart_arm as module, snakeboard,
-};
+use hamel_tests::emitted::{ball_chain, geodesic_springs, plate_cart_arm as module, snakeboard};
 use hamel_tests::{random, scenes};
 use rand::SeedableRng;
 use std::path::Path;
@@ -23,13 +20,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 const CHAIN: &str = "data/scenes/ball_chain.toml";
 /// Springs by logarithms of rotations.
 const SPRINGS: &str = "data/scenes/geodesic_springs.toml";
-/// Joints that carry several bodies.
-const LINKAGES: &str = "data/scenes/linkages.toml";
-
-fn load(file: &str) -> Scene {
-    let scene = Scene::load(folder().join(file), &hamel_joints::registry());
-    scene.unwrap_or_else(|errors| panic!("{errors}"))
-}
 
 fn folder() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -140,12 +130,12 @@ fn every_scalar_gives_the_accelerations_of_the_tree() {
 
 #[test]
 fn integrators_take_compiled_equations() {
-    let [springs, linkages] = [SPRINGS, LINKAGES].map(load);
+    let springs = Scene::load(folder().join(SPRINGS), &hamel_joints::registry());
+    let springs = springs.unwrap_or_else(|errors| panic!("{errors}"));
     for form in [Form::Lagrangian, Form::Hamiltonian] {
         moves_as_the_tree(&scenes::load("plate_cart_arm"), &module::EQUATIONS, form);
         moves_as_the_tree(&scenes::load("snakeboard"), &snakeboard::EQUATIONS, form);
         moves_as_the_tree(&springs, &geodesic_springs::EQUATIONS, form);
-        moves_as_the_tree(&linkages, &linkages::EQUATIONS, form);
     }
 }
 
@@ -170,46 +160,12 @@ fn moves_as_the_tree(scene: &Scene, equations: &'static Equations, form: Form) {
     assert!(difference(&found, &expected) < 1e-8);
 }
 
-/// Joints that carry several bodies, many states at a time.
-#[test]
-fn linkages_in_lanes_are_those_one_by_one() {
-    let mechanism = load(LINKAGES).mechanism;
-    let (mut random, count) = (ChaCha8Rng::seed_from_u64(9), 11);
-    let states = (0..count).flat_map(|_| random::configuration(&mut random, &mechanism));
-    let q: Vec<f64> = states.collect();
-    let v = random::numbers(&mut random, count * linkages::SPEEDS);
-    let tau = random::numbers(&mut random, count * linkages::FREEDOMS);
-    let mut rates = vec![0.0; v.len()];
-    let batch = Batch::new(&linkages::EQUATIONS);
-    batch
-        .forward_dynamics(&q, &v, &tau, &mut rates)
-        .expect("sizes fit");
-    let states = q.chunks_exact(linkages::CONFIGURATION);
-    let inputs = v.chunks_exact(linkages::SPEEDS);
-    let states = states.zip(inputs).zip(tau.chunks_exact(linkages::FREEDOMS));
-    for (((q, v), tau), found) in states.zip(rates.chunks_exact(linkages::SPEEDS)) {
-        let (Some(q), Some(v), Some(tau)) = (q.first_chunk(), v.first_chunk(), tau.first_chunk())
-        else {
-            panic!("the module has other sizes");
-        };
-        // Some thousand operations, fused or not, of a system of three speeds.
-        assert!(difference(found, &linkages::forward_dynamics(q, v, tau)) < 1e-12);
-    }
-}
-
 /// Derivatives of both as compiled Rust has them.
 #[test]
 fn derivatives_are_those_of_the_tree() {
-    derivatives_agree(
-        &scenes::load("plate_cart_arm").mechanism,
-        &module::EQUATIONS,
-    );
-    derivatives_agree(&load(LINKAGES).mechanism, &linkages::EQUATIONS);
-}
-
-fn derivatives_agree(mechanism: &Arc<Mechanism>, equations: &'static Equations) {
+    let mechanism = &scenes::load("plate_cart_arm").mechanism;
     let mut tree = Recursive::new(Arc::clone(mechanism));
-    let mut compiled = Compiled::new(Arc::clone(mechanism), equations).expect("its scene");
+    let mut compiled = Compiled::new(Arc::clone(mechanism), &module::EQUATIONS).expect("its scene");
     let mut inverse = [(); 2].map(|()| InverseDerivatives::new(mechanism));
     let mut forward = [(); 2].map(|()| ForwardDerivatives::new(mechanism));
     let mut random = ChaCha8Rng::seed_from_u64(5);
@@ -246,7 +202,7 @@ fn derivatives_agree(mechanism: &Arc<Mechanism>, equations: &'static Equations) 
             assert!(difference(found, expected) < 1e-12);
         }
     }
-    let mut foreign = ForwardDerivatives::new(&scenes::load("double_ball_pendulum").mechanism);
+    let mut foreign = ForwardDerivatives::new(&scenes::load("heavy_top").mechanism);
     let zeros = vec![0.0; layout.freedoms.max(layout.speeds)];
     let (v, u) = (&zeros[..layout.speeds], &zeros[..layout.freedoms]);
     let refused = compiled.forward_dynamics_derivatives(&mechanism.home(), v, u, &mut foreign);

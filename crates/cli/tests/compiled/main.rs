@@ -68,8 +68,6 @@ fn scenes_move_as_on_the_tree() {
         "scenes/snakeboard.toml",
         // Logarithms of rotations.
         "tests/data/scenes/geodesic_springs.toml",
-        // Joints that carry several bodies: a loop, and a gear with the rotor of its motor.
-        "tests/data/scenes/linkages.toml",
         // Efforts of a controller.
         "scenes/panda7_tracking.toml",
         // Friction and limits, with joints that are held for some of the time.
