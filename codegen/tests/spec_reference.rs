@@ -10,7 +10,9 @@ const LOOPS: &str = include_str!("../../docs/loops.md");
 
 fn examples() -> impl Iterator<Item = &'static str> {
     let blocks = |text: &'static str| text.split("```joint\n").skip(1);
-    blocks(REFERENCE).chain(blocks(LOOPS)).map(|block| block.split("```").next().unwrap_or_default())
+    blocks(REFERENCE)
+        .chain(blocks(LOOPS))
+        .map(|block| block.split("```").next().unwrap_or_default())
 }
 
 #[test]

@@ -253,4 +253,3 @@ fn parameters(body: &BodyDescription, joint: &JointType, reasons: &mut Vec<Strin
     };
     known.iter().filter_map(value).collect()
 }
-

@@ -7,8 +7,8 @@ use hamel::spatial::{MassProperties, Pose, so3};
 use hamel_compiler::JointType;
 use hamel_compiler::functions::Kind;
 use hamel_compiler::model::Model;
-use hamel_tests::compiled::Point;
 use hamel_tests::compiled;
+use hamel_tests::compiled::Point;
 use std::rc::Rc;
 use std::sync::Arc;
 
