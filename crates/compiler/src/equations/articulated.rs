@@ -134,7 +134,7 @@ impl Tree<'_> {
                 start.biases[index] = start.biases[index].plus(&self.along(index, given));
             } else if self.carries_several(index) {
                 let own = self.loaded(index, &inertia, wrench, &start.biases[index]);
-                let mut own = Carried::new(&body.columns, inertia, own).to_parent(&body.steps);
+                let mut own = Carried::new(&body.columns, inertia, own).at_parent(&body.steps);
                 if is_leaf {
                     // A rigid body takes fewer operations.
                     own.inertia = Articulated::rigid(&rigid.to_parent(&body.steps));

@@ -147,7 +147,7 @@ impl Tree<'_> {
         let shown = own.map(|body| {
             let shown = self.shown(body, &carried[body], &variations[body], rows);
             let parent = self.bodies[body].parent?;
-            Some((parent, shown.to_parent(&self.bodies[body].steps)))
+            Some((parent, shown.at_parent(&self.bodies[body].steps)))
         });
         let add =
             |(parent, sum): (usize, Shown), (_, shown): (usize, Shown)| (parent, sum.plus(shown));
@@ -157,7 +157,7 @@ impl Tree<'_> {
             let body = &self.bodies[above];
             carrier = body
                 .parent
-                .map(|parent| (parent, shown.to_parent(&body.steps)));
+                .map(|parent| (parent, shown.at_parent(&body.steps)));
         }
     }
 
@@ -254,7 +254,7 @@ impl Shown {
         self
     }
 
-    fn to_parent(mut self, steps: &[Step]) -> Self {
+    fn at_parent(mut self, steps: &[Step]) -> Self {
         for raised in &mut self.raised {
             *raised = wrench_to_parent(steps, raised);
         }

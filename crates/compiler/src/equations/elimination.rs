@@ -55,7 +55,7 @@ impl Carried {
     }
 
     /// The same at the parent's frame.
-    pub(super) fn to_parent(mut self, steps: &[Step]) -> Self {
+    pub(super) fn at_parent(mut self, steps: &[Step]) -> Self {
         self.inertia = self.inertia.to_parent(steps);
         for wrench in self.momenta.iter_mut().chain([&mut self.wrench]) {
             *wrench = wrench_to_parent(steps, wrench);
