@@ -224,6 +224,11 @@ impl<'a> Flow<'a> {
         Ok(())
     }
 
+    /// Whether y is v̄, as in the Lagrangian form.
+    pub(super) fn y_is_speeds(&self) -> bool {
+        self.form == Form::Lagrangian
+    }
+
     /// The v̄ that `y` amounts to at `q`.
     pub(super) fn speeds_of(
         &mut self,

@@ -47,6 +47,7 @@ mod jacobian;
 mod kinks;
 mod linear;
 mod lobatto;
+mod nearby;
 mod options;
 mod outputs;
 mod phi;
