@@ -228,6 +228,9 @@ impl<'a> Simulation<'a> {
             motion = motion.inputs(|time, q, speeds, efforts| {
                 feedback.borrow_mut().fill(time, q, speeds, efforts);
             });
+            motion = motion.bending(|time, q, speeds, bends| {
+                feedback.borrow_mut().bends(time, q, speeds, bends);
+            });
         }
         if let Some(period) = control.and_then(|control| control.period) {
             motion = motion.held(period);

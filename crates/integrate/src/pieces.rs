@@ -1,5 +1,6 @@
 //! The pieces of a motion with friction and limits of joints, from the side of the driver: how each begins and ends.
 
+use super::bends::Bends;
 use super::clock::Clock;
 use super::driver::Driver;
 use super::flow::Flow;
@@ -177,6 +178,9 @@ impl Driver<'_> {
         let begun = StepState::new(&mut self.flow, state.time, q, speeds);
         self.step_state = begun.map_err(|cause| self.at_state(cause))?;
         self.renew_stepper();
+        // Speeds that have jumped may have taken inputs to the other side of a bend.
+        let bends = Bends::new(&mut self.flow, &self.step_state, state.time);
+        self.bends = bends.map_err(|cause| self.at_state(cause))?;
         self.reach_over_bounces()?;
         let order = self.options.method.scheme().order();
         let mut events: usize = 0;

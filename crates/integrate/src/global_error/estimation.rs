@@ -59,6 +59,9 @@ const DOUBTED_ORDER: f64 = 0.4;
 /// At least so much of the distance at the times beside it, two motions are taken to be from each other.
 const CROSSING: f64 = 0.3;
 
+/// The highest order of methods whose errors fall evenly where something bends: stages of higher ones come past the end of a step by more than the error that is told of it.
+const HIGHEST_AT_BENDS: u32 = 5;
+
 /// Errors above this part of the motion are not small, so that nothing about them is linear.
 const LARGE: f64 = 1e-2;
 /// An estimate that is being made.
@@ -120,6 +123,10 @@ impl<'a, 'r> Estimation<'a, 'r> {
         let is_exponential = *self.options.method.scheme() == Scheme::Exponential;
         if is_exponential && errors.iter().any(|error| error.total() < OSCILLATIONS) {
             self.doubt.get_or_insert(Doubt::Oscillations);
+        }
+        let count = self.solution.statistics.bends;
+        if count > 0 && self.order() > HIGHEST_AT_BENDS {
+            self.doubt.get_or_insert(Doubt::Bends { count });
         }
         GlobalError {
             samples,

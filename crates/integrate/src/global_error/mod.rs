@@ -53,6 +53,11 @@ pub enum Doubt {
     Steps,
     /// Steps are longer than oscillations, whose rounding no companion tells.
     Oscillations,
+    /// Inputs or elements bend, as at the limit of an effort, under a method of high order: the error of the steps that end there does not fall as that of the others.
+    Bends {
+        /// Steps that end there.
+        count: usize,
+    },
     /// A companion goes through other impacts, stops and starts of joints, or through them in another order.
     Pieces {
         /// What the motion does where they first differ; nothing where it has no more.
@@ -77,6 +82,10 @@ impl Display for Doubt {
             ),
             Self::Oscillations => f.write_str(
                 "the method takes steps longer than oscillations: how rounding adds up over these is not known",
+            ),
+            Self::Bends { count } => write!(
+                f,
+                "efforts bend at {count} times, as at a limit: errors of methods of high order do not fall evenly there; take `dopri5` or `radau5`"
             ),
             Self::Pieces { motion, companion } => {
                 let told = |what: &str| match what {
