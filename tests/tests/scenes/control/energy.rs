@@ -206,8 +206,13 @@ fn steps_end_where_a_port_reaches_its_limit() {
             let mut companion = |start: &State, options: &Options, observer: &mut Observer<'_>| {
                 at_limit(&scene, start, options, observer)
             };
-            let told =
-                GlobalError::estimate(&scene.mechanism, &start, &options, &found, &mut companion);
+            let told = GlobalError::estimate(
+                &mut Recursive::new(Arc::clone(&scene.mechanism)),
+                &start,
+                &options,
+                &found,
+                &mut companion,
+            );
             let error = state_distance(&bodies(&found.state), &bodies(&exact.state));
             let (told, doubt) = (told.end.total(), told.doubt);
             let place = format!(
