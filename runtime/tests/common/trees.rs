@@ -94,9 +94,14 @@ fn specs(random: &mut Random, joints: &[Arc<dyn AnyJoint>]) -> Vec<BodySpec> {
 
 /// One to six joints, mixed, every type at the root of some tree; then others in which some joints carry several bodies.
 pub fn trees() -> Vec<Arc<Mechanism>> {
-    let mut trees = mixed_trees(tree);
+    let mut trees = trees_of_single_bodies();
     trees.extend(trees_of_several());
     trees
+}
+
+/// [`trees`] whose joints carry one body each.
+pub fn trees_of_single_bodies() -> Vec<Arc<Mechanism>> {
+    mixed_trees(tree)
 }
 
 /// Joints that carry several bodies, among others, at the root and within.
