@@ -1,11 +1,13 @@
 //! What the recursion keeps of each body: a compact copy of what never changes, and the workspace.
 
+use super::several;
 use super::slender::is_slender;
 use crate::erased::AnyJoint;
-use crate::mechanism::{Body, Mechanism};
+use crate::mechanism::{Body, Mechanism, Ranges};
 use crate::spatial::{Pose, SpatialInertia, join};
 use crate::steps::{Motion, Placement};
 use alloc::sync::Arc;
+use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 use nalgebra::{Vector3, Vector6};
@@ -52,10 +54,7 @@ impl Link {
                 ..Self::new(body)
             })
             .collect();
-        let several = mechanism
-            .joints()
-            .map(|(index, _)| mechanism.carried(index));
-        for (group, bodies) in several.filter(|bodies| bodies.len() > 1).enumerate() {
+        for (group, bodies) in several::groups(mechanism).enumerate() {
             for link in &mut links[bodies] {
                 link.group = Some(group);
             }
@@ -211,22 +210,21 @@ impl Node {
     }
 }
 
-/// The next column towards the root, for each column of X̄.
-pub(super) fn parents(rungs: &[Rung]) -> Vec<Option<usize>> {
-    let mut parents = Vec::new();
-    for rung in rungs {
-        let mut above = rung.parent;
-        let mut nearest = None;
-        while let (None, Some(index)) = (nearest, above) {
-            let Rung {
-                parent, start, end, ..
-            } = &rungs[index];
-            nearest = (start < end).then(|| end - 1);
-            above = *parent;
-        }
-        for column in rung.start..rung.end {
-            parents.push(nearest);
-            nearest = Some(column);
+/// The next entry towards the root, for each entry of a vector in which each body has the entries `own`.
+pub(super) fn parents(
+    mechanism: &Mechanism,
+    own: impl Fn(&Ranges) -> &Range<usize>,
+) -> Vec<Option<usize>> {
+    let bodies = mechanism.bodies();
+    let count = bodies.last().map_or(0, |last| own(last.ranges()).end);
+    let mut parents = vec![None; count];
+    for body in bodies {
+        let above = core::iter::successors(body.parent(), |&index| bodies[index].parent());
+        let mut above = above.map(|index| own(bodies[index].ranges()));
+        let mut nearest = above.find(|own| !own.is_empty()).map(|own| own.end - 1);
+        for entry in own(body.ranges()).clone() {
+            parents[entry] = nearest;
+            nearest = Some(entry);
         }
     }
     parents

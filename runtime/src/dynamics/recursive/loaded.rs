@@ -6,7 +6,6 @@
 use super::Recursive;
 use super::block::{factorize, reduce_inertia, solve};
 use super::inverse::MOST_FREEDOMS;
-use super::link::Link;
 use super::several::Group;
 use super::sweeps::{combine, whole};
 use crate::dynamics::DynamicsError;
@@ -47,7 +46,7 @@ impl LoadedMass {
             inertias: vec![ArticulatedInertia::zero(); count],
             wrenches: vec![Vector6::zeros(); count],
             motions: vec![Vector6::zeros(); count],
-            groups: Group::all(&Link::all(mechanism)),
+            groups: Group::all(mechanism),
             loads: vec![0.0; mechanism.layout().speeds],
         }
     }

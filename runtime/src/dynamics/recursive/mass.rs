@@ -2,7 +2,7 @@
 
 use super::Recursive;
 use super::inverse::MOST_FREEDOMS;
-use super::link::{Kind, Node};
+use super::link::{Kind, Node, parents};
 use crate::dynamics::DynamicsError;
 use crate::mechanism::{Mechanism, Space, StateError, WHOLE, check_size};
 use crate::spatial::{SpatialInertia, shift_wrench, split};
@@ -38,7 +38,7 @@ impl MassMatrix {
             size,
             rows: vec![0.0; size * size],
             factors: Vec::new(),
-            parents: parents(mechanism),
+            parents: parents(mechanism, |ranges| &ranges.speeds),
             full: false,
         }
         .with_factors()
@@ -134,31 +134,6 @@ fn subtract(target: &mut [f64], row: &[f64], weight: f64, parents: &[Option<usiz
         target[j] -= weight * row[j];
         ancestor = parents[j];
     }
-}
-
-/// The next speed towards the root, for each speed.
-fn parents(mechanism: &Mechanism) -> Vec<Option<usize>> {
-    let mut parents = vec![None; mechanism.layout().speeds];
-    for body in mechanism.bodies() {
-        let mut nearest = nearest_speed(mechanism, body.parent());
-        for speed in body.ranges().speeds.clone() {
-            parents[speed] = nearest;
-            nearest = Some(speed);
-        }
-    }
-    parents
-}
-
-/// The last speed of `body`'s joint, or of the nearest body towards the root whose joint has any.
-fn nearest_speed(mechanism: &Mechanism, mut body: Option<usize>) -> Option<usize> {
-    while let Some(index) = body {
-        let candidate = &mechanism.bodies()[index];
-        if !candidate.ranges().speeds.is_empty() {
-            return Some(candidate.ranges().speeds.end - 1);
-        }
-        body = candidate.parent();
-    }
-    None
 }
 
 impl Recursive {

@@ -15,15 +15,23 @@
 use super::Recursive;
 use super::block::{factorize, reduce_inertia, solve};
 use super::inverse::MOST_FREEDOMS;
-use super::link::Link;
 use super::sweeps::{combine, whole};
 use crate::dynamics::DynamicsError;
+use crate::mechanism::Mechanism;
 use crate::spatial::{ArticulatedInertia, shift_twist, shift_wrench};
 use crate::steps::{PivotFailure, rounding};
 use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 use nalgebra::{Matrix6, Vector3, Vector6};
+
+/// The bodies of each joint that carries several.
+pub(super) fn groups(mechanism: &Mechanism) -> impl Iterator<Item = Range<usize>> {
+    let bodies = mechanism
+        .joints()
+        .map(|(index, _)| mechanism.carried(index));
+    bodies.filter(|bodies| bodies.len() > 1)
+}
 
 /// A joint that carries several bodies, and the factors of its elimination.
 #[derive(Clone, Debug)]
@@ -49,30 +57,22 @@ pub(super) struct Group {
 }
 
 impl Group {
-    /// Those of a mechanism.
-    pub(super) fn all(links: &[Link]) -> Vec<Self> {
-        let mut groups: Vec<Self> = Vec::new();
-        for (index, link) in links.iter().enumerate() {
-            match link.group {
-                Some(group) if group == groups.len() => groups.push(Self::new(index, link)),
-                Some(group) => {
-                    groups[group].bodies.end = index + 1;
-                    groups[group].last |= link.last;
-                }
-                None => {}
-            }
-        }
-        groups
+    /// Those of a mechanism, in the order of [`groups`].
+    pub(super) fn all(mechanism: &Mechanism) -> Vec<Self> {
+        let new = |bodies| Self::new(mechanism, bodies);
+        groups(mechanism).map(new).collect()
     }
 
-    fn new(index: usize, link: &Link) -> Self {
-        let size = link.speeds.len();
+    fn new(mechanism: &Mechanism, bodies: Range<usize>) -> Self {
+        let first = &mechanism.bodies()[bodies.start];
+        let (parent, size) = (first.parent(), first.ranges().speeds.len());
+        let mut later = mechanism.bodies()[bodies.end..].iter();
         Self {
-            bodies: index..index + 1,
-            speeds: link.speeds.clone(),
-            parent: link.parent,
-            driven: link.driven,
-            last: link.last,
+            speeds: first.ranges().speeds.clone(),
+            parent,
+            driven: mechanism.is_driven(bodies.start),
+            last: later.all(|body| body.parent() != parent),
+            bodies,
             inertia: ArticulatedInertia::zero(),
             yields: vec![Vector6::zeros(); size],
             block: vec![0.0; size * size],

@@ -79,7 +79,7 @@ impl Recursive {
         }
         self.add_element_slopes(q, speeds, out);
         for index in 0..self.links.len() {
-            self.add_effort_slopes(index, q, out);
+            self.add_effort_slopes(index, (q, &self.efforts), 1.0, &mut out.by_local);
             self.add_rotor_slopes(index, q, speeds, out);
         }
     }
@@ -118,17 +118,23 @@ impl Recursive {
         }
     }
 
-    /// `∂S̄ᵀ τ` of the efforts of elements at one joint.
-    fn add_effort_slopes(&self, index: usize, q: &[f64], out: &mut Acting) {
+    /// Adds `weight ∂(S̄ᵀ τ)/∂ϕ` of one joint under efforts τ, all joints' at q of all.
+    pub(super) fn add_effort_slopes(
+        &self,
+        index: usize,
+        (q, efforts): (&[f64], &[f64]),
+        weight: f64,
+        by_local: &mut Sensitivity,
+    ) {
         let link = &self.links[index];
         let rows = link.speeds.len();
         let mut forces = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];
         let forces = &mut forces[..rows * link.freedoms.len()];
         let q = &q[link.configuration.clone()];
-        self.add_input_slopes(index, q, &self.efforts, forces);
+        self.add_input_slopes(index, q, efforts, forces);
         for (freedom, column) in link.freedoms.clone().zip(forces.chunks_exact(rows.max(1))) {
             for (speed, entry) in link.speeds.clone().zip(column) {
-                out.by_local.add(speed, freedom, *entry);
+                by_local.add(speed, freedom, weight * entry);
             }
         }
     }

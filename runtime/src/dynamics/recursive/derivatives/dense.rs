@@ -88,32 +88,11 @@ impl Recursive {
         self.advance(q, speeds, Some(&out.rates));
         self.differentiate_needed(q, speeds, &out.rates, &mut dense.needed);
         for index in 0..self.links.len() {
-            self.take_input_slopes(index, q, efforts, &mut dense.needed.by_local);
+            self.add_effort_slopes(index, (q, efforts), -1.0, &mut dense.needed.by_local);
         }
         negative_product(&dense.inverse, &dense.needed.by_local, &mut out.by_local);
         negative_product(&dense.inverse, &dense.needed.by_speeds, &mut out.by_speeds);
         self.answer_efforts_densely(q, dense, &mut out.by_efforts);
-    }
-
-    /// Takes `∂(S̄ᵀτ)/∂ϕ` of one joint off `needed`.
-    fn take_input_slopes(
-        &self,
-        index: usize,
-        q: &[f64],
-        efforts: &[f64],
-        needed: &mut Sensitivity,
-    ) {
-        let link = &self.links[index];
-        let rows = link.speeds.len();
-        let mut forces = [0.0; MOST_FREEDOMS * MOST_FREEDOMS];
-        let forces = &mut forces[..rows * link.freedoms.len()];
-        let q = &q[link.configuration.clone()];
-        self.add_input_slopes(index, q, efforts, forces);
-        for (slot, column) in link.freedoms.clone().zip(forces.chunks_exact(rows.max(1))) {
-            for (speed, entry) in link.speeds.clone().zip(column) {
-                needed.add(speed, slot, -entry);
-            }
-        }
     }
 
     /// `∂v̄̇/∂τ`.
