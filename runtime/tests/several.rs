@@ -2,11 +2,11 @@
 
 mod common;
 
+use common::joints;
 use common::random::Random;
 use common::readings::{assert_same, readings};
 use common::several::{arms, between, drifter};
 use common::trees::{GRAVITY, body, mass, pose};
-use common::joints;
 use hamel_runtime::dynamics::{
     Dynamics, ForwardDerivatives, Frame, HamiltonianDerivatives, InverseDerivatives, LoadedMass,
     MassMatrix, Recursive, Reference, Refined, Sensitivity,
@@ -36,7 +36,11 @@ struct Pair {
 const PAIR: usize = 1;
 
 /// A base that the pair hangs on; on each of its bodies hangs something, on the second another pair.
-fn pair(seed: u64, joined: fn() -> Arc<dyn AnyJoint>, apart: [fn() -> Arc<dyn AnyJoint>; 2]) -> Pair {
+fn pair(
+    seed: u64,
+    joined: fn() -> Arc<dyn AnyJoint>,
+    apart: [fn() -> Arc<dyn AnyJoint>; 2],
+) -> Pair {
     let mut random = Random::new(seed);
     let mut bodies: [Vec<BodySpec>; 2] = [Vec::new(), Vec::new()];
     let mut add = |parent: Option<usize>, joint: Arc<dyn AnyJoint>| {
@@ -133,7 +137,12 @@ fn all(mechanism: &Arc<Mechanism>, state: &State) -> Vec<f64> {
     ];
     let mut all = Vec::new();
     for form in &mut forms {
-        all.extend(readings(&mut **form, &state.q, &state.speeds, &state.efforts));
+        all.extend(readings(
+            &mut **form,
+            &state.q,
+            &state.speeds,
+            &state.efforts,
+        ));
     }
     all
 }
@@ -156,7 +165,11 @@ fn derivatives(mechanism: &Arc<Mechanism>, state: &State) -> Vec<f64> {
     recursive
         .forward_dynamics_derivatives(q, speeds, efforts, &mut forward)
         .expect("fits");
-    for own in [forward.by_local(), forward.by_speeds(), forward.by_efforts()] {
+    for own in [
+        forward.by_local(),
+        forward.by_speeds(),
+        forward.by_efforts(),
+    ] {
         all.extend(matrix(own));
     }
     all.extend(forward.rates());
@@ -240,7 +253,13 @@ fn equipped(mechanism: Mechanism, has_rotors: bool) -> Mechanism {
                 body,
                 coefficients: damping,
             }));
-            let diagonal = |n: usize| if n / size == n % size { stiffness[n / size] } else { 0.0 };
+            let diagonal = |n: usize| {
+                if n / size == n % size {
+                    stiffness[n / size]
+                } else {
+                    0.0
+                }
+            };
             elements.push(Arc::new(JointSpring {
                 name: format!("spring {body}"),
                 body,
@@ -304,7 +323,8 @@ fn constraints_across_joints_agree() {
                 point: Vector3::new(0.2, 0.1, -0.4),
                 direction: Vector3::new(0.3, 1.0, 0.2),
             };
-            own.with_constraints(vec![constraint], &start).expect("fits")
+            own.with_constraints(vec![constraint], &start)
+                .expect("fits")
         });
         let obeying = |mechanism: &Arc<Mechanism>, state: &State| {
             let mut speeds = state.speeds.clone();
@@ -415,7 +435,8 @@ fn frames_of_every_body_agree() {
                 let (mut jacobian, mut gradient) = (vec![0.0; 6 * s], vec![0.0; 6 * k]);
                 at.jacobian(Frame::Body, &mut jacobian).expect("fits");
                 all.extend(&jacobian);
-                at.twist_gradient(Frame::World, &mut gradient).expect("fits");
+                at.twist_gradient(Frame::World, &mut gradient)
+                    .expect("fits");
                 all.extend(&gradient);
                 all.extend(at.jacobian_rate_product(Frame::Body).as_slice());
                 all.extend(at.twist(Frame::Body).as_slice());
@@ -435,10 +456,7 @@ fn loaded_mass_matrices_agree() {
             recursive.stand_loaded(&state.q, &state.speeds, &mut variations, &mut slopes);
             let mut factors = LoadedMass::new(own);
             recursive
-                .factorize_loaded(
-                    |_, i, j| if i == j { 3.0 } else { 0.0 },
-                    &mut factors,
-                )
+                .factorize_loaded(|_, i, j| if i == j { 3.0 } else { 0.0 }, &mut factors)
                 .expect("positive");
             let mut x = state.rates.clone();
             recursive.solve_loaded(&mut factors, &mut x);

@@ -226,7 +226,9 @@ impl Correction {
             let bodies = &flow.mechanism.bodies()[flow.mechanism.carried(index)];
             let momenta = (&step_state.next_y[own.clone()], carried);
             let (faster, out) = (&self.faster[own.clone()], &mut self.moved.y[own]);
-            let structure = self.matrices.structure((body, bodies), &self.middle, momenta);
+            let structure = self
+                .matrices
+                .structure((body, bodies), &self.middle, momenta);
             multiply(structure, faster, out);
         }
         add(&mut self.moved.y, -1.0 / step, &step_state.next_y);

@@ -33,8 +33,8 @@ pub use control::{
     ReferenceDescription, RegulatorDescription,
 };
 pub use description::{
-    BodyDescription, InitialDescription, JointDescription, Motion, Part, Position, SceneDescription,
-    TwistDescription, TwistFrame,
+    BodyDescription, InitialDescription, JointDescription, Motion, Part, Position,
+    SceneDescription, TwistDescription, TwistFrame,
 };
 pub use diagnostics::{Diagnostic, Diagnostics};
 pub use event::{EventDescription, PointAlong, Quantity, QuantityDescription, SceneEvent};

@@ -7,7 +7,7 @@
 //! - Configuration: a ∈ S1, b ∈ S1, c ∈ S1, stored as a.c, a.s, b.c, b.s, c.c, c.s.
 //! - Degrees of freedom: `turn` (ϕ, rad).
 //! - Velocity v: read as the rates of the local coordinates.
-//! - The identity, and not written: S₀, S₀⁻¹, S̄.
+//! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹.
 //! - Zero, and not written: ∂X^c/∂ϕ, ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, c, the dual of c.
 //!
 //! ```text
@@ -184,6 +184,17 @@ impl FourBar {
             dot([crank, rocker, coupler], [a_s, -c_s, b_s]),
         ])
     }
+
+    /// ∂φ(Q): the displacement rate Q⁻¹Q̇ to the rates of the relations that the spec declares.
+    /// 2×3. Operations: 6 multiplications.
+    /// From line 21 `config a: S1, b: S1, c: S1;`.
+    pub fn relation_gradient<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 2, 3> {
+        let crank = T::from_f64(self.crank);
+        let coupler = T::from_f64(self.coupler);
+        let rocker = T::from_f64(self.rocker);
+        let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
+        from_rows([[-crank * a_s, -coupler * b_s, rocker * c_s], [crank * a_c, coupler * b_c, -rocker * c_c]])
+    }
 }
 
 impl Joint<6, 1, 1, 0> for FourBar {
@@ -193,7 +204,6 @@ impl Joint<6, 1, 1, 0> for FourBar {
     const SPEEDS: [&'static str; 1] = ["turn"];
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Declared;
     const STRUCTURES: Structures = Structures {
-        retract_differential: Structure::General,
         project: Structure::General,
         residual: Structure::General,
         ..Structures::TRIVIAL
@@ -284,10 +294,10 @@ impl Joint<6, 1, 1, 0> for FourBar {
     /// From line 21 `config`, line 26 `basis`.
     fn retract<T: Scalar>(&self, q: &SVector<T, 6>, phi: &SVector<T, 1>) -> SVector<T, 6> {
         ::hamel_runtime::finite::retract(
-            (q, phi),
-            |q| (self.tangent_basis(q), self.normal_basis(q)),
-            |q, xi| self.displaced(q, xi),
-            |q| self.relations(q).fixed_rows::<2>(3).into_owned(),
+            phi,
+            (self.tangent_basis(q), self.normal_basis(q)),
+            |xi| self.displaced(q, xi),
+            |q, _xi| (self.relations(q).fixed_rows::<2>(3).into_owned(), self.relation_gradient(q)),
         )
     }
 
@@ -296,35 +306,6 @@ impl Joint<6, 1, 1, 0> for FourBar {
     /// From line 21 `config`, line 26 `basis`.
     fn local<T: Scalar>(&self, q: &SVector<T, 6>, target: &SVector<T, 6>) -> SVector<T, 1> {
         ::hamel_runtime::finite::along_tangent(&self.displacement(q, target), (self.tangent_basis(q), self.normal_basis(q)))
-    }
-
-    /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
-    /// 1×1. By a least-squares solve with ∂Φ/∂ϕ at (Q, ϕ) and at (Q′, 0).
-    /// From line 21 `config`, line 26 `basis`.
-    fn retract_differential<T: Scalar>(&self, q: &SVector<T, 6>, phi: &SVector<T, 1>) -> SMatrix<T, 1, 1> {
-        ::hamel_runtime::finite::retract_differential(
-            (q, phi),
-            |q| (self.tangent_basis(q), self.normal_basis(q)),
-            |q, xi| self.displaced(q, xi),
-            |q| self.relations(q).fixed_rows::<2>(3).into_owned(),
-        )
-    }
-
-    /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    /// 1-vector, rad/s. By a least-squares solve with ∂Φ/∂ϕ at (Q, ϕ) and at (Q′, 0).
-    /// From line 21 `config`, line 26 `basis`.
-    fn retract_differential_inverse<T: Scalar>(
-        &self,
-        q: &SVector<T, 6>,
-        phi: &SVector<T, 1>,
-        rate: &SVector<T, 1>,
-    ) -> SVector<T, 1> {
-        ::hamel_runtime::finite::retract_differential_inverse(
-            (q, phi, rate),
-            |q| (self.tangent_basis(q), self.normal_basis(q)),
-            |q, xi| self.displaced(q, xi),
-            |q| self.relations(q).fixed_rows::<2>(3).into_owned(),
-        )
     }
 
     /// The configuration on the manifold that is nearest to `q`.
@@ -349,7 +330,11 @@ impl Joint<6, 1, 1, 0> for FourBar {
                 c_s * c_inverse_norm,
             ])
         };
-        ::hamel_runtime::finite::project(&start, 5, |q| self.relations(q))
+        ::hamel_runtime::finite::project_by_displacements(
+            &start,
+            |q, xi| self.displaced(q, xi),
+            |q| (self.relations(q).fixed_rows::<2>(3).into_owned(), self.relation_gradient(q)),
+        )
     }
 
     /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
@@ -381,6 +366,7 @@ impl ::hamel_runtime::joint::Carries<1, 6, 1, 1, 0> for FourBar {
         gamma: Structure::Zero,
         speed_basis: Structure::Identity,
         speed_basis_gradient: Structure::Zero,
+        retract_differential: Structure::Identity,
         ..Structures::GENERAL
     };
     const PATTERNS: Patterns<1, 1> = Patterns::new(["xx0", "xx0", "001"], "xx0", ["0", "0", "x", "x", "x", "0"])
@@ -471,6 +457,7 @@ impl ::hamel_runtime::joint::Carries<2, 6, 1, 1, 0> for FourBar {
         gamma: Structure::Zero,
         speed_basis: Structure::Identity,
         speed_basis_gradient: Structure::Zero,
+        retract_differential: Structure::Identity,
         ..Structures::GENERAL
     };
     const PATTERNS: Patterns<1, 1> = Patterns::new(["xx0", "xx0", "001"], "x00", ["0", "0", "x", "0", "0", "0"])

@@ -8,7 +8,7 @@
 //! - Configuration: a ∈ S1, b ∈ S1, s ∈ R1, stored as a.c, a.s, b.c, b.s, s.
 //! - Degrees of freedom: `turn` (ϕ, rad).
 //! - Velocity v: read as the rates of the local coordinates.
-//! - The identity, and not written: S₀, S₀⁻¹, S̄.
+//! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹.
 //! - Zero, and not written: ∂X^c/∂ϕ, ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, c, the dual of c.
 //!
 //! ```text
@@ -169,6 +169,18 @@ impl SliderCrank {
             crank.mul_add(a_s, rod.mul_add(b_s, -offset)),
         ])
     }
+
+    /// ∂φ(Q): the displacement rate Q⁻¹Q̇ to the rates of the relations that the spec declares.
+    /// 2×3. Operations: 4 multiplications.
+    /// From line 17 `config a: S1, b: S1, s: R1;`.
+    pub fn relation_gradient<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 2, 3> {
+        let crank = T::from_f64(self.crank);
+        let rod = T::from_f64(self.rod);
+        let [a_c, a_s, b_c, b_s, _]: [T; 5] = (*q).into();
+        let zero = T::zero();
+        let one = T::one();
+        from_rows([[-crank * a_s, -rod * b_s, -one], [crank * a_c, rod * b_c, zero]])
+    }
 }
 
 impl Joint<5, 1, 1, 0> for SliderCrank {
@@ -178,7 +190,6 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
     const SPEEDS: [&'static str; 1] = ["turn"];
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Declared;
     const STRUCTURES: Structures = Structures {
-        retract_differential: Structure::General,
         project: Structure::General,
         residual: Structure::General,
         ..Structures::TRIVIAL
@@ -264,10 +275,10 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
     /// From line 17 `config`, line 24 `basis`.
     fn retract<T: Scalar>(&self, q: &SVector<T, 5>, phi: &SVector<T, 1>) -> SVector<T, 5> {
         ::hamel_runtime::finite::retract(
-            (q, phi),
-            |q| (self.tangent_basis(q), self.normal_basis(q)),
-            |q, xi| self.displaced(q, xi),
-            |q| self.relations(q).fixed_rows::<2>(2).into_owned(),
+            phi,
+            (self.tangent_basis(q), self.normal_basis(q)),
+            |xi| self.displaced(q, xi),
+            |q, _xi| (self.relations(q).fixed_rows::<2>(2).into_owned(), self.relation_gradient(q)),
         )
     }
 
@@ -276,35 +287,6 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
     /// From line 17 `config`, line 24 `basis`.
     fn local<T: Scalar>(&self, q: &SVector<T, 5>, target: &SVector<T, 5>) -> SVector<T, 1> {
         ::hamel_runtime::finite::along_tangent(&self.displacement(q, target), (self.tangent_basis(q), self.normal_basis(q)))
-    }
-
-    /// D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D.
-    /// 1×1. By a least-squares solve with ∂Φ/∂ϕ at (Q, ϕ) and at (Q′, 0).
-    /// From line 17 `config`, line 24 `basis`.
-    fn retract_differential<T: Scalar>(&self, q: &SVector<T, 5>, phi: &SVector<T, 1>) -> SMatrix<T, 1, 1> {
-        ::hamel_runtime::finite::retract_differential(
-            (q, phi),
-            |q| (self.tangent_basis(q), self.normal_basis(q)),
-            |q, xi| self.displaced(q, xi),
-            |q| self.relations(q).fixed_rows::<2>(2).into_owned(),
-        )
-    }
-
-    /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    /// 1-vector, rad/s. By a least-squares solve with ∂Φ/∂ϕ at (Q, ϕ) and at (Q′, 0).
-    /// From line 17 `config`, line 24 `basis`.
-    fn retract_differential_inverse<T: Scalar>(
-        &self,
-        q: &SVector<T, 5>,
-        phi: &SVector<T, 1>,
-        rate: &SVector<T, 1>,
-    ) -> SVector<T, 1> {
-        ::hamel_runtime::finite::retract_differential_inverse(
-            (q, phi, rate),
-            |q| (self.tangent_basis(q), self.normal_basis(q)),
-            |q, xi| self.displaced(q, xi),
-            |q| self.relations(q).fixed_rows::<2>(2).into_owned(),
-        )
     }
 
     /// The configuration on the manifold that is nearest to `q`.
@@ -320,7 +302,11 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
             let b_inverse_norm = one / b_norm;
             SVector::from([a_c * a_inverse_norm, a_s * a_inverse_norm, b_c * b_inverse_norm, b_s * b_inverse_norm, s])
         };
-        ::hamel_runtime::finite::project(&start, 4, |q| self.relations(q))
+        ::hamel_runtime::finite::project_by_displacements(
+            &start,
+            |q, xi| self.displaced(q, xi),
+            |q| (self.relations(q).fixed_rows::<2>(2).into_owned(), self.relation_gradient(q)),
+        )
     }
 
     /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
@@ -358,6 +344,7 @@ impl ::hamel_runtime::joint::Carries<1, 5, 1, 1, 0> for SliderCrank {
         gamma: Structure::Zero,
         speed_basis: Structure::Identity,
         speed_basis_gradient: Structure::Zero,
+        retract_differential: Structure::Identity,
         ..Structures::GENERAL
     };
     const PATTERNS: Patterns<1, 1> = Patterns::new(["xx0", "xx0", "001"], "xx0", ["0", "0", "x", "x", "x", "0"])
@@ -436,6 +423,7 @@ impl ::hamel_runtime::joint::Carries<2, 5, 1, 1, 0> for SliderCrank {
         gamma: Structure::Zero,
         speed_basis: Structure::Identity,
         speed_basis_gradient: Structure::Zero,
+        retract_differential: Structure::Identity,
         ..Structures::GENERAL
     };
     const PATTERNS: Patterns<1, 1> = Patterns::new(["100", "010", "001"], "xx0", ["0", "0", "0", "x", "0", "0"])

@@ -155,12 +155,16 @@ impl Mechanism {
 
     /// How many variations all bodies have: one for each body and each degree of freedom of its joint.
     pub fn variations(&self) -> usize {
-        self.bodies().last().map_or(0, |last| last.ranges().variations.end)
+        self.bodies()
+            .last()
+            .map_or(0, |last| last.ranges().variations.end)
     }
 
     /// How many columns the X̄ of all bodies have: one for each body and each speed of its joint.
     pub fn columns(&self) -> usize {
-        self.bodies().last().map_or(0, |last| last.ranges().columns.end)
+        self.bodies()
+            .last()
+            .map_or(0, |last| last.ranges().columns.end)
     }
 
     /// Index of the body that stands for the joint under `body`; `body` itself where there is no such body.

@@ -48,14 +48,7 @@ pub trait Declared<const N: usize, const K: usize, const S: usize, const C: usiz
 }
 
 /// `X(Φ) S = J` by least squares.
-fn by_twists<
-    T: Scalar,
-    D,
-    const N: usize,
-    const K: usize,
-    const S: usize,
-    const C: usize,
->(
+fn by_twists<T: Scalar, D, const N: usize, const K: usize, const S: usize, const C: usize>(
     joint: &D,
     q: &SVector<T, N>,
     phi: &SVector<T, K>,
@@ -278,7 +271,13 @@ where
     }
 
     fn velocity_map_gradient<T: Scalar>(&self, q: &SVector<T, N>) -> [SMatrix<T, K, K>; K] {
-        array::from_fn(|k| slope(&self.0.velocity_map_at(&constant(q), &along(&SVector::zeros(), &unit(k)))))
+        array::from_fn(|k| {
+            slope(
+                &self
+                    .0
+                    .velocity_map_at(&constant(q), &along(&SVector::zeros(), &unit(k))),
+            )
+        })
     }
 
     fn gamma<T: Scalar>(&self, q: &SVector<T, N>, v: &SVector<T, K>) -> SMatrix<T, K, K> {

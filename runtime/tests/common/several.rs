@@ -165,8 +165,7 @@ fn carriage_pose<T: Scalar>(q: &SVector<T, 4>) -> Pose<T> {
 
 fn wheel_pose<T: Scalar>(q: &SVector<T, 4>) -> Pose<T> {
     let side = Vector3::new(T::zero(), T::from_f64(0.4), T::from_f64(RADIUS));
-    carriage_pose(q)
-        * Pose::new(rotation(T::zero(), q[3], T::zero()), side)
+    carriage_pose(q) * Pose::new(rotation(T::zero(), q[3], T::zero()), side)
 }
 
 by_rates!(

@@ -49,7 +49,10 @@ fn refusal(
     parts: &[&Part],
 ) -> Option<Diagnostic> {
     let (name, kind, bodies) = (&description.name.value, joint.name(), joint.bodies());
-    let carries = format!("a joint of type `{kind}` carries the bodies {}", all_of(bodies.iter().copied()));
+    let carries = format!(
+        "a joint of type `{kind}` carries the bodies {}",
+        all_of(bodies.iter().copied())
+    );
     if bodies.len() <= 1 {
         let first = parts.first()?;
         let message = format!("joint `{name}`: a joint of type `{kind}` carries one body alone");
@@ -59,9 +62,15 @@ fn refusal(
     if parts.is_empty() {
         let message = format!("joint `{name}`: {carries}");
         let error = Diagnostic::new(description.span.clone(), message);
-        return Some(error.help("give each of them, in this order: `bodies.NAME = { mass = …, inertia = … }`"));
+        return Some(
+            error.help(
+                "give each of them, in this order: `bodies.NAME = { mass = …, inertia = … }`",
+            ),
+        );
     }
-    let unknown = parts.iter().find(|part| !bodies.contains(&part.name.value.as_str()));
+    let unknown = parts
+        .iter()
+        .find(|part| !bodies.contains(&part.name.value.as_str()));
     if let Some(part) = unknown {
         let given = &part.name.value;
         let message = format!("joint `{name}`: a joint of type `{kind}` carries no body `{given}`");
@@ -71,14 +80,19 @@ fn refusal(
             None => error.help(carries),
         });
     }
-    let missing = bodies.iter().find(|body| parts.iter().all(|part| part.name.value != **body));
+    let missing = bodies
+        .iter()
+        .find(|body| parts.iter().all(|part| part.name.value != **body));
     if let Some(body) = missing {
         let message = format!("joint `{name}`: its body `{body}` is missing");
         let error = Diagnostic::new(description.span.clone(), message);
         return Some(error.help(carries));
     }
     let given = parts.iter().map(|part| part.name.value.as_str());
-    let (misplaced, _) = parts.iter().zip(bodies).find(|(part, body)| part.name.value != **body)?;
+    let (misplaced, _) = parts
+        .iter()
+        .zip(bodies)
+        .find(|(part, body)| part.name.value != **body)?;
     let message = format!(
         "joint `{name}`: its bodies are given in the order {}",
         given.collect::<Vec<_>>().join(", ")

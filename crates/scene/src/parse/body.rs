@@ -59,7 +59,9 @@ fn parts(mut fields: Fields<'_>, value: &Value<'_>, sink: &mut Sink) -> Vec<Body
     }
     if all.is_empty() && sink.len() == 0 {
         let error = Diagnostic::new(value.span(), format!("{}`bodies` is empty", fields.owner()));
-        sink.push(error.help("give each body of the joint: `bodies.NAME = { mass = …, inertia = … }`"));
+        sink.push(
+            error.help("give each body of the joint: `bodies.NAME = { mass = …, inertia = … }`"),
+        );
     }
     fields.finish(sink);
     all

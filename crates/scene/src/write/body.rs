@@ -27,7 +27,9 @@ pub(super) fn bodies(
     entry(out, "parent", &text(name_of(first.parent, bodies)));
     if first.part.is_none() {
         let entries = mass(&first.mass);
-        entries.iter().for_each(|(key, value)| entry(out, key, value));
+        entries
+            .iter()
+            .for_each(|(key, value)| entry(out, key, value));
     }
     entry(out, "joint", &joint(&first.joint, name));
     if let Some(value) = pose::pose(&first.at) {
@@ -50,11 +52,14 @@ pub(super) fn bodies(
                 entries.push(("at", at));
             }
             entries.extend(pose::pose(&own.body_at).map(|value| ("body_at", value)));
-            entry(out, &format!("bodies.{}", key(&part.name.value)), &table(&entries));
+            entry(
+                out,
+                &format!("bodies.{}", key(&part.name.value)),
+                &table(&entries),
+            );
         }
     }
 }
-
 
 /// Name of a body of `bodies`, or of the world.
 pub(super) fn name_of(body: Option<usize>, bodies: &[BodyDescription]) -> &str {

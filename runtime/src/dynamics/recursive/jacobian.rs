@@ -114,10 +114,7 @@ impl FrameReadings<'_> {
 
 impl Recursive {
     /// The speeds of the joint under a body, each with its column of the body's X̄.
-    pub(super) fn columns_of(
-        &self,
-        body: usize,
-    ) -> impl Iterator<Item = (usize, &Vector6<f64>)> {
+    pub(super) fn columns_of(&self, body: usize) -> impl Iterator<Item = (usize, &Vector6<f64>)> {
         let link = &self.links[body];
         link.speeds.clone().zip(&self.columns[link.columns.clone()])
     }

@@ -52,7 +52,9 @@ impl Link {
                 ..Self::new(body)
             })
             .collect();
-        let several = mechanism.joints().map(|(index, _)| mechanism.carried(index));
+        let several = mechanism
+            .joints()
+            .map(|(index, _)| mechanism.carried(index));
         for (group, bodies) in several.filter(|bodies| bodies.len() > 1).enumerate() {
             for link in &mut links[bodies] {
                 link.group = Some(group);

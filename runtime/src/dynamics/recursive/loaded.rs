@@ -181,8 +181,7 @@ impl Recursive {
                 if link.leads {
                     own.resolve(&above, &factors.loads[link.speeds.clone()], x);
                 }
-                factors.motions[index] =
-                    combine(motion, &self.columns[link.columns.clone()], x);
+                factors.motions[index] = combine(motion, &self.columns[link.columns.clone()], x);
                 continue;
             }
             if !link.driven {

@@ -135,7 +135,12 @@ impl Group {
     }
 
     /// Adds the wrench on one body at its own frame, `offset` from the parent's.
-    fn add_wrench(&mut self, wrench: &Vector6<f64>, columns: &[Vector6<f64>], offset: &Vector3<f64>) {
+    fn add_wrench(
+        &mut self,
+        wrench: &Vector6<f64>,
+        columns: &[Vector6<f64>],
+        offset: &Vector3<f64>,
+    ) {
         for (load, column) in self.loads.iter_mut().zip(columns) {
             *load -= column.dot(wrench);
         }

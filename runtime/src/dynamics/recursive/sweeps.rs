@@ -317,7 +317,11 @@ impl Recursive {
 
 /// What a joint carries: the body itself and what its children have handed over.
 #[inline(always)]
-pub(super) fn whole(link: &Link, node: &Node, handed: &ArticulatedInertia<f64>) -> ArticulatedInertia<f64> {
+pub(super) fn whole(
+    link: &Link,
+    node: &Node,
+    handed: &ArticulatedInertia<f64>,
+) -> ArticulatedInertia<f64> {
     match link.carries {
         true => handed.with_rigid(&node.rigid),
         false => ArticulatedInertia::from(&node.rigid),

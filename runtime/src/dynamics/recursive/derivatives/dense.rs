@@ -146,11 +146,7 @@ impl Recursive {
     }
 
     /// v̄ in ϕ and p̄, once the derivatives at fixed v̄ are there.
-    pub(super) fn answer_momenta_densely(
-        &self,
-        dense: &Dense,
-        out: &mut HamiltonianDerivatives,
-    ) {
+    pub(super) fn answer_momenta_densely(&self, dense: &Dense, out: &mut HamiltonianDerivatives) {
         if let Some(needed) = &out.needed {
             negative_product(&dense.inverse, needed, &mut out.speeds_by_local);
         }

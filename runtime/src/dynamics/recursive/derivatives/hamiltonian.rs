@@ -104,7 +104,9 @@ impl HamiltonianDerivatives {
         let by_local = core::mem::replace(&mut self.rates_by_local, by_local);
         let by_speeds = core::mem::replace(&mut self.rates_by_speeds, by_speeds);
         let own = self.needed.as_mut();
-        let needed = own.map_or(Sensitivity::new(0, 0), |own| core::mem::replace(own, needed));
+        let needed = own.map_or(Sensitivity::new(0, 0), |own| {
+            core::mem::replace(own, needed)
+        });
         ([by_local, by_speeds], needed)
     }
 

@@ -163,8 +163,10 @@ impl Recursive {
                 let more = &mut more[..rows * freedoms];
                 link.joint.effort_gradient(q, &momentum, more);
                 for (n, entry) in more.iter().enumerate() {
-                    let (row, column) =
-                        (link.columns.start + n % rows, link.variations.start + n / rows);
+                    let (row, column) = (
+                        link.columns.start + n % rows,
+                        link.variations.start + n / rows,
+                    );
                     needed.add(row, column, *entry);
                 }
             }
@@ -183,7 +185,10 @@ impl Recursive {
         }
         self.add_input_slopes(index, q, efforts, &mut sum[..rows * freedoms]);
         for (n, entry) in sum[..rows * freedoms].iter().enumerate() {
-            let (row, column) = (link.columns.start + n % rows, link.variations.start + n / rows);
+            let (row, column) = (
+                link.columns.start + n % rows,
+                link.variations.start + n / rows,
+            );
             out.rates_by_local.entries[row * out.rates_by_local.columns + column] += entry;
         }
         if !structures.bias_momentum.is_zero() {
