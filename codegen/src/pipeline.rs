@@ -111,7 +111,10 @@ fn kernels(
 ) -> Result<(Written, Vec<Written>), Vec<Diagnostic>> {
     let view = |body| View::of_body(joint, expansion, body);
     let mut first = view(0);
-    first.kernels = expand::kernels(&first.joint, &first.expansion, loci)?;
+    first
+        .kernels
+        .extend(expand::kernels(joint, expansion, loci)?);
+    first.kernels.sort_by_key(|kernel| kernel.kind);
     let others: Vec<View> = (1..=joint.spec.more.len()).map(view).collect();
     let (first, others) = crate::simplify::in_words(joint, &first, &others);
     let all = || std::iter::once(&first).chain(&others);

@@ -158,6 +158,29 @@ fn twists_are_declared_one_below_the_other() {
     assert_eq!(codes(&with("0; 0; n/2; 0; n*n/2; 0")), [code::TWIST_MAP]);
 }
 
+/// The second body has a pose on one side of the exception alone: the joint ends there.
+#[test]
+fn a_side_of_any_body_is_one_of_the_joint() {
+    let with = |poses: &str| {
+        let text =
+            format!("hamel = 1;\njoint test {{ config q: R1; home = 1; except q = 0; {poses} }}");
+        let joint = derived(&text);
+        let singular = joint.kernel(KernelKind::Singularity).expect("a kernel");
+        singular.outputs.clone()
+    };
+    let both = with("bodies plain, root; H.plain = trans_x(q); H.root = trans_x(sqrt(q));");
+    assert_eq!(both, with("H = trans_x(sqrt(q));"));
+    assert_eq!(both.len(), 2);
+}
+
+/// `bodies` begins a statement, and is a name in specs that are older than that.
+#[test]
+fn a_parameter_may_be_called_bodies() {
+    let text = "(bodies: m > 0) { config q: R1; bodies one, bodies; H.one = trans_x(bodies * q); H.bodies = rot_x(q); }";
+    let joint = derived(&format!("hamel = 1;\njoint test{text}"));
+    assert_eq!(joint.spec.bodies, ["one", "bodies"]);
+}
+
 #[test]
 fn poses_of_all_bodies_tell_q() {
     let fibres = |poses: &str| {

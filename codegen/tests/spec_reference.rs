@@ -5,9 +5,14 @@ use hamel_codegen::spec::{self, code};
 
 const REFERENCE: &str = include_str!("../../joint-specs/README.md");
 
+/// The chapter on loops.
+const LOOPS: &str = include_str!("../../docs/loops.md");
+
 fn examples() -> impl Iterator<Item = &'static str> {
-    let blocks = REFERENCE.split("```joint\n").skip(1);
-    blocks.map(|block| block.split("```").next().unwrap_or_default())
+    let blocks = |text: &'static str| text.split("```joint\n").skip(1);
+    blocks(REFERENCE)
+        .chain(blocks(LOOPS))
+        .map(|block| block.split("```").next().unwrap_or_default())
 }
 
 #[test]

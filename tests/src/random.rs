@@ -35,7 +35,7 @@ pub struct Case {
 /// Every joint of the library with parameters near 0.7, no two alike: a new spec enters by itself.
 ///
 /// # Panics
-/// Where a joint refuses them in ascending and in descending order.
+/// Where a joint refuses all choices of them.
 pub fn library() -> Vec<Arc<dyn AnyJoint>> {
     kinds(&hamel_joints::registry())
 }
@@ -43,7 +43,7 @@ pub fn library() -> Vec<Arc<dyn AnyJoint>> {
 /// Every joint of a registry, with such parameters.
 ///
 /// # Panics
-/// Where a joint refuses them in ascending and in descending order.
+/// Where a joint refuses all choices of them.
 pub fn kinds(registry: &JointRegistry) -> Vec<Arc<dyn AnyJoint>> {
     let build = |entry: &JointEntry| {
         let ascending: Vec<f64> = (0..entry.parameters.len())
@@ -54,9 +54,19 @@ pub fn kinds(registry: &JointRegistry) -> Vec<Arc<dyn AnyJoint>> {
         let small_second: Vec<f64> = (0..entry.parameters.len())
             .map(|i| if i == 1 { 0.2 } else { 0.9 + 0.1 * i as f64 })
             .collect();
+        // And one that is larger than two others together, as a rod beside its crank.
+        let large_second: Vec<f64> = (0..entry.parameters.len())
+            .map(|i| if i == 1 { 2.5 } else { 0.9 + 0.1 * i as f64 })
+            .collect();
+        // Each a third of the one before it: the first is longer than all others together.
+        let thirds: Vec<f64> = (0..entry.parameters.len())
+            .map(|i| 0.9 / 3.0_f64.powi(i as i32))
+            .collect();
         let built = (entry.build)(&ascending)
             .or_else(|_| (entry.build)(&descending))
-            .or_else(|_| (entry.build)(&small_second));
+            .or_else(|_| (entry.build)(&small_second))
+            .or_else(|_| (entry.build)(&large_second))
+            .or_else(|_| (entry.build)(&thirds));
         built.unwrap_or_else(|error| panic!("{error}"))
     };
     registry.entries().map(build).collect()

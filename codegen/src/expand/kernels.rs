@@ -11,7 +11,7 @@ use crate::model::{ConfigurationSpace, Declared, Locus};
 use crate::prepare::Prepared;
 use crate::spec::code;
 
-/// All kernels of a joint that must stay away from `loci`.
+/// The kernels that belong to Q and v alone, of a joint that must stay away from `loci`; those of each body are apart.
 pub fn kernels(
     joint: &Prepared,
     expansion: &Expansion,
@@ -23,8 +23,7 @@ pub fn kernels(
         x: expansion,
         ideal: joint.space.manifold.ideal(),
     };
-    let mut kernels = of_body(joint, expansion);
-    kernels.extend(maker.velocity());
+    let mut kernels = maker.velocity();
     kernels.extend(maker.nonholonomic());
     kernels.extend(maker.finite_maps()?);
     kernels.sort_by_key(|kernel| kernel.kind);

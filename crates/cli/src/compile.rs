@@ -6,11 +6,11 @@ use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
 use hamel_compiler::functions::Kind;
 use hamel_compiler::{Build, Error, Language, explain};
-use hamel_console::files::{Force, admit, first_line};
+use hamel_console::files::{Force, admit, first_line, named};
 use hamel_console::output::{self, Failure};
 use hamel_scene::urdf::Stops;
 use std::fs::File;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -72,6 +72,13 @@ pub struct Args {
     pub force: Force,
 }
 
+impl Args {
+    /// The file to write, if it is not stdout.
+    fn file(&self) -> Option<&Path> {
+        named(self.output.as_deref())
+    }
+}
+
 /// A function that can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FunctionName {
@@ -126,7 +133,7 @@ impl FunctionName {
 /// Mistakes in the scene; what cannot be compiled; a file that cannot be written.
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let header = header(args);
-    let stem = args.output.as_ref().and_then(|path| path.file_stem());
+    let stem = args.file().and_then(Path::file_stem);
     if let Some(stem) = stem.filter(|stem| header.is_some() && stem.to_str().is_none()) {
         let name = stem.to_string_lossy().into_owned();
         return Err(Failure::Refused(Error::Name(name).to_string()));
@@ -142,8 +149,8 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     output::tell(&scene.notices);
     output::tell(&left_to_motions(&scene.mechanism));
     // The header first: who finds the source finds what it includes.
-    let written = header.iter().chain(&args.output);
-    let written = written.map(|path| (path.as_path(), is_own as _));
+    let written = header.as_deref().into_iter().chain(args.file());
+    let written = written.map(|path| (path, is_own as _));
     let outputs = admit([&*args.scene], written, args.force.force)?;
     let refused = |error: Error| Failure::Refused(error.to_string());
     let asked: Vec<Kind> = args.functions.iter().map(|name| name.kind()).collect();
@@ -192,7 +199,7 @@ fn is_own(file: &File) -> bool {
 
 /// The file of the header, where the module is to be in C.
 fn header(args: &Args) -> Option<PathBuf> {
-    let output = args.output.as_ref()?;
+    let output = args.file()?;
     let ending = output.extension()?;
     (ending == Language::C99.ending()).then(|| output.with_extension("h"))
 }
@@ -202,7 +209,7 @@ fn configured(mut build: Build, args: &Args, functions: &[Kind]) -> Build {
     if header(args).is_some() {
         build = build.language(Language::C99);
     }
-    if let Some(stem) = args.output.as_ref().and_then(|path| path.file_stem()) {
+    if let Some(stem) = args.file().and_then(Path::file_stem) {
         build = build.name(stem.to_string_lossy());
     }
     if !functions.is_empty() {

@@ -3,7 +3,7 @@
 use crate::input::stops;
 use fnv::FnvHasher;
 use hamel::registry::JointRegistry;
-use hamel_console::files::{Force, admit};
+use hamel_console::files::{Force, admit, named};
 use hamel_console::output::{self, Failure, tell};
 use hamel_scene::urdf::Stops;
 use hamel_scene::{read_file, urdf};
@@ -68,7 +68,7 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let (text, name) = read_file(&args.robot)?;
     let import = urdf::read(&text, &name, &options)?;
     tell(&import.build(registry)?.notices);
-    let written = args.output.as_deref().map(|path| (path, is_own as _));
+    let written = named(args.output.as_deref()).map(|path| (path, is_own as _));
     let outputs = admit([&*args.robot], written, args.force.force)?;
     let text = marked(&import.to_toml());
     match outputs.first() {

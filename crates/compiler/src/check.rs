@@ -3,6 +3,7 @@
 use super::emit::Function;
 use super::graph::{Cause, Fault};
 use super::model::Model;
+use hamel_codegen::derived::{Derived, KernelKind, Structure};
 use hamel_runtime::mechanism::{RigidBody, check_bodies};
 use hamel_scene::{BodyDescription, SceneDescription};
 
@@ -48,6 +49,62 @@ fn of_indices(scene: &SceneDescription) -> Vec<String> {
             format!("{element}: there is no body of index {body}, the scene has {count}")
         })
         .collect()
+}
+
+/// Whether the bodies that a scene gives for a joint are those that its type carries, in their order, and hang as the first of them does.
+pub(super) fn of_joint(group: &[BodyDescription], joint: &Derived) -> Result<(), String> {
+    let Some((first, others)) = group.split_first() else {
+        return Ok(());
+    };
+    let (name, kind) = (&first.joint.name.value, &first.joint.kind.value);
+    let parts = group.iter().filter_map(|body| body.part.as_ref());
+    let parts: Vec<&str> = parts.map(|part| part.name.value.as_str()).collect();
+    let carried: Vec<&str> = match joint.more.is_empty() {
+        true => vec![],
+        false => joint.bodies().filter_map(Derived::body_name).collect(),
+    };
+    if parts != carried {
+        return Err(format!(
+            "joint `{name}`: a joint of type `{kind}` carries {}, and the scene gives it {}",
+            listed(&carried),
+            listed(&parts)
+        ));
+    }
+    let different = |other: &BodyDescription| {
+        let what = difference(first, other, joint)?;
+        Some(format!(
+            "body `{}`: its {what} is not that of `{}`, the first body of its joint `{name}`",
+            other.name.value, first.name.value
+        ))
+    };
+    others.iter().find_map(different).map_or(Ok(()), Err)
+}
+
+/// Names of bodies, none where a joint carries one.
+fn listed(names: &[&str]) -> String {
+    match names {
+        [] => "one body without a name".to_owned(),
+        names => format!("`{}`", names.join("`, `")),
+    }
+}
+
+/// In what a body differs from the first one of its joint where it must not: relations are written for one frame.
+fn difference(
+    first: &BodyDescription,
+    other: &BodyDescription,
+    joint: &Derived,
+) -> Option<&'static str> {
+    let residual = joint.kernel(KernelKind::Residual);
+    let has_relations = residual.is_some_and(|kernel| kernel.structure != Structure::Zero);
+    if first.parent != other.parent {
+        Some("parent")
+    } else if first.at != other.at && has_relations {
+        Some("placement")
+    } else if first.joint != other.joint {
+        Some("joint")
+    } else {
+        None
+    }
 }
 
 /// Wrenches that change with time: compiled equations are not told the time. Efforts that do are handed to them in τ.

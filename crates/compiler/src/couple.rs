@@ -57,10 +57,10 @@ impl Model {
 
     /// All Q at time 0.
     fn initial(&self, scene: &SceneDescription) -> Result<Vec<f64>, Vec<String>> {
-        let bodies = self.bodies.iter().zip(&scene.bodies).enumerate();
         let mut reasons = vec![];
         let mut all = vec![];
-        for (index, (own, body)) in bodies {
+        for (index, own) in self.joints() {
+            let body = &scene.bodies[index];
             let held = Held {
                 what: "initial state",
                 index,

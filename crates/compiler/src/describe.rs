@@ -57,34 +57,15 @@ impl Model {
             limits: scene.bodies.iter().enumerate().filter_map(limit).collect(),
             ..Elements::default()
         };
-        let bodies = scene.bodies.iter().enumerate();
-        let bodies: Vec<Option<Body>> = bodies
-            .map(|(index, body)| {
-                let kind = &body.joint.kind.value;
-                let Some(joint) = joints(kind) else {
-                    let name = &body.joint.name.value;
-                    reasons.push(format!(
-                        "joint `{name}`: there is no spec of the joint type `{kind}`"
-                    ));
-                    return None;
-                };
-                let compiled = compiled(body, joint).and_then(|compiled| {
-                    let held = Held {
-                        what: "spring",
-                        index,
-                        body,
-                        joint: &compiled.joint,
-                        parameters: &compiled.parameters,
-                    };
-                    let added = held.add_spring(&mut elements);
-                    added.map(|()| compiled).map_err(|reason| vec![reason])
-                });
-                compiled.map_err(|more| reasons.extend(more)).ok()
-            })
-            .collect();
-        let Some(bodies) = bodies.into_iter().collect::<Option<Vec<Body>>>() else {
-            return Err(refused(reasons));
-        };
+        let mut bodies: Vec<Body> = vec![];
+        let mut first = 0;
+        for group in scene.bodies.chunk_by(|_, next| !next.leads()) {
+            match of_joint((first, group), &joints, &mut elements) {
+                Ok(own) => bodies.extend(own),
+                Err(more) => reasons.extend(more),
+            }
+            first += group.len();
+        }
         if !reasons.is_empty() {
             return Err(refused(reasons));
         }
@@ -98,6 +79,41 @@ impl Model {
         model.couple(scene).map_err(refused)?;
         Ok(model)
     }
+}
+
+/// The bodies of one joint, and its spring among the elements; `group` are all that the scene gives for it, the first of them with its index.
+fn of_joint(
+    (index, group): (usize, &[BodyDescription]),
+    joints: impl Fn(&str) -> Option<Rc<JointType>>,
+    elements: &mut Elements,
+) -> Result<Vec<Body>, Vec<String>> {
+    let Some(first) = group.first() else {
+        return Ok(vec![]);
+    };
+    let (name, kind) = (&first.joint.name.value, &first.joint.kind.value);
+    let joint = joints(kind).ok_or_else(|| {
+        vec![format!(
+            "joint `{name}`: there is no spec of the joint type `{kind}`"
+        )]
+    })?;
+    check::of_joint(group, &joint.derived).map_err(|reason| vec![reason])?;
+    let types = std::iter::once(&joint).chain(&joint.more);
+    let bodies = group.iter().zip(types);
+    let bodies = bodies.map(|(body, joint)| {
+        let own = compiled(body, Rc::clone(joint))?;
+        let driven = first.forces.motion.is_some();
+        Ok(Body { driven, ..own })
+    });
+    let bodies: Vec<Body> = bodies.collect::<Result<_, Vec<String>>>()?;
+    let held = Held {
+        what: "spring",
+        index,
+        body: first,
+        joint: &joint,
+        parameters: &bodies[0].parameters,
+    };
+    held.add_spring(elements).map_err(|reason| vec![reason])?;
+    Ok(bodies)
 }
 
 fn spring((index, spring): (usize, &PointSpring)) -> BodySpring {
@@ -184,14 +200,6 @@ fn compiled(body: &BodyDescription, joint: Rc<JointType>) -> Result<Body, Vec<St
             "joint `{name}`: a nonholonomic joint such as `{}` can have an armature only at degrees of freedom whose rate is one of its speeds, not at {}",
             body.joint.kind.value,
             elsewhere.join(", ")
-        ));
-    }
-    if !joint.derived.more.is_empty() {
-        reasons.push(format!(
-            "joint `{name}` of body `{}`: the joint type `{}` carries several bodies ({}), and compiled scenes have joints that carry one",
-            body.name.value,
-            body.joint.kind.value,
-            joint.derived.spec.bodies.join(", ")
         ));
     }
     let parameters = parameters(body, &joint, &mut reasons);

@@ -256,10 +256,10 @@ const MOST: usize = 400;
 fn worth_factorising(model: &Model) -> bool {
     let mut before: Vec<usize> = vec![];
     let mut operations = 0;
-    for body in &model.bodies {
+    for (index, body) in model.joints() {
         let speeds = body.joint.derived.shape.speeds;
         let depth = body.parent.map_or(0, |parent| before[parent]);
-        before.push(depth + speeds);
+        before.extend(model.carried(index).map(|_| depth + speeds));
         operations += (depth..depth + speeds).map(|n| n * n).sum::<usize>();
     }
     operations < MOST * model.sizes()[2]
@@ -361,9 +361,9 @@ fn pairs(model: &Model) -> usize {
     for body in &model.bodies {
         depths.push(body.parent.map_or(0, |parent| depths[parent] + 1));
     }
-    let bodies = model.bodies.iter().zip(depths);
-    bodies
-        .map(|(body, depth)| body.joint.derived.shape.speeds * depth)
+    let joints = model.joints();
+    joints
+        .map(|(index, body)| body.joint.derived.shape.speeds * depths[index])
         .sum()
 }
 

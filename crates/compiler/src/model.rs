@@ -16,7 +16,7 @@ pub struct Model {
     pub name: String,
     /// Acceleration of free fall in world axes, m/s².
     pub gravity: Vector3<f64>,
-    /// The bodies, each after its parent.
+    /// The bodies, each after its parent; those of a joint that carries several follow each other, in its order.
     pub bodies: Vec<Body>,
     /// What acts beside gravity and what the bodies' own joints have.
     pub elements: Elements,
@@ -49,6 +49,9 @@ pub struct Coupling {
 }
 
 /// One body and the joint that it hangs on.
+///
+/// A joint may carry several bodies, all with its parent and its coordinates. The first of them stands for the joint: what acts at
+/// the joint is found there alone.
 #[derive(Clone, Debug)]
 pub struct Body {
     /// Name of the body.
@@ -57,27 +60,34 @@ pub struct Body {
     pub joint_name: String,
     /// Index of the parent; `None` is the world.
     pub parent: Option<usize>,
-    /// The joint's type.
+    /// The joint's type, as this body sees it.
     pub joint: Rc<JointType>,
     /// Values of the type's parameters, in the order of its spec.
     pub parameters: Vec<f64>,
-    /// The joint's parent frame in the parent's body frame.
+    /// The joint's parent frame, as this body sees it, in the parent's body frame.
     pub placement: Pose<f64>,
     /// The body frame in the joint's child frame.
     pub child_placement: Pose<f64>,
     /// Mass properties in the body frame.
     pub mass: MassProperties,
-    /// What is added to the diagonal of the joint's own block of M, one per degree of freedom.
+    /// What is added to the diagonal of the joint's own block of M, one per degree of freedom; none for further bodies of a joint.
     pub armature: Vec<f64>,
-    /// Viscous damping, one per degree of freedom.
+    /// Viscous damping, one per degree of freedom; none for further bodies of a joint.
     pub damping: Vec<f64>,
-    /// Constant efforts, one per degree of freedom.
+    /// Constant efforts, one per degree of freedom; none for further bodies of a joint.
     pub effort: Vec<f64>,
     /// Whether the joint's motion is prescribed: its first entries of τ are its accelerations, and its entries of p̄ its speeds.
     pub driven: bool,
 }
 
-/// Where a body's share lies in Q, in v and τ, and in v̄.
+impl Body {
+    /// Whether it stands for its joint: the joint carries it alone, or it is the first of the joint's bodies.
+    pub fn leads(&self) -> bool {
+        self.joint.derived.body == 0
+    }
+}
+
+/// Where the share of a body's joint lies in Q, in v and τ, and in v̄.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Share {
     /// In Q.
@@ -89,7 +99,19 @@ pub struct Share {
 }
 
 impl Model {
-    /// The share of each body.
+    /// The joints, each with the index of the body that stands for it.
+    pub fn joints(&self) -> impl Iterator<Item = (usize, &Body)> {
+        let bodies = self.bodies.iter().enumerate();
+        bodies.filter(|(_, body)| body.leads())
+    }
+
+    /// The bodies that the joint under a body carries: one, or several that follow each other.
+    pub fn carried(&self, body: usize) -> Range<usize> {
+        let first = body - self.bodies[body].joint.derived.body;
+        first..first + 1 + self.bodies[first].joint.more.len()
+    }
+
+    /// The share of each body: that of its joint.
     pub fn shares(&self) -> Vec<Share> {
         let mut end = [0; 3];
         let next = |end: &mut usize, size: usize| {
@@ -97,20 +119,22 @@ impl Model {
             *end = range.end;
             range
         };
-        let share = |body: &Body| {
+        let mut shares: Vec<Share> = vec![];
+        for (index, body) in self.joints() {
             let shape = body.joint.derived.shape;
-            Share {
+            let share = Share {
                 configuration: next(&mut end[0], shape.configuration),
                 freedoms: next(&mut end[1], shape.freedoms),
                 speeds: next(&mut end[2], shape.speeds),
-            }
-        };
-        self.bodies.iter().map(share).collect()
+            };
+            shares.extend(self.carried(index).map(|_| share.clone()));
+        }
+        shares
     }
 
     /// Sizes of Q, of v and τ, and of v̄.
     pub fn sizes(&self) -> [usize; 3] {
-        let shapes = self.bodies.iter().map(|body| body.joint.derived.shape);
+        let shapes = self.joints().map(|(_, body)| body.joint.derived.shape);
         shapes.fold([0; 3], |[q, v, speeds], shape| {
             [
                 q + shape.configuration,

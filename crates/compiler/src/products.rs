@@ -10,6 +10,7 @@ use hamel_codegen::expr::{Expr, Symbol};
 use hamel_codegen::formula::Program;
 use hamel_codegen::matrix::Matrix;
 use std::cell::OnceCell;
+use std::rc::Rc;
 
 /// One product: its value, and its formulas once something asks for them.
 #[derive(Clone, Debug)]
@@ -28,13 +29,15 @@ impl Product {
     }
 }
 
-/// A joint type as the scene compiler takes it.
+/// A joint type as the scene compiler takes it; where it carries several bodies, as one of them sees it.
 #[derive(Clone, Debug)]
 pub struct JointType {
     /// Its kernels.
     pub derived: Derived,
     /// Products of them.
     pub products: Products,
+    /// The joint as each further body sees it, of the first.
+    pub more: Vec<Rc<JointType>>,
 }
 
 impl JointType {
@@ -43,7 +46,10 @@ impl JointType {
     /// # Errors
     /// When these take more work than a spec may.
     pub fn new(derived: Derived) -> Result<Self, Exhausted> {
+        let more = derived.more.iter().cloned();
+        let more = more.map(|own| Self::new(own).map(Rc::new));
         Ok(Self {
+            more: more.collect::<Result<_, _>>()?,
             products: Products::new(&derived)?,
             derived,
         })

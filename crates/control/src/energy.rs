@@ -125,6 +125,31 @@ impl EnergyShaping {
         Ok(energy + springs.sum::<f64>())
     }
 
+    /// u of all ports without their limits, into `efforts`.
+    fn inject(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &mut [f64],
+    ) -> Result<(), ControlError> {
+        let surplus = match self.pump.gain {
+            0.0 => 0.0,
+            gain => gain * (self.energy(q, speeds)? - self.level),
+        };
+        efforts.fill(0.0);
+        let view = View::new(&self.mechanism, q, speeds, &self.motions);
+        for (port, spring) in self.ports.iter().zip(&self.springs) {
+            spring.act(&view, &mut Action::new(&mut self.wrenches, efforts));
+            let mut buffer = [0.0; MOST_FREEDOMS];
+            let output = view.joint_velocity(port.body, &mut buffer);
+            let own = self.mechanism.bodies()[port.body].ranges().freedoms.clone();
+            for (u, y) in efforts[own].iter_mut().zip(output) {
+                *u -= (port.damping + surplus) * y;
+            }
+        }
+        Ok(())
+    }
+
     /// H_d*: the energy of the goal at rest, J.
     pub const fn level(&self) -> f64 {
         self.level
@@ -204,18 +229,30 @@ impl Controller for EnergyShaping {
         efforts: &mut [f64],
     ) -> Result<(), ControlError> {
         check_state(&self.mechanism, q, speeds, efforts)?;
-        let surplus = match self.pump.gain {
-            0.0 => 0.0,
-            gain => gain * (self.energy(q, speeds)? - self.level),
-        };
-        efforts.fill(0.0);
-        let view = View::new(&self.mechanism, q, speeds, &self.motions);
-        for (port, spring) in self.ports.iter().zip(&self.springs) {
-            spring.act(&view, &mut Action::new(&mut self.wrenches, efforts));
-            let mut buffer = [0.0; MOST_FREEDOMS];
-            let output = view.joint_velocity(port.body, &mut buffer);
+        self.inject(q, speeds, efforts)?;
+        for port in &self.ports {
             let own = self.mechanism.bodies()[port.body].ranges().freedoms.clone();
-            inject(port, port.damping + surplus, output, &mut efforts[own]);
+            shorten(port.limit, &mut efforts[own]);
+        }
+        Ok(())
+    }
+
+    fn bends(
+        &mut self,
+        _time: f64,
+        q: &[f64],
+        speeds: &[f64],
+        bends: &mut Vec<f64>,
+    ) -> Result<(), ControlError> {
+        if self.ports.iter().all(|port| port.limit.is_infinite()) {
+            return Ok(());
+        }
+        let mut efforts = vec![0.0; self.mechanism.layout().freedoms];
+        check_state(&self.mechanism, q, speeds, &efforts)?;
+        self.inject(q, speeds, &mut efforts)?;
+        for port in &self.ports {
+            let own = self.mechanism.bodies()[port.body].ranges().freedoms.clone();
+            bends.push(1.0 - length(&efforts[own]) / port.limit);
         }
         Ok(())
     }
@@ -239,16 +276,16 @@ impl Controller for EnergyShaping {
     }
 }
 
-/// Adds `−d y`, and shortens u to the limit.
-fn inject(port: &Port, damping: f64, output: &[f64], input: &mut [f64]) {
-    let mut square = 0.0;
-    for (u, y) in input.iter_mut().zip(output) {
-        *u -= damping * y;
-        square += *u * *u;
-    }
-    let length = num_traits::Float::sqrt(square);
-    if length > port.limit {
-        let shorter = port.limit / length;
+/// |u| of one port.
+fn length(input: &[f64]) -> f64 {
+    num_traits::Float::sqrt(input.iter().map(|u| u * u).sum::<f64>())
+}
+
+/// Shortens u to the limit.
+fn shorten(limit: f64, input: &mut [f64]) {
+    let length = length(input);
+    if length > limit {
+        let shorter = limit / length;
         input.iter_mut().for_each(|u| *u *= shorter);
     }
 }

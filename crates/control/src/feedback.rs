@@ -1,6 +1,7 @@
 //! A controller between an integrator and a mechanism.
 
 use super::{ControlError, Controller};
+use alloc::vec::Vec;
 
 /// Hands a controller to an integrator as [`Inputs`](hamel_integrate::Inputs), and keeps what it could not do.
 ///
@@ -25,6 +26,13 @@ impl<'a> Feedback<'a> {
     pub fn fill(&mut self, time: f64, q: &[f64], speeds: &[f64], efforts: &mut [f64]) {
         if let Err(cause) = self.controller.efforts(time, q, speeds, efforts) {
             efforts.fill(f64::NAN);
+            self.failure.get_or_insert((time, cause));
+        }
+    }
+
+    /// Where τ bends, as [`Controller::bends`]; nothing where the controller fails, which its efforts tell as well.
+    pub fn bends(&mut self, time: f64, q: &[f64], speeds: &[f64], bends: &mut Vec<f64>) {
+        if let Err(cause) = self.controller.bends(time, q, speeds, bends) {
             self.failure.get_or_insert((time, cause));
         }
     }

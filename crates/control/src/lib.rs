@@ -42,6 +42,7 @@ pub use reference::Reference;
 pub use regulator::{Equilibrium, Regulator, Weights};
 pub use stabilizability::Motion;
 
+use alloc::vec::Vec;
 use core::fmt::Debug;
 
 /// A quantity by which a controller says how well it does.
@@ -66,6 +67,21 @@ pub trait Controller: Debug {
         speeds: &[f64],
         efforts: &mut [f64],
     ) -> Result<(), ControlError>;
+
+    /// Functions of time, Q and v̄ at whose zeros τ bends, pushed onto `bends`: as many at all times, each continuous and of the order of 1 away from its zero, as
+    /// `1 − |u|/limit` is. An integration ends its steps there ([`Integration::bending`](hamel_integrate::Integration::bending)).
+    ///
+    /// # Errors
+    /// As those of [`Controller::efforts`].
+    fn bends(
+        &mut self,
+        _time: f64,
+        _q: &[f64],
+        _speeds: &[f64],
+        _bends: &mut Vec<f64>,
+    ) -> Result<(), ControlError> {
+        Ok(())
+    }
 
     /// What [`Controller::measure`] gives.
     fn measures(&self) -> &'static [Measure];

@@ -153,18 +153,13 @@ impl<'a> Simulation<'a> {
     fn estimated(&mut self, dynamics: &mut dyn Dynamics) -> Result<(Solution, GlobalError), Error> {
         let options = self.options()?;
         let solution = self.motion(dynamics, &options)?;
-        let (scene, start) = (self.scene, self.start.clone());
+        let start = self.start.clone();
+        let mut own = self.dynamics();
         let mut companion = |start: &State, options: &Options, observer: &mut Observer<'_>| {
             let motion = self.integrate(&mut *dynamics, (start, options), vec![], observer);
             motion.map_err(|error| error.to_string())
         };
-        let error = GlobalError::estimate(
-            &scene.mechanism,
-            &start,
-            &options,
-            &solution,
-            &mut companion,
-        );
+        let error = GlobalError::estimate(&mut *own, &start, &options, &solution, &mut companion);
         Ok((solution, error))
     }
 
@@ -227,6 +222,9 @@ impl<'a> Simulation<'a> {
         } else if let Some(feedback) = &feedback {
             motion = motion.inputs(|time, q, speeds, efforts| {
                 feedback.borrow_mut().fill(time, q, speeds, efforts);
+            });
+            motion = motion.bending(|time, q, speeds, bends| {
+                feedback.borrow_mut().bends(time, q, speeds, bends);
             });
         }
         if let Some(period) = control.and_then(|control| control.period) {

@@ -1,4 +1,4 @@
-//! Places at which what elements exert bends: steps end on them, so that every method keeps its order and step control its tolerance.
+//! Places at which what elements exert, or inputs, bend: steps end on them, so that every method keeps its order and step control its tolerance.
 //!
 //! A step that has come past such a place is tried again, shorter, until it ends there. What is exerted is continuous, so that it is the same from
 //! both sides, and a step that ends there has seen one of them alone.
@@ -12,7 +12,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use hamel_runtime::elements::Element;
 
-/// How near to a bend a step is to end, rad or m, for distances of 1: some roundings.
+/// How near to a bend a step is to end, rad or m, or parts of a limit of inputs, for distances of 1: some roundings.
 const NEAR: f64 = 1e-14;
 
 /// A bend that comes in a smaller part of the step is taken as one at its beginning: what rests there would not move on.
@@ -24,12 +24,14 @@ const MOST_TRIES: usize = 20;
 /// The bends of a mechanism.
 pub(super) struct Bends {
     elements: Vec<Arc<dyn Element>>,
-    /// Two for each element, at the beginning of the step and at its end.
+    /// Two for each element and those of inputs, at the beginning of the step and at its end.
     start: Vec<f64>,
     end: Vec<f64>,
     /// The side of each bend on which the step is: 1 or −1, 0 where that is not known yet.
     sides: Vec<f64>,
     configuration: Vec<f64>,
+    /// Room for those of inputs.
+    of_inputs: Vec<f64>,
 }
 
 /// The zero of a function lies between these parts of a step.
@@ -51,8 +53,13 @@ struct Found {
 }
 
 impl Bends {
-    /// Those of a mechanism that is at `q`.
-    pub(super) fn new(flow: &Flow<'_>, q: &[f64]) -> Self {
+    /// Those of a mechanism that is at a state.
+    pub(super) fn new(
+        flow: &mut Flow<'_>,
+        step_state: &StepState,
+        time: f64,
+    ) -> Result<Self, StepFailure> {
+        let q = &step_state.configuration;
         let mechanism = &flow.mechanism;
         let has_any =
             |element: &&Arc<dyn Element>| element.bends(mechanism, q).iter().any(|x| !x.is_nan());
@@ -62,32 +69,45 @@ impl Bends {
             .filter(has_any)
             .map(Arc::clone)
             .collect();
-        let count = 2 * elements.len();
+        let mut of_inputs = Vec::new();
+        flow.input_bends(time, (q, &step_state.y), &mut of_inputs)?;
+        let count = 2 * elements.len() + of_inputs.len();
         let mut bends = Self {
             elements,
             start: vec![0.0; count],
             end: vec![0.0; count],
             sides: vec![0.0; count],
-            configuration: q.to_vec(),
+            configuration: q.clone(),
+            of_inputs,
         };
         bends.evaluate(flow);
         bends.settle(None);
-        bends
+        Ok(bends)
     }
 
+    /// The functions at the configuration, and those of inputs as they are known.
     fn evaluate(&mut self, flow: &Flow<'_>) {
         let elements = self.elements.iter();
         let found = elements.flat_map(|own| own.bends(&flow.mechanism, &self.configuration));
+        let found = found.chain(self.of_inputs.iter().copied());
         for (end, found) in self.end.iter_mut().zip(found) {
             *end = found;
         }
     }
 
-    /// Looks at the point that the step has come to.
-    fn look(&mut self, flow: &Flow<'_>, step_state: &StepState) {
+    /// Looks at the point that the step has come to, at `time`.
+    fn look(
+        &mut self,
+        flow: &mut Flow<'_>,
+        step_state: &StepState,
+        time: f64,
+    ) -> Result<(), StepFailure> {
         let (base, phi) = (&step_state.base, &step_state.phi);
         retract(&flow.mechanism, base, phi, &mut self.configuration);
+        let at = (&*self.configuration, &*step_state.next_y);
+        flow.input_bends(time, at, &mut self.of_inputs)?;
         self.evaluate(flow);
+        Ok(())
     }
 
     fn is_near(&self, index: usize) -> bool {
@@ -138,10 +158,12 @@ impl Driver<'_> {
         pacing: &mut Pacing,
         step: f64,
     ) -> Result<f64, StepFailure> {
-        if self.bends.elements.is_empty() {
+        if self.bends.end.is_empty() {
             return Ok(step);
         }
-        self.bends.look(&self.flow, &self.step_state);
+        let start = self.clock.time();
+        self.bends
+            .look(&mut self.flow, &self.step_state, start + step)?;
         let mut part = 1.0;
         let mut bracket: Option<Bracket> = None;
         for _ in 0..MOST_TRIES {
@@ -164,10 +186,12 @@ impl Driver<'_> {
             }
             part = next;
             self.attempt(pacing, step * part)?;
-            self.bends.look(&self.flow, &self.step_state);
+            let time = start + step * part;
+            self.bends.look(&mut self.flow, &self.step_state, time)?;
         }
         let located = bracket.map(|bracket| bracket.index);
         let is_there = located.filter(|&index| self.bends.is_near(index));
+        self.statistics.bends += usize::from(is_there.is_some());
         self.bends.settle(is_there);
         Ok(step * part)
     }

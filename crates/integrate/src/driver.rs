@@ -17,8 +17,8 @@ use super::step_state::StepState;
 use super::stepper::{self, Span, Stepper};
 use super::waypoints::Waypoints;
 use super::{
-    Crossing, Event, Form, Inputs, IntegrateError, Method, Near, Observer, Options, Sampling,
-    Scheme, Solution, State, Statistics, Step, StepFailure,
+    Crossing, Event, Form, InputBends, Inputs, IntegrateError, Method, Near, Observer, Options,
+    Sampling, Scheme, Solution, State, Statistics, Step, StepFailure,
 };
 use alloc::boxed::Box;
 use alloc::format;
@@ -101,10 +101,10 @@ impl<'a> Driver<'a> {
         initial: &State,
         options: &'a Options,
         period: Option<f64>,
-        inputs: Option<&'a mut Inputs<'a>>,
+        (inputs, input_bends): (Option<&'a mut Inputs<'a>>, Option<&'a mut InputBends<'a>>),
         (sampling, events, is_open): (Sampling, Vec<Event<'a>>, bool),
     ) -> Result<Self, IntegrateError> {
-        let mut flow = Flow::new(dynamics, inputs, options.form);
+        let mut flow = Flow::new(dynamics, inputs, options.form).bending(input_bends);
         let watch = Watch::new(&flow.mechanism);
         let time = initial.time;
         let kinks = Kinks::new(&mut flow, time, options.t_end);
@@ -141,7 +141,12 @@ impl<'a> Driver<'a> {
             near: watch.nearest_at(&flow.mechanism, time, &initial.configuration),
         })?;
         let tolerance = options.method.control().map(|control| control.tolerance);
-        let bends = Bends::new(&flow, &initial.configuration);
+        let bends = Bends::new(&mut flow, &step_state, time);
+        let bends = bends.map_err(|cause| IntegrateError::AtState {
+            time,
+            cause: Box::new(cause),
+            near: watch.nearest_at(&flow.mechanism, time, &initial.configuration),
+        })?;
         Ok(Self {
             watch,
             waypoints: Waypoints::new(flow.mechanism.layout()),

@@ -86,6 +86,7 @@ impl Stepper for Explicit {
         let mut largest = |weights: &Terms| {
             let errors = stages.sum_beyond_rounding(step, weights);
             step_state.set_errors(1.0 / tolerance, errors);
+            step_state.forget_scatter(step / tolerance);
             step_state.largest_error(flow, Some(stages.last_speeds()))
         };
         match estimate {

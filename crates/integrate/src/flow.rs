@@ -2,7 +2,7 @@
 
 use super::StepFailure;
 use super::step_state::add;
-use super::{Form, Inputs};
+use super::{Form, InputBends, Inputs};
 use alloc::boxed::Box;
 use alloc::string::String;
 use alloc::sync::Arc;
@@ -110,6 +110,8 @@ pub(super) struct Flow<'a> {
     dynamics: Equations<'a>,
     /// `None` where there are none.
     inputs: Option<&'a mut Inputs<'a>>,
+    /// Where the inputs bend, if they say so.
+    input_bends: Option<&'a mut InputBends<'a>>,
     pub(super) mechanism: Arc<Mechanism>,
     pub(super) form: Form,
     pub(super) evaluations: usize,
@@ -134,6 +136,7 @@ impl<'a> Flow<'a> {
         Self {
             dynamics: Equations::Lent(dynamics),
             inputs,
+            input_bends: None,
             form,
             evaluations: 0,
             configuration: vec![0.0; layout.configuration],
@@ -143,6 +146,31 @@ impl<'a> Flow<'a> {
             within: 0.0,
             mechanism,
         }
+    }
+
+    /// The same with inputs that say where they bend.
+    pub(super) fn bending(mut self, input_bends: Option<&'a mut InputBends<'a>>) -> Self {
+        self.input_bends = input_bends;
+        self
+    }
+
+    /// Functions at whose zeros the inputs bend, at time `time`, `q` and the v̄ of `y`, in place of those in `bends`; none where inputs are held.
+    pub(super) fn input_bends(
+        &mut self,
+        time: f64,
+        (q, y): (&[f64], &[f64]),
+        bends: &mut Vec<f64>,
+    ) -> Result<(), DynamicsError> {
+        bends.clear();
+        if self.input_bends.is_none() || self.held.is_some() {
+            return Ok(());
+        }
+        let mut speeds = y.to_vec();
+        self.all_speeds_of(q, y, &mut speeds)?;
+        if let Some(input_bends) = &mut self.input_bends {
+            input_bends(time, q, &speeds, bends);
+        }
+        Ok(())
     }
 
     /// Inputs at time `time`, `q` and v̄, held from now on.
@@ -222,6 +250,11 @@ impl<'a> Flow<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Whether y is v̄, as in the Lagrangian form.
+    pub(super) fn y_is_speeds(&self) -> bool {
+        self.form == Form::Lagrangian
     }
 
     /// The v̄ that `y` amounts to at `q`.

@@ -2,7 +2,10 @@
 
 use super::driver::Driver;
 use super::options::check_length;
-use super::{Event, Inputs, IntegrateError, Observer, Options, Solution, State, Step, no_observer};
+use super::{
+    Event, InputBends, Inputs, IntegrateError, Observer, Options, Solution, State, Step,
+    no_observer,
+};
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::fmt::{Debug, Formatter};
@@ -42,6 +45,7 @@ pub struct Integration<'a> {
     initial: &'a State,
     options: &'a Options,
     inputs: Option<Box<Inputs<'a>>>,
+    input_bends: Option<Box<InputBends<'a>>>,
     period: Option<f64>,
     observer: Box<Observer<'a>>,
     sampling: Sampling,
@@ -57,6 +61,7 @@ impl<'a> Integration<'a> {
             initial,
             options,
             inputs: None,
+            input_bends: None,
             period: None,
             observer: Box::new(no_observer),
             sampling: Sampling::Landing,
@@ -68,6 +73,13 @@ impl<'a> Integration<'a> {
     /// With efforts τ (one entry per degree of freedom) from time, q and v̄; entries are zero when it is called.
     pub fn inputs(mut self, inputs: impl FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a) -> Self {
         self.inputs = Some(Box::new(inputs));
+        self
+    }
+
+    /// With functions of time, q and v̄ at whose zeros the inputs bend, as where an effort reaches its limit: steps end there, so that every method keeps its order and
+    /// estimates of errors hold. They are pushed onto a list, as many at all times, each continuous and of the order of 1 away from its zero. Inputs that are held do not need them.
+    pub fn bending(mut self, bends: impl FnMut(f64, &[f64], &[f64], &mut Vec<f64>) + 'a) -> Self {
+        self.input_bends = Some(Box::new(bends));
         self
     }
 
@@ -136,6 +148,8 @@ impl<'a> Integration<'a> {
         let hold = self.period;
         let inputs = self.inputs.as_mut();
         let inputs = inputs.map(|inputs| -> &mut Inputs<'_> { &mut **inputs });
+        let bends = self.input_bends.as_mut();
+        let bends = bends.map(|bends| -> &mut InputBends<'_> { &mut **bends });
         let (dynamics, options) = (self.dynamics, self.options);
         let wanted = (self.sampling, self.events, self.is_open);
         then(Driver::new(
@@ -143,7 +157,7 @@ impl<'a> Integration<'a> {
             self.initial,
             options,
             hold,
-            inputs,
+            (inputs, bends),
             wanted,
         )?)
     }

@@ -47,6 +47,7 @@ mod jacobian;
 mod kinks;
 mod linear;
 mod lobatto;
+mod nearby;
 mod options;
 mod outputs;
 mod phi;
@@ -81,11 +82,16 @@ pub use solution::{Solution, State, Statistics, Step};
 pub use spectrum::{Mode, Spectrum};
 pub use tableau::{Estimate, Tableau};
 
+use alloc::vec::Vec;
 use core::ops::ControlFlow;
 use hamel_runtime::dynamics::Dynamics;
 
 /// Efforts τ (one entry per degree of freedom) from time, q and v̄; entries are zero when it is called.
 pub type Inputs<'a> = dyn FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a;
+
+/// Functions of time, q and v̄ at whose zeros inputs bend, as at the limit of an effort, pushed onto a list that is empty when it is called: as many at all
+/// times, each continuous.
+pub type InputBends<'a> = dyn FnMut(f64, &[f64], &[f64], &mut Vec<f64>) + 'a;
 
 /// Sees the initial state, every accepted step, and samples of dense output within them; breaks to end the integration there.
 pub type Observer<'a> = dyn FnMut(&Step<'_>) -> ControlFlow<()> + 'a;

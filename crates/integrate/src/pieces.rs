@@ -1,5 +1,6 @@
 //! The pieces of a motion with friction and limits of joints, from the side of the driver: how each begins and ends.
 
+use super::bends::Bends;
 use super::clock::Clock;
 use super::driver::Driver;
 use super::flow::Flow;
@@ -155,15 +156,14 @@ impl Driver<'_> {
 
     /// Takes the next step no longer than the shortest bounce, and some.
     fn reach_over_bounces(&mut self) -> Result<(), IntegrateError> {
-        let (q, rates) = (&self.step_state.configuration, &self.step_state.rates);
-        let mut accelerations = rates.speeds.clone();
-        // p̄̇ tells v̄̇ but for what the change of M̄ adds, which is of the order of v̄².
-        let found = self.flow.speeds_of(q, &rates.y, &mut accelerations);
-        let found = found.map(|()| match &self.hybrid {
-            Some(hybrid) => hybrid.flight(q, &rates.speeds, &accelerations),
+        let accelerations = self.step_state.accelerations(&mut self.flow);
+        let accelerations = accelerations.map(<[f64]>::to_vec);
+        let accelerations = accelerations.map_err(|cause| self.at_state(cause))?;
+        let (q, speeds) = (&self.step_state.configuration, self.step_state.speeds());
+        let longest = match &self.hybrid {
+            Some(hybrid) => hybrid.flight(q, speeds, &accelerations),
             None => f64::INFINITY,
-        });
-        let longest = found.map_err(|cause| self.at_state(cause.into()))?;
+        };
         self.resolving = self.resolving.min(longest);
         Ok(())
     }
@@ -178,6 +178,9 @@ impl Driver<'_> {
         let begun = StepState::new(&mut self.flow, state.time, q, speeds);
         self.step_state = begun.map_err(|cause| self.at_state(cause))?;
         self.renew_stepper();
+        // Speeds that have jumped may have taken inputs to the other side of a bend.
+        let bends = Bends::new(&mut self.flow, &self.step_state, state.time);
+        self.bends = bends.map_err(|cause| self.at_state(cause))?;
         self.reach_over_bounces()?;
         let order = self.options.method.scheme().order();
         let mut events: usize = 0;

@@ -104,6 +104,7 @@ impl Rounding {
     ) {
         let found = self.room.scatter(step_state, flow, time);
         let found = found.and_then(|()| {
+            step_state.set_scatter(flow, (MARGIN * weight, MEMORY), &mut self.room.difference);
             step_state.set_errors(1.0, &self.room.difference);
             step_state.largest_error(flow, None)
         });

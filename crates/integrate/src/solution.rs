@@ -40,6 +40,8 @@ pub struct Statistics {
     pub steps: usize,
     /// Refused steps.
     pub rejected: usize,
+    /// Steps that end where inputs or elements bend, as at the limit of an effort.
+    pub bends: usize,
     /// Evaluations of the equations of motion.
     pub evaluations: usize,
     /// Iterations of implicit steps.

@@ -4,6 +4,7 @@ use super::StepFailure;
 use super::compensation::{Compensation, add_exactly};
 use super::dense::Instant;
 use super::flow::{Flow, Rates, RatesMut, retract};
+use super::nearby::{Nearby, Place};
 use super::turns::Turns;
 use alloc::sync::Arc;
 use alloc::vec;
@@ -33,8 +34,11 @@ pub(super) struct StepState {
     /// What ϕ and y are too coarse to hold.
     compensation: Compensation,
     next_compensation: Compensation,
-    /// Estimated errors of ϕ and y, and what that of y amounts to in v̄.
+    /// Estimated errors of ϕ and y, and what they amount to in v̄.
     errors: Rates,
+    nearby: Nearby,
+    /// What of an estimated error of ϕ is the rounding of v̄ = M̄⁻¹ p̄, over the length of a step, 1/s; 0 in the Lagrangian form, which has v̄ itself.
+    scatter: Vec<f64>,
     /// How far each joint turns from its base point.
     turns: Turns,
     /// How often base points have moved.
@@ -65,6 +69,8 @@ impl StepState {
             compensation: Compensation::new(&flow.mechanism),
             next_compensation: Compensation::new(&flow.mechanism),
             errors: flow.new_rates(),
+            nearby: Nearby::new(flow),
+            scatter: vec![0.0; freedoms],
             turns: Turns::new(&flow.mechanism),
             moves: 0,
             y,
@@ -174,27 +180,54 @@ impl StepState {
         add(y, weight, pushed);
     }
 
+    /// Takes differences of rates that rounding makes, of ϕ̇ and then of ẏ. In the Hamiltonian form those of ϕ̇ are taken out: they are no errors of Q that would count
+    /// for v̄. `weight` is what of them an estimate may hold, `memory` what is left of older ones.
+    pub(super) fn set_scatter(
+        &mut self,
+        flow: &Flow<'_>,
+        (weight, memory): (f64, f64),
+        differences: &mut [f64],
+    ) {
+        if flow.y_is_speeds() {
+            return;
+        }
+        for (scatter, difference) in self.scatter.iter_mut().zip(differences) {
+            *scatter = (weight * difference.abs()).max(memory * *scatter);
+            *difference = 0.0;
+        }
+    }
+
+    /// Takes what rounding of ϕ̇ makes in a step over a tolerance out of the errors.
+    pub(super) fn forget_scatter(&mut self, step: f64) {
+        for (error, scatter) in self.errors.phi.iter_mut().zip(&self.scatter) {
+            // What is not finite stays so.
+            let beyond = error.abs() - step * scatter;
+            *error = if beyond < 0.0 {
+                0.0
+            } else {
+                beyond.copysign(*error)
+            };
+        }
+    }
+
     /// The largest of the estimated errors, as parts of ϕ and v̄ or of 1, and the joint that has it; `last` are speeds at or near the end of
     /// the step, if the scheme has them.
     ///
-    /// An error of p̄ counts as what it does to v̄: on a heavy body that carries a light one, the same p̄ is much more.
+    /// Errors of ϕ and p̄ count as what both do to v̄ as well: on a heavy body that carries a light one, the same p̄ is much more, and on a body that turns
+    /// fast the same ϕ.
     pub(super) fn largest_error(
         &mut self,
         flow: &mut Flow<'_>,
         last: Option<&[f64]>,
     ) -> Result<(f64, usize), StepFailure> {
-        let Self {
-            configuration,
-            phi,
-            rates,
-            errors,
-            ..
-        } = self;
-        let last = last.unwrap_or(&rates.speeds);
-        if let Some(index) = errors.first_infinite(&flow.mechanism) {
+        if let Some(index) = self.errors.first_infinite(&flow.mechanism) {
             return Ok((f64::INFINITY, index));
         }
-        flow.speeds_of(configuration, &errors.y, &mut errors.speeds)?;
+        self.change_speeds(flow)?;
+        let Self {
+            phi, rates, errors, ..
+        } = self;
+        let last = last.unwrap_or(&rates.speeds);
         let part = |error: f64, size: f64| match error.abs() / size.max(1.0) {
             part if part.is_nan() => f64::INFINITY,
             part => part,
@@ -282,10 +315,28 @@ impl StepState {
         Ok(())
     }
 
+    /// What the errors of ϕ and y at the state amount to in v̄.
+    fn change_speeds(&mut self, flow: &mut Flow<'_>) -> Result<(), StepFailure> {
+        let place = Place {
+            base: &self.base,
+            phi: &self.offset,
+            y: &self.y,
+            speeds: &self.rates.speeds,
+        };
+        self.nearby.change_speeds(flow, place, &mut self.errors)
+    }
+
+    /// v̄̇ at the state.
+    pub(super) fn accelerations(&mut self, flow: &mut Flow<'_>) -> Result<&[f64], StepFailure> {
+        self.errors.copy_from(&self.rates);
+        self.change_speeds(flow)?;
+        Ok(&self.errors.speeds)
+    }
+
     /// Largest rate at the state, as [`StepState::largest_error`] measures it, 1/s.
     pub(super) fn pace(&mut self, flow: &mut Flow<'_>) -> Result<f64, StepFailure> {
-        let (rates, accelerations) = (&self.rates, &mut self.errors.speeds);
-        flow.speeds_of(&self.configuration, &rates.y, accelerations)?;
+        self.accelerations(flow)?;
+        let (rates, accelerations) = (&self.rates, &self.errors.speeds);
         let local = rates.phi.iter().map(|rate| rate.abs());
         let others = accelerations.iter().zip(&rates.speeds);
         let others = others.map(|(rate, speed)| rate.abs() / speed.abs().max(1.0));

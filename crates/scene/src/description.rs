@@ -105,7 +105,7 @@ pub struct Part {
 
 impl BodyDescription {
     /// Whether the state of its joint, and what acts there, are its own: it is the only body of the joint, or the first.
-    pub(crate) fn leads(&self) -> bool {
+    pub fn leads(&self) -> bool {
         self.part.as_ref().is_none_or(|part| part.number == 0)
     }
 }

@@ -1,11 +1,12 @@
 //! Derivatives of the dynamics and linearised steps on random trees of this crate's joints.
 
 use hamel::erased::AnyJoint;
+use hamel::joint::Member;
 use hamel::registry::JointRegistry;
 use hamel_downstream::joints::{
-    BallCayley, BallTurns, Bead, Catenary, CatenaryLength, DirectionSensor, ENTRIES, FourBar,
-    FourBarThrough, PlanarTurns, PowerGuide, RollingBallCayley, Scara, SkateHeading, SkewScrew,
-    SliderCrankRod, SpherePoint,
+    BallCayley, BallTurns, Bead, CarWheels, Catenary, CatenaryLength, CrankRocker, DirectionSensor,
+    ENTRIES, FourBar, FourBarThrough, GearedRotor, PlanarTurns, PowerGuide, RollingBallCayley,
+    Scara, SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint,
 };
 use hamel_tests::derivatives::{self, Equipped, Kernels, bare_and_equipped, behind, of};
 use hamel_tests::differences::STEP;
@@ -14,7 +15,7 @@ use hamel_tests::random::{self, cases};
 use std::sync::Arc;
 
 /// Every joint at the root of three trees.
-const TREES: u64 = 48;
+const TREES: u64 = 60;
 
 /// These joints bend more than those of the library: h⁶ f⁽⁷⁾ is 8e-4 with the usual step where loops are near a dead point, and 8⁶ times less with an eighth of it.
 const FINE: f64 = STEP / 8.0;
@@ -29,6 +30,9 @@ fn kinds() -> Vec<Arc<dyn AnyJoint>> {
 
 /// The kernels of the joints of [`kinds`].
 fn kernels(joint: &dyn AnyJoint) -> Box<dyn Kernels> {
+    let car = CarWheels::new(0.7, 0.85, 1.0);
+    let linkage = CrankRocker::new(0.9, 0.2, 0.9 + 0.1 * 2.0, 0.9 + 0.1 * 3.0);
+    let slider = SliderCrankLinks::new(0.9, 0.9 / 3.0, 0.9 / 9.0);
     let all = [
         of(BallCayley),
         of(BallTurns),
@@ -46,6 +50,19 @@ fn kernels(joint: &dyn AnyJoint) -> Box<dyn Kernels> {
         of(SkewScrew),
         of(SliderCrankRod),
         of(SpherePoint::new(0.7)),
+        of(car),
+        of(Member::<_, 1>(car)),
+        of(Member::<_, 2>(car)),
+        of(Member::<_, 3>(car)),
+        of(Member::<_, 4>(car)),
+        of(linkage),
+        of(Member::<_, 1>(linkage)),
+        of(Member::<_, 2>(linkage)),
+        of(GearedRotor::new(0.7)),
+        of(Member::<_, 1>(GearedRotor::new(0.7))),
+        of(slider),
+        of(Member::<_, 1>(slider)),
+        of(Member::<_, 2>(slider)),
     ];
     behind(joint, all)
 }

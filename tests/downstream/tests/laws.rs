@@ -100,7 +100,19 @@ laws_of_bodies! {
     car_wheels: CarWheels::new(1.1, 0.7, 0.4), [1, 2, 3, 4];
     crank_rocker: CrankRocker::new(0.9, 0.4, 1.1, 1.2), [1, 2];
     geared_rotor: GearedRotor::new(5.5), [1];
-    slider_crank_links: SliderCrankLinks::new(0.4, 1.1, 0.2), [1, 2];
+    slider_crank_links: SliderCrankLinks::new(1.1, 0.4, 0.2), [1, 2];
+}
+
+/// What is emitted of the second body, against the definition of a joint with that body alone.
+#[test]
+fn a_further_body_has_its_definition_everywhere() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("joints");
+    let derived = hamel_tests::derived_in(&folder, "geared_rotor");
+    let [rotor] = derived.more.as_slice() else {
+        panic!("the rotor is the second body");
+    };
+    let build = |values: &[f64]| Member::<_, 1>(GearedRotor::new(values[0]));
+    check_everywhere(rotor, build, &[5.5], Effort::PLAIN);
 }
 
 /// The places of the bodies that the spec of a joint names.

@@ -1,22 +1,19 @@
 //! Compiled modules in C: every scene that is compiled, bit by bit as its lines are evaluated here and as Rust computes them, and against the tree.
 
-use super::compiled::{Point, scene_files};
+use super::compiled::{scene_files, several};
 use chacha20::ChaCha8Rng;
 use hamel::nalgebra::{Rotation3, Vector3};
 use hamel::scalar::Dual;
 use hamel_codegen::derived::Primitive;
 use hamel_codegen::expr::Function as Known;
 use hamel_compiler::emit::Function;
-use hamel_compiler::functions::{Kind, Loops, compile};
 use hamel_compiler::graph::{Argument, Sym, atan2, call, call_two, primitive, record};
-use hamel_compiler::model::Model;
 use hamel_compiler::scene;
 use hamel_scene::Scene;
-use hamel_tests::c99::{Module, Program};
+use hamel_tests::c99::{Module, Program, agree, functions, same};
 use hamel_tests::emitted::{ball_chain, geodesic_springs, plate_cart_arm, snakeboard};
 use hamel_tests::random;
 use rand::SeedableRng;
-use std::cell::RefCell;
 use std::path::Path;
 
 fn folder(name: &str) -> std::path::PathBuf {
@@ -25,92 +22,20 @@ fn folder(name: &str) -> std::path::PathBuf {
         .join(name)
 }
 
-/// The functions of a model that are not too long, as a module has them; of derivatives those that a compiler is done with soon.
-fn functions(model: &Model) -> Vec<Function> {
-    let function = |kind: Kind| {
-        let function = compile(model, kind, Loops::default()).ok()?.function;
-        let derivatives = [Kind::ForwardDerivatives, Kind::InverseDerivatives];
-        let is_short = !derivatives.contains(&kind) || function.written() < LONG;
-        is_short.then_some(function)
-    };
-    Kind::ALL.into_iter().filter_map(function).collect()
-}
-
-/// Whether the bits are the same; any NaN is as good as another.
-fn same(a: &[f64], b: &[f64]) -> bool {
-    let pairs = a.iter().zip(b);
-    let mut same = pairs.map(|(a, b)| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan());
-    a.len() == b.len() && same.all(|same| same)
-}
-
-/// Operations of a module from which on it is not optimised here.
-const LONG: usize = 20_000;
-
-/// States of each scene whose values are compared.
-const STATES: u64 = 3;
-
 /// Every function of every scene that is not too long has the bits of its evaluated lines, and the values of the tree to the bounds of the test `compiled`.
 #[test]
 fn scenes_agree() {
-    let scenes = scene_files();
-    let scenes: Vec<(Scene, Model)> = scenes
-        .into_iter()
-        .map(|(scene, model)| (scene, model.unwrap_or_else(|refused| panic!("{refused}"))))
-        .collect();
-    let functions: Vec<Vec<Function>> = scenes.iter().map(|(_, model)| functions(model)).collect();
-    let named = scenes.iter().zip(&functions).enumerate();
-    let modules: Vec<Module<'_>> = named
-        .map(|(i, ((_, model), functions))| Module {
-            name: format!("scene_{i}"),
-            model,
-            functions,
-            optimisation: match functions.iter().map(Function::written).sum::<usize>() {
-                // Compilers take more time for a long function than for many short ones.
-                ..LONG => "-O1",
-                _ => "-O0",
-            },
-        })
-        .collect();
-    let Some(program) = Program::new(&folder("scenes"), &modules) else {
-        return;
-    };
-    let program = RefCell::new(program);
-    for (i, (scene, model)) in scenes.iter().enumerate() {
-        let by = |_: &Model, (kind, loops): (Kind, Loops), q: &[f64], v: &[f64], u: &[f64]| {
-            let mut compiled = functions[i].iter();
-            // What would be too long is not in the module.
-            let Some(function) = compiled.find(|one| one.name == kind.name()) else {
-                return hamel_tests::compiled::evaluate(model, (kind, loops), q, v, u);
-            };
-            let given = |argument| match argument {
-                Argument::Configuration => q,
-                Argument::Speeds | Argument::Momenta => v,
-                Argument::Efforts | Argument::Accelerations => u,
-            };
-            let arguments = function.arguments.iter();
-            let arguments: Vec<&[f64]> = arguments.map(|&(one, _)| given(one)).collect();
-            let name = format!("scene_{i}");
-            let found = program.borrow_mut().call(&name, function.name, &arguments);
-            let expected = function.evaluate(|argument| given(argument).to_vec());
-            assert!(
-                same(&found, &expected),
-                "{}, {kind:?}: {found:?} and {expected:?}",
-                model.name
-            );
-            found
-        };
-        for seed in 0..STATES {
-            let point = || {
-                Point::random(model.clone(), &scene.mechanism, 100 * seed + i as u64)
-                    .compiled_with(&[Loops::Long])
-            };
-            point().agrees_by(&by);
-            let has = |kind: Kind| functions[i].iter().any(|one| one.name == kind.name());
-            if has(Kind::ForwardDerivatives) && has(Kind::InverseDerivatives) {
-                point().derivatives_agree_by(&by);
-            }
-        }
-    }
+    let scenes = scene_files().into_iter().map(|(scene, model)| {
+        let model = model.unwrap_or_else(|refused| panic!("{refused}"));
+        (scene.mechanism, model)
+    });
+    agree(&folder("scenes"), &scenes.collect::<Vec<_>>());
+}
+
+/// The same of two hinges as one joint that carries two bodies.
+#[test]
+fn a_joint_with_two_bodies_agrees() {
+    agree(&folder("several"), &[several::hinges()]);
 }
 
 /// As numbers whose sines and cosines are the standard functions, one by one.

@@ -4,191 +4,22 @@
 mod derivatives;
 mod loops;
 mod moments;
+pub mod several;
 
 use chacha20::ChaCha8Rng;
-use hamel::dynamics::{Dynamics, MassMatrix, Recursive};
 use hamel::elements::BodySpring;
 use hamel::mechanism::Mechanism;
-use hamel::nalgebra::DMatrix;
 use hamel_compiler::Refused;
 use hamel_compiler::functions::{Kind, Loops, compile};
 use hamel_compiler::model::{Elements, Model};
 use hamel_scene::Scene;
+use hamel_tests::compiled::Point;
 use hamel_tests::peers::Reference;
 use hamel_tests::{compiled, random, scenes};
 use rand::SeedableRng;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// The least bound of relative errors that is asked for.
-const BOUND: f64 = 1e-12;
-/// Roundings of a solution with M̄ for each unit of its condition, as for the tree.
-const ROUNDINGS: f64 = 10.0;
-
-/// Without loops, and with all that there are.
-const BOTH: [Loops; 2] = [Loops::Never, Loops::Always];
-
-/// Loops in every fourth case: few bodies of random trees are alike.
-fn loops(seed: u64) -> &'static [Loops] {
-    if seed.is_multiple_of(4) {
-        &BOTH
-    } else {
-        &BOTH[..1]
-    }
-}
-
-/// What gives the values of a compiled function at a state: [`compiled::evaluate`], or what stands in for it.
-pub type Evaluate<'a> = &'a dyn Fn(&Model, (Kind, Loops), &[f64], &[f64], &[f64]) -> Vec<f64>;
-
-/// A state, and what the tree makes of it.
-pub struct Point {
-    place: String,
-    /// How it is compiled.
-    loops: &'static [Loops],
-    model: Model,
-    mechanism: Arc<Mechanism>,
-    q: Vec<f64>,
-    speeds: Vec<f64>,
-    inputs: Vec<f64>,
-}
-
-impl Point {
-    /// At a random state.
-    pub fn random(model: Model, mechanism: &Arc<Mechanism>, seed: u64) -> Self {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let layout = *mechanism.layout();
-        Self {
-            place: model.name.clone(),
-            loops: &BOTH,
-            model,
-            q: random::configuration(&mut random, mechanism),
-            speeds: random::numbers(&mut random, layout.speeds),
-            inputs: random::numbers(&mut random, layout.freedoms),
-            mechanism: Arc::clone(mechanism),
-        }
-    }
-
-    /// With loops or without, as said.
-    pub fn compiled_with(self, loops: &'static [Loops]) -> Self {
-        Self { loops, ..self }
-    }
-
-    fn agrees(self) {
-        self.agrees_by(&compiled::evaluate);
-    }
-
-    /// What `by` gives agrees, however it is compiled.
-    fn agree(&self, by: Evaluate<'_>, kind: Kind, inputs: &[f64], expected: &[f64], bound: f64) {
-        for &loops in self.loops {
-            let how = (kind, loops);
-            let found = by(&self.model, how, &self.q, &self.speeds, inputs);
-            self.close(&format!("{how:?}"), &found, expected, bound);
-        }
-    }
-
-    /// All functions have the values of the tree.
-    pub fn agrees_by(mut self, by: Evaluate<'_>) {
-        let mut tree = Recursive::new(Arc::clone(&self.mechanism));
-        tree.complete_speeds(&self.q, &mut self.speeds)
-            .expect("constraints determine them");
-        let (q, speeds) = (&self.q, &self.speeds);
-        let mut expected = vec![0.0; speeds.len()];
-        let rates = &self.inputs[..speeds.len()];
-
-        let mut mass = MassMatrix::new(&self.mechanism);
-        tree.mass_matrix(q, &mut mass).expect("sizes fit");
-        let mass = mass.matrix();
-        let rows: Vec<f64> = mass.transpose().iter().copied().collect();
-        self.agree(by, Kind::MassMatrix, &[], &rows, BOUND);
-
-        tree.inverse_dynamics(q, speeds, rates, &mut expected)
-            .expect("sizes fit");
-        self.agree(by, Kind::InverseDynamics, rates, &expected, BOUND);
-        tree.bias_forces(q, speeds, &mut expected)
-            .expect("sizes fit");
-        self.agree(by, Kind::BiasForces, &[], &expected, BOUND);
-
-        tree.forward_dynamics(q, speeds, &self.inputs, &mut expected)
-            .expect("M̄ is regular");
-        let bound = of_solutions(mass);
-        self.agree(by, Kind::ForwardDynamics, &self.inputs, &expected, bound);
-        self.forms_agree(by, &mut tree, bound);
-        self.places_agree(by);
-    }
-
-    /// The port-Hamiltonian form; `bound` is that of solutions with M̄.
-    fn forms_agree(&self, by: Evaluate<'_>, tree: &mut Recursive, bound: f64) {
-        let (q, speeds) = (&self.q, &self.speeds);
-        let mut momenta = vec![0.0; speeds.len()];
-        tree.momenta(q, speeds, &mut momenta).expect("sizes fit");
-        let (mut back, mut rates) = (speeds.clone(), momenta.clone());
-        let mut efforts = |_: &[f64], tau: &mut [f64]| tau.copy_from_slice(&self.inputs);
-        tree.momentum_rates(q, &momenta, &mut efforts, &mut back, &mut rates)
-            .expect("M̄ is regular");
-        let energy = tree.hamiltonian(q, &momenta).expect("M̄ is regular");
-        for &loops in self.loops {
-            let evaluate =
-                |kind, state: &[f64]| by(&self.model, (kind, loops), q, state, &self.inputs);
-            self.close("momenta", &evaluate(Kind::Momenta, speeds), &momenta, BOUND);
-            let found = evaluate(Kind::Speeds, &momenta);
-            self.close("speeds", &found, speeds, bound);
-            let found = evaluate(Kind::MomentumRates, &momenta);
-            let (found_speeds, found_rates) = found.split_at(speeds.len());
-            self.close("speeds with rates", found_speeds, &back, bound);
-            self.close("momentum rates", found_rates, &rates, bound);
-
-            let energies = evaluate(Kind::Energies, speeds);
-            let scale = energies
-                .iter()
-                .fold(energy.abs(), |most, part| most.max(part.abs()));
-            let relative = |found: f64| vec![(found - energy) / scale + 1.0];
-            self.close("energies", &relative(energies.iter().sum()), &[1.0], BOUND);
-            let hamiltonian = evaluate(Kind::Hamiltonian, &momenta);
-            self.close("hamiltonian", &relative(hamiltonian[0]), &[1.0], bound);
-        }
-    }
-
-    fn places_agree(&self, by: Evaluate<'_>) {
-        let kinematics = self.mechanism.kinematics(&self.q, &self.speeds);
-        let kinematics = kinematics.expect("sizes fit");
-        let expected = kinematics.bodies.iter().flat_map(|body| {
-            let rotation: Vec<f64> = body.pose.rotation.transpose().iter().copied().collect();
-            [rotation, body.pose.translation.as_slice().to_vec()].concat()
-        });
-        let expected: Vec<f64> = expected.collect();
-        self.agree(by, Kind::Poses, &[], &expected, BOUND);
-    }
-
-    fn close(&self, what: &str, found: &[f64], expected: &[f64], bound: f64) {
-        self.close_beside(f64::MIN_POSITIVE, what, found, expected, bound);
-    }
-
-    /// Errors are relative to the largest value, or to what it is made of where that is larger.
-    fn close_beside(&self, terms: f64, what: &str, found: &[f64], expected: &[f64], bound: f64) {
-        let largest = expected
-            .iter()
-            .fold(terms, |most, entry| most.max(entry.abs()));
-        let error = found.iter().zip(expected).fold(0.0_f64, |most, (a, b)| {
-            // NaN is the largest of all.
-            let error = (a - b).abs() / largest;
-            if error <= most { most } else { error }
-        });
-        assert_eq!(found.len(), expected.len());
-        assert!(
-            error <= bound,
-            "{}, {what}: {error:e} > {bound:e}",
-            self.place
-        );
-    }
-}
-
-/// The bound of errors of solutions with M̄.
-fn of_solutions(mass: DMatrix<f64>) -> f64 {
-    let eigenvalues = mass.symmetric_eigenvalues();
-    let condition = eigenvalues.max() / eigenvalues.min();
-    BOUND.max(ROUNDINGS * condition * f64::EPSILON)
-}
 
 /// Every scene file, with what the compiler says of it.
 pub fn scene_files() -> Vec<(Scene, Result<Model, Refused>)> {
@@ -303,46 +134,13 @@ fn robots_agree() {
     }
 }
 
-fn bare(case: random::Case) -> Point {
-    Point {
-        place: format!("seed {}", case.seed),
-        loops: loops(case.seed),
-        model: compiled::model("random", &case.mechanism),
-        mechanism: case.mechanism,
-        q: case.q,
-        speeds: case.speeds,
-        inputs: case.efforts,
-    }
-}
-
 #[test]
 fn random_trees_agree() {
     let kinds = random::library();
     let cases: Vec<random::Case> = random::cases(&kinds, 40, 200).collect();
-    cases.into_par_iter().for_each(|case| bare(case).agrees());
-}
-
-/// A random tree with elements of all kinds, of odd seeds with driven joints, of every third with constraints that couple joints.
-fn with_elements(case: random::Case) -> Point {
-    let mut random = ChaCha8Rng::seed_from_u64(case.seed);
-    let mut geared = compiled::geared(&mut random, &case.mechanism);
-    if case.seed % 2 == 1 {
-        geared = compiled::driven(&mut random, &geared);
-    }
-    if case.seed % 3 == 2 {
-        geared = compiled::coupled(&mut random, geared, &case.q);
-    }
-    let mut model = compiled::model("random", &geared);
-    model.elements = compiled::elements(&mut random, &geared);
-    Point {
-        place: format!("seed {}, with elements", case.seed),
-        loops: loops(case.seed),
-        mechanism: compiled::equipped(&geared, &model.elements),
-        model,
-        q: case.q,
-        speeds: case.speeds,
-        inputs: case.efforts,
-    }
+    cases
+        .into_par_iter()
+        .for_each(|case| Point::bare(case).agrees());
 }
 
 #[test]
@@ -351,7 +149,7 @@ fn random_trees_with_elements_agree() {
     let cases: Vec<random::Case> = random::cases(&kinds, 20, 100).collect();
     cases
         .into_par_iter()
-        .for_each(|case| with_elements(case).agrees());
+        .for_each(|case| Point::with_elements(case).agrees());
 }
 
 fn flops(model: &Model, kind: Kind) -> usize {

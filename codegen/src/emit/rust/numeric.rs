@@ -61,7 +61,7 @@ fn by_relations(derived: &Derived, kind: KernelKind, start: &TokenStream) -> Opt
         }
         KernelKind::RetractDifferentialInverse => {
             let rates =
-                displacement_rates(is_bent, &quote! { (self.tangent_basis(&moved) * rate) });
+                displacement_rates(is_bent, &quote! { self.tangent_basis(&moved) * rate });
             quote! { #rates ::hamel::finite::along_tangent(&rates, #bases) }
         }
         // A guess may be far away, and off the factors.
@@ -79,14 +79,13 @@ fn by_relations(derived: &Derived, kind: KernelKind, start: &TokenStream) -> Opt
 
 /// The rates of the displacement from Q to Q′ = Φ(Q, ϕ), where Q′⁻¹Q̇′ has the values `there`.
 fn displacement_rates(is_bent: bool, there: &TokenStream) -> TokenStream {
-    let rates = match is_bent {
-        true => quote! {
-            let xi = self.displacement(q, &moved);
-            let rates = ::hamel::finite::least_squares(&self.displaced_differential(&xi), &#there);
-        },
-        false => quote! { let rates = #there; },
-    };
-    quote! { let moved = self.retract(q, phi); #rates }
+    let bent = is_bent.then(|| {
+        quote! {
+            let differential = self.displaced_differential(&self.displacement(q, &moved));
+            let rates = ::hamel::finite::least_squares(&differential, &rates);
+        }
+    });
+    quote! { let moved = self.retract(q, phi); let rates = #there; #bent }
 }
 
 /// How many relations the spec declares, and how many those of the factors are, which stand before them.

@@ -2,7 +2,7 @@
 
 use super::source;
 use hamel_codegen::emit::{Accuracy, explain_text, html_page};
-use hamel_console::files::{Force, admit, first_line};
+use hamel_console::files::{Force, admit, first_line, named};
 use hamel_console::output::{self, Failure};
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -40,7 +40,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     };
     let page = page.map_err(|error| Failure::Page(error.to_string()))?;
     let spec = source::is_file(&args.joint).then(|| Path::new(&args.joint));
-    let written = args.output.as_deref().map(|path| (path, is_own as _));
+    let written = named(args.output.as_deref()).map(|path| (path, is_own as _));
     let outputs = admit(spec, written, args.force.force)?;
     match outputs.first() {
         None => output::print(&page),

@@ -10,8 +10,8 @@ const LIBRARY: &str = "joint-specs";
 
 /// Write a spec to start from.
 ///
-/// The file is a complete joint (a pin in a slot): change it, then run `hamel joints check FILE`. A file that is there already
-/// stays as it is.
+/// The file is a complete joint (a pin in a slot, or with `--bodies` wheels that mesh): change it, then run `hamel joints check FILE`. A file that is
+/// there already stays as it is.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Name of the joint, in snake_case
@@ -21,11 +21,18 @@ pub struct Args {
     /// Folder of the new file [default: joint-specs where the current folder has it, else the current folder]
     #[arg(long, value_name = "FOLDER")]
     folder: Option<PathBuf>,
+
+    /// Names of the bodies of a joint that carries several, such as crank,coupler,rocker
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    bodies: Vec<String>,
 }
 
 /// Writes the file; one that exists is never touched.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let text = template(&args.name);
+    let text = match args.bodies.as_slice() {
+        [] => template(&args.name),
+        bodies => template_of_several(&args.name, bodies),
+    };
     let file = format!("{}.joint", args.name);
     hamel_codegen::spec::parse(&text, &file).map_err(|errors| Failure::Spec(Box::new(errors)))?;
     let library = Path::new(LIBRARY);
@@ -68,8 +75,39 @@ joint {name} {{
     config  theta: R1, x: R1;           // rad, m: the stored scalars of Q
     // A group instead: config Q: SO3; basis e1, e2, e3 of so3; velocity in child;
     H     = trans_x(x) * rot_z(theta);  // child coordinates to parent coordinates
-    // Several bodies instead: bodies slot, pin; H.slot = …; H.pin = …;
+    // Several bodies: hamel joints new NAME --bodies slot,pin
     // Declared where they differ from what is derived: Phi, X. Nonholonomic: A, S_bar.
+}}
+"
+    )
+}
+
+/// Wheels that mesh, each with the one before.
+fn template_of_several(name: &str, bodies: &[String]) -> String {
+    let width = bodies.iter().map(|body| body.chars().count()).max();
+    let width = width.unwrap_or(0);
+    let poses: String = bodies
+        .iter()
+        .enumerate()
+        .map(|(place, body)| {
+            let sign = if place % 2 == 0 { "" } else { "-" };
+            format!("    H.{body:width$} = trans_x({place} * distance) * rot_z({sign}theta);\n")
+        })
+        .collect();
+    let names = bodies.join(", ");
+    format!(
+        "hamel = 1;
+
+/// One sentence that says what moves. Frames and units of Q and v.
+joint {name}(
+    /// Distance of two axes.
+    distance: m > 0,
+) {{
+    config  theta: R1;                  // rad: the stored scalars of Q
+    bodies  {names};
+{poses}    // A loop has a coordinate for each link, and relations that close it: `config a: S1, b: S1, s: R1;`,
+    // `relation crank * a.c + rod * b.c = s;`, `basis turn of so2(a);` names what is independent.
+    // docs/loops.md makes one.
 }}
 "
     )

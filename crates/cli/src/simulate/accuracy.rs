@@ -9,6 +9,7 @@ use hamel::integrate::{
 };
 use serde::Serialize;
 use std::fmt;
+use std::sync::Arc;
 
 /// The estimate of the error of a motion.
 #[derive(Clone, Debug, Serialize)]
@@ -75,11 +76,11 @@ impl Accuracy {
 /// The error of `solution`, to which `dynamics` came under `plan`. Companions are not ended by events, and follow a controller of their own.
 pub fn estimate(plan: &Plan, dynamics: &mut dyn Dynamics, solution: &Solution) -> GlobalError {
     let (initial, options) = (plan.scene.start(), plan.options());
+    let mut own = dynamics.of(Arc::clone(&plan.scene.mechanism));
     let mut companion = |initial: &State, options: &Options, observer: &mut Observer<'_>| {
         run(plan, &mut *dynamics, (initial, options), observer).map_err(|error| error.to_string())
     };
-    let mechanism = &plan.scene.mechanism;
-    GlobalError::estimate(mechanism, &initial, &options, solution, &mut companion)
+    GlobalError::estimate(&mut *own, &initial, &options, solution, &mut companion)
 }
 
 /// One companion, which an interrupt ends.

@@ -55,7 +55,8 @@ The page (`--html`) shows bodies by the [[shape]]s of the scene, or by the ellip
 wheel to zoom, click a body to select it, drag in a plot to move in time, Space to play, ← and → to step, F to follow, A to see all, R for the first view.
 It holds at most 60 samples a second of the trajectory: for a smooth picture keep --sample-step at 0.02 or less.
 
-Files are written beside their names and take them when they are whole; one that this command did not write is replaced with --force only. Ctrl-C ends the simulation
+The name `-` is stdout, for one output; the summary goes to stderr then, and a file of that name is `./-`. Files are written beside their names and take them when they are
+whole; one that this command did not write is replaced with --force only. Ctrl-C ends the simulation
 at the next sample and leaves whole files of what there is; a second one ends it at once and leaves files as they were.
 
 Exit codes: 0 success; 1 a scene with mistakes, a simulation that stopped, a file that cannot be written; 2 wrong options; 130 interrupted.";

@@ -124,6 +124,14 @@ impl Loop {
         efforts.copy_from_slice(&state.efforts);
     }
 
+    /// Where the law's efforts bend; nothing where it fails, which its efforts tell as well.
+    pub fn bends(&self, time: f64, q: &[f64], speeds: &[f64], bends: &mut Vec<f64>) {
+        let state = &mut *self.state.borrow_mut();
+        if let Err(cause) = state.controller.bends(time, q, speeds, bends) {
+            state.fail(time, &cause);
+        }
+    }
+
     /// τ from the end of `step` on: where it is held, as it was taken last, which is then at the latest.
     pub fn efforts(&self, step: &Step<'_>) -> Vec<f64> {
         let state = &mut *self.state.borrow_mut();

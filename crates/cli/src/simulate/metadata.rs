@@ -5,7 +5,7 @@
 use super::accuracy::Accuracy;
 use super::columns::Columns;
 use super::plan::Plan;
-use hamel_console::files::{Draft, Output};
+use hamel_console::files::{Draft, Output, is_stdout};
 use hamel_console::output::Failure;
 use serde_json::{Value, json};
 use std::fs::File;
@@ -27,9 +27,9 @@ pub fn is_own(file: &File) -> bool {
     found.is_ok_and(|found| found["@context"] == CONTEXT && found["notes"][0]["program"] == PROGRAM)
 }
 
-/// Where that of a CSV file is; `None` beside a pipe or a device.
+/// Where that of a CSV file is; `None` beside stdout, a pipe or a device.
 pub fn path(csv: &Path) -> Option<PathBuf> {
-    let is_file = csv.metadata().map_or(true, |found| found.is_file());
+    let is_file = !is_stdout(csv) && csv.metadata().map_or(true, |found| found.is_file());
     is_file.then(|| {
         let mut name = csv.as_os_str().to_owned();
         name.push("-metadata.json");

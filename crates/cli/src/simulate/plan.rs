@@ -7,7 +7,7 @@ use crate::input::Input;
 use hamel::integrate::{Method, Options, Sampling};
 use hamel::registry::JointRegistry;
 use hamel::shown::Number;
-use hamel_console::files::{Output, admit};
+use hamel_console::files::{Output, admit, is_stdout};
 use hamel_console::output::{Failure, tell};
 use hamel_scene::{Company, Control, SampleError, Scene, Settings};
 use std::path::{Path, PathBuf};
@@ -127,8 +127,17 @@ impl Plan {
 
     /// The files of the trajectory.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.outputs().map(Output::path)
+    }
+
+    /// Whether one of them is stdout, where nothing else can be told then.
+    pub fn writes_stdout(&self) -> bool {
+        self.outputs().any(Output::is_stdout)
+    }
+
+    fn outputs(&self) -> impl Iterator<Item = &Output> {
         let files = [&self.csv, &self.parquet, &self.html, &self.picture];
-        files.into_iter().flatten().map(Output::path)
+        files.into_iter().flatten()
     }
 
     /// Whether anything asks for the numbers of all columns.
@@ -187,6 +196,11 @@ fn outputs(args: &Args) -> Result<[Option<Output>; 5], Failure> {
     let metadata = csv.as_deref().and_then(metadata::path);
     let paths = [&csv, &metadata, &args.parquet, &args.html, &args.picture];
     let paths = paths.map(Option::as_deref);
+    if args.json && paths.into_iter().flatten().any(is_stdout) {
+        let both =
+            "`--json` prints on stdout, and so would `-`: name a file, `./-` for one of that name";
+        return Err(Failure::Options(both.into()));
+    }
     let known = [
         csv::is_own,
         metadata::is_own,

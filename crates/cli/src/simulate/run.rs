@@ -18,6 +18,7 @@ use hamel::mechanism::{Kinematics, Mechanism};
 use hamel::registry::JointRegistry;
 use hamel_console::interrupt::{self, Heed};
 use hamel_console::output::{self, Failure};
+use hamel_console::terminal;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -190,6 +191,9 @@ pub fn move_on(
         integration = integration.inputs(|time, q, speeds, efforts| {
             control.fill(time, q, speeds, efforts);
         });
+        integration = integration.bending(|time, q, speeds, bends| {
+            control.bends(time, q, speeds, bends);
+        });
         if let Some(period) = control.period() {
             integration = integration.held(period);
         }
@@ -280,5 +284,12 @@ fn print_summary(plan: &Plan, run: &Run) -> Result<(), Failure> {
         method_changes: &solution.method_changes,
         events: &solution.events,
     };
-    output::print(&summary.to_string())
+    let summary = summary.to_string();
+    match plan.writes_stdout() {
+        true => {
+            terminal::err(summary.trim_end());
+            Ok(())
+        }
+        false => output::print(&summary),
+    }
 }

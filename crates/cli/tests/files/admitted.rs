@@ -198,3 +198,47 @@ fn what_is_refused_leaves_every_file_as_it_was() {
     listed.retain(|name| !["wrong.toml", "massless.toml"].contains(&name.as_str()));
     assert_eq!(listed, names);
 }
+
+/// `-` is stdout, of every output, and no file.
+#[test]
+fn a_dash_is_stdout() {
+    for (read, command) in COMMANDS {
+        let place = Place::new();
+        let listed = place.names();
+        let words = words(command, read, "-");
+        let output = place.run(&words);
+        assert!(output.status.success(), "{words}: {}", said(&output));
+        assert_eq!(place.names(), listed, "{words}");
+        place.done(&self::words(command, read, "out"));
+        // Pages tell how long the simulation took.
+        if words.contains("--html") {
+            assert!(output.stdout.starts_with(b"<!doctype html>"), "{words}");
+        } else {
+            assert_eq!(
+                output.stdout.trim_ascii_end(),
+                place.read("out").trim_ascii_end(),
+                "{words}"
+            );
+        }
+    }
+}
+
+#[test]
+fn stdout_takes_one_output_and_the_summary_gives_way() {
+    let place = Place::new();
+    let listed = place.names();
+    let output = place.run("simulate top.toml --t-end 0.01 --csv -");
+    let (csv, told) = (&output.stdout, String::from_utf8_lossy(&output.stderr));
+    assert!(csv.starts_with(b"t_s,energy_J,"), "{}", said(&output));
+    assert!(told.contains("energy"), "{told}");
+    for (words, reason) in [
+        ("--csv - --picture -", "takes one output"),
+        ("--csv - --json", "`--json` prints on stdout"),
+    ] {
+        let told = place.refused(&format!("simulate top.toml --t-end 0.01 {words}"), 2);
+        assert!(told.contains(reason), "{told}");
+    }
+    assert_eq!(place.names(), listed);
+    place.done("simulate top.toml --t-end 0.01 --csv ./-");
+    assert!(place.read("-").starts_with(b"t_s,energy_J,"));
+}

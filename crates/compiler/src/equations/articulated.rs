@@ -1,20 +1,11 @@
 //! Forward dynamics by articulated bodies: each joint's degrees of freedom are eliminated from the inertia of what it carries.
 
+use super::elimination::{Carried, Pivot};
 use super::newton_euler::Spin;
 use super::{Tree, carried, number, wrench_to_parent};
 use crate::graph::{Argument, Sym, section};
 use crate::spatial::{Articulated, Twist, Vec3, Wrench};
 use num_traits::Zero;
-
-/// The elimination of one speed.
-struct Pivot {
-    /// `y / d`, of the momentum y of one unit of it.
-    scaled: Wrench,
-    /// `u / d`, of the effort u that is left for it.
-    share: Sym,
-    /// What the rates of the joint's later speeds take from it, over d.
-    later: Vec<Sym>,
-}
 
 /// Where the velocity-dependent forces are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,118 +114,70 @@ impl Tree<'_> {
         let given: Vec<Option<Vec<Sym>>> = (0..self.bodies.len())
             .map(|index| self.prescribed(index, start.given))
             .collect();
-        let links = self.links.iter();
-        let mut inertias: Vec<Articulated> = links
-            .map(|link| Articulated::rigid(&link.inertia.on_graph()))
-            .collect();
-        let mut wrenches = start.wrenches.clone();
         let mut pivots: Vec<Vec<Pivot>> = self.bodies.iter().map(|_| vec![]).collect();
         let mut seen: Vec<Vec<(Articulated, Wrench)>> =
             self.bodies.iter().map(|_| vec![]).collect();
-        for index in (0..self.bodies.len()).rev() {
+        // Of a joint that carries several bodies, those that have come.
+        let mut together: Option<Carried> = None;
+        for (index, body) in self.bodies.iter().enumerate().rev() {
             section(number(index), "carried");
-            for (inertia, wrench) in std::mem::take(&mut seen[index]) {
-                inertias[index] = inertias[index].plus(&inertia);
-                wrenches[index] = wrenches[index].plus(&wrench);
+            let rigid = self.links[index].inertia.on_graph();
+            let mut inertia = Articulated::rigid(&rigid);
+            let mut wrench = start.wrenches[index].clone();
+            let is_leaf = seen[index].is_empty();
+            for (other, more) in std::mem::take(&mut seen[index]) {
+                inertia = inertia.plus(&other);
+                wrench = wrench.plus(&more);
             }
             section(number(index), "effort");
             if let Some(given) = &given[index] {
                 start.biases[index] = start.biases[index].plus(&self.along(index, given));
+            } else if self.carries_several(index) {
+                let own = self.loaded(index, &inertia, wrench, &start.biases[index]);
+                let mut own = Carried::new(&body.columns, inertia, own).at_parent(&body.steps);
+                if is_leaf {
+                    // A rigid body takes fewer operations.
+                    own.inertia = Articulated::rigid(&rigid.to_parent(&body.steps));
+                }
+                let mut carried = match together.take() {
+                    Some(others) => others.plus(&own),
+                    None => own,
+                };
+                if !self.model.bodies[index].leads() {
+                    together = Some(carried);
+                    continue;
+                }
+                pivots[index] = self.eliminate(index, &mut carried, &(start.efforts)(index));
+                if let Some(parent) = body.parent {
+                    seen[parent].push((carried.inertia.settled(), carried.wrench.settled()));
+                }
+                continue;
             } else {
                 let efforts = (start.efforts)(index);
-                pivots[index] =
-                    self.eliminate(index, &mut inertias[index], &mut wrenches[index], efforts);
+                section(number(index), "articulated inertia");
+                let mut carried = Carried::new(&body.columns, inertia, wrench);
+                pivots[index] = self.eliminate(index, &mut carried, &efforts);
+                Carried {
+                    inertia,
+                    wrench,
+                    ..
+                } = carried;
             }
-            if let Some(parent) = self.bodies[index].parent {
-                section(number(index), "seen by parent");
-                let steps = &self.bodies[index].steps;
-                let wrench = wrenches[index].plus(&inertias[index].of(&start.biases[index]));
+            if let Some(parent) = body.parent {
+                let wrench = self.loaded(index, &inertia, wrench, &start.biases[index]);
                 seen[parent].push((
-                    inertias[index].to_parent(steps).settled(),
-                    wrench_to_parent(steps, &wrench).settled(),
+                    inertia.to_parent(&body.steps).settled(),
+                    wrench_to_parent(&body.steps, &wrench).settled(),
                 ));
             }
         }
         self.outward(&start, &pivots, &given)
     }
 
-    /// Takes the degrees of freedom of a body's joint out of what it carries.
-    fn eliminate(
-        &self,
-        index: usize,
-        inertia: &mut Articulated,
-        wrench: &mut Wrench,
-        efforts: Vec<Sym>,
-    ) -> Vec<Pivot> {
-        section(number(index), "articulated inertia");
-        let columns = &self.bodies[index].columns;
-        let has_armature = self.has_armature(index);
-        let mut momenta: Vec<Wrench> = columns.iter().map(|column| inertia.of(column)).collect();
-        let mut matrix: Vec<Vec<Sym>> = (0..columns.len())
-            .map(|j| {
-                (0..columns.len())
-                    .map(|k| columns[j].dot(&momenta[k]) + self.armature(index, j, k))
-                    .collect()
-            })
-            .collect();
-        let given = efforts.clone();
-        let mut efforts = efforts;
-        for (j, column) in columns.iter().enumerate() {
-            efforts[j] -= column.dot(wrench);
-        }
-        let mut pivots = vec![];
-        for j in 0..columns.len() {
-            let inverse = self.inverse_of_inertia(index, j, matrix[j][j]);
-            let inverse = inverse.named("inverse_inertia");
-            let mut scaled = momenta[j].times(inverse);
-            if let Some(entry) = self.feels(index, j) {
-                *scaled.entry_mut(entry) = Sym::Number(1.0);
-            }
-            let later: Vec<Sym> = matrix[j][j + 1..]
-                .iter()
-                .map(|&entry| entry * inverse)
-                .collect();
-            for k in j + 1..columns.len() {
-                let factor = later[k - j - 1];
-                let less = factor * efforts[j];
-                efforts[k] -= less;
-                momenta[k] = momenta[k].plus(&momenta[j].times(-factor));
-                if let Some(entry) = self.feels(index, j) {
-                    *momenta[k].entry_mut(entry) = Sym::zero();
-                }
-                let row: Vec<Sym> = matrix[j][k..].iter().map(|&entry| factor * entry).collect();
-                for (entry, less) in matrix[k][k..].iter_mut().zip(row) {
-                    *entry -= less;
-                }
-            }
-            let column = if has_armature {
-                Twist::zero()
-            } else {
-                columns[j].clone()
-            };
-            *inertia = inertia.without(&column, &momenta[j], &scaled);
-            *wrench = wrench.plus(&momenta[j].times(efforts[j] * inverse));
-            pivots.push(Pivot {
-                share: efforts[j] * inverse,
-                scaled,
-                later,
-            });
-        }
-        // Along a degree of freedom nothing is left but the effort at it.
-        for (j, given) in given.into_iter().enumerate() {
-            if let Some(entry) = self.feels(index, j) {
-                *wrench.entry_mut(entry) = given;
-            }
-        }
-        pivots
-    }
-
-    /// The entry of wrenches that is the effort of a joint's speed, where there is one and nothing but what the joint carries has inertia.
-    fn feels(&self, index: usize, j: usize) -> Option<usize> {
-        match self.has_armature(index) {
-            true => None,
-            false => self.bodies[index].columns[j].unit_entry(),
-        }
+    /// The wrench that a body with this inertia takes at v̄̇ = 0 under a parent that stands still: `p + A c`.
+    fn loaded(&self, index: usize, inertia: &Articulated, wrench: Wrench, bias: &Twist) -> Wrench {
+        section(number(index), "seen by parent");
+        wrench.plus(&inertia.of(bias))
     }
 
     fn outward(
@@ -252,39 +195,19 @@ impl Tree<'_> {
                 .map_or(&start.world, |parent| &accelerations[parent]);
             let base = carried(&body.steps, from).plus(&start.biases[index]);
             let places = body.share.speeds.clone();
-            if let Some(given) = &given[index] {
+            let into = (start.sought, &mut rates[..]);
+            accelerations.push(if let Some(given) = &given[index] {
                 rates[places].copy_from_slice(given);
-                accelerations.push(base);
-                continue;
-            }
-            let mut acceleration = base.clone();
-            for (j, place) in places.clone().enumerate().rev() {
-                let Pivot {
-                    scaled,
-                    share,
-                    later,
-                } = &pivots[index][j];
-                let taken: Sym = later
-                    .iter()
-                    .zip(&rates[place + 1..places.end])
-                    .map(|(&factor, &rate)| factor * rate)
-                    .sum();
-                let column = &body.columns[j];
-                let Some(entry) = self.feels(index, j) else {
-                    let rate = *share - base.dot(scaled) - taken;
-                    rates[place] = rate.named(start.sought);
-                    acceleration = acceleration.plus(&column.times(rate));
-                    continue;
-                };
-                // Its factor of the base is 1: the rate is what the whole differs by from the base.
-                let mut others = base.clone();
-                let along = std::mem::replace(others.entry_mut(entry), Sym::zero());
-                let whole = *share - others.dot(scaled) - taken;
-                rates[place] = (whole - along).named(start.sought);
-                let sum = acceleration.entry_mut(entry);
-                *sum = *sum - along + whole;
-            }
-            accelerations.push(acceleration.settled());
+                base
+            } else if self.carries_several(index) {
+                if self.model.bodies[index].leads() {
+                    // The eliminated inertia is at the parent's frame.
+                    self.resolve(index, &pivots[index], from, into);
+                }
+                base.plus(&self.along(index, &rates[places])).settled()
+            } else {
+                self.resolve(index, &pivots[index], &base, into).settled()
+            });
         }
         rates
     }

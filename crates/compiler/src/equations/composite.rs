@@ -1,8 +1,8 @@
 //! The mass matrix by composite rigid bodies, and its factorisation along the tree.
 
-use super::{Tree, number, wrench_to_parent};
+use super::{Tree, number, wrench_to_parent, wrenches_to_parent};
 use crate::graph::{Argument, Sym, section};
-use crate::spatial::Rigid;
+use crate::spatial::{Rigid, Wrench};
 use num_traits::Zero;
 
 /// M̄ as a full matrix, with zeros where no path of the tree connects two speeds.
@@ -80,8 +80,11 @@ impl Tree<'_> {
             for inertia in std::mem::take(&mut seen[index]) {
                 composites[index] = composites[index].plus(&inertia);
             }
-            for (j, place) in body.share.speeds.clone().enumerate() {
-                self.fill_row(index, j, place, &composites[index], &mut matrix);
+            // All other bodies of the joint come before in this order.
+            if self.model.bodies[index].leads() {
+                for (j, place) in body.share.speeds.clone().enumerate() {
+                    self.fill_row(index, (j, place), &composites, &mut matrix);
+                }
             }
             if let Some(parent) = body.parent {
                 seen[parent].push(composites[index].to_parent(&body.steps).settled());
@@ -94,26 +97,33 @@ impl Tree<'_> {
     fn fill_row(
         &self,
         index: usize,
-        j: usize,
-        place: usize,
-        composite: &Rigid,
+        (j, place): (usize, usize),
+        composites: &[Rigid],
         matrix: &mut Matrix,
     ) {
-        let body = &self.bodies[index];
-        let mut momentum = composite.of(&body.columns[j]);
-        for (k, other) in body.share.speeds.clone().enumerate().skip(j) {
-            let entry = body.columns[k].dot(&momentum) + self.armature(index, j, k);
+        let own = &self.bodies[self.model.carried(index)];
+        let composites = &composites[self.model.carried(index)];
+        let bodies = own.iter().zip(composites);
+        let momenta = bodies.map(|(body, composite)| composite.of(&body.columns[j]));
+        let momenta: Vec<Wrench> = momenta.collect();
+        for (k, other) in own[0].share.speeds.clone().enumerate().skip(j) {
+            let bodies = own.iter().zip(&momenta);
+            let bodies = bodies.map(|(body, momentum)| body.columns[k].dot(momentum));
+            let entry = bodies.sum::<Sym>() + self.armature(index, j, k);
             (matrix[place][other], matrix[other][place]) = (entry, entry);
         }
-        let mut below = index;
-        while let Some(parent) = self.bodies[below].parent {
-            momentum = wrench_to_parent(&self.bodies[below].steps, &momentum);
-            let carrier = &self.bodies[parent];
-            for (k, other) in carrier.share.speeds.clone().enumerate() {
-                let entry = carrier.columns[k].dot(&momentum);
+        let mut carrier = own[0].parent.map(|parent| {
+            let bodies = own.iter().map(|body| &body.steps[..]);
+            (parent, wrenches_to_parent(bodies.zip(momenta)))
+        });
+        while let Some((carries, momentum)) = carrier {
+            let body = &self.bodies[carries];
+            for (k, other) in body.share.speeds.clone().enumerate() {
+                let entry = body.columns[k].dot(&momentum);
                 (matrix[place][other], matrix[other][place]) = (entry, entry);
             }
-            below = parent;
+            let raised = |parent| (parent, wrench_to_parent(&body.steps, &momentum));
+            carrier = body.parent.map(raised);
         }
     }
 
@@ -122,7 +132,7 @@ impl Tree<'_> {
         let forces = self.inverse_dynamics(None);
         let matrix = self.mass_matrix();
         let mut right = vec![Sym::zero(); forces.len()];
-        for (index, body) in self.bodies.iter().enumerate() {
+        for (index, body) in self.joints() {
             section(number(index), "effort");
             for (place, effort) in body
                 .share
@@ -189,7 +199,7 @@ impl Tree<'_> {
 
     /// Makes the rates of driven joints known: what they take of the others moves to the right-hand side.
     pub(super) fn prescribe(&self, matrix: &mut Matrix, right: &mut [Sym], argument: Argument) {
-        for (index, body) in self.bodies.iter().enumerate() {
+        for (index, body) in self.joints() {
             let Some(given) = self.prescribed(index, argument) else {
                 continue;
             };
@@ -208,7 +218,7 @@ impl Tree<'_> {
     /// first.
     fn carriers(&self) -> Vec<Vec<usize>> {
         let mut carriers: Vec<Vec<usize>> = vec![];
-        for body in &self.bodies {
+        for (_, body) in self.joints() {
             for place in body.share.speeds.clone() {
                 let own = (body.share.speeds.start..place).rev();
                 let mut all: Vec<usize> = own.collect();
@@ -225,8 +235,8 @@ impl Tree<'_> {
 
     /// The section of each speed.
     fn sections(&self) -> Vec<u32> {
-        let bodies = self.bodies.iter().enumerate();
-        bodies
+        let joints = self.joints();
+        joints
             .flat_map(|(index, body)| body.share.speeds.clone().map(move |_| number(index)))
             .collect()
     }

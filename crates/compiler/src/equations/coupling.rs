@@ -185,7 +185,7 @@ impl Tree<'_> {
         };
         let count = self.model.sizes()[2];
         let mut known = vec![Sym::zero(); count];
-        for (index, body) in self.bodies.iter().enumerate() {
+        for (index, body) in self.joints() {
             if let Some(given) = self.prescribed(index, Argument::Efforts) {
                 known[body.share.speeds.clone()].copy_from_slice(&given);
             }
@@ -205,7 +205,7 @@ impl Tree<'_> {
             known[speed] = rate[0];
         }
         let mut needed = self.inverse_dynamics(Some(&known));
-        for (index, body) in self.bodies.iter().enumerate() {
+        for (index, body) in self.joints() {
             section(number(index), "effort");
             let efforts = self.efforts(index, Some(Argument::Efforts));
             for (place, effort) in body.share.speeds.clone().zip(efforts) {

@@ -60,7 +60,7 @@ impl Tree<'_> {
     /// The generalised forces of the efforts of the argument, elements, dampers and rotors.
     fn exerted(&self, argument: Option<Argument>) -> Vec<Sym> {
         let mut exerted = self.efforts_of(self.external(), None);
-        for (index, body) in self.bodies.iter().enumerate() {
+        for (index, body) in self.joints() {
             let efforts = self.efforts(index, argument);
             for (place, effort) in body.share.speeds.clone().zip(efforts) {
                 exerted[place] += effort;
@@ -72,7 +72,7 @@ impl Tree<'_> {
     /// Columns of derivatives in all ϕ, then in all speeds.
     pub(super) fn along_state(&self, values: &Slopes) -> Vec<Vec<Sym>> {
         let mut columns = vec![];
-        for (index, body) in self.bodies.iter().enumerate() {
+        for (index, body) in self.joints() {
             section(number(index), "slope");
             let places = &body.share.configuration;
             for moved in self.joint_at(index, &[]).configuration_slopes() {
@@ -84,7 +84,7 @@ impl Tree<'_> {
                 }));
             }
         }
-        for (index, body) in self.bodies.iter().enumerate() {
+        for (index, body) in self.joints() {
             section(number(index), "slope");
             for speed in body.share.speeds.clone() {
                 columns.push(
@@ -123,9 +123,12 @@ impl Tree<'_> {
             .collect();
         for index in (0..self.bodies.len()).rev() {
             section(number(index), "slope");
-            let own = carried[index].clone();
-            self.climb(index, &own, &variations, &mut rows);
+            // All other bodies of the joint come before in this order.
+            if self.model.bodies[index].leads() {
+                self.climb(index, &carried, &variations, &mut rows);
+            }
             if let Some(parent) = self.bodies[index].parent {
+                let own = carried[index].clone();
                 carried[parent] = carried[parent].plus(&own.to_parent(&self.bodies[index].steps));
             }
         }
@@ -136,18 +139,38 @@ impl Tree<'_> {
     fn climb(
         &self,
         index: usize,
-        carried: &Carried,
+        carried: &[Carried],
         variations: &[Vec<Variation>],
         rows: &mut Rows,
     ) {
+        let own = self.model.carried(index);
+        let shown = own.map(|body| {
+            let shown = self.shown(body, &carried[body], &variations[body], rows);
+            let parent = self.bodies[body].parent?;
+            Some((parent, shown.at_parent(&self.bodies[body].steps)))
+        });
+        let add =
+            |(parent, sum): (usize, Shown), (_, shown): (usize, Shown)| (parent, sum.plus(shown));
+        let mut carrier = shown.collect::<Vec<_>>().into_iter().flatten().reduce(add);
+        while let Some((above, shown)) = carrier {
+            self.meet((index, above), &shown, &variations[above], rows);
+            let body = &self.bodies[above];
+            carrier = body
+                .parent
+                .map(|parent| (parent, shown.at_parent(&body.steps)));
+        }
+    }
+
+    /// Rows and columns of one body's joint against itself, and what the body shows.
+    fn shown(&self, index: usize, carried: &Carried, own: &[Variation], rows: &mut Rows) -> Shown {
         let body = &self.bodies[index];
-        let own = &variations[index];
         let mut raised: Vec<Wrench> = own.iter().map(|own| carried.raised(own)).collect();
         let gradient = self.joint_at(index, &[]).effort_gradient(&carried.wrench);
         for (b, (&place, raised)) in self.places(index).iter().zip(&raised).enumerate() {
             for (j, speed) in body.share.speeds.clone().enumerate() {
                 let turned = gradient.get(j).and_then(|row| row.get(b).copied());
-                rows[speed][place] = body.columns[j].dot(raised) + turned.unwrap_or_else(Sym::zero);
+                rows[speed][place] +=
+                    body.columns[j].dot(raised) + turned.unwrap_or_else(Sym::zero);
             }
         }
         for (raised, own) in raised.iter_mut().zip(own) {
@@ -155,17 +178,11 @@ impl Tree<'_> {
             *raised = raised.plus(&along.times(-Sym::one()));
         }
         let columns = body.columns.iter();
-        let mut shown = Shown {
+        Shown {
             raised,
             momenta: columns
                 .map(|x| (carried.inertia.of(x), carried.coriolis.apply_transposed(x)))
                 .collect(),
-        };
-        let mut below = index;
-        while let Some(parent) = self.bodies[below].parent {
-            shown.carry(&self.bodies[below].steps);
-            self.meet((index, parent), &shown, &variations[parent], rows);
-            below = parent;
         }
     }
 
@@ -227,7 +244,17 @@ impl Carried {
 }
 
 impl Shown {
-    fn carry(&mut self, steps: &[Step]) {
+    fn plus(mut self, other: Self) -> Self {
+        for (raised, other) in self.raised.iter_mut().zip(&other.raised) {
+            *raised = raised.plus(other);
+        }
+        for (own, other) in self.momenta.iter_mut().zip(other.momenta) {
+            *own = (own.0.plus(&other.0), own.1 + other.1);
+        }
+        self
+    }
+
+    fn at_parent(mut self, steps: &[Step]) -> Self {
         for raised in &mut self.raised {
             *raised = wrench_to_parent(steps, raised);
         }
@@ -235,6 +262,7 @@ impl Shown {
             *momentum = wrench_to_parent(steps, momentum);
             *transposed = super::to_parent(steps, transposed);
         }
+        self
     }
 }
 

@@ -19,21 +19,21 @@ struct Stretch<'a> {
 }
 
 impl Tree<'_> {
-    /// The efforts of the springs and limits at a body's joint, one per degree of freedom; none where it has no spring.
+    /// The efforts of the springs and limits at the joint that a body stands for, one per degree of freedom; none where it has no spring. They may name
+    /// any body of the joint.
     pub(super) fn spring_efforts(&self, index: usize) -> Vec<Sym> {
         let elements = &self.model.elements;
+        let own = self.model.carried(index);
         let springs = elements.joint_springs.iter();
-        let springs = springs.filter(|spring| spring.body == index);
+        let springs = springs.filter(|spring| own.contains(&spring.body));
         let turned = elements.rotation_springs.iter();
-        let turned = turned.filter(|spring| spring.body == index);
+        let turned = turned.filter(|spring| own.contains(&spring.body));
         let each = springs
-            .map(|spring| about(&spring.name, || self.joint_spring(index, spring)))
-            .chain(
-                turned.map(|spring| about(&spring.name, || self.rotation_spring(index, spring))),
-            );
-        let limits = elements.limits.iter().filter(|limit| limit.body == index);
-        let limits =
-            limits.map(|limit| about(&limit.name, || vec![self.limit_effort(index, limit)]));
+            .map(|spring| about(&spring.name, || self.joint_spring(spring)))
+            .chain(turned.map(|spring| about(&spring.name, || self.rotation_spring(spring))));
+        let limits = elements.limits.iter();
+        let limits = limits.filter(|limit| own.contains(&limit.body));
+        let limits = limits.map(|limit| about(&limit.name, || vec![self.limit_effort(limit)]));
         let each = each.chain(limits);
         let add =
             |sum: Vec<Sym>, next: Vec<Sym>| sum.into_iter().zip(next).map(|(a, b)| a + b).collect();
@@ -84,8 +84,8 @@ impl Tree<'_> {
     }
 
     /// `τ = −S₀⁻ᵀ D⁻ᵀ K ϕ`.
-    fn joint_spring(&self, index: usize, spring: &JointSpring) -> Vec<Sym> {
-        let joint = self.joint_at(index, &[]);
+    fn joint_spring(&self, spring: &JointSpring) -> Vec<Sym> {
+        let joint = self.joint_at(spring.body, &[]);
         let Stretch { rest, phi, load } = self.stretch(spring);
         let rates = joint.velocity_map_inverse();
         let effort = |column: &Vec<Sym>| {
@@ -100,8 +100,8 @@ impl Tree<'_> {
     }
 
     /// `−k vee(½(R − Rᵀ))` on the rotation R from rest, by X or by X^c, whichever depends less on the configuration.
-    fn rotation_spring(&self, index: usize, spring: &RotationSpring) -> Vec<Sym> {
-        let joint = self.joint_at(index, &[]);
+    fn rotation_spring(&self, spring: &RotationSpring) -> Vec<Sym> {
+        let joint = self.joint_at(spring.body, &[]);
         let rotation = joint.rotation();
         let back = spring.rest.transpose().map(Sym::from);
         let (parent, child) = (joint.freedoms_in_parent(), joint.freedoms());
@@ -132,8 +132,8 @@ impl Tree<'_> {
     }
 
     /// `−k x max(0, 1 + d ẋ)` beyond the upper limit by x, and the opposite beyond the lower one.
-    fn limit_effort(&self, index: usize, limit: &JointLimit) -> Sym {
-        let rate = self.bodies[index].speeds[0];
+    fn limit_effort(&self, limit: &JointLimit) -> Sym {
+        let rate = self.bodies[limit.body].speeds[0];
         let sides = self.beyond(limit).into_iter();
         let efforts = sides.map(|(by, sign)| {
             let press = Sym::from(sign * limit.stiffness) * positive(by);

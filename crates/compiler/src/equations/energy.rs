@@ -82,7 +82,7 @@ impl Tree<'_> {
         if let Some(coupling) = self.coupling() {
             momenta = self.coupled_momenta(&coupling, &momenta);
         }
-        for (index, body) in self.bodies.iter().enumerate() {
+        for (index, body) in self.joints() {
             if self.model.bodies[index].driven {
                 momenta[body.share.speeds.clone()].copy_from_slice(&body.speeds);
             }
@@ -99,7 +99,7 @@ impl Tree<'_> {
             for (j, place) in body.share.speeds.clone().enumerate() {
                 let rotors = body.speeds.iter().enumerate();
                 let rotors = rotors.map(|(k, &speed)| self.armature(index, j, k) * speed);
-                momenta[place] = body.columns[j].dot(&composites[index]) + rotors.sum::<Sym>();
+                momenta[place] += body.columns[j].dot(&composites[index]) + rotors.sum::<Sym>();
             }
             if let Some(parent) = body.parent {
                 let carried = wrench_to_parent(&body.steps, &composites[index]);
@@ -140,7 +140,7 @@ impl Tree<'_> {
         if let Some(coupling) = &coupling {
             rates = self.coupled_momenta(coupling, &rates);
         }
-        for (index, body) in self.bodies.iter().enumerate() {
+        for (index, body) in self.joints() {
             if let Some(given) = self.prescribed(index, Argument::Efforts) {
                 rates[body.share.speeds.clone()].copy_from_slice(&given);
             }
@@ -165,7 +165,7 @@ impl Tree<'_> {
             let turned = wrenches[index].plus(&twists[index].bracket_dual(&momenta[index]));
             let moved = self.bias_momentum(index, &momenta[index]);
             for (j, place) in body.share.speeds.clone().enumerate() {
-                rates[place] = efforts[j] + body.columns[j].dot(&turned) + moved[j];
+                rates[place] += efforts[j] + body.columns[j].dot(&turned) + moved[j];
             }
             if let Some(parent) = body.parent {
                 let [momentum, wrench] = [&momenta[index], &wrenches[index]]

@@ -54,7 +54,7 @@ impl Tree<'_> {
         let inverse = factors.inverse();
         let size = inverse.len();
         let mut columns = vec![];
-        for (index, body) in self.bodies.iter().enumerate() {
+        for (index, body) in self.joints() {
             section(number(index), "response");
             let places = body.share.speeds.clone();
             for (b, basis) in body.basis.iter().enumerate() {
@@ -89,7 +89,7 @@ impl Tree<'_> {
 
     /// Columns of derivatives in all efforts.
     fn along_efforts(&self, values: &Slopes) -> Vec<Vec<Sym>> {
-        let each = self.bodies.iter().enumerate().flat_map(|(index, body)| {
+        let each = self.joints().flat_map(|(index, body)| {
             let own = body.share.freedoms.clone();
             own.map(move |freedom| (index, freedom))
         });

@@ -3,12 +3,17 @@
 //! Accelerations are classical ones, of points: the second derivative of the origin's place, in the body's own axes. With them no linear
 //! velocity occurs, `f = m a + α × h + ω × (ω × h)` and `n = I α + h × a + ω × I ω` with h the first moment. Gravity is an acceleration of the
 //! world, upwards.
+//!
+//! Of a joint that carries several bodies, each has a [`Placed`] of its own, as if the joint carried it alone. What is linear in the bodies is found for
+//! each of them and added up in the joint's rows; what acts at the joint is found for the first of them. The elimination of articulated bodies alone
+//! takes them together (`elimination`).
 
 pub mod articulated;
 mod composite;
 mod coupling;
 mod derivatives;
 mod elements;
+mod elimination;
 mod energy;
 mod external;
 mod forward_derivatives;
@@ -81,6 +86,17 @@ impl<'a> Tree<'a> {
         }
     }
 
+    /// The joints, each with the index of the body that stands for it.
+    fn joints(&self) -> impl Iterator<Item = (usize, &Placed)> {
+        let joints = self.model.joints();
+        joints.map(|(index, _)| (index, &self.bodies[index]))
+    }
+
+    /// Whether the joint under a body carries several.
+    fn carries_several(&self, index: usize) -> bool {
+        self.model.carried(index).len() > 1
+    }
+
     /// The Q of a body's joint.
     fn coordinates(&self, index: usize) -> Vec<Sym> {
         let places = self.bodies[index].share.configuration.clone();
@@ -149,9 +165,13 @@ impl<'a> Tree<'a> {
         })
     }
 
-    /// τ̄ = S̄ᵀτ with τ the argument, the constant efforts, the dampers, the springs and the rotors of a body's joint.
+    /// τ̄ = S̄ᵀτ with τ the argument, the constant efforts, the dampers, the springs and the rotors of the joint that a body stands for; 0 for further
+    /// bodies of a joint.
     fn efforts(&self, index: usize, argument: Option<Argument>) -> Vec<Sym> {
         let (body, placed) = (&self.model.bodies[index], &self.bodies[index]);
+        if !body.leads() {
+            return vec![Sym::zero(); placed.speeds.len()];
+        }
         section(number(index), "spring");
         let springs = self.spring_efforts(index);
         section(number(index), "rotors");
@@ -202,7 +222,7 @@ impl<'a> Tree<'a> {
         })
     }
 
-    /// `S̄ᵀ diag(armature) S̄` of a body's joint.
+    /// `S̄ᵀ diag(armature) S̄` of the joint that a body stands for; 0 for further bodies of a joint.
     fn armature(&self, index: usize, j: usize, k: usize) -> Sym {
         let body = &self.model.bodies[index];
         let rows = body.armature.iter().zip(&self.bodies[index].basis);
@@ -210,7 +230,7 @@ impl<'a> Tree<'a> {
             .sum()
     }
 
-    /// Whether a body's joint has armature.
+    /// Whether the joint that a body stands for has armature.
     fn has_armature(&self, index: usize) -> bool {
         self.model.bodies[index]
             .armature
@@ -273,6 +293,13 @@ fn wrench_to_parent(steps: &[Step], wrench: &Wrench) -> Wrench {
     let steps = steps.iter().rev();
     steps.fold(wrench.clone(), |wrench, step| {
         step.wrench_to_parent(&wrench)
+    })
+}
+
+/// Wrenches on bodies that hang on one parent, each with the steps of its body, as one there.
+fn wrenches_to_parent<'a>(wrenches: impl Iterator<Item = (&'a [Step], Wrench)>) -> Wrench {
+    wrenches.fold(Wrench::zero(), |sum, (steps, wrench)| {
+        sum.plus(&wrench_to_parent(steps, &wrench))
     })
 }
 

@@ -94,7 +94,7 @@ impl Tree<'_> {
                 .collect::<Vec<_>>()
         });
         let mut efforts = self.inverse_dynamics(rates.as_deref());
-        for (index, body) in self.bodies.iter().enumerate() {
+        for (index, body) in self.joints() {
             section(number(index), "effort");
             for (place, applied) in body.share.speeds.clone().zip(self.efforts(index, None)) {
                 efforts[place] -= applied;
@@ -177,7 +177,7 @@ impl Tree<'_> {
                         effort += self.armature(index, j, k) * rates[other];
                     }
                 }
-                efforts[place] = effort;
+                efforts[place] += effort;
             }
             if let Some(parent) = body.parent {
                 seen[parent].push(wrench_to_parent(&body.steps, &wrenches[index]).settled());

@@ -158,10 +158,9 @@ impl Articulated {
         }
     }
 
-    /// `I − y yᵀ / d`, with `scaled = y / d`; what `freedom` moves is free of inertia afterwards, exactly.
+    /// `I − y yᵀ / d`, with `scaled = y / d`; of an entry of twists that is said to be `free` nothing is left, exactly.
     #[must_use]
-    pub fn without(&self, freedom: &Twist, y: &Wrench, scaled: &Wrench) -> Self {
-        let free = freedom.unit_entry();
+    pub fn without(&self, free: Option<usize>, y: &Wrench, scaled: &Wrench) -> Self {
         let entries =
             |w: &Wrench| -> Vec<Sym> { w.moment.iter().chain(&w.force).copied().collect() };
         let (y, scaled) = (entries(y), entries(scaled));

@@ -14,7 +14,7 @@ pub type IsOwn = fn(&File) -> bool;
 /// A file that may be written.
 #[derive(Clone, Debug)]
 pub struct Output {
-    /// As the user names it.
+    /// As the user names it; `stdout` where it is that.
     pub(super) named: PathBuf,
     pub(super) place: Place,
     /// Whether nothing may have the name yet.
@@ -30,6 +30,16 @@ pub(super) enum Place {
     File(PathBuf),
     /// To a pipe or a device.
     Stream,
+    /// To stdout.
+    Stdout,
+}
+
+/// The name of stdout where a file could be named; a file of this name is `./-`.
+const STDOUT: &str = "-";
+
+/// Whether a path names stdout.
+pub fn is_stdout(path: &Path) -> bool {
+    path == Path::new(STDOUT)
 }
 
 /// Files by which outputs are told apart.
@@ -42,11 +52,15 @@ struct Known {
     place: Option<PathBuf>,
 }
 
+/// Why a second output is not admitted to stdout.
+const TWO_ON_STDOUT: &str =
+    "`-` is stdout, and takes one output: name a file for the other, `./-` for a file of that name";
+
 /// The files `written`, each with what knows those of its kind, of a command that reads the files `read`.
 ///
 /// # Errors
 /// A folder that is not there, or that is named as a file. All outputs that are read, by whatever name, link or hard link; that are another output, or where stdout goes;
-/// that this program did not write or that are read-only, unless `force`.
+/// that this program did not write or that are read-only, unless `force`. A second output that is stdout, `-`.
 pub fn admit<'a>(
     read: impl IntoIterator<Item = &'a Path>,
     written: impl IntoIterator<Item = (&'a Path, IsOwn)>,
@@ -63,6 +77,12 @@ pub fn admit<'a>(
     let mut outputs = vec![];
     for (path, is_own) in written {
         let output = Output::new(path, is_own, force)?;
+        if output.is_stdout() {
+            let is_second = outputs.iter().any(Output::is_stdout);
+            refused.extend(is_second.then(|| TWO_ON_STDOUT.to_owned()));
+            outputs.push(output);
+            continue;
+        }
         let file = Known::new(path, "is written by the same command");
         let refusal = file.refusal(path, &known);
         refused.extend(refusal.or_else(|| output.refusal()));
@@ -90,6 +110,15 @@ pub fn new_file(path: &Path) -> Result<Output, Failure> {
 impl Output {
     fn new(path: &Path, is_own: IsOwn, force: bool) -> Result<Self, Failure> {
         let failed = |error| Failure::write(path, error);
+        if is_stdout(path) {
+            return Ok(Self {
+                named: PathBuf::from("stdout"),
+                place: Place::Stdout,
+                is_new: false,
+                is_own,
+                force,
+            });
+        }
         let place = match fs::metadata(path) {
             Ok(found) if found.is_dir() => {
                 return Err(failed(io::ErrorKind::IsADirectory.into()));
@@ -106,9 +135,14 @@ impl Output {
         })
     }
 
-    /// As the user names it.
+    /// As the user names it; `stdout` where it is that.
     pub fn path(&self) -> &Path {
         &self.named
+    }
+
+    /// Whether it goes to stdout.
+    pub const fn is_stdout(&self) -> bool {
+        matches!(self.place, Place::Stdout)
     }
 
     /// Begins to write it.

@@ -22,11 +22,13 @@ enum Sink {
     Beside(Unfinished<NamedTempFile>),
     /// A pipe or a device, which has no other name.
     Straight(File),
+    Stdout(io::Stdout),
 }
 
 impl Draft {
     pub(super) fn open(output: Output) -> io::Result<Self> {
         let file = match &output.place {
+            Place::Stdout => Sink::Stdout(io::stdout()),
             Place::Stream => Sink::Straight(OpenOptions::new().write(true).open(&output.named)?),
             Place::File(place) => {
                 let folder = place.parent().unwrap_or(Path::new("."));
@@ -52,9 +54,10 @@ impl Draft {
         }
     }
 
-    fn sink(&mut self) -> io::Result<&mut File> {
+    fn sink(&mut self) -> io::Result<&mut dyn Write> {
         match &mut self.file {
             Sink::Straight(file) => Ok(file),
+            Sink::Stdout(stdout) => Ok(stdout),
             Sink::Beside(file) => match file.get_mut() {
                 Some(file) => Ok(file.as_file_mut()),
                 None => Err(io::ErrorKind::NotFound.into()),

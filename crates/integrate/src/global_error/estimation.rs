@@ -1,12 +1,12 @@
 //! The way from companions to errors.
 
 use super::companion::{Companion, Path, distance};
-use super::{Doubt, ErrorParts, GlobalError, Run};
+use super::{Doubt, ErrorParts, GlobalError, Run, accelerations};
 use crate::{Form, Method, Options, Scheme, Solution, State, Step, StepControl};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
-use hamel_runtime::dynamics::{Dynamics, Recursive};
+use hamel_runtime::dynamics::Dynamics;
 use hamel_runtime::mechanism::Mechanism;
 use num_traits::Float;
 
@@ -59,11 +59,15 @@ const DOUBTED_ORDER: f64 = 0.4;
 /// At least so much of the distance at the times beside it, two motions are taken to be from each other.
 const CROSSING: f64 = 0.3;
 
+/// The highest order of methods whose errors fall evenly where something bends: stages of higher ones come past the end of a step by more than the error that is told of it.
+const HIGHEST_AT_BENDS: u32 = 5;
+
 /// Errors above this part of the motion are not small, so that nothing about them is linear.
 const LARGE: f64 = 1e-2;
 /// An estimate that is being made.
 pub(super) struct Estimation<'a, 'r> {
-    mechanism: &'a Arc<Mechanism>,
+    dynamics: &'a mut dyn Dynamics,
+    mechanism: Arc<Mechanism>,
     initial: &'a State,
     options: &'a Options,
     solution: &'a Solution,
@@ -74,14 +78,15 @@ pub(super) struct Estimation<'a, 'r> {
 
 impl<'a, 'r> Estimation<'a, 'r> {
     pub(super) fn new(
-        mechanism: &'a Arc<Mechanism>,
+        dynamics: &'a mut dyn Dynamics,
         initial: &'a State,
         options: &'a Options,
         solution: &'a Solution,
         run: &'a mut Run<'r>,
     ) -> Self {
         Self {
-            mechanism,
+            mechanism: Arc::clone(dynamics.mechanism()),
+            dynamics,
             initial,
             options,
             solution,
@@ -120,6 +125,10 @@ impl<'a, 'r> Estimation<'a, 'r> {
         let is_exponential = *self.options.method.scheme() == Scheme::Exponential;
         if is_exponential && errors.iter().any(|error| error.total() < OSCILLATIONS) {
             self.doubt.get_or_insert(Doubt::Oscillations);
+        }
+        let count = self.solution.statistics.bends;
+        if count > 0 && self.order() > HIGHEST_AT_BENDS {
+            self.doubt.get_or_insert(Doubt::Bends { count });
         }
         GlobalError {
             samples,
@@ -253,34 +262,51 @@ impl<'a, 'r> Estimation<'a, 'r> {
             true => self.conditioning(method, other, times),
             false => (None, Vec::new()),
         };
-        let mut dynamics = Recursive::new(Arc::clone(self.mechanism));
+        let scatter = self.scatter(times);
         let errors = from_steps.into_iter().enumerate().map(|(i, steps)| {
             let growth = growth.get(i).copied().unwrap_or(1.0);
-            let unit = self.unit(&mut dynamics, &times[i]);
-            let rounding = unit * growth.max(other.paths[i]).max(1.0);
+            let length = times[i].time - self.initial.time;
+            let rounding = self.unit(&times[i]) * growth.max(other.paths[i]).max(1.0);
+            let rounding = rounding.max(Float::sqrt(length) * scatter);
             ErrorParts { steps, rounding }
         });
         (errors.collect(), conditioning)
     }
 
+    /// What rounding of accelerations makes of velocities over the root of the time: it is another one at every step, so that it adds up as a random walk does.
+    fn scatter(&mut self, times: &[State]) -> f64 {
+        if self.options.form == Form::Hamiltonian {
+            return 0.0;
+        }
+        let length = self.solution.state.time - self.initial.time;
+        let step = length / self.solution.statistics.steps.max(1) as f64;
+        Float::sqrt(step) * accelerations::rounding(self.dynamics, times)
+    }
+
     /// What one rounding of the state amounts to: half an ulp, and of momenta what these do to speeds.
-    fn unit(&self, dynamics: &mut Recursive, state: &State) -> f64 {
+    fn unit(&mut self, state: &State) -> f64 {
         let unit = 0.5 * f64::EPSILON;
         if self.options.form == Form::Lagrangian {
             return unit;
         }
         let mut rounded = state.clone();
         let mut momenta = state.speeds.clone();
-        let found = dynamics.momenta(&state.configuration, &state.speeds, &mut momenta);
+        let found = self
+            .dynamics
+            .momenta(&state.configuration, &state.speeds, &mut momenta);
         let signs = [unit, -unit].into_iter().cycle();
         for (momentum, sign) in momenta.iter_mut().zip(signs) {
             // A change of a rounding would be lost: this one is a thousand of them.
             *momentum *= 1.0 + 1024.0 * sign;
         }
-        let found = found
-            .and_then(|()| dynamics.speeds(&state.configuration, &momenta, &mut rounded.speeds));
+        let found = found.and_then(|()| {
+            self.dynamics
+                .speeds(&state.configuration, &momenta, &mut rounded.speeds)
+        });
         match found {
-            Ok(()) => (distance(self.mechanism, &rounded, state).unwrap_or(0.0) / 1024.0).max(unit),
+            Ok(()) => {
+                (distance(&self.mechanism, &rounded, state).unwrap_or(0.0) / 1024.0).max(unit)
+            }
             Err(_) => unit,
         }
     }
@@ -400,7 +426,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
     fn distances(&self, some: &[State], others: &[State]) -> Vec<f64> {
         let pairs = some.iter().zip(others);
         pairs
-            .map(|(a, b)| distance(self.mechanism, a, b).unwrap_or(f64::NAN))
+            .map(|(a, b)| distance(&self.mechanism, a, b).unwrap_or(f64::NAN))
             .collect()
     }
 }

@@ -5,6 +5,7 @@
 //! beside the first state: the distance to which it is carried away is the conditioning of the motion, which also multiplies rounding.
 //! The companions together take about as many evaluations as the motion.
 
+mod accelerations;
 mod companion;
 mod estimation;
 mod request;
@@ -12,11 +13,10 @@ mod request;
 use super::{Observer, Options, Solution, State};
 use alloc::format;
 use alloc::string::String;
-use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::fmt::{Display, Formatter};
 use estimation::Estimation;
-use hamel_runtime::mechanism::Mechanism;
+use hamel_runtime::dynamics::Dynamics;
 
 pub use request::Tuned;
 
@@ -53,6 +53,11 @@ pub enum Doubt {
     Steps,
     /// Steps are longer than oscillations, whose rounding no companion tells.
     Oscillations,
+    /// Inputs or elements bend, as at the limit of an effort, under a method of high order: the error of the steps that end there does not fall as that of the others.
+    Bends {
+        /// Steps that end there.
+        count: usize,
+    },
     /// A companion goes through other impacts, stops and starts of joints, or through them in another order.
     Pieces {
         /// What the motion does where they first differ; nothing where it has no more.
@@ -77,6 +82,10 @@ impl Display for Doubt {
             ),
             Self::Oscillations => f.write_str(
                 "the method takes steps longer than oscillations: how rounding adds up over these is not known",
+            ),
+            Self::Bends { count } => write!(
+                f,
+                "efforts bend at {count} times, as at a limit: errors of methods of high order do not fall evenly there; take `dopri5` or `radau5`"
             ),
             Self::Pieces { motion, companion } => {
                 let told = |what: &str| match what {
@@ -112,14 +121,14 @@ pub struct GlobalError {
 /// Runs a companion from this state by these options, with the same inputs as the motion, and without its events; else why there is none.
 pub type Run<'a> = dyn FnMut(&State, &Options, &mut Observer<'_>) -> Result<Solution, String> + 'a;
 impl GlobalError {
-    /// The error of `solution`, which was computed from `initial` by `options`.
+    /// The error of `solution`, which was computed from `initial` by `options`, with equations of motion such as `dynamics` has.
     pub fn estimate(
-        mechanism: &Arc<Mechanism>,
+        dynamics: &mut dyn Dynamics,
         initial: &State,
         options: &Options,
         solution: &Solution,
         run: &mut Run<'_>,
     ) -> Self {
-        Estimation::new(mechanism, initial, options, solution, run).finish()
+        Estimation::new(dynamics, initial, options, solution, run).finish()
     }
 }

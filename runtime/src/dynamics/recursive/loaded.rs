@@ -140,7 +140,7 @@ impl Recursive {
             if let Some(group) = link.group {
                 let own = &mut factors.groups[group];
                 let wrench = factors.wrenches[index];
-                let taken = (x.as_ref(), &mut factors.loads[..]);
+                let taken = (&*x, &mut factors.loads[..]);
                 let felt = self.take_wrench(index, &wrench, own, taken);
                 if let (Some(felt), Some(parent)) = (felt, link.parent) {
                     factors.wrenches[parent] += felt;

@@ -100,8 +100,8 @@ impl Group {
         let size = columns.len();
         for (j, column) in columns.iter().enumerate() {
             let momentum = inertia.apply(column);
-            for i in j..size {
-                self.block[i * size + j] += columns[i].dot(&momentum);
+            for (i, other) in columns.iter().enumerate().skip(j) {
+                self.block[i * size + j] += other.dot(&momentum);
             }
             self.roundings[j] += rounding(inertia, column);
             self.yields[j] += shift_wrench(&momentum, offset);

@@ -3,6 +3,7 @@
 mod attitudes;
 mod choice;
 mod energy;
+mod forms;
 mod stiff;
 mod tolerance;
 

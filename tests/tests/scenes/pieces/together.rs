@@ -240,7 +240,8 @@ fn an_estimate_is_doubted_where_companions_make_other_pieces() {
             let ended = integration.observer(observer).run();
             ended.map_err(|error| error.to_string())
         };
-        GlobalError::estimate(&own.mechanism, &start, &options, &solution, &mut companion)
+        let mut dynamics = Recursive::new(Arc::clone(&own.mechanism));
+        GlobalError::estimate(&mut dynamics, &start, &options, &solution, &mut companion)
     };
     let reliable = estimate(&own);
     assert_eq!(reliable.doubt, None);

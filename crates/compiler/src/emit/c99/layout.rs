@@ -18,6 +18,8 @@ pub struct Share {
     /// Its type.
     joint_type: String,
     is_driven: bool,
+    /// Whether it stands for its joint; what follows is that of the joint.
+    leads: bool,
     /// In which axes v is read; empty where it is the rates of what is stored.
     axes: &'static str,
     configuration: Part,
@@ -44,6 +46,7 @@ pub fn layout(model: &Model) -> Vec<Share> {
             joint: one_line(&body.joint_name),
             joint_type: one_line(&body.joint.derived.spec.name.value),
             is_driven: body.driven,
+            leads: body.leads(),
             axes: axes(&body.joint.derived),
             configuration: part(share.configuration, stored(&body.joint.derived)),
             freedoms: part(share.freedoms, efforts(&body.joint.derived)),

@@ -3,6 +3,10 @@
 //! The program reads the number of a function and its arguments as doubles from its input, and answers with the results; so values cross
 //! bit by bit.
 
+mod agree;
+
+pub use agree::{agree, functions, same};
+
 use hamel_compiler::emit::{Function, c99};
 use hamel_compiler::model::Model;
 use std::fmt::Write as _;

@@ -1,5 +1,10 @@
 //! Mechanisms as the scene compiler takes them, and what it makes of them in double precision.
 
+mod point;
+mod slopes;
+
+pub use point::{Evaluate, Point};
+
 use crate::random;
 use chacha20::ChaCha8Rng;
 use hamel::elements::{
@@ -9,6 +14,7 @@ use hamel::elements::{
 use hamel::mechanism::{Body as TreeBody, Mechanism};
 use hamel::nalgebra::{DMatrix, Vector3};
 use hamel::time_function::Law;
+use hamel_codegen::derived::{KernelKind, Method};
 use hamel_compiler::JointType;
 use hamel_compiler::functions::{Kind, Loops, compile_with};
 use hamel_compiler::graph::Argument;
@@ -68,11 +74,15 @@ fn body(body: &TreeBody, armature: &[f64], driven: bool) -> Body {
     body.joint()
         .parameters(&mut |_, value| parameters.push(value));
     let kind = body.joint().name();
+    let first = joint(kind).unwrap_or_else(|| panic!("`{kind}` is not of the library"));
     Body {
         name: body.name().to_owned(),
         joint_name: body.joint_name().to_owned(),
         parent: body.parent(),
-        joint: joint(kind).unwrap_or_else(|| panic!("`{kind}` is not of the library")),
+        joint: match body.joint().body().checked_sub(1) {
+            None => first,
+            Some(further) => Rc::clone(&first.more[further]),
+        },
         parameters,
         placement: *body.placement(),
         child_placement: *body.child_placement(),
@@ -101,14 +111,14 @@ pub fn evaluate(
     })
 }
 
-/// Random elements for a mechanism: springs of both kinds at half of its joints each, springs between points of every third body and of any
+/// Random elements for a mechanism: springs of both kinds at half of its joints each, in local coordinates where these have a closed form, springs between points of every third body and of any
 /// other or the world, and wrenches in both axes.
 pub fn elements(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Elements {
     let mut elements = Elements::default();
     for (body, owner) in mechanism.joints() {
         let rest = random::configuration(random, mechanism);
         let rest = owner.configuration(&rest).to_vec();
-        if random.random_bool(0.5) {
+        if random.random_bool(0.5) && has_closed_coordinates(owner.joint().name()) {
             let size = owner.ranges().freedoms.len();
             let root = DMatrix::from_vec(size, size, random::numbers(random, size * size));
             let stiffness = match random.random_bool(0.5) {
@@ -157,6 +167,16 @@ pub fn elements(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Elements {
         });
     }
     elements
+}
+
+/// Whether the local coordinates of a joint have a closed form: springs in others are not compiled.
+fn has_closed_coordinates(name: &str) -> bool {
+    let joint = joint(name).unwrap_or_else(|| panic!("`{name}` is not of the library"));
+    let kernels = [KernelKind::Local, KernelKind::RetractDifferentialInverse];
+    kernels.into_iter().all(|kind| {
+        let kernel = joint.derived.kernel(kind);
+        kernel.is_some_and(|kernel| kernel.method == Method::Formula)
+    })
 }
 
 fn vector(random: &mut ChaCha8Rng) -> Vector3<f64> {

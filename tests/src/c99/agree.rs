@@ -1,0 +1,97 @@
+//! Modules in C held against the lines that they are written from, bit by bit, and against the tree.
+
+use super::{Module, Program};
+use crate::compiled::Point;
+use hamel::mechanism::Mechanism;
+use hamel_compiler::emit::Function;
+use hamel_compiler::functions::{Kind, Loops, compile};
+use hamel_compiler::graph::Argument;
+use hamel_compiler::model::Model;
+use std::cell::RefCell;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Operations of a module from which on it is not optimised here.
+const LONG: usize = 20_000;
+
+/// States of each scene whose values are compared.
+const STATES: u64 = 3;
+
+/// The functions of a model that are not too long, as a module has them; of derivatives those that a compiler is done with soon.
+pub fn functions(model: &Model) -> Vec<Function> {
+    let function = |kind: Kind| {
+        let function = compile(model, kind, Loops::default()).ok()?.function;
+        let derivatives = [Kind::ForwardDerivatives, Kind::InverseDerivatives];
+        let is_short = !derivatives.contains(&kind) || function.written() < LONG;
+        is_short.then_some(function)
+    };
+    Kind::ALL.into_iter().filter_map(function).collect()
+}
+
+/// Whether the bits are the same; any NaN is as good as another.
+pub fn same(a: &[f64], b: &[f64]) -> bool {
+    let pairs = a.iter().zip(b);
+    let mut same = pairs.map(|(a, b)| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan());
+    a.len() == b.len() && same.all(|same| same)
+}
+
+/// Builds modules of all functions that are not too long in `folder`: they have the bits of their evaluated lines, and the values of the tree.
+///
+/// # Panics
+/// Where one has not.
+pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)]) {
+    let functions: Vec<Vec<Function>> = scenes.iter().map(|(_, model)| functions(model)).collect();
+    let named = scenes.iter().zip(&functions).enumerate();
+    let modules: Vec<Module<'_>> = named
+        .map(|(i, ((_, model), functions))| Module {
+            name: format!("scene_{i}"),
+            model,
+            functions,
+            optimisation: match functions.iter().map(Function::written).sum::<usize>() {
+                // Compilers take more time for a long function than for many short ones.
+                ..LONG => "-O1",
+                _ => "-O0",
+            },
+        })
+        .collect();
+    let Some(program) = Program::new(folder, &modules) else {
+        return;
+    };
+    let program = RefCell::new(program);
+    for (i, (mechanism, model)) in scenes.iter().enumerate() {
+        let by = |_: &Model, (kind, loops): (Kind, Loops), q: &[f64], v: &[f64], u: &[f64]| {
+            let mut compiled = functions[i].iter();
+            // What would be too long is not in the module.
+            let Some(function) = compiled.find(|one| one.name == kind.name()) else {
+                return crate::compiled::evaluate(model, (kind, loops), q, v, u);
+            };
+            let given = |argument| match argument {
+                Argument::Configuration => q,
+                Argument::Speeds | Argument::Momenta => v,
+                Argument::Efforts | Argument::Accelerations => u,
+            };
+            let arguments = function.arguments.iter();
+            let arguments: Vec<&[f64]> = arguments.map(|&(one, _)| given(one)).collect();
+            let name = format!("scene_{i}");
+            let found = program.borrow_mut().call(&name, function.name, &arguments);
+            let expected = function.evaluate(|argument| given(argument).to_vec());
+            assert!(
+                same(&found, &expected),
+                "{}, {kind:?}: {found:?} and {expected:?}",
+                model.name
+            );
+            found
+        };
+        for seed in 0..STATES {
+            let point = || {
+                Point::random(model.clone(), mechanism, 100 * seed + i as u64)
+                    .compiled_with(&[Loops::Long])
+            };
+            point().agrees_by(&by);
+            let has = |kind: Kind| functions[i].iter().any(|one| one.name == kind.name());
+            if has(Kind::ForwardDerivatives) && has(Kind::InverseDerivatives) {
+                point().derivatives_agree_by(&by);
+            }
+        }
+    }
+}
