@@ -60,8 +60,7 @@ fn by_relations(derived: &Derived, kind: KernelKind, start: &TokenStream) -> Opt
             quote! { #rates ::hamel::finite::inverse(&::hamel::finite::along_tangent(&rates, #bases)) }
         }
         KernelKind::RetractDifferentialInverse => {
-            let rates =
-                displacement_rates(is_bent, &quote! { self.tangent_basis(&moved) * rate });
+            let rates = displacement_rates(is_bent, &quote! { self.tangent_basis(&moved) * rate });
             quote! { #rates ::hamel::finite::along_tangent(&rates, #bases) }
         }
         // A guess may be far away, and off the factors.
