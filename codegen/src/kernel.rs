@@ -45,6 +45,8 @@ pub enum KernelKind {
     NormalBasis,
     /// Q exp(ξ) at a finite displacement ξ.
     Displaced,
+    /// dexp(ξ): ξ̇ to Q′⁻¹Q̇′ at Q′ = Q exp(ξ), where it is not the identity.
+    DisplacedDifferential,
     /// ξ = log(Q⁻¹Q′).
     Displacement,
     /// Differential D of Φ at finite ϕ.
@@ -53,6 +55,8 @@ pub enum KernelKind {
     RetractDifferentialInverse,
     /// The relations of the manifold, as a column: only where the spec declares some.
     Relations,
+    /// ∂φ(Q): displacements of Q to changes of the declared relations, where these alone say how Q moves.
+    RelationGradient,
     /// Projection onto the manifold.
     Project,
     /// Residual of the manifold's relations.

@@ -310,8 +310,9 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
 
     /// The configuration on the manifold that is nearest to `q`, for `q` off it by rounding or input error.
     ///
-    /// Where the manifold is one of declared relations, it is found by [`finite::project`](crate::finite::project): NaN in
-    /// every entry where that does not converge.
+    /// Where the manifold is one of declared relations, it is found by [`finite::project`](crate::finite::project), or, where these
+    /// alone give Φ, by [`finite::project_by_displacements`](crate::finite::project_by_displacements): NaN in every entry where that
+    /// does not converge.
     fn project<T: Scalar>(&self, q: &SVector<T, N>) -> SVector<T, N> {
         const {
             assert!(

@@ -26,6 +26,10 @@ pub struct Flow {
     pub regular: Expr,
     /// ∂S/∂ϕ_l, from the motion of Q alone; S₀ = I.
     pub slopes: Vec<Matrix>,
+    /// ∂φ, c×dim G.
+    pub gradient: Matrix,
+    /// Whether ϕ adds up along every motion, so that S = I at finite ϕ.
+    pub adds: bool,
 }
 
 /// Derivatives along the standard directions of G.
@@ -81,6 +85,8 @@ pub fn expand(
         motion,
         Flow {
             tangent,
+            adds: adds(joint, implicit, &normal),
+            gradient: directions.gradient,
             normal,
             regular,
             slopes,
@@ -251,10 +257,7 @@ fn slopes(
     let ideal = joint.space.manifold.ideal();
     let k = tangent.columns();
     let left = match implicit {
-        Implicit::Independent(chosen) => {
-            let whole = columns(joint, chosen).beside(normal);
-            algebra::left_inverse(&whole).block(0, 0, k, whole.rows())
-        }
+        Implicit::Independent(chosen) => upper(&columns(joint, chosen), normal),
         Implicit::CrossProduct => tangent
             .transpose()
             .scale(&regular.recip().unwrap_or_default()),
@@ -273,6 +276,27 @@ fn slopes(
         ideal.simplest_entries(&left.times(&right))
     };
     (0..k).map(slope).collect()
+}
+
+/// P with `P E = I` and `P N = 0` for the independent directions E: what a displacement has along them, k×dim G.
+fn upper(chosen: &Matrix, normal: &Matrix) -> Matrix {
+    let whole = chosen.beside(normal);
+    algebra::left_inverse(&whole).block(0, 0, chosen.columns(), whole.rows())
+}
+
+/// Whether `P dexp(ξ) = P` at every ξ: then `P B = I` at every Q makes ϕ̇ the same v all along Φ. That is where P takes every bracket to 0.
+fn adds(joint: &Prepared, implicit: &Implicit, normal: &Matrix) -> bool {
+    let Implicit::Independent(chosen) = implicit else {
+        return false;
+    };
+    let left = upper(&columns(joint, chosen), normal);
+    let size = left.columns();
+    let unit = |n: usize| Matrix::identity(size).column(n);
+    let mut pairs = (0..size).flat_map(|i| (0..i).map(move |j| (i, j)));
+    pairs.all(|(i, j)| {
+        let bracket = Matrix::column_vector(bracket(joint, &unit(i), &unit(j)));
+        left.times(&bracket).is_zero()
+    })
 }
 
 /// [a, b] in the standard directions of G.

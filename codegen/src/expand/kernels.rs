@@ -1,6 +1,6 @@
 //! The kernels of a joint from its expansion, in the order in which they are emitted.
 
-use super::{Expansion, Flow, finite, general, hamel, implicit};
+use super::{Expansion, Flow, finite, general, hamel, implicit, structure_constants};
 use crate::diagnostic::Diagnostic;
 use crate::domain::{Critical, Domain};
 use crate::expr::Symbol;
@@ -190,20 +190,39 @@ impl Maker<'_> {
             displacement,
             Structure::General,
         );
-        let solved = [
-            (KernelKind::Retract, Method::Newton),
-            (KernelKind::Local, Method::Solve),
-            (KernelKind::RetractDifferential, Method::Solve),
-            (KernelKind::RetractDifferentialInverse, Method::Solve),
-        ];
+        let (steps, differential) =
+            finite::retract_differential(&free, &structure_constants(&free))?;
+        let differential = (!differential.is_identity()).then(|| {
+            let kind = KernelKind::DisplacedDifferential;
+            with(kind, steps, differential, Structure::General)
+        });
         let bases = [
             plain(KernelKind::TangentBasis, vec![flow.tangent.clone()]),
             plain(KernelKind::NormalBasis, vec![flow.normal.clone()]),
+            plain(KernelKind::RelationGradient, vec![flow.gradient.clone()]),
             displaced,
             displacement,
+            by_runtime(KernelKind::Retract, Method::Newton),
+            by_runtime(KernelKind::Local, Method::Solve),
         ];
-        let solved = solved.map(|(kind, method)| by_runtime(kind, method));
-        Some(bases.into_iter().chain(solved).collect())
+        let all = bases.into_iter().chain(differential);
+        Some(all.chain(self.implicit_differentials(flow)).collect())
+    }
+
+    /// D and D⁻¹ where relations alone give Φ.
+    fn implicit_differentials(&self, flow: &Flow) -> [Kernel; 2] {
+        let rate = Matrix::symbols(&self.x.arguments.velocity);
+        let identities = [
+            (
+                KernelKind::RetractDifferential,
+                Matrix::identity(rate.rows()),
+            ),
+            (KernelKind::RetractDifferentialInverse, rate),
+        ];
+        identities.map(|(kind, identity)| match flow.adds {
+            true => with(kind, vec![], identity, Structure::Identity),
+            false => by_runtime(kind, Method::Solve),
+        })
     }
 
     /// Projection and residual; Newton's method where the spec declares relations.

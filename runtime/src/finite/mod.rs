@@ -12,11 +12,9 @@ mod solve;
 #[cfg(test)]
 mod tests;
 
-pub use implicit::{
-    RETRACT_ITERATIONS, along_tangent, retract, retract_differential, retract_differential_inverse,
-};
+pub use implicit::{RETRACT_ITERATIONS, along_tangent, retract};
 pub use invert::{LOCAL_ITERATIONS, differential, differential_inverse, local};
-pub use project::{PROJECT_ITERATIONS, project};
+pub use project::{PROJECT_ITERATIONS, project, project_by_displacements};
 pub use solve::{inverse, least_squares};
 
 use crate::scalar::{Dual, Scalar};

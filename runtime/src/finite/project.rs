@@ -1,10 +1,10 @@
 //! Projection onto a manifold that is given by relations, redundant ones among them.
 
-use super::{norm, unless_apart, with_jacobian};
+use super::{least_squares, norm, unless_apart, with_jacobian};
 use crate::scalar::{Dual, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-/// Bound on the iterations of [`project`]: quadratic convergence needs 5 from an error of a tenth; the others are for
+/// Bound on the iterations of [`project`] and [`project_by_displacements`]: quadratic convergence needs 5 from an error of a tenth; the others are for
 /// points farther away.
 pub const PROJECT_ITERATIONS: usize = 12;
 
@@ -27,6 +27,28 @@ pub fn project<T: Scalar, const N: usize, const R: usize>(
     let apart = norm(&left.values);
     let step = norm(&left.shortest_solution(codimension));
     unless_apart(&q, apart + step, norm(&q))
+}
+
+/// The point `start exp(ξ) exp(ξ₂) …` of a manifold in a group, of dimension G, each displacement the shortest that Newton's method asks for;
+/// NaN in every entry where it does not converge within [`PROJECT_ITERATIONS`].
+///
+/// To second order in the distance of `start` it is the point that the shortest displacement leads to. `displaced` is Q exp(ξ);
+/// `relations` has their values at Q, C of them and all independent, and their derivatives along displacements of Q, C×G.
+pub fn project_by_displacements<T: Scalar, const N: usize, const G: usize, const C: usize>(
+    start: &SVector<T, N>,
+    displaced: impl Fn(&SVector<T, N>, &SVector<T, G>) -> SVector<T, N>,
+    relations: impl Fn(&SVector<T, N>) -> (SVector<T, C>, SMatrix<T, C, G>),
+) -> SVector<T, N> {
+    let shortest = |q: &SVector<T, N>| {
+        let (values, slopes) = relations(q);
+        let back = slopes.transpose();
+        -(back * least_squares(&(slopes * back), &values))
+    };
+    let mut q = *start;
+    for _ in 0..PROJECT_ITERATIONS {
+        q = displaced(&q, &shortest(&q));
+    }
+    unless_apart(&q, norm(&shortest(&q)), norm(&q))
 }
 
 /// `direction_j · δ = −value_j`, one equation a relation, each scaled to a unit direction.

@@ -19,8 +19,8 @@ pub fn least_squares<T: Scalar, const N: usize, const K: usize, const M: usize>(
     let (mut triangle, mut side) = (*matrix, *side);
     for k in 0..K {
         let mirror = mirror(&triangle, k);
-        reflect(&mut triangle, &mirror);
-        reflect(&mut side, &mirror);
+        reflect(&mut triangle, &mirror, k);
+        reflect(&mut side, &mirror, k);
     }
     substitute_back(&triangle, &side)
 }
@@ -47,18 +47,17 @@ fn mirror<T: Scalar, const N: usize, const K: usize>(
     u.map(|entry| entry / divisor)
 }
 
+/// Reflects the columns by a mirror that is zero above row `first`.
 fn reflect<T: Scalar, const N: usize, const M: usize>(
     matrix: &mut SMatrix<T, N, M>,
     mirror: &SVector<T, N>,
+    first: usize,
 ) {
-    for mut column in matrix.column_iter_mut() {
-        let share = mirror
-            .iter()
-            .zip(column.iter())
-            .fold(T::zero(), |sum, (&u, &entry)| u.mul_add(entry, sum));
+    for j in 0..M {
+        let share = (first..N).fold(T::zero(), |sum, i| mirror[i].mul_add(matrix[(i, j)], sum));
         let twice = share + share;
-        for (entry, &u) in column.iter_mut().zip(mirror.iter()) {
-            *entry -= twice * u;
+        for i in first..N {
+            matrix[(i, j)] -= twice * mirror[i];
         }
     }
 }

@@ -164,6 +164,23 @@ fn energy_and_relations_are_kept() {
     }
 }
 
+/// The rate of an angle that is named is ϕ̇ all along Φ; a rate along the cross product is read at another Q.
+#[test]
+fn named_angles_add_up() {
+    for (joint, links, adds) in [
+        ("four_bar", &LINKS[..], true),
+        ("slider_crank_rod", &[], true),
+        ("four_bar_through", &[], false),
+    ] {
+        let structures = four_bar(joint, links).bodies()[0].joint().structures();
+        assert_eq!(
+            structures.retract_differential.is_identity(),
+            adds,
+            "{joint}"
+        );
+    }
+}
+
 /// The crank turns back at its dead points while v keeps its sign, and the coupler goes round.
 #[test]
 fn dead_points_of_a_crank_are_passed() {

@@ -136,6 +136,9 @@ impl Signature {
             KernelKind::TangentBasis => ("tangent_basis", q(), Matrix(g, k)),
             KernelKind::NormalBasis => ("normal_basis", q(), Matrix(g, g - k)),
             KernelKind::Displaced => ("displaced", vec![Configuration, Displacement], Vector(n)),
+            KernelKind::DisplacedDifferential => {
+                ("displaced_differential", vec![Displacement], Matrix(g, g))
+            }
             KernelKind::Displacement => ("displacement", vec![Configuration, Target], Vector(g)),
             KernelKind::RetractDifferential => (
                 "retract_differential",
@@ -150,6 +153,7 @@ impl Signature {
             KernelKind::Project => ("project", q(), Vector(n)),
             KernelKind::Residual => ("residual", q(), Scalar),
             KernelKind::Relations => ("relations", q(), Vector(relations)),
+            KernelKind::RelationGradient => ("relation_gradient", q(), Matrix(g - k, g)),
             KernelKind::Singularity => ("singularity", q(), Scalar),
             KernelKind::BiasAcceleration => {
                 ("bias_acceleration", vec![Configuration, Speeds], Vector(6))
@@ -198,6 +202,9 @@ pub fn meaning(kind: KernelKind) -> &'static str {
             "N(Q): displacements along which Φ comes back onto the manifold of the relations."
         }
         KernelKind::Displaced => "Q exp(ξ) at a finite displacement ξ.",
+        KernelKind::DisplacedDifferential => {
+            "dexp(ξ): rates of ξ to the displacement rate Q′⁻¹Q̇′ at Q′ = Q exp(ξ)."
+        }
         KernelKind::Displacement => "The displacement ξ with Q exp(ξ) = `target`.",
         KernelKind::RetractDifferential => {
             "D at finite ϕ: ϕ̇ to `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ); S(Q, ϕ) = S₀(Q′) D."
@@ -210,6 +217,9 @@ pub fn meaning(kind: KernelKind) -> &'static str {
             "Root of the sum of squares of the manifold's relations: 0 on the manifold."
         }
         KernelKind::Relations => "The relations of the manifold: 0 on it.",
+        KernelKind::RelationGradient => {
+            "∂φ(Q): the displacement rate Q⁻¹Q̇ to the rates of the relations that the spec declares."
+        }
         KernelKind::Singularity => {
             "Least absolute value of the functions whose zeros the joint must stay away from."
         }

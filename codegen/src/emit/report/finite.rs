@@ -14,7 +14,7 @@ pub struct FiniteRow {
     pub method: String,
 }
 
-const FINITE: [KernelKind; 12] = [
+const FINITE: [KernelKind; 14] = [
     KernelKind::Retract,
     KernelKind::Local,
     KernelKind::RetractDifferential,
@@ -22,8 +22,10 @@ const FINITE: [KernelKind; 12] = [
     KernelKind::TangentBasis,
     KernelKind::NormalBasis,
     KernelKind::Displaced,
+    KernelKind::DisplacedDifferential,
     KernelKind::Displacement,
     KernelKind::Relations,
+    KernelKind::RelationGradient,
     KernelKind::Project,
     KernelKind::Residual,
     KernelKind::Singularity,

@@ -131,13 +131,15 @@ fn parts(spec: &JointSpec, kind: KernelKind) -> Vec<Part> {
         | KernelKind::TangentBasis
         | KernelKind::NormalBasis
         | KernelKind::Displaced
+        | KernelKind::DisplacedDifferential
         | KernelKind::Displacement
         | KernelKind::Local
         | KernelKind::RetractDifferential
         | KernelKind::RetractDifferentialInverse => vec![&[Manifold, Motion]],
-        KernelKind::Relations | KernelKind::Project | KernelKind::Residual => {
-            vec![&[Manifold]]
-        }
+        KernelKind::Relations
+        | KernelKind::RelationGradient
+        | KernelKind::Project
+        | KernelKind::Residual => vec![&[Manifold]],
         KernelKind::Singularity => vec![&[Loci]],
         KernelKind::BiasAcceleration | KernelKind::BiasMomentum => {
             vec![twist, speeds, &[Pose, Motion]]

@@ -107,7 +107,7 @@ fn claims(report: &Report) -> Vec<String> {
 pub fn kernel(derived: &Derived, kernel: &Kernel, method: &Method<'_>) -> TokenStream {
     let mut lines = vec![meaning(kernel.kind).to_owned()];
     let shape = shape_of(derived, kernel);
-    let cost = match numeric::sentence(kernel) {
+    let cost = match numeric::sentence(derived, kernel) {
         Some(sentence) => sentence.to_owned(),
         None => format!(
             "Operations: {}{}.",

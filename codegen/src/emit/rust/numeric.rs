@@ -10,28 +10,11 @@ pub fn call(derived: &Derived, kernel: &Kernel, start: &TokenStream) -> Option<T
     if kernel.method == Method::Formula {
         return None;
     }
+    if derived.spec.implicit.is_some() {
+        return by_relations(derived, kernel.kind, start);
+    }
     let retract = quote! { |q, phi| self.retract(q, phi) };
-    let bases = quote! { (self.tangent_basis(q), self.normal_basis(q)) };
-    let [declared, own] = relations(derived).map(Literal::usize_unsuffixed);
-    let implicit = quote! {
-        |q| #bases,
-        |q, xi| self.displaced(q, xi),
-        |q| self.relations(q).fixed_rows::<#declared>(#own).into_owned(),
-    };
-    let is_implicit = derived.spec.implicit.is_some();
     Some(match kernel.kind {
-        KernelKind::Retract => quote! {
-            ::hamel::finite::retract((q, phi), #implicit)
-        },
-        KernelKind::Local if is_implicit => quote! {
-            ::hamel::finite::along_tangent(&self.displacement(q, target), #bases)
-        },
-        KernelKind::RetractDifferential if is_implicit => quote! {
-            ::hamel::finite::retract_differential((q, phi), #implicit)
-        },
-        KernelKind::RetractDifferentialInverse if is_implicit => quote! {
-            ::hamel::finite::retract_differential_inverse((q, phi, rate), #implicit)
-        },
         KernelKind::Local => quote! {
             ::hamel::finite::local(q, target, #retract)
         },
@@ -41,12 +24,67 @@ pub fn call(derived: &Derived, kernel: &Kernel, start: &TokenStream) -> Option<T
         KernelKind::RetractDifferentialInverse => quote! {
             ::hamel::finite::differential_inverse(q, phi, rate, #retract)
         },
-        KernelKind::Home | KernelKind::Project => {
-            let codimension = Literal::usize_unsuffixed(codimension(derived));
-            quote! { ::hamel::finite::project(#start, #codimension, |q| self.relations(q)) }
-        }
+        KernelKind::Home | KernelKind::Project => projection(derived, start),
         _ => return None,
     })
+}
+
+fn projection(derived: &Derived, start: &TokenStream) -> TokenStream {
+    let codimension = Literal::usize_unsuffixed(codimension(derived));
+    quote! { ::hamel::finite::project(#start, #codimension, |q| self.relations(q)) }
+}
+
+/// The call where relations alone give Φ.
+fn by_relations(derived: &Derived, kind: KernelKind, start: &TokenStream) -> Option<TokenStream> {
+    let bases = quote! { (self.tangent_basis(q), self.normal_basis(q)) };
+    let [declared, own] = relations(derived).map(Literal::usize_unsuffixed);
+    let relations = quote! { self.relations(q).fixed_rows::<#declared>(#own).into_owned() };
+    let is_bent = derived.kernel(KernelKind::DisplacedDifferential).is_some();
+    Some(match kind {
+        KernelKind::Retract => {
+            let along = match is_bent {
+                true => quote! {
+                    |q, xi| (#relations, self.relation_gradient(q) * self.displaced_differential(xi))
+                },
+                false => quote! { |q, _xi| (#relations, self.relation_gradient(q)) },
+            };
+            quote! {
+                ::hamel::finite::retract(phi, #bases, |xi| self.displaced(q, xi), #along)
+            }
+        }
+        KernelKind::Local => quote! {
+            ::hamel::finite::along_tangent(&self.displacement(q, target), #bases)
+        },
+        KernelKind::RetractDifferential => {
+            let rates = displacement_rates(is_bent, &quote! { self.tangent_basis(&moved) });
+            quote! { #rates ::hamel::finite::inverse(&::hamel::finite::along_tangent(&rates, #bases)) }
+        }
+        KernelKind::RetractDifferentialInverse => {
+            let rates = displacement_rates(is_bent, &quote! { self.tangent_basis(&moved) * rate });
+            quote! { #rates ::hamel::finite::along_tangent(&rates, #bases) }
+        }
+        // A guess may be far away, and off the factors.
+        KernelKind::Home => projection(derived, start),
+        KernelKind::Project => quote! {
+            ::hamel::finite::project_by_displacements(
+                #start,
+                |q, xi| self.displaced(q, xi),
+                |q| (#relations, self.relation_gradient(q)),
+            )
+        },
+        _ => return None,
+    })
+}
+
+/// The rates of the displacement from Q to Q′ = Φ(Q, ϕ), where Q′⁻¹Q̇′ has the values `there`.
+fn displacement_rates(is_bent: bool, there: &TokenStream) -> TokenStream {
+    let bent = is_bent.then(|| {
+        quote! {
+            let differential = self.displaced_differential(&self.displacement(q, &moved));
+            let rates = ::hamel::finite::least_squares(&differential, &rates);
+        }
+    });
+    quote! { let moved = self.retract(q, phi); let rates = #there; #bent }
 }
 
 /// How many relations the spec declares, and how many those of the factors are, which stand before them.
@@ -64,7 +102,9 @@ pub fn is_beside_the_trait(kind: KernelKind) -> bool {
         KernelKind::Relations
             | KernelKind::TangentBasis
             | KernelKind::NormalBasis
+            | KernelKind::RelationGradient
             | KernelKind::Displaced
+            | KernelKind::DisplacedDifferential
             | KernelKind::Displacement
     )
 }
@@ -87,7 +127,7 @@ fn codimension(derived: &Derived) -> usize {
 }
 
 /// How the value is found, in a sentence of a doc comment.
-pub fn sentence(kernel: &Kernel) -> Option<&'static str> {
+pub fn sentence(derived: &Derived, kernel: &Kernel) -> Option<&'static str> {
     match (kernel.method, kernel.kind) {
         (Method::Formula, _) => None,
         (Method::Newton, KernelKind::Local) => Some(
@@ -109,6 +149,9 @@ pub fn sentence(kernel: &Kernel) -> Option<&'static str> {
         (Method::Solve, KernelKind::Local) => {
             Some("The part along B of the displacement from Q to Q′, by a solve with [B, N].")
         }
+        _ if derived.spec.implicit.is_some() => Some(
+            "From B at Q′ = Φ(Q, ϕ), by a solve with [B, N] at Q; the displacement from Q to Q′ is the shortest.",
+        ),
         _ => Some("By a least-squares solve with ∂Φ/∂ϕ at (Q, ϕ) and at (Q′, 0)."),
     }
 }
