@@ -1,6 +1,6 @@
 //! Calls of all kernels. The suite of allocations includes this file too.
 
-use hamel::joint::{Joint, Products};
+use hamel::joint::{Joint, Member, Products};
 use hamel::nalgebra::{SMatrix, SVector};
 use hamel::scalar::Scalar;
 
@@ -13,6 +13,13 @@ pub fn of_library<T: Scalar>(displacement: T) -> T {
         };
     }
     hamel_joints::for_each_joint!(add);
+    macro_rules! add_body {
+        ($module:ident, $joint:ty, $example:expr, $b:literal, $n:literal, $k:literal, $s:literal, $c:literal) => {
+            let body = Member::<$joint, $b>($example);
+            sum += of_joint::<T, Member<$joint, $b>, $n, $k, $s, $c>(&body, displacement);
+        };
+    }
+    hamel_joints::for_each_body!(add_body);
     sum
 }
 

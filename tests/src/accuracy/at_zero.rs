@@ -11,13 +11,13 @@ const DEGREE: usize = 2;
 /// Everything at one Q.
 #[derive(Clone, Debug)]
 pub struct AtZero {
-    /// R of H(Q), with its derivatives along ϕ.
+    /// R of the body's H(Q), with its derivatives along ϕ.
     rotation: Grid<Jet>,
     /// p of H(Q), likewise.
     translation: Grid<Jet>,
-    /// X(Q), likewise.
+    /// X(Q) of the body, likewise.
     twist_map: Grid<Jet>,
-    /// X^c(Q), likewise.
+    /// X^c(Q) of the body, likewise.
     twist_map_child: Grid<Jet>,
     /// S₀(Q).
     velocity_map: Grid<Node>,
@@ -55,12 +55,15 @@ impl AtZero {
     pub fn new(declared: &Declared, still: &[usize], q: &[Node]) -> Self {
         let base = constants(q);
         let moving = declared.moved(&base, &declared.variables(&declared.zero(), 0, DEGREE));
-        let pose = declared.pose(&moving);
-        let jacobian = declared.jacobian(&pose, 0);
+        let mut poses = declared.poses(&moving);
+        let jacobian = declared.jacobian(&poses, 0);
         let x = declared.twist_map(&moving);
         let rates = |map: &Grid<Jet>| with_rates(map, still);
         let (velocity_map, slopes) = velocity_map(&rates(&x), &rates(&jacobian));
         let mismatch = mismatch(&x, &jacobian, &velocity_map, &slopes);
+        let own = |map: &Grid<Jet>| map.rows_of(6 * declared.body, 6);
+        let (x, jacobian) = (own(&x), own(&jacobian));
+        let pose = poses.swap_remove(declared.body);
         Self {
             mismatch,
             twist_map_child: to_child(&pose, &x),

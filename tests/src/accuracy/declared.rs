@@ -2,24 +2,40 @@
 
 use super::environment::Environment;
 use super::jet::{MOST, ONCE};
+use super::relations::Relations;
 use super::{Grid, Jet, Node};
 use hamel_codegen::algebra;
-use hamel_codegen::expr::{Expr, Number, Symbol};
+use hamel_codegen::derived::Derived;
+use hamel_codegen::expr::{Atom, Expr, Number, Symbol};
+use hamel_codegen::manifold::Manifold;
 use hamel_codegen::matrix::Matrix;
-use hamel_codegen::model::{JointSpec, VelocityFrame};
+use hamel_codegen::model::{JointSpec, PoseExpr, VelocityFrame};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What a spec declares, ready for evaluation anywhere.
 #[derive(Clone, Debug)]
 pub struct Declared {
     /// The spec.
     pub spec: JointSpec,
+    /// Which of its bodies is looked at.
+    pub body: usize,
+    /// H in the author's names and, where declared, X of every body.
+    bodies: Vec<(PoseExpr, Option<Matrix>)>,
     /// Symbols of the stored scalars.
     pub coordinates: Vec<Symbol>,
     locals: Vec<Symbol>,
-    /// Φ(Q, ϕ), stored scalars.
-    moved: Vec<Expr>,
+    motion: Motion,
     home: Vec<Expr>,
     parameters: Environment,
+}
+
+/// Φ.
+#[derive(Clone, Debug)]
+enum Motion {
+    /// Φ(Q, ϕ), stored scalars.
+    Explicit(Vec<Expr>),
+    /// By relations alone.
+    Implicit(Relations),
 }
 
 /// H(Q), rotation and translation.
@@ -41,8 +57,15 @@ pub fn constants(values: &[Node]) -> Vec<Jet> {
 }
 
 impl Declared {
-    /// The definition of the joint with these values of its parameters.
-    pub fn new(spec: JointSpec, parameters: &[f64]) -> Self {
+    /// The definition of the joint as one of its bodies sees it, with these values of its parameters.
+    pub fn new(derived: &Derived, body: usize, parameters: &[f64]) -> Self {
+        let spec = derived.spec.clone();
+        let bodies = derived.bodies().map(|own| {
+            let pose = own.spec.worded.poses.first();
+            let pose = pose.unwrap_or(&own.spec.pose.value).clone();
+            let twists = own.spec.twist_map.as_ref();
+            (pose, twists.map(|x| x.value.clone()))
+        });
         let symbols = spec.parameters.iter().map(|parameter| &parameter.symbol);
         let manifold = &spec.manifold.value;
         let home = spec.home.as_ref().map(|home| home.value.clone());
@@ -56,10 +79,9 @@ impl Declared {
                 .iter()
                 .map(|f| f.local.clone())
                 .collect(),
-            moved: spec
-                .retract
-                .as_ref()
-                .map_or_else(|| exponential(&spec), |declared| declared.value.clone()),
+            motion: motion(&spec),
+            body,
+            bodies: bodies.collect(),
             home: home.unwrap_or_else(|| manifold.home()),
             spec,
         }
@@ -72,6 +94,16 @@ impl Declared {
 
     fn at(&self, q: &[Jet]) -> Environment {
         self.parameters.with(&self.coordinates, q)
+    }
+
+    /// With the values of the author's names: H is evaluated as it is written, so that the sum of two angles is an inexact argument.
+    fn in_words(&self, q: &[Jet]) -> Environment {
+        let mut at = self.at(q);
+        for named in &self.spec.worded.named {
+            let value = at.evaluate(&named.value);
+            at = at.with([&named.symbol], &[value]);
+        }
+        at
     }
 
     /// Expressions of Q and the parameters.
@@ -87,7 +119,18 @@ impl Declared {
 
     /// Φ(Q, ϕ).
     pub fn moved(&self, q: &[Jet], phi: &[Jet]) -> Vec<Jet> {
-        self.at(q).with(&self.locals, phi).evaluate_all(&self.moved)
+        match &self.motion {
+            Motion::Explicit(moved) => self.at(q).with(&self.locals, phi).evaluate_all(moved),
+            Motion::Implicit(relations) => relations.moved(&self.at(q), &self.coordinates, phi),
+        }
+    }
+
+    /// [`Relations::shifts`] at Q, where Φ follows from relations alone.
+    pub fn shifts(&self, q: &[Jet]) -> Option<(Grid<Node>, Grid<Node>)> {
+        match &self.motion {
+            Motion::Explicit(_) => None,
+            Motion::Implicit(relations) => Some(relations.shifts(&self.at(q))),
+        }
     }
 
     /// The stored scalars of the home configuration.
@@ -107,15 +150,43 @@ impl Declared {
         vec![Node::input(0.0); self.freedoms()]
     }
 
-    /// H(Q).
-    pub fn pose(&self, q: &[Jet]) -> Pose {
-        let at = self.at(q);
-        let pose = &self.spec.pose.value;
-        (at.matrix(&pose.rotation), at.matrix(&pose.translation))
+    /// Symbols inside the arguments of functions in H of any body.
+    pub fn arguments(&self) -> BTreeSet<Symbol> {
+        let named = self.spec.worded.named.iter();
+        let values: BTreeMap<&Symbol, &Expr> = named.map(|own| (&own.symbol, &own.value)).collect();
+        let poses = self.bodies.iter().flat_map(|(pose, _)| pose.entries());
+        let mut inside: Vec<Expr> = poses
+            .chain(values.values().copied())
+            .flat_map(arguments_in)
+            .collect();
+        let mut found = BTreeSet::new();
+        while let Some(argument) = inside.pop() {
+            for symbol in argument.symbols() {
+                match values.get(&symbol) {
+                    Some(value) => inside.push((*value).clone()),
+                    None => _ = found.insert(symbol),
+                }
+            }
+        }
+        found
     }
 
-    /// `vee(Ḣ H⁻¹)` by the variables from `first` on: J of (23), 6×k.
-    pub fn jacobian(&self, pose: &Pose, first: usize) -> Grid<Jet> {
+    /// H(Q) of every body.
+    pub fn poses(&self, q: &[Jet]) -> Vec<Pose> {
+        let at = self.in_words(q);
+        let poses = self.bodies.iter();
+        let poses =
+            poses.map(|(pose, _)| (at.matrix(&pose.rotation), at.matrix(&pose.translation)));
+        poses.collect()
+    }
+
+    /// J of (23) of every body, one below the other, by the variables from `first` on: 6m×k.
+    pub fn jacobian(&self, poses: &[Pose], first: usize) -> Grid<Jet> {
+        Grid::below(poses.iter().map(|pose| self.jacobian_of(pose, first)))
+    }
+
+    /// `vee(Ḣ H⁻¹)` of one body, 6×k.
+    fn jacobian_of(&self, pose: &Pose, first: usize) -> Grid<Jet> {
         let (rotation, translation) = pose;
         let outer = |grid: &Grid<Jet>| match first < ONCE {
             true => grid.clone(),
@@ -134,21 +205,30 @@ impl Declared {
         Grid::from_fn(6, columns.len(), |i, k| columns[k][i].clone())
     }
 
-    /// J(Q, 0) where Q itself may vary: the twist of the child for each ϕ̇.
+    /// J(Q, 0) where Q itself may vary: the twists of the bodies for each ϕ̇, 6m×k.
     fn directions(&self, q: &[Jet]) -> Grid<Jet> {
         let step = self.variables(&self.zero(), ONCE, MOST);
-        self.jacobian(&self.pose(&self.moved(q, &step)), ONCE)
+        self.jacobian(&self.poses(&self.moved(q, &step)), ONCE)
     }
 
-    /// X(Q), as declared or as the frame of v has it.
+    /// X(Q) of every body, as declared or as the frame of v has it: 6m×k.
     pub fn twist_map(&self, q: &[Jet]) -> Grid<Jet> {
-        if let Some(declared) = &self.spec.twist_map {
-            return self.at(q).matrix(&declared.value);
+        let at = self.at(q);
+        let declared: Option<Vec<Grid<Jet>>> = self
+            .bodies
+            .iter()
+            .map(|(_, twists)| twists.as_ref().map(|x| at.matrix(x)))
+            .collect();
+        if let Some(declared) = declared {
+            return Grid::below(declared);
         }
         match self.spec.velocity.value {
             VelocityFrame::Parent => {
                 let home = self.parameters.evaluate_all(&self.home);
-                to_child(&self.pose(&home), &self.directions(&home))
+                let directions = self.directions(&home);
+                let poses = self.poses(&home);
+                let own = poses.iter().enumerate();
+                Grid::below(own.map(|(n, pose)| to_child(pose, &directions.rows_of(6 * n, 6))))
             }
             VelocityFrame::Child | VelocityFrame::Rates => self.directions(q),
         }
@@ -164,19 +244,49 @@ impl Declared {
     }
 }
 
+/// The arguments of the functions in an expression.
+fn arguments_in(expression: &Expr) -> Vec<Expr> {
+    let atoms = expression.atoms().into_iter();
+    let arguments = atoms.flat_map(|atom| match atom {
+        Atom::Apply(application) => application.arguments.clone(),
+        Atom::Symbol(_) => vec![],
+    });
+    arguments.collect()
+}
+
+/// Φ as declared, or as it follows from the manifold.
+fn motion(spec: &JointSpec) -> Motion {
+    if let Some(relations) = Relations::of(spec) {
+        return Motion::Implicit(relations);
+    }
+    let declared = spec.retract.as_ref().map(|declared| declared.value.clone());
+    Motion::Explicit(declared.unwrap_or_else(|| exponential_of_freedoms(spec)))
+}
+
 /// Φ = Q exp(Σ b_k ϕ_k) on every factor.
-fn exponential(spec: &JointSpec) -> Vec<Expr> {
-    let factors = spec.manifold.value.factors().iter().enumerate();
-    let moved = factors.flat_map(|(n, factor)| {
+fn exponential_of_freedoms(spec: &JointSpec) -> Vec<Expr> {
+    let manifold = &spec.manifold.value;
+    let factors = manifold.factors().iter().enumerate();
+    let standard = factors.flat_map(|(n, factor)| {
         let mut standard = vec![Expr::zero(); factor.kind.dimension()];
         for freedom in spec.freedoms.value.iter().filter(|f| f.factor == n) {
             for (sum, component) in standard.iter_mut().zip(&freedom.generator) {
                 *sum += &(component * &Expr::symbol(&freedom.local));
             }
         }
-        let step = algebra::hat(factor.kind, &standard);
-        let step =
-            algebra::exp(&step).unwrap_or_else(|| panic!("{}: exp has a closed form", factor.name));
+        standard
+    });
+    exponential(manifold, &standard.collect::<Vec<_>>())
+}
+
+/// Q exp(ξ), stored scalars, with ξ in the standard directions of all factors.
+pub fn exponential(manifold: &Manifold, displacement: &[Expr]) -> Vec<Expr> {
+    let mut rest = displacement;
+    let moved = manifold.factors().iter().flat_map(|factor| {
+        let (own, others) = rest.split_at(factor.kind.dimension());
+        rest = others;
+        let step = algebra::exp(&algebra::hat(factor.kind, own))
+            .unwrap_or_else(|| panic!("{}: exp has a closed form", factor.name));
         factor.coordinates_of(&factor.matrix().times(&step))
     });
     moved.collect()
@@ -209,7 +319,7 @@ pub fn to_child((rotation, translation): &Pose, twists: &Grid<Jet>) -> Grid<Jet>
 
 #[cfg(test)]
 mod tests {
-    use super::exponential;
+    use super::exponential_of_freedoms;
     use crate::accuracy::environment::Environment;
     use crate::accuracy::{Grid, Jet, Tracked};
     use hamel_codegen::algebra;
@@ -267,7 +377,7 @@ mod tests {
         for (text, kind) in JOINTS {
             let source = format!("hamel = 1;\njoint test {{ {text} }}\n");
             let spec = hamel_codegen::spec::parse(&source, "test.joint").expect("a right spec");
-            let moved = exponential(&spec);
+            let moved = exponential_of_freedoms(&spec);
             for scale in [1e-150, 1e-3, 1.0, std::f64::consts::PI, 4.0] {
                 let phi: Vec<f64> = (0..kind.dimension())
                     .map(|i| scale / (1.0 + i as f64))

@@ -3,7 +3,9 @@
 use super::at_zero::{Arguments, AtZero};
 use super::declared::{Declared, constants};
 use super::jet::ONCE;
+use super::pinned::pinned;
 use super::program::{Program, Sheet};
+use super::tracked::larger;
 use super::{Grid, Node, Tracked};
 use hamel_codegen::derived::{Derived, KernelKind};
 use hamel_codegen::expr::Expr;
@@ -54,13 +56,17 @@ fn functions(declared: &Declared, loci: &[Expr], relations: &[Expr], q: &[Node])
     let mut sheet = Sheet::default();
     sheet.put("loci", declared.evaluate(loci, &constants(q)));
     sheet.put("relations", declared.evaluate(relations, &constants(q)));
+    if let Some((shifts, values)) = declared.shifts(&constants(q)) {
+        sheet.put("shifts", shifts);
+        sheet.put("shifting", values);
+    }
     sheet
 }
 
 impl Definition {
-    /// The definition of the joint with these values of its parameters.
-    pub fn new(derived: &Derived, parameters: &[f64]) -> Self {
-        let declared = Declared::new(derived.spec.clone(), parameters);
+    /// The definition of the joint as one of its bodies sees it, with these values of its parameters.
+    pub fn new(derived: &Derived, body: usize, parameters: &[f64]) -> Self {
+        let declared = Declared::new(derived, body, parameters);
         let (n, k) = (declared.coordinates.len(), declared.freedoms());
         let speeds = derived.shape.speeds;
         let relations = derived.kernel(KernelKind::Residual);
@@ -95,7 +101,7 @@ impl Definition {
             speeds,
             still,
             declared,
-            space: derived.space.clone(),
+            space: pinned(&derived.space, parameters),
         }
     }
 
@@ -104,7 +110,7 @@ impl Definition {
         &self.declared.spec
     }
 
-    /// Where the joint lives.
+    /// Where the joint lives, with its parameters at their values.
     pub fn space(&self) -> &ConfigurationSpace {
         &self.space
     }
@@ -167,6 +173,17 @@ impl Definition {
     /// The functions of the joint's loci at Q.
     pub fn loci(&self, q: &[f64]) -> Grid<Tracked> {
         self.functions.run(&numbers(q)).get("loci").clone()
+    }
+
+    /// How far roundings of the relations that Φ follows from move each stored scalar: the largest of them; nothing where Φ does not.
+    pub fn shifts(&self, q: &[f64]) -> Vec<f64> {
+        let found = self.functions.run(&numbers(q));
+        let (Some(shifts), Some(values)) = (found.find("shifts"), found.find("shifting")) else {
+            return vec![0.0; q.len()];
+        };
+        let moves = |i: usize, r: usize| shifts.at(i, r).scale * values.at(r, 0).scale;
+        let largest = |i: usize| (0..values.rows).map(|r| moves(i, r)).fold(0.0, larger);
+        (0..q.len()).map(largest).collect()
     }
 
     /// The relations of the manifold at Q.

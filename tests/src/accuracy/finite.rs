@@ -73,7 +73,8 @@ impl Definition {
     }
 
     /// The point of the manifold nearest to Q, near the point `start` that is on it: the gradient of the distance along the manifold is
-    /// reduced to nothing. Its scale is how far errors of an ulp in the scalars of Q move it along the manifold.
+    /// reduced to nothing. Its scale is how far errors of an ulp in the scalars of Q move it along the manifold, and errors of an ulp in the summands of
+    /// relations across it.
     pub fn nearest(&self, q: &[f64], start: &[Tracked]) -> Vec<Tracked> {
         let mut point = start.to_vec();
         let mut tangent = self.directions(&point).values();
@@ -92,9 +93,10 @@ impl Definition {
             left = tangent.left_inverse();
         }
         let along = tangent.times(&left);
+        let shifts = self.shifts(q);
         let scale = |i: usize| {
             let moves = |j: usize| along.at(i, j).to_f64().abs() * q[j].abs();
-            (0..q.len()).map(moves).fold(0.0, larger)
+            (0..q.len()).map(moves).fold(shifts[i], larger)
         };
         let scaled = |(i, x): (usize, Tracked)| Tracked::computed(x.value, scale(i));
         point.into_iter().enumerate().map(scaled).collect()

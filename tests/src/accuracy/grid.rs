@@ -62,6 +62,23 @@ impl<T: Clone> Grid<T> {
         }
     }
 
+    /// Matrices of as many columns, one below the other; at least one.
+    pub fn below(parts: impl IntoIterator<Item = Self>) -> Self {
+        let parts: Vec<Self> = parts.into_iter().collect();
+        let columns = parts.first().map_or(0, |part| part.columns);
+        let entries: Vec<T> = parts.into_iter().flat_map(|part| part.entries).collect();
+        Self {
+            rows: entries.len().checked_div(columns).unwrap_or_default(),
+            columns,
+            entries,
+        }
+    }
+
+    /// So many rows from the first on.
+    pub fn rows_of(&self, first: usize, count: usize) -> Self {
+        Self::from_fn(count, self.columns, |i, j| self.at(first + i, j).clone())
+    }
+
     /// Transpose.
     pub fn transpose(&self) -> Self {
         Self::from_fn(self.columns, self.rows, |i, j| self.at(j, i).clone())

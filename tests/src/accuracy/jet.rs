@@ -98,7 +98,7 @@ impl Jet {
     }
 
     /// The part without the constant term.
-    fn varying(&self) -> Self {
+    pub fn varying(&self) -> Self {
         Self {
             value: Node::input(0.0),
             ..self.clone()

@@ -48,6 +48,14 @@ impl Node {
         }
     }
 
+    /// The same value with its own size as scale: where it comes from an iteration, the scales of its steps say nothing.
+    pub fn anew(&self) -> Self {
+        match self {
+            Self::Known(value) => Self::Known(Tracked::computed(value.value, 0.0)),
+            Self::Place(tape, place) => Self::done(tape, Op::Anew(*place)),
+        }
+    }
+
     fn done(tape: &Rc<RefCell<Tape>>, op: Op) -> Self {
         let place = tape.borrow_mut().push(op);
         Self::Place(Rc::clone(tape), place)

@@ -164,7 +164,7 @@ fn with_cases<J, const N: usize, const K: usize, const S: usize, const C: usize>
     J: Joint<N, K, S, C>,
 {
     let parameters: Vec<f64> = joint.parameters().map(|(_, value)| value).collect();
-    let definition = Definition::new(derived, &parameters);
+    let definition = Definition::new(derived, J::BODY, &parameters);
     let range = Range {
         smallest: -300.0,
         normal: f64::MIN_POSITIVE,

@@ -4,7 +4,7 @@ use super::Definition;
 use super::tracked::Tracked;
 use super::wide::{BITS, Wide};
 use chacha20::ChaCha8Rng;
-use hamel_codegen::expr::{Atom, Expr, Symbol};
+use hamel_codegen::expr::Symbol;
 use hamel_codegen::manifold::Kind;
 use hamel_codegen::model::Freedom;
 use hamel_codegen::precise::Sampler;
@@ -58,6 +58,7 @@ pub struct Points<'a> {
     sampler: Sampler<'a>,
     random: ChaCha8Rng,
     range: Range,
+    /// Real coordinates that enter H through a function.
     angles: BTreeSet<Symbol>,
 }
 
@@ -68,7 +69,7 @@ impl<'a> Points<'a> {
             sampler: Sampler::new(definition.space(), BITS),
             random: ChaCha8Rng::seed_from_u64(seed),
             range,
-            angles: angles(definition),
+            angles: definition.declared().arguments(),
             definition,
         }
     }
@@ -294,29 +295,6 @@ impl<'a> Points<'a> {
                 .take(rotations)
                 .any(|g| !g.is_zero())
     }
-}
-
-/// Real coordinates that enter H through a function.
-fn angles(definition: &Definition) -> BTreeSet<Symbol> {
-    let pose = &definition.spec().pose.value;
-    let entries = pose
-        .rotation
-        .entries()
-        .iter()
-        .chain(pose.translation.entries());
-    let atoms = entries.flat_map(Expr::atoms);
-    let inside = atoms.filter_map(|atom| match atom {
-        Atom::Apply(application) => Some(application),
-        Atom::Symbol(_) => None,
-    });
-    inside
-        .flat_map(|a| {
-            a.arguments
-                .iter()
-                .flat_map(Expr::symbols)
-                .collect::<Vec<_>>()
-        })
-        .collect()
 }
 
 fn normalised(x: &[f64]) -> Vec<Wide> {

@@ -37,7 +37,7 @@ where
         .parameters()
         .map(|(_, value)| T::round(value))
         .collect();
-    let definition = Definition::new(derived, &parameters);
+    let definition = Definition::new(derived, J::BODY, &parameters);
     let subject = Subject {
         joint,
         definition: &definition,
@@ -48,10 +48,15 @@ where
         round: T::round,
     };
     let mut points = Points::new(&definition, range, 0);
+    // What belongs to Q and v alone is measured with the first body.
+    let groups = match J::BODY {
+        0 => &GROUPS[..],
+        _ => &[Group::AtZero],
+    };
     // The first case shows which kernels a group has.
     let first = points.case();
     let mut worst = Worst::default();
-    let wanted = GROUPS.into_iter().filter(|group| {
+    let wanted = groups.iter().copied().filter(|group| {
         let mut found = Worst::default();
         subject.measure_group::<T, N, K, S, C>(*group, &first, &mut found);
         let wanted = found.errors.keys().any(|kernel| !known.contains(*kernel));

@@ -18,6 +18,8 @@ pub enum Op {
     Over(u32, u32),
     /// Negative.
     Negative(u32),
+    /// The same value with its own size as scale.
+    Anew(u32),
     /// A function of one argument.
     Apply(Function, u32),
     /// `atan2(y, x)`.
@@ -128,7 +130,7 @@ impl Tape {
         match op {
             Op::Given => vec![],
             Op::Plus(a, b) | Op::Times(a, b) | Op::Over(a, b) | Op::Angle(a, b) => vec![a, b],
-            Op::Negative(a) | Op::Apply(_, a) | Op::Beside(a) => vec![a],
+            Op::Negative(a) | Op::Anew(a) | Op::Apply(_, a) | Op::Beside(a) => vec![a],
             Op::Solved(system) => self.systems[system as usize].1.clone(),
         }
     }
@@ -168,6 +170,7 @@ impl Tape {
             Op::Times(a, b) => at(a).times(at(b)),
             Op::Over(a, b) => at(a).over(at(b)),
             Op::Negative(a) => at(a).negative(),
+            Op::Anew(a) => Tracked::computed(at(a).value, 0.0),
             Op::Apply(function, a) => at(a).function(function, std::slice::from_ref(at(a))),
             Op::Angle(y, x) => at(y).function(Function::Atan2, &[*at(y), *at(x)]),
             Op::Solved(number) => {

@@ -6,7 +6,7 @@
 //! out the groups of kernels whose rows are all there already.
 
 use hamel::joint::Joint;
-use hamel_tests::accuracy::{Measured, Table, check, measure};
+use hamel_tests::accuracy::{Measured, Table, check, check_lanes, measure, measure_duals};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Mutex;
@@ -39,7 +39,33 @@ where
 {
     let derived = hamel_tests::derived(J::NAME);
     let worst = measure::<T, J, N, K, S, C>(joint, &derived, FEW, &BTreeSet::new(), &|_| {});
-    check(J::NAME, &worst, BOUND);
+    check(&name::<J, N, K, S, C>(), &worst, BOUND);
+}
+
+fn lanes<J, const N: usize, const K: usize, const S: usize, const C: usize>(joint: &J)
+where
+    J: Joint<N, K, S, C>,
+{
+    check_lanes(joint, &hamel_tests::derived(J::NAME), LANES);
+}
+
+fn duals<J, const N: usize, const K: usize, const S: usize, const C: usize>(joint: &J)
+where
+    J: Joint<N, K, S, C>,
+{
+    let worst = measure_duals(joint, &hamel_tests::derived(J::NAME), DUALS);
+    check(&name::<J, N, K, S, C>(), &worst, BOUND);
+}
+
+/// The joint's name, and that of its body where this is not the first.
+fn name<J, const N: usize, const K: usize, const S: usize, const C: usize>() -> String
+where
+    J: Joint<N, K, S, C>,
+{
+    match (J::BODY, J::BODIES.get(J::BODY)) {
+        (0, _) | (_, None) => J::NAME.to_owned(),
+        (_, Some(body)) => format!("{}.{body}", J::NAME),
+    }
 }
 
 /// The sweep of one joint and type, with its rows of the table.
@@ -49,11 +75,12 @@ where
     J: Joint<N, K, S, C>,
 {
     let resume = std::env::var("HAMEL_SWEEP").is_ok_and(|value| value == "resume");
+    let joint_name = name::<J, N, K, S, C>();
     let known = match resume {
-        true => Table::read(&table()).known(J::NAME, T::NAME, SWEEP),
+        true => Table::read(&table()).known(&joint_name, T::NAME, SWEEP),
         false => BTreeSet::new(),
     };
-    let (name, start) = (format!("{} {}", J::NAME, T::NAME), Instant::now());
+    let (name, start) = (format!("{joint_name} {}", T::NAME), Instant::now());
     let progress = |done: usize| {
         if done > 0 && done.is_multiple_of(PROGRESS) {
             eprintln!("{name}: {done} of {SWEEP} points, {:.0?}", start.elapsed());
@@ -70,17 +97,15 @@ where
     // A lock that a failed sweep left behind still keeps others out.
     let guard = TABLE.lock();
     let mut rows = Table::read(&table());
-    rows.insert(J::NAME, T::NAME, &worst, SWEEP, &known);
+    rows.insert(&joint_name, T::NAME, &worst, SWEEP, &known);
     rows.write(&table()).expect("the table can be written");
     drop(guard);
-    check(J::NAME, &worst, BOUND);
+    check(&joint_name, &worst, BOUND);
 }
 
 macro_rules! accuracy_test {
     ($module:ident, $joint:ty, $example:expr, $n:literal, $k:literal, $s:literal, $c:literal) => {
         mod $module {
-            use hamel_tests::accuracy::{check_lanes, measure_duals};
-
             #[test]
             fn double_precision() {
                 super::few::<f64, $joint, $n, $k, $s, $c>(&$example);
@@ -93,16 +118,12 @@ macro_rules! accuracy_test {
 
             #[test]
             fn lanes() {
-                let derived = hamel_tests::derived(stringify!($module));
-                check_lanes::<$joint, $n, $k, $s, $c>(&$example, &derived, super::LANES);
+                super::lanes::<$joint, $n, $k, $s, $c>(&$example);
             }
 
             #[test]
             fn dual_numbers() {
-                let derived = hamel_tests::derived(stringify!($module));
-                let worst =
-                    measure_duals::<$joint, $n, $k, $s, $c>(&$example, &derived, super::DUALS);
-                super::check(stringify!($module), &worst, super::BOUND);
+                super::duals::<$joint, $n, $k, $s, $c>(&$example);
             }
 
             #[test]
@@ -121,3 +142,11 @@ macro_rules! accuracy_test {
 }
 
 hamel_joints::for_each_joint!(accuracy_test);
+
+macro_rules! body_test {
+    ($module:ident, $joint:ty, $example:expr, $b:literal, $n:literal, $k:literal, $s:literal, $c:literal) => {
+        accuracy_test!($module, hamel::joint::Member<$joint, $b>, hamel::joint::Member($example), $n, $k, $s, $c);
+    };
+}
+
+hamel_joints::for_each_body!(body_test);

@@ -5,13 +5,13 @@ use super::joint::sizes;
 use super::tokens::ident;
 use super::{Runtime, WriteError, docs, header, nested, text, type_ident};
 use crate::derived::Derived;
-use proc_macro2::{Ident, TokenStream};
-use quote::quote;
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
 
 /// How the joints are laid out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Index {
-    /// `mod.rs` beside one file per joint, in the crate's module `joints`; exports `for_each_joint!`.
+    /// `mod.rs` beside one file per joint, in the crate's module `joints`; exports `for_each_joint!` and `for_each_body!`.
     Files,
     /// One file with a module for each joint, for `include!`.
     Nested,
@@ -20,7 +20,7 @@ pub enum Index {
 /// The index of the joints, in alphabetic order; `label` names the folder of specs.
 ///
 /// # Errors
-/// As [`super::file`]; and where no parameters meet the requirements of a joint that `for_each_joint!` is to build.
+/// As [`super::file`]; and where no parameters meet the requirements of a joint that these macros are to build.
 pub fn index(
     joints: &[Derived],
     label: &str,
@@ -42,7 +42,7 @@ pub fn index(
         Index::Nested => joints.iter().map(|joint| nested(joint)).collect(),
     };
     let macros = match layout {
-        Index::Files => Some(for_each_joint(&joints)?),
+        Index::Files => Some(macros(&joints)?),
         Index::Nested => None,
     };
     let entries = docs::outer(&["Registry entries of all joints, in alphabetic order."]);
@@ -64,13 +64,18 @@ pub fn index(
     )
 }
 
-/// The macro that hands every joint to another macro.
-fn for_each_joint(joints: &[&Derived]) -> Result<TokenStream, WriteError> {
-    let docs = docs::outer(&[
+/// The macros that hand every joint, and every further body of a joint, to another macro.
+fn macros(joints: &[&Derived]) -> Result<TokenStream, WriteError> {
+    let of_joints = docs::outer(&[
         "Calls the macro `$callback` once for each joint with",
         "`(module, Type, expression, N, K, S, C)`: the expression builds the joint with parameters that it allows, no two alike.",
     ]);
-    let calls = joints.iter().map(|joint| {
+    let of_bodies = docs::outer(&[
+        "Calls the macro `$callback` once for each body that a joint carries after its first with",
+        "`(joint_body, Type, expression, B, N, K, S, C)`, of which all but the first and B, the body's place, are as in `for_each_joint!`.",
+    ]);
+    let (mut joint_calls, mut body_calls) = (vec![], vec![]);
+    for joint in joints {
         let (module, name) = (ident(&joint.spec.name.value), type_ident(joint));
         let [n, k, s, c] = sizes(joint);
         let values = example::parameters(&joint.spec).ok_or_else(|| no_parameters(joint))?;
@@ -78,14 +83,26 @@ fn for_each_joint(joints: &[&Derived]) -> Result<TokenStream, WriteError> {
             true => quote! { $crate::joints::#name },
             false => quote! { $crate::joints::#name::new(#(#values),*) },
         };
-        Ok(quote! { $callback!(#module, $crate::joints::#name, #value, #n, #k, #s, #c); })
-    });
-    let calls: Vec<TokenStream> = calls.collect::<Result<_, WriteError>>()?;
+        joint_calls
+            .push(quote! { $callback!(#module, $crate::joints::#name, #value, #n, #k, #s, #c); });
+        for own in &joint.more {
+            let body = Literal::usize_unsuffixed(own.body);
+            let module = format_ident!("{module}_{}", own.body_name().unwrap_or_default());
+            body_calls.push(
+                quote! { $callback!(#module, $crate::joints::#name, #value, #body, #n, #k, #s, #c); },
+            );
+        }
+    }
     Ok(quote! {
-        #docs
+        #of_joints
         #[macro_export]
         macro_rules! for_each_joint {
-            ($callback:path) => { #(#calls)* };
+            ($callback:path) => { #(#joint_calls)* };
+        }
+        #of_bodies
+        #[macro_export]
+        macro_rules! for_each_body {
+            ($callback:path) => { #(#body_calls)* };
         }
     })
 }

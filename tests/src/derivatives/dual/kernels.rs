@@ -2,7 +2,7 @@
 
 use super::D;
 use hamel::erased::AnyJoint;
-use hamel::joint::Joint;
+use hamel::joint::{Joint, Member};
 use hamel::nalgebra::{SMatrix, SVector, Vector3, Vector6};
 use hamel::scalar::Dual;
 use hamel::spatial::Pose;
@@ -154,5 +154,11 @@ pub fn library_kernels(joint: &dyn AnyJoint) -> Box<dyn Kernels> {
         };
     }
     hamel_joints::for_each_joint!(add);
+    macro_rules! add_body {
+        ($module:ident, $type:ty, $example:expr, $b:literal, $n:literal, $k:literal, $s:literal, $c:literal) => {
+            all.push(of::<Member<$type, $b>, $n, $k, $s, $c>(Member($example)));
+        };
+    }
+    hamel_joints::for_each_body!(add_body);
     behind(joint, all)
 }

@@ -134,6 +134,8 @@ impl<'a> Definitions<'a> {
         let (definition, case) = (self.definition, self.case);
         let pose = |n: usize| self.at.all("pose").nth(n).map(columns).unwrap_or_default();
         match kernel {
+            // A guess is projected, and any way to do so is right: a law asks that it ends on the manifold.
+            "home" if definition.spec().home_is_guess => vec![],
             "home" => definition.home(),
             "rotation" => pose(0),
             "translation" => pose(1),
@@ -163,13 +165,18 @@ impl<'a> Definitions<'a> {
             met.meet("Φ(Q, 0) = Q", still[i], &stored);
         }
         let nothing = |scale: f64| Tracked::computed(Tracked::input(0.0).value, scale);
-        let relations = self.definition.relations(&named(found, "retract"));
         // Linear relations between small entries of a matrix: those are off by roundings of its large ones.
         let sizes = start.iter().map(|x| x.scale);
         let largest = sizes.fold(0.0, f64::max);
-        for relation in relations.entries() {
-            let (got, scale) = (relation.value.to_f64(), relation.scale.max(largest));
-            met.meet("Φ(Q, ϕ) on the manifold", got, &nothing(scale));
+        for (law, kernel) in [
+            ("Φ(Q, ϕ) on the manifold", "retract"),
+            ("home on the manifold", "home"),
+        ] {
+            let relations = self.definition.relations(&named(found, kernel));
+            for relation in relations.entries() {
+                let (got, scale) = (relation.value.to_f64(), relation.scale.max(largest));
+                met.meet(law, got, &nothing(scale));
+            }
         }
         for mismatch in self.at.all("mismatch").flat_map(Grid::entries) {
             let got = mismatch.value.to_f64();

@@ -33,7 +33,7 @@ use compare::Definitions;
 use hamel::joint::Joint;
 use hamel_codegen::derived::{Derived, KernelKind};
 use hamel_codegen::matrix::Matrix;
-use hamel_codegen::model::{ConfigurationSpace, Declared, End, Interval, JointSpec};
+use hamel_codegen::model::{Declared, JointSpec};
 use hamel_codegen::precise::Sampler;
 use lines::{Direction, Place, samples};
 use parameters::Axis;
@@ -124,6 +124,7 @@ where
         |values: &[f64]| -> Box<dyn Kernels> { Box::new(Sized::<J, N, K, S, C>(build(values))) };
     Search {
         derived: complete(derived),
+        body: J::BODY,
         build: &build,
         effort,
         random: ChaCha8Rng::seed_from_u64(11),
@@ -183,22 +184,6 @@ fn complete(derived: &Derived) -> Derived {
     complete
 }
 
-/// Where the joint lives with its parameters fixed.
-fn pinned(space: &ConfigurationSpace, values: &[f64]) -> ConfigurationSpace {
-    let mut pinned = space.clone();
-    for (parameter, value) in pinned.parameters.iter_mut().zip(values) {
-        let end = Some(End {
-            value: parameters::exact(*value),
-            included: true,
-        });
-        parameter.range = Interval {
-            lower: end.clone(),
-            upper: end,
-        };
-    }
-    pinned
-}
-
 /// How much more than usual kernels may lose, by how far ratios of the parameters are from those of the example: of lengths to each other,
 /// of all others to 1.
 fn slack(spec: &JointSpec, parameters: &[f64], example: &[f64]) -> f64 {
@@ -219,6 +204,8 @@ fn slack(spec: &JointSpec, parameters: &[f64], example: &[f64]) -> f64 {
 
 struct Search<'a> {
     derived: Derived,
+    /// Which of its bodies the kernels are those of.
+    body: usize,
     build: Build<'a>,
     effort: Effort,
     random: ChaCha8Rng,
@@ -243,7 +230,7 @@ impl Search<'_> {
 
     /// Sets of parameters beside the example, from all axes in turn.
     fn sets(&mut self, example: &[f64]) -> Vec<Vec<f64>> {
-        let definition = Definition::new(&self.derived, example);
+        let definition = Definition::new(&self.derived, self.body, example);
         let mut notes = |values: &[f64]| {
             let joint = (self.build)(values);
             let place = Place {
@@ -286,7 +273,7 @@ impl Search<'_> {
     /// The kernels with these parameters.
     fn at(&mut self, parameters: &[f64], example: &[f64], effort: Effort) {
         let joint = (self.build)(parameters);
-        let definition = Definition::new(&self.derived, parameters);
+        let definition = Definition::new(&self.derived, self.body, parameters);
         let slack = slack(&self.derived.spec, parameters, example);
         let place = Place {
             joint: &*joint,
@@ -295,7 +282,7 @@ impl Search<'_> {
             slack,
         };
         self.found.sets += 1;
-        let bases = self.bases(&place, parameters);
+        let bases = self.bases(&place);
         let lines = bases
             .iter()
             .flat_map(|base| place.directions().into_iter().map(move |d| (base, d)));
@@ -335,12 +322,12 @@ impl Search<'_> {
     }
 
     /// Configurations to start lines from: home, and some of each sign pattern that random points meet.
-    fn bases(&mut self, place: &Place, parameters: &[f64]) -> Vec<Vec<f64>> {
-        let space = pinned(&self.derived.space, parameters);
+    fn bases(&mut self, place: &Place) -> Vec<Vec<f64>> {
+        let space = place.definition.space();
         let coordinates = space.manifold.coordinates();
         let mut samplers = [
-            Sampler::new(&space, 64).single(),
-            Sampler::new(&space, 64).single().far(),
+            Sampler::new(space, 64).single(),
+            Sampler::new(space, 64).single().far(),
         ];
         let mut bases = vec![place.joint.home()];
         let mut met: BTreeMap<Vec<bool>, usize> = BTreeMap::new();

@@ -2,7 +2,8 @@
 //! where the functions in the kernels change sign or turn.
 
 use super::critical::critical;
-use hamel_codegen::expr::{Expr, Rational, Symbol};
+use crate::accuracy::exact;
+use hamel_codegen::expr::{Expr, Symbol};
 use hamel_codegen::model::{End, Interval, JointSpec};
 use num_traits::ToPrimitive;
 
@@ -11,8 +12,6 @@ const SMALLEST: i32 = -12;
 const LARGEST: i32 = 12;
 /// Decades are halved: 10^(n/2).
 const STEP: f64 = 0.5;
-/// Powers of two that are taken out of a double at a time.
-const FACTOR: i32 = 8;
 
 /// One parameter varied from a start that is allowed, the others kept.
 pub(super) struct Axis<'a> {
@@ -57,24 +56,6 @@ fn inside(range: &Interval) -> Vec<f64> {
     values.sort_by(f64::total_cmp);
     values.dedup();
     values
-}
-
-/// The double as a rational; 0 for what is not finite.
-pub(super) fn exact(value: f64) -> Rational {
-    let mut rest = value;
-    let mut scale = Rational::from(1);
-    let factor = Rational::from(1 << FACTOR);
-    // A double that is not an integer has fewer than 53 bits behind the point once it is large enough.
-    while rest.is_finite() && rest != rest.trunc() {
-        rest *= f64::powi(2.0, FACTOR);
-        scale = &scale * &factor;
-    }
-    while rest.abs() >= f64::powi(2.0, 62) && rest.is_finite() {
-        rest /= f64::powi(2.0, FACTOR);
-        scale = &scale / &factor;
-    }
-    let integer = if rest.is_finite() { rest as i64 } else { 0 };
-    &Rational::from(integer) / &scale
 }
 
 fn value_of(expression: &Expr, spec: &JointSpec, values: &[f64]) -> f64 {
