@@ -8,6 +8,7 @@ mod formats;
 mod forms_agree;
 mod fuzz_scenes;
 mod limits;
+mod linkages;
 mod methods;
 mod motions;
 mod orthonormality;

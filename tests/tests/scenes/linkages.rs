@@ -1,0 +1,131 @@
+//! Joints that carry several bodies against references with multipliers: accelerations at the start, and loops that stay closed.
+//!
+//! Their motions are among those of [`super::motions`].
+
+use super::motions::{list, number, reference, scene};
+use hamel::dynamics::{Dynamics, Frame, Recursive, Reference, Refined};
+use hamel::integrate::{Form, Method, Options, Scheme, integrate, no_inputs, no_observer};
+use hamel::mechanism::{Mechanism, NamedFrame};
+use hamel::nalgebra::{DVector, Matrix6xX, Vector3};
+use hamel::spatial::Pose;
+use hamel_scene::Scene;
+use hamel_tests::figures::Largest;
+use serde_json::Value;
+use std::sync::Arc;
+
+const CASES: [&str; 3] = ["crank_rocker", "slider_crank_offset", "geared_pendulum"];
+
+/// The mechanism of a scene with a frame in the centre of mass of each body, with its axes.
+fn with_frames(scene: &Scene) -> Arc<Mechanism> {
+    let bodies = scene.mechanism.bodies().iter().enumerate();
+    let frames = bodies.map(|(index, body)| NamedFrame {
+        name: format!("com {index}"),
+        body: Some(index),
+        at: Pose::from_translation(body.mass().com),
+    });
+    let mechanism = (*scene.mechanism).clone().with_frames(frames.collect());
+    Arc::new(mechanism.expect("they fit"))
+}
+
+/// Angular acceleration in body axes and acceleration of the centre of mass in world axes, of each body, under the rates of a form.
+fn accelerations(scene: &Scene, dynamics: &mut dyn Dynamics) -> Vec<[Vector3<f64>; 2]> {
+    let mechanism = with_frames(scene);
+    let layout = *mechanism.layout();
+    let (q, v) = (&scene.configuration, &scene.speeds);
+    let mut rates = vec![0.0; layout.speeds];
+    let efforts = vec![0.0; layout.freedoms];
+    dynamics
+        .forward_dynamics(q, v, &efforts, &mut rates)
+        .expect("regular");
+    let rates = DVector::from_vec(rates);
+    let mut recursive = Recursive::new(Arc::clone(&mechanism));
+    let readings = recursive.readings(q, v).expect("sizes fit");
+    let of_body = |index: usize| {
+        let frame = readings.frame(index).expect("a frame");
+        let mut jacobian = Matrix6xX::zeros(layout.speeds);
+        frame
+            .jacobian(Frame::WorldAligned, jacobian.as_mut_slice())
+            .expect("sizes fit");
+        let rate = jacobian * &rates + frame.jacobian_rate_product(Frame::WorldAligned);
+        let angular = frame.pose().rotation.transpose() * rate.fixed_rows::<3>(0);
+        [angular, rate.fixed_rows::<3>(3).into_owned()]
+    };
+    (0..mechanism.bodies().len()).map(of_body).collect()
+}
+
+fn vector(value: &Value) -> Vector3<f64> {
+    Vector3::from_iterator(list(value).iter().map(number))
+}
+
+/// The references are rounded to doubles, and so are the states that the accelerations belong to: 10 roundings of the largest acceleration, as the mass matrices of these mechanisms of one to four
+/// degrees of freedom have conditions below 100, times that condition.
+const ROUNDING: f64 = 10.0 * 100.0 * f64::EPSILON;
+
+#[test]
+fn accelerations_at_the_start_are_those_of_multipliers() {
+    for name in CASES {
+        let (scene, reference) = (scene(name), reference(name));
+        let expected = list(&reference["accelerations"]);
+        let mechanism = || Arc::clone(&scene.mechanism);
+        let mut forms: [Box<dyn Dynamics>; 3] = [
+            Box::new(Recursive::new(mechanism())),
+            Box::new(Refined::new(mechanism())),
+            Box::new(Reference::new(mechanism())),
+        ];
+        for form in &mut forms {
+            let found = accelerations(&scene, &mut **form);
+            let expected = expected.iter().map(|own| {
+                let [angular, linear] = ["angular_body", "linear_com_world"].map(|key| &own[key]);
+                [vector(angular), vector(linear)]
+            });
+            let expected: Vec<_> = expected.collect();
+            let size = expected.iter().flatten().map(|own| own.amax());
+            let size = size.fold(1.0, f64::max);
+            let differences = found.iter().flatten().zip(expected.iter().flatten());
+            let error = differences.map(|(a, b)| (a - b).amax());
+            let error = error.fold(0.0, f64::max) / size;
+            eprintln!("{name}: accelerations within {error:e}");
+            assert!(error < ROUNDING, "{name}: {error:e}");
+        }
+    }
+}
+
+/// Twice the rounding of sums of terms below 1 m, which the relations of these linkages are.
+const CLOSED: f64 = 2e-15;
+
+#[test]
+fn loops_stay_closed_at_every_method() {
+    for name in ["crank_rocker", "slider_crank_offset"] {
+        let scene = scene(name);
+        let (joint, configuration) = {
+            let body = &scene.mechanism.bodies()[0];
+            (body.shared_joint(), body.ranges().configuration.clone())
+        };
+        let mut worst = Largest::new("residual of a loop");
+        for scheme in Scheme::ALL {
+            for form in [Form::Lagrangian, Form::Hamiltonian] {
+                let options = Options {
+                    form,
+                    method: Method::Fixed { scheme, dt: 2e-3 },
+                    t_end: 0.1,
+                    samples: (1..=50).map(|i| f64::from(i) * 2e-3).collect(),
+                };
+                let mut dynamics = Recursive::new(Arc::clone(&scene.mechanism));
+                let solution = integrate(
+                    &mut dynamics,
+                    &scene.start(),
+                    &options,
+                    &mut no_inputs,
+                    &mut no_observer,
+                );
+                let place = format!("{name}, {}, {form:?}", scheme.name());
+                let solution = solution.unwrap_or_else(|error| panic!("{place}: {error}"));
+                for state in &solution.samples {
+                    let residual = joint.residual(&state.configuration[configuration.clone()]);
+                    worst.meet(residual, place.clone());
+                }
+            }
+        }
+        worst.assert_within(CLOSED);
+    }
+}
