@@ -18,6 +18,18 @@ fn main() -> Result<(), Error> {
         ],
     )
     .compile()?;
+    for linkage in ["crank_rocker", "geared_pendulum", "slider_crank_offset"] {
+        let scene = format!("../scenes/report/{linkage}.toml");
+        compiled(
+            &scene,
+            [
+                Kind::ForwardDynamics,
+                Kind::MomentumRates,
+                Kind::Hamiltonian,
+            ],
+        )
+        .compile()?;
+    }
     compiled(
         "data/scenes/ball_chain.toml",
         [Kind::ForwardDynamics, Kind::InverseDynamics],

@@ -72,11 +72,12 @@ pub fn derived_in(folder: &Path, name: &str) -> Derived {
     hamel_codegen::derive(&source, &file).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
-/// A registry of the paper's joints alone, so that messages which list the known types stay the same when the library grows.
-pub fn paper_registry() -> JointRegistry {
-    const PAPER: [&str; 7] = [
+/// A registry of the paper's joints and one linkage, so that messages which list the known types stay the same when the library grows.
+pub fn corpus_registry() -> JointRegistry {
+    const KNOWN: [&str; 8] = [
         "ball",
         "cart",
+        "four_bar",
         "free",
         "planar",
         "planar_euclidean",
@@ -86,7 +87,7 @@ pub fn paper_registry() -> JointRegistry {
     let mut registry = JointRegistry::new();
     let entries = hamel_joints::ENTRIES
         .iter()
-        .filter(|entry| PAPER.contains(&entry.name));
+        .filter(|entry| KNOWN.contains(&entry.name));
     for entry in entries {
         // Names in the library are distinct.
         let _ = registry.insert(*entry);

@@ -95,7 +95,7 @@ impl Model {
             arguments: vec![(Argument::Configuration, q.len())],
             graph,
             outputs: rows,
-            columns: 1,
+            columns: None,
             plan: None,
         };
         let entries = matrix.evaluate(|_| q.to_vec());

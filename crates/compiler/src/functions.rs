@@ -204,19 +204,19 @@ impl Kind {
         matches!(self, Self::ForwardDynamics | Self::InverseDynamics)
     }
 
-    /// The columns of its result: 1 for a vector.
-    fn columns(self, model: &Model) -> usize {
+    /// The columns of its result; none for a vector.
+    fn columns(self, model: &Model) -> Option<usize> {
         let [_, freedoms, speeds] = model.sizes();
         match self {
-            Self::MassMatrix | Self::MomentumRates => speeds.max(1),
-            Self::Poses => 12,
+            Self::MassMatrix | Self::MomentumRates => Some(speeds.max(1)),
+            Self::Poses => Some(12),
             Self::ForwardDerivatives => {
                 let coupled = !model.coupling.constraints.is_empty();
                 let own = 2 * freedoms + speeds + 1;
-                own + if coupled { freedoms + speeds } else { 0 }
+                Some(own + if coupled { freedoms + speeds } else { 0 })
             }
-            Self::InverseDerivatives => (freedoms + speeds).max(1),
-            _ => 1,
+            Self::InverseDerivatives => Some((freedoms + speeds).max(1)),
+            _ => None,
         }
     }
 

@@ -5,6 +5,14 @@
 pub mod ball_chain {
     include!(concat!(env!("OUT_DIR"), "/ball_chain.rs"));
 }
+/// Both forms of `scenes/report/crank_rocker.toml`: a loop.
+pub mod crank_rocker {
+    include!(concat!(env!("OUT_DIR"), "/crank_rocker.rs"));
+}
+/// Both forms of `scenes/report/geared_pendulum.toml`: a gear on a base that moves.
+pub mod geared_pendulum {
+    include!(concat!(env!("OUT_DIR"), "/geared_pendulum.rs"));
+}
 /// Both forms of `data/scenes/geodesic_springs.toml`: logarithms of rotations.
 pub mod geodesic_springs {
     include!(concat!(env!("OUT_DIR"), "/geodesic_springs.rs"));
@@ -15,6 +23,10 @@ pub mod pendulum;
 /// All functions of `scenes/plate_cart_arm.toml`, with lanes.
 pub mod plate_cart_arm {
     include!(concat!(env!("OUT_DIR"), "/plate_cart_arm.rs"));
+}
+/// Both forms of `scenes/report/slider_crank_offset.toml`: a loop with a slide.
+pub mod slider_crank_offset {
+    include!(concat!(env!("OUT_DIR"), "/slider_crank_offset.rs"));
 }
 /// Both forms of `scenes/snakeboard.toml`: constraints that couple joints, and a prescribed motion.
 #[rustfmt::skip]

@@ -245,7 +245,7 @@ fn helpers_agree() {
         name: "helpers",
         summary: "All helpers.".to_owned(),
         arguments: vec![(Argument::Configuration, SCALARS)],
-        columns: 1,
+        columns: None,
         graph,
         outputs,
         plan: None,

@@ -19,7 +19,7 @@ fn on_graph(of: impl Fn(Sym) -> Sym) -> Function {
         name: "both",
         summary: "Value and slope.".to_owned(),
         arguments: vec![(Argument::Configuration, 1)],
-        columns: 1,
+        columns: None,
         graph,
         outputs,
         plan: None,

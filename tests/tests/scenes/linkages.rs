@@ -1,19 +1,24 @@
-//! Joints that carry several bodies against references with multipliers: accelerations at the start, and loops that stay closed.
-//!
-//! Their motions are among those of [`super::motions`].
+//! Joints that carry several bodies against references with multipliers: accelerations at the start, motions by the tree and by compiled equations, and loops
+//! that stay closed.
 
-use super::motions::{list, number, reference, scene};
+use super::motions::{check_by, list, number, reference, scene};
+use hamel::compiled::{Compiled, Equations};
 use hamel::dynamics::{Dynamics, Frame, Recursive, Reference, Refined};
 use hamel::integrate::{Form, Method, Options, Scheme, integrate, no_inputs, no_observer};
 use hamel::mechanism::{Mechanism, NamedFrame};
 use hamel::nalgebra::{DVector, Matrix6xX, Vector3};
 use hamel::spatial::Pose;
 use hamel_scene::Scene;
+use hamel_tests::emitted::{crank_rocker, geared_pendulum, slider_crank_offset};
 use hamel_tests::figures::Largest;
 use serde_json::Value;
 use std::sync::Arc;
 
-const CASES: [&str; 3] = ["crank_rocker", "slider_crank_offset", "geared_pendulum"];
+const CASES: [(&str, &Equations); 3] = [
+    ("crank_rocker", &crank_rocker::EQUATIONS),
+    ("slider_crank_offset", &slider_crank_offset::EQUATIONS),
+    ("geared_pendulum", &geared_pendulum::EQUATIONS),
+];
 
 /// The mechanism of a scene with a frame in the centre of mass of each body, with its axes.
 fn with_frames(scene: &Scene) -> Arc<Mechanism> {
@@ -63,11 +68,12 @@ const ROUNDING: f64 = 10.0 * 100.0 * f64::EPSILON;
 
 #[test]
 fn accelerations_at_the_start_are_those_of_multipliers() {
-    for name in CASES {
+    for (name, equations) in CASES {
         let (scene, reference) = (scene(name), reference(name));
         let expected = list(&reference["accelerations"]);
         let mechanism = || Arc::clone(&scene.mechanism);
-        let mut forms: [Box<dyn Dynamics>; 3] = [
+        let mut forms: [Box<dyn Dynamics>; 4] = [
+            Box::new(Compiled::new(mechanism(), equations).expect("its scene")),
             Box::new(Recursive::new(mechanism())),
             Box::new(Refined::new(mechanism())),
             Box::new(Reference::new(mechanism())),
@@ -90,6 +96,22 @@ fn accelerations_at_the_start_are_those_of_multipliers() {
     }
 }
 
+/// Floors of a reference that motions of linkages are held to: in speeds, and in momenta, which round what speeds do not.
+const FLOORS: [(Form, f64); 2] = [(Form::Lagrangian, 10.0), (Form::Hamiltonian, 30.0)];
+
+#[test]
+fn motions_are_those_of_multipliers() {
+    for (name, equations) in CASES {
+        let scene = scene(name);
+        for (form, allowed) in FLOORS {
+            let mut tree = Recursive::new(Arc::clone(&scene.mechanism));
+            check_by(&scene, &mut tree, form, allowed);
+            let compiled = Compiled::new(Arc::clone(&scene.mechanism), equations);
+            check_by(&scene, &mut compiled.expect("its scene"), form, allowed);
+        }
+    }
+}
+
 /// Twice the rounding of sums of terms below 1 m, which the relations of these linkages are.
 const CLOSED: f64 = 2e-15;
 
@@ -103,7 +125,12 @@ fn loops_stay_closed_at_every_method() {
         };
         let mut worst = Largest::new("residual of a loop");
         for scheme in Scheme::ALL {
-            for form in [Form::Lagrangian, Form::Hamiltonian] {
+            // The discrete gradient is one of momenta.
+            let forms = match scheme {
+                Scheme::DiscreteGradient => &[Form::Hamiltonian][..],
+                _ => &[Form::Lagrangian, Form::Hamiltonian],
+            };
+            for &form in forms {
                 let options = Options {
                     form,
                     method: Method::Fixed { scheme, dt: 2e-3 },

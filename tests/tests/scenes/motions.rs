@@ -92,6 +92,12 @@ fn vector(body: &Value, key: &str) -> Vector3<f64> {
 
 /// The motion as the scene says, arithmetic included, but for the form.
 fn run(scene: &Scene, form: Form, samples: Vec<f64>) -> Solution {
+    let mut dynamics = scene.settings.arithmetic.dynamics(&scene.mechanism);
+    run_by(scene, &mut *dynamics, form, samples)
+}
+
+/// The motion by these equations, by the method of the scene.
+fn run_by(scene: &Scene, dynamics: &mut dyn Dynamics, form: Form, samples: Vec<f64>) -> Solution {
     let initial = scene.start();
     let options = Options {
         form,
@@ -99,9 +105,8 @@ fn run(scene: &Scene, form: Form, samples: Vec<f64>) -> Solution {
         t_end: samples.last().copied().expect("a sample time"),
         samples,
     };
-    let mut dynamics = scene.settings.arithmetic.dynamics(&scene.mechanism);
     integrate(
-        &mut *dynamics,
+        dynamics,
         &initial,
         &options,
         &mut no_inputs,
@@ -189,10 +194,21 @@ impl Multiples {
 }
 
 fn check(name: &str, form: Form) {
-    let (scene, reference) = (scene(name), reference(name));
+    let scene = scene(name);
+    let mut dynamics = scene.settings.arithmetic.dynamics(&scene.mechanism);
+    check_by(&scene, &mut *dynamics, form, ALLOWED);
+}
+
+/// Holds the motion of a scene by these equations to so many floors of its reference.
+///
+/// # Panics
+/// With the figure that exceeds them.
+pub(super) fn check_by(scene: &Scene, dynamics: &mut dyn Dynamics, form: Form, allowed: f64) {
+    let name = &scene.name;
+    let reference = reference(name);
     let samples = list(&reference["samples"]);
     let times = samples.iter().map(|sample| number(&sample["t"])).collect();
-    let solution = run(&scene, form, times);
+    let solution = run_by(scene, dynamics, form, times);
     let floor = growth(&reference) * 0.5 * f64::EPSILON;
     println!(
         "{name}, {form:?}: {:?}, floor {floor:.1e}; errors in floors:",
@@ -200,14 +216,14 @@ fn check(name: &str, form: Form) {
     );
     let mut multiples = Multiples::new(floor);
     for (state, sample) in solution.samples.iter().zip(samples) {
-        multiples.meet(&scene, state, list(&reference["bodies"]), sample);
+        multiples.meet(scene, state, list(&reference["bodies"]), sample);
     }
     for largest in &multiples.laws {
-        largest.assert_within(ALLOWED);
+        largest.assert_within(allowed);
     }
     if let Some(energy) = reference["total_energy"].as_f64() {
-        multiples.meet_energy(&scene, &solution.samples, energy);
-        multiples.energy.assert_within(ALLOWED);
+        multiples.meet_energy(scene, &solution.samples, energy);
+        multiples.energy.assert_within(allowed);
     }
 }
 

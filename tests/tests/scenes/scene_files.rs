@@ -20,7 +20,7 @@ fn root() -> PathBuf {
 }
 
 fn refusal(text: &str, name: &str) -> Option<String> {
-    let scene = Scene::parse(text, name, &hamel_tests::paper_registry());
+    let scene = Scene::parse(text, name, &hamel_tests::corpus_registry());
     scene.err().map(|diagnostics| diagnostics.to_string())
 }
 
@@ -52,8 +52,8 @@ fn every_scene_loads_at_home_on_its_manifolds() -> Result<(), Box<dyn Error>> {
 #[test]
 fn examples_of_the_description_load() -> Result<(), Box<dyn Error>> {
     for example in examples()? {
-        Scene::parse(&example, "scenes/README.md", &hamel_joints::registry())
-            .map_err(|error| format!("in scenes/README.md:\n{error}"))?;
+        Scene::parse(&example, "example.toml", &hamel_joints::registry())
+            .map_err(|error| format!("in a document:\n{error}"))?;
     }
     Ok(())
 }

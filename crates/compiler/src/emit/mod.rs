@@ -34,8 +34,8 @@ pub struct Function {
     pub graph: Graph,
     /// Its results; rows of equal length where they are a matrix.
     pub outputs: Vec<Value>,
-    /// Columns of the result: 1 for a vector.
-    pub columns: usize,
+    /// Columns of the result; none for a vector.
+    pub columns: Option<usize>,
     /// Its like parts, where they are looped over.
     pub plan: Option<Plan>,
 }

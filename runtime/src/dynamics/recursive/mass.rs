@@ -272,18 +272,8 @@ impl Recursive {
     }
 
     /// `X_kᵀ F` for all speeds k from `body` to the root into their entries of `row`.
-    pub(super) fn fill_row(&self, row: &mut [f64], mut body: usize, momentum: &Vector6<f64>) {
-        let mut momentum = *momentum;
-        loop {
-            let link = &self.links[body];
-            let columns = &self.columns[link.columns.clone()];
-            for (entry, column) in row[link.speeds.clone()].iter_mut().zip(columns) {
-                *entry = column.dot(&momentum);
-            }
-            let Some(parent) = link.parent else { return };
-            momentum = shift_wrench(&momentum, &self.nodes[body].motion.placement.offset);
-            body = parent;
-        }
+    pub(super) fn fill_row(&self, row: &mut [f64], body: usize, momentum: &Vector6<f64>) {
+        self.each_to_root(body, momentum, |speed, product| row[speed] = product);
     }
 
     /// The lower triangle of M̄ without rotors, after [`Recursive::compose`]; where joints carry several bodies, summed over these.
@@ -291,24 +281,34 @@ impl Recursive {
         if self.groups.is_empty() {
             return self.fill_rows(rows);
         }
-        let (size, width) = (self.mechanism.layout().speeds, self.momenta.len());
-        let mut whole = core::mem::take(&mut self.unfolded_rows);
-        whole.resize(width * width, 0.0);
-        self.fill_rows(&mut whole);
+        let size = self.mechanism.layout().speeds;
         rows.fill(0.0);
-        for own in &self.links {
+        for (body, own) in self.links.iter().enumerate() {
             for (speed, column) in own.speeds.clone().zip(own.columns.clone()) {
-                let row = &whole[column * width..(column + 1) * width];
-                let mut next = Some(own);
-                while let Some(link) = next {
-                    let sums = &mut rows[speed * size..][link.speeds.clone()];
-                    for (sum, entry) in sums.iter_mut().zip(&row[link.columns.clone()]) {
-                        *sum += entry;
-                    }
-                    next = link.parent.map(|parent| &self.links[parent]);
-                }
+                let row = &mut rows[speed * size..(speed + 1) * size];
+                let momentum = &self.momenta[column];
+                self.each_to_root(body, momentum, |speed, product| row[speed] += product);
             }
         }
-        self.unfolded_rows = whole;
+    }
+
+    /// Tells every speed k from `body` to the root with `X_kᵀ F`.
+    fn each_to_root(
+        &self,
+        mut body: usize,
+        momentum: &Vector6<f64>,
+        mut tell: impl FnMut(usize, f64),
+    ) {
+        let mut momentum = *momentum;
+        loop {
+            let link = &self.links[body];
+            let columns = &self.columns[link.columns.clone()];
+            for (speed, column) in link.speeds.clone().zip(columns) {
+                tell(speed, column.dot(&momentum));
+            }
+            let Some(parent) = link.parent else { return };
+            momentum = shift_wrench(&momentum, &self.nodes[body].motion.placement.offset);
+            body = parent;
+        }
     }
 }

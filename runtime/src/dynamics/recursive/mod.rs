@@ -77,8 +77,6 @@ pub struct Recursive {
     groups: Vec<Group>,
     /// Room for entries with one for each body and each speed of its joint.
     unfolded: Vec<f64>,
-    /// The same, squared, once a mass matrix is asked for.
-    unfolded_rows: Vec<f64>,
     inertias: Vec<ArticulatedInertia<f64>>,
     pivots: Vec<Pivot<f64>>,
     loads: Vec<f64>,
@@ -116,7 +114,6 @@ impl Recursive {
             slender: Slender::all(&links),
             groups: Group::all(&mechanism),
             unfolded: vec![0.0; columns],
-            unfolded_rows: Vec::new(),
             links,
             climbs: Climb::all(&rungs, &link::parents(&mechanism, |ranges| &ranges.columns)),
             rungs,

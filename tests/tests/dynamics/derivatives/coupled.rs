@@ -81,8 +81,12 @@ fn driven(mechanism: Mechanism, body: usize) -> Mechanism {
 
 /// v̄̇ at Φ(q, ϕ), with the speeds that depend on the others completed.
 fn rates(case: &Case, phi: &[f64], speeds: &[f64], efforts: &[f64]) -> Vec<f64> {
+    rates_at(case, moved(&case.mechanism, &case.q, phi), speeds, efforts)
+}
+
+/// v̄̇ at q, likewise.
+fn rates_at(case: &Case, q: Vec<f64>, speeds: &[f64], efforts: &[f64]) -> Vec<f64> {
     let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
-    let q = moved(&case.mechanism, &case.q, phi);
     let mut all = speeds.to_vec();
     dynamics.complete_speeds(&q, &mut all).expect("determined");
     let mut rates = vec![0.0; all.len()];
@@ -115,7 +119,7 @@ fn coupled_joints_answer() {
         Recursive::new(Arc::clone(&case.mechanism))
             .forward_dynamics_derivatives(&case.q, v, tau, &mut found)
             .expect("covered");
-        assert_eq!(found.rates(), rates(&case, &home, v, tau));
+        assert_eq!(found.rates(), rates_at(&case, case.q.clone(), v, tau));
         let expected = [
             slopes(&home, |phi| rates(&case, phi, v, tau)),
             slopes(v, |v| rates(&case, &home, v, tau)),
@@ -138,8 +142,12 @@ fn coupled_joints_answer() {
 
 /// v̄ and p̄̇ at Φ(q, ϕ), one after the other.
 fn momentum_rates(case: &Case, phi: &[f64], momenta: &[f64], efforts: &[f64]) -> Vec<f64> {
+    momentum_rates_at(case, moved(&case.mechanism, &case.q, phi), momenta, efforts)
+}
+
+/// The same at q.
+fn momentum_rates_at(case: &Case, q: Vec<f64>, momenta: &[f64], efforts: &[f64]) -> Vec<f64> {
     let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
-    let q = moved(&case.mechanism, &case.q, phi);
     let (mut speeds, mut rates) = (momenta.to_vec(), momenta.to_vec());
     let mut held = |_: &[f64], tau: &mut [f64]| tau.copy_from_slice(efforts);
     let found = dynamics.momentum_rates(&q, momenta, &mut held, &mut speeds, &mut rates);
@@ -163,7 +171,7 @@ fn coupled_joints_answer_in_momenta() {
         dynamics
             .hamiltonian_derivatives(&case.q, &p, tau, &mut found)
             .expect("covered");
-        let both = momentum_rates(&case, &home, &p, tau);
+        let both = momentum_rates_at(&case, case.q.clone(), &p, tau);
         assert_eq!(found.speeds(), &both[..size_of_y]);
         let by_local = slopes(&home, |phi| momentum_rates(&case, phi, &p, tau));
         let by_momenta = slopes(&p, |p| momentum_rates(&case, &home, p, tau));

@@ -172,7 +172,7 @@ impl Written {
             parameters: parameters.chain([results]).collect(),
             unused: unused.chain((count == 0).then_some("results")).collect(),
             count,
-            columns: function.columns,
+            columns: function.columns.unwrap_or(1),
             arrays: statement::arrays(lowered),
             lines: statement::statements(&lowered.lines, &used),
             outputs: outputs.collect(),

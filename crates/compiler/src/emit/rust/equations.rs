@@ -81,8 +81,8 @@ fn rows_of_state(function: &Function) -> TokenStream {
     let name = Ident::new(function.name, Span::call_site());
     let count = Literal::usize_unsuffixed(function.outputs.len());
     let entries = match function.columns {
-        1 => quote! { as_slice },
-        _ => quote! { as_flattened },
+        None => quote! { as_slice },
+        Some(_) => quote! { as_flattened },
     };
     quote! {
         |q, v, u, results| {

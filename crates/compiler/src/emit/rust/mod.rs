@@ -100,8 +100,9 @@ fn item(function: &Function, bodies: &[String], inlined: bool) -> TokenStream {
         );
         quote! { let mut #name = [[n(0.0); #width]; #rows]; }
     });
-    let size = Literal::usize_unsuffixed(function.outputs.len() / function.columns.max(1));
-    let width = Literal::usize_unsuffixed(function.columns);
+    let columns = function.columns.unwrap_or(1);
+    let size = Literal::usize_unsuffixed(function.outputs.len() / columns);
+    let width = Literal::usize_unsuffixed(columns);
     let entries = Literal::usize_unsuffixed(function.outputs.len());
     let results = match &lowered.outputs {
         None => quote! { let mut results = [n(0.0); #entries]; },
@@ -112,15 +113,15 @@ fn item(function: &Function, bodies: &[String], inlined: bool) -> TokenStream {
         .as_ref()
         .map(|outputs| outputs.iter().map(value).collect());
     let (result, kind) = match (outputs, function.columns) {
-        (None, 1) => (quote! { results }, quote! { [T; #size] }),
-        (None, _) => (
+        (None, None) => (quote! { results }, quote! { [T; #size] }),
+        (None, Some(_)) => (
             quote! {
                 core::array::from_fn(|i| core::array::from_fn(|j| results[#width * i + j]))
             },
             quote! { [[T; #width]; #size] },
         ),
-        (Some(outputs), 1) => (quote! { [#(#outputs),*] }, quote! { [T; #size] }),
-        (Some(outputs), columns) => {
+        (Some(outputs), None) => (quote! { [#(#outputs),*] }, quote! { [T; #size] }),
+        (Some(outputs), Some(_)) => {
             let rows = outputs.chunks(columns).map(|row| quote! { [#(#row),*] });
             (quote! { [#(#rows),*] }, quote! { [[T; #width]; #size] })
         }
