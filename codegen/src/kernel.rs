@@ -251,6 +251,8 @@ pub struct Word {
     pub base: Symbol,
     /// The degrees of freedom along which a derivative is taken, one after the other.
     pub along: Vec<usize>,
+    /// Its derivatives along each ϕ_k, where more is known of them than the chain rule tells: in words.
+    pub rates: Vec<Expr>,
 }
 
 impl Word {
