@@ -53,7 +53,7 @@ impl<'a> Words<'a> {
             ideal: joint.space.manifold.ideal(),
             motion,
             freedoms: freedoms.map(|freedom| freedom.name.as_str()).collect(),
-            words: expansion.named().to_vec(),
+            words: vec![],
             derived_in: expansion.named().len(),
             numbers: Rc::default(),
             functions: BTreeMap::new(),
@@ -62,6 +62,13 @@ impl<'a> Words<'a> {
             found: RefCell::default(),
             as_derived: has_exponentials(joint),
         };
+        for word in expansion.named() {
+            let value = words.shorten(&word.value);
+            words.words.push(Word {
+                value,
+                ..word.clone()
+            });
+        }
         if words.as_derived {
             return words;
         }

@@ -6,12 +6,15 @@
 //! along N: both sides solve the same system, by the derivative of `∂φ B = 0`. So all that is derived is a short polynomial in Q and these names.
 
 use super::directions::Directions;
-use super::system::{Inverse, Names};
+use super::system::{Inverse, LONGEST, Names};
 use super::{bracket, upper};
 use crate::expr::Expr;
 use crate::kernel::Word;
 use crate::matrix::Matrix;
 use crate::prepare::Prepared;
+
+/// Most terms of a second derivative of a relation that has no name of its own: multiplied out, those of loops in a plane become shorter.
+const LONGEST_BEND: usize = 4;
 
 /// B with its derivatives, in names.
 pub struct Named {
@@ -138,7 +141,7 @@ fn named_gradient(
     for (relation, of_relation) in labels.relations.iter().enumerate() {
         for (n, direction) in labels.standard.iter().enumerate() {
             let name = format!("relation_{of_relation}_by_{direction}");
-            entries.push(names.if_long(&name, plain.at(relation, n)));
+            entries.push(names.if_long(&name, plain.at(relation, n), LONGEST));
         }
     }
     let mut entries = entries.into_iter();
@@ -194,7 +197,7 @@ impl Solver<'_> {
                 let bend = |(relation, label): (&Expr, &String)| {
                     let value = directions.symmetric(relation, tangent, i, j);
                     let name = format!("relation_{label}_by_{by}");
-                    self.names.if_long(&name, &value)
+                    self.names.if_long(&name, &value, LONGEST_BEND)
                 };
                 bends[i][j] = relations.map(bend).collect();
                 solved[i][j] = self.solved(&bends[i][j].clone(), &by);

@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 /// First index of the symbols made here, above those of `let`s and below those of their derivatives.
 const FIRST_INDEX: usize = 0x5000;
 
-/// Most terms of an entry that has no name of its own.
-const LONGEST: usize = 2;
+/// Most terms of an entry, a minor or a determinant that has no name of its own.
+pub const LONGEST: usize = 2;
 
 /// Names with their values, each made of those before it.
 pub struct Names<'a> {
@@ -37,10 +37,10 @@ impl<'a> Names<'a> {
         symbol
     }
 
-    /// The value in its shorter form; its name where that is long.
-    pub fn if_long(&mut self, name: &str, value: &Expr) -> Expr {
+    /// The value in its shorter form; its name where that has more terms than `longest`.
+    pub fn if_long(&mut self, name: &str, value: &Expr, longest: usize) -> Expr {
         let value = self.ideal.simplest(value);
-        let is_long = value.terms().len() > LONGEST;
+        let is_long = value.terms().len() > longest;
         match is_long {
             true => Expr::symbol(&self.named(name, value)),
             false => value,
@@ -78,7 +78,7 @@ impl Inverse {
         let determinant = names.ideal.simplest(&determinant);
         let (content, core) = without_content(&determinant);
         let core = core.recip()?;
-        let core = match determinant.terms().len() > 1 {
+        let core = match determinant.terms().len() > LONGEST {
             true => Expr::symbol(&names.named("per_determinant", core)),
             false => core,
         };
@@ -121,7 +121,7 @@ impl Minors<'_> {
         );
         let minor = match rows.len() {
             0 | 1 => value,
-            _ => names.if_long(&name, &value),
+            _ => names.if_long(&name, &value, LONGEST),
         };
         self.known.insert(key, minor.clone());
         minor
