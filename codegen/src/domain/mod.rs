@@ -217,7 +217,9 @@ impl<'a> Domain<'a> {
         if let Some(found) = generators.iter().position(|e| never_zero(&e)) {
             return Some(Certificate::Positive(all[found].clone()));
         }
-        let beside_loci = |e: &Expr| factors::without(e, &self.loci);
+        let written: Vec<Expr> = self.loci.iter().map(normal).collect();
+        let never_there = || self.loci.iter().chain(&written);
+        let beside_loci = |e: &Expr| factors::without(e, never_there());
         if generators.iter().any(|e| never_zero(&&beside_loci(e))) {
             return Some(Certificate::NoCommonZero {
                 functions,

@@ -8,14 +8,17 @@ use crate::prepare::Prepared;
 
 /// Derivatives along the standard directions of G.
 pub struct Directions<'a> {
+    /// Derivatives along these directions, each alone.
     pub along: Motion,
     ideal: &'a Ideal,
+    /// φ.
     pub relations: &'a [Expr],
     /// ∂φ, c×dim G.
     pub gradient: Matrix,
 }
 
 impl<'a> Directions<'a> {
+    /// Those of the factors of the joint.
     pub fn new(joint: &'a Prepared) -> Self {
         let manifold = &joint.space.manifold;
         let along = Motion::of_known_manifold(manifold);
@@ -36,7 +39,7 @@ impl<'a> Directions<'a> {
     /// shortest determinant.
     pub fn normal(&self, chosen: &Matrix) -> Option<(Matrix, Expr)> {
         let size = chosen.rows();
-        let simplify = |e: &Expr| self.ideal.normal_form(e);
+        let simplify = |e: &Expr| self.ideal.simplest(e);
         let candidates = combinations(size, size - chosen.columns());
         let complete = candidates.into_iter().filter_map(|rest| {
             let unit = |&n: &usize| Matrix::identity(size).column(n);
@@ -46,7 +49,7 @@ impl<'a> Directions<'a> {
                 return None;
             }
             let determinant = self.gradient.times(&normal).determinant(&simplify);
-            (!determinant.is_zero()).then_some((normal, determinant))
+            (!self.ideal.vanishes(&determinant)).then_some((normal, determinant))
         });
         complete.min_by_key(|(_, determinant)| determinant.terms().len())
     }
