@@ -23,12 +23,16 @@ pub use self::squares::squares;
 use self::sign::Signs;
 use crate::expr::{Atom, Expr, Function, Monomial, Rational, Role, Symbol, budget};
 use crate::manifold::Ideal;
+use crate::matrix::combinations;
 use crate::model::ConfigurationSpace;
 use num_traits::One;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Most term operations that one search for a certificate may take.
 const CERTIFICATE_LIMIT: u64 = 60_000;
+
+/// Most loci of which products are formed.
+const MOST_LOCI_IN_PRODUCTS: usize = 4;
 
 /// The manifold without the loci, and what is known of signs on it.
 #[derive(Clone, Debug)]
@@ -181,6 +185,27 @@ impl<'a> Domain<'a> {
         units.all(|(atom, _)| !matches!(atom, Atom::Symbol(s) if self.vanishing.contains(s)))
     }
 
+    /// Whether it is the product of some of the loci's functions on the manifold, apart from a factor of parameters that is never 0.
+    fn is_product_of_loci(&self, expression: &Expr) -> bool {
+        let normal = |e: &Expr| {
+            let normal = self.ideal.normal_form(e);
+            let (monomial, coefficient) = normal.leading()?;
+            let unit = Expr::term(coefficient.clone(), monomial.split().1);
+            let inverse = unit.recip().filter(|_| self.is_unit(&unit))?;
+            Some(&normal * &inverse)
+        };
+        let count = self.loci.len().min(MOST_LOCI_IN_PRODUCTS);
+        let mut choices = (1..=count).flat_map(|size| combinations(count, size));
+        let Some(own) = normal(expression) else {
+            return false;
+        };
+        choices.any(|chosen| {
+            let factors = chosen.iter().map(|&n| &self.loci[n]);
+            let product = factors.fold(Expr::one(), |product, locus| &product * locus);
+            normal(&product).as_ref() == Some(&own)
+        })
+    }
+
     fn search(&self, expressions: &[Expr]) -> Option<Certificate> {
         let normal = |e: &Expr| self.ideal.normal_form(e);
         let all: Vec<Expr> = expressions
@@ -220,7 +245,8 @@ impl<'a> Domain<'a> {
         let written: Vec<Expr> = self.loci.iter().map(normal).collect();
         let never_there = || self.loci.iter().chain(&written);
         let beside_loci = |e: &Expr| factors::without(e, never_there());
-        if generators.iter().any(|e| never_zero(&&beside_loci(e))) {
+        let is_beside_loci = |e: &Expr| never_zero(&&beside_loci(e)) || self.is_product_of_loci(e);
+        if generators.iter().any(is_beside_loci) {
             return Some(Certificate::NoCommonZero {
                 functions,
                 except: true,

@@ -132,6 +132,9 @@ pub fn needlessly_unproved(spec: &JointSpec, claims: &[Claim]) -> Vec<Diagnostic
     spec.unproved.iter().filter(needless).map(error).collect()
 }
 
+/// Longest function that a statement shows in full, in bytes.
+const LONGEST: usize = 200;
+
 /// Most undecided constants that one error names.
 const MOST_UNDECIDED: usize = 3;
 
@@ -212,7 +215,10 @@ impl<'a> Identities<'a> {
             .spec
             .loci
             .iter()
-            .map(|locus| format!("{} ≠ 0", locus.value.function))
+            .map(|locus| match locus.value.function.to_string() {
+                function if function.len() <= LONGEST => format!("{function} ≠ 0"),
+                _ => format!("not {}", locus.value.text),
+            })
             .collect();
         match loci.is_empty() {
             true => statement.to_owned(),

@@ -180,10 +180,10 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// The expression with every word replaced by its value.
+    /// The expression with every word replaced by its value, but for those in which B was derived: what holds for any values of them holds.
     fn expanded(&self, expression: &Expr) -> Expr {
         let mut value = expression.clone();
-        for word in self.words.iter().rev() {
+        for word in self.words.iter().skip(self.derived_in).rev() {
             if value.symbols().contains(&word.symbol) {
                 let values = BTreeMap::from([(word.symbol.clone(), word.value.clone())]);
                 value = value.substitute(&values);
