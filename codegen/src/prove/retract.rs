@@ -262,8 +262,13 @@ impl Prover<'_> {
                 let certificate = self.domain.nonzero(entry)?;
                 Some(format!("entry {} of B: {certificate}", n + 1))
             });
+            let together = || {
+                let certificate = self.domain.no_common_zero(flow.tangent.entries())?;
+                Some(format!("entries of B: {certificate}"))
+            };
+            let found = single.or_else(together);
             if let Some(certificate) =
-                single.or_else(|| rank::full_column_rank(&flow.tangent, &self.domain).ok())
+                found.or_else(|| rank::full_column_rank(&flow.tangent, &self.domain).ok())
             {
                 return claim(certificate);
             }

@@ -57,7 +57,7 @@ impl<'a> Directions<'a> {
     /// B, N = ∂φᵀ and |B|² for one degree of freedom: the maximal minors of ∂φ with alternating signs.
     pub fn cross_product(&self) -> Option<(Matrix, Matrix, Expr)> {
         let size = self.gradient.columns();
-        let simplify = |e: &Expr| self.ideal.normal_form(e);
+        let simplify = |e: &Expr| self.ideal.simplest(e);
         let transposed = self.gradient.transpose();
         let minor = |left_out: usize| {
             let rows: Vec<usize> = (0..size).filter(|&n| n != left_out).collect();
