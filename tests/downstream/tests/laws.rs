@@ -3,8 +3,9 @@
 use hamel::joint::Member;
 use hamel_downstream::joints::{
     BallCayley, BallTurns, Bead, CarWheels, Catenary, CatenaryLength, CrankRocker, DirectionSensor,
-    ENTRIES, FourBar, FourBarThrough, GearedRotor, PlanarTurns, PowerGuide, RollingBallCayley,
-    Scara, SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint,
+    ENTRIES, FiveBar, FourBar, FourBarThrough, GearedRotor, ParallelAnkle, PlanarTurns, PowerGuide,
+    RollingBallCayley, Scara, SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod,
+    SpherePoint, Wishbone,
 };
 use hamel_tests::laws::Reach::{self, Entries, HalfTurn};
 use hamel_tests::laws::check_within;
