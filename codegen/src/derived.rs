@@ -37,6 +37,9 @@ pub struct Derived {
     pub kernels: Vec<Kernel>,
     /// What kernels name in lines of their own, each after those in its value.
     pub words: Vec<Word>,
+    /// The names in which B was derived where relations alone say how Q moves, each after those in its value: `tangent`, `local_twist_map` and
+    /// `speed_map` hold them.
+    pub named: Vec<Word>,
     /// ∂Φ/∂ϕ of the stored scalars at ϕ = 0, N×K.
     pub tangent: Matrix,
     /// X^c S₀: ϕ̇ at ϕ = 0 to the twist of the child relative to the parent, in the child frame, 6×K.

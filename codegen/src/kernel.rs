@@ -192,9 +192,17 @@ pub struct Kernel {
 impl Kernel {
     /// The results with the values of the lines before them in their places, as far as these have formulas.
     pub fn expanded(&self) -> Vec<Matrix> {
+        self.expanded_but(&[])
+    }
+
+    /// The same with these names left as they are.
+    pub fn expanded_but(&self, kept: &[Word]) -> Vec<Matrix> {
+        let is_kept = |symbol: &Symbol| kept.iter().any(|word| word.symbol == *symbol);
         let mut values: BTreeMap<Symbol, Expr> = BTreeMap::new();
         for step in &self.steps {
-            if let Step::Let(symbol, value) = step {
+            if let Step::Let(symbol, value) = step
+                && !is_kept(symbol)
+            {
                 let value = value.substitute(&values);
                 values.insert(symbol.clone(), value);
             }
@@ -251,6 +259,8 @@ pub struct Word {
     pub base: Symbol,
     /// The degrees of freedom along which a derivative is taken, one after the other.
     pub along: Vec<usize>,
+    /// Its derivatives along each ϕ_k, where more is known of them than the chain rule tells: in words.
+    pub rates: Vec<Expr>,
 }
 
 impl Word {

@@ -155,6 +155,7 @@ impl Known {
             velocity_map_series: series(ideal, &expansion),
             unidentifiable: expand::unidentifiable(&expansion, ideal),
             programs: programs(&joint.spec, &expansion.arguments, &words, &kernels),
+            named: expansion.named().to_vec(),
             arguments: expansion.arguments,
             still: expansion.still.freedoms,
             still_speeds: self.still_speeds.clone(),

@@ -8,6 +8,7 @@ mod constant;
 mod critical;
 mod factors;
 mod harmonics;
+mod parallel;
 mod roots;
 mod sign;
 mod squares;
@@ -23,12 +24,16 @@ pub use self::squares::squares;
 use self::sign::Signs;
 use crate::expr::{Atom, Expr, Function, Monomial, Rational, Role, Symbol, budget};
 use crate::manifold::Ideal;
+use crate::matrix::combinations;
 use crate::model::ConfigurationSpace;
 use num_traits::One;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Most term operations that one search for a certificate may take.
 const CERTIFICATE_LIMIT: u64 = 60_000;
+
+/// Most loci of which products are formed.
+const MOST_LOCI_IN_PRODUCTS: usize = 4;
 
 /// The manifold without the loci, and what is known of signs on it.
 #[derive(Clone, Debug)]
@@ -42,6 +47,10 @@ pub struct Domain<'a> {
     home: BTreeMap<Symbol, Expr>,
     /// Whether the manifold, loci included, is known to be connected.
     connected: bool,
+    /// The relations that the spec declares.
+    declared: &'a [Expr],
+    /// Unit vectors of the plane in Q.
+    circles: Vec<parallel::Circle>,
 }
 
 /// Why some functions have no common zero.
@@ -53,6 +62,11 @@ pub enum Certificate {
     Positive(Expr),
     /// With the relations they generate a polynomial in one scalar that has no zero where that scalar lies.
     OneScalar {
+        /// How many functions there are.
+        functions: usize,
+    },
+    /// Where they vanish, unit vectors are parallel, which contradicts the relations.
+    Parallel {
         /// How many functions there are.
         functions: usize,
     },
@@ -78,20 +92,19 @@ impl std::fmt::Display for Certificate {
             Self::Constant(value) => write!(f, "= {value}"),
             Self::Positive(value) => write!(f, "= {value}, which is of one sign"),
             Self::OneScalar { functions } => {
-                let what = match functions {
-                    1 => "it".to_owned(),
-                    count => format!("{count} functions"),
-                };
+                let what = number(*functions);
                 write!(
                     f,
                     "where {what} vanished, so would a polynomial in one scalar between −1 and 1, and it has no zero there"
                 )
             }
+            Self::Parallel { functions } => write!(
+                f,
+                "where {} vanished, unit vectors would be parallel, which contradicts the relations whatever their signs",
+                number(*functions)
+            ),
             Self::NoCommonZero { functions, except } => {
-                let what = match functions {
-                    1 => "it".to_owned(),
-                    count => format!("{count} functions"),
-                };
+                let what = number(*functions);
                 let where_it_holds = if *except {
                     " away from the declared loci"
                 } else {
@@ -103,6 +116,14 @@ impl std::fmt::Display for Certificate {
                 )
             }
         }
+    }
+}
+
+/// So many functions, in words.
+fn number(functions: usize) -> String {
+    match functions {
+        1 => "it".to_owned(),
+        count => format!("{count} functions"),
     }
 }
 
@@ -120,6 +141,8 @@ impl<'a> Domain<'a> {
             vanishing: vanishing_parameters(&space.parameters),
             home: space.home_values(),
             connected: space.manifold.declared().is_empty(),
+            declared: space.manifold.declared(),
+            circles: unit_vectors::circles(space.manifold.factors()),
         }
     }
 
@@ -181,6 +204,49 @@ impl<'a> Domain<'a> {
         units.all(|(atom, _)| !matches!(atom, Atom::Symbol(s) if self.vanishing.contains(s)))
     }
 
+    /// Whether it is the product of some of the loci's functions on the manifold, apart from a factor of parameters that is never 0.
+    fn is_product_of_loci(&self, expression: &Expr) -> bool {
+        let normal = |e: &Expr| {
+            let normal = self.ideal.normal_form(e);
+            let (monomial, coefficient) = normal.leading()?;
+            let unit = Expr::term(coefficient.clone(), monomial.split().1);
+            let inverse = unit.recip().filter(|_| self.is_unit(&unit))?;
+            Some(&normal * &inverse)
+        };
+        let count = self.loci.len().min(MOST_LOCI_IN_PRODUCTS);
+        let mut choices = (1..=count).flat_map(|size| combinations(count, size));
+        let Some(own) = normal(expression) else {
+            return false;
+        };
+        choices.any(|chosen| {
+            let factors = chosen.iter().map(|&n| &self.loci[n]);
+            let product = factors.fold(Expr::one(), |product, locus| &product * locus);
+            normal(&product).as_ref() == Some(&own)
+        })
+    }
+
+    /// Whether the functions have no common zero because unit vectors would be parallel there.
+    fn are_parallel_nowhere(&self, functions: &[Expr]) -> bool {
+        let conditions = self.signs.positive_conditions();
+        let roots = conditions.flat_map(|e| [Some(e.clone()), e.polynomial_root()]);
+        let roots: Vec<Expr> = roots.flatten().collect();
+        let is_nonzero = |e: &Expr| {
+            let rest = factors::without(e, &roots);
+            self.is_unit(&rest) || self.signs.is_positive(&rest) || self.signs.is_positive(&-&rest)
+        };
+        let unit = |(c, s): &parallel::Circle| {
+            let square = &Expr::symbol(c).square() + &Expr::symbol(s).square();
+            &square - &Expr::one()
+        };
+        let known = Ideal::of_known(self.circles.iter().map(unit).collect());
+        let contradicts = |relations: &[Expr]| {
+            let rest: Vec<Expr> = relations.iter().filter(|e| !e.is_zero()).cloned().collect();
+            known.has_no_zero_with(&rest, &self.vanishing, is_nonzero)
+        };
+        let (declared, circles) = (self.declared, &self.circles);
+        parallel::is_excluded(functions, declared, circles, is_nonzero, contradicts)
+    }
+
     fn search(&self, expressions: &[Expr]) -> Option<Certificate> {
         let normal = |e: &Expr| self.ideal.normal_form(e);
         let all: Vec<Expr> = expressions
@@ -217,12 +283,18 @@ impl<'a> Domain<'a> {
         if let Some(found) = generators.iter().position(|e| never_zero(&e)) {
             return Some(Certificate::Positive(all[found].clone()));
         }
-        let beside_loci = |e: &Expr| factors::without(e, &self.loci);
-        if generators.iter().any(|e| never_zero(&&beside_loci(e))) {
+        let written: Vec<Expr> = self.loci.iter().map(normal).collect();
+        let never_there = || self.loci.iter().chain(&written);
+        let beside_loci = |e: &Expr| factors::without(e, never_there());
+        let is_beside_loci = |e: &Expr| never_zero(&&beside_loci(e)) || self.is_product_of_loci(e);
+        if generators.iter().any(is_beside_loci) {
             return Some(Certificate::NoCommonZero {
                 functions,
                 except: true,
             });
+        }
+        if self.are_parallel_nowhere(expressions) {
+            return Some(Certificate::Parallel { functions });
         }
         let under_root = |e: &Expr| under_root(e).filter(|_| self.has_unit_factor(e));
         let under_roots: Vec<Expr> = expressions.iter().filter_map(under_root).collect();

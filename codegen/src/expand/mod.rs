@@ -23,7 +23,7 @@ mod unidentifiable;
 mod velocity;
 
 pub use dimension::Confinement;
-pub use implicit::Flow;
+pub use implicit::{Directions as RelationDirections, Flow, Systems};
 
 pub use kernels::{kernels, of_body, speed_map};
 pub use motion::Motion;
@@ -39,7 +39,7 @@ use crate::algebra;
 use crate::diagnostic::Diagnostic;
 use crate::domain::Domain;
 use crate::expr::{Expr, Role, Symbol, budget};
-use crate::kernel::{Arguments, Shape};
+use crate::kernel::{Arguments, Shape, Word};
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use crate::model::VelocityFrame;
@@ -80,6 +80,11 @@ pub struct Expansion {
 }
 
 impl Expansion {
+    /// The names in which B was derived where relations alone say how Q moves, each after those in its value.
+    pub fn named(&self) -> &[Word] {
+        self.flow.as_ref().map_or(&[], Flow::words)
+    }
+
     /// That of the joint as if it carried that body alone: what belongs to Q and v stays as it is.
     pub fn carrying(&self, body: usize) -> Self {
         Self {

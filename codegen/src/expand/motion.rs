@@ -2,9 +2,11 @@
 
 use crate::algebra;
 use crate::expr::{Expr, Role, Symbol};
+use crate::kernel::Word;
 use crate::manifold::{Factor, Kind, Manifold};
 use crate::matrix::Matrix;
 use crate::prepare::{Prepared, local_element};
+use std::collections::BTreeMap;
 
 /// Φ(Q, ϕ) to second order in ϕ, as stored scalars: Q + Σ δ_k ϕ_k + ½ Σ δ_kl ϕ_k ϕ_l.
 #[derive(Clone, Debug)]
@@ -14,6 +16,8 @@ pub struct Motion {
     first: Vec<Vec<Expr>>,
     /// `second[k][l][i]`: ∂²Φ_i/∂ϕ_k∂ϕ_l.
     second: Vec<Vec<Vec<Expr>>>,
+    /// Names that stand for functions of Q, with their derivatives along each ϕ_k.
+    named: BTreeMap<Symbol, Vec<Expr>>,
 }
 
 /// The velocity of a point of the sphere that turns about an axis.
@@ -35,7 +39,18 @@ impl Motion {
             coordinates,
             first,
             second,
+            named: BTreeMap::new(),
         }
+    }
+
+    /// The same where these names stand for functions of Q, as far as their derivatives are known.
+    #[must_use]
+    pub fn with_named(mut self, words: &[Word]) -> Self {
+        let known = words.iter().filter(|word| !word.rates.is_empty());
+        self.named = known
+            .map(|word| (word.symbol.clone(), word.rates.clone()))
+            .collect();
+        self
     }
 
     /// Φ = Q exp(Σ b_k ϕ_k) on every factor, exp taken to second order.
@@ -75,6 +90,7 @@ impl Motion {
             coordinates: manifold.coordinates(),
             first,
             second: vec![],
+            named: BTreeMap::new(),
         }
     }
 
@@ -110,6 +126,7 @@ impl Motion {
             coordinates: joint.space.manifold.coordinates(),
             first: slopes.iter().map(|slope| at_base(slope)).collect(),
             second: (0..locals.len()).map(second).collect(),
+            named: BTreeMap::new(),
         }
     }
 
@@ -133,9 +150,12 @@ impl Motion {
         &self.second[k][l]
     }
 
-    /// ∂/∂ϕ_k at ϕ = 0 of a function of Q.
+    /// ∂/∂ϕ_k at ϕ = 0 of a function of Q, in stored scalars and names.
     pub fn along(&self, function: &Expr, k: usize) -> Expr {
-        function.along(&|symbol| self.rate(symbol, &self.first[k]))
+        function.along(&|symbol| match self.named.get(symbol) {
+            Some(rates) => rates[k].clone(),
+            None => self.rate(symbol, &self.first[k]),
+        })
     }
 
     /// Entry by entry.
@@ -143,7 +163,7 @@ impl Motion {
         function.map(|entry| self.along(entry, k))
     }
 
-    /// ∂²/∂ϕ_k∂ϕ_l at ϕ = 0 of a function of Φ(Q, ϕ).
+    /// ∂²/∂ϕ_k∂ϕ_l at ϕ = 0 of a function of Φ(Q, ϕ), in stored scalars alone.
     pub fn along_both(&self, function: &Expr, k: usize, l: usize) -> Expr {
         // The first derivative, with stand-ins for the rates of the stored scalars, which themselves have rates along ϕ_l.
         let stand_in = |n: usize| Symbol::new(Role::Intermediate, n, "rate_of_coordinate");

@@ -27,6 +27,8 @@ pub struct Ideal {
     own: Arc<Reduction>,
     /// The relations as they are stated, among which short ones are found sooner than in the basis.
     stated: Arc<[Expr]>,
+    /// Whether it is that of some of these alone.
+    is_incomplete: bool,
     /// Parameters that are positive, so that the root of their square is the parameter itself.
     positive: BTreeSet<Symbol>,
     /// Parameters that may be 0, by which nothing is divided.
@@ -46,6 +48,16 @@ impl Ideal {
             own: Arc::new(Reduction::new(relations)),
             stated: relations.into(),
             ..Self::default()
+        }
+    }
+
+    /// The ideal of `known` relations alone, where a basis of all would take too long: what vanishes modulo these does so on the manifold, but
+    /// of what does not nothing is said.
+    pub fn incomplete(known: &[Expr], all: &[Expr]) -> Self {
+        Self {
+            stated: all.into(),
+            is_incomplete: true,
+            ..Self::new(known)
         }
     }
 
@@ -103,7 +115,7 @@ impl Ideal {
         self.own.is_trivial()
     }
 
-    /// The normal form: zero exactly for the expressions that vanish modulo the relations.
+    /// The normal form: zero exactly for the expressions that vanish modulo the relations, or modulo those of them that it knows.
     pub fn normal_form(&self, expression: &Expr) -> Expr {
         if expression.related_functions().is_empty() {
             return self.own.normal_form(expression);
@@ -346,6 +358,10 @@ impl Ideal {
 
     /// Whether its basis holds where those parameters are 0, too: whether it follows from the relations without division by them.
     pub fn follows_undivided(&self, relations: &[Expr], vanishing: &BTreeSet<Symbol>) -> bool {
+        if self.is_incomplete {
+            // Those of known factors hold no parameters.
+            return true;
+        }
         let free = |e: &Expr| indeterminate(e, vanishing);
         let undivided = Self::new(&relations.iter().map(free).collect::<Vec<_>>());
         let mut basis = self.own.relations().into_iter();

@@ -52,6 +52,19 @@ impl Manifold {
         }
     }
 
+    /// The same where a basis of all relations would take too long: equality is that modulo the relations of the factors alone.
+    #[must_use]
+    pub fn constrained_in_part(self, declared: Vec<Expr>) -> Self {
+        let known = self.relations();
+        let all = [&known[..], &declared].concat();
+        Self {
+            ideal: Ideal::incomplete(&known, &all),
+            declared: [self.declared, declared].concat(),
+            is_coset: false,
+            factors: self.factors,
+        }
+    }
+
     /// The coset of a subgroup in this manifold, which linear relations cut out.
     #[must_use]
     pub fn confined(self, relations: Vec<Expr>) -> Self {

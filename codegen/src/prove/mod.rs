@@ -13,6 +13,7 @@ mod claim;
 mod defined;
 mod degenerate;
 mod fibres;
+mod named;
 mod nonholonomic;
 mod retract;
 mod search;
@@ -26,6 +27,7 @@ use crate::diagnostic::Diagnostic;
 use crate::domain::{Domain, LAST_PRECISION};
 use crate::expand::Expansion;
 use crate::expr::Expr;
+use crate::kernel::Word;
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use crate::model::{Declared, JointSpec, Unproved};
@@ -43,11 +45,15 @@ pub fn prove_declared(joint: &Prepared) -> Result<Vec<Claim>, Vec<Diagnostic>> {
 /// All other claims. What rests on a claim that fails is not looked at: the first cause is told, and what does not hang on it.
 pub fn prove(joint: &Prepared, expansion: &Expansion) -> Result<Vec<Claim>, Vec<Diagnostic>> {
     let prover = Prover {
-        identities: Identities::new(joint),
+        identities: Identities {
+            words: expansion.named(),
+            ..Identities::new(joint)
+        },
         x: expansion,
     };
     let mut claims = prover.settled([prover.declared_is_defined(), prover.has_dimension()])?;
     claims.extend(prover.settled([
+        prover.names_solve_systems(),
         prover.retract_stays_on_manifold(),
         prover.declared_retract(),
     ])?);
@@ -82,6 +88,7 @@ fn place(name: &str) -> usize {
         "manifold_dimension",
         "retract_by_relations",
         "manifold_orbit",
+        "tangent_basis_solves",
         "retract_on_manifold",
         "retract_is_exponential",
         "retract_local_diffeomorphism",
@@ -125,6 +132,9 @@ pub fn needlessly_unproved(spec: &JointSpec, claims: &[Claim]) -> Vec<Diagnostic
     spec.unproved.iter().filter(needless).map(error).collect()
 }
 
+/// Longest function that a statement shows in full, in bytes.
+const LONGEST: usize = 200;
+
 /// Most undecided constants that one error names.
 const MOST_UNDECIDED: usize = 3;
 
@@ -138,6 +148,8 @@ struct Identities<'a> {
     ideal: &'a Ideal,
     domain: Domain<'a>,
     points: Points,
+    /// Names in what is proved.
+    words: &'a [Word],
 }
 
 /// The same with what was derived.
@@ -161,6 +173,7 @@ impl<'a> Identities<'a> {
             ideal: joint.space.manifold.ideal(),
             domain: Domain::new(&joint.space),
             points: Points::default(),
+            words: &[],
         }
     }
 
@@ -202,7 +215,10 @@ impl<'a> Identities<'a> {
             .spec
             .loci
             .iter()
-            .map(|locus| format!("{} ≠ 0", locus.value.function))
+            .map(|locus| match locus.value.function.to_string() {
+                function if function.len() <= LONGEST => format!("{function} ≠ 0"),
+                _ => format!("not {}", locus.value.text),
+            })
             .collect();
         match loci.is_empty() {
             true => statement.to_owned(),
@@ -217,10 +233,13 @@ impl<'a> Identities<'a> {
         difference: &Matrix,
         refuted: impl FnOnce(Matrix) -> Diagnostic,
     ) -> Attempt {
-        let residual = difference.map(|entry| match self.ideal.vanishes(entry) {
-            true => Expr::zero(),
-            false => self.ideal.normal_form(entry),
-        });
+        let mut difference = difference.clone();
+        let mut residual = self.residual(&difference);
+        if !residual.is_zero() && !self.words.is_empty() {
+            // What does not hold for all values of the names may do so for their own.
+            difference = difference.map(|entry| named::written_out(entry, self.words));
+            residual = self.residual(&difference);
+        }
         if residual.is_zero() {
             return Ok(Some(symbolic(
                 name,
@@ -266,6 +285,13 @@ impl<'a> Identities<'a> {
             }
             (Verdict::Undecided(why), _) => Err(Box::new(undecided(refuted(residual), &why))),
         }
+    }
+
+    fn residual(&self, difference: &Matrix) -> Matrix {
+        difference.map(|entry| match self.ideal.vanishes(entry) {
+            true => Expr::zero(),
+            false => self.ideal.normal_form(entry),
+        })
     }
 
     fn pose_is_rigid(&self) -> Attempt {

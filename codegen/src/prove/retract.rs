@@ -1,6 +1,7 @@
 //! Claims about Φ: it starts at Q, stays on the manifold, and is what the generator can invert.
 
 use super::Proof;
+use super::named::Relations;
 use super::{Attempt, Identities, Prover, certified, refuted, symbolic};
 use crate::diagnostic::Diagnostic;
 use crate::expand::{Confinement, Flow, Motion, dimension, rank};
@@ -76,14 +77,7 @@ impl Prover<'_> {
             Some((moved, _)) => &Motion::of_map(self.joint, moved),
             None => &self.x.motion,
         };
-        let k = motion.freedoms();
-        let first = relations
-            .iter()
-            .flat_map(|g| (0..k).map(move |i| motion.along(g, i)));
-        let second = relations.iter().flat_map(|g| {
-            (0..k).flat_map(move |i| (0..=i).map(move |j| motion.along_both(g, i, j)))
-        });
-        let residual = Matrix::column_vector(first.chain(second).collect());
+        let residual = Matrix::column_vector(self.relations_along(motion, &relations));
         let moved = declared.as_ref().map(|(moved, _)| moved.clone());
         let span = declared.map_or(self.joint.spec.freedoms.span.clone(), |(_, span)| span);
         let attempt = self.identity(
@@ -148,6 +142,36 @@ impl Prover<'_> {
             }
             (attempt, _) => attempt,
         }
+    }
+
+    /// The first and second derivatives of the relations along Φ; of those that define the names of B and λ, less what is 0 by definition.
+    fn relations_along(&self, motion: &Motion, relations: &[Expr]) -> Vec<Expr> {
+        let k = motion.freedoms();
+        let named = self.relations();
+        let known = self.joint.space.manifold.declared().len();
+        let declared_from = relations.len() - known;
+        let defined = |place: usize, zero: &dyn Fn(&Relations<'_>, usize) -> Expr| {
+            let declared = place.checked_sub(declared_from);
+            let named = named.as_ref().map(|(named, _)| named);
+            match (named, declared) {
+                (Some(named), Some(r)) => zero(named, r),
+                _ => Expr::zero(),
+            }
+        };
+        let along = |place: usize| {
+            let g = &relations[place];
+            let first = (0..k).map(move |i| {
+                let zero = defined(place, &|named, r| named.first(r, i));
+                &motion.along(g, i) - &zero
+            });
+            let pairs = (0..k).flat_map(|i| (0..=i).map(move |j| (i, j)));
+            let second = pairs.map(move |(i, j)| {
+                let zero = defined(place, &|named, r| named.second(r, i, j));
+                &motion.along_both(g, i, j) - &zero
+            });
+            first.chain(second).collect::<Vec<_>>()
+        };
+        (0..relations.len()).flat_map(along).collect()
     }
 
     /// Whether the relations are shown to hold at Φ(Q, ϕ) for every ϕ.
@@ -238,8 +262,13 @@ impl Prover<'_> {
                 let certificate = self.domain.nonzero(entry)?;
                 Some(format!("entry {} of B: {certificate}", n + 1))
             });
+            let together = || {
+                let certificate = self.domain.no_common_zero(flow.tangent.entries())?;
+                Some(format!("entries of B: {certificate}"))
+            };
+            let found = single.or_else(together);
             if let Some(certificate) =
-                single.or_else(|| rank::full_column_rank(&flow.tangent, &self.domain).ok())
+                found.or_else(|| rank::full_column_rank(&flow.tangent, &self.domain).ok())
             {
                 return claim(certificate);
             }

@@ -155,7 +155,7 @@ impl Prover<'_> {
     }
 
     /// The error of a step of the derivation that does not meet its definition.
-    fn fault(&self, code: &'static str, message: &str) -> Diagnostic {
+    pub(super) fn fault(&self, code: &'static str, message: &str) -> Diagnostic {
         refuted(code, &self.twist_map_span(), message, "derived from this")
             .note("a fault of the generator: please report this spec")
     }

@@ -86,7 +86,7 @@ impl Maker<'_> {
         words.shorten_each(&words.shorten_each(&inverse.times(basis)).times(&speeds))
     }
 
-    /// `Q̇ = Σ_k δ_k ϕ̇_k` of the stored scalars that occur in a matrix.
+    /// `Q̇ = Σ_k δ_k ϕ̇_k` of the stored scalars that occur in a matrix, and the rates of the names of B that do.
     fn coordinate_rates(
         &self,
         matrix: &Matrix,
@@ -94,15 +94,20 @@ impl Maker<'_> {
         steps: &mut Steps,
     ) -> BTreeMap<Symbol, Expr> {
         let occurring: BTreeSet<Symbol> = matrix.entries().iter().flat_map(Expr::symbols).collect();
-        let rates = self.expansion.motion.tangent();
-        let rates = words.shorten_each(&rates.times(&self.local_rates(words)));
+        let local = self.local_rates(words);
+        let rates = self.expansion.motion.tangent().times(&local);
         let coordinates = self.expansion.arguments.configuration.iter();
-        let moving = coordinates
-            .zip(rates.entries())
-            .filter(|(symbol, rate)| occurring.contains(*symbol) && !rate.is_zero());
-        let bound = moving.map(|(symbol, rate)| {
+        let coordinates = coordinates.zip(rates.entries().iter().cloned());
+        let named = self.expansion.named().iter().map(|word| {
+            let terms = word.rates.iter().zip(local.entries());
+            (&word.symbol, terms.map(|(rate, local)| rate * local).sum())
+        });
+        let all = coordinates.chain(named);
+        let all = all.filter(|(symbol, _)| occurring.contains(*symbol));
+        let shortened = all.map(|(symbol, rate)| (symbol, words.shorten(&rate)));
+        let bound = shortened.filter(|(_, rate)| !rate.is_zero()).map(|(symbol, rate)| {
             let name = format!("{}_rate", symbol.name);
-            (symbol.clone(), steps.bind(&name, rate.clone()))
+            (symbol.clone(), steps.bind(&name, rate))
         });
         bound.collect()
     }

@@ -1,6 +1,7 @@
 //! The kernels of a joint in the words of its author.
 
 use super::twists;
+use super::views::Written;
 use super::words::{Words, opened};
 use crate::expand::{self, Expansion};
 use crate::expr::{Expr, Symbol, budget};
@@ -31,7 +32,7 @@ pub(super) fn shortened(
     expansion: &Expansion,
     mut words: Words<'_>,
     kernels: Vec<Kernel>,
-) -> (Vec<Kernel>, Vec<Word>) {
+) -> Written {
     let twists = twists::of_pose(joint, expansion, &mut words);
     let shortened = kernels.into_iter().map(|mut kernel| {
         if let Some(outputs) = declared(joint, kernel.kind) {
@@ -61,6 +62,11 @@ pub(super) fn shortened(
         });
     let mut kernels: Vec<Kernel> = finished.collect();
     kernels.extend(super::bias::kernels(joint, expansion, &words, &speed_map));
+    with_used(kernels, &words)
+}
+
+/// The kernels in order, and the words that they use.
+fn with_used(mut kernels: Vec<Kernel>, words: &Words<'_>) -> Written {
     kernels.sort_by_key(|kernel| kernel.kind);
     let used = kernels.iter().flat_map(|kernel| &kernel.steps);
     let used: BTreeSet<&Symbol> = used.flat_map(Step::bound).collect();
@@ -74,13 +80,14 @@ pub(super) fn shortened(
 pub(super) fn as_derived(
     joint: &Prepared,
     expansion: &Expansion,
-    mut kernels: Vec<Kernel>,
+    kernels: Vec<Kernel>,
     words: &Words<'_>,
-) -> Vec<Kernel> {
+) -> Written {
     let map = expand::speed_map(joint, expansion);
+    let kernels = kernels.into_iter();
+    let mut kernels: Vec<Kernel> = kernels.map(|kernel| with_lines(words, kernel)).collect();
     kernels.extend(super::bias::kernels(joint, expansion, words, &map));
-    kernels.sort_by_key(|kernel| kernel.kind);
-    kernels
+    with_used(kernels, words)
 }
 
 /// Derivatives, and what they are of.

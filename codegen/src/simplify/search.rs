@@ -47,6 +47,8 @@ fn best_division(sum: &Sum, relations: &[Relation], floor: &FxHashMap<u16, i16>)
     let mut least = length(sum);
     let mut best = None;
     for relation in 0..relations.len() {
+        let terms = relations[relation].sum.len() as u64;
+        budget::spend(terms * terms / 8);
         for lead in leads(&relations[relation].sum) {
             if let Some(remainder) = remainder(sum, relations, relation, lead, floor)
                 && length(&remainder) < least
@@ -104,7 +106,8 @@ fn remainder(
             coefficient,
         };
         subtract(&mut rest, relations, &multiple);
-        budget::spend(relations[relation].sum.len() as u64);
+        // What is divisible is looked for from the first term on.
+        budget::spend(relations[relation].sum.len() as u64 + rest.len() as u64 / 4);
         steps += 1;
         if steps > LONGEST_DIVISION || budget::is_exhausted() {
             return None;

@@ -32,15 +32,22 @@ pub fn have_values_of(
 }
 
 fn agree(written: &[Kernel], derived: &[Kernel], expansion: &Expansion, point: &Point) -> bool {
+    // Kernels as they were derived have no lines for the names of B.
+    let mut named = point.clone();
+    for word in expansion.named() {
+        let value = named.evaluate(&word.value);
+        named.bind(&word.symbol, value);
+    }
+    let named = &named;
     written.iter().all(|kernel| {
         let expected = match kernel.kind {
             KernelKind::BiasAcceleration | KernelKind::BiasMomentum => {
-                bias(kernel.kind, derived, expansion, point)
+                bias(kernel.kind, derived, expansion, named)
             }
             kind => derived
                 .iter()
                 .find(|kernel| kernel.kind == kind)
-                .and_then(|kernel| value(kernel, point)),
+                .and_then(|kernel| value(kernel, named)),
         };
         match (value(kernel, point), expected) {
             (Some(value), Some(expected)) => is_same(&value, &expected),

@@ -24,7 +24,7 @@ pub struct View {
 ///
 /// Where the result has another value than what was derived, it is dropped: the kernels are then those that were derived.
 pub fn in_words(joint: &Prepared, first: &View, others: &[View]) -> (Written, Vec<Written>) {
-    let words = Words::new(joint, &first.expansion.motion);
+    let words = Words::new(joint, &first.expansion);
     let shared = first.in_words(&words, &first.kernels);
     let others = others.iter().map(|view| {
         let derived = [of_all(&first.kernels), view.kernels.clone()].concat();
@@ -77,7 +77,6 @@ impl View {
                 return (written, used);
             }
         }
-        let words = words.without_names();
-        (as_derived(joint, expansion, kernels, &words), vec![])
+        as_derived(joint, expansion, kernels, &words.without_names())
     }
 }

@@ -1,7 +1,7 @@
 //! The author's names: `let`s of the spec and their derivatives, as values that kernels are made of.
 
 use super::shortened;
-use crate::expand::Motion;
+use crate::expand::{Expansion, Motion};
 use crate::expr::{Application, Atom, Expr, Function, Monomial, Role, Symbol, budget};
 use crate::kernel::Word;
 use crate::manifold::{Ideal, weight};
@@ -27,6 +27,8 @@ pub struct Words<'a> {
     motion: &'a Motion,
     freedoms: Vec<&'a str>,
     words: Vec<Word>,
+    /// How many of them are those in which B was derived: the first.
+    derived_in: usize,
     /// Shared between copies, so that a symbol means one value in every kernel.
     numbers: Rc<RefCell<Numbers>>,
     /// Functions that are words themselves.
@@ -43,14 +45,16 @@ pub struct Words<'a> {
 }
 
 impl<'a> Words<'a> {
-    /// The `let`s of the joint.spec.
-    pub fn new(joint: &'a Prepared, motion: &'a Motion) -> Self {
+    /// The `let`s of the joint.spec, and the names in which B was derived.
+    pub fn new(joint: &'a Prepared, expansion: &'a Expansion) -> Self {
+        let motion = &expansion.motion;
         let freedoms = joint.spec.freedoms.value.iter();
         let mut words = Self {
             ideal: joint.space.manifold.ideal(),
             motion,
             freedoms: freedoms.map(|freedom| freedom.name.as_str()).collect(),
             words: vec![],
+            derived_in: expansion.named().len(),
             numbers: Rc::default(),
             functions: BTreeMap::new(),
             derivatives: BTreeMap::new(),
@@ -58,6 +62,13 @@ impl<'a> Words<'a> {
             found: RefCell::default(),
             as_derived: has_exponentials(joint),
         };
+        for word in expansion.named() {
+            let value = words.shorten(&word.value);
+            words.words.push(Word {
+                value,
+                ..word.clone()
+            });
+        }
         if words.as_derived {
             return words;
         }
@@ -67,10 +78,11 @@ impl<'a> Words<'a> {
         words
     }
 
-    /// No words: expressions stay as they were derived.
+    /// No words but those in which B was derived: expressions stay as they were.
     pub fn without_names(&self) -> Self {
+        let derived = self.words.iter().take(self.derived_in);
         Self {
-            words: vec![],
+            words: derived.cloned().collect(),
             functions: BTreeMap::new(),
             derivatives: BTreeMap::new(),
             definitions: vec![],
@@ -138,6 +150,7 @@ impl<'a> Words<'a> {
             value,
             along,
             base: base.clone(),
+            rates: vec![],
         });
     }
 
@@ -167,10 +180,10 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// The expression with every word replaced by its value.
+    /// The expression with every word replaced by its value, but for those in which B was derived: what holds for any values of them holds.
     fn expanded(&self, expression: &Expr) -> Expr {
         let mut value = expression.clone();
-        for word in self.words.iter().rev() {
+        for word in self.words.iter().skip(self.derived_in).rev() {
             if value.symbols().contains(&word.symbol) {
                 let values = BTreeMap::from([(word.symbol.clone(), word.value.clone())]);
                 value = value.substitute(&values);
@@ -324,7 +337,11 @@ impl<'a> Words<'a> {
             value,
             mut along,
             base,
+            rates,
         } = self.words[n].clone();
+        if let Some(known) = rates.get(k) {
+            return known.clone();
+        }
         let key = (symbol.clone(), k);
         if let Some(known) = self.derivatives.get(&key) {
             return known.clone();

@@ -4,29 +4,26 @@
 //! The runtime forms the same products in numbers: `hamel_runtime::joint::Products`.
 
 use hamel_codegen::WORK_LIMIT;
-use hamel_codegen::derived::{Derived, KernelKind};
+use hamel_codegen::derived::{Derived, KernelKind, Step, Word};
 use hamel_codegen::expr::budget::{self, Exhausted};
-use hamel_codegen::expr::{Expr, Symbol};
+use hamel_codegen::expr::{Expr, Role, Symbol};
 use hamel_codegen::formula::Program;
 use hamel_codegen::matrix::Matrix;
 use std::cell::OnceCell;
+use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
+
+/// First index of the names of derivatives, above those of a joint's own names.
+const FIRST_INDEX: usize = 0x7000;
 
 /// One product: its value, and its formulas once something asks for them.
 #[derive(Clone, Debug)]
 pub struct Product {
+    /// The names in its value, each after those in its own.
+    pub steps: Vec<Step>,
     /// Its value.
     pub value: Matrix,
     program: OnceCell<Program>,
-}
-
-impl Product {
-    fn new(value: Matrix) -> Self {
-        Self {
-            value,
-            program: OnceCell::new(),
-        }
-    }
 }
 
 /// A joint type as the scene compiler takes it; where it carries several bodies, as one of them sees it.
@@ -58,7 +55,7 @@ impl JointType {
     /// The formulas of one of its products, in its own names.
     pub fn program<'a>(&self, product: &'a Product) -> &'a Program {
         let value = std::slice::from_ref(&product.value);
-        let formulas = || Program::in_names(&[], value, self.derived.names());
+        let formulas = || Program::in_names(&product.steps, value, self.derived.names());
         product.program.get_or_init(formulas)
     }
 }
@@ -92,34 +89,96 @@ impl Products {
         let wrench = Matrix::symbols(&arguments.wrench);
         let map = &derived.speed_map;
         let bias = derived.kernel(KernelKind::BiasAcceleration);
-        let bias = bias.and_then(|kernel| kernel.expanded().into_iter().next());
+        let bias = bias.map(|kernel| kernel.expanded_but(&derived.named));
+        let bias = bias.and_then(|outputs| outputs.into_iter().next());
         let bias = bias.unwrap_or_else(|| Matrix::zeros(6, 1));
-        let along = |column: &Matrix| Product::new(along_each(derived, column));
+        let names = Names::new(derived);
+        let along = |column: &Matrix| names.product(names.along_each(column));
+        let by_speeds = by_each(derived, &bias, &arguments.speeds);
         Self {
-            local_twist_map: Product::new(derived.local_twist_map.clone()),
+            local_twist_map: names.product(derived.local_twist_map.clone()),
             twist_gradient: along(&map.times(&speeds)),
             effort_gradient: along(&map.transpose().times(&wrench)),
             bias_acceleration_gradient: along(&bias),
-            bias_acceleration_slope: Product::new(by_each(derived, &bias, &arguments.speeds)),
+            bias_acceleration_slope: names.product(by_speeds),
         }
     }
 }
 
-/// The derivatives of a column along each ϕ_k at ϕ = 0, beside each other.
-fn along_each(derived: &Derived, column: &Matrix) -> Matrix {
-    let coordinates = &derived.arguments.configuration;
-    let along = |k: usize| {
-        let rate = |symbol: &Symbol| match coordinates.iter().position(|known| known == symbol) {
-            Some(n) => derived.tangent.at(n, k).clone(),
-            None => Expr::zero(),
+/// The names in which a joint's B was derived, and their derivatives along each ϕ_k, as names of their own where these are not known in names.
+struct Names<'a> {
+    derived: &'a Derived,
+    /// Values of names, each after those in it.
+    values: Vec<(Symbol, Expr)>,
+    /// By k and name, the derivative.
+    rates: Vec<BTreeMap<Symbol, Expr>>,
+}
+
+impl<'a> Names<'a> {
+    fn new(derived: &'a Derived) -> Self {
+        let words = derived.named.iter();
+        let mut names = Self {
+            derived,
+            values: words.map(|w| (w.symbol.clone(), w.value.clone())).collect(),
+            rates: vec![],
         };
-        column.map(|entry| entry.along(&rate)).entries().to_vec()
-    };
-    beside(
-        derived,
-        column.rows(),
-        (0..derived.shape.freedoms).map(along),
-    )
+        for k in 0..derived.shape.freedoms {
+            names.differentiate(k);
+        }
+        names
+    }
+
+    fn differentiate(&mut self, k: usize) {
+        let known = |word: &Word| Some((word.symbol.clone(), word.rates.get(k)?.clone()));
+        self.rates
+            .push(self.derived.named.iter().filter_map(known).collect());
+        for word in &self.derived.named {
+            if word.rates.is_empty() {
+                let rate = word.value.along(&|symbol| self.rate(symbol, k));
+                let name = format!("{}_along_{}", word.symbol.name, k + 1);
+                let symbol = Symbol::new(Role::Intermediate, FIRST_INDEX + self.values.len(), &name);
+                self.rates[k].insert(word.symbol.clone(), Expr::symbol(&symbol));
+                self.values.push((symbol, rate));
+            }
+        }
+    }
+
+    /// The derivative of a symbol along ϕ_k at ϕ = 0.
+    fn rate(&self, symbol: &Symbol, k: usize) -> Expr {
+        let coordinates = &self.derived.arguments.configuration;
+        match coordinates.iter().position(|known| known == symbol) {
+            Some(n) => self.derived.tangent.at(n, k).clone(),
+            None => self.rates[k].get(symbol).cloned().unwrap_or_default(),
+        }
+    }
+
+    /// The derivatives of a column along each ϕ_k at ϕ = 0, beside each other.
+    fn along_each(&self, column: &Matrix) -> Matrix {
+        let along = |k: usize| {
+            let moved = column.map(|entry| entry.along(&|symbol| self.rate(symbol, k)));
+            moved.entries().to_vec()
+        };
+        let columns = (0..self.derived.shape.freedoms).map(along);
+        beside(self.derived, column.rows(), columns)
+    }
+
+    /// The product with this value, and the names in it.
+    fn product(&self, value: Matrix) -> Product {
+        let mut used: BTreeSet<Symbol> = value.entries().iter().flat_map(Expr::symbols).collect();
+        let mut steps = vec![];
+        for (symbol, value) in self.values.iter().rev() {
+            if used.contains(symbol) {
+                used.extend(value.symbols());
+                steps.push(Step::Let(symbol.clone(), value.clone()));
+            }
+        }
+        steps.reverse();
+        Product {
+            steps,
+            value,
+            program: OnceCell::new(),
+        }
+    }
 }
 
 /// The derivatives of a column by each of the symbols, beside each other.

@@ -3,8 +3,9 @@
 use hamel::joint::Member;
 use hamel_downstream::joints::{
     BallCayley, BallTurns, Bead, CarWheels, Catenary, CatenaryLength, CrankRocker, DirectionSensor,
-    ENTRIES, FourBar, FourBarThrough, GearedRotor, PlanarTurns, PowerGuide, RollingBallCayley,
-    Scara, SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint,
+    ENTRIES, FiveBar, FourBar, FourBarThrough, GearedRotor, ParallelAnkle, PlanarTurns, PowerGuide,
+    RollingBallCayley, Scara, SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod,
+    SpherePoint, Wishbone,
 };
 use hamel_tests::laws::Reach::{self, Entries, HalfTurn};
 use hamel_tests::laws::check_within;
@@ -99,8 +100,11 @@ macro_rules! laws_of_bodies {
 laws_of_bodies! {
     car_wheels: CarWheels::new(1.1, 0.7, 0.4), [1, 2, 3, 4];
     crank_rocker: CrankRocker::new(0.9, 0.4, 1.1, 1.2), [1, 2];
+    five_bar: FiveBar::new(0.3, 0.2, 0.3, 0.22, 0.28), [1, 2, 3];
     geared_rotor: GearedRotor::new(5.5), [1];
+    parallel_ankle: ParallelAnkle::new(0.25, 0.04, 0.05, 0.06, 0.26), [1, 2];
     slider_crank_links: SliderCrankLinks::new(1.1, 0.4, 0.2), [1, 2];
+    wishbone: Wishbone::new(0.35, 0.28, 0.25, 0.26, 0.34, 0.1), [1, 2];
 }
 
 /// What is emitted of the second body, against the definition of a joint with that body alone.

@@ -104,21 +104,26 @@ fn says_nothing(
     )
 }
 
-/// The manifold with the Gröbner basis of all relations.
+/// The manifold with the Gröbner basis of all relations, or of the factors' alone where that of all takes too long.
 fn basis(
     relations: Vec<Expr>,
     manifold: &Manifold,
     span: &Range<usize>,
     evaluator: &mut Evaluator<'_>,
 ) -> Option<Manifold> {
-    let manifold = manifold.clone();
     let found = match evaluator.errors.is_empty() {
-        true => evaluator.bounded_by(limits::RELATIONS_BUDGET, "relation", span, |_| {
-            Some(manifold.constrained(relations))
-        }),
+        true => {
+            let whole = || manifold.clone().constrained(relations.clone());
+            match budget::scope(limits::RELATIONS_BUDGET, whole) {
+                Ok(found) => Some(found),
+                Err(_) => evaluator.bounded("relation", span, |_| {
+                    Some(manifold.clone().constrained_in_part(relations.clone()))
+                }),
+            }
+        }
         // In a spec that is wrong already, only a contradiction that is soon found is told.
         false => budget::scope(limits::RELATIONS_BUDGET_OF_WRONG, || {
-            manifold.constrained(relations)
+            manifold.clone().constrained(relations.clone())
         })
         .ok(),
     }?;

@@ -4,13 +4,21 @@
 //! c×dim G. The columns of B span its null space, and v is read along them: `Q⁻¹Q̇ = B v`. N holds c directions along which the moved
 //! configuration comes back onto the manifold. λ begins with second order in ϕ.
 
+mod directions;
+mod named;
+mod system;
+
+pub use directions::Directions;
+pub use named::Systems;
+
 use super::motion::Motion;
 use crate::algebra;
 use crate::diagnostic::Diagnostic;
 use crate::domain::Domain;
 use crate::expr::{Expr, Role, Symbol};
+use crate::kernel::Word;
 use crate::manifold::{Ideal, Kind};
-use crate::matrix::{Matrix, combinations};
+use crate::matrix::Matrix;
 use crate::model::{Freedom, Implicit};
 use crate::prepare::Prepared;
 use crate::spec::code;
@@ -22,6 +30,10 @@ pub struct Flow {
     pub tangent: Matrix,
     /// N, dim G × c.
     pub normal: Matrix,
+    /// `N ∂²λ/∂ϕ_i∂ϕ_j`, in the standard directions of G.
+    pub corrections: Vec<Vec<Vec<Expr>>>,
+    /// What [B_l, B_i] has along the independent directions: slice l holds it in column i. None where no directions are.
+    pub brackets: Vec<Matrix>,
     /// Never 0: the determinant that B is divided by, or the square of B where that is the cross product.
     pub regular: Expr,
     /// ∂S/∂ϕ_l, from the motion of Q alone; S₀ = I.
@@ -30,15 +42,16 @@ pub struct Flow {
     pub gradient: Matrix,
     /// Whether ϕ adds up along every motion, so that S = I at finite ϕ.
     pub adds: bool,
+    /// The names in B and in what is derived of it, and what they are; none where B is written out.
+    pub systems: Option<Systems>,
 }
 
-/// Derivatives along the standard directions of G.
-struct Directions<'a> {
-    along: Motion,
-    ideal: &'a Ideal,
-    relations: &'a [Expr],
-    /// ∂φ, c×dim G.
-    gradient: Matrix,
+impl Flow {
+    /// The names in B and in what is derived of it, each after those in its value.
+    pub fn words(&self) -> &[Word] {
+        let systems = self.systems.as_ref();
+        systems.map_or(&[], |systems| &systems.words)
+    }
 }
 
 /// Φ to second order, and the flow it follows.
@@ -51,26 +64,89 @@ pub fn expand(
     domain: &Domain<'_>,
 ) -> Result<(Motion, Flow), Vec<Diagnostic>> {
     check(joint, implicit)?;
-    let manifold = &joint.space.manifold;
     let directions = Directions::new(joint);
-    let (tangent, normal, regular) = match implicit {
-        Implicit::Independent(chosen) => directions.independent(&columns(joint, chosen)),
-        Implicit::CrossProduct => directions.cross_product(),
+    let bases = match implicit {
+        Implicit::Independent(chosen) => {
+            Bases::independent(joint, &directions, &columns(joint, chosen))
+        }
+        Implicit::CrossProduct => Bases::cross_product(&directions),
+    };
+    let bases = bases.ok_or_else(|| vec![dependent(joint)])?;
+    let motion = motion(joint, domain.ideal(), &directions, &bases);
+    let slopes = slopes(joint, implicit, &motion, &bases);
+    let flow = Flow {
+        adds: adds(joint, implicit, &bases.normal),
+        tangent: bases.tangent,
+        normal: bases.normal,
+        regular: bases.regular,
+        systems: bases.systems,
+        corrections: bases.corrections,
+        brackets: bases.brackets,
+        slopes,
+        gradient: directions.gradient,
+    };
+    Ok((motion, flow))
+}
+
+/// What Φ is made of.
+struct Bases {
+    /// B.
+    tangent: Matrix,
+    /// N.
+    normal: Matrix,
+    /// Never 0.
+    regular: Expr,
+    /// `N ∂²λ/∂ϕ_i∂ϕ_j`, in the standard directions.
+    corrections: Vec<Vec<Vec<Expr>>>,
+    /// What [B_l, B_i] has along the independent directions.
+    brackets: Vec<Matrix>,
+    /// The names in B, and what they are.
+    systems: Option<Systems>,
+}
+
+impl Bases {
+    fn independent(joint: &Prepared, directions: &Directions<'_>, chosen: &Matrix) -> Option<Self> {
+        let (normal, regular) = directions.normal(chosen)?;
+        let named = named::expand(joint, directions, (chosen, &normal))?;
+        Some(Self {
+            tangent: named.tangent,
+            normal,
+            regular,
+            corrections: named.corrections,
+            brackets: named.brackets,
+            systems: Some(named.systems),
+        })
     }
-    .ok_or_else(|| vec![dependent(joint)])?;
-    let ideal = domain.ideal();
+
+    fn cross_product(directions: &Directions<'_>) -> Option<Self> {
+        let (tangent, normal, regular) = directions.cross_product()?;
+        Some(Self {
+            corrections: directions.corrections(&tangent, &normal)?,
+            tangent,
+            normal,
+            regular,
+            brackets: vec![],
+            systems: None,
+        })
+    }
+}
+
+/// Φ to second order.
+fn motion(joint: &Prepared, ideal: &Ideal, directions: &Directions<'_>, bases: &Bases) -> Motion {
+    let Bases {
+        tangent,
+        corrections,
+        ..
+    } = bases;
     let k = tangent.columns();
-    let corrections = directions
-        .corrections(&tangent, &normal)
-        .ok_or_else(|| vec![dependent(joint)])?;
-    let first: Vec<Vec<Expr>> = (0..k)
+    let first = (0..k)
         .map(|i| directions.combined(&tangent.column(i)))
         .collect();
-    let coordinates = manifold.coordinates();
+    let coordinates = joint.space.manifold.coordinates();
     let second = |i: usize, j: usize| -> Vec<Expr> {
         let back = directions.combined(&corrections[i][j]);
         let curved = coordinates.iter().zip(&back).map(|(q, back)| {
-            let bend = directions.symmetric(&Expr::symbol(q), &tangent, i, j);
+            let bend = directions.symmetric(&Expr::symbol(q), tangent, i, j);
             ideal.simplest(&(&bend + back))
         });
         curved.collect()
@@ -78,20 +154,8 @@ pub fn expand(
     let second = (0..k)
         .map(|i| (0..k).map(|j| second(i, j)).collect())
         .collect();
-    let motion = Motion::new(coordinates, first, second);
-    let flow = (&tangent, &normal, &regular);
-    let slopes = slopes(joint, implicit, &motion, flow, &corrections);
-    Ok((
-        motion,
-        Flow {
-            tangent,
-            adds: adds(joint, implicit, &normal),
-            gradient: directions.gradient,
-            normal,
-            regular,
-            slopes,
-        },
-    ))
+    let words = bases.systems.as_ref().map(|systems| &systems.words[..]);
+    Motion::new(coordinates.clone(), first, second).with_named(words.unwrap_or_default())
 }
 
 /// The displacement ξ of Q in G, in its standard directions; none where relations are not all that Φ is made of.
@@ -135,132 +199,21 @@ fn columns(joint: &Prepared, chosen: &[(usize, Vec<Expr>)]) -> Matrix {
     Matrix::from_columns(size, &chosen.iter().map(column).collect::<Vec<_>>())
 }
 
-impl<'a> Directions<'a> {
-    fn new(joint: &'a Prepared) -> Self {
-        let manifold = &joint.space.manifold;
-        let along = Motion::of_known_manifold(manifold);
-        let ideal = manifold.ideal();
-        let relations = manifold.declared();
-        let gradient = Matrix::from_fn(relations.len(), along.freedoms(), |i, j| {
-            ideal.simplest(&along.along(&relations[i], j))
-        });
-        Self {
-            along,
-            ideal,
-            relations,
-            gradient,
-        }
-    }
-
-    /// B, N and det(∂φ N) where the chosen directions are independent: `B = E − N (∂φ N)⁻¹ ∂φ E`, N standard directions beside them.
-    fn independent(&self, chosen: &Matrix) -> Option<(Matrix, Matrix, Expr)> {
-        let size = chosen.rows();
-        let simplify = |e: &Expr| self.ideal.normal_form(e);
-        // Of the standard directions that complete the chosen ones, those with the shortest determinant.
-        let candidates = combinations(size, size - chosen.columns());
-        let complete = candidates.into_iter().filter_map(|rest| {
-            let unit = |&n: &usize| Matrix::identity(size).column(n);
-            let normal = Matrix::from_columns(size, &rest.iter().map(unit).collect::<Vec<_>>());
-            let whole = chosen.beside(&normal).determinant(&Expr::clone);
-            let determinant = self.gradient.times(&normal).determinant(&simplify);
-            (whole.as_rational().is_some() && !whole.is_zero() && !determinant.is_zero())
-                .then_some((determinant, normal))
-        });
-        let (determinant, normal) =
-            complete.min_by_key(|(determinant, _)| determinant.terms().len())?;
-        let inverse = self.gradient.times(&normal).adjugate(&simplify);
-        let inverse = inverse.scale(&determinant.recip()?);
-        let back = normal.times(&inverse.times(&self.gradient.times(chosen)));
-        let tangent = self.ideal.simplest_entries(&chosen.minus(&back));
-        Some((tangent, normal, determinant))
-    }
-
-    /// B, N = ∂φᵀ and |B|² for one degree of freedom: the maximal minors of ∂φ with alternating signs.
-    fn cross_product(&self) -> Option<(Matrix, Matrix, Expr)> {
-        let size = self.gradient.columns();
-        let simplify = |e: &Expr| self.ideal.normal_form(e);
-        let transposed = self.gradient.transpose();
-        let minor = |left_out: usize| {
-            let rows: Vec<usize> = (0..size).filter(|&n| n != left_out).collect();
-            let minor = transposed.select_rows(&rows).determinant(&simplify);
-            match left_out % 2 {
-                0 => minor,
-                _ => -&minor,
-            }
-        };
-        let tangent = Matrix::column_vector((0..size).map(minor).collect());
-        let square: Expr = tangent.entries().iter().map(Expr::square).sum();
-        let square = self.ideal.simplest(&square);
-        (!tangent.is_zero() && !square.is_zero()).then_some((tangent, transposed, square))
-    }
-
-    /// The rates of the stored scalars along a combination of the directions.
-    fn combined(&self, weights: &[Expr]) -> Vec<Expr> {
-        let sum = |n: usize| -> Expr {
-            let terms = weights.iter().enumerate();
-            terms
-                .map(|(d, weight)| weight * &self.along.direction(d)[n])
-                .sum()
-        };
-        let count = self.along.direction(0).len();
-        (0..count).map(|n| self.ideal.simplest(&sum(n))).collect()
-    }
-
-    /// `½ (L_a L_b + L_b L_a) f` with a and b the columns i and j of `tangent`, held constant.
-    fn symmetric(&self, function: &Expr, tangent: &Matrix, i: usize, j: usize) -> Expr {
-        let size = tangent.rows();
-        let once: Vec<Expr> = (0..size).map(|d| self.along.along(function, d)).collect();
-        let twice = |i: usize, j: usize| -> Expr {
-            let pairs = (0..size).flat_map(|d| (0..size).map(move |e| (d, e)));
-            let weighted = pairs.filter_map(|(d, e)| {
-                let weight = tangent.at(d, i) * tangent.at(e, j);
-                (!weight.is_zero()).then(|| &weight * &self.along.along(&once[e], d))
-            });
-            weighted.sum()
-        };
-        match i == j {
-            true => twice(i, i),
-            false => &(&twice(i, j) + &twice(j, i)) * &Expr::fraction(1, 2),
-        }
-    }
-
-    /// `N ∂²λ/∂ϕ_i∂ϕ_j = −N (∂φ N)⁻¹ ½ (L_i L_j + L_j L_i) φ`, in the standard directions.
-    fn corrections(&self, tangent: &Matrix, normal: &Matrix) -> Option<Vec<Vec<Vec<Expr>>>> {
-        let k = tangent.columns();
-        let simplify = |e: &Expr| self.ideal.normal_form(e);
-        let square = self.ideal.normal_forms(&self.gradient.times(normal));
-        let inverse = square.determinant(&simplify).recip()?;
-        let inverse = square.adjugate(&simplify).scale(&inverse);
-        let correction = |i: usize, j: usize| {
-            let bends = self
-                .relations
-                .iter()
-                .map(|relation| simplify(&self.symmetric(relation, tangent, i, j)));
-            let bends = Matrix::column_vector(bends.collect());
-            let back = normal.times(&inverse.times(&bends)).map(|entry| -entry);
-            self.ideal.simplest_entries(&back).entries().to_vec()
-        };
-        let rows = (0..k).map(|i| (0..k).map(|j| correction(i, j)).collect());
-        Some(rows.collect())
-    }
-}
-
 /// ∂S/∂ϕ_l from `B S_l e_k = N λ_kl − ½ [B_l, B_k] − ∂_l B_k`, to which a left inverse of B is applied: of the independent directions, or `Bᵀ / |B|²`.
 fn slopes(
     joint: &Prepared,
     implicit: &Implicit,
     motion: &Motion,
-    flow: (&Matrix, &Matrix, &Expr),
-    corrections: &[Vec<Vec<Expr>>],
+    bases: &Bases,
 ) -> Vec<Matrix> {
-    let (tangent, normal, regular) = flow;
+    let (tangent, corrections) = (&bases.tangent, &bases.corrections);
     let ideal = joint.space.manifold.ideal();
     let k = tangent.columns();
     let left = match implicit {
-        Implicit::Independent(chosen) => upper(&columns(joint, chosen), normal),
+        Implicit::Independent(chosen) => upper(&columns(joint, chosen), &bases.normal),
         Implicit::CrossProduct => tangent
             .transpose()
-            .scale(&regular.recip().unwrap_or_default()),
+            .scale(&bases.regular.recip().unwrap_or_default()),
     };
     let column = |l: usize, i: usize| -> Vec<Expr> {
         let bracket = bracket(joint, &tangent.column(l), &tangent.column(i));
