@@ -33,6 +33,10 @@ pub enum KernelKind {
     SpeedBasis,
     /// ∂S̄/∂ϕ.
     SpeedBasisGradient,
+    /// P(Q): v to the rates of the ports.
+    PortMap,
+    /// The values of the ports.
+    PortValues,
     /// Q̇(Q, v).
     ConfigurationRate,
     /// Φ(Q, ϕ) at finite ϕ.
@@ -217,6 +221,8 @@ pub struct Shape {
     pub constraints: usize,
     /// G: dimension of the group in which a manifold of relations lies; 0 where Φ needs none.
     pub displacements: usize,
+    /// How many ports there are.
+    pub ports: usize,
 }
 
 /// The symbols that stand for the arguments of the kernels.

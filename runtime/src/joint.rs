@@ -29,6 +29,7 @@
 //! ```
 
 mod patterns;
+mod port;
 mod products;
 mod several;
 mod slices;
@@ -38,6 +39,7 @@ mod structure;
 pub const MOST_FREEDOMS: usize = 8;
 
 pub use patterns::{Entry, Patterns};
+pub use port::{Port, PortLaw};
 pub use products::{FirstOrder, Products};
 pub use several::{Carries, Member};
 pub use structure::{Structure, Structures};
@@ -49,11 +51,11 @@ use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
 
 /// Version of the [`Joint`] trait. Generated code asserts it at compile time.
-pub const KERNEL_INTERFACE: u32 = 6;
+pub const KERNEL_INTERFACE: u32 = 7;
 
 /// Fails to compile where generated code and runtime differ in the [`Joint`] trait.
 ///
-/// Generated files contain `const _: () = hamel_runtime::joint::assert_kernel_interface(6);`.
+/// Generated files contain `const _: () = hamel_runtime::joint::assert_kernel_interface(7);`.
 pub const fn assert_kernel_interface(version: u32) {
     assert!(
         version == KERNEL_INTERFACE,
@@ -121,6 +123,9 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     /// The functions of Q that [`Joint::singularity`] takes the least absolute value of, as the spec writes them: H, X, Φ, A
     /// or S̄ lose their meaning or their rank where one of them is 0. Empty for a joint that is global.
     const SINGULARITIES: &'static [&'static str];
+
+    /// The ports: angles and lengths of Q, besides v, at which efforts act and rates are read.
+    const PORTS: &'static [Port] = &[];
 
     /// Names of the bodies that the joint carries; empty where it carries one that has no name.
     const BODIES: &'static [&'static str] = &[];
@@ -258,6 +263,28 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
             )
         };
         [SMatrix::zeros(); K]
+    }
+
+    /// P(Q), a row for each of [`Joint::PORTS`]: v to its rate, rad/s or m/s. Efforts τ_p at the ports, N·m or N, are `τ = Pᵀ τ_p` in v.
+    fn port_map<T: Scalar>(&self, _q: &SVector<T, N>) -> impl AsRef<[[T; K]]> {
+        const {
+            assert!(
+                Self::PORTS.is_empty(),
+                "the joint has ports: it must implement port_map"
+            )
+        };
+        [[T::zero(); K]; 0]
+    }
+
+    /// The values of the ports, rad or m; that of a [port that wraps](Port::wraps) is between −π and π.
+    fn port_values<T: Scalar>(&self, _q: &SVector<T, N>) -> impl AsRef<[T]> {
+        const {
+            assert!(
+                Self::PORTS.is_empty(),
+                "the joint has ports: it must implement port_values"
+            )
+        };
+        [T::zero(); 0]
     }
 
     /// Q̇(Q, v), (31).

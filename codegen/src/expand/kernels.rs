@@ -1,6 +1,6 @@
 //! The kernels of a joint from its expansion, in the order in which they are emitted.
 
-use super::{Expansion, Flow, finite, general, hamel, implicit, structure_constants};
+use super::{Expansion, Flow, finite, general, hamel, implicit, ports, structure_constants};
 use crate::diagnostic::Diagnostic;
 use crate::domain::{Critical, Domain};
 use crate::expr::Symbol;
@@ -25,6 +25,7 @@ pub fn kernels(
     };
     let mut kernels = maker.velocity();
     kernels.extend(maker.nonholonomic());
+    kernels.extend(maker.ports());
     kernels.extend(maker.finite_maps()?);
     kernels.sort_by_key(|kernel| kernel.kind);
     Ok(kernels)
@@ -71,6 +72,18 @@ fn child_slopes(joint: &Prepared, x: &Expansion) -> Vec<Matrix> {
 }
 
 impl Maker<'_> {
+    /// P and the values of the ports; nothing where there are none.
+    fn ports(&self) -> Vec<Kernel> {
+        let ports = &self.joint.spec.ports;
+        if ports.is_empty() {
+            return vec![];
+        }
+        vec![
+            plain(KernelKind::PortMap, vec![self.x.port_map.clone()]),
+            plain(KernelKind::PortValues, vec![ports::values(ports)]),
+        ]
+    }
+
     fn short(&self, matrix: &Matrix) -> Matrix {
         self.ideal.simplest_entries(matrix)
     }

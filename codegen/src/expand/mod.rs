@@ -14,6 +14,7 @@ mod kernels;
 mod motion;
 mod nonholonomic;
 mod numbers;
+pub(crate) mod ports;
 pub(crate) mod rank;
 mod steps;
 mod still;
@@ -77,6 +78,8 @@ pub struct Expansion {
     pub nonholonomic: Nonholonomic,
     /// The degrees of freedom that move no body.
     pub still: Still,
+    /// P: v to the rates of the ports.
+    pub port_map: Matrix,
 }
 
 impl Expansion {
@@ -139,6 +142,9 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
     let velocity_map_inverse = velocity_map.inverse.clone().unwrap_or_else(|| {
         ideal.simplest_entries(&velocity_map.base.adjugate(&simplify).scale(&inverse))
     });
+    budget::begin(task::PORTS);
+    let gradient = ports::gradient(&joint.spec.ports, &motion, ideal);
+    let port_map = ideal.simplest_entries(&gradient.times(&velocity_map_inverse));
     budget::begin(task::CONSTRAINT);
     let nonholonomic = Nonholonomic::new(joint, &motion, &domain)?;
     Ok(Expansion {
@@ -148,6 +154,7 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
             speeds: nonholonomic.speed_basis.columns(),
             constraints: nonholonomic.constraint.columns(),
             displacements: arguments.displacement.len(),
+            ports: joint.spec.ports.len(),
         },
         arguments,
         exponential,
@@ -162,6 +169,7 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
         velocity_map_inverse,
         nonholonomic,
         still,
+        port_map,
     })
 }
 

@@ -5,7 +5,7 @@ use crate::diagnostic::Diagnostic;
 use crate::domain::{Critical, Domain};
 use crate::expr::{Expr, Function};
 use crate::matrix::Matrix;
-use crate::model::{Declared, Locus, PoseExpr};
+use crate::model::{Declared, Locus, Port, PoseExpr};
 use crate::prepare::Prepared;
 use crate::spec::code;
 use std::collections::BTreeSet;
@@ -86,10 +86,15 @@ impl Prover<'_> {
         ];
         let of_locus =
             |locus: &Declared<Locus>| (vec![locus.value.function.clone()], locus.span.clone());
+        let of_port = |port: &Declared<Port>| {
+            let entries = port.value.entries().into_iter().cloned();
+            (entries.collect(), port.span.clone())
+        };
         let poses = joint.spec.poses().map(of_pose);
         let statements = poses
             .chain(matrices.into_iter().flatten().map(of_matrix))
-            .chain(joint.space.loci.iter().map(of_locus));
+            .chain(joint.space.loci.iter().map(of_locus))
+            .chain(joint.spec.ports.iter().map(of_port));
         let holds = |entries: &[Expr]| {
             let mut found = BTreeSet::new();
             entries
@@ -119,6 +124,7 @@ impl Prover<'_> {
             .chain([&x.velocity_map.base, &x.velocity_map_inverse])
             .chain(&x.velocity_map.slopes)
             .chain([&x.nonholonomic.constraint, &x.nonholonomic.speed_basis])
+            .chain([&x.port_map])
             .chain(x.flow.iter().flat_map(|flow| [&flow.tangent, &flow.normal]));
         collect(matrices, &mut found);
         found

@@ -43,7 +43,7 @@ use ::hamel_runtime::registry::{JointEntry, ParameterError, ParameterInfo};
 use ::hamel_runtime::scalar::Scalar;
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Screw joint: a turn about the common z axis of both frames that advances along it, right-handed for a positive lead.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,7 +5,7 @@
 //! [`Carries`] adds the others, and [`Member`] makes a [`Joint`] of each of them. Condition (23) on the rank of X holds for all X_b below
 //! one another, not for each.
 
-use super::{Joint, Patterns, Structures, VelocityFrame};
+use super::{Joint, Patterns, Port, Structures, VelocityFrame};
 use crate::erased::Shared;
 use crate::scalar::Scalar;
 use crate::spatial::Pose;
@@ -63,6 +63,7 @@ where
     const PATTERNS: Patterns<K, S> = <J as Carries<B, N, K, S, C>>::PATTERNS;
     const UNIDENTIFIABLE: &'static [[f64; 10]] = <J as Carries<B, N, K, S, C>>::UNIDENTIFIABLE;
     const SINGULARITIES: &'static [&'static str] = J::SINGULARITIES;
+    const PORTS: &'static [Port] = J::PORTS;
     const BODIES: &'static [&'static str] = J::BODIES;
     const BODY: usize = B;
 
@@ -124,6 +125,14 @@ where
 
     fn speed_basis_gradient<T: Scalar>(&self, q: &SVector<T, N>) -> [SMatrix<T, K, S>; K] {
         self.0.speed_basis_gradient(q)
+    }
+
+    fn port_map<T: Scalar>(&self, q: &SVector<T, N>) -> impl AsRef<[[T; K]]> {
+        self.0.port_map(q)
+    }
+
+    fn port_values<T: Scalar>(&self, q: &SVector<T, N>) -> impl AsRef<[T]> {
+        self.0.port_values(q)
     }
 
     fn configuration_rate<T: Scalar>(&self, q: &SVector<T, N>, v: &SVector<T, K>) -> SVector<T, N> {

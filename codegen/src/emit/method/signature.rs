@@ -81,6 +81,10 @@ pub enum Output {
     Slices(usize, usize),
     /// A scalar.
     Scalar,
+    /// A row for each port.
+    Rows(usize, usize),
+    /// A scalar for each port.
+    List(usize),
 }
 
 /// Name, arguments and result of a method.
@@ -100,7 +104,7 @@ impl Signature {
         use Argument::{
             Configuration, Displacement, Local, Momentum, Rate, Speeds, Target, Velocity, Wrench,
         };
-        use Output::{Matrix, Pose, Scalar, Slices, Vector};
+        use Output::{List, Matrix, Pose, Rows, Scalar, Slices, Vector};
         let (n, k, s, c) = (
             shape.configuration,
             shape.freedoms,
@@ -126,6 +130,8 @@ impl Signature {
             KernelKind::Constraint => ("constraint", q(), Matrix(k, c)),
             KernelKind::SpeedBasis => ("speed_basis", q(), Matrix(k, s)),
             KernelKind::SpeedBasisGradient => ("speed_basis_gradient", q(), Slices(k, s)),
+            KernelKind::PortMap => ("port_map", q(), Rows(shape.ports, k)),
+            KernelKind::PortValues => ("port_values", q(), List(shape.ports)),
             KernelKind::ConfigurationRate => (
                 "configuration_rate",
                 vec![Configuration, Velocity],
@@ -192,6 +198,10 @@ pub fn meaning(kind: KernelKind) -> &'static str {
         KernelKind::Constraint => "A(Q) with Aᵀ v = 0 (Definition 2).",
         KernelKind::SpeedBasis => "S̄(Q): speeds v̄ to v (Definition 2, (15)).",
         KernelKind::SpeedBasisGradient => "∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.",
+        KernelKind::PortMap => "P(Q), a row for each port: v to its rate.",
+        KernelKind::PortValues => {
+            "The values of the ports; an angle that does not count turns is between −π and π."
+        }
         KernelKind::ConfigurationRate => "Q̇(Q, v) (31): the rates of the stored scalars.",
         KernelKind::Retract => {
             "Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration."

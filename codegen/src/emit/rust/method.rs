@@ -241,6 +241,11 @@ impl Signature {
         match self.output {
             Output::Pose => quote! { Pose<T> },
             Output::Scalar => quote! { T },
+            Output::List(_) => quote! { impl AsRef<[T]> },
+            Output::Rows(_, columns) => {
+                let columns = size(columns);
+                quote! { impl AsRef<[[T; #columns]]> }
+            }
             Output::Vector(rows) => {
                 let rows = size(rows);
                 quote! { SVector<T, #rows> }

@@ -43,6 +43,11 @@ pub fn tokens(
         (Output::Scalar, _) => norm(writer, entries),
         (Output::Vector(_), [(column, own)]) => vector(writer, column, own),
         (Output::Matrix(..), [(only, own)]) => matrix(writer, only, own),
+        (Output::List(_), [(_, own)]) => list(writer, own),
+        (Output::Rows(_, columns), [(_, own)]) => {
+            let rows = own.chunks(columns.max(1)).map(|row| list(writer, row));
+            quote! { [#(#rows),*] }
+        }
         (_, slices) if slices.iter().all(|(slice, _)| slice.is_zero()) => {
             let count = Literal::usize_unsuffixed(slices.len());
             quote! { [SMatrix::zeros(); #count] }
