@@ -55,7 +55,11 @@ impl Prover<'_> {
         if let Some(open) = open {
             return Err(Box::new(refusal(open, &self.statement_with(open))));
         }
-        let mut statement = self.where_it_holds("H, Φ, X, S, A and S̄ are smooth at Q");
+        let all = match self.joint.spec.ports.is_empty() {
+            true => "H, Φ, X, S, A and S̄ are smooth at Q",
+            false => "H, Φ, X, S, A, S̄ and ports are smooth at Q",
+        };
+        let mut statement = self.where_it_holds(all);
         let sides = self.sides();
         if !sides.is_empty() {
             let sides: Vec<String> = sides.iter().map(|side| format!("{side} > 0")).collect();
