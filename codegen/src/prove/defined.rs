@@ -35,7 +35,16 @@ impl Prover<'_> {
         let declared = self.joint.critical();
         let open = declared.iter().find(|f| self.domain.smooth(f).is_none());
         match open {
-            Some(open) => Err(Box::new(refusal(open, &self.statement_with(open)))),
+            Some(open) => {
+                let span = self.statement_with(open);
+                let error = refusal(open, &span);
+                let mut ports = self.joint.spec.ports.iter();
+                let is_port = ports.any(|port| port.span == span);
+                Err(Box::new(match is_port && open.function == Function::Atan2 {
+                    true => error.note("a port that is an angle up to whole turns is declared by its direction: an element of S1 or SO2, or `[c, s]`"),
+                    false => error,
+                }))
+            }
             None => Ok(None),
         }
     }
