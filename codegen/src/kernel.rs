@@ -61,6 +61,12 @@ pub enum KernelKind {
     Relations,
     /// ∂φ(Q): displacements of Q to changes of the declared relations, where these alone say how Q moves.
     RelationGradient,
+    /// N (∂φ N)⁻¹: for each declared relation the displacement along N that changes it at unit rate, and no other, where relations alone say how Q moves.
+    RelationDisplacements,
+    /// The twists of the body at these displacements, in the child frame.
+    RelationTwists,
+    /// The rates of the ports at these displacements.
+    RelationPorts,
     /// Projection onto the manifold.
     Project,
     /// Residual of the manifold's relations.
@@ -84,6 +90,7 @@ impl KernelKind {
                 | Self::TwistMapChildGradient
                 | Self::BiasAcceleration
                 | Self::BiasMomentum
+                | Self::RelationTwists
         )
     }
 }

@@ -124,6 +124,9 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     /// or S̄ lose their meaning or their rank where one of them is 0. Empty for a joint that is global.
     const SINGULARITIES: &'static [&'static str];
 
+    /// The declared relations, as equations, of a joint whose motion relations alone give. Each has a multiplier.
+    const RELATIONS: &'static [&'static str] = &[];
+
     /// The ports: angles and lengths of Q, besides v, at which efforts act and rates are read.
     const PORTS: &'static [Port] = &[];
 
@@ -282,6 +285,29 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
             assert!(
                 Self::PORTS.is_empty(),
                 "the joint has ports: it must implement port_values"
+            )
+        };
+        [T::zero(); 0]
+    }
+
+    /// For each of [`Joint::RELATIONS`] the twist of the body, in the child frame, at the displacement rate of Q at which that relation would change at
+    /// unit rate, and no other: along the directions in which Φ comes back onto the manifold, with H as the spec writes it.
+    fn relation_twists<T: Scalar>(&self, _q: &SVector<T, N>) -> impl AsRef<[[T; 6]]> {
+        const {
+            assert!(
+                Self::RELATIONS.is_empty(),
+                "the joint has relations: it must implement relation_twists"
+            )
+        };
+        [[T::zero(); 6]; 0]
+    }
+
+    /// The rates of the ports at the same displacement rates: of all ports for the first relation, then for the next.
+    fn relation_ports<T: Scalar>(&self, _q: &SVector<T, N>) -> impl AsRef<[T]> {
+        const {
+            assert!(
+                Self::RELATIONS.is_empty() || Self::PORTS.is_empty(),
+                "the joint has relations and ports: it must implement relation_ports"
             )
         };
         [T::zero(); 0]

@@ -7,6 +7,7 @@ pub(crate) mod dimension;
 pub(crate) mod directions;
 mod elimination;
 pub(crate) mod finite;
+mod forbidden;
 mod general;
 mod hamel;
 mod implicit;
@@ -24,6 +25,7 @@ mod unidentifiable;
 mod velocity;
 
 pub use dimension::Confinement;
+pub use forbidden::Forbidden;
 pub use implicit::Flow;
 
 pub use kernels::{kernels, of_body, speed_map};
@@ -80,6 +82,8 @@ pub struct Expansion {
     pub still: Still,
     /// P: v to the rates of the ports.
     pub port_map: Matrix,
+    /// What displacements that relations forbid would do, where these alone say how Q moves.
+    pub forbidden: Option<Forbidden>,
 }
 
 impl Expansion {
@@ -89,6 +93,7 @@ impl Expansion {
             jacobian: self.jacobian.rows_of_body(body),
             twist_map: self.twist_map.rows_of_body(body),
             twist_map_child: self.twist_map_child.rows_of_body(body),
+            forbidden: self.forbidden.as_ref().map(|own| own.of_body(body)),
             ..self.clone()
         }
     }
@@ -145,6 +150,8 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
     budget::begin(task::PORTS);
     let gradient = ports::gradient(&joint.spec.ports, &motion, ideal);
     let port_map = ideal.simplest_entries(&gradient.times(&velocity_map_inverse));
+    budget::begin(task::TWIST);
+    let forbidden = flow.as_ref().map(|_| Forbidden::new(joint));
     budget::begin(task::CONSTRAINT);
     let nonholonomic = Nonholonomic::new(joint, &motion, &domain)?;
     Ok(Expansion {
@@ -170,6 +177,7 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
         nonholonomic,
         still,
         port_map,
+        forbidden,
     })
 }
 

@@ -36,7 +36,9 @@ impl Prover<'_> {
             return Ok(None);
         }
         let gradient = ports::gradient(ports, &x.motion, self.ideal);
-        if let Some(still) = (0..ports.len()).find(|&i| (0..gradient.columns()).all(|k| gradient.at(i, k).is_zero())) {
+        if let Some(still) =
+            (0..ports.len()).find(|&i| (0..gradient.columns()).all(|k| gradient.at(i, k).is_zero()))
+        {
             return Err(Box::new(still_port(&ports[still])));
         }
         let residual = x.port_map.times(&x.velocity_map.base).minus(&gradient);
@@ -54,7 +56,9 @@ impl Prover<'_> {
 fn first_of<'p>(ports: &'p [Declared<Port>], residual: &Matrix) -> (&'p Declared<Port>, Expr) {
     let places = residual.entries().iter().enumerate();
     let mut open = places.filter(|(_, entry)| !entry.is_zero());
-    let (place, entry) = open.next().map_or((0, Expr::zero()), |(n, e)| (n, e.clone()));
+    let (place, entry) = open
+        .next()
+        .map_or((0, Expr::zero()), |(n, e)| (n, e.clone()));
     (&ports[place / residual.columns().max(1)], entry)
 }
 

@@ -73,16 +73,15 @@ impl Held<'_> {
     /// Ports that the joint's type does not have; efforts that change with time, of which equations are not told.
     pub fn add_ports(&self, elements: &mut Elements) -> Result<(), Vec<String>> {
         let (mut reasons, body) = (vec![], self.index);
-        let (joint, kind) = (
-            &self.body.joint.name.value,
-            &self.body.joint.kind.value,
-        );
+        let (joint, kind) = (&self.body.joint.name.value, &self.body.joint.kind.value);
         let known = &self.joint.derived.spec.ports;
         for forces in &self.body.forces.ports {
             let name = &forces.name.value;
             let mut ports = known.iter();
             let Some(port) = ports.position(|port| port.value.name == *name) else {
-                reasons.push(format!("joint `{joint}`: its type `{kind}` has no port `{name}`"));
+                reasons.push(format!(
+                    "joint `{joint}`: its type `{kind}` has no port `{name}`"
+                ));
                 continue;
             };
             if let Some(effort) = &forces.effort {

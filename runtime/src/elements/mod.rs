@@ -64,6 +64,11 @@ pub trait Element: Debug + Send + Sync {
         None
     }
 
+    /// What it exerts at a port of a joint, if that is all that it does: the body whose joint it is, the port, and the effort, N·m or N.
+    fn port_effort(&self, _view: &View<'_>) -> Option<(usize, usize, f64)> {
+        None
+    }
+
     /// Up to two functions of Q at whose zeros what it exerts bends, continuous as it is; NaN in place of those that it does not have. Steps end there.
     fn bends(&self, _mechanism: &Mechanism, _q: &[f64]) -> [f64; 2] {
         [f64::NAN; 2]

@@ -87,6 +87,10 @@ impl Element for PortEffort {
         Some(self)
     }
 
+    fn port_effort(&self, view: &View<'_>) -> Option<(usize, usize, f64)> {
+        Some((self.body, self.port, self.effort.value(view.moment)))
+    }
+
     fn functions(&self) -> &[TimeFunction] {
         match self.effort.constant() {
             Some(_) => &[],
@@ -142,6 +146,10 @@ impl Element for PortSpring {
     fn power(&self, view: &View<'_>) -> f64 {
         let (_, rate) = view.port(self.body, self.port);
         -self.damping * rate * rate
+    }
+
+    fn port_effort(&self, view: &View<'_>) -> Option<(usize, usize, f64)> {
+        Some((self.body, self.port, self.now(view).1))
     }
 
     fn slope(&self) -> Option<&dyn Slope> {

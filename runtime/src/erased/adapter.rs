@@ -77,6 +77,10 @@ where
         const { &J::COORDINATES }
     }
 
+    fn relations(&self) -> &'static [&'static str] {
+        J::RELATIONS
+    }
+
     fn ports(&self) -> &'static [Port] {
         J::PORTS
     }
@@ -168,6 +172,21 @@ where
         let map = self.0.port_map(&q);
         let row = map.as_ref().get(port).copied().unwrap_or([nan(); K]);
         SVector::from(row).store(out);
+    }
+
+    fn relation_twist(&self, q: &[T], relation: usize) -> Vector6<T> {
+        let q = vector(q);
+        let twists = self.0.relation_twists(&q);
+        let own = twists.as_ref().get(relation).copied();
+        own.map_or(Vector6::repeat(nan()), Vector6::from)
+    }
+
+    fn relation_port(&self, q: &[T], relation: usize, port: usize) -> T {
+        let q = vector(q);
+        let rates = self.0.relation_ports(&q);
+        let mut of_relation = rates.as_ref().chunks_exact(J::PORTS.len().max(1));
+        let own = of_relation.nth(relation);
+        own.and_then(|own| own.get(port).copied()).unwrap_or(nan())
     }
 
     fn port_slope(&self, q: &[T], velocity: &[T], port: usize, law: &PortLaw<T>, out: &mut [T])

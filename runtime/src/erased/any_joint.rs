@@ -41,6 +41,8 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     fn velocity_frame(&self) -> VelocityFrame;
     /// Names of the stored scalars of Q.
     fn coordinates(&self) -> &'static [&'static str];
+    /// The declared relations, [`Joint::RELATIONS`].
+    fn relations(&self) -> &'static [&'static str];
     /// The ports, [`Joint::PORTS`].
     fn ports(&self) -> &'static [Port];
     /// Names of the degrees of freedom.
@@ -82,6 +84,10 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     fn port_value(&self, q: &[T], port: usize) -> T;
     /// The row of P of one port into `out` (K); NaN of a port that is not there.
     fn port_row(&self, q: &[T], port: usize, out: &mut [T]);
+    /// What one relation forbids the body, [`Joint::relation_twists`]; NaN of a relation that is not there.
+    fn relation_twist(&self, q: &[T], relation: usize) -> Vector6<T>;
+    /// What one relation forbids a port, [`Joint::relation_ports`]; NaN of one that is not there.
+    fn relation_port(&self, q: &[T], relation: usize, port: usize) -> T;
     /// `∂τ/∂ϕ` into `out` (K×K) at fixed v of what acts on one port by a law.
     fn port_slope(&self, q: &[T], velocity: &[T], port: usize, law: &PortLaw<T>, out: &mut [T])
     where

@@ -149,7 +149,9 @@ fn power_is_the_same_at_ports_and_at_v() {
     let scene = scene("speeds = [3.0]", "");
     let mechanism = &scene.mechanism;
     for (n, state) in run(&scene, Form::Lagrangian, 1.0).iter().enumerate() {
-        let efforts: Vec<f64> = (0..4).map(|port| f64::from(port + n as i32) - 2.5).collect();
+        let efforts: Vec<f64> = (0..4)
+            .map(|port| f64::from(port + n as i32) - 2.5)
+            .collect();
         let q = mechanism.bodies()[0].configuration(&state.configuration);
         let tau = mechanism
             .efforts_from_ports(0, q, &efforts)
@@ -191,14 +193,20 @@ ports.lift = { spring = { stiffness = 40.0, rest = 0.3 }, effort = -2.0 }";
             let error = (gained - work).abs();
             assert!(error < 1e-7, "{form:?}: {error:e} at {}", pair[1].time);
         }
-        assert!(turned > std::f64::consts::TAU, "the crank goes round: {turned}");
+        assert!(
+            turned > std::f64::consts::TAU,
+            "the crank goes round: {turned}"
+        );
     }
 }
 
 /// Efforts that are functions of time, as the same efforts at v are by hand.
 #[test]
 fn efforts_change_with_time() {
-    let timed = scene("speeds = [2.0]", r#"ports.rocker = { effort = "2 * sin(3 * t)" }"#);
+    let timed = scene(
+        "speeds = [2.0]",
+        r#"ports.rocker = { effort = "2 * sin(3 * t)" }"#,
+    );
     let at_v = scene("speeds = [2.0]", "");
     let states = run(&timed, Form::Lagrangian, 1.0);
     let (mut found, mut expected) = (vec![0.0; 2], vec![0.0; 2]);

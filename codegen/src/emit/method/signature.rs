@@ -160,6 +160,9 @@ impl Signature {
             KernelKind::Residual => ("residual", q(), Scalar),
             KernelKind::Relations => ("relations", q(), Vector(relations)),
             KernelKind::RelationGradient => ("relation_gradient", q(), Matrix(g - k, g)),
+            KernelKind::RelationDisplacements => ("relation_displacements", q(), Matrix(g, g - k)),
+            KernelKind::RelationTwists => ("relation_twists", q(), Rows(g - k, 6)),
+            KernelKind::RelationPorts => ("relation_ports", q(), List(shape.ports * (g - k))),
             KernelKind::Singularity => ("singularity", q(), Scalar),
             KernelKind::BiasAcceleration => {
                 ("bias_acceleration", vec![Configuration, Speeds], Vector(6))
@@ -229,6 +232,15 @@ pub fn meaning(kind: KernelKind) -> &'static str {
         KernelKind::Relations => "The relations of the manifold: 0 on it.",
         KernelKind::RelationGradient => {
             "∂φ(Q): the displacement rate Q⁻¹Q̇ to the rates of the relations that the spec declares."
+        }
+        KernelKind::RelationDisplacements => {
+            "N (∂φ N)⁻¹: for each relation the displacement rate along N at which it changes at unit rate, and no other."
+        }
+        KernelKind::RelationTwists => {
+            "The twist of the body, in the child frame, at the displacement rate of each relation, with H as written."
+        }
+        KernelKind::RelationPorts => {
+            "The rates of the ports at the displacement rate of each relation: those of the first relation, then of the next."
         }
         KernelKind::Singularity => {
             "Least absolute value of the functions whose zeros the joint must stay away from."

@@ -143,6 +143,9 @@ fn parts(spec: &JointSpec, kind: KernelKind) -> Vec<Part> {
         | KernelKind::Project
         | KernelKind::Residual => vec![&[Manifold]],
         KernelKind::Singularity => vec![&[Loci]],
+        KernelKind::RelationDisplacements => vec![&[Manifold, Motion]],
+        KernelKind::RelationTwists => vec![&[Manifold, Motion, Pose]],
+        KernelKind::RelationPorts => vec![&[Manifold, Motion, Ports]],
         KernelKind::PortMap => vec![&[Ports], twist, &[Pose, Motion]],
         KernelKind::PortValues => vec![&[Ports]],
         KernelKind::BiasAcceleration | KernelKind::BiasMomentum => {

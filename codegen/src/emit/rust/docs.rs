@@ -203,7 +203,11 @@ fn units_of(derived: &Derived, kind: KernelKind) -> String {
         KernelKind::BiasAcceleration => "rad/s² (angular) and m/s² (linear)".into(),
         KernelKind::PortValues => {
             let ports = derived.spec.ports.iter();
-            listed(&ports.map(|port| port.value.unit.clone()).collect::<Vec<_>>())
+            listed(
+                &ports
+                    .map(|port| port.value.unit.clone())
+                    .collect::<Vec<_>>(),
+            )
         }
         _ => String::new(),
     }

@@ -25,6 +25,7 @@ pub fn tokens(derived: &Derived) -> TokenStream {
     let constants = constants(derived);
     let bodies = bodies::names(derived);
     let ports = ports(derived);
+    let relations = relations(derived);
     let carried = bodies::carried(derived);
     let parameters = parameters(derived);
     let names = derived.names();
@@ -47,6 +48,7 @@ pub fn tokens(derived: &Derived) -> TokenStream {
             #constants
             #bodies
             #ports
+            #relations
             #parameters
             #(#methods)*
         }
@@ -116,6 +118,14 @@ fn constructor_docs(derived: &Derived) -> TokenStream {
         lines.push(format!("They must meet {}.", texts.join(", ")));
     }
     docs::outer(&lines)
+}
+
+/// The constant `RELATIONS`; the trait's default where relations alone do not give Φ.
+fn relations(derived: &Derived) -> Option<TokenStream> {
+    derived.spec.implicit.as_ref()?;
+    let relations = derived.spec.manifold.value.declared().iter();
+    let texts = relations.map(|relation| format!("{relation} = 0"));
+    Some(quote! { const RELATIONS: &'static [&'static str] = &[#(#texts),*]; })
 }
 
 /// The constant `PORTS`; the trait's default where there are none. The runtime's type is written with its path: a joint may have its name.

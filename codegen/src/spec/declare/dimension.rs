@@ -43,7 +43,10 @@ pub(super) fn error(
         // A cosine and a sine are numbers, and what they are of is an angle.
         PortValue::Angle { cos, sin } => {
             if unit.text != "rad" {
-                let message = format!("port `{name}` is an angle, and is declared in {}", unit.text);
+                let message = format!(
+                    "port `{name}` is an angle, and is declared in {}",
+                    unit.text
+                );
                 return Some(of_value(message, "an angle").help("declare it in `rad`"));
             }
             let both = [known.of_terms(cos), known.of_terms(sin)];
@@ -137,7 +140,12 @@ impl Known<'_> {
             Function::Sqrt => {
                 let square = self.of_sum(argument()?)?;
                 let even = square.values().all(|power| power % 2 == 0);
-                even.then(|| square.into_iter().map(|(u, power)| (u, power / 2)).collect())
+                even.then(|| {
+                    square
+                        .into_iter()
+                        .map(|(u, power)| (u, power / 2))
+                        .collect()
+                })
             }
             Function::Larger => None,
             // Angles, and functions of numbers.
@@ -163,7 +171,11 @@ fn parsed(unit: &str) -> Dimension {
         let end = rest.find(['*', '/']).unwrap_or(rest.len());
         let part = &rest[..end];
         if !["1", "rad"].contains(&part) {
-            multiply(&mut dimension, &Dimension::from([(part.to_owned(), 1)]), power);
+            multiply(
+                &mut dimension,
+                &Dimension::from([(part.to_owned(), 1)]),
+                power,
+            );
         }
         match rest[end..].chars().next() {
             Some(operator) => power = if operator == '*' { 1 } else { -1 },

@@ -1,6 +1,8 @@
 //! Statements by kind: which may stand once, and where they stand.
 
-use super::super::ast::{Basis, Equation, File, Name, Node, Port, Requirement, StatementKind, Target};
+use super::super::ast::{
+    Basis, Equation, File, Name, Node, Port, Requirement, StatementKind, Target,
+};
 use super::super::code;
 use crate::diagnostic::Diagnostic;
 use std::collections::BTreeMap;

@@ -52,11 +52,7 @@ pub(super) fn ports(
 }
 
 /// Looks for the errors that can be told while the configuration is not known.
-pub(super) fn evaluate_only(
-    source: &str,
-    statements: &Once<'_>,
-    evaluator: &mut Evaluator<'_>,
-) {
+pub(super) fn evaluate_only(source: &str, statements: &Once<'_>, evaluator: &mut Evaluator<'_>) {
     check_names(source, &statements.ports, evaluator);
     for at in &statements.ports {
         evaluator.bounded("port", at.span, |evaluator| {
@@ -114,7 +110,10 @@ fn still(port: &Port, value: &PortValue, ideal: &Ideal) -> Option<Diagnostic> {
     let mut entries = entries.into_iter();
     let moves = entries.any(|entry| equation::of_configuration(&ideal.normal_form(entry)));
     (!moves).then(|| {
-        let message = format!("port `{}` does not depend on the configuration", port.name.text);
+        let message = format!(
+            "port `{}` does not depend on the configuration",
+            port.name.text
+        );
         Diagnostic::new(code::PORT, port.value.span.clone(), message)
             .label("the same at every Q")
             .help("a port is an angle or a length that changes as the joint moves")

@@ -99,12 +99,11 @@ fn text(joint: &Derived) -> String {
         names => format!(" (bodies {})", names.join(", ")),
     };
     let ports = joint.spec.ports.iter().map(|port| {
-        let Port { name, unit, text, .. } = &port.value;
+        let Port {
+            name, unit, text, ..
+        } = &port.value;
         format!("  port {name}: {unit} = {text}\n")
     });
     let ports: String = ports.collect();
-    format!(
-        "{}{bodies}\n{lines}{ports}{note}\n",
-        joint.spec.name.value
-    )
+    format!("{}{bodies}\n{lines}{ports}{note}\n", joint.spec.name.value)
 }

@@ -210,7 +210,9 @@ fn motion(
             stand.name
         );
         let error = Diagnostic::new(motion.span.clone(), message);
-        return Err(error.help("leave `velocity`, `speeds`, `twist` and `rates` out of its `initial`"));
+        return Err(
+            error.help("leave `velocity`, `speeds`, `twist` and `rates` out of its `initial`")
+        );
     }
     Ok(motion.value.clone())
 }

@@ -180,7 +180,8 @@ impl Stand {
         let found = self.mechanism.port_index(0, &name.value);
         found.ok_or_else(|| {
             let (joint, kind, given) = (&self.name, self.joint.name(), &name.value);
-            let message = format!("joint `{joint}`: a joint of type `{kind}` has no port `{given}`");
+            let message =
+                format!("joint `{joint}`: a joint of type `{kind}` has no port `{given}`");
             let error = Diagnostic::new(name.span.clone(), message);
             let ports = || self.joint.ports().iter().map(|port| port.name);
             match nearest(given, ports()) {

@@ -5,8 +5,8 @@ use super::{D, DualForm};
 use crate::random::numbers;
 use chacha20::ChaCha8Rng;
 use hamel::elements::{
-    BodySpring, BodyWrench, Element, JointDamper, JointEffort, JointSpring, PortEffort,
-    PortSpring, RotationSpring, WrenchAxes,
+    BodySpring, BodyWrench, Element, JointDamper, JointEffort, JointSpring, PortEffort, PortSpring,
+    RotationSpring, WrenchAxes,
 };
 use hamel::mechanism::{Body, Mechanism};
 use hamel::nalgebra::{Matrix3, Vector3, Vector6};

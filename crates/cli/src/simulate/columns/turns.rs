@@ -86,7 +86,10 @@ impl Turn {
                 let rate = q[cosine] * rates[sine] - q[sine] * rates[cosine];
                 (q[sine].atan2(q[cosine]), rate)
             }
-            Angle::Port(port) => (joint.port_value(q, port), port_rate(body, q, &velocity, port)),
+            Angle::Port(port) => (
+                joint.port_value(q, port),
+                port_rate(body, q, &velocity, port),
+            ),
         }
     }
 }
