@@ -33,6 +33,10 @@ pub enum KernelKind {
     SpeedBasis,
     /// ∂S̄/∂ϕ.
     SpeedBasisGradient,
+    /// P(Q): v to the rates of the ports.
+    PortMap,
+    /// The values of the ports.
+    PortValues,
     /// Q̇(Q, v).
     ConfigurationRate,
     /// Φ(Q, ϕ) at finite ϕ.
@@ -57,6 +61,12 @@ pub enum KernelKind {
     Relations,
     /// ∂φ(Q): displacements of Q to changes of the declared relations, where these alone say how Q moves.
     RelationGradient,
+    /// N (∂φ N)⁻¹: for each declared relation the displacement along N that changes it at unit rate, and no other, where relations alone say how Q moves.
+    RelationDisplacements,
+    /// The twists of the body at these displacements, in the child frame.
+    RelationTwists,
+    /// The rates of the ports at these displacements.
+    RelationPorts,
     /// Projection onto the manifold.
     Project,
     /// Residual of the manifold's relations.
@@ -80,6 +90,7 @@ impl KernelKind {
                 | Self::TwistMapChildGradient
                 | Self::BiasAcceleration
                 | Self::BiasMomentum
+                | Self::RelationTwists
         )
     }
 }
@@ -225,6 +236,8 @@ pub struct Shape {
     pub constraints: usize,
     /// G: dimension of the group in which a manifold of relations lies; 0 where Φ needs none.
     pub displacements: usize,
+    /// How many ports there are.
+    pub ports: usize,
 }
 
 /// The symbols that stand for the arguments of the kernels.

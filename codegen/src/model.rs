@@ -135,6 +135,50 @@ pub enum Implicit {
     CrossProduct,
 }
 
+/// A coordinate of a joint that is none of its local coordinates: the angle of a motor inside a linkage.
+#[derive(Clone, Debug)]
+pub struct Port {
+    /// Its name.
+    pub name: String,
+    /// `rad` or `m`.
+    pub unit: String,
+    /// Doc comment.
+    pub docs: String,
+    /// The expression as the spec writes it.
+    pub text: String,
+    /// Its value as a function of Q.
+    pub value: PortValue,
+}
+
+/// The value of a port.
+#[derive(Clone, Debug)]
+pub enum PortValue {
+    /// A scalar.
+    Scalar(Expr),
+    /// The angle of a direction in a plane, up to whole turns.
+    Angle {
+        /// Its cosine.
+        cos: Expr,
+        /// Its sine.
+        sin: Expr,
+    },
+}
+
+impl Port {
+    /// What its value is made of.
+    pub fn entries(&self) -> Vec<&Expr> {
+        match &self.value {
+            PortValue::Scalar(value) => vec![value],
+            PortValue::Angle { cos, sin } => vec![cos, sin],
+        }
+    }
+
+    /// Whether its value is an angle up to whole turns.
+    pub fn wraps(&self) -> bool {
+        matches!(self.value, PortValue::Angle { .. })
+    }
+}
+
 /// The frame in which v is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VelocityFrame {
@@ -241,6 +285,8 @@ pub struct JointSpec {
     pub pose: Declared<PoseExpr>,
     /// H(Q) of the bodies after the first.
     pub more: Vec<Declared<PoseExpr>>,
+    /// Coordinates at which efforts act and rates are read, besides v.
+    pub ports: Vec<Declared<Port>>,
     /// Φ(Q, ϕ) as stored scalars, where declared.
     pub retract: Option<Declared<Vec<Expr>>>,
     /// How v moves Q on the manifold of the relations, where these say more than the basis and Φ is not declared.
@@ -270,6 +316,8 @@ pub const CHECKABLE: &[&str] = &[
     "velocity_map_inverse",
     "twist_map_child",
     "speeds_meet_constraint",
+    "port_angles",
+    "port_rates",
 ];
 
 /// A claim that the author wants to rest on evaluation at points.

@@ -29,6 +29,7 @@
 //! ```
 
 mod patterns;
+mod port;
 mod products;
 mod several;
 mod slices;
@@ -38,6 +39,7 @@ mod structure;
 pub const MOST_FREEDOMS: usize = 8;
 
 pub use patterns::{Entry, Patterns};
+pub use port::{Port, PortLaw};
 pub use products::{FirstOrder, Products};
 pub use several::{Carries, Member};
 pub use structure::{Structure, Structures};
@@ -49,11 +51,11 @@ use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
 
 /// Version of the [`Joint`] trait. Generated code asserts it at compile time.
-pub const KERNEL_INTERFACE: u32 = 6;
+pub const KERNEL_INTERFACE: u32 = 7;
 
 /// Fails to compile where generated code and runtime differ in the [`Joint`] trait.
 ///
-/// Generated files contain `const _: () = hamel_runtime::joint::assert_kernel_interface(6);`.
+/// Generated files contain `const _: () = hamel_runtime::joint::assert_kernel_interface(7);`.
 pub const fn assert_kernel_interface(version: u32) {
     assert!(
         version == KERNEL_INTERFACE,
@@ -121,6 +123,12 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     /// The functions of Q that [`Joint::singularity`] takes the least absolute value of, as the spec writes them: H, X, Φ, A
     /// or S̄ lose their meaning or their rank where one of them is 0. Empty for a joint that is global.
     const SINGULARITIES: &'static [&'static str];
+
+    /// The declared relations, as equations, of a joint whose motion relations alone give. Each has a multiplier.
+    const RELATIONS: &'static [&'static str] = &[];
+
+    /// The ports: angles and lengths of Q, besides v, at which efforts act and rates are read.
+    const PORTS: &'static [Port] = &[];
 
     /// Names of the bodies that the joint carries; empty where it carries one that has no name.
     const BODIES: &'static [&'static str] = &[];
@@ -258,6 +266,51 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
             )
         };
         [SMatrix::zeros(); K]
+    }
+
+    /// P(Q), a row for each of [`Joint::PORTS`]: v to its rate, rad/s or m/s. Efforts τ_p at the ports, N·m or N, are `τ = Pᵀ τ_p` in v.
+    fn port_map<T: Scalar>(&self, _q: &SVector<T, N>) -> impl AsRef<[[T; K]]> {
+        const {
+            assert!(
+                Self::PORTS.is_empty(),
+                "the joint has ports: it must implement port_map"
+            )
+        };
+        [[T::zero(); K]; 0]
+    }
+
+    /// The values of the ports, rad or m; that of a [port that wraps](Port::wraps) is between −π and π.
+    fn port_values<T: Scalar>(&self, _q: &SVector<T, N>) -> impl AsRef<[T]> {
+        const {
+            assert!(
+                Self::PORTS.is_empty(),
+                "the joint has ports: it must implement port_values"
+            )
+        };
+        [T::zero(); 0]
+    }
+
+    /// For each of [`Joint::RELATIONS`] the twist of the body, in the child frame, at the displacement rate of Q at which that relation would change at
+    /// unit rate, and no other: along the directions in which Φ comes back onto the manifold, with H as the spec writes it.
+    fn relation_twists<T: Scalar>(&self, _q: &SVector<T, N>) -> impl AsRef<[[T; 6]]> {
+        const {
+            assert!(
+                Self::RELATIONS.is_empty(),
+                "the joint has relations: it must implement relation_twists"
+            )
+        };
+        [[T::zero(); 6]; 0]
+    }
+
+    /// The rates of the ports at the same displacement rates: of all ports for the first relation, then for the next.
+    fn relation_ports<T: Scalar>(&self, _q: &SVector<T, N>) -> impl AsRef<[T]> {
+        const {
+            assert!(
+                Self::RELATIONS.is_empty() || Self::PORTS.is_empty(),
+                "the joint has relations and ports: it must implement relation_ports"
+            )
+        };
+        [T::zero(); 0]
     }
 
     /// Q̇(Q, v), (31).

@@ -29,6 +29,7 @@ impl Critical {
         spec.matrices()
             .flat_map(Matrix::entries)
             .chain(spec.loci.iter().map(|locus| &locus.value.function))
+            .chain(spec.ports.iter().flat_map(|port| port.value.entries()))
             .for_each(|e| Self::collect(e, &[], &mut found));
         found
     }

@@ -1,6 +1,6 @@
 //! The kernels of a joint from its expansion, in the order in which they are emitted.
 
-use super::{Expansion, Flow, finite, general, hamel, implicit, structure_constants};
+use super::{Expansion, Flow, finite, general, hamel, implicit, ports, structure_constants};
 use crate::diagnostic::Diagnostic;
 use crate::domain::{Critical, Domain};
 use crate::expr::Symbol;
@@ -25,6 +25,7 @@ pub fn kernels(
     };
     let mut kernels = maker.velocity();
     kernels.extend(maker.nonholonomic());
+    kernels.extend(maker.ports());
     kernels.extend(maker.finite_maps()?);
     kernels.sort_by_key(|kernel| kernel.kind);
     Ok(kernels)
@@ -34,7 +35,11 @@ pub fn kernels(
 pub fn of_body(joint: &Prepared, expansion: &Expansion) -> Vec<Kernel> {
     let pose = &joint.spec.pose.value;
     let child = &expansion.twist_map_child;
-    vec![
+    let forbidden = expansion.forbidden.as_ref().map(|forbidden| {
+        let along = vec![forbidden.twists.clone()];
+        through(KernelKind::RelationTwists, along)
+    });
+    let own = vec![
         plain(
             KernelKind::Pose,
             vec![pose.rotation.clone(), pose.translation.clone()],
@@ -45,7 +50,8 @@ pub fn of_body(joint: &Prepared, expansion: &Expansion) -> Vec<Kernel> {
             KernelKind::TwistMapChildGradient,
             child_slopes(joint, expansion),
         ),
-    ]
+    ];
+    own.into_iter().chain(forbidden).collect()
 }
 
 struct Maker<'a> {
@@ -71,6 +77,18 @@ fn child_slopes(joint: &Prepared, x: &Expansion) -> Vec<Matrix> {
 }
 
 impl Maker<'_> {
+    /// P and the values of the ports; nothing where there are none.
+    fn ports(&self) -> Vec<Kernel> {
+        let ports = &self.joint.spec.ports;
+        if ports.is_empty() {
+            return vec![];
+        }
+        vec![
+            plain(KernelKind::PortMap, vec![self.x.port_map.clone()]),
+            plain(KernelKind::PortValues, vec![ports::values(ports)]),
+        ]
+    }
+
     fn short(&self, matrix: &Matrix) -> Matrix {
         self.ideal.simplest_entries(matrix)
     }
@@ -204,8 +222,12 @@ impl Maker<'_> {
             displacement,
             by_runtime(KernelKind::Retract, Method::Newton),
             by_runtime(KernelKind::Local, Method::Solve),
+            by_runtime(KernelKind::RelationDisplacements, Method::Solve),
         ];
-        let all = bases.into_iter().chain(differential);
+        let ports = self.x.forbidden.as_ref().filter(|_| self.x.shape.ports > 0);
+        let ports = ports
+            .map(|forbidden| through(KernelKind::RelationPorts, vec![forbidden.ports.clone()]));
+        let all = bases.into_iter().chain(differential).chain(ports);
         Some(all.chain(self.implicit_differentials(flow)).collect())
     }
 
@@ -311,6 +333,14 @@ fn by_runtime(kind: KernelKind, method: Method) -> Kernel {
         outputs: vec![],
         method,
         structure: Structure::General,
+    }
+}
+
+/// A kernel that is a matrix of formulas times the displacements at which relations change.
+fn through(kind: KernelKind, outputs: Vec<Matrix>) -> Kernel {
+    Kernel {
+        outputs,
+        ..by_runtime(kind, Method::Solve)
     }
 }
 

@@ -7,6 +7,7 @@ pub(crate) mod dimension;
 pub(crate) mod directions;
 mod elimination;
 pub(crate) mod finite;
+mod forbidden;
 mod general;
 mod hamel;
 mod implicit;
@@ -14,6 +15,7 @@ mod kernels;
 mod motion;
 mod nonholonomic;
 mod numbers;
+pub(crate) mod ports;
 pub(crate) mod rank;
 mod steps;
 mod still;
@@ -23,6 +25,7 @@ mod unidentifiable;
 mod velocity;
 
 pub use dimension::Confinement;
+pub use forbidden::Forbidden;
 pub use implicit::{Directions as RelationDirections, Flow, Systems};
 
 pub use kernels::{kernels, of_body, speed_map};
@@ -77,6 +80,10 @@ pub struct Expansion {
     pub nonholonomic: Nonholonomic,
     /// The degrees of freedom that move no body.
     pub still: Still,
+    /// P: v to the rates of the ports.
+    pub port_map: Matrix,
+    /// What displacements that relations forbid would do, where these alone say how Q moves.
+    pub forbidden: Option<Forbidden>,
 }
 
 impl Expansion {
@@ -91,6 +98,7 @@ impl Expansion {
             jacobian: self.jacobian.rows_of_body(body),
             twist_map: self.twist_map.rows_of_body(body),
             twist_map_child: self.twist_map_child.rows_of_body(body),
+            forbidden: self.forbidden.as_ref().map(|own| own.of_body(body)),
             ..self.clone()
         }
     }
@@ -144,6 +152,11 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
     let velocity_map_inverse = velocity_map.inverse.clone().unwrap_or_else(|| {
         ideal.simplest_entries(&velocity_map.base.adjugate(&simplify).scale(&inverse))
     });
+    budget::begin(task::PORTS);
+    let gradient = ports::gradient(&joint.spec.ports, &motion, ideal);
+    let port_map = ideal.simplest_entries(&gradient.times(&velocity_map_inverse));
+    budget::begin(task::TWIST);
+    let forbidden = flow.as_ref().map(|_| Forbidden::new(joint));
     budget::begin(task::CONSTRAINT);
     let nonholonomic = Nonholonomic::new(joint, &motion, &domain)?;
     Ok(Expansion {
@@ -153,6 +166,7 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
             speeds: nonholonomic.speed_basis.columns(),
             constraints: nonholonomic.constraint.columns(),
             displacements: arguments.displacement.len(),
+            ports: joint.spec.ports.len(),
         },
         arguments,
         exponential,
@@ -167,6 +181,8 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
         velocity_map_inverse,
         nonholonomic,
         still,
+        port_map,
+        forbidden,
     })
 }
 

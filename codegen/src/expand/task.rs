@@ -11,6 +11,8 @@ pub const TWIST: &str = "the twist of H, to first order in phi";
 pub const TWIST_MAP: &str = "X";
 /// S from X and J.
 pub const VELOCITY_MAP: &str = "S, the solution of X S = J";
+/// P.
+pub const PORTS: &str = "the rates of the ports";
 /// A and S̄.
 pub const CONSTRAINT: &str = "A and S_bar";
 /// What is proved.
@@ -27,6 +29,7 @@ pub fn span(spec: &JointSpec, task: &str) -> Range<usize> {
         MOTION => (spec.retract.as_ref()).map_or(spec.freedoms.span.clone(), |r| r.span.clone()),
         TWIST => pose(),
         TWIST_MAP | VELOCITY_MAP => (spec.twist_map.as_ref()).map_or_else(pose, |x| x.span.clone()),
+        PORTS => (spec.ports.first()).map_or_else(pose, |port| port.span.clone()),
         CONSTRAINT => {
             let declared = spec.constraint.as_ref().or(spec.speed_basis.as_ref());
             declared.map_or_else(pose, |matrix| matrix.span.clone())

@@ -94,13 +94,6 @@ impl TwistJacobian {
             .iter()
             .map(|dr| vee(&ideal.simplest_entries(&dr.times(&r_t))))
             .collect();
-        let child_column = |i: usize| {
-            let omega = vee(&ideal.simplest_entries(&r_t.times(&rotations[i])));
-            join(
-                &omega,
-                &ideal.simplest_entries(&r_t.times(&translations[i])),
-            )
-        };
         let column = |i: usize| {
             let linear = translations[i].minus(&cross(&omegas[i], p));
             join(&omegas[i], &ideal.simplest_entries(&linear))
@@ -122,10 +115,24 @@ impl TwistJacobian {
         };
         Self {
             base: Matrix::from_columns(6, &(0..k).map(column).collect::<Vec<_>>()),
-            child: Matrix::from_columns(6, &(0..k).map(child_column).collect::<Vec<_>>()),
+            child: child_twists(pose, motion, ideal),
             slopes: (0..k).map(slope).collect(),
         }
     }
+}
+
+/// J₀ in the child frame, 6×k: `vee(H⁻¹ Ḣ)`.
+pub fn child_twists(pose: &PoseExpr, motion: &Motion, ideal: &Ideal) -> Matrix {
+    let r_t = pose.rotation.transpose();
+    let column = |i: usize| {
+        let turned = r_t.times(&motion.along_each(&pose.rotation, i));
+        let moved = r_t.times(&motion.along_each(&pose.translation, i));
+        join(
+            &vee(&ideal.simplest_entries(&turned)),
+            &ideal.simplest_entries(&moved),
+        )
+    };
+    Matrix::from_columns(6, &(0..motion.freedoms()).map(column).collect::<Vec<_>>())
 }
 
 fn vee(m: &Matrix) -> Vec<Expr> {

@@ -5,7 +5,7 @@ use crate::diagnostic::Diagnostic;
 use crate::domain::{Critical, Domain};
 use crate::expr::{Expr, Function};
 use crate::matrix::Matrix;
-use crate::model::{Declared, Locus, PoseExpr};
+use crate::model::{Declared, Locus, Port, PoseExpr};
 use crate::prepare::Prepared;
 use crate::spec::code;
 use std::collections::BTreeSet;
@@ -35,7 +35,16 @@ impl Prover<'_> {
         let declared = self.joint.critical();
         let open = declared.iter().find(|f| self.domain.smooth(f).is_none());
         match open {
-            Some(open) => Err(Box::new(refusal(open, &self.statement_with(open)))),
+            Some(open) => {
+                let span = self.statement_with(open);
+                let error = refusal(open, &span);
+                let mut ports = self.joint.spec.ports.iter();
+                let is_port = ports.any(|port| port.span == span);
+                Err(Box::new(match is_port && open.function == Function::Atan2 {
+                    true => error.note("a port that is an angle up to whole turns is declared by its direction: an element of S1 or SO2, or `[c, s]`"),
+                    false => error,
+                }))
+            }
             None => Ok(None),
         }
     }
@@ -55,7 +64,11 @@ impl Prover<'_> {
         if let Some(open) = open {
             return Err(Box::new(refusal(open, &self.statement_with(open))));
         }
-        let mut statement = self.where_it_holds("H, Φ, X, S, A and S̄ are smooth at Q");
+        let all = match self.joint.spec.ports.is_empty() {
+            true => "H, Φ, X, S, A and S̄ are smooth at Q",
+            false => "H, Φ, X, S, A, S̄ and ports are smooth at Q",
+        };
+        let mut statement = self.where_it_holds(all);
         let sides = self.sides();
         if !sides.is_empty() {
             let sides: Vec<String> = sides.iter().map(|side| format!("{side} > 0")).collect();
@@ -86,10 +99,15 @@ impl Prover<'_> {
         ];
         let of_locus =
             |locus: &Declared<Locus>| (vec![locus.value.function.clone()], locus.span.clone());
+        let of_port = |port: &Declared<Port>| {
+            let entries = port.value.entries().into_iter().cloned();
+            (entries.collect(), port.span.clone())
+        };
         let poses = joint.spec.poses().map(of_pose);
         let statements = poses
             .chain(matrices.into_iter().flatten().map(of_matrix))
-            .chain(joint.space.loci.iter().map(of_locus));
+            .chain(joint.space.loci.iter().map(of_locus))
+            .chain(joint.spec.ports.iter().map(of_port));
         let holds = |entries: &[Expr]| {
             let mut found = BTreeSet::new();
             entries
@@ -119,6 +137,7 @@ impl Prover<'_> {
             .chain([&x.velocity_map.base, &x.velocity_map_inverse])
             .chain(&x.velocity_map.slopes)
             .chain([&x.nonholonomic.constraint, &x.nonholonomic.speed_basis])
+            .chain([&x.port_map])
             .chain(x.flow.iter().flat_map(|flow| [&flow.tangent, &flow.normal]));
         collect(matrices, &mut found);
         found

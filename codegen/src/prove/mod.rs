@@ -15,6 +15,7 @@ mod degenerate;
 mod fibres;
 mod named;
 mod nonholonomic;
+mod ports;
 mod retract;
 mod search;
 mod twist;
@@ -71,6 +72,8 @@ pub fn prove(joint: &Prepared, expansion: &Expansion) -> Result<Vec<Claim>, Vec<
         prover.rates_agree(),
         prover.velocity_map_is_inverted(),
         prover.child_twist_map_agrees(),
+        prover.port_angles(),
+        prover.port_rates(),
     ])?);
     claims.sort_by_key(|claim| place(claim.name));
     claims.extend(fibres::claim(
@@ -103,6 +106,8 @@ fn place(name: &str) -> usize {
         "speeds_meet_constraint",
         "speed_basis_rank",
         "constraint_rank",
+        "port_angles",
+        "port_rates",
     ];
     let found = order.iter().position(|other| *other == name);
     found.unwrap_or(order.len())

@@ -14,7 +14,7 @@ use crate::prepare::Prepared;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Kernels of which every entry is shortened.
-const OF_CONFIGURATION: [KernelKind; 9] = [
+const OF_CONFIGURATION: [KernelKind; 10] = [
     KernelKind::Pose,
     KernelKind::TwistMap,
     KernelKind::TwistMapChild,
@@ -23,6 +23,7 @@ const OF_CONFIGURATION: [KernelKind; 9] = [
     KernelKind::Constraint,
     KernelKind::SpeedBasis,
     KernelKind::VelocityMapGradient,
+    KernelKind::PortMap,
     KernelKind::ConfigurationRate,
 ];
 

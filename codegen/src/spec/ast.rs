@@ -78,6 +78,7 @@ impl Statement {
                 vec![&equation.left, &equation.right]
             }
             StatementKind::Require(requirement) => vec![&requirement.larger, &requirement.smaller],
+            StatementKind::Port(port) => vec![&port.value],
             StatementKind::Assign(_, values) | StatementKind::BodyPose(_, values) => {
                 values.iter().collect()
             }
@@ -100,6 +101,8 @@ pub(super) enum StatementKind {
     Speeds(Vec<Name>),
     /// `bodies a, b;`
     Bodies(Vec<Name>),
+    /// `port a: unit = …;`
+    Port(Port),
     /// `let a = …;`
     Let(Name, Node),
     /// `relation a = b;`
@@ -144,6 +147,15 @@ impl Requirement {
         let (a, b) = (&self.larger.span, &self.smaller.span);
         a.start.min(b.start)..a.end.max(b.end)
     }
+}
+
+/// `name: unit = value`, with the doc comment before the statement.
+#[derive(Debug)]
+pub(super) struct Port {
+    pub docs: Vec<String>,
+    pub name: Name,
+    pub unit: Name,
+    pub value: Node,
 }
 
 #[derive(Debug)]

@@ -64,6 +64,7 @@ codes! {
     MAY_VANISH "E0322" "Division by a parameter that may be zero."
     UNPROVED "E0323" "An `unproved` of something that is no such claim, or that is proved."
     BODIES "E0324" "`H` beside `bodies`, or `H.name` without them."
+    PORT "E0325" "A port that is no angle or length of Q, or that no velocity moves."
 
     DIMENSION "E0401" "The number of local coordinates is not the dimension of the manifold."
     PARENT_FRAME "E0402" "No constant directions to read in the parent frame."

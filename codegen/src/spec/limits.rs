@@ -19,6 +19,8 @@ pub(super) const LARGEST_MATRIX: usize = 12;
 pub(super) const TALLEST_MATRIX: usize = 6 * MOST_BODIES;
 /// Most bodies of a joint.
 pub(super) const MOST_BODIES: usize = 16;
+/// Most ports of a joint.
+pub(super) const MOST_PORTS: usize = 16;
 /// Largest exponent of `pow`, up or down.
 pub(super) const LARGEST_POWER: u32 = 16;
 

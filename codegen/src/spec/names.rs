@@ -8,11 +8,11 @@ use proc_macro2::{Ident, Span, TokenTree};
 /// Words that begin the statements of the language.
 pub const STATEMENTS: &[&str] = &[
     "config", "relation", "home", "except", "require", "basis", "local", "velocity", "speeds",
-    "bodies", "let", "Phi", "H", "X", "A", "S_bar", "unproved",
+    "bodies", "port", "let", "Phi", "H", "X", "A", "S_bar", "unproved",
 ];
 
 /// Those of them that came after specs could use them as names, which they still can: no expression begins a statement.
-const STILL_NAMES: &[&str] = &["bodies"];
+const STILL_NAMES: &[&str] = &["bodies", "port"];
 
 /// Words that belong to the language.
 const WORDS: &[&str] = &[
@@ -55,8 +55,8 @@ pub(super) fn check_joint(name: &Name) -> Option<Diagnostic> {
     form_error(name, Form::Snake).or_else(taken)
 }
 
-/// Whether a body may have the name; else why not. No expression speaks of bodies, and no name in Rust is made of theirs.
-pub(super) fn check_body(name: &Name) -> Option<Diagnostic> {
+/// Whether a body or a port may have the name; else why not. No expression speaks of them, and no name in Rust is made of theirs.
+pub(super) fn check_unspoken(name: &Name) -> Option<Diagnostic> {
     form_error(name, Form::Snake)
 }
 

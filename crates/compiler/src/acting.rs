@@ -5,7 +5,7 @@ use super::joint::Joint;
 use super::model::Elements;
 use super::products::JointType;
 use hamel_codegen::derived::{KernelKind, Method};
-use hamel_runtime::elements::{JointSpring, RotationSpring};
+use hamel_runtime::elements::{JointSpring, PortEffort, PortSpring, RotationSpring};
 use hamel_runtime::mechanism::CONFIGURATION_TOLERANCE;
 use hamel_scene::{BodyDescription, Position, SpringEnergy};
 use nalgebra::{DMatrix, DVector, Matrix3};
@@ -65,6 +65,55 @@ impl Held<'_> {
             rest: self.rest(rest)?,
         });
         Ok(())
+    }
+
+    /// Puts what acts at the joint's ports among the elements.
+    ///
+    /// # Errors
+    /// Ports that the joint's type does not have; efforts that change with time, of which equations are not told.
+    pub fn add_ports(&self, elements: &mut Elements) -> Result<(), Vec<String>> {
+        let (mut reasons, body) = (vec![], self.index);
+        let (joint, kind) = (&self.body.joint.name.value, &self.body.joint.kind.value);
+        let known = &self.joint.derived.spec.ports;
+        for forces in &self.body.forces.ports {
+            let name = &forces.name.value;
+            let mut ports = known.iter();
+            let Some(port) = ports.position(|port| port.value.name == *name) else {
+                reasons.push(format!(
+                    "joint `{joint}`: its type `{kind}` has no port `{name}`"
+                ));
+                continue;
+            };
+            if let Some(effort) = &forces.effort {
+                let name = forces.element("effort", joint);
+                if effort.constant().is_none() {
+                    reasons.push(format!(
+                        "{name}: it changes with time, which is not compiled: simulate the scene as it is, or let an effort of the joint change with time"
+                    ));
+                }
+                elements.port_efforts.push(PortEffort {
+                    name,
+                    body,
+                    port,
+                    effort: effort.clone(),
+                });
+            }
+            if forces.spring.is_some() || forces.damping > 0.0 {
+                let spring = forces.spring.unwrap_or_default();
+                elements.port_springs.push(PortSpring {
+                    name: forces.element("spring", joint),
+                    body,
+                    port,
+                    stiffness: spring.stiffness,
+                    damping: forces.damping,
+                    rest: spring.rest,
+                });
+            }
+        }
+        match reasons.is_empty() {
+            true => Ok(()),
+            false => Err(reasons),
+        }
     }
 
     fn refused(&self, reason: &str) -> String {

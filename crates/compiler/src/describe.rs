@@ -113,6 +113,7 @@ fn of_joint(
         parameters: &bodies[0].parameters,
     };
     held.add_spring(elements).map_err(|reason| vec![reason])?;
+    held.add_ports(elements)?;
     Ok(bodies)
 }
 

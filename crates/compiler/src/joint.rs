@@ -171,6 +171,24 @@ impl<'a> Joint<'a> {
         self.entries_with(KernelKind::RetractDifferentialInverse, &given)
     }
 
+    /// P by rows, one per port.
+    pub fn port_map(&self) -> Vec<Vec<Sym>> {
+        let entries = self.entries(KernelKind::PortMap);
+        let rows = entries.chunks(self.joint.derived.shape.freedoms.max(1));
+        rows.map(<[Sym]>::to_vec).collect()
+    }
+
+    /// The values of the ports.
+    pub fn port_values(&self) -> Vec<Sym> {
+        self.entries(KernelKind::PortValues)
+    }
+
+    /// Whether the value of a port is an angle up to whole turns.
+    pub fn port_wraps(&self, port: usize) -> bool {
+        let ports = &self.joint.derived.spec.ports;
+        ports.get(port).is_some_and(|port| port.value.wraps())
+    }
+
     /// Σ_k γ_k v_k by rows, at v.
     pub fn gamma(&self, velocity: &[Sym]) -> Vec<Vec<Sym>> {
         let given = [(self.joint.derived.arguments.velocity.as_slice(), velocity)];

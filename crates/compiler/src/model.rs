@@ -2,7 +2,8 @@
 
 use super::products::JointType;
 use hamel_runtime::elements::{
-    BodySpring, BodyWrench, JointLimit, JointSpring, PointConstraint, RotationSpring,
+    BodySpring, BodyWrench, JointLimit, JointSpring, PointConstraint, PortEffort, PortSpring,
+    RotationSpring,
 };
 use hamel_runtime::spatial::{MassProperties, Pose};
 use nalgebra::{Matrix3, Vector3};
@@ -35,6 +36,10 @@ pub struct Elements {
     pub springs: Vec<BodySpring>,
     /// Compliant limits of joints.
     pub limits: Vec<JointLimit>,
+    /// Constant efforts at ports.
+    pub port_efforts: Vec<PortEffort>,
+    /// Springs and dampers at ports.
+    pub port_springs: Vec<PortSpring>,
     /// Wrenches from outside.
     pub wrenches: Vec<BodyWrench>,
 }

@@ -158,6 +158,8 @@ pub enum Motion {
     Speeds(Located<Vec<f64>>),
     /// Twist of the joint's child frame relative to its parent frame.
     Twist(Located<TwistDescription>),
+    /// Rates of ports by name, which determine all speeds.
+    Rates(Located<Vec<(Located<String>, f64)>>),
 }
 
 /// A twist and the axes in which it is read.

@@ -23,6 +23,8 @@ pub struct JointForces {
     pub friction: Option<Located<FrictionDescription>>,
     /// Where the joint's range ends.
     pub limit: Option<Located<LimitDescription>>,
+    /// What acts at its ports.
+    pub ports: Vec<PortForces>,
 }
 
 impl JointForces {
@@ -36,6 +38,35 @@ impl JointForces {
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
+}
+
+/// What acts at one port of a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PortForces {
+    /// Name of the port.
+    pub name: Located<String>,
+    /// Effort, N m or N.
+    pub effort: Option<TimeFunction>,
+    /// Spring.
+    pub spring: Option<PortSpringDescription>,
+    /// Viscous damping c: the effort −c w; 0 without.
+    pub damping: f64,
+}
+
+impl PortForces {
+    /// What messages call its effort or spring, of the joint of that name.
+    pub fn element(&self, what: &str, joint: &str) -> String {
+        format!("{what} at port `{}` of joint `{joint}`", self.name.value)
+    }
+}
+
+/// A spring at a port.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PortSpringDescription {
+    /// N m/rad or N/m.
+    pub stiffness: f64,
+    /// The value of the port at which it is at rest, rad or m.
+    pub rest: f64,
 }
 
 /// Coulomb's friction at a joint with one degree of freedom, N m or N.

@@ -40,8 +40,8 @@ pub use diagnostics::{Diagnostic, Diagnostics};
 pub use event::{EventDescription, PointAlong, Quantity, QuantityDescription, SceneEvent};
 pub use forces::{
     BodyPoint, ConstraintDescription, FrameDescription, FrictionDescription, JointForces,
-    JointSpring, LimitDescription, LimitKind, PerFreedom, PointSpring, SpringEnergy, WrenchAxes,
-    WrenchDescription,
+    JointSpring, LimitDescription, LimitKind, PerFreedom, PointSpring, PortForces,
+    PortSpringDescription, SpringEnergy, WrenchAxes, WrenchDescription,
 };
 pub use notice::{Notice, Severity};
 pub use samples::SampleError;

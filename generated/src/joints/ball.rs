@@ -50,7 +50,7 @@ use ::hamel_runtime::registry::JointEntry;
 use ::hamel_runtime::scalar::Scalar;
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Ball joint: three rotations about the common origin of both frames (Examples 1 and 5).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -47,7 +47,7 @@ use ::hamel_runtime::registry::JointEntry;
 use ::hamel_runtime::scalar::Scalar;
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Ball joint with its velocity in child axes: what a gyroscope on the child measures.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -63,7 +63,7 @@ use ::hamel_runtime::registry::{JointEntry, ParameterInfo};
 use ::hamel_runtime::scalar::{Scalar, dot};
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Ball rolling without slipping on the plane z = 0 of the parent; it may spin about the vertical (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]

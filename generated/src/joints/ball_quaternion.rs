@@ -52,7 +52,7 @@ use ::hamel_runtime::registry::JointEntry;
 use ::hamel_runtime::scalar::{Scalar, dot};
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Ball joint on unit quaternions: four stored scalars instead of nine.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -114,7 +114,7 @@ use ::hamel_runtime::registry::{JointEntry, ParameterInfo};
 use ::hamel_runtime::scalar::{Scalar, dot};
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// A car on a plane with its wheels as bodies (nonholonomic): neither axle slides sideways in its middle, and every wheel rolls along its own heading.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -57,7 +57,7 @@ use ::hamel_runtime::registry::JointEntry;
 use ::hamel_runtime::scalar::Scalar;
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Cart: a planar joint that rolls and turns, sideways velocity forbidden (Examples 3 and 6; nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]

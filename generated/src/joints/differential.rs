@@ -86,7 +86,7 @@ use ::hamel_runtime::registry::{JointEntry, ParameterInfo};
 use ::hamel_runtime::scalar::Scalar;
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// A bevel differential: two wheels about one axis, the cage between them, and the pinion that the cage carries.
 #[derive(Clone, Copy, Debug, PartialEq)]

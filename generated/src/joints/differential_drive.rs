@@ -82,7 +82,7 @@ use ::hamel_runtime::registry::{JointEntry, ParameterInfo};
 use ::hamel_runtime::scalar::Scalar;
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// A robot on a plane with two driven wheels on one axle, which roll and do not slip (nonholonomic); any castors are left out.
 #[derive(Clone, Copy, Debug, PartialEq)]

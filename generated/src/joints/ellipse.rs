@@ -60,7 +60,7 @@ use ::hamel_runtime::registry::{JointEntry, ParameterInfo};
 use ::hamel_runtime::scalar::{Scalar, dot};
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Joint on a curve: the child's origin moves on an ellipse in the plane z = 0 of the parent, its x axis along the tangent.
 #[derive(Clone, Copy, Debug, PartialEq)]

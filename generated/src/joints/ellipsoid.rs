@@ -54,7 +54,7 @@ use ::hamel_runtime::registry::{JointEntry, ParameterInfo};
 use ::hamel_runtime::scalar::{Scalar, dot};
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Joint on an ellipsoid with spin about the normal: the child's origin moves on the surface, its z axis along the outward normal.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -60,7 +60,7 @@ use ::hamel_runtime::registry::{JointEntry, ParameterInfo};
 use ::hamel_runtime::scalar::{Scalar, dot};
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Falling disk (rolling coin): a thin disk that rolls without slipping on the plane z = 0 of the parent and may lean (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]

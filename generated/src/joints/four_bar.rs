@@ -28,24 +28,28 @@
 //!             ⎢  0     0  1          0⎥
 //!             ⎣  0     0  0          1⎦
 //!
-//!             ⎡                                                                                0⎤
-//!             ⎢                                                                                0⎥
-//! X_coupler = ⎢       1 − ground rocker c.s / (coupler (ground b.s − crank (a.c b.s − a.s b.c)))⎥
-//!             ⎢−ground crank rocker a.s c.s / (coupler (ground b.s − crank (a.c b.s − a.s b.c)))⎥
-//!             ⎢ ground crank rocker a.c c.s / (coupler (ground b.s − crank (a.c b.s − a.s b.c)))⎥
-//!             ⎣                                                                                0⎦
+//!             ⎡                        0⎤
+//!             ⎢                        0⎥
+//! X_coupler = ⎢                b_by_turn⎥
+//!             ⎢crank a.s (b_by_turn − 1)⎥
+//!             ⎢crank a.c (1 − b_by_turn)⎥
+//!             ⎣                        0⎦
+//!
+//! b_by_turn = −crank (a.c c.s − a.s c.c) / (coupler (b.c c.s − b.s c.c))
 //!
 //!            ⎡c.c  −c.s  0  ground⎤
 //! H_rocker = ⎢c.s   c.c  0       0⎥
 //!            ⎢  0     0  1       0⎥
 //!            ⎣  0     0  0       1⎦
 //!
-//!            ⎡                                                                 0⎤
-//!            ⎢                                                                 0⎥
-//! X_rocker = ⎢         1 − ground b.s / (ground b.s − crank (a.c b.s − a.s b.c))⎥
-//!            ⎢                                                                 0⎥
-//!            ⎢ground (ground b.s / (ground b.s − crank (a.c b.s − a.s b.c)) − 1)⎥
-//!            ⎣                                                                 0⎦
+//!            ⎡                0⎤
+//!            ⎢                0⎥
+//! X_rocker = ⎢        c_by_turn⎥
+//!            ⎢                0⎥
+//!            ⎢−ground c_by_turn⎥
+//!            ⎣                0⎦
+//!
+//! c_by_turn = −crank (a.c b.s − a.s b.c) / (rocker (b.c c.s − b.s c.c))
 //!
 //! S(Q, ϕ) = I
 //! ```
@@ -53,8 +57,8 @@
 //! Proved when this file was generated:
 //! - `pose_in_se3`: H(Q) ∈ SE(3), of each body (normal form)
 //! - `retract_at_zero`: Φ(Q, 0) = Q (normal form)
-//! - `defined`: H, Φ, X, S, A and S̄ are smooth at Q (certificate)
 //! - `retract_by_relations`: the relations cut out a manifold of k dimensions, and determine all other directions: det(∂φ N) = 0 nowhere (certificate)
+//! - `tangent_basis_solves`: B and λ solve ∂φ B = 0 and ∂φ N λ = −D²φ(B, B)/2, and ∂B/∂ϕ is their derivative (normal form)
 //! - `retract_on_manifold`: Φ(Q, ϕ) stays on the manifold (normal form)
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)
 //! - `velocity_map_first_order`: X S = J to first order in ϕ, (23) (normal form)
@@ -73,7 +77,7 @@ use ::hamel_runtime::registry::{JointEntry, ParameterInfo};
 use ::hamel_runtime::scalar::{Scalar, dot};
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// A four-bar linkage whose crank goes round, with all its moving links as bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,17 +108,18 @@ impl FourBar {
 
 impl FourBar {
     /// B(Q): v to the displacement rate Q⁻¹Q̇.
-    /// 3×1. Operations: 5 additions, 8 multiplications (1 of each fused), 2 divisions.
+    /// 3×1. Operations: 3 additions, 10 multiplications, 2 divisions.
     /// From line 21 `config`, line 26 `basis`.
     pub fn tangent_basis<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 3, 1> {
-        let ground = T::from_f64(self.ground);
         let crank = T::from_f64(self.crank);
         let coupler = T::from_f64(self.coupler);
-        let [a_c, a_s, b_c, b_s, _, _]: [T; 6] = (*q).into();
+        let rocker = T::from_f64(self.rocker);
+        let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
         let one = T::one();
-        let t1 = ground * b_s;
-        let t2 = t1 - crank * (a_c * b_s - a_s * b_c);
-        from_rows([[one], [one - ground * dot([crank, coupler], [a_s, b_s]) / (coupler * t2)], [one - t1 / t2]])
+        let t1 = b_c * c_s - b_s * c_c;
+        let b_by_turn = -crank * (a_c * c_s - a_s * c_c) / (coupler * t1);
+        let c_by_turn = -crank * (a_c * b_s - a_s * b_c) / (rocker * t1);
+        from_rows([[one], [b_by_turn], [c_by_turn]])
     }
 
     /// N(Q): displacements along which Φ comes back onto the manifold of the relations.
@@ -195,6 +200,14 @@ impl FourBar {
         let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
         from_rows([[-crank * a_s, -coupler * b_s, rocker * c_s], [crank * a_c, coupler * b_c, -rocker * c_c]])
     }
+
+    /// N (∂φ N)⁻¹: for each relation the displacement rate along N at which it changes at unit rate, and no other.
+    /// 3×2. By a solve with ∂φ N.
+    /// From line 21 `config`, line 26 `basis`.
+    pub fn relation_displacements<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 3, 2> {
+        let normal = self.normal_basis(q);
+        normal * ::hamel_runtime::finite::inverse(&(self.relation_gradient(q) * normal))
+    }
 }
 
 impl Joint<6, 1, 1, 0> for FourBar {
@@ -221,6 +234,10 @@ impl Joint<6, 1, 1, 0> for FourBar {
         visit(::hamel_runtime::erased::erase(::hamel_runtime::joint::Member::<_, 1>(*self)));
         visit(::hamel_runtime::erased::erase(::hamel_runtime::joint::Member::<_, 2>(*self)));
     }
+    const RELATIONS: &'static [&'static str] = &[
+        "-rocker*c.c + coupler*b.c + crank*a.c - ground = 0",
+        "-rocker*c.s + coupler*b.s + crank*a.s = 0",
+    ];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
         [("ground", self.ground), ("crank", self.crank), ("coupler", self.coupler), ("rocker", self.rocker)].into_iter()
@@ -272,21 +289,20 @@ impl Joint<6, 1, 1, 0> for FourBar {
     }
 
     /// Q̇(Q, v) (31): the rates of the stored scalars.
-    /// 6-vector. Operations: 4 additions, 15 multiplications, 2 divisions.
+    /// 6-vector. Operations: 3 additions, 18 multiplications, 2 divisions.
     /// From line 26 `basis`, line 27 `H`.
     fn configuration_rate<T: Scalar>(&self, q: &SVector<T, 6>, v: &SVector<T, 1>) -> SVector<T, 6> {
-        let ground = T::from_f64(self.ground);
         let crank = T::from_f64(self.crank);
         let coupler = T::from_f64(self.coupler);
         let rocker = T::from_f64(self.rocker);
         let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
         let v_turn = v[0];
-        let one = T::one();
-        let t1 = ground * b_s;
-        let t2 = t1 - crank * (a_c * b_s - a_s * b_c);
-        let t3 = v_turn * (one - ground * rocker * c_s / (coupler * t2));
-        let t4 = v_turn * (one - t1 / t2);
-        SVector::from([-a_s * v_turn, a_c * v_turn, -b_s * t3, b_c * t3, -c_s * t4, c_c * t4])
+        let t1 = b_c * c_s - b_s * c_c;
+        let b_by_turn = -crank * (a_c * c_s - a_s * c_c) / (coupler * t1);
+        let c_by_turn = -crank * (a_c * b_s - a_s * b_c) / (rocker * t1);
+        let t2 = v_turn * b_by_turn;
+        let t3 = v_turn * c_by_turn;
+        SVector::from([-a_s * v_turn, a_c * v_turn, -b_s * t2, b_c * t2, -c_s * t3, c_c * t3])
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
@@ -306,6 +322,26 @@ impl Joint<6, 1, 1, 0> for FourBar {
     /// From line 21 `config`, line 26 `basis`.
     fn local<T: Scalar>(&self, q: &SVector<T, 6>, target: &SVector<T, 6>) -> SVector<T, 1> {
         ::hamel_runtime::finite::along_tangent(&self.displacement(q, target), (self.tangent_basis(q), self.normal_basis(q)))
+    }
+
+    /// The twist of the body, in the child frame, at the displacement rate of each relation, with H as written.
+    /// 2×6. By a product with `relation_displacements`.
+    /// From line 21 `config`, line 26 `basis`, line 27 `H`.
+    fn relation_twists<T: Scalar>(&self, q: &SVector<T, 6>) -> impl AsRef<[[T; 6]]> {
+        let along: SMatrix<T, 6, 3> = {
+            let zero = T::zero();
+            let one = T::one();
+            from_rows([
+                [zero, zero, zero],
+                [zero, zero, zero],
+                [one, zero, zero],
+                [zero, zero, zero],
+                [zero, zero, zero],
+                [zero, zero, zero],
+            ])
+        };
+        let twists: [[T; 6]; 2] = (along * self.relation_displacements(q)).into();
+        twists
     }
 
     /// The configuration on the manifold that is nearest to `q`.
@@ -388,65 +424,79 @@ impl ::hamel_runtime::joint::Carries<1, 6, 1, 1, 0> for FourBar {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 3 additions, 10 multiplications, 1 division.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 3 additions, 9 multiplications, 1 division.
     /// From line 26 `basis`, line 28 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 1> {
-        let ground = T::from_f64(self.ground);
         let crank = T::from_f64(self.crank);
         let coupler = T::from_f64(self.coupler);
-        let rocker = T::from_f64(self.rocker);
-        let [a_c, a_s, b_c, b_s, _, c_s]: [T; 6] = (*q).into();
+        let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
         let zero = T::zero();
         let one = T::one();
-        let t1 = ground * rocker * c_s / (coupler * (ground * b_s - crank * (a_c * b_s - a_s * b_c)));
-        let t2 = t1 * crank;
-        from_rows([[zero], [zero], [one - t1], [-t2 * a_s], [t2 * a_c], [zero]])
+        let b_by_turn = -crank * (a_c * c_s - a_s * c_c) / (coupler * (b_c * c_s - b_s * c_c));
+        let t1 = crank * (one - b_by_turn);
+        from_rows([[zero], [zero], [b_by_turn], [-t1 * a_s], [t1 * a_c], [zero]])
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 4 additions, 10 multiplications (2 of each fused), 1 division.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 4 additions, 12 multiplications (1 of each fused), 1 division.
     /// From line 26 `basis`, line 28 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 1> {
-        let ground = T::from_f64(self.ground);
         let crank = T::from_f64(self.crank);
         let coupler = T::from_f64(self.coupler);
-        let rocker = T::from_f64(self.rocker);
-        let [a_c, a_s, b_c, b_s, _, c_s]: [T; 6] = (*q).into();
+        let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
         let zero = T::zero();
-        let one = T::one();
-        let t1 = crank * (a_c * b_s - a_s * b_c);
+        let b_by_turn = -crank * (a_c * c_s - a_s * c_c) / (coupler * (b_c * c_s - b_s * c_c));
         from_rows([
             [zero],
             [zero],
-            [one - ground * rocker * c_s / (coupler * ground.mul_add(b_s, -t1))],
-            [t1],
+            [b_by_turn],
+            [crank * (a_c * b_s - a_s * b_c)],
             [crank * dot([a_c, a_s], [b_c, b_s])],
             [zero],
         ])
     }
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    /// 1 slice of 6×1. Operations: 7 additions, 20 multiplications (2 of each fused), 2 divisions.
+    /// 1 slice of 6×1. Operations: 9 additions, 24 multiplications (4 of each fused), 4 divisions.
     /// From line 26 `basis`, line 28 `H`.
     fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, 6>) -> [SMatrix<T, 6, 1>; 1] {
-        let ground = T::from_f64(self.ground);
         let crank = T::from_f64(self.crank);
         let coupler = T::from_f64(self.coupler);
         let rocker = T::from_f64(self.rocker);
         let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
-        let t1 = a_c * b_s - a_s * b_c;
-        let t2 = ground * b_s - crank * t1;
-        let t3 = rocker / (coupler * t2);
-        let t4 = ground * t3;
-        let t5 = dot([a_c, a_s], [b_c, b_s]);
-        let t6 = t4 * crank * c_s;
-        [
-            rows_at([
-                (2, [t4 * (ground * dot([c_s, b_s], [b_c - t3 * c_s * (ground * b_c - crank * t5), c_c]) / t2 - c_c)]),
-                (3, [-t6 * t5]),
-                (4, [t6 * t1]),
-            ]),
-        ]
+        let one = T::one();
+        let t1 = b_c * c_s - b_s * c_c;
+        let b_by_turn = -crank * (a_c * c_s - a_s * c_c) / (t1 * coupler);
+        let t2 = a_c * b_s - a_s * b_c;
+        let c_by_turn = -crank * t2 / (t1 * rocker);
+        let b_by_turn_turn = (b_by_turn * b_by_turn).mul_add(
+            dot([b_c, b_s], [c_c, c_s]),
+            (crank * dot([a_c, a_s], [c_c, c_s]) - rocker * c_by_turn * c_by_turn) / coupler,
+        ) / t1;
+        let t3 = crank * (one - b_by_turn);
+        [rows_at([(2, [b_by_turn_turn]), (3, [-t3 * dot([a_c, a_s], [b_c, b_s])]), (4, [t3 * t2])])]
+    }
+
+    /// The twist of the body, in the child frame, at the displacement rate of each relation, with H as written.
+    /// 2×6. By a product with `relation_displacements`.
+    /// From line 21 `config`, line 26 `basis`, line 28 `H`.
+    fn relation_twists<T: Scalar>(&self, q: &SVector<T, 6>) -> impl AsRef<[[T; 6]]> {
+        let along: SMatrix<T, 6, 3> = {
+            let crank = T::from_f64(self.crank);
+            let [a_c, a_s, b_c, b_s, _, _]: [T; 6] = (*q).into();
+            let zero = T::zero();
+            let one = T::one();
+            from_rows([
+                [zero, zero, zero],
+                [zero, zero, zero],
+                [zero, one, zero],
+                [crank * (a_c * b_s - a_s * b_c), zero, zero],
+                [crank * dot([a_c, a_s], [b_c, b_s]), zero, zero],
+                [zero, zero, zero],
+            ])
+        };
+        let twists: [[T; 6]; 2] = (along * self.relation_displacements(q)).into();
+        twists
     }
 }
 
@@ -483,44 +533,66 @@ impl ::hamel_runtime::joint::Carries<2, 6, 1, 1, 0> for FourBar {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 3 additions, 5 multiplications, 1 division.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 2 additions, 7 multiplications, 1 division.
     /// From line 26 `basis`, line 29 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 1> {
         let ground = T::from_f64(self.ground);
         let crank = T::from_f64(self.crank);
-        let [a_c, a_s, b_c, b_s, _, _]: [T; 6] = (*q).into();
+        let rocker = T::from_f64(self.rocker);
+        let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
         let zero = T::zero();
-        let one = T::one();
-        let t1 = ground * b_s;
-        let t2 = one - t1 / (t1 - crank * (a_c * b_s - a_s * b_c));
-        from_rows([[zero], [zero], [t2], [zero], [-ground * t2], [zero]])
+        let c_by_turn = -crank * (a_c * b_s - a_s * b_c) / (rocker * (b_c * c_s - b_s * c_c));
+        from_rows([[zero], [zero], [c_by_turn], [zero], [-ground * c_by_turn], [zero]])
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 3 additions, 4 multiplications, 1 division.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 2 additions, 6 multiplications, 1 division.
     /// From line 26 `basis`, line 29 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 1> {
-        let ground = T::from_f64(self.ground);
         let crank = T::from_f64(self.crank);
-        let [a_c, a_s, b_c, b_s, _, _]: [T; 6] = (*q).into();
+        let rocker = T::from_f64(self.rocker);
+        let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
         let zero = T::zero();
-        let one = T::one();
-        let t1 = ground * b_s;
-        from_rows([[zero], [zero], [one - t1 / (t1 - crank * (a_c * b_s - a_s * b_c))], [zero], [zero], [zero]])
+        let c_by_turn = -crank * (a_c * b_s - a_s * b_c) / (rocker * (b_c * c_s - b_s * c_c));
+        from_rows([[zero], [zero], [c_by_turn], [zero], [zero], [zero]])
     }
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    /// 1 slice of 6×1. Operations: 4 additions, 11 multiplications (2 of each fused), 2 divisions.
+    /// 1 slice of 6×1. Operations: 7 additions, 19 multiplications (4 of each fused), 4 divisions.
     /// From line 26 `basis`, line 29 `H`.
     fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, 6>) -> [SMatrix<T, 6, 1>; 1] {
-        let ground = T::from_f64(self.ground);
         let crank = T::from_f64(self.crank);
         let coupler = T::from_f64(self.coupler);
         let rocker = T::from_f64(self.rocker);
-        let [a_c, a_s, b_c, b_s, _, c_s]: [T; 6] = (*q).into();
-        let t1 = ground * b_s - crank * (a_c * b_s - a_s * b_c);
-        let t2 = ground / t1;
-        [rows_at([(2, [b_c.mul_add(b_s, crank * rocker * a_s * c_s / (coupler * t1)).mul_add(t2, -b_c) * t2])])]
+        let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
+        let t1 = b_c * c_s - b_s * c_c;
+        let b_by_turn = -crank * (a_c * c_s - a_s * c_c) / (coupler * t1);
+        let c_by_turn = -crank * (a_c * b_s - a_s * b_c) / (rocker * t1);
+        let c_by_turn_turn = (c_by_turn * c_by_turn).mul_add(
+            -dot([b_c, b_s], [c_c, c_s]),
+            dot([crank, coupler * b_by_turn], [dot([a_c, a_s], [b_c, b_s]), b_by_turn]) / rocker,
+        ) / t1;
+        [rows_at([(2, [c_by_turn_turn])])]
+    }
+
+    /// The twist of the body, in the child frame, at the displacement rate of each relation, with H as written.
+    /// 2×6. By a product with `relation_displacements`.
+    /// From line 21 `config`, line 26 `basis`, line 29 `H`.
+    fn relation_twists<T: Scalar>(&self, q: &SVector<T, 6>) -> impl AsRef<[[T; 6]]> {
+        let along: SMatrix<T, 6, 3> = {
+            let zero = T::zero();
+            let one = T::one();
+            from_rows([
+                [zero, zero, zero],
+                [zero, zero, zero],
+                [zero, zero, one],
+                [zero, zero, zero],
+                [zero, zero, zero],
+                [zero, zero, zero],
+            ])
+        };
+        let twists: [[T; 6]; 2] = (along * self.relation_displacements(q)).into();
+        twists
     }
 }
 

@@ -56,7 +56,7 @@ use ::hamel_runtime::registry::JointEntry;
 use ::hamel_runtime::scalar::Scalar;
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Free joint: all six motions of the child relative to the parent.
 #[derive(Clone, Copy, Debug, PartialEq)]

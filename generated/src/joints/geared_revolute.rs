@@ -55,7 +55,7 @@ use ::hamel_runtime::registry::{JointEntry, ParameterError, ParameterInfo};
 use ::hamel_runtime::scalar::Scalar;
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// A revolute joint behind a gear, with the rotor of its motor as a body: both turn about the z axis of their frames.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -46,7 +46,7 @@ use ::hamel_runtime::registry::JointEntry;
 use ::hamel_runtime::scalar::Scalar;
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Gimbal: three turns about z, y′ and x″ by yaw, pitch and roll; the Euler angles that a ball joint does without.
 #[derive(Clone, Copy, Debug, PartialEq)]

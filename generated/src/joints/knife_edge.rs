@@ -50,7 +50,7 @@ use ::hamel_runtime::registry::JointEntry;
 use ::hamel_runtime::scalar::Scalar;
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Knife edge (ice skate) in Euclidean coordinates: turns about its contact point and glides along its x axis (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -55,7 +55,7 @@ use ::hamel_runtime::registry::{JointEntry, ParameterError, ParameterInfo};
 use ::hamel_runtime::scalar::Scalar;
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Sleigh with an offset edge (Chaplygin): a planar body whose knife edge is ahead of its origin (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]

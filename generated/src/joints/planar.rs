@@ -53,7 +53,7 @@ use ::hamel_runtime::registry::JointEntry;
 use ::hamel_runtime::scalar::Scalar;
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Planar joint: the child turns about z and slides in the plane z = 0 of the parent (Example 2).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -51,7 +51,7 @@ use ::hamel_runtime::registry::JointEntry;
 use ::hamel_runtime::scalar::Scalar;
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Pointing joint: the child's z axis points anywhere, and the child does not spin about it (nonholonomic).
 #[derive(Clone, Copy, Debug, PartialEq)]

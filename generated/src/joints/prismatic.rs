@@ -43,7 +43,7 @@ use ::hamel_runtime::registry::JointEntry;
 use ::hamel_runtime::scalar::Scalar;
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Prismatic joint: one displacement along the common z axis of both frames.
 #[derive(Clone, Copy, Debug, PartialEq)]

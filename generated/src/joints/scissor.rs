@@ -76,7 +76,7 @@ use ::hamel_runtime::registry::{JointEntry, ParameterInfo};
 use ::hamel_runtime::scalar::Scalar;
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// One stage of a scissor lift: two links that cross in their middles, and the platform that they lift.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,10 +10,10 @@
 //! - Zero, and not written: ∂X^c/∂ϕ, ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, the residual, c, the dual of c.
 //!
 //! ```text
-//!     ⎡cos q  −sin q  0               0⎤
-//! H = ⎢sin q   cos q  0               0⎥
-//!     ⎢    0       0  1  lead q / (2 π)⎥
-//!     ⎣    0       0  0               1⎦
+//!     ⎡cos q  −sin q  0       0⎤
+//! H = ⎢sin q   cos q  0       0⎥
+//!     ⎢    0       0  1  travel⎥
+//!     ⎣    0       0  0       1⎦
 //!
 //!     ⎡           0⎤
 //!     ⎢           0⎥
@@ -21,6 +21,8 @@
 //!     ⎢           0⎥
 //!     ⎢           0⎥
 //!     ⎣lead / (2 π)⎦
+//!
+//! travel = lead q / (2 π)
 //!
 //! S(Q, ϕ) = I
 //! ```
@@ -35,6 +37,7 @@
 //! - `velocity_map_inverse`: S₀ S₀⁻¹ = I (normal form)
 //! - `twist_map_child`: X^c = Ad_{H⁻¹} X (normal form)
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) (certificate)
+//! - `port_rates`: P S₀ = ∂y/∂ϕ, y the values of the ports (normal form)
 //! - `fibres`: one pose has one Q (certificate)
 
 use ::hamel_runtime::joint::{Joint, Patterns, Structures, VelocityFrame, from_rows};
@@ -43,7 +46,7 @@ use ::hamel_runtime::registry::{JointEntry, ParameterError, ParameterInfo};
 use ::hamel_runtime::scalar::Scalar;
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Screw joint: a turn about the common z axis of both frames that advances along it, right-handed for a positive lead.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,6 +72,13 @@ impl Joint<1, 1, 1, 0> for Screw {
     const PATTERNS: Patterns<1, 1> = Patterns::new(["xx0", "xx0", "001"], "00x", ["0", "0", "1", "0", "0", "x"]);
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const PORTS: &'static [::hamel_runtime::joint::Port] = &[
+        ::hamel_runtime::joint::Port {
+            name: "travel",
+            unit: "m",
+            wraps: false,
+        },
+    ];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
         [("lead", self.lead)].into_iter()
@@ -83,7 +93,7 @@ impl Joint<1, 1, 1, 0> for Screw {
 
     /// H(Q): child coordinates to parent coordinates.
     /// Rotation matrix and translation in m. Operations: 2 multiplications, 1 division, 1 function call.
-    /// From line 11 `H = rot_z(q) * trans_z(lead * q / (2 * pi));`.
+    /// From line 11 `let`, line 12 `H`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 1>) -> Pose<T> {
         let lead = T::from_f64(self.lead);
         let q = q[0];
@@ -91,16 +101,17 @@ impl Joint<1, 1, 1, 0> for Screw {
         let half = T::from_f64(0.5);
         let one = T::one();
         let pi = T::from_f64(::core::f64::consts::PI);
+        let travel = half * lead * q / pi;
         let (sin_q, cos_q) = q.sin_cos();
         Pose {
             rotation: from_rows([[cos_q, -sin_q, zero], [sin_q, cos_q, zero], [zero, zero, one]]),
-            translation: SVector::from([zero, zero, half * lead * q / pi]),
+            translation: SVector::from([zero, zero, travel]),
         }
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
     /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: 1 multiplication, 1 division.
-    /// From line 11 `H = rot_z(q) * trans_z(lead * q / (2 * pi));`.
+    /// From line 11 `let`, line 12 `H`.
     fn twist_map<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let lead = T::from_f64(self.lead);
         let zero = T::zero();
@@ -112,7 +123,7 @@ impl Joint<1, 1, 1, 0> for Screw {
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
     /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: 1 multiplication, 1 division.
-    /// From line 11 `H = rot_z(q) * trans_z(lead * q / (2 * pi));`.
+    /// From line 11 `let`, line 12 `H`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let lead = T::from_f64(self.lead);
         let zero = T::zero();
@@ -122,9 +133,30 @@ impl Joint<1, 1, 1, 0> for Screw {
         from_rows([[zero], [zero], [one], [zero], [zero], [half * lead / pi]])
     }
 
+    /// P(Q), a row for each port: v to its rate.
+    /// 1×1. Independent of Q. Operations: 1 multiplication, 1 division.
+    /// From line 11 `let`, line 12 `H`, line 14 `port`.
+    fn port_map<T: Scalar>(&self, _q: &SVector<T, 1>) -> impl AsRef<[[T; 1]]> {
+        let lead = T::from_f64(self.lead);
+        let half = T::from_f64(0.5);
+        let pi = T::from_f64(::core::f64::consts::PI);
+        [[half * lead / pi]]
+    }
+
+    /// The values of the ports; an angle that does not count turns is between −π and π.
+    /// 1 scalars, m. Operations: 2 multiplications, 1 division.
+    /// From line 11 `let`, line 14 `port`.
+    fn port_values<T: Scalar>(&self, q: &SVector<T, 1>) -> impl AsRef<[T]> {
+        let lead = T::from_f64(self.lead);
+        let q = q[0];
+        let half = T::from_f64(0.5);
+        let pi = T::from_f64(::core::f64::consts::PI);
+        [half * lead * q / pi]
+    }
+
     /// Q̇(Q, v) (31): the rates of the stored scalars.
     /// 1-vector. Independent of Q. Operations: none.
-    /// From line 11 `H = rot_z(q) * trans_z(lead * q / (2 * pi));`.
+    /// From line 11 `let`, line 12 `H`.
     fn configuration_rate<T: Scalar>(&self, _q: &SVector<T, 1>, v: &SVector<T, 1>) -> SVector<T, 1> {
         *v
     }
@@ -176,6 +208,9 @@ joint screw(
     lead: m,
 ) {
     config  q: R1;                      // rad
-    H     = rot_z(q) * trans_z(lead * q / (2 * pi));
+    let travel = lead * q / (2 * pi);
+    H     = rot_z(q) * trans_z(travel);
+    /// Way along the axis.
+    port travel: m = travel;
 }
 "#;

@@ -29,24 +29,28 @@
 //!         ⎢  0     0  1          0⎥
 //!         ⎣  0     0  0          1⎦
 //!
-//!         ⎡                       0⎤
-//!         ⎢                       0⎥
-//! X_rod = ⎢  −crank a.c / (rod b.c)⎥
-//!         ⎢−crank a.s s / (rod b.c)⎥
-//!         ⎢ crank a.c s / (rod b.c)⎥
-//!         ⎣                       0⎦
+//!         ⎡                        0⎤
+//!         ⎢                        0⎥
+//! X_rod = ⎢                b_by_turn⎥
+//!         ⎢crank a.s (b_by_turn − 1)⎥
+//!         ⎢crank a.c (1 − b_by_turn)⎥
+//!         ⎣                        0⎦
+//!
+//! b_by_turn = −crank a.c / (rod b.c)
 //!
 //!            ⎡1  0  0       s⎤
 //! H_slider = ⎢0  1  0  offset⎥
 //!            ⎢0  0  1       0⎥
 //!            ⎣0  0  0       1⎦
 //!
-//!            ⎡                   0⎤
-//!            ⎢                   0⎥
-//! X_slider = ⎢                   0⎥
-//!            ⎢b.s s / b.c − offset⎥
-//!            ⎢                   0⎥
-//!            ⎣                   0⎦
+//!            ⎡        0⎤
+//!            ⎢        0⎥
+//! X_slider = ⎢        0⎥
+//!            ⎢s_by_turn⎥
+//!            ⎢        0⎥
+//!            ⎣        0⎦
+//!
+//! s_by_turn = crank (a.c b.s / b.c − a.s)
 //!
 //! S(Q, ϕ) = I
 //! ```
@@ -54,8 +58,8 @@
 //! Proved when this file was generated:
 //! - `pose_in_se3`: H(Q) ∈ SE(3), of each body (normal form)
 //! - `retract_at_zero`: Φ(Q, 0) = Q (normal form)
-//! - `defined`: H, Φ, X, S, A and S̄ are smooth at Q where b.c ≠ 0 (certificate)
 //! - `retract_by_relations`: the relations cut out a manifold of k dimensions, and determine all other directions: det(∂φ N) = 0 nowhere where b.c ≠ 0 (certificate)
+//! - `tangent_basis_solves`: B and λ solve ∂φ B = 0 and ∂φ N λ = −D²φ(B, B)/2, and ∂B/∂ϕ is their derivative (normal form)
 //! - `retract_on_manifold`: Φ(Q, ϕ) stays on the manifold (normal form)
 //! - `twist_map_matches_pose`: X S₀ = J₀ (normal form)
 //! - `velocity_map_first_order`: X S = J to first order in ϕ, (23) (normal form)
@@ -74,7 +78,7 @@ use ::hamel_runtime::registry::{JointEntry, ParameterInfo};
 use ::hamel_runtime::scalar::{Scalar, dot};
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// An offset slider-crank, with crank, rod and slider as bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,16 +102,16 @@ impl SliderCrank {
 
 impl SliderCrank {
     /// B(Q): v to the displacement rate Q⁻¹Q̇.
-    /// 3×1. Operations: 2 additions, 5 multiplications (2 of each fused), 1 division.
+    /// 3×1. Operations: 1 addition, 4 multiplications, 2 divisions.
     /// From line 17 `config`, line 24 `basis`.
     pub fn tangent_basis<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 3, 1> {
         let crank = T::from_f64(self.crank);
         let rod = T::from_f64(self.rod);
-        let offset = T::from_f64(self.offset);
-        let (a_c, a_s, b_c) = (q[0], q[1], q[2]);
+        let [a_c, a_s, b_c, b_s, _]: [T; 5] = (*q).into();
         let one = T::one();
-        let t1 = a_c / (rod * b_c);
-        from_rows([[one], [-crank * t1], [crank * crank.mul_add(-a_s, offset).mul_add(t1, -a_s)]])
+        let b_by_turn = -crank * a_c / (rod * b_c);
+        let s_by_turn = crank * (a_c * b_s / b_c - a_s);
+        from_rows([[one], [b_by_turn], [s_by_turn]])
     }
 
     /// N(Q): displacements along which Φ comes back onto the manifold of the relations.
@@ -181,6 +185,14 @@ impl SliderCrank {
         let one = T::one();
         from_rows([[-crank * a_s, -rod * b_s, -one], [crank * a_c, rod * b_c, zero]])
     }
+
+    /// N (∂φ N)⁻¹: for each relation the displacement rate along N at which it changes at unit rate, and no other.
+    /// 3×2. By a solve with ∂φ N.
+    /// From line 17 `config`, line 24 `basis`.
+    pub fn relation_displacements<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 3, 2> {
+        let normal = self.normal_basis(q);
+        normal * ::hamel_runtime::finite::inverse(&(self.relation_gradient(q) * normal))
+    }
 }
 
 impl Joint<5, 1, 1, 0> for SliderCrank {
@@ -207,6 +219,7 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
         visit(::hamel_runtime::erased::erase(::hamel_runtime::joint::Member::<_, 1>(*self)));
         visit(::hamel_runtime::erased::erase(::hamel_runtime::joint::Member::<_, 2>(*self)));
     }
+    const RELATIONS: &'static [&'static str] = &["-s + rod*b.c + crank*a.c = 0", "rod*b.s + crank*a.s - offset = 0"];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
         [("crank", self.crank), ("rod", self.rod), ("offset", self.offset)].into_iter()
@@ -257,17 +270,17 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
     }
 
     /// Q̇(Q, v) (31): the rates of the stored scalars.
-    /// 5-vector. Operations: 1 addition, 7 multiplications, 3 divisions.
+    /// 5-vector. Operations: 1 addition, 10 multiplications, 2 divisions.
     /// From line 24 `basis`, line 25 `H`.
     fn configuration_rate<T: Scalar>(&self, q: &SVector<T, 5>, v: &SVector<T, 1>) -> SVector<T, 5> {
         let crank = T::from_f64(self.crank);
         let rod = T::from_f64(self.rod);
-        let offset = T::from_f64(self.offset);
-        let [a_c, a_s, b_c, b_s, s]: [T; 5] = (*q).into();
+        let [a_c, a_s, b_c, b_s, _]: [T; 5] = (*q).into();
         let v_turn = v[0];
-        let t1 = a_c * v_turn;
-        let t2 = crank * t1;
-        SVector::from([-a_s * v_turn, t1, t2 * b_s / (rod * b_c), -t2 / rod, v_turn * (b_s * s / b_c - offset)])
+        let b_by_turn = -crank * a_c / (rod * b_c);
+        let s_by_turn = crank * (a_c * b_s / b_c - a_s);
+        let t1 = v_turn * b_by_turn;
+        SVector::from([-a_s * v_turn, a_c * v_turn, -b_s * t1, b_c * t1, v_turn * s_by_turn])
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
@@ -287,6 +300,26 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
     /// From line 17 `config`, line 24 `basis`.
     fn local<T: Scalar>(&self, q: &SVector<T, 5>, target: &SVector<T, 5>) -> SVector<T, 1> {
         ::hamel_runtime::finite::along_tangent(&self.displacement(q, target), (self.tangent_basis(q), self.normal_basis(q)))
+    }
+
+    /// The twist of the body, in the child frame, at the displacement rate of each relation, with H as written.
+    /// 2×6. By a product with `relation_displacements`.
+    /// From line 17 `config`, line 24 `basis`, line 25 `H`.
+    fn relation_twists<T: Scalar>(&self, q: &SVector<T, 5>) -> impl AsRef<[[T; 6]]> {
+        let along: SMatrix<T, 6, 3> = {
+            let zero = T::zero();
+            let one = T::one();
+            from_rows([
+                [zero, zero, zero],
+                [zero, zero, zero],
+                [one, zero, zero],
+                [zero, zero, zero],
+                [zero, zero, zero],
+                [zero, zero, zero],
+            ])
+        };
+        let twists: [[T; 6]; 2] = (along * self.relation_displacements(q)).into();
+        twists
     }
 
     /// The configuration on the manifold that is nearest to `q`.
@@ -366,16 +399,18 @@ impl ::hamel_runtime::joint::Carries<1, 5, 1, 1, 0> for SliderCrank {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 5 multiplications, 1 division.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 5 multiplications, 1 division.
     /// From line 24 `basis`, line 26 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 6, 1> {
         let crank = T::from_f64(self.crank);
         let rod = T::from_f64(self.rod);
-        let [a_c, a_s, b_c, _, s]: [T; 5] = (*q).into();
+        let (a_c, a_s, b_c) = (q[0], q[1], q[2]);
         let zero = T::zero();
-        let t1 = crank / (rod * b_c);
-        let t2 = t1 * a_c;
-        from_rows([[zero], [zero], [-t2], [-t1 * a_s * s], [t2 * s], [zero]])
+        let one = T::one();
+        let t1 = crank * a_c;
+        let b_by_turn = -t1 / (rod * b_c);
+        let t2 = one - b_by_turn;
+        from_rows([[zero], [zero], [b_by_turn], [-crank * a_s * t2], [t1 * t2], [zero]])
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
@@ -386,10 +421,11 @@ impl ::hamel_runtime::joint::Carries<1, 5, 1, 1, 0> for SliderCrank {
         let rod = T::from_f64(self.rod);
         let [a_c, a_s, b_c, b_s, _]: [T; 5] = (*q).into();
         let zero = T::zero();
+        let b_by_turn = -crank * a_c / (rod * b_c);
         from_rows([
             [zero],
             [zero],
-            [-crank * a_c / (rod * b_c)],
+            [b_by_turn],
             [crank * (a_c * b_s - a_s * b_c)],
             [crank * dot([a_c, a_s], [b_c, b_s])],
             [zero],
@@ -397,22 +433,41 @@ impl ::hamel_runtime::joint::Carries<1, 5, 1, 1, 0> for SliderCrank {
     }
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    /// 1 slice of 6×1. Operations: 3 additions, 11 multiplications (2 of each fused), 4 divisions.
+    /// 1 slice of 6×1. Operations: 4 additions, 13 multiplications (2 of each fused), 3 divisions.
     /// From line 24 `basis`, line 26 `H`.
     fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, 5>) -> [SMatrix<T, 6, 1>; 1] {
         let crank = T::from_f64(self.crank);
         let rod = T::from_f64(self.rod);
-        let [a_c, a_s, b_c, b_s, s]: [T; 5] = (*q).into();
-        let t1 = rod * b_c;
-        let t2 = b_s / b_c;
-        let t3 = crank * s / rod;
-        [
-            rows_at([
-                (2, [crank * (a_s + crank * a_c * a_c * b_s / (t1 * b_c)) / t1]),
-                (3, [-a_s.mul_add(t2, a_c) * t3]),
-                (4, [a_c.mul_add(t2, -a_s) * t3]),
-            ]),
-        ]
+        let [a_c, a_s, b_c, b_s, _]: [T; 5] = (*q).into();
+        let one = T::one();
+        let b_by_turn = -crank * a_c / (rod * b_c);
+        let b_by_turn_turn = (b_s * b_by_turn).mul_add(b_by_turn, crank * a_s / rod) / b_c;
+        let t1 = one - b_by_turn;
+        let t2 = a_c * t1;
+        let t3 = a_s * t1;
+        [rows_at([(2, [b_by_turn_turn]), (3, [-crank * dot([t2, t3], [b_c, b_s])]), (4, [crank * (t2 * b_s - t3 * b_c)])])]
+    }
+
+    /// The twist of the body, in the child frame, at the displacement rate of each relation, with H as written.
+    /// 2×6. By a product with `relation_displacements`.
+    /// From line 17 `config`, line 24 `basis`, line 26 `H`.
+    fn relation_twists<T: Scalar>(&self, q: &SVector<T, 5>) -> impl AsRef<[[T; 6]]> {
+        let along: SMatrix<T, 6, 3> = {
+            let crank = T::from_f64(self.crank);
+            let [a_c, a_s, b_c, b_s, _]: [T; 5] = (*q).into();
+            let zero = T::zero();
+            let one = T::one();
+            from_rows([
+                [zero, zero, zero],
+                [zero, zero, zero],
+                [zero, one, zero],
+                [crank * (a_c * b_s - a_s * b_c), zero, zero],
+                [crank * dot([a_c, a_s], [b_c, b_s]), zero, zero],
+                [zero, zero, zero],
+            ])
+        };
+        let twists: [[T; 6]; 2] = (along * self.relation_displacements(q)).into();
+        twists
     }
 }
 
@@ -451,34 +506,57 @@ impl ::hamel_runtime::joint::Carries<2, 5, 1, 1, 0> for SliderCrank {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 1 multiplication, 1 division.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 2 multiplications, 1 division.
     /// From line 24 `basis`, line 27 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 6, 1> {
-        let offset = T::from_f64(self.offset);
-        let (b_c, b_s, s) = (q[2], q[3], q[4]);
+        let crank = T::from_f64(self.crank);
+        let [a_c, a_s, b_c, b_s, _]: [T; 5] = (*q).into();
         let zero = T::zero();
-        from_rows([[zero], [zero], [zero], [b_s * s / b_c - offset], [zero], [zero]])
+        let s_by_turn = crank * (a_c * b_s / b_c - a_s);
+        from_rows([[zero], [zero], [zero], [s_by_turn], [zero], [zero]])
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 1 multiplication, 1 division.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 2 multiplications, 1 division.
     /// From line 24 `basis`, line 27 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 6, 1> {
-        let offset = T::from_f64(self.offset);
-        let (b_c, b_s, s) = (q[2], q[3], q[4]);
+        let crank = T::from_f64(self.crank);
+        let [a_c, a_s, b_c, b_s, _]: [T; 5] = (*q).into();
         let zero = T::zero();
-        from_rows([[zero], [zero], [zero], [b_s * s / b_c - offset], [zero], [zero]])
+        let s_by_turn = crank * (a_c * b_s / b_c - a_s);
+        from_rows([[zero], [zero], [zero], [s_by_turn], [zero], [zero]])
     }
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    /// 1 slice of 6×1. Operations: 2 additions, 7 multiplications (1 of each fused), 2 divisions.
+    /// 1 slice of 6×1. Operations: 2 additions, 6 multiplications (1 of each fused), 3 divisions.
     /// From line 24 `basis`, line 27 `H`.
     fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, 5>) -> [SMatrix<T, 6, 1>; 1] {
         let crank = T::from_f64(self.crank);
         let rod = T::from_f64(self.rod);
         let [a_c, a_s, b_c, b_s, _]: [T; 5] = (*q).into();
-        let one = T::one();
-        [rows_at([(3, [-crank * a_c.mul_add(one + crank * a_c / (rod * b_c * b_c * b_c), a_s * b_s / b_c)])])]
+        let b_by_turn = -crank * a_c / (rod * b_c);
+        let s_by_turn_turn = -crank.mul_add(a_c + a_s * b_s / b_c, rod * b_by_turn * b_by_turn / b_c);
+        [rows_at([(3, [s_by_turn_turn])])]
+    }
+
+    /// The twist of the body, in the child frame, at the displacement rate of each relation, with H as written.
+    /// 2×6. By a product with `relation_displacements`.
+    /// From line 17 `config`, line 24 `basis`, line 27 `H`.
+    fn relation_twists<T: Scalar>(&self, q: &SVector<T, 5>) -> impl AsRef<[[T; 6]]> {
+        let along: SMatrix<T, 6, 3> = {
+            let zero = T::zero();
+            let one = T::one();
+            from_rows([
+                [zero, zero, zero],
+                [zero, zero, zero],
+                [zero, zero, zero],
+                [zero, zero, one],
+                [zero, zero, zero],
+                [zero, zero, zero],
+            ])
+        };
+        let twists: [[T; 6]; 2] = (along * self.relation_displacements(q)).into();
+        twists
     }
 }
 

@@ -48,7 +48,7 @@ use ::hamel_runtime::registry::{JointEntry, ParameterInfo};
 use ::hamel_runtime::scalar::Scalar;
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Joint on a torus: the child's origin moves on a torus about the parent's z axis, its z axis along the outward normal.
 #[derive(Clone, Copy, Debug, PartialEq)]

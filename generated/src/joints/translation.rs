@@ -43,7 +43,7 @@ use ::hamel_runtime::registry::JointEntry;
 use ::hamel_runtime::scalar::Scalar;
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Translation joint: the child slides in all three directions and does not turn.
 #[derive(Clone, Copy, Debug, PartialEq)]

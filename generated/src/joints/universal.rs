@@ -47,7 +47,7 @@ use ::hamel_runtime::registry::JointEntry;
 use ::hamel_runtime::scalar::Scalar;
 use ::hamel_runtime::spatial::Pose;
 
-const _: () = ::hamel_runtime::joint::assert_kernel_interface(6);
+const _: () = ::hamel_runtime::joint::assert_kernel_interface(7);
 
 /// Universal joint (Cardan, Hooke): a turn about the parent's x axis, then one about the child's y axis.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -51,6 +51,18 @@ pub enum ElementError {
         /// What jumps.
         what: &'static str,
     },
+    /// The joint has no port of that index.
+    #[error("{element}: joint `{joint}` has no port of index {index}, it has {count}")]
+    UnknownPort {
+        /// The element.
+        element: String,
+        /// The joint.
+        joint: String,
+        /// The index given.
+        index: usize,
+        /// How many ports it has.
+        count: usize,
+    },
     /// The joint is of a kind that the element is not defined for.
     #[error("{element}: joint `{joint}` {reason}")]
     Joint {

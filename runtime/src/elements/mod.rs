@@ -10,6 +10,7 @@ mod drive;
 mod error;
 mod joint;
 mod limit;
+mod port;
 mod slopes;
 mod spring;
 mod timed;
@@ -22,6 +23,7 @@ pub use drive::Drive;
 pub use error::ElementError;
 pub use joint::{JointDamper, JointEffort};
 pub use limit::{JointLimit, is_one_coordinate};
+pub use port::{PortEffort, PortSpring};
 pub use slopes::JointSlopes;
 pub(crate) use slopes::Target;
 pub use slopes::{End, PointForce, Slope, Slopes};
@@ -59,6 +61,11 @@ pub trait Element: Debug + Send + Sync {
     /// How what it exerts changes with the state, for derivatives of the dynamics; `None` where it does not say, and derivatives of a mechanism
     /// with it are refused.
     fn slope(&self) -> Option<&dyn Slope> {
+        None
+    }
+
+    /// What it exerts at a port of a joint, if that is all that it does: the body whose joint it is, the port, and the effort, N·m or N.
+    fn port_effort(&self, _view: &View<'_>) -> Option<(usize, usize, f64)> {
         None
     }
 

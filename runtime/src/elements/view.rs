@@ -135,6 +135,19 @@ impl<'a> View<'a> {
         velocity
     }
 
+    /// The value and the rate of a port of the joint under a body, rad or m and per second; NaN of one that is not there.
+    pub fn port(&self, body: usize, port: usize) -> (f64, f64) {
+        let Some((joint, q)) = self.joint_and_configuration(body) else {
+            return (f64::NAN, f64::NAN);
+        };
+        let (mut velocity, mut row) = ([0.0; MOST_FREEDOMS], [0.0; MOST_FREEDOMS]);
+        let velocity = self.joint_velocity(body, &mut velocity);
+        let row = &mut row[..velocity.len()];
+        joint.port_row(q, port, row);
+        let rate = row.iter().zip(velocity).map(|(p, v)| p * v).sum();
+        (joint.port_value(q, port), rate)
+    }
+
     /// The body frame in the world; the world itself for `None`.
     pub fn pose(&self, body: Option<usize>) -> Pose<f64> {
         let Some(body) = body else {
@@ -203,6 +216,18 @@ impl<'a> Action<'a> {
             }
             None => self.efforts.fill(f64::NAN),
         }
+    }
+
+    /// Adds `Pᵀ f` for an effort f at a port of the joint under a body, N·m or N.
+    pub fn add_port_effort(&mut self, view: &View<'_>, body: usize, port: usize, effort: f64) {
+        let Some((joint, q)) = view.joint_and_configuration(body) else {
+            return self.efforts.fill(f64::NAN);
+        };
+        let mut row = [0.0; MOST_FREEDOMS];
+        let row = &mut row[..joint.layout().freedoms];
+        joint.port_row(q, port, row);
+        row.iter_mut().for_each(|entry| *entry *= effort);
+        self.add_effort(view, body, row);
     }
 
     /// Adds a force (world axes, N) on a body, at the end of an `arm` of [`View::arm`].

@@ -3,7 +3,7 @@
 use super::kernels::{kernels, passed_on};
 use super::slices::{Store, array, array_mut, nan, vector};
 use super::{AnyJoint, FiniteMapError, Layout, Shared, Sizes};
-use crate::joint::{Entry, Joint, Products, Structures, VelocityFrame};
+use crate::joint::{Entry, Joint, Port, PortLaw, Products, Structures, VelocityFrame};
 use crate::scalar::{Extended, Native, Scalar};
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
 use crate::steps::{
@@ -75,6 +75,14 @@ where
 
     fn coordinates(&self) -> &'static [&'static str] {
         const { &J::COORDINATES }
+    }
+
+    fn relations(&self) -> &'static [&'static str] {
+        J::RELATIONS
+    }
+
+    fn ports(&self) -> &'static [Port] {
+        J::PORTS
     }
 
     fn freedoms(&self) -> &'static [&'static str] {
@@ -151,6 +159,43 @@ where
             true => efforts.store(out),
             false => self.0.speed_basis(&vector(q)).tr_mul(&efforts).store(out),
         }
+    }
+
+    fn port_value(&self, q: &[T], port: usize) -> T {
+        let q = vector(q);
+        let values = self.0.port_values(&q);
+        values.as_ref().get(port).copied().unwrap_or(nan())
+    }
+
+    fn port_row(&self, q: &[T], port: usize, out: &mut [T]) {
+        let q = vector(q);
+        let map = self.0.port_map(&q);
+        let row = map.as_ref().get(port).copied().unwrap_or([nan(); K]);
+        SVector::from(row).store(out);
+    }
+
+    fn relation_twist(&self, q: &[T], relation: usize) -> Vector6<T> {
+        let q = vector(q);
+        let twists = self.0.relation_twists(&q);
+        let own = twists.as_ref().get(relation).copied();
+        own.map_or(Vector6::repeat(nan()), Vector6::from)
+    }
+
+    fn relation_port(&self, q: &[T], relation: usize, port: usize) -> T {
+        let q = vector(q);
+        let rates = self.0.relation_ports(&q);
+        let mut of_relation = rates.as_ref().chunks_exact(J::PORTS.len().max(1));
+        let own = of_relation.nth(relation);
+        own.and_then(|own| own.get(port).copied()).unwrap_or(nan())
+    }
+
+    fn port_slope(&self, q: &[T], velocity: &[T], port: usize, law: &PortLaw<T>, out: &mut [T])
+    where
+        T: Native,
+    {
+        Steps(&self.0)
+            .port_slope((&vector(q), &vector(velocity)), port, law)
+            .store(out);
     }
 
     fn differentiate(&self, base: &[T], phi: &[T], speeds: &[T], out: &mut ChartDerivatives<'_, T>)

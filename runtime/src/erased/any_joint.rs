@@ -4,7 +4,7 @@ use super::kernels::{declared, kernels};
 use super::{FiniteMapError, Layout, Shared};
 #[cfg(doc)]
 use crate::joint::{Joint, Products};
-use crate::joint::{Structures, VelocityFrame};
+use crate::joint::{Port, PortLaw, Structures, VelocityFrame};
 use crate::scalar::{Extended, Native, Scalar};
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
 use crate::steps::{ChartDerivatives, Motion, Pivot, PivotFailure, Placement, Variation};
@@ -41,6 +41,10 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     fn velocity_frame(&self) -> VelocityFrame;
     /// Names of the stored scalars of Q.
     fn coordinates(&self) -> &'static [&'static str];
+    /// The declared relations, [`Joint::RELATIONS`].
+    fn relations(&self) -> &'static [&'static str];
+    /// The ports, [`Joint::PORTS`].
+    fn ports(&self) -> &'static [Port];
     /// Names of the degrees of freedom.
     fn freedoms(&self) -> &'static [&'static str];
     /// Names of the speeds.
@@ -76,6 +80,18 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     fn local_rate(&self, q: &[T], phi: &[T], moved: &[T], speeds: &[T], out: &mut [T]);
     /// `S̄ᵀ τ` into `out` (S), for efforts τ (K).
     fn reduce_efforts(&self, q: &[T], efforts: &[T], out: &mut [T]);
+    /// The value of one port, [`Joint::port_values`]; NaN of a port that is not there.
+    fn port_value(&self, q: &[T], port: usize) -> T;
+    /// The row of P of one port into `out` (K); NaN of a port that is not there.
+    fn port_row(&self, q: &[T], port: usize, out: &mut [T]);
+    /// What one relation forbids the body, [`Joint::relation_twists`]; NaN of a relation that is not there.
+    fn relation_twist(&self, q: &[T], relation: usize) -> Vector6<T>;
+    /// What one relation forbids a port, [`Joint::relation_ports`]; NaN of one that is not there.
+    fn relation_port(&self, q: &[T], relation: usize, port: usize) -> T;
+    /// `∂τ/∂ϕ` into `out` (K×K) at fixed v of what acts on one port by a law.
+    fn port_slope(&self, q: &[T], velocity: &[T], port: usize, law: &PortLaw<T>, out: &mut [T])
+    where
+        T: Native;
     /// The derivatives of Q′ and ϕ̇ at base point `base`, ϕ = `phi` and v̄ = `speeds`.
     fn differentiate(&self, base: &[T], phi: &[T], speeds: &[T], out: &mut ChartDerivatives<'_, T>)
     where

@@ -5,7 +5,7 @@
 //! [`Carries`] adds the others, and [`Member`] makes a [`Joint`] of each of them. Condition (23) on the rank of X holds for all X_b below
 //! one another, not for each.
 
-use super::{Joint, Patterns, Structures, VelocityFrame};
+use super::{Joint, Patterns, Port, Structures, VelocityFrame};
 use crate::erased::Shared;
 use crate::scalar::Scalar;
 use crate::spatial::Pose;
@@ -30,6 +30,17 @@ pub trait Carries<const B: usize, const N: usize, const K: usize, const S: usize
 
     /// `Ad_{H⁻¹} X` of the body: v to the same twist, in its child frame.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K>;
+
+    /// [`Joint::relation_twists`] of the body.
+    fn relation_twists<T: Scalar>(&self, _q: &SVector<T, N>) -> impl AsRef<[[T; 6]]> {
+        const {
+            assert!(
+                Self::RELATIONS.is_empty(),
+                "the joint has relations: the body must implement relation_twists"
+            )
+        };
+        [[T::zero(); 6]; 0]
+    }
 
     /// ∂X^c/∂ϕ of the body; slice k is the derivative along ϕ_k.
     fn twist_map_child_gradient<T: Scalar>(&self, _q: &SVector<T, N>) -> [SMatrix<T, 6, K>; K] {
@@ -63,6 +74,8 @@ where
     const PATTERNS: Patterns<K, S> = <J as Carries<B, N, K, S, C>>::PATTERNS;
     const UNIDENTIFIABLE: &'static [[f64; 10]] = <J as Carries<B, N, K, S, C>>::UNIDENTIFIABLE;
     const SINGULARITIES: &'static [&'static str] = J::SINGULARITIES;
+    const RELATIONS: &'static [&'static str] = J::RELATIONS;
+    const PORTS: &'static [Port] = J::PORTS;
     const BODIES: &'static [&'static str] = J::BODIES;
     const BODY: usize = B;
 
@@ -124,6 +137,22 @@ where
 
     fn speed_basis_gradient<T: Scalar>(&self, q: &SVector<T, N>) -> [SMatrix<T, K, S>; K] {
         self.0.speed_basis_gradient(q)
+    }
+
+    fn port_map<T: Scalar>(&self, q: &SVector<T, N>) -> impl AsRef<[[T; K]]> {
+        self.0.port_map(q)
+    }
+
+    fn port_values<T: Scalar>(&self, q: &SVector<T, N>) -> impl AsRef<[T]> {
+        self.0.port_values(q)
+    }
+
+    fn relation_twists<T: Scalar>(&self, q: &SVector<T, N>) -> impl AsRef<[[T; 6]]> {
+        Carries::relation_twists(&self.0, q)
+    }
+
+    fn relation_ports<T: Scalar>(&self, q: &SVector<T, N>) -> impl AsRef<[T]> {
+        self.0.relation_ports(q)
     }
 
     fn configuration_rate<T: Scalar>(&self, q: &SVector<T, N>, v: &SVector<T, K>) -> SVector<T, N> {

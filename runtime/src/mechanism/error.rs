@@ -382,6 +382,40 @@ pub enum StateError {
         /// Largest remainder allowed.
         limit: f64,
     },
+    /// The joint has no port of that index.
+    #[error("joint `{joint}` has no port of index {index}: it has {count}")]
+    UnknownPort {
+        /// The joint.
+        joint: String,
+        /// The index given.
+        index: usize,
+        /// How many ports it has.
+        count: usize,
+    },
+    /// Rates at ports that do not determine all speeds.
+    #[error(
+        "joint `{joint}`: the rates of these ports determine {rank} of its speeds here, it has {speeds}"
+    )]
+    PortRatesLeaveOpen {
+        /// The joint.
+        joint: String,
+        /// Rank of their rows of P S̄.
+        rank: usize,
+        /// How many speeds the joint has.
+        speeds: usize,
+    },
+    /// Rates at ports that the joint cannot have together.
+    #[error(
+        "joint `{joint}`: its ports cannot have these rates together: {residual:e} of them remains, more than {limit:e}"
+    )]
+    PortRatesContradict {
+        /// The joint.
+        joint: String,
+        /// Norm of the part that no speeds produce.
+        residual: f64,
+        /// Largest remainder allowed.
+        limit: f64,
+    },
     /// A velocity that the nonholonomic constraint forbids.
     #[error(
         "joint `{joint}`: its velocity violates the nonholonomic constraint, |Aᵀv| = {value:e}, more than {limit:e}"

@@ -12,6 +12,7 @@ mod frame;
 mod initial;
 mod inverse_kinematics;
 mod kinematics;
+mod port;
 mod rigid;
 mod rotor;
 mod several;

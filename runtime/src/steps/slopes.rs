@@ -5,7 +5,7 @@
 use super::Steps;
 use super::directions::{along, columns, constant, derivative};
 use crate::erased::nan;
-use crate::joint::Joint;
+use crate::joint::{Joint, PortLaw};
 use crate::scalar::{Dual, Scalar};
 use crate::spatial::vee;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
@@ -68,6 +68,39 @@ where
             by_local,
             columns(|k| derivative(&force(&q, &(velocity + along(k))))),
         ]
+    }
+
+    /// `∂τ/∂ϕ` at `q` and fixed v of `τ = Pᵀ f`, where f acts on one port by a law; NaN of a port that is not there.
+    pub(crate) fn port_slope<T: Scalar>(
+        &self,
+        (q, velocity): (&SVector<T, N>, &SVector<T, K>),
+        port: usize,
+        law: &PortLaw<T>,
+    ) -> SMatrix<T, K, K> {
+        let PortLaw {
+            effort,
+            stiffness,
+            damping,
+        } = law;
+        let [effort, stiffness, damping] = [effort, stiffness, damping].map(|n| Dual::constant(*n));
+        let here = self.port(&constant(q), port);
+        let velocity = constant(velocity);
+        let here_rate = here.1.dot(&velocity);
+        self.slope(q, |q| {
+            let (value, row) = self.port(q, port);
+            let spring = stiffness * (value - here.0);
+            let damper = damping * (row.dot(&velocity) - here_rate);
+            row * (effort - spring - damper)
+        })
+    }
+
+    /// The value of a port, and its row of P as a column.
+    fn port<T: Scalar>(&self, q: &SVector<T, N>, port: usize) -> (T, SVector<T, K>) {
+        let (values, map) = (self.0.port_values(q), self.0.port_map(q));
+        let value = values.as_ref().get(port).copied();
+        let row = map.as_ref().get(port).copied();
+        let row = row.map_or(SVector::repeat(nan()), SVector::from);
+        (value.unwrap_or(nan()), row)
     }
 
     /// `∂f/∂ϕ` of a function of the configuration.

@@ -1,469 +1,212 @@
-//! Joints with several loops and degrees of freedom, against Newton's and Euler's equations of their bodies with multipliers.
-//!
-//! The oracle knows where the bodies are and which points and axes hold them together; it shares nothing with the joints' kernels.
+//! The multipliers of a crank-rocker's relations are the force in the pin of coupler and rocker: against Newton and Euler for each link, with the
+//! forces of all pins as unknowns.
 
-use hamel::dynamics::{Dynamics, Recursive, Reference};
-use hamel::erased::AnyJoint;
-use hamel::integrate::{Form, Method, Options, State, integrate, no_inputs, no_observer};
-use hamel::mechanism::{BodySpec, Mechanism};
-use hamel::registry::JointRegistry;
-use hamel::spatial::{MassProperties, Pose};
-use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use hamel::dynamics::{Dynamics, Recursive};
+use hamel::mechanism::Mechanism;
+use hamel_scene::Scene;
+use nalgebra::{SMatrix, SVector, Vector2};
 use std::sync::Arc;
 
-/// Where a body's frame is, in the frame of the joint.
-type Placed = (Matrix3<f64>, Vector3<f64>);
+const GRAVITY: f64 = 9.81;
+/// Ground, crank, coupler, rocker, m.
+const LINKS: [f64; 4] = [0.9, 0.3, 1.0, 0.8];
+/// Masses of the moving links, kg.
+const MASSES: [f64; 3] = [1.3, 0.8, 1.1];
+/// Centres of mass in their frames, m.
+const CENTRES: [[f64; 2]; 3] = [[0.05, -0.02], [0.46, 0.1], [0.4, 0.03]];
+/// About the centres of mass and the z axis, kg·m².
+const INERTIAS: [f64; 3] = [0.055, 0.101, 0.064];
 
-/// What holds bodies together. A body is a number; none is the ground, whose frame is that of the joint.
-#[derive(Clone, Copy)]
-enum Held {
-    /// A point of each, in its frame, is the same point.
-    Pin(Option<usize>, [f64; 3], Option<usize>, [f64; 3]),
-    /// Two points keep their distance.
-    Rod(Option<usize>, [f64; 3], Option<usize>, [f64; 3]),
-    /// An axis of each, in its frame, is at right angles to the other.
-    Square(Option<usize>, [f64; 3], Option<usize>, [f64; 3]),
-}
-
-/// One of the linkages, with its oracle.
-struct Linkage {
-    joint: &'static str,
-    parameters: &'static [f64],
-    /// Poses of the bodies at Q.
-    placed: fn(&[f64]) -> Vec<Placed>,
-    held: Vec<Held>,
-    /// Body and axis of its frame about which it turns at the rate that is a speed.
-    driven: Vec<(usize, [f64; 3])>,
-    speeds: &'static [f64],
-    /// It pulls towards home, about which the linkage then swings.
-    gravity: [f64; 3],
-}
-
-/// Mass, centre of mass in the body's frame, inertia about it in its axes.
-fn inertia(body: usize) -> (f64, Vector3<f64>, Matrix3<f64>) {
-    let n = body as f64;
-    let centre = Vector3::new(0.05 + 0.01 * n, 0.02, -0.01 * n);
-    let moments = Matrix3::new(
-        2e-3, 1e-4, 0.0, 1e-4, 3e-3, -2e-4, 0.0, -2e-4, 2.5e-3 + 1e-4 * n,
-    );
-    (0.4 + 0.3 * n, centre, moments)
-}
-
-fn about(axis: usize, [c, s]: [f64; 2]) -> Matrix3<f64> {
-    match axis {
-        0 => Matrix3::new(1.0, 0.0, 0.0, 0.0, c, -s, 0.0, s, c),
-        1 => Matrix3::new(c, 0.0, s, 0.0, 1.0, 0.0, -s, 0.0, c),
-        _ => Matrix3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0),
-    }
-}
-
-fn pair(q: &[f64], n: usize) -> [f64; 2] {
-    [q[2 * n], q[2 * n + 1]]
-}
-
-/// A pin that a body turns about: the points at both ends of a piece of the axis.
-fn hinge(
-    first: Option<usize>,
-    at: [f64; 3],
-    second: Option<usize>,
-    other: [f64; 3],
-    axis: usize,
-) -> [Held; 2] {
-    let beside = |mut point: [f64; 3]| {
-        point[axis] += 0.3;
-        point
+fn scene(ports: &str) -> Arc<Mechanism> {
+    let link = |name: &str, n: usize| {
+        let ([x, y], mass, i) = (CENTRES[n], MASSES[n], INERTIAS[n]);
+        format!(
+            "bodies.{name} = {{ mass = {mass}, com = [{x}, {y}, 0.0], inertia = [[{i}, 0.0, 0.0], [0.0, {i}, 0.0], [0.0, 0.0, {i}]] }}\n"
+        )
     };
-    [
-        Held::Pin(first, at, second, other),
-        Held::Pin(first, beside(at), second, beside(other)),
-    ]
-}
-
-const FIVE_BAR: [f64; 5] = [0.3, 0.2, 0.3, 0.22, 0.28];
-
-fn five_bar() -> Linkage {
-    let [ground, left, left_rod, right, right_rod] = FIVE_BAR;
-    let zero = [0.0; 3];
-    let held = [
-        hinge(None, zero, Some(0), zero, 2),
-        hinge(Some(0), [left, 0.0, 0.0], Some(1), zero, 2),
-        hinge(None, [ground, 0.0, 0.0], Some(2), zero, 2),
-        hinge(Some(2), [right, 0.0, 0.0], Some(3), zero, 2),
-        hinge(
-            Some(1),
-            [left_rod, 0.0, 0.0],
-            Some(3),
-            [right_rod, 0.0, 0.0],
-            2,
-        ),
-    ];
-    Linkage {
-        joint: "five_bar",
-        parameters: &FIVE_BAR,
-        placed: |q| {
-            let turned: Vec<Matrix3<f64>> = (0..4).map(|n| about(2, pair(q, n))).collect();
-            let [ground, left, _, right, _] = FIVE_BAR;
-            let pin = Vector3::new(ground, 0.0, 0.0);
-            let at = [
-                Vector3::zeros(),
-                turned[0] * Vector3::x() * left,
-                pin,
-                pin + turned[2] * Vector3::x() * right,
-            ];
-            turned.into_iter().zip(at).collect()
-        },
-        held: held.concat(),
-        driven: vec![(0, [0.0, 0.0, 1.0]), (2, [0.0, 0.0, 1.0])],
-        speeds: &[0.6, -0.4],
-        gravity: [0.2, 5.0, 0.5],
-    }
-}
-
-const ANKLE: [f64; 5] = [0.25, 0.04, 0.05, 0.06, 0.26];
-
-fn parallel_ankle() -> Linkage {
-    let [height, half, crank, heel, _] = ANKLE;
-    let zero = [0.0; 3];
-    let mut held = vec![];
-    for (n, side) in [(0, half), (1, -half)] {
-        held.extend(hinge(None, [0.0, side, height], Some(n), zero, 1));
-        held.push(Held::Rod(
-            Some(n),
-            [-crank, 0.0, 0.0],
-            Some(2),
-            [-heel, side, 0.0],
-        ));
-    }
-    held.push(Held::Pin(None, zero, Some(2), zero));
-    held.push(Held::Square(
-        None,
-        [0.0, 1.0, 0.0],
-        Some(2),
-        [1.0, 0.0, 0.0],
-    ));
-    Linkage {
-        joint: "parallel_ankle",
-        parameters: &ANKLE,
-        placed: |q| {
-            let [height, half, ..] = ANKLE;
-            let foot = about(1, pair(q, 2)) * about(0, pair(q, 3));
-            vec![
-                (about(1, pair(q, 0)), Vector3::new(0.0, half, height)),
-                (about(1, pair(q, 1)), Vector3::new(0.0, -half, height)),
-                (foot, Vector3::zeros()),
-            ]
-        },
-        held,
-        driven: vec![(0, [0.0, 1.0, 0.0]), (1, [0.0, 1.0, 0.0])],
-        speeds: &[0.5, -0.3],
-        gravity: [6.0, 0.5, 0.4],
-    }
-}
-
-const WISHBONE: [f64; 6] = [0.35, 0.28, 0.25, 0.26, 0.34, 0.1];
-
-fn wishbone() -> Linkage {
-    let [lower, upper, height, upright, _, behind] = WISHBONE;
-    let zero = [0.0; 3];
-    let arms = [
-        hinge(None, zero, Some(0), zero, 0),
-        hinge(None, [0.0, 0.0, height], Some(1), zero, 0),
-    ];
-    let mut held = arms.concat();
-    held.push(Held::Pin(Some(0), [0.0, lower, 0.0], Some(2), zero));
-    held.push(Held::Pin(
-        Some(1),
-        [0.0, upper, 0.0],
-        Some(2),
-        [0.0, 0.0, upright],
-    ));
-    let end = [-behind, 0.0, 0.0];
-    held.push(Held::Rod(None, end, Some(2), end));
-    Linkage {
-        joint: "wishbone",
-        parameters: &WISHBONE,
-        placed: |q| {
-            let [lower, _, height, ..] = WISHBONE;
-            let arm = about(0, pair(q, 0));
-            let entries: Vec<f64> = q[4..13].to_vec();
-            vec![
-                (arm, Vector3::zeros()),
-                (about(0, pair(q, 1)), Vector3::new(0.0, 0.0, height)),
-                (
-                    Matrix3::from_row_slice(&entries),
-                    arm * Vector3::y() * lower,
-                ),
-            ]
-        },
-        held,
-        driven: vec![(0, [1.0, 0.0, 0.0])],
-        speeds: &[0.4],
-        gravity: [0.3, 6.0, 0.5],
-    }
-}
-
-fn mechanism(linkage: &Linkage) -> Arc<Mechanism> {
-    let mut registry = JointRegistry::new();
+    let [ground, crank, coupler, rocker] = LINKS;
+    let text = format!(
+        "hamel = 1\nname = \"linkage\"\ngravity = [0.0, -{GRAVITY}, 0.0]\n[[body]]\nname = \"linkage\"\nparent = \"world\"\n\
+         joint = {{ type = \"crank_rocker\", ground = {ground}, crank = {crank}, coupler = {coupler}, rocker = {rocker} }}\n{}{}{}{ports}",
+        link("crank", 0),
+        link("coupler", 1),
+        link("rocker", 2),
+    );
+    let mut registry = hamel_joints::registry();
     registry
         .extend(hamel_downstream::joints::ENTRIES.iter().copied())
         .expect("distinct names");
-    let entry = registry.get(linkage.joint).expect("registered");
-    let first = (entry.build)(linkage.parameters).expect("it closes");
-    let names = AnyJoint::<f64>::bodies(&*first);
-    let joints = std::iter::once(first.clone()).chain(first.more());
-    let bodies = names.iter().zip(joints).enumerate();
-    let bodies = bodies.map(|(n, (name, joint))| {
-        let (mass, centre, moments) = inertia(n);
-        BodySpec {
-            name: (*name).into(),
-            joint_name: "linkage".into(),
-            parent: None,
-            joint,
-            placement: Pose::identity(),
-            child_placement: Pose::identity(),
-            mass: MassProperties::new(mass, centre, moments).expect("valid"),
-        }
-    });
-    let mechanism = Mechanism::new(Vector3::from(linkage.gravity), bodies.collect());
-    Arc::new(mechanism.unwrap_or_else(|errors| panic!("{errors:?}")))
+    let described = Scene::from_toml(&text, "linkage.toml");
+    let described = described.unwrap_or_else(|errors| panic!("{errors}"));
+    let scene = described.build(&registry);
+    scene.unwrap_or_else(|errors| panic!("{errors}")).mechanism
 }
 
-/// The bodies at one configuration.
-struct Bodies {
-    placed: Vec<Placed>,
+/// What acts on the links beside gravity.
+#[derive(Clone, Copy, Default)]
+struct Acting {
+    /// On the crank by the ground, N·m.
+    crank: f64,
+    /// On the rocker by the ground, N·m.
+    rocker: f64,
+    /// On the rocker by the coupler, N·m.
+    knee: f64,
+    /// On the end of the rocker, upwards, N.
+    lift: f64,
 }
 
-/// Six numbers of a body each: angular velocity, and velocity of the centre of mass.
-fn six(motion: &DVector<f64>, body: usize) -> (Vector3<f64>, Vector3<f64>) {
-    let part = |n: usize| Vector3::new(motion[n], motion[n + 1], motion[n + 2]);
-    (part(6 * body), part(6 * body + 3))
+fn turned([c, s]: [f64; 2], [x, y]: [f64; 2]) -> Vector2<f64> {
+    Vector2::new(c * x - s * y, s * x + c * y)
 }
 
-impl Bodies {
-    fn centre(&self, body: usize) -> Vector3<f64> {
-        let (rotation, at) = self.placed[body];
-        at + rotation * inertia(body).1
-    }
+fn perpendicular(v: Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(-v.y, v.x)
+}
 
-    fn point(&self, body: Option<usize>, point: [f64; 3]) -> Vector3<f64> {
-        let point = Vector3::from(point);
-        body.map_or(point, |n| self.placed[n].1 + self.placed[n].0 * point)
+/// The crank's angular acceleration, and the force of the rocker on the end of the coupler.
+///
+/// Unknowns: for each link the acceleration of its centre of mass and its angular acceleration; the forces of the pins on the link that comes first in: crank
+/// and ground, coupler and crank, coupler and rocker, rocker and ground.
+fn with_pins(q: &[f64], rate: f64, acting: Acting) -> (f64, Vector2<f64>) {
+    let [_, crank, coupler, rocker] = LINKS;
+    let directions = [[q[0], q[1]], [q[2], q[3]], [q[4], q[5]]];
+    let [a, b, c] = directions;
+    let ends = [
+        turned(a, [crank, 0.0]),
+        turned(b, [coupler, 0.0]),
+        turned(c, [rocker, 0.0]),
+    ];
+    // The loop's velocity: what the crank's end moves, coupler and rocker make up.
+    let loops =
+        SMatrix::<f64, 2, 2>::from_columns(&[perpendicular(ends[1]), -perpendicular(ends[2])]);
+    let others = loops.lu().solve(&(-perpendicular(ends[0]) * rate));
+    let others = others.expect("away from dead points");
+    let rates = [rate, others.x, others.y];
+    let centres: [Vector2<f64>; 3] = std::array::from_fn(|n| turned(directions[n], CENTRES[n]));
+    let mut matrix = SMatrix::<f64, 17, 17>::zeros();
+    let mut right = SVector::<f64, 17>::zeros();
+    let moments = [acting.crank, -acting.knee, acting.rocker + acting.knee];
+    for link in 0..3 {
+        let row = 3 * link;
+        matrix[(row, row)] = MASSES[link];
+        matrix[(row + 1, row + 1)] = MASSES[link];
+        matrix[(row + 2, row + 2)] = INERTIAS[link];
+        right[row + 1] = -MASSES[link] * GRAVITY;
+        right[row + 2] = moments[link];
     }
-
-    fn axis(&self, body: Option<usize>, axis: [f64; 3]) -> Vector3<f64> {
-        let axis = Vector3::from(axis);
-        body.map_or(axis, |n| self.placed[n].0 * axis)
-    }
-
-    /// Rows by which the velocity of a point in a direction follows from all motions.
-    fn row(&self, body: Option<usize>, at: Vector3<f64>, along: Vector3<f64>) -> DVector<f64> {
-        let mut row = DVector::zeros(6 * self.placed.len());
-        if let Some(n) = body {
-            let lever = at - self.centre(n);
-            row.fixed_rows_mut::<3>(6 * n)
-                .copy_from(&lever.cross(&along));
-            row.fixed_rows_mut::<3>(6 * n + 3).copy_from(&along);
-        }
-        row
-    }
-
-    fn turn(&self, body: Option<usize>, along: Vector3<f64>) -> DVector<f64> {
-        let mut row = DVector::zeros(6 * self.placed.len());
-        if let Some(n) = body {
-            row.fixed_rows_mut::<3>(6 * n).copy_from(&along);
-        }
-        row
-    }
-
-    fn speed(&self, body: Option<usize>, at: Vector3<f64>, motion: &DVector<f64>) -> Vector3<f64> {
-        body.map_or(Vector3::zeros(), |n| {
-            let (omega, v) = six(motion, n);
-            v + omega.cross(&(at - self.centre(n)))
-        })
-    }
-
-    /// The acceleration of a point without those of its body.
-    fn inward(&self, body: Option<usize>, at: Vector3<f64>, motion: &DVector<f64>) -> Vector3<f64> {
-        body.map_or(Vector3::zeros(), |n| {
-            let (omega, _) = six(motion, n);
-            omega.cross(&omega.cross(&(at - self.centre(n))))
-        })
-    }
-
-    /// Rows G with `G motion = 0`, and `−Ġ motion` at a motion: what `G acceleration` is.
-    fn rows(&self, held: &[Held], motion: &DVector<f64>) -> (Vec<DVector<f64>>, Vec<f64>) {
-        let (mut rows, mut right) = (vec![], vec![]);
-        for held in held {
-            match *held {
-                Held::Pin(a, of_a, b, of_b) => {
-                    let (at, other) = (self.point(a, of_a), self.point(b, of_b));
-                    let bias = self.inward(b, other, motion) - self.inward(a, at, motion);
-                    for n in 0..3 {
-                        let along = Vector3::ith(n, 1.0);
-                        rows.push(self.row(a, at, along) - self.row(b, other, along));
-                        right.push(bias[n]);
-                    }
-                }
-                Held::Rod(a, of_a, b, of_b) => {
-                    let (at, other) = (self.point(a, of_a), self.point(b, of_b));
-                    let along = at - other;
-                    let bias = self.inward(b, other, motion) - self.inward(a, at, motion);
-                    let apart = self.speed(a, at, motion) - self.speed(b, other, motion);
-                    rows.push(self.row(a, at, along) - self.row(b, other, along));
-                    right.push(along.dot(&bias) - apart.norm_squared());
-                }
-                Held::Square(a, of_a, b, of_b) => {
-                    let (u, w) = (self.axis(a, of_a), self.axis(b, of_b));
-                    let omega = |n: Option<usize>| n.map_or(Vector3::zeros(), |n| six(motion, n).0);
-                    let (of_u, of_w) = (omega(a), omega(b));
-                    let [turned, tipped] = [of_u.cross(&u), of_w.cross(&w)];
-                    let bias = of_u.cross(&turned).dot(&w)
-                        + 2.0 * turned.dot(&tipped)
-                        + of_w.cross(&tipped).dot(&u);
-                    rows.push(self.turn(a, u.cross(&w)) - self.turn(b, u.cross(&w)));
-                    right.push(-bias);
-                }
+    let lever = ends[2] - centres[2];
+    right[7] += acting.lift;
+    right[8] += lever.x * acting.lift;
+    // Each pin with the points of its links in their frames, from their origins, and the sign of its force there.
+    let none = Vector2::zeros();
+    let pins: [&[(usize, Vector2<f64>, f64)]; 4] = [
+        &[(0, none, 1.0)],
+        &[(1, none, 1.0), (0, ends[0], -1.0)],
+        &[(1, ends[1], 1.0), (2, ends[2], -1.0)],
+        &[(2, none, 1.0)],
+    ];
+    for (pin, links) in pins.into_iter().enumerate() {
+        let first = 9 + 2 * pin;
+        for &(link, point, sign) in links {
+            let lever = point - centres[link];
+            let arm = perpendicular(lever);
+            for axis in 0..2 {
+                let (row, force) = (3 * link + axis, first + axis);
+                // Force and moment on the link, and the acceleration of the point.
+                matrix[(row, force)] -= sign;
+                matrix[(3 * link + 2, force)] -= sign * arm[axis];
+                matrix[(force, row)] += sign;
+                matrix[(force, 3 * link + 2)] += sign * arm[axis];
+                right[force] += sign * rates[link] * rates[link] * lever[axis];
             }
         }
-        (rows, right)
+    }
+    let solved = matrix.lu().solve(&right).expect("regular");
+    (solved[2], Vector2::new(solved[13], solved[14]))
+}
+
+/// All port efforts at once, and an effort on v, at many states; `efforts` act, as `acting` says of the links.
+fn assert_forces(ports: &str, effort: f64, acting: Acting) {
+    let mechanism = scene(ports);
+    let mut dynamics = Recursive::new(Arc::clone(&mechanism));
+    let home = mechanism.home();
+    let joint = mechanism.bodies()[0].joint();
+    let mut q = home.clone();
+    for n in 0..20 {
+        let before = q.clone();
+        joint.retract(&before, &[0.3], &mut q);
+        let rate = 0.7 * f64::from(n - 10);
+        let mut found = [0.0];
+        dynamics
+            .forward_dynamics(&q, &[rate], &[effort], &mut found)
+            .expect("regular");
+        let (expected, force) = with_pins(&q, rate, acting);
+        // Solves with matrices of a condition below 1000, of numbers up to a hundred.
+        let apart = (found[0] - expected).abs();
+        assert!(
+            apart < 1e-11 * expected.abs().max(1.0),
+            "{} and {expected}",
+            found[0]
+        );
+        let mut needed = [0.0];
+        dynamics
+            .inverse_dynamics(&q, &[rate], &found, &mut needed)
+            .expect("sizes fit");
+        let multipliers = dynamics
+            .relation_forces(0, &q, &[rate])
+            .expect("they are determined");
+        let apart = (Vector2::new(multipliers[0], multipliers[1]) - force).norm();
+        assert!(
+            apart < 1e-11 * force.norm().max(1.0),
+            "{multipliers:?} and {force} at {q:?}"
+        );
     }
 }
 
-/// Singular values below this part of the largest one are those of pins that hold the same direction twice.
-const REDUNDANT: f64 = 1e-9;
-
-fn solved(rows: &[DVector<f64>], right: &[f64]) -> DVector<f64> {
-    let rows: Vec<_> = rows.iter().map(DVector::transpose).collect();
-    let matrix = DMatrix::from_rows(&rows);
-    let svd = matrix.svd(true, true);
-    let cut = REDUNDANT * svd.singular_values.max();
-    let right = DVector::from_column_slice(right);
-    svd.solve(&right, cut).expect("both sides are there")
+#[test]
+fn multipliers_are_the_force_in_the_pin() {
+    assert_forces("", 0.0, Acting::default());
 }
 
-/// The accelerations of the speeds, by Newton's and Euler's equations with multipliers.
-fn with_multipliers(linkage: &Linkage, q: &[f64], speeds: &[f64]) -> Vec<f64> {
-    let bodies = Bodies {
-        placed: (linkage.placed)(q),
+#[test]
+fn efforts_on_v_act_on_the_crank() {
+    let acting = Acting {
+        crank: 4.0,
+        ..Acting::default()
     };
-    let size = 6 * bodies.placed.len();
-    let driven: Vec<DVector<f64>> = linkage
-        .driven
-        .iter()
-        .map(|&(n, axis)| bodies.turn(Some(n), bodies.axis(Some(n), axis)))
-        .collect();
-    let (rows, _) = bodies.rows(&linkage.held, &DVector::zeros(size));
-    let zeros = vec![0.0; rows.len()];
-    let motion = solved(
-        &[rows.clone(), driven.clone()].concat(),
-        &[&zeros[..], speeds].concat(),
+    assert_forces("", 4.0, acting);
+}
+
+/// The same motion by another motor takes another force in the pin.
+#[test]
+fn efforts_at_ports_act_on_their_links() {
+    let acting = Acting {
+        crank: -1.5,
+        rocker: 3.0,
+        knee: 2.0,
+        lift: -7.0,
+    };
+    let ports = "ports.crank.effort = -1.5\nports.rocker.effort = 3.0\nports.knee.effort = 2.0\nports.lift.effort = -7.0\n";
+    assert_forces(ports, 0.0, acting);
+}
+
+/// A joint without relations has no multipliers, and a body that is not there is an error.
+#[test]
+fn only_relations_have_multipliers() {
+    let mechanism = scene("");
+    let mut dynamics = Recursive::new(Arc::clone(&mechanism));
+    let q = mechanism.home();
+    let mut needed = [0.0];
+    dynamics
+        .inverse_dynamics(&q, &[0.0], &[0.0], &mut needed)
+        .expect("sizes fit");
+    assert_eq!(
+        dynamics
+            .relation_forces(2, &q, &[0.0])
+            .expect("it is there")
+            .len(),
+        2
     );
-    let (rows, bias) = bodies.rows(&linkage.held, &motion);
-    // [M Gᵀ; G 0] [acceleration; −λ] = [forces; bias].
-    let whole = size + rows.len();
-    let mut equations = vec![DVector::zeros(whole); whole];
-    let mut right = vec![0.0; whole];
-    for n in 0..bodies.placed.len() {
-        let (mass, _, moments) = inertia(n);
-        let rotation = bodies.placed[n].0;
-        let moments = rotation * moments * rotation.transpose();
-        let (omega, _) = six(&motion, n);
-        let torque = -omega.cross(&(moments * omega));
-        for i in 0..3 {
-            for j in 0..3 {
-                equations[6 * n + i][6 * n + j] = moments[(i, j)];
-            }
-            equations[6 * n + 3 + i][6 * n + 3 + i] = mass;
-            right[6 * n + i] = torque[i];
-            right[6 * n + 3 + i] = mass * linkage.gravity[i];
-        }
-    }
-    for (r, row) in rows.iter().enumerate() {
-        for i in 0..size {
-            equations[i][size + r] = row[i];
-            equations[size + r][i] = row[i];
-        }
-        right[size + r] = bias[r];
-    }
-    let found = solved(&equations, &right);
-    let acceleration = DVector::from_fn(size, |i, _| found[i]);
-    // An axis about which a body turns against the ground does not move.
-    driven.iter().map(|row| row.dot(&acceleration)).collect()
-}
-
-fn run(linkage: &Linkage, mechanism: &Arc<Mechanism>, form: Form, t_end: f64) -> Vec<State> {
-    let initial = State {
-        time: 0.0,
-        configuration: mechanism.home(),
-        speeds: linkage.speeds.to_vec(),
-    };
-    let count = (4.0 * t_end) as u32;
-    let options = Options {
-        form,
-        method: Method::dormand_prince(1e-11),
-        t_end,
-        samples: (1..count).map(|n| f64::from(n) / 4.0).collect(),
-    };
-    let mut dynamics = Recursive::new(Arc::clone(mechanism));
-    let (inputs, observer) = (&mut no_inputs, &mut no_observer);
-    let solution = integrate(&mut dynamics, &initial, &options, inputs, observer);
-    let solution = solution.unwrap_or_else(|error| panic!("{}: {error}", linkage.joint));
-    let mut states = vec![initial];
-    states.extend(solution.samples.iter().cloned());
-    states.push(solution.state);
-    states
-}
-
-#[test]
-fn accelerations_are_those_with_multipliers() {
-    for linkage in [five_bar(), parallel_ankle(), wishbone()] {
-        let mechanism = mechanism(&linkage);
-        let mut recursive = Recursive::new(Arc::clone(&mechanism));
-        let mut reference = Reference::new(Arc::clone(&mechanism));
-        for state in run(&linkage, &mechanism, Form::Lagrangian, 2.0) {
-            let expected = with_multipliers(&linkage, &state.configuration, &state.speeds);
-            let all: [&mut dyn Dynamics; 2] = [&mut recursive, &mut reference];
-            for dynamics in all {
-                let efforts = vec![0.0; expected.len()];
-                let mut found = efforts.clone();
-                dynamics
-                    .forward_dynamics(&state.configuration, &state.speeds, &efforts, &mut found)
-                    .expect("regular");
-                for (found, expected) in found.iter().zip(&expected) {
-                    // Singular values of the oracle's matrix lie between 1e-4 and 10, its entries and those of the right side have errors
-                    // of an ulp: 1e5 of these.
-                    let allowed = 3e-11 * expected.abs().max(1.0);
-                    let apart = (found - expected).abs();
-                    assert!(
-                        apart < allowed,
-                        "{}: {found} and {expected} at {state:?}",
-                        linkage.joint
-                    );
-                }
-            }
-        }
-    }
-}
-
-#[test]
-fn energy_and_relations_are_kept() {
-    for linkage in [five_bar(), parallel_ankle(), wishbone()] {
-        let mechanism = mechanism(&linkage);
-        let energy = |state: &State| {
-            let kinematics = mechanism.kinematics(&state.configuration, &state.speeds);
-            kinematics.expect("sizes fit").energy()
-        };
-        for form in [Form::Lagrangian, Form::Hamiltonian] {
-            let states = run(&linkage, &mechanism, form, 10.0);
-            let first = energy(&states[0]);
-            for state in &states {
-                let own = mechanism.bodies()[0].joint();
-                let residual = own.residual(&state.configuration);
-                assert!(residual < 4e-15, "{}, {form:?}: {residual:e}", linkage.joint);
-                // The tolerance of 1e-11 a step, some thousands of them.
-                let drift = (energy(state) - first).abs();
-                assert!(drift < 1e-7, "{}, {form:?}: {drift:e}", linkage.joint);
-            }
-        }
-    }
+    assert!(dynamics.relation_forces(3, &q, &[0.0]).is_err());
+    assert!(dynamics.relation_forces(0, &q[1..], &[0.0]).is_err());
 }

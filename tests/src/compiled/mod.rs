@@ -8,8 +8,8 @@ pub use point::{Evaluate, Point};
 use crate::random;
 use chacha20::ChaCha8Rng;
 use hamel::elements::{
-    BodySpring, BodyWrench, Drive, Element, JointSpring, PointConstraint, RotationSpring,
-    WrenchAxes,
+    BodySpring, BodyWrench, Drive, Element, JointSpring, PointConstraint, PortEffort, PortSpring,
+    RotationSpring, WrenchAxes,
 };
 use hamel::mechanism::{Body as TreeBody, Mechanism};
 use hamel::nalgebra::{DMatrix, Vector3};
@@ -141,6 +141,7 @@ pub fn elements(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Elements {
             });
         }
     }
+    at_ports(random, mechanism, &mut elements);
     let count = mechanism.bodies().len();
     for body in (0..count).step_by(3) {
         let other = random.random_range(0..=count);
@@ -167,6 +168,30 @@ pub fn elements(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Elements {
         });
     }
     elements
+}
+
+/// An effort and a spring with a damper at each port.
+pub fn at_ports(random: &mut ChaCha8Rng, mechanism: &Mechanism, elements: &mut Elements) {
+    for (body, owner) in mechanism.joints() {
+        for (port, named) in owner.joint().ports().iter().enumerate() {
+            let mut number = || random.random_range(-1.0..1.0);
+            let name = format!("{} of {body}", named.name);
+            elements.port_efforts.push(PortEffort {
+                name: name.clone(),
+                body,
+                port,
+                effort: number().into(),
+            });
+            elements.port_springs.push(PortSpring {
+                name,
+                body,
+                port,
+                stiffness: 2.0 + number(),
+                damping: 1.0 + number(),
+                rest: number(),
+            });
+        }
+    }
 }
 
 /// Whether the local coordinates of a joint have a closed form: springs in others are not compiled.
@@ -200,6 +225,12 @@ pub fn equipped(mechanism: &Mechanism, elements: &Elements) -> Arc<Mechanism> {
     }
     for wrench in &elements.wrenches {
         all.push(Arc::new(wrench.clone()));
+    }
+    for effort in &elements.port_efforts {
+        all.push(Arc::new(effort.clone()));
+    }
+    for spring in &elements.port_springs {
+        all.push(Arc::new(spring.clone()));
     }
     let equipped = mechanism.clone().with_elements(all);
     Arc::new(equipped.unwrap_or_else(|errors| panic!("{errors:?}")))

@@ -50,6 +50,28 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
             &slopes(&self.along(&rate)),
         );
         self.hamel_laws(v, p, &gradient, &inverse);
+        self.port_laws(&s);
+    }
+
+    /// The rates of ports are those of their values: P S₀ = ∂y/∂ϕ.
+    fn port_laws(&self, s: &SMatrix<f64, K, K>) {
+        let map = self.joint.port_map(&self.q);
+        let here = self.joint.port_values(&self.q);
+        let sizes = [map.as_ref().len(), here.as_ref().len()];
+        assert_eq!(sizes, [J::PORTS.len(); 2], "{}: ports", J::NAME);
+        for k in 0..K {
+            let moved = self.along(&unit(k));
+            let values = self.joint.port_values(&moved);
+            for (row, value) in map.as_ref().iter().zip(values.as_ref()) {
+                let found = SVector::from(*row).dot(&s.column(k));
+                close(
+                    "P S₀ = ∂y/∂ϕ",
+                    J::NAME,
+                    &SVector::from([found]),
+                    &SVector::from([value.derivative()]),
+                );
+            }
+        }
     }
 
     /// ∂J/∂ϕ_l at ϕ = 0, by nested dual numbers on H(Φ(Q, ϕ)).

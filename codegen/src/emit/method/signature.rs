@@ -81,6 +81,10 @@ pub enum Output {
     Slices(usize, usize),
     /// A scalar.
     Scalar,
+    /// A row for each port.
+    Rows(usize, usize),
+    /// A scalar for each port.
+    List(usize),
 }
 
 /// Name, arguments and result of a method.
@@ -100,7 +104,7 @@ impl Signature {
         use Argument::{
             Configuration, Displacement, Local, Momentum, Rate, Speeds, Target, Velocity, Wrench,
         };
-        use Output::{Matrix, Pose, Scalar, Slices, Vector};
+        use Output::{List, Matrix, Pose, Rows, Scalar, Slices, Vector};
         let (n, k, s, c) = (
             shape.configuration,
             shape.freedoms,
@@ -126,6 +130,8 @@ impl Signature {
             KernelKind::Constraint => ("constraint", q(), Matrix(k, c)),
             KernelKind::SpeedBasis => ("speed_basis", q(), Matrix(k, s)),
             KernelKind::SpeedBasisGradient => ("speed_basis_gradient", q(), Slices(k, s)),
+            KernelKind::PortMap => ("port_map", q(), Rows(shape.ports, k)),
+            KernelKind::PortValues => ("port_values", q(), List(shape.ports)),
             KernelKind::ConfigurationRate => (
                 "configuration_rate",
                 vec![Configuration, Velocity],
@@ -154,6 +160,9 @@ impl Signature {
             KernelKind::Residual => ("residual", q(), Scalar),
             KernelKind::Relations => ("relations", q(), Vector(relations)),
             KernelKind::RelationGradient => ("relation_gradient", q(), Matrix(g - k, g)),
+            KernelKind::RelationDisplacements => ("relation_displacements", q(), Matrix(g, g - k)),
+            KernelKind::RelationTwists => ("relation_twists", q(), Rows(g - k, 6)),
+            KernelKind::RelationPorts => ("relation_ports", q(), List(shape.ports * (g - k))),
             KernelKind::Singularity => ("singularity", q(), Scalar),
             KernelKind::BiasAcceleration => {
                 ("bias_acceleration", vec![Configuration, Speeds], Vector(6))
@@ -192,6 +201,10 @@ pub fn meaning(kind: KernelKind) -> &'static str {
         KernelKind::Constraint => "A(Q) with Aᵀ v = 0 (Definition 2).",
         KernelKind::SpeedBasis => "S̄(Q): speeds v̄ to v (Definition 2, (15)).",
         KernelKind::SpeedBasisGradient => "∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.",
+        KernelKind::PortMap => "P(Q), a row for each port: v to its rate.",
+        KernelKind::PortValues => {
+            "The values of the ports; an angle that does not count turns is between −π and π."
+        }
         KernelKind::ConfigurationRate => "Q̇(Q, v) (31): the rates of the stored scalars.",
         KernelKind::Retract => {
             "Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration."
@@ -219,6 +232,15 @@ pub fn meaning(kind: KernelKind) -> &'static str {
         KernelKind::Relations => "The relations of the manifold: 0 on it.",
         KernelKind::RelationGradient => {
             "∂φ(Q): the displacement rate Q⁻¹Q̇ to the rates of the relations that the spec declares."
+        }
+        KernelKind::RelationDisplacements => {
+            "N (∂φ N)⁻¹: for each relation the displacement rate along N at which it changes at unit rate, and no other."
+        }
+        KernelKind::RelationTwists => {
+            "The twist of the body, in the child frame, at the displacement rate of each relation, with H as written."
+        }
+        KernelKind::RelationPorts => {
+            "The rates of the ports at the displacement rate of each relation: those of the first relation, then of the next."
         }
         KernelKind::Singularity => {
             "Least absolute value of the functions whose zeros the joint must stay away from."

@@ -126,6 +126,7 @@ pub fn context(report: &Report, medium: Medium) -> Context {
 fn tables(context: &mut Context, report: &Report, medium: Medium) {
     context.insert("parameters", &medium.table(parameters(report)));
     context.insert("freedoms", &medium.table(freedoms(report)));
+    context.insert("ports", &medium.table(ports(report)));
     context.insert("formulas", &formulas(report, medium));
     context.insert("singularities", &singularities(report, medium));
     context.insert("claims", &medium.table(claims(report)));
@@ -172,6 +173,19 @@ fn freedoms(report: &Report) -> Vec<Row> {
         ])
     });
     rows.collect()
+}
+
+fn ports(report: &Report) -> Vec<Row> {
+    let rows = report.ports.iter();
+    rows.map(|p| {
+        row([
+            ("name", &p.name),
+            ("unit", &p.unit),
+            ("value", &p.value),
+            ("description", &p.description),
+        ])
+    })
+    .collect()
 }
 
 fn formulas(report: &Report, medium: Medium) -> Vec<Row> {

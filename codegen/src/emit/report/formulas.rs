@@ -94,6 +94,7 @@ pub(super) fn formulas(derived: &Derived, notation: &Notation) -> Vec<Formula> {
         KernelKind::Constraint,
         KernelKind::SpeedBasis,
         KernelKind::SpeedBasisGradient,
+        KernelKind::PortMap,
         KernelKind::ConfigurationRate,
         KernelKind::Relations,
         KernelKind::TangentBasis,
@@ -234,6 +235,7 @@ fn heading(kind: KernelKind, body: Option<&str>) -> Option<(Math, &'static str)>
             partial(basis()),
             "Derivatives of the basis of speeds at ϕ = 0",
         ),
+        KernelKind::PortMap => (letter('P'), "v to the rates of the ports"),
         KernelKind::ConfigurationRate => (
             letter('Q').marked(Mark::Dot),
             "Rate of the stored scalars, (31)",

@@ -18,7 +18,7 @@ pub use finite::FiniteRow;
 pub use formulas::{Formula, main_formulas};
 pub use provenance::{Statement, sources, statement};
 pub use series::{Series, series};
-pub use tables::{ClaimRow, CountRow, FreedomRow, ParameterRow, proof_in_words};
+pub use tables::{ClaimRow, CountRow, FreedomRow, ParameterRow, PortRow, proof_in_words};
 
 use super::types::type_name;
 use crate::derived::{Derived, Shape};
@@ -55,6 +55,8 @@ pub struct Report {
     pub freedoms: Vec<FreedomRow>,
     /// Speeds in order.
     pub speeds: Vec<String>,
+    /// Ports in order.
+    pub ports: Vec<PortRow>,
     /// What moves no body, in words; empty where everything does.
     pub still: String,
     /// The frame in which v is read, in words.
@@ -109,6 +111,7 @@ impl Report {
             home: home(spec, &notation),
             freedoms: tables::freedoms(derived, &notation),
             speeds: derived.speed_names.clone(),
+            ports: tables::ports(derived),
             still: derived.still_in_words().unwrap_or_default(),
             velocity_frame: velocity_frame(spec).to_owned(),
             formulas: vec![],

@@ -46,6 +46,7 @@ enum Part {
     Velocity,
     Constraint,
     SpeedBasis,
+    Ports,
 }
 
 impl Part {
@@ -62,6 +63,7 @@ impl Part {
                 .iter()
                 .map(|locus| locus.span.clone())
                 .collect(),
+            Self::Ports => spec.ports.iter().map(|port| port.span.clone()).collect(),
             Self::Motion => of(spec.retract.as_ref().map(|declared| declared.span.clone())),
             Self::Pose => vec![spec.pose.span.clone()],
             Self::Velocity => of(spec
@@ -92,7 +94,7 @@ impl Part {
 
 /// The parts that a kernel is derived from.
 fn parts(spec: &JointSpec, kind: KernelKind) -> Vec<Part> {
-    use Part::{Constraint, Home, Loci, Manifold, Motion, Pose, SpeedBasis, Velocity};
+    use Part::{Constraint, Home, Loci, Manifold, Motion, Ports, Pose, SpeedBasis, Velocity};
     // Without a declared X, its columns are the twists of H along ϕ.
     let twist: &[Part] = match (&spec.twist_map, spec.velocity.value) {
         (Some(_), _) => &[Velocity],
@@ -141,6 +143,11 @@ fn parts(spec: &JointSpec, kind: KernelKind) -> Vec<Part> {
         | KernelKind::Project
         | KernelKind::Residual => vec![&[Manifold]],
         KernelKind::Singularity => vec![&[Loci]],
+        KernelKind::RelationDisplacements => vec![&[Manifold, Motion]],
+        KernelKind::RelationTwists => vec![&[Manifold, Motion, Pose]],
+        KernelKind::RelationPorts => vec![&[Manifold, Motion, Ports]],
+        KernelKind::PortMap => vec![&[Ports], twist, &[Pose, Motion]],
+        KernelKind::PortValues => vec![&[Ports]],
         KernelKind::BiasAcceleration | KernelKind::BiasMomentum => {
             vec![twist, speeds, &[Pose, Motion]]
         }

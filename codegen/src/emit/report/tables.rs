@@ -7,7 +7,7 @@ use crate::derived::{Claim, Derived, Kernel, Method as FoundBy, Structure};
 use crate::emit::method::{Method, of_further_body, products};
 use crate::expr::Rational;
 use crate::formula::Counts;
-use crate::model::Parameter;
+use crate::model::{Declared, Parameter, Port};
 use num_traits::{One, Zero};
 
 /// A parameter.
@@ -36,6 +36,19 @@ pub struct FreedomRow {
     pub unit: String,
     /// Unit of the velocity, empty where the spec does not determine it.
     pub rate_unit: String,
+}
+
+/// A port.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PortRow {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Its value as the spec writes it.
+    pub value: String,
+    /// What it means, and that its angle does not count turns where it does not.
+    pub description: String,
 }
 
 /// A claim.
@@ -89,6 +102,23 @@ pub(super) fn parameters(derived: &Derived) -> Vec<ParameterRow> {
         range: ranges::in_words(&parameter.symbol.name, &parameter.range),
     };
     derived.spec.parameters.iter().map(row).collect()
+}
+
+pub(super) fn ports(derived: &Derived) -> Vec<PortRow> {
+    let row = |port: &Declared<Port>| {
+        let port = &port.value;
+        let docs = port.docs.split_whitespace().collect::<Vec<_>>().join(" ");
+        let turns = port.wraps().then_some("The angle is up to whole turns.");
+        let said = [docs.as_str(), turns.unwrap_or_default()];
+        let said: Vec<&str> = said.into_iter().filter(|text| !text.is_empty()).collect();
+        PortRow {
+            name: port.name.clone(),
+            unit: port.unit.clone(),
+            value: port.text.clone(),
+            description: said.join(" "),
+        }
+    };
+    derived.spec.ports.iter().map(row).collect()
 }
 
 pub(super) fn freedoms(derived: &Derived, notation: &Notation) -> Vec<FreedomRow> {

@@ -167,6 +167,8 @@ fn shape_of(derived: &Derived, kernel: &Kernel) -> String {
         Output::Pose => "Rotation matrix and translation in m.".to_owned(),
         Output::Scalar => "A scalar.".to_owned(),
         Output::Vector(rows) => format!("{rows}-vector"),
+        Output::List(count) => format!("{count} scalars"),
+        Output::Rows(rows, columns) => format!("{rows}×{columns}"),
         Output::Matrix(rows, columns) => format!("{rows}×{columns}"),
         Output::Slices(rows, columns) => {
             let count = derived.shape.freedoms;
@@ -199,6 +201,14 @@ fn units_of(derived: &Derived, kind: KernelKind) -> String {
             listed(&rates.collect::<Vec<_>>())
         }
         KernelKind::BiasAcceleration => "rad/s² (angular) and m/s² (linear)".into(),
+        KernelKind::PortValues => {
+            let ports = derived.spec.ports.iter();
+            listed(
+                &ports
+                    .map(|port| port.value.unit.clone())
+                    .collect::<Vec<_>>(),
+            )
+        }
         _ => String::new(),
     }
 }

@@ -24,6 +24,8 @@ pub fn tokens(derived: &Derived) -> TokenStream {
     let [n, k, s, c] = sizes(derived);
     let constants = constants(derived);
     let bodies = bodies::names(derived);
+    let ports = ports(derived);
+    let relations = relations(derived);
     let carried = bodies::carried(derived);
     let parameters = parameters(derived);
     let names = derived.names();
@@ -45,6 +47,8 @@ pub fn tokens(derived: &Derived) -> TokenStream {
         impl Joint<#n, #k, #s, #c> for #name {
             #constants
             #bodies
+            #ports
+            #relations
             #parameters
             #(#methods)*
         }
@@ -114,6 +118,25 @@ fn constructor_docs(derived: &Derived) -> TokenStream {
         lines.push(format!("They must meet {}.", texts.join(", ")));
     }
     docs::outer(&lines)
+}
+
+/// The constant `RELATIONS`; the trait's default where relations alone do not give Φ.
+fn relations(derived: &Derived) -> Option<TokenStream> {
+    derived.spec.implicit.as_ref()?;
+    let relations = derived.spec.manifold.value.declared().iter();
+    let texts = relations.map(|relation| format!("{relation} = 0"));
+    Some(quote! { const RELATIONS: &'static [&'static str] = &[#(#texts),*]; })
+}
+
+/// The constant `PORTS`; the trait's default where there are none. The runtime's type is written with its path: a joint may have its name.
+fn ports(derived: &Derived) -> Option<TokenStream> {
+    let ports = derived.spec.ports.iter().map(|port| {
+        let (name, unit, wraps) = (&port.value.name, &port.value.unit, port.value.wraps());
+        quote! { ::hamel::joint::Port { name: #name, unit: #unit, wraps: #wraps } }
+    });
+    let ports: Vec<TokenStream> = ports.collect();
+    (!ports.is_empty())
+        .then(|| quote! { const PORTS: &'static [::hamel::joint::Port] = &[#(#ports),*]; })
 }
 
 /// Names and values of the parameters; the trait's default where there are none.

@@ -72,6 +72,9 @@ impl Method<'_> {
     }
 
     fn body(&self) -> TokenStream {
+        if let Some(factor) = numeric::factor(self.kernel.kind) {
+            return self.times(&factor);
+        }
         let start = self.start();
         let begins_at_value = start.is_none() && !self.kernel.outputs.is_empty();
         let start = start.unwrap_or_else(|| quote! { &start });
@@ -84,6 +87,26 @@ impl Method<'_> {
             }
             Some(call) => call,
         }
+    }
+
+    /// The formulas as a matrix, times another kernel; column by column.
+    fn times(&self, factor: &TokenStream) -> TokenStream {
+        let value = self.formulas();
+        let along = self.kernel.outputs.first();
+        let (rows, columns) = along.map_or((0, 0), |along| along.shape());
+        let relations = columns - self.derived.shape.freedoms;
+        let product = quote! { along * #factor };
+        let [size, rows, columns, relations] =
+            [rows * relations, rows, columns, relations].map(Literal::usize_unsuffixed);
+        let result = match self.signature.output {
+            Output::List(_) => quote! {
+                let rates = #product;
+                let rates: [T; #size] = ::core::array::from_fn(|n| rates[n]);
+                rates
+            },
+            _ => quote! { let twists: [[T; #rows]; #relations] = (#product).into(); twists },
+        };
+        quote! { let along: SMatrix<T, #rows, #columns> = { #value }; #result }
     }
 
     /// Where an iteration begins, if that is at an argument rather than at a value of the formulas.
@@ -241,6 +264,11 @@ impl Signature {
         match self.output {
             Output::Pose => quote! { Pose<T> },
             Output::Scalar => quote! { T },
+            Output::List(_) => quote! { impl AsRef<[T]> },
+            Output::Rows(_, columns) => {
+                let columns = size(columns);
+                quote! { impl AsRef<[[T; #columns]]> }
+            }
             Output::Vector(rows) => {
                 let rows = size(rows);
                 quote! { SVector<T, #rows> }

@@ -33,7 +33,7 @@ use std::collections::BTreeSet;
 use tokens::ident;
 
 /// Version of the runtime's trait `Joint` that is emitted.
-pub const KERNEL_INTERFACE: u32 = 6;
+pub const KERNEL_INTERFACE: u32 = 7;
 
 /// The file of one joint, a module of its own. `label` names the spec: `joint-specs/ball.joint`.
 ///

@@ -63,6 +63,10 @@ fn by_relations(derived: &Derived, kind: KernelKind, start: &TokenStream) -> Opt
             let rates = displacement_rates(is_bent, &quote! { self.tangent_basis(&moved) * rate });
             quote! { #rates ::hamel::finite::along_tangent(&rates, #bases) }
         }
+        KernelKind::RelationDisplacements => quote! {
+            let normal = self.normal_basis(q);
+            normal * ::hamel::finite::inverse(&(self.relation_gradient(q) * normal))
+        },
         // A guess may be far away, and off the factors.
         KernelKind::Home => projection(derived, start),
         KernelKind::Project => quote! {
@@ -87,6 +91,12 @@ fn displacement_rates(is_bent: bool, there: &TokenStream) -> TokenStream {
     quote! { let moved = self.retract(q, phi); let rates = #there; #bent }
 }
 
+/// The kernel by which the formulas of another are multiplied.
+pub fn factor(kind: KernelKind) -> Option<TokenStream> {
+    matches!(kind, KernelKind::RelationTwists | KernelKind::RelationPorts)
+        .then(|| quote! { self.relation_displacements(q) })
+}
+
 /// How many relations the spec declares, and how many those of the factors are, which stand before them.
 fn relations(derived: &Derived) -> [usize; 2] {
     let declared = derived.space.manifold.declared().len();
@@ -103,6 +113,7 @@ pub fn is_beside_the_trait(kind: KernelKind) -> bool {
             | KernelKind::TangentBasis
             | KernelKind::NormalBasis
             | KernelKind::RelationGradient
+            | KernelKind::RelationDisplacements
             | KernelKind::Displaced
             | KernelKind::DisplacedDifferential
             | KernelKind::Displacement
@@ -148,6 +159,10 @@ pub fn sentence(derived: &Derived, kernel: &Kernel) -> Option<&'static str> {
         ),
         (Method::Solve, KernelKind::Local) => {
             Some("The part along B of the displacement from Q to Q′, by a solve with [B, N].")
+        }
+        (_, KernelKind::RelationDisplacements) => Some("By a solve with ∂φ N."),
+        (_, KernelKind::RelationTwists | KernelKind::RelationPorts) => {
+            Some("By a product with `relation_displacements`.")
         }
         _ if derived.spec.implicit.is_some() => Some(
             "From B at Q′ = Φ(Q, ϕ), by a solve with [B, N] at Q; the displacement from Q to Q′ is the shortest.",

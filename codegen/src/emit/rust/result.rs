@@ -1,5 +1,6 @@
 //! The last expression of a method: matrices as rows, so that a reader sees them.
 
+use super::numeric;
 use super::tokens::Writer;
 use crate::derived::{Kernel, KernelKind};
 use crate::emit::method::{Output, Signature};
@@ -43,6 +44,16 @@ pub fn tokens(
         (Output::Scalar, _) => norm(writer, entries),
         (Output::Vector(_), [(column, own)]) => vector(writer, column, own),
         (Output::Matrix(..), [(only, own)]) => matrix(writer, only, own),
+        (Output::List(_) | Output::Rows(..), [(along, own)])
+            if numeric::factor(kernel.kind).is_some() =>
+        {
+            matrix(writer, along, own)
+        }
+        (Output::List(_), [(_, own)]) => list(writer, own),
+        (Output::Rows(_, columns), [(_, own)]) => {
+            let rows = own.chunks(columns.max(1)).map(|row| list(writer, row));
+            quote! { [#(#rows),*] }
+        }
         (_, slices) if slices.iter().all(|(slice, _)| slice.is_zero()) => {
             let count = Literal::usize_unsuffixed(slices.len());
             quote! { [SMatrix::zeros(); #count] }

@@ -73,7 +73,7 @@ pub(super) fn poses(
 /// Form and number of the names, and that no two are alike.
 fn check_names(source: &str, names: &[Name], evaluator: &mut Evaluator<'_>) {
     for (n, name) in names.iter().enumerate() {
-        evaluator.errors.extend(names::check_body(name));
+        evaluator.errors.extend(names::check_unspoken(name));
         if let Some(first) = names[..n].iter().find(|other| other.text == name.text) {
             let message = format!("body `{}` is named twice", name.text);
             let error = Diagnostic::new(code::DUPLICATE_NAME, name.span.clone(), message)

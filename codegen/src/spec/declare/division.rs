@@ -72,6 +72,9 @@ fn values<'a>(
     for pose in spec.poses() {
         values.push((&pose.span, pose.value.entries().collect()));
     }
+    for port in &spec.ports {
+        values.push((&port.span, port.value.entries()));
+    }
     for scalars in [&spec.home, &spec.retract].into_iter().flatten() {
         values.push((&scalars.span, scalars.value.iter().collect()));
     }

@@ -3,6 +3,7 @@
 mod basis;
 mod bodies;
 mod config;
+mod dimension;
 mod division;
 mod equation;
 mod freedoms;
@@ -12,6 +13,7 @@ mod loci;
 mod matrices;
 mod once;
 mod parameter;
+mod ports;
 mod relations;
 mod retract;
 mod scope;
@@ -73,6 +75,7 @@ fn without_manifold(
     scope.unknown_factors(statements.config);
     scope.lets(&statements.lets);
     bodies::bodies(source, file, statements, evaluator);
+    ports::evaluate_only(source, statements, evaluator);
     matrices::evaluate_only(statements, evaluator);
     scope::report_unused(file, statements, evaluator);
 }
@@ -119,6 +122,7 @@ fn declare(
         .as_ref()
         .and_then(|freedoms| retract::retract(&context, freedoms, evaluator));
     let bodies = bodies::bodies(source, file, statements, evaluator);
+    let ports = ports::ports(&context, source, &parameters, evaluator);
     let matrices = match &freedoms {
         Some(freedoms) => Some(matrices::matrices(&context, &freedoms.names(), evaluator)),
         None => {
@@ -152,6 +156,7 @@ fn declare(
         bodies: names,
         pose: poses.next()?,
         more: poses.collect(),
+        ports,
         retract,
         implicit: freedoms.implicit,
         twist_map: matrices.twist_map,

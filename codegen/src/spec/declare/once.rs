@@ -1,6 +1,8 @@
 //! Statements by kind: which may stand once, and where they stand.
 
-use super::super::ast::{Basis, Equation, File, Name, Node, Requirement, StatementKind, Target};
+use super::super::ast::{
+    Basis, Equation, File, Name, Node, Port, Requirement, StatementKind, Target,
+};
 use super::super::code;
 use crate::diagnostic::Diagnostic;
 use std::collections::BTreeMap;
@@ -32,6 +34,7 @@ pub(super) struct Once<'a> {
     /// H of each of them.
     pub body_poses: Vec<(&'a Name, At<'a, [Node]>)>,
     pub bases: Vec<At<'a, Basis>>,
+    pub ports: Vec<At<'a, Port>>,
     pub lets: Vec<(&'a Name, &'a Node)>,
     pub relations: Vec<At<'a, Equation>>,
     pub exceptions: Vec<At<'a, Equation>>,
@@ -96,6 +99,10 @@ pub(super) fn collect<'a>(source: &str, file: &'a File, errors: &mut Vec<Diagnos
             }
             StatementKind::Basis(value) => {
                 once.bases.push(At { value, span });
+                continue;
+            }
+            StatementKind::Port(value) => {
+                once.ports.push(At { value, span });
                 continue;
             }
             StatementKind::Let(name, value) => {

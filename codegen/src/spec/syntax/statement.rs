@@ -1,10 +1,12 @@
 //! Statements, and recovery at the end of each.
 
-use super::super::ast::{Basis, Equation, Name, Requirement, Statement, StatementKind, Target};
+use super::super::ast::{
+    Basis, Equation, Name, Port, Requirement, Statement, StatementKind, Target,
+};
 use super::super::names::{self, STATEMENTS};
 use super::super::tokens::Tokens;
 use super::super::{Fallible, code};
-use super::expression;
+use super::{expression, unit};
 use crate::diagnostic::Diagnostic;
 use proc_macro2::Delimiter;
 
@@ -58,6 +60,7 @@ fn statement(tokens: &mut Tokens<'_>, docs: Vec<String>) -> Fallible<StatementKi
         })?),
         "speeds" => StatementKind::Speeds(list(tokens, |t| t.expect_name("the name of a speed"))?),
         "bodies" => StatementKind::Bodies(list(tokens, |t| t.expect_name("the name of a body"))?),
+        "port" => StatementKind::Port(port(tokens, docs)?),
         "velocity" => velocity(tokens)?,
         "relation" => StatementKind::Relation(equation(tokens, docs)?),
         "except" => StatementKind::Except(equation(tokens, docs)?),
@@ -165,6 +168,21 @@ fn basis(tokens: &mut Tokens<'_>) -> Fallible<Basis> {
         elements,
         algebra,
         factor,
+    })
+}
+
+/// `name: unit = value`
+fn port(tokens: &mut Tokens<'_>, docs: Vec<String>) -> Fallible<Port> {
+    let name = tokens.expect_name("the name of a port")?;
+    tokens.expect(':', "`:` and a unit")?;
+    let unit = unit(tokens)?;
+    tokens.expect('=', "`=` and an angle or a length")?;
+    let value = expression::expression(tokens)?;
+    Ok(Port {
+        docs,
+        name,
+        unit,
+        value,
     })
 }
 

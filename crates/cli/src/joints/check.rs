@@ -3,6 +3,7 @@
 use super::{Library, source};
 use hamel_codegen::derived::{Claim, Derived};
 use hamel_codegen::emit::report::proof_in_words;
+use hamel_codegen::model::Port;
 use hamel_console::output::{self, Failure};
 use serde::Serialize;
 
@@ -15,7 +16,7 @@ pub struct Args {
     #[arg(value_name = "JOINT")]
     joints: Vec<String>,
 
-    /// Print `{joints: [{name, claims: [{claim, proof, points}]}]}` on stdout
+    /// Print `{joints: [{name, ports, claims: [{claim, proof, points}]}]}` on stdout
     #[arg(long)]
     json: bool,
 }
@@ -23,6 +24,7 @@ pub struct Args {
 #[derive(Serialize)]
 struct Checked {
     name: String,
+    ports: Vec<String>,
     claims: Vec<Proved>,
 }
 
@@ -67,6 +69,9 @@ fn checked(joint: &Derived) -> Checked {
     };
     Checked {
         name: joint.spec.name.value.clone(),
+        ports: (joint.spec.ports.iter())
+            .map(|port| port.value.name.clone())
+            .collect(),
         claims: joint.claims.iter().map(proved).collect(),
     }
 }
@@ -93,5 +98,12 @@ fn text(joint: &Derived) -> String {
         [] => String::new(),
         names => format!(" (bodies {})", names.join(", ")),
     };
-    format!("{}{bodies}\n{lines}{note}\n", joint.spec.name.value)
+    let ports = joint.spec.ports.iter().map(|port| {
+        let Port {
+            name, unit, text, ..
+        } = &port.value;
+        format!("  port {name}: {unit} = {text}\n")
+    });
+    let ports: String = ports.collect();
+    format!("{}{bodies}\n{lines}{ports}{note}\n", joint.spec.name.value)
 }

@@ -4,6 +4,7 @@ use super::{Library, source};
 use comfy_table::Table;
 use comfy_table::presets::UTF8_HORIZONTAL_ONLY;
 use hamel_codegen::derived::Derived;
+use hamel_codegen::model::{Declared, Port};
 use hamel_console::output::{self, Failure};
 use serde::Serialize;
 
@@ -22,9 +23,11 @@ struct Entry {
     configuration: String,
     freedoms: Vec<String>,
     speeds: Vec<String>,
+    ports: Vec<Parameter>,
     parameters: Vec<Parameter>,
 }
 
+/// A parameter or a port.
 #[derive(Serialize)]
 struct Parameter {
     name: String,
@@ -59,6 +62,10 @@ fn entry(joint: &Derived) -> Entry {
         name: p.symbol.name.to_string(),
         unit: p.unit.clone(),
     };
+    let port = |p: &Declared<Port>| Parameter {
+        name: p.value.name.clone(),
+        unit: p.value.unit.clone(),
+    };
     Entry {
         name: spec.name.value.clone(),
         summary: spec
@@ -76,6 +83,7 @@ fn entry(joint: &Derived) -> Entry {
             .map(|freedom| freedom.name.clone())
             .collect(),
         speeds: joint.speed_names.clone(),
+        ports: spec.ports.iter().map(port).collect(),
         parameters: spec.parameters.iter().map(parameter).collect(),
     }
 }

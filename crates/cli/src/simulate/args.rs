@@ -49,6 +49,7 @@ CSV and Parquet have one row a sample and the same columns, whose names end with
   FRAME.x_m, … and .qx, …                    origin and attitude of each named frame
   JOINT.q.q_rad, JOINT.v.q_rad_per_s         angle of a revolute joint, not reduced to a turn, and its rate; of a prismatic one
                                              JOINT.q.q_m, JOINT.v.q_m_per_s; the names of other joints are in docs/trajectories.md
+  JOINT.port.travel_m, .rate.travel_m_per_s  value and rate of a port, of joints whose type has some
   JOINT.tau.q_N_m                            with a controller, its efforts
 
 The page (`--html`) shows bodies by the [[shape]]s of the scene, or by the ellipsoids or boxes of their inertias. Drag to turn,

@@ -68,7 +68,12 @@ impl Tree<'_> {
             section(number(limit.body), "spring");
             about(&limit.name, || self.limit_energy(limit))
         });
-        joints.chain(turned).chain(points).chain(limits).sum()
+        let ports = elements.port_springs.iter().map(|spring| {
+            section(number(spring.body), "port");
+            about(&spring.name, || self.port_energy(spring))
+        });
+        let springs = joints.chain(turned).chain(points).chain(limits);
+        springs.chain(ports).sum()
     }
 
     /// ϕ of a spring and Kϕ.

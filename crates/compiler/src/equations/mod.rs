@@ -19,6 +19,7 @@ mod external;
 mod forward_derivatives;
 mod kinematics;
 mod newton_euler;
+mod ports;
 mod solve;
 mod variation;
 
@@ -165,7 +166,7 @@ impl<'a> Tree<'a> {
         })
     }
 
-    /// τ̄ = S̄ᵀτ with τ the argument, the constant efforts, the dampers, the springs and the rotors of the joint that a body stands for; 0 for further
+    /// τ̄ = S̄ᵀτ with τ the argument, the constant efforts, the dampers, the springs, the rotors and the ports of the joint that a body stands for; 0 for further
     /// bodies of a joint.
     fn efforts(&self, index: usize, argument: Option<Argument>) -> Vec<Sym> {
         let (body, placed) = (&self.model.bodies[index], &self.bodies[index]);
@@ -174,6 +175,8 @@ impl<'a> Tree<'a> {
         }
         section(number(index), "spring");
         let springs = self.spring_efforts(index);
+        section(number(index), "port");
+        let ports = self.port_efforts(index);
         section(number(index), "rotors");
         let rotors = self.rotor_forces(index);
         section(number(index), "effort");
@@ -187,7 +190,7 @@ impl<'a> Tree<'a> {
                 .zip(&placed.speeds)
                 .map(|(&s, &v)| s * v)
                 .sum();
-            let applied = given + Sym::from(constant) + of(&springs, k);
+            let applied = given + Sym::from(constant) + of(&springs, k) + of(&ports, k);
             applied - Sym::from(damping) * velocity - of(&rotors, k)
         };
         let efforts: Vec<Sym> = placed

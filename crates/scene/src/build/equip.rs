@@ -2,11 +2,12 @@
 
 use super::forces::{Acting, Spring, Stiffness};
 use crate::description::{BodyDescription, SceneDescription};
-use crate::forces::{LimitKind, PointSpring, WrenchAxes, WrenchDescription};
+use crate::forces::{LimitKind, PointSpring, PortForces, WrenchAxes, WrenchDescription};
 use hamel_runtime::dynamics::{Dynamics, DynamicsError, Recursive};
 use hamel_runtime::elements::{
     BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointFriction, JointLimit,
-    JointSpring, JointStop, PointConstraint, RotationSpring, TimedEffort, TimedWrench,
+    JointSpring, JointStop, PointConstraint, PortEffort, PortSpring, RotationSpring, TimedEffort,
+    TimedWrench,
 };
 use hamel_runtime::mechanism::{Mechanism, MechanismErrors, NamedFrame};
 use hamel_runtime::time_function::TimeFunction;
@@ -119,6 +120,9 @@ fn at_joint(
             efforts,
         }));
     }
+    for (port, forces) in &acting.ports {
+        at_port((body, *port), joint, forces, elements);
+    }
     if let Some(limit) = &acting.limit
         && let LimitKind::Compliant { stiffness, damping } = limit.kind
     {
@@ -129,6 +133,34 @@ fn at_joint(
             upper: limit.upper,
             stiffness,
             damping,
+        }));
+    }
+}
+
+fn at_port(
+    (body, port): (usize, usize),
+    joint: &str,
+    forces: &PortForces,
+    elements: &mut Vec<Arc<dyn Element>>,
+) {
+    let name = |what: &str| forces.element(what, joint);
+    if let Some(effort) = &forces.effort {
+        elements.push(Arc::new(PortEffort {
+            name: name("effort"),
+            body,
+            port,
+            effort: effort.clone(),
+        }));
+    }
+    if forces.spring.is_some() || forces.damping > 0.0 {
+        let spring = forces.spring.unwrap_or_default();
+        elements.push(Arc::new(PortSpring {
+            name: name("spring"),
+            body,
+            port,
+            stiffness: spring.stiffness,
+            damping: forces.damping,
+            rest: spring.rest,
         }));
     }
 }

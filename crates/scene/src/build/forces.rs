@@ -5,7 +5,7 @@ use crate::description::{InitialDescription, Motion};
 use crate::diagnostics::Diagnostic;
 use crate::forces::{
     FrictionDescription, JointForces, JointSpring, LimitDescription, LimitKind, PerFreedom,
-    SpringEnergy,
+    PortForces, SpringEnergy,
 };
 use crate::read::Sink;
 use crate::source::{Located, Span};
@@ -32,6 +32,8 @@ pub(crate) struct Acting {
     pub(crate) friction: Option<FrictionDescription>,
     /// Ends of the joint's range.
     pub(crate) limit: Option<LimitDescription>,
+    /// What acts at its ports, by their indices.
+    pub(crate) ports: Vec<(usize, PortForces)>,
 }
 
 /// A spring at a joint.
@@ -68,6 +70,11 @@ pub(super) fn acting(
     let motion = motion(stand, initial, forces.motion.as_ref());
     let friction = of_one_coordinate(stand, "friction", forces.friction.as_ref());
     let limit = of_one_coordinate(stand, "a limit", forces.limit.as_ref());
+    let ports = forces.ports.iter().filter_map(|own| {
+        let port = stand.port(&own.name).map_err(&mut noted).ok()?;
+        Some((port, own.clone()))
+    });
+    let ports = ports.collect();
     let acting = Acting {
         damping: damping.map_err(&mut noted).unwrap_or_default(),
         armature: armature.map_err(&mut noted).unwrap_or_default(),
@@ -76,6 +83,7 @@ pub(super) fn acting(
         motion: motion.map_err(&mut noted).unwrap_or_default(),
         friction: friction.map_err(&mut noted).unwrap_or_default(),
         limit: limit.map_err(&mut noted).unwrap_or_default(),
+        ports,
     };
     (sink.len() == errors_before).then_some(acting)
 }
@@ -202,7 +210,9 @@ fn motion(
             stand.name
         );
         let error = Diagnostic::new(motion.span.clone(), message);
-        return Err(error.help("leave `velocity`, `speeds` and `twist` out of its `initial`"));
+        return Err(
+            error.help("leave `velocity`, `speeds`, `twist` and `rates` out of its `initial`")
+        );
     }
     Ok(motion.value.clone())
 }

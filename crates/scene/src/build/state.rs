@@ -9,6 +9,7 @@ use crate::diagnostics::Diagnostic;
 use crate::forces::JointForces;
 use crate::read::Sink;
 use crate::source::{Located, Span};
+use crate::suggest::{all_of, nearest};
 use hamel_runtime::erased::AnyJoint;
 use hamel_runtime::mechanism::{BodySpec, Mechanism, StateError};
 use hamel_runtime::registry::JointRegistry;
@@ -157,12 +158,38 @@ impl Stand {
                 self.check_size("velocity", velocity, self.joint.freedoms())?;
                 self.allowed(q, &velocity.value, &velocity.span)
             }
+            Motion::Rates(rates) => {
+                let own = rates.value.iter().map(|(name, rate)| {
+                    let port = self.port(name)?;
+                    Ok((port, *rate))
+                });
+                let own: Vec<(usize, f64)> = own.collect::<Result<_, Diagnostic>>()?;
+                let found = self.mechanism.speeds_from_port_rates(0, q, &own);
+                found.map_err(refusal(&rates.span))
+            }
             Motion::Twist(twist) => {
                 let child = self.child_twist(q, &twist.value);
                 let found = self.mechanism.velocity_from_twist(0, q, &child);
                 self.allowed(q, &found.map_err(refusal(&twist.span))?, &twist.span)
             }
         }
+    }
+
+    /// The index of the port of that name.
+    pub(super) fn port(&self, name: &Located<String>) -> Result<usize, Diagnostic> {
+        let found = self.mechanism.port_index(0, &name.value);
+        found.ok_or_else(|| {
+            let (joint, kind, given) = (&self.name, self.joint.name(), &name.value);
+            let message =
+                format!("joint `{joint}`: a joint of type `{kind}` has no port `{given}`");
+            let error = Diagnostic::new(name.span.clone(), message);
+            let ports = || self.joint.ports().iter().map(|port| port.name);
+            match nearest(given, ports()) {
+                Some(near) => error.label(format!("did you mean `{near}`?")),
+                None if ports().next().is_none() => error.label("it has none"),
+                None => error.help(format!("its ports are {}", all_of(ports()))),
+            }
+        })
     }
 
     fn allowed(&self, q: &[f64], velocity: &[f64], span: &Span) -> Result<Vec<f64>, Diagnostic> {

@@ -1,11 +1,11 @@
-//! What acts at the joint of a body: `spring`, `damping`, `armature`, `effort`, `motion`, `friction`, `limit`.
+//! What acts at the joint of a body: `spring`, `damping`, `armature`, `effort`, `motion`, `friction`, `limit`, `ports`.
 
 use super::{initial, time};
 use crate::description::Position;
 use crate::diagnostics::Diagnostic;
 use crate::forces::{
     FrictionDescription, JointForces, JointSpring, LimitDescription, LimitKind, PerFreedom,
-    SpringEnergy,
+    PortForces, PortSpringDescription, SpringEnergy,
 };
 use crate::read::{Fields, Sink, Value};
 use crate::source::Located;
@@ -25,6 +25,7 @@ pub(super) fn forces(fields: &mut Fields<'_>, sink: &mut Sink) -> Option<JointFo
     let motion = optional(fields, "motion", motion, sink);
     let friction = optional(fields, "friction", friction, sink);
     let limit = optional(fields, "limit", limit, sink);
+    let ports = optional(fields, "ports", ports, sink);
     Some(JointForces {
         spring: spring?,
         damping: damping?,
@@ -33,6 +34,7 @@ pub(super) fn forces(fields: &mut Fields<'_>, sink: &mut Sink) -> Option<JointFo
         motion: motion?,
         friction: friction?,
         limit: limit?,
+        ports: ports?.unwrap_or_default(),
     })
 }
 
@@ -125,6 +127,46 @@ fn motion(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Vec<TimeFunction
     let speeds: Vec<_> = items.iter().map(|item| driven(item, sink)).collect();
     let speeds: Option<Vec<TimeFunction>> = speeds.into_iter().collect();
     Some(Located::new(speeds?, value.span()))
+}
+
+/// What acts at the ports of a joint, each under its name.
+fn ports(value: &Value<'_>, sink: &mut Sink) -> Option<Vec<PortForces>> {
+    let named = value.table(sink)?.unclaimed();
+    let all: Vec<_> = named
+        .into_iter()
+        .map(|(name, value)| port(name, &value, sink))
+        .collect();
+    all.into_iter().collect()
+}
+
+fn port(name: Located<String>, value: &Value<'_>, sink: &mut Sink) -> Option<PortForces> {
+    let mut fields = value.table(sink)?;
+    let effort = optional(&mut fields, "effort", time::function, sink);
+    let spring = optional(&mut fields, "spring", port_spring, sink);
+    let damping = match fields.optional("damping") {
+        Some(damping) => damping.not_negative(sink).map(|damping| damping.value),
+        None => Some(0.0),
+    };
+    fields.finish(sink);
+    Some(PortForces {
+        name,
+        effort: effort?,
+        spring: spring?,
+        damping: damping?,
+    })
+}
+
+fn port_spring(value: &Value<'_>, sink: &mut Sink) -> Option<PortSpringDescription> {
+    let mut fields = value.table(sink)?;
+    let stiffness = fields.required("stiffness", sink);
+    let rest = fields.required("rest", sink);
+    fields.finish(sink);
+    let stiffness = stiffness?.not_negative(sink);
+    let rest = rest?.number(sink);
+    Some(PortSpringDescription {
+        stiffness: stiffness?.value,
+        rest: rest?.value,
+    })
 }
 
 /// One number for friction in motion and at rest, or a table of both.

@@ -32,12 +32,24 @@ pub(super) fn position(fields: &mut Fields<'_>, sink: &mut Sink) -> Option<Posit
 }
 
 fn motion(fields: &mut Fields<'_>, sink: &mut Sink) -> Option<Motion> {
-    match fields.at_most_one(&["velocity", "speeds", "twist"], sink) {
+    match fields.at_most_one(&["velocity", "speeds", "twist", "rates"], sink) {
         None => Some(Motion::Rest),
         Some((0, value)) => Some(Motion::Velocity(value.numbers(sink)?)),
         Some((1, value)) => Some(Motion::Speeds(value.numbers(sink)?)),
-        Some((_, value)) => Some(Motion::Twist(twist(&value, sink)?)),
+        Some((2, value)) => Some(Motion::Twist(twist(&value, sink)?)),
+        Some((_, value)) => Some(Motion::Rates(rates(&value, sink)?)),
     }
+}
+
+/// Rates of ports, each under its name.
+fn rates(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Vec<(Located<String>, f64)>>> {
+    let named = value.table(sink)?.unclaimed();
+    let all: Vec<_> = named
+        .into_iter()
+        .map(|(name, value)| Some((name, value.number(sink)?.value)))
+        .collect();
+    let rates: Option<Vec<_>> = all.into_iter().collect();
+    Some(Located::new(rates?, value.span()))
 }
 
 fn twist(value: &Value<'_>, sink: &mut Sink) -> Option<Located<TwistDescription>> {

@@ -105,6 +105,11 @@ fn initial(initial: &InitialDescription) -> Option<String> {
         Motion::Rest => {}
         Motion::Velocity(velocity) => entries.push(("velocity", list(&velocity.value))),
         Motion::Speeds(speeds) => entries.push(("speeds", list(&speeds.value))),
+        Motion::Rates(rates) => {
+            let rates = rates.value.iter();
+            let rates = rates.map(|(name, rate)| (name.value.as_str(), number(*rate)));
+            entries.push(("rates", table(&rates.collect::<Vec<_>>())));
+        }
         Motion::Twist(twist) => {
             let (angular, linear) = split(&twist.value.twist);
             let frame = match twist.value.frame {

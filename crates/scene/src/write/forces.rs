@@ -1,7 +1,7 @@
 //! What acts at joints and on bodies, what is forbidden to them, and named frames.
 
 use super::body::{name_of, position};
-use super::value::{list, number, rows, table, text};
+use super::value::{key, list, number, rows, table, text};
 use super::{entry, pose, time};
 use crate::description::SceneDescription;
 use crate::event::{
@@ -9,7 +9,7 @@ use crate::event::{
 };
 use crate::forces::{
     BodyPoint, FrictionDescription, JointForces, JointSpring, LimitDescription, LimitKind,
-    PerFreedom, SpringEnergy, WrenchAxes,
+    PerFreedom, PortForces, SpringEnergy, WrenchAxes,
 };
 use hamel_integrate::Direction;
 use hamel_runtime::time_function::Law;
@@ -38,6 +38,26 @@ pub(super) fn of_joint(out: &mut String, forces: &JointForces) {
     if let Some(limit) = &forces.limit {
         entry(out, "limit", &self::limit(&limit.value));
     }
+    for forces in &forces.ports {
+        let name = format!("ports.{}", key(&forces.name.value));
+        entry(out, &name, &port(forces));
+    }
+}
+
+fn port(forces: &PortForces) -> String {
+    let mut entries = Vec::new();
+    if let Some(effort) = &forces.effort {
+        entries.push(("effort", time::function(effort)));
+    }
+    if let Some(spring) = forces.spring {
+        let (stiffness, rest) = (number(spring.stiffness), number(spring.rest));
+        let spring = table(&[("stiffness", stiffness), ("rest", rest)]);
+        entries.push(("spring", spring));
+    }
+    if forces.damping > 0.0 {
+        entries.push(("damping", number(forces.damping)));
+    }
+    table(&entries)
 }
 
 fn friction(friction: &FrictionDescription) -> String {

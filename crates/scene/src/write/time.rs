@@ -10,7 +10,8 @@ pub(super) fn functions(functions: &[TimeFunction]) -> String {
     format!("[{}]", entries.join(", "))
 }
 
-fn function(function: &TimeFunction) -> String {
+/// One of them.
+pub(super) fn function(function: &TimeFunction) -> String {
     match function {
         TimeFunction::Constant(value) => number(*value),
         TimeFunction::Sine(law) => speed(law),

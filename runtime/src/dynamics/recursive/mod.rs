@@ -21,6 +21,7 @@ mod jacobian;
 mod link;
 mod loaded;
 mod mass;
+mod multipliers;
 mod operational;
 mod readings;
 mod refined;

@@ -5,8 +5,8 @@ use super::{D, DualForm};
 use crate::random::numbers;
 use chacha20::ChaCha8Rng;
 use hamel::elements::{
-    BodySpring, BodyWrench, Element, JointDamper, JointEffort, JointSpring, RotationSpring,
-    WrenchAxes,
+    BodySpring, BodyWrench, Element, JointDamper, JointEffort, JointSpring, PortEffort, PortSpring,
+    RotationSpring, WrenchAxes,
 };
 use hamel::mechanism::{Body, Mechanism};
 use hamel::nalgebra::{Matrix3, Vector3, Vector6};
@@ -22,6 +22,8 @@ pub struct Actuation {
     turns: Vec<RotationSpring>,
     dampers: Vec<JointDamper>,
     motors: Vec<JointEffort>,
+    port_motors: Vec<PortEffort>,
+    port_springs: Vec<PortSpring>,
     ropes: Vec<BodySpring>,
     wrenches: Vec<BodyWrench>,
     /// One entry a speed.
@@ -114,6 +116,23 @@ impl Actuation {
             if !owner.leads() {
                 continue;
             }
+            for (port, named) in owner.joint().ports().iter().enumerate() {
+                let value = owner.joint().port_value(owner.configuration(q), port);
+                all.port_motors.push(PortEffort {
+                    name: name(named.name),
+                    body,
+                    port,
+                    effort: random.random_range(-1.0..1.0).into(),
+                });
+                all.port_springs.push(PortSpring {
+                    name: name(named.name),
+                    body,
+                    port,
+                    stiffness: random.random_range(0.0..2.0),
+                    damping: random.random_range(0.0..1.0),
+                    rest: value + random.random_range(-1.0..1.0),
+                });
+            }
             let holonomic = owner.joint().structures().speed_basis.is_identity();
             let inertia = numbers(&mut random, ranges.speeds.len());
             let inertia = inertia.iter().map(|a| f64::from(holonomic) * a.abs());
@@ -136,6 +155,8 @@ impl Actuation {
             shared(&self.turns),
             shared(&self.dampers),
             shared(&self.motors),
+            shared(&self.port_motors),
+            shared(&self.port_springs),
             shared(&self.ropes),
             shared(&self.wrenches),
         ];
@@ -218,6 +239,24 @@ impl Actuation {
         }
         for motor in &self.motors {
             add(motor.body, constants(&motor.efforts));
+        }
+        for motor in &self.port_motors {
+            let joint = &form.bodies[motor.body].joint;
+            let (_, row) = joint.port(at(motor.body), motor.port, 0.0);
+            let effort = Dual::constant(motor.effort.constant().unwrap_or(f64::NAN));
+            add(motor.body, row.iter().map(|p| *p * effort).collect());
+        }
+        for spring in &self.port_springs {
+            let body = &form.bodies[spring.body];
+            let (way, row) = body.joint.port(at(spring.body), spring.port, spring.rest);
+            let v = body
+                .joint
+                .velocity(at(spring.body), &speeds[body.speeds.clone()]);
+            let rates = row.iter().zip(&v);
+            let rate = rates.fold(Dual::constant(0.0), |sum, (p, v)| sum + *p * *v);
+            let [stiffness, damping] = [spring.stiffness, spring.damping].map(Dual::constant);
+            let effort = -(stiffness * way) - damping * rate;
+            add(spring.body, row.iter().map(|p| *p * effort).collect());
         }
         efforts
     }

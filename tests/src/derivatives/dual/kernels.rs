@@ -4,7 +4,7 @@ use super::D;
 use hamel::erased::AnyJoint;
 use hamel::joint::{Joint, Member};
 use hamel::nalgebra::{SMatrix, SVector, Vector3, Vector6};
-use hamel::scalar::Dual;
+use hamel::scalar::{Dual, Scalar};
 use hamel::spatial::Pose;
 
 /// The kernels of one joint in dual numbers.
@@ -29,6 +29,8 @@ pub trait Kernels {
     fn spring(&self, q: &[D], rest: &[f64], stiffness: &[f64]) -> Vec<D>;
     /// Efforts of a moment on the child that has the parent's axes.
     fn moment(&self, q: &[D], moment: &Vector3<D>) -> Vec<D>;
+    /// How far a port is from `rest`, and its row of P.
+    fn port(&self, q: &[D], port: usize, rest: f64) -> (D, Vec<D>);
     /// `Σ_k γ_k v_k (a v)`.
     fn rotors(&self, q: &[D], speeds: &[D], inertia: &[f64]) -> Vec<D>;
 }
@@ -104,6 +106,17 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
         let map = self.0.twist_map(&vector(q));
         let effort = map.fixed_rows::<3>(0).tr_mul(moment);
         effort.iter().copied().collect()
+    }
+
+    fn port(&self, q: &[D], port: usize, rest: f64) -> (D, Vec<D>) {
+        let q = vector(q);
+        let (values, map) = (self.0.port_values(&q), self.0.port_map(&q));
+        let mut way = values.as_ref()[port] - Dual::constant(rest);
+        if J::PORTS[port].wraps {
+            let (sin, cos) = way.sin_cos();
+            way = sin.atan2(cos);
+        }
+        (way, map.as_ref()[port].to_vec())
     }
 
     fn rotors(&self, q: &[D], speeds: &[D], inertia: &[f64]) -> Vec<D> {

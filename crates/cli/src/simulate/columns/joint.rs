@@ -1,9 +1,10 @@
 //! Columns of joints: coordinates, speeds, and what a controller exerts.
 
 use super::coordinates::{Factor, Kind};
-use super::turns::Turn;
+use super::turns::{Angle, Turn, port_rate, velocity};
 use super::units::{Unit, Units};
 use super::{Columns, Ending, List};
+use hamel::joint::Port;
 use hamel::mechanism::{Body, Mechanism};
 
 impl<'a> Columns<'a> {
@@ -17,7 +18,49 @@ impl<'a> Columns<'a> {
             self.add("v", speed_endings(body, &units), move |moment, row| {
                 row.extend(&moment.speeds[speeds.clone()]);
             });
+            if !body.joint().ports().is_empty() {
+                self.ports(index, body);
+            }
         }
+    }
+
+    /// Values and rates of a joint's ports.
+    fn ports(&mut self, index: usize, body: &'a Body) {
+        let ports = body.joint().ports();
+        let first = self.turns.len();
+        let wrapping = ports.iter().enumerate().filter(|(_, port)| port.wraps);
+        self.turns.extend(wrapping.map(|(port, _)| Turn {
+            body: index,
+            angle: Angle::Port(port),
+        }));
+        let values = ports.iter().map(|port| Ending {
+            name: format!("port.{}", port.name),
+            unit: unit(port).coordinate(),
+            meaning: String::from(match port.wraps {
+                true => "angle of the port, not reduced to a turn",
+                false => "value of the port",
+            }),
+        });
+        self.add("port", values.collect(), move |moment, row| {
+            let q = body.configuration(moment.configuration);
+            let mut angles = moment.angles[first..].iter();
+            for (place, port) in ports.iter().enumerate() {
+                let angle = port.wraps.then(|| angles.next().copied());
+                let value = angle.map(|angle| angle.unwrap_or(f64::NAN));
+                row.push(value.unwrap_or_else(|| body.joint().port_value(q, place)));
+            }
+        });
+        let rates = ports.iter().map(|port| Ending {
+            name: format!("rate.{}", port.name),
+            unit: unit(port).rate(),
+            meaning: String::from("rate of the port"),
+        });
+        let speeds = body.ranges().speeds.clone();
+        self.add("rate", rates.collect(), move |moment, row| {
+            let q = body.configuration(moment.configuration);
+            let v = velocity(body, q, &moment.speeds[speeds.clone()]);
+            row.extend((0..ports.len()).map(|port| port_rate(body, q, &v, port)));
+        });
     }
 
     /// τ of all joints.
@@ -38,11 +81,11 @@ impl<'a> Columns<'a> {
         let first = self.turns.len();
         let turns = factors.iter().filter_map(|factor| {
             let (cosine, sine) = factor.kind.turn()?;
-            Some(Turn {
-                body: index,
+            let angle = Angle::Stored {
                 cosine: factor.first + cosine,
                 sine: factor.first + sine,
-            })
+            };
+            Some(Turn { body: index, angle })
         });
         self.turns.extend(turns);
         self.add("q", endings, move |moment, row| {
@@ -53,6 +96,14 @@ impl<'a> Columns<'a> {
                 factor.read(q, angle.copied().unwrap_or(f64::NAN), row);
             }
         });
+    }
+}
+
+fn unit(port: &Port) -> Unit {
+    match port.unit {
+        "rad" => Unit::Angle,
+        "m" => Unit::Length,
+        _ => Unit::None,
     }
 }
 

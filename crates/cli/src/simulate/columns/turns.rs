@@ -1,18 +1,30 @@
-//! Angles that are stored as cosine and sine, followed over the motion so that they count turns.
+//! Angles that are known up to whole turns, followed over the motion so that they count turns.
 
 use hamel::integrate::Step;
 use hamel::mechanism::{Body, Mechanism};
 use std::f64::consts::TAU;
 
-/// Where an angle is stored.
+/// An angle of a joint.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turn {
     /// Whose joint it belongs to.
     pub body: usize,
-    /// Place of its cosine in the joint's Q.
-    pub cosine: usize,
-    /// Place of its sine.
-    pub sine: usize,
+    /// Which one it is.
+    pub angle: Angle,
+}
+
+/// Where an angle is found.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Angle {
+    /// Stored in Q.
+    Stored {
+        /// Place of its cosine in the joint's Q.
+        cosine: usize,
+        /// Place of its sine.
+        sine: usize,
+    },
+    /// The value of this port.
+    Port(usize),
 }
 
 /// The angles at the end of the last step that was seen.
@@ -65,15 +77,32 @@ impl Turn {
     fn read(&self, body: &Body, step: &Step<'_>) -> (f64, f64) {
         let q = body.configuration(step.configuration);
         let speeds = &step.speeds[body.ranges().speeds.clone()];
-        let rates = configuration_rates(body, q, speeds);
-        let (cosine, sine) = (q[self.cosine], q[self.sine]);
-        let rate = cosine * rates[self.sine] - sine * rates[self.cosine];
-        (sine.atan2(cosine), rate)
+        let velocity = velocity(body, q, speeds);
+        let joint = body.joint();
+        match self.angle {
+            Angle::Stored { cosine, sine } => {
+                let mut rates = vec![0.0; q.len()];
+                joint.configuration_rate(q, &velocity, &mut rates);
+                let rate = q[cosine] * rates[sine] - q[sine] * rates[cosine];
+                (q[sine].atan2(q[cosine]), rate)
+            }
+            Angle::Port(port) => (
+                joint.port_value(q, port),
+                port_rate(body, q, &velocity, port),
+            ),
+        }
     }
 }
 
-/// Q̇ of a joint.
-fn configuration_rates(body: &Body, q: &[f64], speeds: &[f64]) -> Vec<f64> {
+/// The rate of a port at the joint's Q and v.
+pub(super) fn port_rate(body: &Body, q: &[f64], velocity: &[f64], port: usize) -> f64 {
+    let mut row = vec![0.0; velocity.len()];
+    body.joint().port_row(q, port, &mut row);
+    row.iter().zip(velocity).map(|(p, v)| p * v).sum()
+}
+
+/// v of a joint at its Q and v̄.
+pub(super) fn velocity(body: &Body, q: &[f64], speeds: &[f64]) -> Vec<f64> {
     let joint = body.joint();
     let freedoms = joint.layout().freedoms;
     let mut basis = vec![0.0; freedoms * speeds.len()];
@@ -84,7 +113,5 @@ fn configuration_rates(body: &Body, q: &[f64], speeds: &[f64]) -> Vec<f64> {
             *entry += part * speed;
         }
     }
-    let mut rates = vec![0.0; q.len()];
-    joint.configuration_rate(q, &velocity, &mut rates);
-    rates
+    velocity
 }

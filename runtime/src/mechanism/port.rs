@@ -1,0 +1,141 @@
+//! Ports of joints: their values and rates, and what efforts and rates at them are in τ and v̄.
+
+use super::check::{Space, check_size};
+use super::initial::CONSTRAINT_TOLERANCE;
+use super::{Body, Mechanism, StateError};
+use alloc::vec;
+use alloc::vec::Vec;
+use nalgebra::{DMatrix, DVector};
+
+/// How small the smallest singular value of `P S̄` may be next to the largest for rates at ports to determine the speeds.
+const DETERMINED: f64 = 1e-9;
+
+impl Body {
+    /// P at this joint's Q.
+    fn port_map(&self, q: &[f64]) -> DMatrix<f64> {
+        let (joint, freedoms) = (self.joint(), self.ranges.freedoms.len());
+        let mut transposed = DMatrix::zeros(freedoms, joint.ports().len());
+        for (port, mut column) in transposed.column_iter_mut().enumerate() {
+            joint.port_row(q, port, column.as_mut_slice());
+        }
+        transposed.transpose()
+    }
+}
+
+impl Mechanism {
+    /// The index of the port called `name` of the joint under `body`.
+    pub fn port_index(&self, body: usize, name: &str) -> Option<usize> {
+        let joint = self.bodies().get(body)?.joint();
+        joint.ports().iter().position(|port| port.name == name)
+    }
+
+    /// P of the joint under `body` at its own configuration `q`: v to the rates of its ports, rad/s and m/s, a row for each.
+    ///
+    /// # Errors
+    /// No such body; a configuration of the wrong size or off the joint's manifold.
+    pub fn port_map(&self, body: usize, q: &[f64]) -> Result<DMatrix<f64>, StateError> {
+        let body = self.body(body)?;
+        body.check_configuration(q)?;
+        Ok(body.port_map(q))
+    }
+
+    /// The values of the ports of the joint under `body` at its own configuration `q`, rad and m.
+    ///
+    /// # Errors
+    /// As for [`Mechanism::port_map`].
+    pub fn port_values(&self, body: usize, q: &[f64]) -> Result<Vec<f64>, StateError> {
+        let body = self.body(body)?;
+        body.check_configuration(q)?;
+        let joint = body.joint();
+        let ports = 0..joint.ports().len();
+        Ok(ports.map(|port| joint.port_value(q, port)).collect())
+    }
+
+    /// The rates of the ports of the joint under `body` at the state of the mechanism, rad/s and m/s.
+    ///
+    /// # Errors
+    /// No such body; a vector of the wrong size, or not finite.
+    pub fn port_rates(
+        &self,
+        body: usize,
+        q: &[f64],
+        speeds: &[f64],
+    ) -> Result<Vec<f64>, StateError> {
+        let body = self.body(body)?;
+        self.check_vector("configuration", Space::Configuration, q)?;
+        self.check_vector("speeds", Space::Speeds, speeds)?;
+        let q = body.configuration(q);
+        let own = DVector::from_column_slice(&speeds[body.ranges.speeds.clone()]);
+        let rates = body.port_map(q) * body.speed_basis(q) * own;
+        Ok(rates.as_slice().to_vec())
+    }
+
+    /// The efforts `Pᵀ τ_p` of the joint under `body` at its own configuration `q`, for `efforts` τ_p at all of its ports, N·m and N.
+    ///
+    /// # Errors
+    /// As for [`Mechanism::port_map`]; another number of efforts than of ports.
+    pub fn efforts_from_ports(
+        &self,
+        body: usize,
+        q: &[f64],
+        efforts: &[f64],
+    ) -> Result<Vec<f64>, StateError> {
+        let map = self.port_map(body, q)?;
+        let name = self.body(body)?.joint_name();
+        check_size(name, "efforts at ports", map.nrows(), efforts.len())?;
+        let own = map.tr_mul(&DVector::from_column_slice(efforts));
+        Ok(own.as_slice().to_vec())
+    }
+
+    /// The speeds v̄ at which some ports of the joint under `body`, at its own configuration `q`, have these `rates`: by index, rad/s and m/s.
+    ///
+    /// # Errors
+    /// As for [`Mechanism::port_map`]; a rate that is not finite; rates that leave a speed open, or contradict each other, here.
+    pub fn speeds_from_port_rates(
+        &self,
+        body: usize,
+        q: &[f64],
+        rates: &[(usize, f64)],
+    ) -> Result<Vec<f64>, StateError> {
+        let all = self.port_map(body, q)?;
+        let body = self.body(body)?;
+        let joint = || body.joint_name().into();
+        let ports = body.joint().ports();
+        for &(port, value) in rates {
+            let (index, count) = (port, ports.len());
+            let known = ports.get(port).ok_or_else(|| StateError::UnknownPort {
+                joint: joint(),
+                index,
+                count,
+            })?;
+            body.check_finite("port rates", &[known.name], &[value])?;
+        }
+        let map = all.select_rows(rates.iter().map(|(port, _)| port)) * body.speed_basis(q);
+        let target = DVector::from_iterator(rates.len(), rates.iter().map(|(_, rate)| *rate));
+        let speeds = map.ncols();
+        let found = map.clone().svd(true, true);
+        let values = &found.singular_values;
+        let limit = DETERMINED * values.iter().copied().fold(0.0, f64::max);
+        let rank = values.iter().filter(|value| **value > limit).count();
+        if rank < speeds {
+            return Err(StateError::PortRatesLeaveOpen {
+                joint: joint(),
+                rank,
+                speeds,
+            });
+        }
+        let Ok(solved) = found.solve(&target, limit) else {
+            return Ok(vec![f64::NAN; speeds]);
+        };
+        let residual = (&map * &solved - &target).norm();
+        let limit = CONSTRAINT_TOLERANCE * target.norm().max(1.0);
+        if residual.is_nan() || residual > limit {
+            return Err(StateError::PortRatesContradict {
+                joint: joint(),
+                residual,
+                limit,
+            });
+        }
+        Ok(solved.as_slice().to_vec())
+    }
+}
