@@ -1,6 +1,8 @@
 //! Statements by kind: which may stand once, and where they stand.
 
-use super::super::ast::{Basis, Equation, File, Name, Node, Requirement, StatementKind, Target};
+use super::super::ast::{
+    Basis, Curve, Equation, File, Name, Node, Requirement, StatementKind, Target,
+};
 use super::super::code;
 use crate::diagnostic::Diagnostic;
 use std::collections::BTreeMap;
@@ -33,6 +35,7 @@ pub(super) struct Once<'a> {
     pub body_poses: Vec<(&'a Name, At<'a, [Node]>)>,
     pub bases: Vec<At<'a, Basis>>,
     pub lets: Vec<(&'a Name, &'a Node)>,
+    pub curves: Vec<At<'a, Curve>>,
     pub relations: Vec<At<'a, Equation>>,
     pub exceptions: Vec<At<'a, Equation>>,
     pub requirements: Vec<At<'a, Requirement>>,
@@ -100,6 +103,10 @@ pub(super) fn collect<'a>(source: &str, file: &'a File, errors: &mut Vec<Diagnos
             }
             StatementKind::Let(name, value) => {
                 once.lets.push((name, value));
+                continue;
+            }
+            StatementKind::Curve(value) => {
+                once.curves.push(At { value, span });
                 continue;
             }
             StatementKind::Relation(value) => {

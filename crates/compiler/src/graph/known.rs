@@ -21,6 +21,7 @@ pub fn call(function: Function, a: f64, b: Option<f64>) -> f64 {
         (Function::Sqrt, None) => a.sqrt(),
         (Function::Stumpff(order), None) => a.stumpff(order.into()),
         (Function::DexpInverse(order), None) => a.dexp_inverse(order.into()),
+        (Function::Curve(curve, order), None) => curve.value(&a, order),
         (Function::Atan2, Some(x)) => a.atan2(x),
         (Function::Larger, Some(b)) => a.larger(b),
         (Function::Ln1p, Some(scale)) => a.ln_1p_scaled(scale),
