@@ -24,7 +24,7 @@ pub fn constant(curve: Curve, name: &str, docs: &TokenStream) -> TokenStream {
     let name = ident(name);
     let table = curve.table();
     let knots = table.knots.iter().map(|knot| number(*knot));
-    let numbers = table.pieces.iter().flatten().map(|entry| number(*entry));
+    let numbers = table.coefficients.iter().map(|entry| number(*entry));
     let outside = ident(match table.outside {
         Outside::Undefined => "Undefined",
         Outside::Periodic => "Periodic",

@@ -21,6 +21,7 @@ use num_traits::Zero;
 use rustc_hash::FxHasher;
 use std::cmp::Ordering;
 use std::hash::{Hash, Hasher};
+use std::sync::OnceLock;
 
 /// What a curve is beyond its first and its last knot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -62,6 +63,8 @@ pub struct Curve(&'static Interned);
 struct Interned {
     definition: Definition,
     hash: u64,
+    /// The numbers of kernels, once they are asked for.
+    table: OnceLock<Table>,
 }
 
 impl Curve {
@@ -70,7 +73,12 @@ impl Curve {
         let mut hasher = FxHasher::default();
         definition.hash(&mut hasher);
         let hash = hasher.finish();
-        Self(intern::object(Interned { definition, hash }))
+        let table = OnceLock::new();
+        Self(intern::object(Interned {
+            definition,
+            hash,
+            table,
+        }))
     }
 
     /// The curve through points: x ascending, three or more; `None` where the ends and the values make no such curve.

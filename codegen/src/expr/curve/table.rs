@@ -13,8 +13,8 @@ const PI_DIGITS: &str = "3141592653589793238462643383279502884197169399375105820
 pub struct Table {
     /// Knots, ascending.
     pub knots: Vec<f64>,
-    /// Of each piece the coefficients of 1, t, t², ….
-    pub pieces: Vec<Vec<f64>>,
+    /// Of each piece the coefficients of 1, t, t², …, one piece after the other.
+    pub coefficients: Vec<f64>,
     /// What the curve is beyond its ends.
     pub outside: Outside,
 }
@@ -22,7 +22,7 @@ pub struct Table {
 impl Table {
     /// A number of 32 bits that is the same on every machine, and hardly the same for two tables (Fowler, Noll and Vo's hash).
     fn tag(&self) -> u32 {
-        let numbers = self.knots.iter().chain(self.pieces.iter().flatten());
+        let numbers = self.knots.iter().chain(&self.coefficients);
         let bytes = numbers.flat_map(|number| number.to_bits().to_le_bytes());
         let hash = bytes
             .chain([self.outside as u8])
@@ -34,7 +34,7 @@ impl Table {
 
     /// Whether all numbers are finite, and the knots are different doubles.
     pub fn is_sound(&self) -> bool {
-        let numbers = self.knots.iter().chain(self.pieces.iter().flatten());
+        let numbers = self.knots.iter().chain(&self.coefficients);
         let ascending = self.knots.windows(2).all(|pair| pair[0] < pair[1]);
         ascending && { numbers }.all(|number| number.is_finite())
     }
@@ -47,7 +47,11 @@ impl Curve {
     }
 
     /// Its numbers in doubles.
-    pub fn table(&self) -> Table {
+    pub fn table(&self) -> &'static Table {
+        self.0.table.get_or_init(|| self.in_doubles())
+    }
+
+    fn in_doubles(&self) -> Table {
         let definition = self.definition();
         let radians = pi() / Rational::from(180);
         let of_argument = match definition.of_degrees {
@@ -59,19 +63,19 @@ impl Curve {
             false => Rational::one(),
         };
         let double = |value: Rational| value.to_f64().unwrap_or(f64::NAN);
-        let piece = |coefficients: &Vec<Rational>| {
+        let scaled = |coefficients: &Vec<Rational>| {
             let mut scale = of_value.clone();
-            let scaled = coefficients.iter().map(|coefficient| {
-                let value = double(coefficient * &scale);
+            let mut doubles = vec![];
+            for coefficient in coefficients {
+                doubles.push(double(coefficient * &scale));
                 scale = &scale / &of_argument;
-                value
-            });
-            scaled.collect()
+            }
+            doubles
         };
         let knots = definition.knots.iter();
         Table {
             knots: knots.map(|knot| double(knot * &of_argument)).collect(),
-            pieces: definition.pieces.iter().map(piece).collect(),
+            coefficients: definition.pieces.iter().flat_map(scaled).collect(),
             outside: definition.outside,
         }
     }

@@ -267,8 +267,9 @@ impl<'a> Evaluator<'a> {
             return self.curve(name, arguments, span);
         }
         let mut values = self.values(arguments)?;
-        // It may be a curve of which the statement could not be read.
-        if self.lenient && !FUNCTIONS.contains(&name.text.as_str()) {
+        // What is like no function may be a curve of which the statement could not be read.
+        let functions = || FUNCTIONS.iter().copied();
+        if self.lenient && names::suggestion(&name.text, functions()).is_none() {
             return None;
         }
         if let Some(words) = &mut self.words {

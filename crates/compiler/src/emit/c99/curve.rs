@@ -27,8 +27,8 @@ impl Table {
             name: curve_name(curve),
             said: format!("{}: {}", curve.name(), curve.in_words()),
             knots: written(&table.knots),
-            terms: table.pieces.first().map_or(0, Vec::len),
-            coefficients: written(&table.pieces.concat()),
+            terms: table.coefficients.len() / (table.knots.len() - 1),
+            coefficients: written(&table.coefficients),
             outside: match table.outside {
                 Outside::Undefined => 0,
                 Outside::Periodic => 1,
