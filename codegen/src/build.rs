@@ -18,7 +18,7 @@ mod tests;
 
 pub use error::BuildError;
 
-use crate::derive;
+use crate::derive_in;
 use crate::derived::Derived;
 use crate::emit::files::Files;
 use crate::emit::report::Accuracy;
@@ -183,12 +183,18 @@ impl Build {
             sources.push((label, source));
         }
         let derived = parallel::map(sources, |(label, source)| {
-            Ok((label.clone(), derive(&source, &label)?))
+            Ok((
+                label.clone(),
+                derive_in(&source, &label, Some(&self.specs))?,
+            ))
         });
         let (mut joints, mut errors) = (vec![], vec![]);
         for result in derived {
             match result {
-                Ok(joint) => joints.push(joint),
+                Ok(joint) => {
+                    self.watch_knots(&joint.1);
+                    joints.push(joint);
+                }
                 Err(diagnostics) => errors.push(diagnostics),
             }
         }
@@ -196,6 +202,16 @@ impl Build {
             true => reject_duplicates(joints),
             false => Err(BuildError::Specs(errors)),
         }
+    }
+
+    /// Asks cargo to run the build script again when a file with knots changes.
+    fn watch_knots(&self, joint: &Derived) {
+        let files = joint
+            .spec
+            .curves
+            .iter()
+            .filter_map(|curve| curve.file.as_ref());
+        files.for_each(|file| watch(&self.specs.join(&file.name)));
     }
 
     fn write_single(

@@ -28,4 +28,4 @@ pub mod spec;
 pub mod text;
 
 pub use build::{Build, BuildError, GENERATE_VARIABLE};
-pub use pipeline::{WORK_LIMIT, derive};
+pub use pipeline::{WORK_LIMIT, derive, derive_in};

@@ -1,5 +1,6 @@
 //! What a spec declares, in symbols: the border between the spec language and the derivation.
 
+use crate::expr::curve::Curve;
 use crate::expr::{Expr, Rational, Symbol};
 use crate::manifold::Manifold;
 use crate::matrix::Matrix;
@@ -303,6 +304,30 @@ pub struct JointSpec {
     pub worded: Worded,
     /// Claims that need no proof.
     pub unproved: Vec<Declared<Unproved>>,
+    /// Curves in order.
+    pub curves: Vec<DeclaredCurve>,
+}
+
+/// A curve, and where it is declared.
+#[derive(Clone, Debug)]
+pub struct DeclaredCurve {
+    /// The curve.
+    pub curve: Curve,
+    /// The bytes of its statement.
+    pub span: Range<usize>,
+    /// The file with its knots, where they stand in one.
+    pub file: Option<KnotFile>,
+}
+
+/// A file with the knots of a curve.
+#[derive(Clone, Debug)]
+pub struct KnotFile {
+    /// The bytes that name it: `from "profile.csv"`.
+    pub span: Range<usize>,
+    /// Its name; it stands beside the spec.
+    pub name: String,
+    /// The knots as a spec writes them: `through [0, 0], …`.
+    pub knots: String,
 }
 
 /// The claims that a spec may leave unproved: identities.
@@ -330,6 +355,22 @@ pub struct Unproved {
 }
 
 impl JointSpec {
+    /// The curves.
+    pub fn curves(&self) -> Vec<Curve> {
+        self.curves.iter().map(|declared| declared.curve).collect()
+    }
+
+    /// The text with the knots of files in it: one that needs no file beside it.
+    pub fn whole_source(&self) -> String {
+        let mut text = self.source.clone();
+        for declared in self.curves.iter().rev() {
+            if let Some(file) = &declared.file {
+                text.replace_range(file.span.clone(), &file.knots);
+            }
+        }
+        text
+    }
+
     /// H of every body, in order.
     pub fn poses(&self) -> impl Iterator<Item = &Declared<PoseExpr>> {
         std::iter::once(&self.pose).chain(&self.more)

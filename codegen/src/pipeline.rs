@@ -5,6 +5,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::expand::task;
 use crate::expand::{self, Expansion};
 use crate::expr::budget::{self, Exhausted};
+use crate::expr::curve::Curve;
 use crate::expr::{Expr, Rational};
 use crate::kernel::Kernel;
 use crate::manifold::Ideal;
@@ -29,7 +30,15 @@ const WORK_OF_WRITTEN_TERM: u64 = 100;
 /// # Errors
 /// All errors of the text at once; if there are none, those of the derivation and its proofs.
 pub fn derive(source: &str, file: &str) -> Result<Derived, Diagnostics> {
-    let spec = spec::parse(source, file)?;
+    derive_in(source, file, None)
+}
+
+/// The same of a spec in a folder, in which files with knots of curves are looked for.
+///
+/// # Errors
+/// As [`derive`], and files that cannot be read.
+pub fn derive_in(source: &str, file: &str, folder: Option<&Path>) -> Result<Derived, Diagnostics> {
+    let spec = spec::parse_in(source, file, folder)?;
     let failed = |mut errors: Vec<Diagnostic>| {
         errors.sort_by_key(|error| error.span.start);
         Diagnostics {
@@ -121,6 +130,9 @@ fn kernels(
     if let Some(number) = all().find_map(|(kernels, _)| expand::beyond_doubles(kernels)) {
         return Err(vec![beyond_doubles(&joint.spec, &number)]);
     }
+    if let Some(rough) = all().find_map(|(kernels, _)| expand::rough_curve(kernels)) {
+        return Err(vec![rough_curve(&joint.spec, rough)]);
+    }
     budget::begin(task::FORMULAS);
     first.0.iter().for_each(spend_on_formulas);
     let of_others = others.iter().flat_map(|(kernels, _)| kernels);
@@ -208,6 +220,20 @@ fn beyond_doubles(spec: &JointSpec, number: &Rational) -> Diagnostic {
     Diagnostic::new(spec::code::TOO_LARGE, spec.pose.span.clone(), message)
         .label("derived from this")
         .help("use other units: doubles are between about 2^-1022 and 2^1024")
+}
+
+/// The error that a kernel holds a derivative of a curve that jumps.
+fn rough_curve(spec: &JointSpec, (curve, order): (Curve, u8)) -> Diagnostic {
+    let declared = spec.curves.iter().find(|declared| declared.curve == curve);
+    let span = declared.map_or(&spec.pose.span, |declared| &declared.span);
+    let name = curve.name();
+    let message = format!(
+        "the equations of motion need derivative {order} of the curve `{name}`, of which those up to {} are continuous",
+        curve.smoothness()
+    );
+    Diagnostic::new(spec::code::ROUGH_CURVE, span.clone(), message)
+        .label("not smooth enough")
+        .help("a quintic curve has four continuous derivatives, two where it goes on straight; a cubic one has two")
 }
 
 /// What it takes to simplify a kernel and to write it, in code and in pages: in proportion to its terms.

@@ -25,7 +25,7 @@ fn corpus() -> Vec<PathBuf> {
 fn message(path: &Path) -> Result<String, String> {
     let source = std::fs::read_to_string(path).expect("a text file");
     let name = path.file_name().expect("a file").to_string_lossy();
-    match hamel_codegen::derive(&source, &name) {
+    match hamel_codegen::derive_in(&source, &name, path.parent()) {
         Ok(_) => Err(format!("{name} is accepted")),
         Err(errors) => Ok(errors.render() + "\n"),
     }

@@ -37,8 +37,9 @@ const ORDER: [&str; 28] = [
 ];
 
 /// Names of the crate's root, and the layers that they come from.
-const ROOT: [(&str, &str); 3] = [
+const ROOT: [(&str, &str); 4] = [
     ("derive", "pipeline"),
+    ("derive_in", "pipeline"),
     ("emit::header", "emit::files"),
     ("emit::type_name", "emit::types"),
 ];

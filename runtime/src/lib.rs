@@ -15,6 +15,7 @@ extern crate alloc;
 
 pub use nalgebra;
 
+pub mod curve;
 #[cfg(feature = "alloc")]
 pub mod dynamics;
 #[cfg(feature = "alloc")]

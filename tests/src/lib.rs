@@ -69,7 +69,8 @@ pub fn derived(name: &str) -> Derived {
 pub fn derived_in(folder: &Path, name: &str) -> Derived {
     let file = format!("{name}.joint");
     let source = std::fs::read_to_string(folder.join(&file)).expect("the spec can be read");
-    hamel_codegen::derive(&source, &file).unwrap_or_else(|errors| panic!("{errors}"))
+    hamel_codegen::derive_in(&source, &file, Some(folder))
+        .unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 /// A registry of the paper's joints and one linkage, so that messages which list the known types stay the same when the library grows.

@@ -1,7 +1,8 @@
 //! Functions that are not smooth at every argument, and where they are.
 
 use super::Domain;
-use crate::expr::{Atom, Expr, Function, Symbol};
+use crate::expr::curve::{Curve, Outside};
+use crate::expr::{Atom, Expr, Function, Rational, Symbol};
 use crate::matrix::Matrix;
 use crate::model::JointSpec;
 use std::collections::BTreeSet;
@@ -51,6 +52,23 @@ impl Critical {
         }
     }
 
+    /// What is positive inside a curve that has no value beyond its ends: the distance from each of them.
+    fn of_ends(curve: Curve, x: &Expr, local: &[Symbol], found: &mut BTreeSet<Self>) {
+        if curve.definition().outside != Outside::Undefined {
+            return;
+        }
+        let inside = [
+            x - &curve.end_as_argument(false),
+            &curve.end_as_argument(true) - x,
+        ];
+        found.extend(inside.into_iter().map(|distance| Self {
+            function: Function::Curve(curve, 0),
+            arguments: vec![distance.at_zero(local)],
+            written: vec![distance],
+            periodic: false,
+        }));
+    }
+
     fn of_atom(atom: &Atom, local: &[Symbol], periodic: bool, found: &mut BTreeSet<Self>) {
         let Atom::Apply(application) = atom else {
             return;
@@ -61,8 +79,17 @@ impl Critical {
         {
             return Self::of_atom(&turned, local, true, found);
         }
+        if let (Function::Curve(curve, _), [angle]) = (function, arguments.as_slice())
+            && let Some((turned, turns)) = multiple(angle)
+            && curve.repeats_after(&turns)
+        {
+            return Self::of_atom(&turned, local, true, found);
+        }
         for argument in arguments {
             Self::collect(argument, local, found);
+        }
+        if let (Function::Curve(curve, _), [x]) = (function, arguments.as_slice()) {
+            return Self::of_ends(curve, x, local, found);
         }
         if matches!(
             function,
@@ -80,9 +107,15 @@ impl Critical {
 
 /// The function of which the expression is a whole multiple.
 fn whole_multiple(expression: &Expr) -> Option<Atom> {
+    let (atom, times) = multiple(expression)?;
+    times.is_integer().then_some(atom)
+}
+
+/// The function of which the expression is a multiple, and how many times it is that.
+fn multiple(expression: &Expr) -> Option<(Atom, Rational)> {
     let (monomial, coefficient) = expression.single_term()?;
     match (monomial.main(), monomial.units()) {
-        ([(atom @ Atom::Apply(_), 1)], []) if coefficient.is_integer() => Some(atom.clone()),
+        ([(atom @ Atom::Apply(_), 1)], []) => Some((atom.clone(), coefficient.clone())),
         _ => None,
     }
 }

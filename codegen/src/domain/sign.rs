@@ -11,7 +11,7 @@ use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, Symbol,
 use crate::manifold::Kind;
 use crate::model::{ConfigurationSpace, Interval, Parameter};
 use crate::precise::Interval as Enclosed;
-use crate::precise::Precise;
+use crate::precise::{Precise, range_of_curve};
 use num_traits::Zero;
 use rustc_hash::FxHashMap;
 use std::cell::RefCell;
@@ -310,6 +310,14 @@ impl Signs {
         match (application.function, application.arguments.as_slice()) {
             (Function::Exp | Function::Pi | Function::Cosh | Function::Sech, _) => Sign::Positive,
             (Function::LnCosh, _) => Sign::NotNegative,
+            (Function::Curve(curve, order), _) => {
+                let range = range_of_curve(curve, order, BOUND_BITS);
+                match (range.is_positive(), range.low().is_negative()) {
+                    (true, _) => Sign::Positive,
+                    (_, false) => Sign::NotNegative,
+                    _ => Sign::Unknown,
+                }
+            }
             (Function::Sqrt, [x]) if self.is_positive(x) => Sign::Positive,
             (Function::Sqrt, _) => Sign::NotNegative,
             // A reciprocal is not 0, nor what it is of.
@@ -347,16 +355,31 @@ impl Signs {
 
     /// A bound on the absolute value of a term, made of parameters.
     fn bound(&self, monomial: &Monomial, coefficient: &Rational) -> Option<Expr> {
-        let is_bounded = |(atom, _): &(Atom, u32)| match atom {
+        let (_, units) = monomial.split();
+        if self.sign(&units) == Sign::Unknown {
+            return None;
+        }
+        let mut bound = coefficient.abs();
+        for (atom, power) in monomial.main() {
+            let size = self.bound_of_atom(atom)?;
+            bound = (0..*power).fold(bound, |bound, _| bound * &size);
+        }
+        Some(Expr::term(bound, units))
+    }
+
+    /// A number that the absolute value does not exceed.
+    fn bound_of_atom(&self, atom: &Atom) -> Option<Rational> {
+        let is_bounded = match atom {
             Atom::Symbol(symbol) => self.bounded.contains(symbol),
             Atom::Apply(application) => {
-                use Function::{Cos, Sech, Sin, Tanh};
+                use Function::{Cos, Curve, Sech, Sin, Tanh};
+                if let Curve(curve, order) = application.function {
+                    return range_of_curve(curve, order, BOUND_BITS).rational_bound();
+                }
                 matches!(application.function, Cos | Sin | Tanh | Sech)
             }
         };
-        let (_, units) = monomial.split();
-        let known = self.sign(&units) != Sign::Unknown && monomial.main().iter().all(is_bounded);
-        known.then(|| Expr::term(coefficient.abs(), units))
+        is_bounded.then(|| Rational::from(1))
     }
 
     /// Whether a polynomial in the parameters is positive, or not negative where that is enough: by its terms, or after subtracting

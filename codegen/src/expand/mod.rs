@@ -31,7 +31,7 @@ pub use implicit::{Directions as RelationDirections, Flow, Systems};
 pub use kernels::{kernels, of_body, speed_map};
 pub use motion::Motion;
 pub use nonholonomic::{Nonholonomic, speed_names};
-pub use numbers::beyond_doubles;
+pub use numbers::{beyond_doubles, rough_curve};
 pub use steps::Steps;
 pub use still::Still;
 pub use twist::{TwistJacobian, bracket, in_child_frames};

@@ -1,19 +1,40 @@
-//! Numbers of kernels that doubles do not hold: they would be written as 0 or infinity without a word.
+//! What kernels must not hold: numbers that no double holds, which would be written as 0 or infinity without a word, and derivatives of curves that jump.
 
-use crate::expr::{Atom, Expr, Rational};
+use crate::expr::curve::Curve;
+use crate::expr::{Atom, Expr, Function, Rational};
 use crate::kernel::{Kernel, Step};
 use crate::matrix::Matrix;
 use num_traits::{ToPrimitive, Zero};
 
 /// A number in one of the kernels whose nearest double is 0, subnormal or infinite.
 pub fn beyond_doubles(kernels: &[Kernel]) -> Option<Rational> {
-    kernels.iter().find_map(|kernel| {
-        let outputs = kernel.outputs.iter().flat_map(Matrix::entries);
-        let steps = kernel.steps.iter().flat_map(|step| match step {
-            Step::Let(_, value) => std::slice::from_ref(value),
-            Step::Call { argument, .. } => argument.entries(),
-        });
-        outputs.chain(steps).find_map(in_expression)
+    kernels.iter().flat_map(expressions).find_map(in_expression)
+}
+
+/// A kernel with a derivative of a curve that jumps somewhere: the curve and the order of the derivative.
+pub fn rough_curve(kernels: &[Kernel]) -> Option<(Curve, u8)> {
+    kernels.iter().flat_map(expressions).find_map(rough_in)
+}
+
+/// What a kernel evaluates.
+fn expressions(kernel: &Kernel) -> impl Iterator<Item = &Expr> {
+    let outputs = kernel.outputs.iter().flat_map(Matrix::entries);
+    let steps = kernel.steps.iter().flat_map(|step| match step {
+        Step::Let(_, value) => std::slice::from_ref(value),
+        Step::Call { argument, .. } => argument.entries(),
+    });
+    outputs.chain(steps)
+}
+
+fn rough_in(expression: &Expr) -> Option<(Curve, u8)> {
+    expression.atoms().iter().find_map(|atom| {
+        let Atom::Apply(application) = atom else {
+            return None;
+        };
+        match application.function {
+            Function::Curve(curve, order) if order > curve.smoothness() => Some((curve, order)),
+            _ => application.arguments.iter().find_map(rough_in),
+        }
     })
 }
 

@@ -1,6 +1,7 @@
 //! The indeterminates of the polynomial ring: symbols, and functions applied to expressions.
 
 use super::Expr;
+use super::curve::Curve;
 use rustc_hash::FxHasher;
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
@@ -147,6 +148,8 @@ pub enum Function {
     Stumpff(u8),
     /// `n`-th derivative of the coefficient of `ad²` in `dexp⁻¹`.
     DexpInverse(u8),
+    /// A curve of the spec, or its derivative of this order.
+    Curve(Curve, u8),
     /// Reciprocal.
     Recip,
     /// The identity: a sum that is kept together, so that products with it are not multiplied out.

@@ -184,6 +184,7 @@ fn slope_of_function(
             (&weighted - &x.stumpff(order + 1)).scaled(&half, &Monomial::one()) * dx.clone()
         }
         (Function::DexpInverse(order), [x], [dx]) => &x.dexp_inverse(order + 1) * dx,
+        (Function::Curve(curve, order), [x], [dx]) => &curve.at(x, order + 1) * dx,
         _ => Expr::zero(),
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! Functions that arise in derivations alone have names of their own: `stumpff2`, `dexp_inverse1`.
 
+use super::curve::Curve;
 use super::{Application, Atom, Expr, Function, Monomial, Rational};
 use num_bigint::BigInt;
 use num_traits::One;
@@ -118,6 +119,11 @@ impl Display for Atom {
         match self {
             Self::Symbol(symbol) => f.write_str(&symbol.spelling),
             Self::Apply(application) => {
+                if let (Function::Curve(curve, order), [argument]) =
+                    (application.function, &application.arguments[..])
+                {
+                    return write_curve(f, curve, order, argument);
+                }
                 // Functions that the spec language has no name for, in its words.
                 let (before, after) = match application.function {
                     Function::LnCosh => ("log(cosh(", "))"),
@@ -142,6 +148,16 @@ impl Display for Atom {
     }
 }
 
+/// `lift(q)`, `derivative(lift, q)`, `derivative(lift, q, 2)`.
+fn write_curve(f: &mut Formatter<'_>, curve: Curve, order: u8, argument: &Expr) -> Result {
+    let name = curve.name();
+    match order {
+        0 => write!(f, "{name}({argument})"),
+        1 => write!(f, "derivative({name}, {argument})"),
+        _ => write!(f, "derivative({name}, {argument}, {order})"),
+    }
+}
+
 impl Display for Function {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match self {
@@ -161,6 +177,7 @@ impl Display for Function {
             Self::Sqrt => f.write_str("sqrt"),
             Self::Stumpff(order) => write!(f, "stumpff{order}"),
             Self::DexpInverse(order) => write!(f, "dexp_inverse{order}"),
+            Self::Curve(curve, _) => f.write_str(curve.name()),
             Self::Recip => f.write_str("recip"),
             Self::Group => Ok(()),
         }

@@ -106,6 +106,7 @@ impl Number for f64 {
             (Function::Atan2, [y, x]) => y.atan2(*x),
             (Function::Stumpff(order), [x]) => stumpff_series(order.into(), *x),
             (Function::DexpInverse(order), [x]) => dexp_inverse_series(order.into(), *x),
+            (Function::Curve(curve, order), [x]) => curve.value(x, order),
             _ => f64::NAN,
         }
     }

@@ -6,6 +6,7 @@
 
 mod atom;
 pub mod budget;
+pub mod curve;
 mod derivative;
 mod display;
 mod division;

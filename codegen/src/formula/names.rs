@@ -230,6 +230,9 @@ fn function_name(function: Function) -> String {
         Function::Sqrt => "root".into(),
         Function::Stumpff(order) => format!("stumpff{order}"),
         Function::DexpInverse(order) => format!("dexp_inverse{order}"),
+        Function::Curve(curve, 0) => curve.name().into(),
+        Function::Curve(curve, 1) => format!("d_{}", curve.name()),
+        Function::Curve(curve, order) => format!("d{order}_{}", curve.name()),
         Function::Recip => "inverse".into(),
         Function::Group => "sum".into(),
     }

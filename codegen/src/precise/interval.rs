@@ -5,6 +5,8 @@
 //! by more than that error.
 //! Where a function has no value, or an end overflows, the enclosure is unbounded and says nothing.
 
+pub mod curve;
+
 use super::Precise;
 use super::number::End;
 use crate::expr::{Function, Number, Rational};
@@ -12,6 +14,10 @@ use crate::expr::{Function, Number, Rational};
 /// An end of a function is moved outwards by 2² units in the last place: functions err by one, and a rational with long numerator and
 /// denominator by two and a half.
 const OUTWARD_BITS: i32 = 2;
+
+/// The denominator of a rational bound, and the largest numerator, which a double holds exactly.
+const BOUND_SCALE: i64 = 1 << 32;
+const LARGEST_SCALED: f64 = 9_007_199_254_740_992.0;
 
 /// Where an interval lies beside 0, which may be an end of it.
 #[derive(Clone, Copy, Eq, PartialEq)]
@@ -101,6 +107,14 @@ impl Interval {
     /// The largest absolute value in it.
     pub fn largest_size(&self) -> Precise {
         larger(self.low.abs(), self.high.abs())
+    }
+
+    /// A rational number of few digits that no absolute value in it exceeds; `None` where it is unbounded or large.
+    pub fn rational_bound(&self) -> Option<Rational> {
+        let scale = BOUND_SCALE as f64;
+        let scaled = (self.largest_size().to_f64().next_up() * scale).ceil();
+        let known = self.is_bounded() && scaled < LARGEST_SCALED;
+        known.then(|| Rational::new((scaled as i64).into(), BOUND_SCALE.into()))
     }
 
     /// The smallest absolute value in it.
@@ -495,6 +509,7 @@ impl Number for Interval {
             (Function::Sech, [x]) => x.sech(),
             (Function::LnCosh, [x]) => x.ln_cosh(),
             (Function::Stumpff(order), [s]) => s.stumpff(order.into()),
+            (Function::Curve(curve, order), [x]) => curve::enclosed(curve, x, order),
             _ => Self::whole(self.bits()),
         }
     }

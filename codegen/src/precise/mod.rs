@@ -19,6 +19,7 @@ mod tests;
 
 pub use enclosure::Enclosure;
 pub use interval::Interval;
+pub use interval::curve::range as range_of_curve;
 pub use number::Precise;
 pub use point::Point;
 pub use sampler::Sampler;

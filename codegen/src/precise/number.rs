@@ -1,5 +1,6 @@
 //! Binary floating-point numbers of any number of bits.
 
+use crate::expr::curve::Ordered;
 use crate::expr::{Function, Number, Rational};
 use astro_float_num::{BigFloat, Consts, INF_POS, RoundingMode, Sign};
 use num_bigint::{BigInt, Sign as IntegerSign};
@@ -431,8 +432,18 @@ impl Number for Precise {
             (Function::Atan2, [y, x]) => y.atan2(x),
             (Function::Stumpff(order), [s]) => s.stumpff(order.into()),
             (Function::DexpInverse(derivative), [s]) => s.dexp_inverse(derivative.into()),
+            (Function::Curve(curve, order), [x]) => curve.value(x, order),
             _ => Self::wrap(BigFloat::nan(None), self.bits),
         }
+    }
+}
+
+impl Ordered for Precise {
+    fn is_below(&self, other: &Self) -> bool {
+        self.compare(other) == Some(Ordering::Less)
+    }
+    fn nearest_double(&self) -> f64 {
+        self.to_f64()
     }
 }
 

@@ -221,6 +221,10 @@ fn refusal(critical: &Critical, span: &Range<usize>) -> Diagnostic {
     let written = in_words(argument);
     let message = match (critical.function, rest) {
         (Function::Recip, _) => format!("a quotient by {written}, which may be 0"),
+        (Function::Curve(curve, _), _) => format!(
+            "the curve `{}` ends where {written} is 0, and nothing keeps the joint from going there",
+            curve.name()
+        ),
         (Function::Ln, _) => {
             format!("the logarithm of {written}, which is not shown to be positive")
         }
@@ -245,8 +249,12 @@ fn refusal(critical: &Critical, span: &Range<usize>) -> Diagnostic {
         (Function::Atan2, _) => "…".to_owned(),
         _ => short(argument.to_string()),
     };
+    let otherwise = match critical.function {
+        Function::Curve(..) => "`continue linear` gives the curve values beyond its ends",
+        _ => "ranges of parameters and `require` help to show that it does not vanish",
+    };
     refuted(code::NOT_DEFINED, span, &message, "the joint needs it").help(format!(
-        "if the joint ends there, declare it: `except {locus} = 0;`; ranges of parameters and `require` help to show that it does not vanish"
+        "if the joint ends there, declare it: `except {locus} = 0;`; {otherwise}"
     ))
 }
 
@@ -268,6 +276,9 @@ fn at_base(critical: &Critical, span: &Range<usize>) -> Diagnostic {
     let written = written.join(", ");
     let message = match critical.function {
         Function::Recip => format!("Φ divides by {written}, which is 0 at ϕ = 0"),
+        Function::Curve(curve, _) => {
+            format!("Φ takes the curve `{}` at its end", curve.name())
+        }
         Function::Ln => format!("Φ takes the logarithm of {written}, which is 0 at ϕ = 0"),
         Function::Atan2 => format!("Φ takes atan2({written}), and both are 0 at ϕ = 0"),
         _ => format!("Φ takes the root of {written}, which is 0 at ϕ = 0"),

@@ -1,6 +1,7 @@
 //! The tree of a spec as it is written, with the bytes of the source that each part comes from.
 
 use crate::expr::Rational;
+use crate::expr::curve::{Ends, Kind, Outside};
 use std::collections::BTreeSet;
 use std::ops::Range;
 
@@ -105,6 +106,8 @@ pub(super) enum StatementKind {
     Port(Port),
     /// `let a = …;`
     Let(Name, Node),
+    /// `curve f(unit): unit = … ;`
+    Curve(Curve),
     /// `relation a = b;`
     Relation(Equation),
     /// `except a = b;`
@@ -117,6 +120,29 @@ pub(super) enum StatementKind {
     Assign(Target, Vec<Node>),
     /// `H.a = …;`, the pose of one of several bodies: one value.
     BodyPose(Name, Vec<Node>),
+}
+
+/// A function through knots.
+#[derive(Debug)]
+pub(super) struct Curve {
+    pub name: Name,
+    /// Unit of the argument.
+    pub argument: Name,
+    /// Unit of the values.
+    pub unit: Name,
+    pub kind: Kind,
+    pub ends: Ends,
+    pub knots: Knots,
+    /// `continue …`, and where it stands.
+    pub outside: Option<(Outside, Range<usize>)>,
+}
+
+/// `through [x, y], …`, or `from "file"`.
+#[derive(Debug)]
+pub(super) enum Knots {
+    Points(Vec<(Range<usize>, [Rational; 2])>),
+    /// Its name, and the bytes from `from` on.
+    File(Name, Range<usize>),
 }
 
 /// `left = right`, with the doc comment before the statement.
@@ -215,7 +241,10 @@ impl Node {
         match &self.kind {
             NodeKind::Number(_) => {}
             NodeKind::Name(name) => _ = names.insert(name),
-            NodeKind::Call(_, arguments) => all(arguments),
+            NodeKind::Call(name, arguments) => {
+                all(arguments);
+                names.insert(&name.text);
+            }
             NodeKind::Field(base, _) | NodeKind::Negative(base) => base.collect_names(names),
             NodeKind::Index(base, indices) => {
                 all(indices);

@@ -65,6 +65,8 @@ codes! {
     UNPROVED "E0323" "An `unproved` of something that is no such claim, or that is proved."
     BODIES "E0324" "`H` beside `bodies`, or `H.name` without them."
     PORT "E0325" "A port that is no angle or length of Q, or that no velocity moves."
+    CURVE "E0326" "Knots, ends or a continuation that make no curve."
+    TABLE "E0327" "A file of knots that cannot be read."
 
     DIMENSION "E0401" "The number of local coordinates is not the dimension of the manifold."
     PARENT_FRAME "E0402" "No constant directions to read in the parent frame."
@@ -86,6 +88,7 @@ codes! {
     TWIST_MAP_FRAME "E0419" "X is not the velocity in the declared frame."
     NOT_DEFINED "E0420" "A quotient, root, logarithm or angle that is not smooth everywhere."
     NOT_PROVED "E0421" "A claim that algebra does not decide: not proved, or undecided."
+    ROUGH_CURVE "E0422" "A curve of which a derivative is needed that jumps."
 }
 
 /// What a code means: a title, why that is an error, a wrong and a right spec. `e305` and `305` are other spellings.

@@ -27,6 +27,11 @@ pub(super) const LARGEST_POWER: u32 = 16;
 /// Most terms of an angle: sines and cosines of sums are expanded, and each term doubles them.
 pub(super) const LONGEST_ANGLE: usize = 6;
 
+/// Longest source, in bytes.
+pub(super) const LARGEST_SOURCE: usize = 64 * 1024;
+/// Most knots of a curve.
+pub(super) const MOST_KNOTS: usize = 1000;
+
 const MOST_TERMS: usize = 5_000;
 const HIGHEST_DEGREE: u32 = 64;
 const LONGEST_COEFFICIENT: u64 = 1_024;

@@ -22,6 +22,7 @@ pub use names::STATEMENTS;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::JointSpec;
+use std::path::Path;
 
 /// An error on its way to the list of a file.
 type Fallible<T> = Result<T, Box<Diagnostic>>;
@@ -32,11 +33,19 @@ type Fallible<T> = Result<T, Box<Diagnostic>>;
 /// All errors of syntax, names, shapes and meaning, in the order of the text; see [`code`]. What only proofs and
 /// derivations can show (conditions that are always or never met, ranks, Φ(Q, 0) = Q, AᵀS̄ = 0) is not checked here.
 pub fn parse(source: &str, file: &str) -> Result<JointSpec, Diagnostics> {
+    parse_in(source, file, None)
+}
+
+/// The same of a spec in a folder, in which files with knots of curves are looked for.
+///
+/// # Errors
+/// As [`parse`], and files that cannot be read.
+pub fn parse_in(source: &str, file: &str, folder: Option<&Path>) -> Result<JointSpec, Diagnostics> {
     let mut errors = vec![];
     let spec = scan::check(source, &mut errors)
         .then(|| syntax::file(source, &mut errors))
         .flatten()
-        .and_then(|file| declare::joint(source, &file, &mut errors));
+        .and_then(|file| declare::joint((source, folder), &file, &mut errors));
     match spec {
         Some(spec) if errors.is_empty() => Ok(spec),
         _ => Err(report(source, file, errors)),

@@ -8,11 +8,11 @@ use proc_macro2::{Ident, Span, TokenTree};
 /// Words that begin the statements of the language.
 pub const STATEMENTS: &[&str] = &[
     "config", "relation", "home", "except", "require", "basis", "local", "velocity", "speeds",
-    "bodies", "port", "let", "Phi", "H", "X", "A", "S_bar", "unproved",
+    "bodies", "port", "let", "curve", "Phi", "H", "X", "A", "S_bar", "unproved",
 ];
 
 /// Those of them that came after specs could use them as names, which they still can: no expression begins a statement.
-const STILL_NAMES: &[&str] = &["bodies", "port"];
+const STILL_NAMES: &[&str] = &["bodies", "port", "curve"];
 
 /// Words that belong to the language.
 const WORDS: &[&str] = &[

@@ -1,11 +1,10 @@
 //! What may reach the tokenizer: size, characters and brackets, so that neither it nor the parser recurses without bound.
 
 use super::code;
+use super::limits::LARGEST_SOURCE;
 use crate::diagnostic::Diagnostic;
 use std::ops::Range;
 
-/// Longest source, in bytes.
-const LARGEST_SOURCE: usize = 64 * 1024;
 /// Deepest nesting of brackets.
 const DEEPEST: usize = 64;
 /// What the language is written with, outside comments, besides letters, digits and white space.

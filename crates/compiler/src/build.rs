@@ -370,12 +370,15 @@ impl Build {
     fn derive(&self, kind: &str) -> Result<Option<Derived>, Error> {
         let file = format!("{kind}.joint");
         let places = self.folders.iter().map(|folder| folder.join(&file));
-        let text = match places.into_iter().find(|path| path.exists()) {
-            Some(path) => Some(read(&path)?),
+        let place = places.into_iter().find(|path| path.exists());
+        let text = match &place {
+            Some(path) => Some(read(path)?),
             None => self.texts.get(kind).cloned(),
         };
+        let folder = place.as_deref().and_then(Path::parent);
         let derive = |text: String| {
-            hamel_codegen::derive(&text, &file).map_err(|errors| Error::Spec(Box::new(errors)))
+            hamel_codegen::derive_in(&text, &file, folder)
+                .map_err(|errors| Error::Spec(Box::new(errors)))
         };
         text.map(derive).transpose()
     }

@@ -23,9 +23,11 @@ pub use hamel_control as control;
 pub use hamel_integrate as integrate;
 #[cfg(feature = "joints")]
 pub use hamel_joints as joints;
+pub use hamel_runtime::{
+    curve, erased, finite, group, joint, nalgebra, registry, scalar, shown, spatial,
+};
 #[cfg(feature = "alloc")]
 pub use hamel_runtime::{dynamics, elements, mechanism, steps, time_function};
-pub use hamel_runtime::{erased, finite, group, joint, nalgebra, registry, scalar, shown, spatial};
 #[cfg(feature = "scene")]
 pub use hamel_scene as scene;
 #[cfg(feature = "scene")]

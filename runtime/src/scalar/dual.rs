@@ -1,6 +1,7 @@
 //! Dual numbers: a value and its derivatives along one or several directions. Nest them for higher derivatives.
 
 use super::Scalar;
+use crate::curve::Curve;
 use crate::spatial::vee;
 use core::array::from_fn;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -242,6 +243,13 @@ impl<T: Scalar, const D: usize> Scalar for Dual<T, D> {
         self.chain(
             self.value.dexp_inverse(derivative),
             self.value.dexp_inverse(derivative + 1),
+        )
+    }
+
+    fn curve(self, curve: &Curve, order: usize) -> Self {
+        self.chain(
+            self.value.curve(curve, order),
+            self.value.curve(curve, order + 1),
         )
     }
 

@@ -1,6 +1,7 @@
 //! [`Scalar`] for `f64` and `f32`.
 
 use super::{Native, Scalar, hyperbolic, rotation, series};
+use crate::curve::Curve;
 use nalgebra::{Matrix3, Vector3};
 use num_traits::Float;
 
@@ -96,6 +97,11 @@ macro_rules! implement_scalar {
             #[inline]
             fn dexp_inverse(self, derivative: usize) -> Self {
                 series::dexp_inverse(self, derivative)
+            }
+
+            #[inline]
+            fn curve(self, curve: &Curve, order: usize) -> Self {
+                curve.evaluate(self, self.into(), order)
             }
 
             #[inline]

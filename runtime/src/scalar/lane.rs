@@ -5,6 +5,7 @@
 //! selection, sines and cosines; the other functions are those of `f64`, and a loop with them is not vectorised.
 
 use super::{Scalar, batch, rotation};
+use crate::curve::Curve;
 use crate::unrolled;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use nalgebra::{Matrix3, Vector3};
@@ -162,6 +163,11 @@ impl<const FUSED: bool> Scalar for Lane<FUSED> {
     #[inline]
     fn dexp_inverse(self, derivative: usize) -> Self {
         Self(self.0.dexp_inverse(derivative))
+    }
+
+    #[inline]
+    fn curve(self, curve: &Curve, order: usize) -> Self {
+        Self(self.0.curve(curve, order))
     }
 
     fn rotation_vector(rotation: &Matrix3<Self>) -> Vector3<Self> {

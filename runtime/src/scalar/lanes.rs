@@ -5,6 +5,7 @@
 //! there are not within 2 ulp at every argument. So are the functions that choose a formula by their argument.
 
 use super::{Scalar, rotation};
+use crate::curve::Curve;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use nalgebra::{Matrix3, Vector3};
 use num_traits::{One, Zero};
@@ -171,6 +172,10 @@ macro_rules! implement_lanes {
 
             fn dexp_inverse(self, derivative: usize) -> Self {
                 self.each(|s| s.dexp_inverse(derivative))
+            }
+
+            fn curve(self, curve: &Curve, order: usize) -> Self {
+                self.each(|x| x.curve(curve, order))
             }
 
             fn rotation_vector(rotation: &Matrix3<Self>) -> Vector3<Self> {

@@ -23,6 +23,7 @@ pub use lane::Lane;
 #[cfg(feature = "wide")]
 pub use lanes::{F64x4, F64x8, Mask4, Mask8};
 
+use crate::curve::Curve;
 use core::ops::Neg;
 use nalgebra::{
     ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, Matrix3, Vector3,
@@ -116,6 +117,9 @@ pub trait Scalar:
     ///
     /// `G` is the coefficient of `ad²` in `dexp⁻¹`; `G(0) = 1/12`.
     fn dexp_inverse(self, derivative: usize) -> Self;
+
+    /// The derivative of this order of a curve at `self`, that of order 0 being its value; the piece is that of the plain value.
+    fn curve(self, curve: &Curve, order: usize) -> Self;
 
     /// Rotation vector `r` with `exp(r~) = rotation` and `|r| ≤ π`, accurate at every angle.
     fn rotation_vector(rotation: &Matrix3<Self>) -> Vector3<Self>;

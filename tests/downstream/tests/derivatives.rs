@@ -3,10 +3,12 @@
 use hamel::erased::AnyJoint;
 use hamel::joint::Member;
 use hamel::registry::JointRegistry;
+use hamel_downstream::WITH_KNOTS;
 use hamel_downstream::joints::{
-    BallCayley, BallTurns, Bead, CarWheels, Catenary, CatenaryLength, CrankRocker, DirectionSensor,
-    ENTRIES, FourBar, FourBarThrough, GearedRotor, PlanarTurns, PowerGuide, RollingBallCayley,
-    Scara, SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint,
+    BallCayley, BallTurns, Bead, CamCircle, CamFollower, CarWheels, Catenary, CatenaryLength,
+    CrankRocker, DirectionSensor, ENTRIES, FourBar, FourBarThrough, GearedRotor, MeasuredRocker,
+    PlanarTurns, PowerGuide, Rail, RollingBallCayley, Scara, SkateHeading, SkewScrew,
+    SliderCrankLinks, SliderCrankRod, SpherePoint, Valley,
 };
 use hamel_tests::derivatives::{self, Equipped, Kernels, bare_and_equipped, behind, of};
 use hamel_tests::differences::STEP;
@@ -28,6 +30,13 @@ fn kinds() -> Vec<Arc<dyn AnyJoint>> {
     random::kinds(&registry)
 }
 
+/// Those that are smooth to all orders, as differences of high order need it.
+fn without_knots() -> Vec<Arc<dyn AnyJoint>> {
+    let mut kinds = kinds();
+    kinds.retain(|kind| !WITH_KNOTS.contains(&kind.name()));
+    kinds
+}
+
 /// The kernels of the joints of [`kinds`].
 fn kernels(joint: &dyn AnyJoint) -> Box<dyn Kernels> {
     let car = CarWheels::new(0.7, 0.85, 1.0);
@@ -37,6 +46,12 @@ fn kernels(joint: &dyn AnyJoint) -> Box<dyn Kernels> {
         of(BallCayley),
         of(BallTurns),
         of(Bead::new(0.7)),
+        of(CamCircle::new(0.7)),
+        of(CamFollower::new(0.7)),
+        of(Member::<_, 1>(CamFollower::new(0.7))),
+        of(MeasuredRocker),
+        of(Rail::new(0.7, 0.85)),
+        of(Valley),
         of(Catenary::new(0.7)),
         of(CatenaryLength::new(0.7)),
         of(DirectionSensor::new(0.7)),
@@ -97,15 +112,15 @@ fn energies() {
 
 #[test]
 fn linear_steps_of_bare_trees() {
-    linear_step::bare(cases(&kinds(), 5, TREES), FINE);
+    linear_step::bare(cases(&without_knots(), 5, TREES), FINE);
 }
 
 #[test]
 fn linear_steps_of_equipped_trees() {
-    linear_step::equipped(cases(&kinds(), 4, TREES), FINE);
+    linear_step::equipped(cases(&without_knots(), 4, TREES), FINE);
 }
 
 #[test]
 fn linear_steps_of_coupled_trees() {
-    linear_step::constrained(cases(&kinds(), 5, TREES), 20, FINE);
+    linear_step::constrained(cases(&without_knots(), 5, TREES), 20, FINE);
 }

@@ -2,6 +2,7 @@
 
 use hamel::erased::AnyJoint;
 use hamel::registry::JointRegistry;
+use hamel_downstream::WITH_KNOTS;
 use hamel_tests::{motion, random};
 use std::sync::Arc;
 
@@ -13,7 +14,14 @@ fn kinds() -> Vec<Arc<dyn AnyJoint>> {
     random::kinds(&registry)
 }
 
-hamel_tests::reference_form_tests!(crate::kinds());
+/// The laws compare with differences of high order.
+fn without_knots() -> Vec<Arc<dyn AnyJoint>> {
+    let mut kinds = kinds();
+    kinds.retain(|kind| !WITH_KNOTS.contains(&kind.name()));
+    kinds
+}
+
+hamel_tests::reference_form_tests!(crate::without_knots());
 
 #[test]
 fn energy_is_kept_in_simulation() {

@@ -2,10 +2,10 @@
 
 use hamel::joint::Member;
 use hamel_downstream::joints::{
-    BallCayley, BallTurns, Bead, CarWheels, Catenary, CatenaryLength, CrankRocker, DirectionSensor,
-    ENTRIES, FiveBar, FourBar, FourBarThrough, GearedRotor, ParallelAnkle, PlanarTurns, PowerGuide,
-    RollingBallCayley, Scara, SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod,
-    SpherePoint, Wishbone,
+    BallCayley, BallTurns, Bead, CamCircle, CamFollower, CarWheels, Catenary, CatenaryLength,
+    CrankRocker, DirectionSensor, ENTRIES, FiveBar, FourBar, FourBarThrough, GearedRotor,
+    MeasuredRocker, ParallelAnkle, PlanarTurns, PowerGuide, Rail, RollingBallCayley, Scara,
+    SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint, Valley, Wishbone,
 };
 use hamel_tests::laws::Reach::{self, Entries, HalfTurn};
 use hamel_tests::laws::check_within;
@@ -50,16 +50,20 @@ law_tests! {
     ball_cayley: BallCayley, HalfTurn;
     ball_turns: BallTurns, Entries(0.5);
     bead: Bead::new(0.7), HalfTurn;
+    cam_circle: CamCircle::new(0.7), HalfTurn;
     catenary: Catenary::new(0.7), HalfTurn;
     catenary_length: CatenaryLength::new(0.7), HalfTurn;
     direction_sensor: DirectionSensor::new(0.7), Entries(1.0);
+    measured_rocker: MeasuredRocker, Entries(1.0);
     planar_turns: PlanarTurns, HalfTurn;
     power_guide: PowerGuide::new(0.7), Entries(1.0);
+    rail: Rail::new(0.7, 0.2), HalfTurn;
     rolling_ball_cayley: RollingBallCayley::new(0.7), HalfTurn;
     scara: Scara, HalfTurn;
     skate_heading: SkateHeading, Entries(1.0);
     skew_screw: SkewScrew, HalfTurn;
     sphere_point: SpherePoint::new(0.7), Entries(1.0);
+    valley: Valley, HalfTurn;
 }
 
 /// The law suite of joints that relations alone give. Definitions in high precision know Φ as a formula, which these have not.
@@ -98,6 +102,7 @@ macro_rules! laws_of_bodies {
 }
 
 laws_of_bodies! {
+    cam_follower: CamFollower::new(0.03), [1];
     car_wheels: CarWheels::new(1.1, 0.7, 0.4), [1, 2, 3, 4];
     crank_rocker: CrankRocker::new(0.9, 0.4, 1.1, 1.2), [1, 2];
     five_bar: FiveBar::new(0.3, 0.2, 0.3, 0.22, 0.28), [1, 2, 3];

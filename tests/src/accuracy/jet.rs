@@ -283,6 +283,7 @@ fn derivative(function: Function, order: u8, x: &Node) -> Node {
             ahead.plus(&behind).times(&Node::input(0.5))
         }
         (Function::DexpInverse(n), _) => once(Function::DexpInverse(n + 1)),
+        (Function::Curve(curve, n), _) => at(Function::Curve(curve, n + order)),
         (Function::Group, 1) => number(1),
         // Ln1p and Larger are of written formulas, not of definitions.
         (

@@ -177,6 +177,7 @@ fn value(function: Function, x: Wide) -> Wide {
         | Function::Ln1p
         | Function::Larger
         | Function::Atan2
+        | Function::Curve(..)
         | Function::DexpInverse(_) => by_precise(function, &[x]),
     }
 }
@@ -200,6 +201,7 @@ fn slope(function: Function, x: Wide) -> Wide {
             (ahead - stumpff(k + 1, x)).halved(1)
         }
         Function::DexpInverse(n) => by_precise(Function::DexpInverse(n + 1), &[x]),
+        Function::Curve(curve, n) => by_precise(Function::Curve(curve, n + 1), &[x]),
         Function::Group => Wide::from_integer(1),
         Function::Pi | Function::Ln1p | Function::Larger | Function::Atan2 => Wide::ZERO,
     }

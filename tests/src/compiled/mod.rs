@@ -52,13 +52,32 @@ pub fn joint(name: &str) -> Option<Rc<JointType>> {
 /// # Panics
 /// Where a joint is not of the library.
 pub fn model(name: &str, mechanism: &Mechanism) -> Model {
+    model_on(name, mechanism, joint)
+}
+
+/// The same on joints that `joint` knows.
+///
+/// # Panics
+/// Where it does not know one.
+pub fn model_on(
+    name: &str,
+    mechanism: &Mechanism,
+    joint: impl Fn(&str) -> Option<Rc<JointType>>,
+) -> Model {
     let bodies = mechanism.bodies().iter().enumerate();
     Model {
         name: name.to_owned(),
         gravity: *mechanism.gravity(),
         bodies: bodies
             .map(|(index, owner)| {
-                body(owner, mechanism.armature(index), mechanism.is_driven(index))
+                let kind = owner.joint().name();
+                let first = joint(kind).unwrap_or_else(|| panic!("`{kind}` is not known"));
+                body(
+                    owner,
+                    &first,
+                    mechanism.armature(index),
+                    mechanism.is_driven(index),
+                )
             })
             .collect(),
         elements: Elements::default(),
@@ -69,18 +88,16 @@ pub fn model(name: &str, mechanism: &Mechanism) -> Model {
     }
 }
 
-fn body(body: &TreeBody, armature: &[f64], driven: bool) -> Body {
+fn body(body: &TreeBody, first: &Rc<JointType>, armature: &[f64], driven: bool) -> Body {
     let mut parameters = vec![];
     body.joint()
         .parameters(&mut |_, value| parameters.push(value));
-    let kind = body.joint().name();
-    let first = joint(kind).unwrap_or_else(|| panic!("`{kind}` is not of the library"));
     Body {
         name: body.name().to_owned(),
         joint_name: body.joint_name().to_owned(),
         parent: body.parent(),
         joint: match body.joint().body().checked_sub(1) {
-            None => first,
+            None => Rc::clone(first),
             Some(further) => Rc::clone(&first.more[further]),
         },
         parameters,

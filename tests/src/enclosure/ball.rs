@@ -259,6 +259,16 @@ impl Ball {
         Self::arithmetic(middle, self.radius.plus(other.radius))
     }
 
+    /// A ball about the midpoint that holds the other, too.
+    pub fn hull(&self, other: &Self) -> Self {
+        let difference = self.minus(other);
+        let distance = bounds(&difference.middle).0.plus(difference.radius);
+        match difference.is_known() {
+            true => self.clone().widened(distance),
+            false => Self::unknown(),
+        }
+    }
+
     /// Difference.
     pub fn minus(&self, other: &Self) -> Self {
         self.plus(&other.negative())

@@ -1,6 +1,7 @@
 //! Truncated polynomials in ϕ over balls: values with their first and second derivatives at ϕ = 0.
 
 use super::ball::Ball;
+use super::curve;
 use hamel_codegen::expr::Function;
 
 /// A value with as many orders of derivatives as are known; what does not vary has none.
@@ -281,6 +282,7 @@ fn value(function: Function, x: &Ball) -> Ball {
         Function::Ln => x.ln(),
         Function::Sqrt => x.sqrt(),
         Function::Stumpff(order) => x.stumpff(order.into()),
+        Function::Curve(curve, order) => curve::derivative(curve, order, x),
         // The inverse of dexp serves finite maps that no law here asks for.
         _ => Ball::unknown(),
     }
@@ -314,6 +316,10 @@ fn derivatives(function: Function, x: &Ball) -> Derivatives {
             let ahead = slope(order + 2).times(&Ball::exact(order.into()));
             let bend = ahead.minus(&slope(order + 1)).times(&half());
             [f, slope(order), bend]
+        }
+        Function::Curve(curve, order) => {
+            let ahead = |by| curve::derivative(curve, order + by, x);
+            [f, ahead(1), ahead(2)]
         }
         _ => [f, Ball::unknown(), Ball::unknown()],
     }

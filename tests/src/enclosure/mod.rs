@@ -5,6 +5,7 @@
 //! lost where its determinant cannot be told from 0 at the last precision.
 
 mod ball;
+mod curve;
 mod evaluate;
 mod grid;
 mod jet;

@@ -1,6 +1,7 @@
 //! Doubles that count the operations on them.
 
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use hamel::curve::Curve;
 use hamel::nalgebra::{Matrix3, Vector3};
 use hamel::scalar::Scalar;
 use num_traits::{One, Zero};
@@ -128,6 +129,10 @@ impl Scalar for Counted {
 
     fn dexp_inverse(self, derivative: usize) -> Self {
         called(self.0.dexp_inverse(derivative))
+    }
+
+    fn curve(self, curve: &Curve, order: usize) -> Self {
+        called(self.0.curve(curve, order))
     }
 
     fn rotation_vector(rotation: &Matrix3<Self>) -> Vector3<Self> {

@@ -34,7 +34,7 @@ pub fn tokens(derived: &Derived) -> TokenStream {
             quote! { &PARAMETERS },
         ),
     };
-    let source = raw_string(&spec.source);
+    let source = raw_string(&spec.whole_source());
     let entry_docs = docs::outer(&["How a scene finds this joint by name."]);
     let spec_docs = docs::outer(&["The spec that this joint was generated from."]);
     quote! {

@@ -2,6 +2,7 @@
 
 mod bodies;
 mod comment;
+mod curves;
 mod docs;
 mod entry;
 mod example;
@@ -21,6 +22,7 @@ mod tests;
 mod tokens;
 
 pub use comment::comment;
+pub use curves::constant as curve_constant;
 pub use index::{Index, index};
 pub use runtime::{Runtime, RuntimeError};
 
@@ -53,22 +55,25 @@ pub fn nested(derived: &Derived) -> TokenStream {
 
 fn items(derived: &Derived) -> TokenStream {
     let docs = docs::module(derived);
+    let curves = curves::constants(&derived.spec.curves());
     let joint = joint::tokens(derived);
     let entry = entry::tokens(derived);
-    let uses = uses(&quote! { #joint #entry });
+    let uses = uses(&quote! { #curves #joint #entry });
     let version = Literal::u32_unsuffixed(KERNEL_INTERFACE);
     quote! {
         #docs
         #uses
         const _: () = ::hamel::joint::assert_kernel_interface(#version);
+        #curves
         #joint
         #entry
     }
 }
 
 /// What an emitted file may import, by module. Functions that `build` calls are not among them: a parameter may have their names.
-fn imports() -> [(TokenStream, &'static [&'static str]); 6] {
+fn imports() -> [(TokenStream, &'static [&'static str]); 7] {
     [
+        (quote! { ::hamel::curve }, &["Curve", "Outside"]),
         (
             quote! { ::hamel::group },
             &[

@@ -1,5 +1,6 @@
 //! Formulas as Rust tokens, generic in the scalar `T`.
 
+use crate::expr::curve::Curve;
 use crate::expr::{Function, Rational, Symbol};
 use crate::formula::Names;
 use crate::formula::names::{NameSet, is_number_word, number_name};
@@ -193,6 +194,14 @@ impl<'a> Writer<'a> {
     }
 
     fn call(&self, function: Function, arguments: &[Node]) -> TokenStream {
+        if let (Function::Curve(curve, order), [argument]) = (function, arguments) {
+            let (name, argument) = (ident(&curve_name(curve)), self.formula(argument));
+            let order_of = Literal::u8_unsuffixed(order);
+            return match order {
+                0 => quote! { #name.at(#argument) },
+                _ => quote! { #name.derivative(#argument, #order_of) },
+            };
+        }
         let mut written = arguments
             .iter()
             .map(|argument| self.at_least(argument, Level::Atom));
@@ -219,6 +228,8 @@ impl<'a> Writer<'a> {
                     _ => quote! { #first.larger(#second) },
                 }
             }
+            // Of one argument, above.
+            Function::Curve(..) => quote! { #first },
             Function::Stumpff(order) => {
                 let order = Literal::u8_unsuffixed(order);
                 quote! { #first.stumpff(#order) }
@@ -282,6 +293,11 @@ fn pairs<'a>(chain: &Chain<'a>) -> Option<Vec<Pair<'a>>> {
     let mut pairs = chain.products.clone();
     pairs.push((false, others, last));
     Some(pairs)
+}
+
+/// The name of the table of a curve.
+pub fn curve_name(curve: Curve) -> String {
+    format!("CURVE_{}", curve.name().to_ascii_uppercase())
 }
 
 /// A positive rational as a literal, or as the quotient of two where it has no short one.

@@ -3,6 +3,7 @@
 mod basis;
 mod bodies;
 mod config;
+mod curve;
 mod dimension;
 mod division;
 mod equation;
@@ -18,6 +19,7 @@ mod relations;
 mod retract;
 mod scope;
 mod stored;
+mod table;
 mod unit;
 mod unproved;
 mod words;
@@ -31,12 +33,18 @@ use super::evaluate::Evaluator;
 use super::{code, limits};
 use crate::diagnostic::Diagnostic;
 use crate::expr::budget;
+use crate::expr::curve::Curve;
 use crate::manifold::Manifold;
 use crate::model::{Declared, JointSpec, VelocityFrame, Worded};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 /// The joint that the file declares; `None` where something essential is wrong. Reasons are among the errors.
-pub(super) fn joint(source: &str, file: &File, errors: &mut Vec<Diagnostic>) -> Option<JointSpec> {
+pub(super) fn joint(
+    (source, folder): (&str, Option<&Path>),
+    file: &File,
+    errors: &mut Vec<Diagnostic>,
+) -> Option<JointSpec> {
     let statements = once::collect(source, file, errors);
     let manifold = config::manifold(file, &statements, errors);
     let before = errors.len();
@@ -44,9 +52,15 @@ pub(super) fn joint(source: &str, file: &File, errors: &mut Vec<Diagnostic>) -> 
         let mut evaluator = Evaluator::new(errors);
         evaluator.lenient = file.partial || statements.config.is_none();
         match &manifold {
-            Some(manifold) => declare(source, file, &statements, manifold, &mut evaluator),
+            Some(manifold) => declare(
+                (source, folder),
+                file,
+                &statements,
+                manifold,
+                &mut evaluator,
+            ),
             None => {
-                without_manifold(source, file, &statements, &mut evaluator);
+                without_manifold((source, folder), file, &statements, &mut evaluator);
                 None
             }
         }
@@ -64,7 +78,7 @@ pub(super) fn joint(source: &str, file: &File, errors: &mut Vec<Diagnostic>) -> 
 
 /// Looks for the errors that can be told while the configuration is not known.
 fn without_manifold(
-    source: &str,
+    (source, folder): (&str, Option<&Path>),
     file: &File,
     statements: &Once<'_>,
     evaluator: &mut Evaluator<'_>,
@@ -72,6 +86,7 @@ fn without_manifold(
     let mut scope = Scope::new(source, evaluator);
     scope.joint(&file.name);
     scope.parameters(&file.parameters);
+    scope.curves(&statements.curves, folder);
     scope.unknown_factors(statements.config);
     scope.lets(&statements.lets);
     bodies::bodies(source, file, statements, evaluator);
@@ -87,10 +102,11 @@ struct Context<'a> {
     manifold: &'a Declared<Manifold>,
     /// Names of parameters, factors, stored scalars, `let`s and their entries.
     names: BTreeSet<String>,
+    curves: BTreeMap<String, Option<Curve>>,
 }
 
 fn declare(
-    source: &str,
+    (source, folder): (&str, Option<&Path>),
     file: &File,
     statements: &Once<'_>,
     manifold: &Declared<Manifold>,
@@ -99,6 +115,7 @@ fn declare(
     let mut scope = Scope::new(source, evaluator);
     scope.joint(&file.name);
     let parameters = scope.parameters(&file.parameters);
+    let curves = scope.curves(&statements.curves, folder);
     scope.factors(statements.config, manifold.value.factors());
     scope.lets(&statements.lets);
     let names = scope.names();
@@ -108,6 +125,7 @@ fn declare(
         statements,
         manifold: &manifold,
         names,
+        curves: scope.evaluator.curves.clone(),
     };
     let home = home::home(&context, scope.evaluator);
     let declared_home = home.declared.as_ref().filter(|_| !home.is_guess);
@@ -165,6 +183,7 @@ fn declare(
         speed_names: matrices.speed_names,
         worded,
         unproved: unproved::unproved(&statements.unproved, evaluator),
+        curves,
     };
     evaluator
         .errors

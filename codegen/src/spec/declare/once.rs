@@ -1,7 +1,7 @@
 //! Statements by kind: which may stand once, and where they stand.
 
 use super::super::ast::{
-    Basis, Equation, File, Name, Node, Port, Requirement, StatementKind, Target,
+    Basis, Curve, Equation, File, Name, Node, Port, Requirement, StatementKind, Target,
 };
 use super::super::code;
 use crate::diagnostic::Diagnostic;
@@ -36,6 +36,7 @@ pub(super) struct Once<'a> {
     pub bases: Vec<At<'a, Basis>>,
     pub ports: Vec<At<'a, Port>>,
     pub lets: Vec<(&'a Name, &'a Node)>,
+    pub curves: Vec<At<'a, Curve>>,
     pub relations: Vec<At<'a, Equation>>,
     pub exceptions: Vec<At<'a, Equation>>,
     pub requirements: Vec<At<'a, Requirement>>,
@@ -107,6 +108,10 @@ pub(super) fn collect<'a>(source: &str, file: &'a File, errors: &mut Vec<Diagnos
             }
             StatementKind::Let(name, value) => {
                 once.lets.push((name, value));
+                continue;
+            }
+            StatementKind::Curve(value) => {
+                once.curves.push(At { value, span });
                 continue;
             }
             StatementKind::Relation(value) => {

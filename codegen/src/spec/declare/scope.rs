@@ -1,12 +1,12 @@
 //! The names of a spec: each is defined once, in a form that Rust can take over, and used.
 
-use super::super::ast::{File, Name, Node, Parameter};
+use super::super::ast::{Curve, File, Name, Node, Parameter};
 use super::super::code;
 use super::super::evaluate::{Evaluator, FUNCTIONS};
 use super::super::names::{self, Form};
 use super::super::value::Value;
 use super::once::{At, Once, line};
-use super::unit;
+use super::{curve, unit};
 use crate::diagnostic::Diagnostic;
 use crate::expr::{Expr, Role, Symbol};
 use crate::manifold::{Factor, Kind};
@@ -14,6 +14,7 @@ use crate::matrix::Matrix;
 use crate::model;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
+use std::path::Path;
 
 /// Names claimed so far, with what they name and where.
 pub(super) struct Scope<'s, 'e, 'a> {
@@ -81,6 +82,25 @@ impl<'s, 'e, 'a> Scope<'s, 'e, 'a> {
                 docs: parameter.docs.join("\n"),
                 range: range.unwrap_or_default(),
             });
+        }
+        declared
+    }
+
+    /// The curves, each with the knots of its file where that names one.
+    pub fn curves(
+        &mut self,
+        curves: &[At<'_, Curve>],
+        folder: Option<&Path>,
+    ) -> Vec<model::DeclaredCurve> {
+        let mut declared = vec![];
+        for curve in curves {
+            self.claim(&curve.value.name, Form::Snake, "a curve");
+            let made = curve::curve(self.source, *curve, folder);
+            let known = self.evaluator.settle(made);
+            let name = curve.value.name.text.clone();
+            let of_name = known.as_ref().map(|known| known.curve);
+            self.evaluator.curves.insert(name, of_name);
+            declared.extend(known);
         }
         declared
     }
@@ -174,8 +194,11 @@ pub(super) fn report_unused(file: &File, statements: &Once<'_>, evaluator: &mut 
         return;
     }
     let used = file.used_names();
+    let curves = statements.curves.iter();
+    let curves = curves.map(|curve| (&curve.value.name, "curve"));
     for (name, what) in parameters
         .chain(lets)
+        .chain(curves)
         .filter(|(name, _)| !used.contains(name.text.as_str()))
     {
         let error = Diagnostic::new(

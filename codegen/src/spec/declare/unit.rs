@@ -3,6 +3,7 @@
 use super::super::ast::Name;
 use super::super::code;
 use crate::diagnostic::Diagnostic;
+use crate::expr::Rational;
 
 /// SI units of which a unit is made.
 const UNITS: &[&str] = &["1", "m", "rad", "kg", "s", "N"];
@@ -26,6 +27,34 @@ const FOREIGN: &[(&str, &str)] = &[
     ("min", "s"),
     ("kN", "N"),
 ];
+
+/// A unit in which the knots of a curve may be written.
+pub(super) struct Written {
+    /// What a number of it is in SI units, or in degrees.
+    pub factor: Rational,
+    /// Whether it is the degree.
+    pub degrees: bool,
+}
+
+/// The unit of a curve: those of parameters, and millimetres and degrees, in which tables are mostly written.
+pub(super) fn of_curve(unit: &Name) -> Result<Written, Diagnostic> {
+    let (factor, degrees) = match unit.text.as_str() {
+        "mm" => (Rational::new(1.into(), 1000.into()), false),
+        "deg" => (Rational::from(1), true),
+        _ => match error(unit) {
+            None => (Rational::from(1), false),
+            Some(_) => {
+                let message = format!("`{}` is not a unit of curves", unit.text);
+                let error = Diagnostic::new(code::UNIT, unit.span.clone(), message);
+                return Err(error.label("not known").help(format!(
+                    "units of curves are `mm`, `deg`, and products and quotients of {}",
+                    UNITS.join(", ")
+                )));
+            }
+        },
+    };
+    Ok(Written { factor, degrees })
+}
 
 /// The error that this is no unit, if it is none.
 pub(super) fn error(unit: &Name) -> Option<Diagnostic> {

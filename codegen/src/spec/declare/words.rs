@@ -12,6 +12,7 @@ pub(super) fn worded(context: &Context<'_>, source: &str, freedoms: &[&str]) -> 
     let mut scope = Scope::new(source, &mut evaluator);
     scope.parameters(&context.file.parameters);
     scope.factors(context.statements.config, context.manifold.value.factors());
+    evaluator.curves = context.curves.clone();
     evaluator.words = Some(Words::new(context.names.clone()));
     lets(context, &mut evaluator);
     let poses = bodies::poses(context.statements, &mut evaluator).unwrap_or_default();

@@ -34,7 +34,7 @@ pub(super) fn of_one(call: &Call<'_>, arguments: &[Value]) -> Fallible<Value> {
 }
 
 /// Whether a number is below 0; false for what depends on symbols, and for a number of which the sign is undecided.
-fn is_negative(x: &Expr) -> bool {
+pub(super) fn is_negative(x: &Expr) -> bool {
     match x.as_rational() {
         Some(number) => number.is_negative(),
         None => sign_of_constant(x) == Some(ConstantSign::Negative),

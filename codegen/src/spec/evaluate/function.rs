@@ -46,6 +46,7 @@ pub const NAMES: &[&str] = &[
     "trans_y",
     "trans_z",
     "pose",
+    "derivative",
 ];
 
 /// A call, for its errors.

@@ -2,6 +2,7 @@
 
 mod access;
 mod arithmetic;
+mod curve;
 mod elementary;
 mod function;
 mod literal;
@@ -17,6 +18,7 @@ use super::ast::{Name, Node, NodeKind};
 use super::value::Value;
 use super::{Fallible, code, limits, names};
 use crate::diagnostic::Diagnostic;
+use crate::expr::curve::Curve;
 use crate::expr::{Expr, budget};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -32,6 +34,8 @@ pub(super) struct Evaluator<'a> {
     locals: Option<Locals>,
     /// Whether a definition could not be read, so that unknown names may be right.
     pub lenient: bool,
+    /// Curves by name; `None` for one that is wrong.
+    pub curves: BTreeMap<String, Option<Curve>>,
     /// The names that values get, where the declarations are wanted in names.
     pub words: Option<Words>,
 }
@@ -44,6 +48,7 @@ impl<'a> Evaluator<'a> {
             expected: BTreeSet::new(),
             locals: None,
             lenient: false,
+            curves: BTreeMap::new(),
             words: None,
         }
     }
@@ -173,7 +178,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Reports an error as such.
-    fn settle<T>(&mut self, result: Fallible<T>) -> Option<T> {
+    pub fn settle<T>(&mut self, result: Fallible<T>) -> Option<T> {
         result.map_err(|error| self.report(*error)).ok()
     }
 
@@ -245,6 +250,11 @@ impl<'a> Evaluator<'a> {
         // Errors that are not printed need no advice: a file may have thousands of names, and as many that are not defined.
         let printed = self.errors.len() < hamel_diagnostics::MOST_PRINTED;
         let known = known.filter(|_| printed);
+        if self.curves.contains_key(name) {
+            return error.help(format!(
+                "`{name}` is a curve: write its argument in parentheses"
+            ));
+        }
         match names::suggestion(name, known) {
             Some(advice) => error.help(advice),
             None => error
@@ -253,7 +263,15 @@ impl<'a> Evaluator<'a> {
     }
 
     fn call(&mut self, name: &Name, arguments: &[Node], span: &Range<usize>) -> Option<Value> {
+        if name.text == "derivative" || self.curves.contains_key(&name.text) {
+            return self.curve(name, arguments, span);
+        }
         let mut values = self.values(arguments)?;
+        // What is like no function may be a curve of which the statement could not be read.
+        let functions = || FUNCTIONS.iter().copied();
+        if self.lenient && names::suggestion(&name.text, functions()).is_none() {
+            return None;
+        }
         if let Some(words) = &mut self.words {
             words.name_angles(&name.text, &mut values);
         }

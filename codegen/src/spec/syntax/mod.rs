@@ -1,7 +1,8 @@
 //! Text to tree: the version line, the joint's head, and its statements one by one.
 
+mod curve;
 mod expression;
-mod number;
+pub(super) mod number;
 mod range;
 mod statement;
 

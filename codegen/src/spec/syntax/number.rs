@@ -11,7 +11,7 @@ use std::ops::Range;
 const LONGEST: usize = 64;
 
 /// The exact value of a decimal literal.
-pub(super) fn rational(text: &str, span: &Range<usize>) -> Fallible<Rational> {
+pub(in super::super) fn rational(text: &str, span: &Range<usize>) -> Fallible<Rational> {
     let wrong = |message: String| Box::new(Diagnostic::new(code::NUMBER, span.clone(), message));
     if text.len() > LONGEST {
         return Err(Box::new(

@@ -75,6 +75,7 @@ fn statement(tokens: &mut Tokens<'_>, docs: Vec<String>) -> Fallible<StatementKi
             tokens.expect('=', "`=`")?;
             StatementKind::Let(name, expression::expression(tokens)?)
         }
+        "curve" => StatementKind::Curve(super::curve::curve(tokens)?),
         "H" if tokens.eat('.') => {
             let body = tokens.expect_name("the name of a body")?;
             tokens.expect('=', "`=`")?;
@@ -126,7 +127,7 @@ fn unfinished(tokens: &Tokens<'_>) -> Box<Diagnostic> {
 }
 
 /// One or more items, separated by commas.
-fn list<'a, T>(
+pub(super) fn list<'a, T>(
     tokens: &mut Tokens<'a>,
     item: impl Fn(&mut Tokens<'a>) -> Fallible<T>,
 ) -> Fallible<Vec<T>> {

@@ -52,5 +52,6 @@ pub fn library() -> Vec<String> {
 /// Parses, expands and proves the spec of `name`.
 pub fn derive(name: &str) -> Result<Derived, Failure> {
     let (file, text) = find(name)?;
-    hamel_codegen::derive(&text, &file).map_err(|errors| Failure::Spec(Box::new(errors)))
+    let folder = is_file(name).then(|| Path::new(name).parent()).flatten();
+    hamel_codegen::derive_in(&text, &file, folder).map_err(|errors| Failure::Spec(Box::new(errors)))
 }

@@ -15,11 +15,13 @@ mod straight;
 pub use rust::module;
 
 use super::alike::Plan;
-use super::graph::{Argument, Graph, Operations, Value};
+use super::graph::{Argument, Graph, Operation, Operations, Value};
 use super::model::Model;
+use hamel_codegen::expr::Function as Known;
+use hamel_codegen::expr::curve::Curve;
 use hamel_codegen::formula::names::NameSet;
 use lines::{Formula, Line};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// One function to be written.
 #[derive(Clone, Debug)]
@@ -83,6 +85,21 @@ impl Lowered {
             }
         }
     }
+}
+
+/// The curves that functions call, in one order on every machine.
+fn curves(functions: &[Function]) -> BTreeSet<Curve> {
+    let mut found = BTreeSet::new();
+    for function in functions {
+        let uses = function.graph.uses(&function.outputs);
+        for (node, uses) in function.graph.nodes.iter().zip(uses) {
+            if let (Operation::Call(Known::Curve(curve, _), ..), true) = (&node.operation, uses > 0)
+            {
+                found.insert(*curve);
+            }
+        }
+    }
+    found
 }
 
 /// Name of the array of rows of a length.

@@ -2,6 +2,8 @@
 
 use hamel_codegen::derived::Primitive;
 use hamel_codegen::expr::Function;
+use hamel_codegen::expr::curve::{Curve, Outside};
+use hamel_runtime::curve::{self, Curve as Table};
 use hamel_runtime::scalar::Scalar;
 use hamel_runtime::spatial::nearest_rotation;
 use nalgebra::Matrix3;
@@ -21,11 +23,24 @@ pub fn call(function: Function, a: f64, b: Option<f64>) -> f64 {
         (Function::Sqrt, None) => a.sqrt(),
         (Function::Stumpff(order), None) => a.stumpff(order.into()),
         (Function::DexpInverse(order), None) => a.dexp_inverse(order.into()),
+        (Function::Curve(of, order), None) => curve(of).derivative(a, order.into()),
         (Function::Atan2, Some(x)) => a.atan2(x),
         (Function::Larger, Some(b)) => a.larger(b),
         (Function::Ln1p, Some(scale)) => a.ln_1p_scaled(scale),
         _ => f64::NAN,
     }
+}
+
+/// The curve as kernels have it, so that its values have their bits.
+fn curve(of: Curve) -> Table {
+    let table = of.table();
+    let outside = match table.outside {
+        Outside::Undefined => curve::Outside::Undefined,
+        Outside::Periodic => curve::Outside::Periodic,
+        Outside::Straight => curve::Outside::Straight,
+        Outside::Polynomial => curve::Outside::Polynomial,
+    };
+    Table::new(&table.knots, &table.coefficients, outside)
 }
 
 /// The results of a function of the runtime; none where the number of arguments is another.

@@ -140,6 +140,12 @@ impl Found {
                 (after - next) * Sym::from(0.5) * dx
             }
             (Function::DexpInverse(order), None) => call(Function::DexpInverse(order + 1), x) * dx,
+            (Function::Curve(curve, order), None) => {
+                match order < curve.definition().kind.degree() {
+                    true => call(Function::Curve(curve, order + 1), x) * dx,
+                    false => Sym::zero(),
+                }
+            }
             // The first argument is the ordinate.
             (Function::Atan2, Some(b)) => {
                 let abscissa = Sym::Node(b);

@@ -1,6 +1,7 @@
 //! [`Scalar`] for [`Extended`]: elementary functions by series, and by one step of Newton's method from doubles.
 
 use super::Extended;
+use crate::curve::Curve;
 use crate::scalar::{Scalar, rotation};
 use nalgebra::{Matrix3, Vector3};
 use num_traits::{Float, One, Zero};
@@ -257,6 +258,10 @@ impl Scalar for Extended {
 
     fn dexp_inverse(self, derivative: usize) -> Self {
         dexp_inverse(self, derivative)
+    }
+
+    fn curve(self, curve: &Curve, order: usize) -> Self {
+        curve.evaluate(self, self.high, order)
     }
 
     fn rotation_vector(rotation: &Matrix3<Self>) -> Vector3<Self> {

@@ -4,6 +4,7 @@
 //! least, where a comparison changes. The function's value is flat everywhere else, but its argument is not: from afar it leads there.
 
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use hamel::curve::Curve;
 use hamel::nalgebra::{Matrix3, Vector3};
 use hamel::scalar::Scalar;
 use num_traits::{One, Zero};
@@ -163,6 +164,10 @@ impl Scalar for Traced {
 
     fn dexp_inverse(self, derivative: usize) -> Self {
         Self(self.0.dexp_inverse(derivative))
+    }
+
+    fn curve(self, curve: &Curve, order: usize) -> Self {
+        Self(self.0.curve(curve, order))
     }
 
     fn rotation_vector(rotation: &Matrix3<Self>) -> Vector3<Self> {

@@ -135,6 +135,11 @@ fn call(
         Function::Larger => Math::Word("max".into()),
         Function::Atan2 => Math::Word("atan2".into()),
         Function::Stumpff(order) => Math::Letter('c').with_index(Math::integer(order.into())),
+        Function::Curve(curve, 0) => Math::Word(curve.name().into()),
+        Function::Curve(curve, order) => {
+            let primes = vec![Math::Letter('′'); order.into()];
+            Math::Word(curve.name().into()).raised_to(Math::Row(primes))
+        }
         Function::DexpInverse(0) => Math::Letter('G'),
         Function::DexpInverse(order) => {
             let primes = vec![Math::Letter('′'); order.into()];

@@ -4,6 +4,7 @@ use super::super::array;
 use super::super::lines::{Formula, Place};
 use crate::alike::Read;
 use hamel_codegen::expr::Function as Known;
+use hamel_codegen::expr::curve::Curve;
 
 /// A formula where nothing stands beside it.
 pub fn value(formula: &Formula) -> String {
@@ -108,8 +109,17 @@ fn sum(terms: &[(bool, Formula)]) -> String {
     })
 }
 
+/// The function of a curve, of an argument and the order of a derivative.
+pub fn curve_name(curve: Curve) -> String {
+    format!("curve_{}", curve.distinct_name())
+}
+
 fn call(function: Known, arguments: &[Formula]) -> String {
     let mut arguments: Vec<String> = arguments.iter().map(value).collect();
+    if let Known::Curve(curve, order) = function {
+        arguments.push(order.to_string());
+        return format!("{}({})", curve_name(curve), arguments.join(", "));
+    }
     let name = match function {
         Known::Sin => "sin",
         Known::Cos => "cos",
@@ -134,6 +144,8 @@ fn call(function: Known, arguments: &[Formula]) -> String {
         }
         // Folded when the graph was made.
         Known::Pi | Known::Recip | Known::Group => "",
+        // Above.
+        Known::Curve(..) => "",
     };
     format!("{name}({})", arguments.join(", "))
 }

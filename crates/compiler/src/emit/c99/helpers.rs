@@ -25,6 +25,7 @@ pub struct Used {
     pub cosines: bool,
     arguments: BTreeSet<Argument>,
     mul_add: bool,
+    curve: bool,
     dexp_inverse: bool,
     sech: bool,
     ln_cosh: bool,
@@ -38,6 +39,7 @@ pub struct Used {
 #[derive(Serialize)]
 pub struct Helpers {
     mul_add: bool,
+    curve: bool,
     dexp_inverse: bool,
     sech: bool,
     ln_cosh: bool,
@@ -75,6 +77,7 @@ impl Used {
             Formula::Call(Known::Stumpff(order), _) => {
                 self.stumpff = self.stumpff.max(Some(*order));
             }
+            Formula::Call(Known::Curve(..), _) => self.curve = true,
             Formula::Call(Known::DexpInverse(_), _) => self.dexp_inverse = true,
             Formula::Call(Known::Sech, _) => self.sech = true,
             Formula::Call(Known::LnCosh, _) => self.ln_cosh = true,
@@ -96,7 +99,8 @@ impl Used {
         let orders = self.stumpff.map(usize::from);
         let orders = orders.map_or(0..0, |order| 0..order + 2 * STUMPFF_TERMS - 1);
         Helpers {
-            mul_add: self.mul_add || self.dexp_inverse || self.stumpff.is_some(),
+            mul_add: self.mul_add || self.curve || self.dexp_inverse || self.stumpff.is_some(),
+            curve: self.curve,
             dexp_inverse: self.dexp_inverse,
             sech: self.sech,
             ln_cosh: self.ln_cosh,

@@ -5,13 +5,14 @@
 //! the polynomials of the Rust runtime pay where a compiler vectorises them across angles, which ISO C has no means to ask for.
 
 mod breaks;
+mod curve;
 mod formula;
 mod helpers;
 mod layout;
 mod results;
 mod statement;
 
-use super::{Function, Lowered, argument_size, identifier, identifiers};
+use super::{Function, Lowered, argument_size, curves, identifier, identifiers};
 use crate::graph::Argument;
 use crate::model::Model;
 use breaks::broken;
@@ -33,7 +34,7 @@ const TEMPLATES: [(&str, &str); 4] = [
 ];
 
 /// Names that lines must not take: arguments, what the functions bind themselves, helpers, and what `<math.h>` defines.
-const RESERVED: [&str; 26] = [
+const RESERVED: [&str; 28] = [
     "q",
     "v",
     "p",
@@ -46,6 +47,8 @@ const RESERVED: [&str; 26] = [
     "numbers",
     "places",
     "mul_add",
+    "curve",
+    "curve_polynomial",
     "stumpff",
     "stumpff_direct",
     "inverse_factorials",
@@ -112,6 +115,9 @@ pub fn module(
     context.insert("is_coupled", &is_coupled);
     context.insert("bodies", &layout::layout(model));
     context.insert("functions", &written);
+    let curves = curves(functions);
+    let curves = curves.into_iter().map(curve::Table::new);
+    context.insert("curves", &curves.collect::<Vec<_>>());
     context.insert("used", &used.helpers());
     let mut tera = Tera::new();
     tera.add_raw_templates(TEMPLATES)?;

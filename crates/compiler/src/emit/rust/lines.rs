@@ -6,7 +6,8 @@ use crate::alike::Read;
 use hamel_codegen::derived::Primitive;
 use hamel_codegen::emit::rust::comment;
 use hamel_codegen::expr::Function as Known;
-use proc_macro2::{Literal, TokenStream};
+use hamel_codegen::expr::curve::Curve;
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 /// A line as text.
@@ -273,6 +274,11 @@ fn sum(terms: &[(bool, Formula)]) -> TokenStream {
     })
 }
 
+/// The constant of a curve.
+pub fn curve_ident(curve: Curve) -> Ident {
+    format_ident!("CURVE_{}", curve.distinct_name().to_ascii_uppercase())
+}
+
 fn call(function: Known, arguments: &[Formula]) -> TokenStream {
     let mut arguments = arguments.iter();
     let of = arguments.next().map(factor).unwrap_or_default();
@@ -298,6 +304,10 @@ fn call(function: Known, arguments: &[Formula]) -> TokenStream {
         Known::DexpInverse(order) => {
             let order = Literal::u8_unsuffixed(order);
             quote! { #of.dexp_inverse(#order) }
+        }
+        Known::Curve(curve, order) => {
+            let (name, order) = (curve_ident(curve), Literal::u8_unsuffixed(order));
+            quote! { #name.derivative(#of, #order) }
         }
         // Folded when the graph was made.
         Known::Pi | Known::Recip | Known::Group => of,

@@ -3,12 +3,12 @@
 mod equations;
 mod lines;
 
-use super::{Function, Lowered, array, identifiers};
+use super::{Function, Lowered, array, curves, identifiers};
 use crate::model::Model;
 use equations::{equations, is_batched};
-use hamel_codegen::emit::rust::{WriteError, text};
+use hamel_codegen::emit::rust::{WriteError, curve_constant, text};
 use hamel_codegen::text::one_line;
-use lines::{line, value};
+use lines::{curve_ident, line, value};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
@@ -34,9 +34,21 @@ pub fn module(
         .iter()
         .map(|function| item(function, &bodies, lanes && is_batched(function)));
     let equations = equations(model, functions, lanes);
+    let curves = curves(functions);
+    let uses = (!curves.is_empty()).then(|| quote! { use ::hamel::curve::{Curve, Outside}; });
+    let tables = curves.iter().map(|curve| {
+        let docs = format!(" The curve `{}`: {}.", curve.name(), curve.in_words());
+        curve_constant(
+            *curve,
+            &curve_ident(*curve).to_string(),
+            &quote! { #[doc = #docs] },
+        )
+    });
     let tokens = quote! {
+        #uses
         use ::hamel::scalar::Scalar;
         #sizes
+        #(#tables)*
         #equations
         #(#items)*
     };

@@ -1,0 +1,439 @@
+//! Interpolating splines: the slopes at the knots, and of quintic ones the second derivatives too, by which all derivatives below the degree are continuous.
+//!
+//! They solve one system of equations, tridiagonal in blocks, in rational numbers. Of a long table numbers would grow without bound: what is
+//! longer than [`LONGEST`] bits is rounded to [`KEPT`] bits, and the derivatives above those at the knots are then continuous to so many.
+
+use crate::expr::Rational;
+use num_bigint::BigInt;
+use num_traits::{One, Signed, Zero};
+
+/// Bits of numerator and denominator together beyond which a number is rounded.
+const LONGEST: u64 = 2048;
+/// Bits of what is rounded, of 1 or of itself where that is larger.
+const KEPT: u64 = 512;
+
+/// Degree and smoothness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Kind {
+    /// Cubic polynomials with continuous second derivatives.
+    Cubic,
+    /// Quintic polynomials with continuous fourth derivatives.
+    Quintic,
+}
+
+impl Kind {
+    /// Degree of the polynomials.
+    pub fn degree(self) -> u8 {
+        match self {
+            Self::Cubic => 3,
+            Self::Quintic => 5,
+        }
+    }
+
+    /// Up to which order derivatives are continuous at knots.
+    pub fn smoothness(self) -> u8 {
+        self.degree() - 1
+    }
+
+    /// Derivatives at each knot by which the polynomials are found.
+    fn unknowns(self) -> usize {
+        match self {
+            Self::Cubic => 1,
+            Self::Quintic => 2,
+        }
+    }
+}
+
+/// What is known at the ends.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Ends {
+    /// All derivatives are the same at both.
+    Periodic,
+    /// The second derivative is 0, of quintic curves the fourth too.
+    Natural,
+    /// The slopes; the second derivative of quintic curves is 0.
+    Clamped(Rational, Rational),
+}
+
+type Numbers = Vec<Rational>;
+type Block = Vec<Numbers>;
+
+/// A linear function of the unknowns at both ends of a piece.
+struct Row {
+    left: Numbers,
+    right: Numbers,
+    constant: Rational,
+}
+
+/// Equations of one knot: `before · u_{i−1} + own · u_i + after · u_{i+1} = right`.
+struct Equations {
+    before: Block,
+    own: Block,
+    after: Block,
+    right: Block,
+}
+
+/// One piece: its length, and the values at its ends.
+struct Piece<'a> {
+    kind: Kind,
+    length: Rational,
+    from: &'a Rational,
+    to: &'a Rational,
+}
+
+fn whole(value: i64) -> Rational {
+    Rational::from(value)
+}
+
+/// The coefficients of each piece; `None` where the equations have no solution, and of values that differ at the ends of a periodic curve.
+pub(super) fn pieces(
+    kind: Kind,
+    ends: &Ends,
+    points: &[(Rational, Rational)],
+) -> Option<Vec<Numbers>> {
+    let pairs = points.windows(2).map(|pair| Piece {
+        kind,
+        length: &pair[1].0 - &pair[0].0,
+        from: &pair[0].1,
+        to: &pair[1].1,
+    });
+    let pieces: Vec<Piece<'_>> = pairs.collect();
+    let first = pieces.first()?;
+    if pieces.len() < 2 || pieces.iter().any(|piece| !piece.length.is_positive()) {
+        return None;
+    }
+    let knots = match ends {
+        Ends::Periodic if first.from != pieces.last()?.to || pieces.len() < 3 => return None,
+        Ends::Periodic => solve_cyclic(equations(kind, ends, &pieces)?)?,
+        _ => solve(equations(kind, ends, &pieces)?)?,
+    };
+    let unknowns = |knot: usize| -> Numbers {
+        let rows = &knots[knot % knots.len()];
+        rows.iter().map(|row| row[0].clone()).collect()
+    };
+    let numbered = pieces.iter().enumerate();
+    Some(
+        numbered
+            .map(|(i, piece)| piece.coefficients(&unknowns(i), &unknowns(i + 1)))
+            .collect(),
+    )
+}
+
+/// The equations of all knots; of a periodic curve the last knot is the first.
+fn equations(kind: Kind, ends: &Ends, pieces: &[Piece<'_>]) -> Option<Vec<Equations>> {
+    let count = pieces.len();
+    let inner = |i: usize| joined(&pieces[(i + count - 1) % count], &pieces[i % count]);
+    if *ends == Ends::Periodic {
+        return Some((0..count).map(inner).collect());
+    }
+    let at_end = |slope: Option<&Rational>, piece: &Piece<'_>, last: bool| {
+        let rows = match kind {
+            Kind::Cubic => vec![piece.end_condition(slope, last)],
+            Kind::Quintic => vec![
+                piece.own(1, last, Rational::zero()),
+                piece.end_condition(slope, last),
+            ],
+        };
+        of_end(rows, last)
+    };
+    let (left, right) = match ends {
+        Ends::Clamped(left, right) => (Some(left), Some(right)),
+        _ => (None, None),
+    };
+    let first = at_end(left, pieces.first()?, false);
+    let last = at_end(right, pieces.last()?, true);
+    let inner = (1..count).map(inner);
+    Some(std::iter::once(first).chain(inner).chain([last]).collect())
+}
+
+/// That derivatives are continuous between two pieces.
+fn joined(before: &Piece<'_>, after: &Piece<'_>) -> Equations {
+    let orders = match before.kind {
+        Kind::Cubic => 2..=2,
+        Kind::Quintic => 3..=4,
+    };
+    let rows: Vec<(Row, Row)> = orders
+        .map(|order| {
+            (
+                before.derivative(order, true),
+                after.derivative(order, false),
+            )
+        })
+        .collect();
+    let difference = |(a, b): (&Numbers, &Numbers)| a.iter().zip(b).map(|(a, b)| a - b).collect();
+    let negated = |row: &Numbers| row.iter().map(|entry| -entry).collect();
+    Equations {
+        before: rows.iter().map(|(a, _)| a.left.clone()).collect(),
+        own: rows
+            .iter()
+            .map(|(a, b)| difference((&a.right, &b.left)))
+            .collect(),
+        after: rows.iter().map(|(_, b)| negated(&b.right)).collect(),
+        right: rows
+            .iter()
+            .map(|(a, b)| vec![&b.constant - &a.constant])
+            .collect(),
+    }
+}
+
+/// Conditions on the first or last piece.
+fn of_end(rows: Vec<Row>, last: bool) -> Equations {
+    let right = rows.iter().map(|row| vec![-&row.constant]).collect();
+    let (left_end, right_end): (Block, Block) =
+        rows.into_iter().map(|row| (row.left, row.right)).unzip();
+    let nothing = zeros(left_end.len());
+    match last {
+        false => Equations {
+            before: nothing,
+            own: left_end,
+            after: right_end,
+            right,
+        },
+        true => Equations {
+            before: left_end,
+            own: right_end,
+            after: nothing,
+            right,
+        },
+    }
+}
+
+impl Piece<'_> {
+    fn rise(&self) -> Rational {
+        self.to - self.from
+    }
+
+    /// The unknown of this number at an end, less a value.
+    fn own(&self, unknown: usize, last: bool, value: Rational) -> Row {
+        let size = self.kind.unknowns();
+        let mut unit = vec![Rational::zero(); size];
+        unit[unknown] = Rational::one();
+        let nothing = vec![Rational::zero(); size];
+        let (left, right) = match last {
+            false => (unit, nothing),
+            true => (nothing, unit),
+        };
+        Row {
+            left,
+            right,
+            constant: -value,
+        }
+    }
+
+    /// The slope at an end, or that the highest even derivative is 0 there.
+    fn end_condition(&self, slope: Option<&Rational>, last: bool) -> Row {
+        match slope {
+            Some(slope) => self.own(0, last, slope.clone()),
+            None => self.derivative(usize::from(self.kind.smoothness()), last),
+        }
+    }
+
+    /// A derivative at an end, as a function of the unknowns: coefficients are linear in them.
+    fn derivative(&self, order: usize, last: bool) -> Row {
+        let size = self.kind.unknowns();
+        let zero = vec![Rational::zero(); size];
+        let unit = |place: usize| {
+            let mut unit = zero.clone();
+            unit[place] = Rational::one();
+            unit
+        };
+        let at = |left: &Numbers, right: &Numbers| {
+            let t = match last {
+                false => Rational::zero(),
+                true => self.length.clone(),
+            };
+            derivative_at(&self.coefficients(left, right), order, &t)
+        };
+        let constant = at(&zero, &zero);
+        Row {
+            left: (0..size).map(|i| at(&unit(i), &zero) - &constant).collect(),
+            right: (0..size).map(|i| at(&zero, &unit(i)) - &constant).collect(),
+            constant,
+        }
+    }
+
+    /// The polynomial with these derivatives at the ends (C. Hermite).
+    fn coefficients(&self, left: &Numbers, right: &Numbers) -> Numbers {
+        let h = &self.length;
+        let rise = self.rise();
+        let (m, n) = (&left[0], &right[0]);
+        let over = |value: Rational, power: u32| kept((0..power).fold(value, |value, _| value / h));
+        match (left.get(1), right.get(1)) {
+            (Some(a), Some(b)) => {
+                let (slope, second) = (h, &(h * h));
+                let sum = |parts: [i64; 5]| {
+                    let [of_rise, of_n, of_m, of_a, of_b] = parts.map(whole);
+                    let slopes = (of_n * n + of_m * m) * slope;
+                    let seconds = (of_a * a + of_b * b) * second;
+                    (of_rise * &rise + slopes + seconds) / whole(2)
+                };
+                vec![
+                    self.from.clone(),
+                    m.clone(),
+                    a / &whole(2),
+                    over(sum([20, -8, -12, -3, 1]), 3),
+                    over(sum([-30, 14, 16, 3, -2]), 4),
+                    over(sum([12, -6, -6, -1, 1]), 5),
+                ]
+            }
+            _ => {
+                let mean = &rise / h;
+                vec![
+                    self.from.clone(),
+                    m.clone(),
+                    over(whole(3) * &mean - whole(2) * m - n, 1),
+                    over(m + n - whole(2) * mean, 2),
+                ]
+            }
+        }
+    }
+}
+
+/// The derivative of a polynomial.
+pub(super) fn derivative_at(coefficients: &[Rational], order: usize, t: &Rational) -> Rational {
+    (order..coefficients.len())
+        .rev()
+        .fold(Rational::zero(), |sum, power| {
+            sum * t + &coefficients[power] * &falling(power, order)
+        })
+}
+
+/// `power (power − 1) …`, of `order` factors.
+pub(super) fn falling(power: usize, order: usize) -> Rational {
+    let factors = (0..order).map(|i| (power - i) as i64);
+    whole(factors.product())
+}
+
+/// A number as it is, or rounded where it is long.
+fn kept(value: Rational) -> Rational {
+    if value.bits() <= LONGEST {
+        return value;
+    }
+    let (above, below) = (value.numer(), value.denom());
+    let size = above.bits().saturating_sub(below.bits());
+    let scale = BigInt::one() << (KEPT.saturating_sub(size));
+    let half: BigInt = &below >> 1;
+    let rounded = (above.abs() * &scale + half) / below;
+    let sign = if above.is_negative() { -1 } else { 1 };
+    Rational::new(rounded * sign, scale)
+}
+
+fn zeros(size: usize) -> Block {
+    vec![vec![Rational::zero(); size]; size]
+}
+
+fn product(a: &Block, b: &Block) -> Block {
+    let entry = |row: &Numbers, column: usize| -> Rational {
+        row.iter().zip(b).map(|(a, b)| a * &b[column]).sum()
+    };
+    let columns = b.first().map_or(0, Vec::len);
+    a.iter()
+        .map(|row| (0..columns).map(|j| kept(entry(row, j))).collect())
+        .collect()
+}
+
+fn minus(a: &Block, b: &Block) -> Block {
+    let row = |(a, b): (&Numbers, &Numbers)| a.iter().zip(b).map(|(a, b)| a - b).collect();
+    a.iter().zip(b).map(row).collect()
+}
+
+/// Blocks side by side.
+fn beside(a: &Block, b: &Block) -> Block {
+    let row = |(a, b): (&Numbers, &Numbers)| a.iter().chain(b).cloned().collect();
+    a.iter().zip(b).map(row).collect()
+}
+
+/// The columns of a block in a range.
+fn columns(block: &Block, range: std::ops::Range<usize>) -> Block {
+    block
+        .iter()
+        .map(|row| row[range.clone()].to_vec())
+        .collect()
+}
+
+/// The inverse of one or two rows; `None` where there is none.
+fn inverse(block: &Block) -> Option<Block> {
+    let reciprocal = |x: &Rational| (!x.is_zero()).then(|| x.recip());
+    match block.as_slice() {
+        [row] => Some(vec![vec![reciprocal(&row[0])?]]),
+        [first, second] => {
+            let (a, b, c, d) = (&first[0], &first[1], &second[0], &second[1]);
+            let scale = reciprocal(&(a * d - b * c))?;
+            let row = |x: &Rational, y: &Rational| vec![kept(x * &scale), kept(y * &scale)];
+            Some(vec![row(d, &-b), row(&-c, a)])
+        }
+        _ => None,
+    }
+}
+
+/// Elimination block by block, of all columns of the right side at once (L. H. Thomas).
+fn solve(equations: Vec<Equations>) -> Option<Vec<Block>> {
+    let mut eliminated: Vec<(Block, Block)> = Vec::with_capacity(equations.len());
+    for row in &equations {
+        let (own, right) = match eliminated.last() {
+            None => (row.own.clone(), row.right.clone()),
+            Some((after, value)) => (
+                minus(&row.own, &product(&row.before, after)),
+                minus(&row.right, &product(&row.before, value)),
+            ),
+        };
+        let inverse = inverse(&own)?;
+        eliminated.push((product(&inverse, &row.after), product(&inverse, &right)));
+    }
+    let mut solution: Vec<Block> = vec![];
+    for (after, value) in eliminated.into_iter().rev() {
+        let own = match solution.last() {
+            None => value,
+            Some(next) => minus(&value, &product(&after, next)),
+        };
+        solution.push(own);
+    }
+    solution.reverse();
+    Some(solution)
+}
+
+/// The same where the first and the last knot are neighbours: all others as functions of the last one first.
+fn solve_cyclic(mut equations: Vec<Equations>) -> Option<Vec<Block>> {
+    let last = equations.pop()?;
+    let size = last.own.len();
+    let count = equations.len();
+    for (i, row) in equations.iter_mut().enumerate() {
+        // Beside each right side, what the last knot's unknowns add to it.
+        let mut of_last = zeros(size);
+        if i == 0 {
+            of_last = minus(&of_last, &row.before);
+        }
+        if i + 1 == count {
+            of_last = minus(&of_last, &row.after);
+        }
+        row.right = beside(&row.right, &of_last);
+    }
+    let others = solve(equations)?;
+    let (first, neighbour) = (others.first()?, others.last()?);
+    let effect = |block: &Block, of: &Block, range| product(block, &columns(of, range));
+    let constant = minus(
+        &minus(&last.right, &effect(&last.after, first, 0..1)),
+        &effect(&last.before, neighbour, 0..1),
+    );
+    let negative = minus(
+        &minus(&zeros(size), &effect(&last.after, first, 1..size + 1)),
+        &effect(&last.before, neighbour, 1..size + 1),
+    );
+    let own = minus(&last.own, &negative);
+    let end = product(&inverse(&own)?, &constant);
+    let mut solution: Vec<Block> = others
+        .iter()
+        .map(|other| {
+            let change = product(&columns(other, 1..size + 1), &end);
+            let negated = minus(&zeros_of(&change), &change);
+            minus(&columns(other, 0..1), &negated)
+        })
+        .collect();
+    solution.push(end);
+    Some(solution)
+}
+
+fn zeros_of(block: &Block) -> Block {
+    let row = |row: &Numbers| vec![Rational::zero(); row.len()];
+    block.iter().map(row).collect()
+}

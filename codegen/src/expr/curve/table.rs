@@ -1,0 +1,87 @@
+//! The doubles of a curve, as kernels hold them: in the units of argument and value, each the nearest one to the exact number.
+
+use super::{Curve, Outside};
+use crate::expr::Rational;
+use num_bigint::BigInt;
+use num_traits::{One, Pow, ToPrimitive};
+
+/// π times 10⁶⁴, cut off.
+const PI_DIGITS: &str = "31415926535897932384626433832795028841971693993751058209749445923";
+
+/// Knots and coefficients in doubles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// Knots, ascending.
+    pub knots: Vec<f64>,
+    /// Of each piece the coefficients of 1, t, t², …, one piece after the other.
+    pub coefficients: Vec<f64>,
+    /// What the curve is beyond its ends.
+    pub outside: Outside,
+}
+
+impl Table {
+    /// A number of 32 bits that is the same on every machine, and hardly the same for two tables (Fowler, Noll and Vo's hash).
+    fn tag(&self) -> u32 {
+        let numbers = self.knots.iter().chain(&self.coefficients);
+        let bytes = numbers.flat_map(|number| number.to_bits().to_le_bytes());
+        let hash = bytes
+            .chain([self.outside as u8])
+            .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+                (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+            });
+        (hash ^ (hash >> 32)) as u32
+    }
+
+    /// Whether all numbers are finite, and the knots are different doubles.
+    pub fn is_sound(&self) -> bool {
+        let numbers = self.knots.iter().chain(&self.coefficients);
+        let ascending = self.knots.windows(2).all(|pair| pair[0] < pair[1]);
+        ascending && { numbers }.all(|number| number.is_finite())
+    }
+}
+
+impl Curve {
+    /// A name that tells it from curves of other joints: `lift_1f0a4b22`.
+    pub fn distinct_name(&self) -> String {
+        format!("{}_{:08x}", self.name(), self.table().tag())
+    }
+
+    /// Its numbers in doubles.
+    pub fn table(&self) -> &'static Table {
+        self.0.table.get_or_init(|| self.in_doubles())
+    }
+
+    fn in_doubles(&self) -> Table {
+        let definition = self.definition();
+        let radians = pi() / Rational::from(180);
+        let of_argument = match definition.of_degrees {
+            true => radians.clone(),
+            false => Rational::one(),
+        };
+        let of_value = match definition.in_degrees {
+            true => radians,
+            false => Rational::one(),
+        };
+        let double = |value: Rational| value.to_f64().unwrap_or(f64::NAN);
+        let scaled = |coefficients: &Vec<Rational>| {
+            let mut scale = of_value.clone();
+            let mut doubles = vec![];
+            for coefficient in coefficients {
+                doubles.push(double(coefficient * &scale));
+                scale = &scale / &of_argument;
+            }
+            doubles
+        };
+        let knots = definition.knots.iter();
+        Table {
+            knots: knots.map(|knot| double(knot * &of_argument)).collect(),
+            coefficients: definition.pieces.iter().flat_map(scaled).collect(),
+            outside: definition.outside,
+        }
+    }
+}
+
+fn pi() -> Rational {
+    let digits = PI_DIGITS.parse::<BigInt>().unwrap_or_default();
+    Rational::new(digits, BigInt::from(10).pow(PI_DIGITS.len() as u32 - 1))
+}
