@@ -253,27 +253,14 @@ impl Prover<'_> {
                 &certificate,
             )))
         };
-        if let Some(certificate) = self.domain.nonzero(&flow.regular) {
-            return claim(certificate.to_string());
+        let certificate = match flow.regular.as_slice() {
+            [determinant] => self.domain.nonzero(determinant).map(|c| c.to_string()),
+            entries => self.certificate_of_entries(entries),
+        };
+        if let Some(certificate) = certificate {
+            return claim(certificate);
         }
-        if is_cross_product {
-            let entries = flow.tangent.entries().iter().enumerate();
-            let single = entries.clone().find_map(|(n, entry)| {
-                let certificate = self.domain.nonzero(entry)?;
-                Some(format!("entry {} of B: {certificate}", n + 1))
-            });
-            let together = || {
-                let certificate = self.domain.no_common_zero(flow.tangent.entries())?;
-                Some(format!("entries of B: {certificate}"))
-            };
-            let found = single.or_else(together);
-            if let Some(certificate) =
-                found.or_else(|| rank::full_column_rank(&flow.tangent, &self.domain).ok())
-            {
-                return claim(certificate);
-            }
-        }
-        let regular = &flow.regular;
+        let regular = self.where_irregular(&flow.regular);
         let message = "the relations are not shown to determine how Q moves";
         let error = refuted(
             code::DIMENSION,
@@ -286,6 +273,41 @@ impl Prover<'_> {
                 .note(format!("they do not where {regular} = 0"))
                 .help("if the joint ends there, declare it: `except … = 0;`; other independent directions, named by `basis`, end elsewhere"),
         ))
+    }
+
+    /// A certificate that these have no common zero.
+    fn certificate_of_entries(&self, entries: &[Expr]) -> Option<String> {
+        let square: Expr = entries.iter().map(Expr::square).sum();
+        let whole = || {
+            let square = self.ideal.simplest(&square);
+            self.domain.nonzero(&square).map(|c| c.to_string())
+        };
+        let single = || {
+            entries.iter().enumerate().find_map(|(n, entry)| {
+                let certificate = self.domain.nonzero(entry)?;
+                Some(format!("entry {} of B: {certificate}", n + 1))
+            })
+        };
+        let together = || {
+            let certificate = self.domain.no_common_zero(entries)?;
+            Some(format!("entries of B: {certificate}"))
+        };
+        let column = Matrix::column_vector(entries.to_vec());
+        whole()
+            .or_else(single)
+            .or_else(together)
+            .or_else(|| rank::full_column_rank(&column, &self.domain).ok())
+    }
+
+    /// What vanishes where the relations do not determine the motion, in as few terms as is known.
+    fn where_irregular(&self, regular: &[Expr]) -> Expr {
+        match regular {
+            [determinant] => determinant.clone(),
+            entries => {
+                let square: Expr = entries.iter().map(Expr::square).sum();
+                self.ideal.simplest(&square)
+            }
+        }
     }
 
     /// The manifold has as many dimensions as there are degrees of freedom.
