@@ -41,11 +41,7 @@ pub fn is_excluded(
 }
 
 /// Whether two relations are those of a loop that does not close: `(k + i l)(c + i s) = m + i n`, where `k² + l² − m² − n²` is never 0.
-fn is_open(
-    relations: &[Expr],
-    circles: &[Circle],
-    is_never_zero: impl Fn(&Expr) -> bool,
-) -> bool {
+fn is_open(relations: &[Expr], circles: &[Circle], is_never_zero: impl Fn(&Expr) -> bool) -> bool {
     let pairs = relations
         .iter()
         .flat_map(|first| relations.iter().map(move |second| (first, second)));
@@ -53,8 +49,8 @@ fn is_open(
         pairs.clone().any(|(real, imaginary)| {
             let none = [c.clone(), s.clone()];
             let [k, l] = [real.derivative(c), imaginary.derivative(c)];
-            let turns = (&imaginary.derivative(s) - &k).is_zero()
-                && (&real.derivative(s) + &l).is_zero();
+            let turns =
+                (&imaginary.derivative(s) - &k).is_zero() && (&real.derivative(s) + &l).is_zero();
             let [m, n] = [real.at_zero(&none), imaginary.at_zero(&none)];
             let squares = [&k, &l, &m, &n].map(Expr::square);
             let apart = &(&squares[0] + &squares[1]) - &(&squares[2] + &squares[3]);

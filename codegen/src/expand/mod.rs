@@ -23,7 +23,7 @@ mod unidentifiable;
 mod velocity;
 
 pub use dimension::Confinement;
-pub use implicit::{Directions as RelationDirections, Flow, Systems};
+pub use implicit::{Directions as RelationDirections, Flow, Systems, without_content};
 
 pub use kernels::{kernels, of_body, speed_map};
 pub use motion::Motion;

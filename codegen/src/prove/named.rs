@@ -73,7 +73,11 @@ impl Relations<'_> {
         for i in 0..tangent.columns() {
             let unknown = |d: usize| {
                 let number = tangent.rows() * i + d;
-                Expr::symbol(&Symbol::new(Role::Intermediate, number, "part_of_direction"))
+                Expr::symbol(&Symbol::new(
+                    Role::Intermediate,
+                    number,
+                    "part_of_direction",
+                ))
             };
             let entries = tangent.column(i).into_iter().enumerate();
             let whole: Expr = entries.map(|(d, entry)| &unknown(d) * &entry).sum();
@@ -107,7 +111,9 @@ impl Relations<'_> {
         let entries = entries.map(|(named, plain)| &stands_for(named) - plain);
         let bends = self.places().into_iter().map(|(r, i, j)| {
             let relation = &self.directions.relations[r];
-            let bend = self.directions.symmetric(relation, &self.flow.tangent, i, j);
+            let bend = self
+                .directions
+                .symmetric(relation, &self.flow.tangent, i, j);
             &stands_for(&systems.bends[i][j][r]) - &bend
         });
         entries.chain(bends).collect()
@@ -116,16 +122,27 @@ impl Relations<'_> {
     /// Both systems with the values of B and of λ, by Cramer's rule: entries and second derivatives are known by their names alone.
     fn solutions(&self, systems: &Systems) -> Vec<Expr> {
         let bends = systems.bends.iter().flatten().flatten();
-        let given: BTreeSet<Symbol> = systems.gradient.entries().iter().chain(bends)
+        let given: BTreeSet<Symbol> = systems
+            .gradient
+            .entries()
+            .iter()
+            .chain(bends)
             .filter_map(|entry| entry.as_symbol().cloned())
             .filter(|symbol| symbol.role == Role::Intermediate)
             .collect();
-        let solved = systems.words.iter().filter(|word| !given.contains(&word.symbol));
+        let solved = systems
+            .words
+            .iter()
+            .filter(|word| !given.contains(&word.symbol));
         let solved: Vec<Word> = solved.cloned().collect();
         // The determinant of the second system is made of B where that is the cross product; else B stands on its right side alone.
         let of_second: Vec<Word> = match self.is_cross_product() {
             true => solved.clone(),
-            false => solved.iter().filter(|word| word.rates.is_empty()).cloned().collect(),
+            false => solved
+                .iter()
+                .filter(|word| word.rates.is_empty())
+                .cloned()
+                .collect(),
         };
         let tangent = &self.flow.tangent;
         let first = (0..self.gradient.rows()).flat_map(|r| {
@@ -185,9 +202,8 @@ impl Relations<'_> {
             .map(|(entry, plain)| entry * &(&self.motion.along(entry, 0) - plain))
             .sum();
         let back = &self.flow.corrections[0][0];
-        let is_made = |word: &&Word| {
-            word.rates.is_empty() && !back.contains(&Expr::symbol(&word.symbol))
-        };
+        let is_made =
+            |word: &&Word| word.rates.is_empty() && !back.contains(&Expr::symbol(&word.symbol));
         let words: Vec<Word> = systems.words.iter().filter(is_made).cloned().collect();
         vec![written_out(&along, &words)]
     }

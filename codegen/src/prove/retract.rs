@@ -2,9 +2,9 @@
 
 use super::Proof;
 use super::named::Relations;
-use super::{Attempt, Identities, Prover, certified, refuted, symbolic};
+use super::{Attempt, Identities, LONGEST, Prover, certified, refuted, symbolic};
 use crate::diagnostic::Diagnostic;
-use crate::expand::{Confinement, Flow, Motion, dimension, rank};
+use crate::expand::{Confinement, Flow, Motion, dimension, rank, without_content};
 use crate::expr::{Expr, Symbol, budget};
 use crate::matrix::Matrix;
 use crate::model::Implicit;
@@ -260,7 +260,6 @@ impl Prover<'_> {
         if let Some(certificate) = certificate {
             return claim(certificate);
         }
-        let regular = self.where_irregular(&flow.regular);
         let message = "the relations are not shown to determine how Q moves";
         let error = refuted(
             code::DIMENSION,
@@ -268,11 +267,40 @@ impl Prover<'_> {
             message,
             "with these degrees of freedom",
         );
+        let regular = self.where_irregular(&flow.regular);
+        let written = regular.to_string();
+        let help = match (is_cross_product, written.len() <= LONGEST) {
+            (false, true) => format!(
+                "if the joint ends there, declare it: `except {written} = 0;`, in this form or in one that differs from it by a factor of \
+                 parameters; other independent directions, named by `basis`, end elsewhere"
+            ),
+            (false, false) => format!(
+                "if the joint ends there, declare it: `except … = 0;` with the determinant of the derivatives of the relations along the other \
+                 directions, those of {}, in any form, or its factors one by one; other independent directions, named by `basis`, end elsewhere",
+                self.dependent_factors(flow)
+            ),
+            (true, _) => "if the joint ends there, declare it: `except … = 0;`; independent directions, named by `basis`, end elsewhere".to_owned(),
+        };
         Err(Box::new(
             error
-                .note(format!("they do not where {regular} = 0"))
-                .help("if the joint ends there, declare it: `except … = 0;`; other independent directions, named by `basis`, end elsewhere"),
+                .note(format!("they do not where {written} = 0"))
+                .help(help),
         ))
+    }
+
+    /// The factors along which Φ comes back, by their names.
+    fn dependent_factors(&self, flow: &Flow) -> String {
+        let mut first = 0;
+        let factors = self.joint.space.manifold.factors().iter();
+        let names = factors.filter_map(|factor| {
+            let own = first..first + factor.kind.dimension();
+            first = own.end;
+            let moves = own
+                .into_iter()
+                .any(|d| (0..flow.normal.columns()).any(|j| !flow.normal.at(d, j).is_zero()));
+            moves.then(|| format!("`{}`", factor.name))
+        });
+        names.collect::<Vec<_>>().join(", ")
     }
 
     /// A certificate that these have no common zero.
@@ -302,7 +330,7 @@ impl Prover<'_> {
     /// What vanishes where the relations do not determine the motion, in as few terms as is known.
     fn where_irregular(&self, regular: &[Expr]) -> Expr {
         match regular {
-            [determinant] => determinant.clone(),
+            [determinant] => without_content(determinant).1,
             entries => {
                 let square: Expr = entries.iter().map(Expr::square).sum();
                 self.ideal.simplest(&square)

@@ -8,6 +8,7 @@ use crate::expr::Expr;
 use crate::matrix::Matrix;
 use crate::model::VelocityFrame;
 use crate::spec::code;
+use std::borrow::Cow;
 use std::ops::Range;
 
 impl Prover<'_> {
@@ -263,10 +264,10 @@ impl Prover<'_> {
     }
 
     /// The domain with what is known of the names in B.
-    fn domain_of_names(&self) -> Domain<'_> {
+    fn domain_of_names(&self) -> Cow<'_, Domain<'_>> {
         match self.relations() {
-            Some((relations, _)) => self.domain.knowing(relations.of_tangent()),
-            None => self.domain.clone(),
+            Some((relations, _)) => Cow::Owned(self.domain.knowing(relations.of_tangent())),
+            None => Cow::Borrowed(&self.domain),
         }
     }
 

@@ -3,9 +3,9 @@
 use hamel::joint::Member;
 use hamel_downstream::joints::{
     BallCayley, BallTurns, Bead, CarWheels, Catenary, CatenaryLength, CrankRocker, DirectionSensor,
-    ENTRIES, FiveBar, FourBar, FourBarAny, FourBarThrough, GearedRotor, ParallelAnkle, PlanarTurns, PowerGuide,
-    RollingBallCayley, Scara, SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod,
-    SpherePoint, Wishbone,
+    ENTRIES, FiveBar, FourBar, FourBarAny, FourBarThrough, GearedRotor, ParallelAnkle, PlanarTurns,
+    PowerGuide, RollingBallCayley, Scara, SkateHeading, SkewScrew, SliderCrankLinks,
+    SliderCrankRod, SpherePoint, Wishbone,
 };
 use hamel_tests::laws::Reach::{self, Around, Entries, HalfTurn};
 use hamel_tests::laws::check_within;

@@ -76,7 +76,9 @@ fn minors(gradient: &Matrix, labels: &Labels, by: &str, names: &mut Names<'_>) -
     let mut minors = Minors::new(gradient, (&labels.relations, &labels.standard));
     let mut entries = vec![];
     for (n, label) in labels.standard.iter().enumerate() {
-        let others: Vec<usize> = (0..gradient.columns()).filter(|&other| other != n).collect();
+        let others: Vec<usize> = (0..gradient.columns())
+            .filter(|&other| other != n)
+            .collect();
         let minor = minors.expanded(&all, &others, names);
         let minor = if n % 2 == 0 { minor } else { -minor };
         let entry = match minor.is_constant() {
@@ -109,5 +111,10 @@ fn inverse(
             });
         }
     }
-    Inverse::over(square, &entries, (&labels.relations, &labels.relations), names)
+    Inverse::over(
+        square,
+        &entries,
+        (&labels.relations, &labels.relations),
+        names,
+    )
 }

@@ -11,6 +11,7 @@ mod system;
 
 pub use directions::Directions;
 pub use named::Systems;
+pub use system::without_content;
 
 use named::Named;
 

@@ -170,7 +170,7 @@ impl<'a> Minors<'a> {
 }
 
 /// The parameters that all terms of a sum share, and the sum without them.
-fn without_content(sum: &Expr) -> (Expr, Expr) {
+pub fn without_content(sum: &Expr) -> (Expr, Expr) {
     let one = Rational::from(1);
     let monomials: Vec<&Monomial> = sum.terms().map(|(monomial, _)| monomial).collect();
     let Some((first, others)) = monomials.split_first() else {
@@ -179,7 +179,10 @@ fn without_content(sum: &Expr) -> (Expr, Expr) {
     let powers = first.units().iter();
     let shared = powers.map(|(atom, power)| {
         let least = others.iter().map(|other| other.power(atom)).min();
-        (atom.clone(), least.map_or(*power, |least| least.min(*power)))
+        (
+            atom.clone(),
+            least.map_or(*power, |least| least.min(*power)),
+        )
     });
     let content = shared.fold(Expr::one(), |product, (atom, power)| {
         let factor = Expr::atom(atom);
