@@ -51,6 +51,8 @@ pub struct Domain<'a> {
     declared: &'a [Expr],
     /// Unit vectors of the plane in Q.
     circles: Vec<parallel::Circle>,
+    /// Further polynomials that are 0, of symbols that are no scalars of Q.
+    known: Vec<Expr>,
 }
 
 /// Why some functions have no common zero.
@@ -143,6 +145,16 @@ impl<'a> Domain<'a> {
             connected: space.manifold.declared().is_empty(),
             declared: space.manifold.declared(),
             circles: unit_vectors::circles(space.manifold.factors()),
+            known: vec![],
+        }
+    }
+
+    /// The same where symbols that are no scalars of Q solve these equations.
+    #[must_use]
+    pub fn knowing(&self, known: Vec<Expr>) -> Self {
+        Self {
+            known,
+            ..self.clone()
         }
     }
 
@@ -230,21 +242,11 @@ impl<'a> Domain<'a> {
         let conditions = self.signs.positive_conditions();
         let roots = conditions.flat_map(|e| [Some(e.clone()), e.polynomial_root()]);
         let roots: Vec<Expr> = roots.flatten().collect();
-        let is_nonzero = |e: &Expr| {
+        let is_never_zero = |e: &Expr| {
             let rest = factors::without(e, &roots);
             self.is_unit(&rest) || self.signs.is_positive(&rest) || self.signs.is_positive(&-&rest)
         };
-        let unit = |(c, s): &parallel::Circle| {
-            let square = &Expr::symbol(c).square() + &Expr::symbol(s).square();
-            &square - &Expr::one()
-        };
-        let known = Ideal::of_known(self.circles.iter().map(unit).collect());
-        let contradicts = |relations: &[Expr]| {
-            let rest: Vec<Expr> = relations.iter().filter(|e| !e.is_zero()).cloned().collect();
-            known.has_no_zero_with(&rest, &self.vanishing, is_nonzero)
-        };
-        let (declared, circles) = (self.declared, &self.circles);
-        parallel::is_excluded(functions, declared, circles, is_nonzero, contradicts)
+        parallel::is_excluded(functions, self.declared, &self.circles, is_never_zero)
     }
 
     fn search(&self, expressions: &[Expr]) -> Option<Certificate> {
@@ -258,6 +260,9 @@ impl<'a> Domain<'a> {
             return Some(Certificate::Constant(unit.clone()));
         }
         let functions = all.len();
+        if self.are_parallel_nowhere(expressions) {
+            return Some(Certificate::Parallel { functions });
+        }
         let of_one_sign = |e: &&Expr| self.signs.is_positive(e) || self.signs.is_positive(&-*e);
         // On a manifold of relations sums have no sign that their terms show, and to look for one takes long.
         let bounded = self.signs.bounded();
@@ -293,9 +298,6 @@ impl<'a> Domain<'a> {
                 except: true,
             });
         }
-        if self.are_parallel_nowhere(expressions) {
-            return Some(Certificate::Parallel { functions });
-        }
         let under_root = |e: &Expr| under_root(e).filter(|_| self.has_unit_factor(e));
         let under_roots: Vec<Expr> = expressions.iter().filter_map(under_root).collect();
         generators.extend(under_roots.iter().cloned());
@@ -303,6 +305,7 @@ impl<'a> Domain<'a> {
         for e in expressions.iter().chain(&all).chain(&under_roots) {
             generators.extend(self.signs.zero_terms(e).into_iter().flatten());
         }
+        generators.extend(self.known.iter().cloned());
         let found = |except| Some(Certificate::NoCommonZero { functions, except });
         let has_no_zero = |generators: &[Expr]| {
             let has_sign = |e: &Expr| of_one_sign(&e);

@@ -26,7 +26,7 @@ mod velocity;
 
 pub use dimension::Confinement;
 pub use forbidden::Forbidden;
-pub use implicit::{Directions as RelationDirections, Flow, Systems};
+pub use implicit::{Directions as RelationDirections, Flow, Systems, without_content};
 
 pub use kernels::{kernels, of_body, speed_map};
 pub use motion::Motion;

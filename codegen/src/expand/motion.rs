@@ -2,7 +2,6 @@
 
 use crate::algebra;
 use crate::expr::{Expr, Role, Symbol};
-use crate::kernel::Word;
 use crate::manifold::{Factor, Kind, Manifold};
 use crate::matrix::Matrix;
 use crate::prepare::{Prepared, local_element};
@@ -43,14 +42,10 @@ impl Motion {
         }
     }
 
-    /// The same where these names stand for functions of Q, as far as their derivatives are known.
+    /// The same where these names stand for functions of Q with these derivatives along each ϕ_k.
     #[must_use]
-    pub fn with_named(mut self, words: &[Word]) -> Self {
-        let known = words.iter().filter(|word| !word.rates.is_empty());
-        self.named = known
-            .map(|word| (word.symbol.clone(), word.rates.clone()))
-            .collect();
-        self
+    pub fn with_named(self, named: BTreeMap<Symbol, Vec<Expr>>) -> Self {
+        Self { named, ..self }
     }
 
     /// Φ = Q exp(Σ b_k ϕ_k) on every factor, exp taken to second order.

@@ -161,13 +161,6 @@ impl Prover<'_> {
                     (Function::Atan2, [y, x]) if of_quotient => vec![&y.square() + &x.square()],
                     _ => vec![],
                 });
-        // Of what relations alone say was shown before that it is divided by nothing that may be 0.
-        if let Some(flow) = self.x.flow.as_ref().filter(|_| of_quotient)
-            && (self.ideal.vanishes(&(&flow.regular - argument))
-                || self.are_multiples(&flow.regular, argument))
-        {
-            return true;
-        }
         // A quotient needs no sign; roots and logarithms do, which a multiple may not have.
         known.any(|x| {
             x == *argument

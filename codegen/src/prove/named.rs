@@ -4,10 +4,10 @@
 
 use super::{Attempt, Prover};
 use crate::expand::{Flow, Motion, RelationDirections, Systems};
-use crate::expr::Expr;
+use crate::expr::{Expr, Role, Symbol};
 use crate::kernel::Word;
 use crate::matrix::Matrix;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The relations along the names of B, from the definitions.
 pub(super) struct Relations<'a> {
@@ -22,7 +22,6 @@ impl Prover<'_> {
     /// The relations along the names of B, where it has names.
     pub(super) fn relations(&self) -> Option<(Relations<'_>, &Systems)> {
         let flow = self.x.flow.as_ref()?;
-        let systems = flow.systems.as_ref()?;
         let directions = RelationDirections::new(self.joint);
         let gradient = Matrix::from_fn(flow.gradient.rows(), flow.gradient.columns(), |r, d| {
             directions.along.along(&directions.relations[r], d)
@@ -33,7 +32,7 @@ impl Prover<'_> {
             motion: &self.x.motion,
             gradient,
         };
-        Some((relations, systems))
+        Some((relations, &flow.systems))
     }
 
     /// The names of B, of λ and of the rates of B are what they are said to be.
@@ -45,6 +44,7 @@ impl Prover<'_> {
             relations.definitions(systems),
             relations.solutions(systems),
             relations.rates(),
+            relations.rate_along(systems),
         ];
         let residual = Matrix::column_vector(residuals.concat());
         self.identity(
@@ -62,6 +62,30 @@ impl Prover<'_> {
 }
 
 impl Relations<'_> {
+    /// Polynomials that vanish for the values of the names in B, with unknowns of their own: `∂φ B`, and `1 − Σ t_d B_d`, since B is not 0.
+    pub(super) fn of_tangent(&self) -> Vec<Expr> {
+        let tangent = &self.flow.tangent;
+        let columns = 0..tangent.columns();
+        let mut all: Vec<Expr> = columns
+            .flat_map(|i| (0..self.gradient.rows()).map(move |r| (r, i)))
+            .map(|(r, i)| self.first(r, i))
+            .collect();
+        for i in 0..tangent.columns() {
+            let unknown = |d: usize| {
+                let number = tangent.rows() * i + d;
+                Expr::symbol(&Symbol::new(
+                    Role::Intermediate,
+                    number,
+                    "part_of_direction",
+                ))
+            };
+            let entries = tangent.column(i).into_iter().enumerate();
+            let whole: Expr = entries.map(|(d, entry)| &unknown(d) * &entry).sum();
+            all.push(&Expr::one() - &whole);
+        }
+        all
+    }
+
     /// `∂φ B_i` of relation r: 0 by the definition of B.
     pub(super) fn first(&self, r: usize, i: usize) -> Expr {
         product(&self.gradient, r, &self.flow.tangent.column(i))
@@ -87,44 +111,62 @@ impl Relations<'_> {
         let entries = entries.map(|(named, plain)| &stands_for(named) - plain);
         let bends = self.places().into_iter().map(|(r, i, j)| {
             let relation = &self.directions.relations[r];
-            let bend = self.directions.symmetric(relation, &self.flow.tangent, i, j);
+            let bend = self
+                .directions
+                .symmetric(relation, &self.flow.tangent, i, j);
             &stands_for(&systems.bends[i][j][r]) - &bend
         });
         entries.chain(bends).collect()
     }
 
-    /// Both systems with the values of B and of λ, by Cramer's rule from entries that are known by names alone.
+    /// Both systems with the values of B and of λ, by Cramer's rule: entries and second derivatives are known by their names alone.
     fn solutions(&self, systems: &Systems) -> Vec<Expr> {
-        let minors = &systems.words[systems.minors.clone()];
-        let with_values = |expression: &Expr, solved: &[Expr]| {
-            let is_solved = |word: &&Word| {
-                let own = Expr::symbol(&word.symbol);
-                solved.contains(&own)
-            };
-            let solved = systems.words.iter().filter(is_solved).cloned();
-            written_out(expression, &[minors.to_vec(), solved.collect()].concat())
+        let bends = systems.bends.iter().flatten().flatten();
+        let given: BTreeSet<Symbol> = systems
+            .gradient
+            .entries()
+            .iter()
+            .chain(bends)
+            .filter_map(|entry| entry.as_symbol().cloned())
+            .filter(|symbol| symbol.role == Role::Intermediate)
+            .collect();
+        let solved = systems
+            .words
+            .iter()
+            .filter(|word| !given.contains(&word.symbol));
+        let solved: Vec<Word> = solved.cloned().collect();
+        // The determinant of the second system is made of B where that is the cross product; else B stands on its right side alone.
+        let of_second: Vec<Word> = match self.is_cross_product() {
+            true => solved.clone(),
+            false => solved
+                .iter()
+                .filter(|word| word.rates.is_empty())
+                .cloned()
+                .collect(),
         };
         let tangent = &self.flow.tangent;
         let first = (0..self.gradient.rows()).flat_map(|r| {
-            (0..tangent.columns()).map(move |i| {
-                let column = tangent.column(i);
-                with_values(&product(&systems.gradient, r, &column), &column)
-            })
+            let product = |i: usize| product(&systems.gradient, r, &tangent.column(i));
+            (0..tangent.columns()).map(product).collect::<Vec<_>>()
         });
         let second = self.places().into_iter().map(|(r, i, j)| {
             let back = &self.flow.corrections[i][j];
-            let solved = with_values(&product(&systems.gradient, r, back), back);
-            &systems.bends[i][j][r] + &solved
+            let system = &systems.bends[i][j][r] + &product(&systems.gradient, r, back);
+            written_out(&system, &of_second)
         });
+        let first = first.map(|system| written_out(&system, &solved));
         first.chain(second).collect()
     }
 
-    /// `∂/∂ϕ_l (∂φ B_i)` with the rates of B, less the multiples of both systems that it is: their second derivatives are those of λ, and
-    /// those of the brackets are along B.
+    /// Whether B is the cross product, whose entries are what must not vanish together.
+    fn is_cross_product(&self) -> bool {
+        self.flow.regular.len() > 1
+    }
+
+    /// `∂/∂ϕ_l (∂φ B_i)` with the rates of B, less the multiples of both systems that it is.
     fn rates(&self) -> Vec<Expr> {
         let tangent = &self.flow.tangent;
         let along = &self.directions.along;
-        let half = Expr::fraction(1, 2);
         let residual = |r: usize, i: usize, l: usize| {
             let slope = |d: usize| -> Expr {
                 let terms = (0..tangent.rows()).filter(|&e| !tangent.at(e, l).is_zero());
@@ -138,14 +180,32 @@ impl Relations<'_> {
                 .map(|d| self.motion.along(tangent.at(d, i), l))
                 .collect();
             let whole = &moved + &product(&self.gradient, r, &rates);
-            let brackets = self.flow.brackets[l].column(i).into_iter().enumerate();
-            let turned: Expr = brackets.map(|(j, part)| &part * &self.first(r, j)).sum();
-            &(&whole - &self.second(r, l, i)) - &(&turned * &half)
+            let slopes = self.flow.slopes[l].column(i).into_iter().enumerate();
+            let turned: Expr = slopes.map(|(j, part)| &part * &self.first(r, j)).sum();
+            &(&whole - &self.second(r, l, i)) + &turned
         };
         let k = tangent.columns();
         let places = (0..self.gradient.rows())
             .flat_map(|r| (0..k).flat_map(move |i| (0..k).map(move |l| (r, i, l))));
         places.map(|(r, i, l)| residual(r, i, l)).collect()
+    }
+
+    /// Of the rate of B as a cross product its part along B, less that by the chain rule; the others follow from ∂φ B = 0.
+    fn rate_along(&self, systems: &Systems) -> Vec<Expr> {
+        if !self.is_cross_product() {
+            return vec![];
+        }
+        let tangent = &self.flow.tangent;
+        let plain = self.directions.combined_of(&self.flow.regular, tangent);
+        let entries = tangent.entries().iter().zip(&plain);
+        let along: Expr = entries
+            .map(|(entry, plain)| entry * &(&self.motion.along(entry, 0) - plain))
+            .sum();
+        let back = &self.flow.corrections[0][0];
+        let is_made =
+            |word: &&Word| word.rates.is_empty() && !back.contains(&Expr::symbol(&word.symbol));
+        let words: Vec<Word> = systems.words.iter().filter(is_made).cloned().collect();
+        vec![written_out(&along, &words)]
     }
 
     /// Relations and pairs of columns of B.

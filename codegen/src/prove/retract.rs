@@ -2,9 +2,9 @@
 
 use super::Proof;
 use super::named::Relations;
-use super::{Attempt, Identities, Prover, certified, refuted, symbolic};
+use super::{Attempt, Identities, LONGEST, Prover, certified, refuted, symbolic};
 use crate::diagnostic::Diagnostic;
-use crate::expand::{Confinement, Flow, Motion, dimension, rank};
+use crate::expand::{Confinement, Flow, Motion, dimension, rank, without_content};
 use crate::expr::{Expr, Symbol, budget};
 use crate::matrix::Matrix;
 use crate::model::Implicit;
@@ -253,27 +253,13 @@ impl Prover<'_> {
                 &certificate,
             )))
         };
-        if let Some(certificate) = self.domain.nonzero(&flow.regular) {
-            return claim(certificate.to_string());
+        let certificate = match flow.regular.as_slice() {
+            [determinant] => self.domain.nonzero(determinant).map(|c| c.to_string()),
+            entries => self.certificate_of_entries(entries),
+        };
+        if let Some(certificate) = certificate {
+            return claim(certificate);
         }
-        if is_cross_product {
-            let entries = flow.tangent.entries().iter().enumerate();
-            let single = entries.clone().find_map(|(n, entry)| {
-                let certificate = self.domain.nonzero(entry)?;
-                Some(format!("entry {} of B: {certificate}", n + 1))
-            });
-            let together = || {
-                let certificate = self.domain.no_common_zero(flow.tangent.entries())?;
-                Some(format!("entries of B: {certificate}"))
-            };
-            let found = single.or_else(together);
-            if let Some(certificate) =
-                found.or_else(|| rank::full_column_rank(&flow.tangent, &self.domain).ok())
-            {
-                return claim(certificate);
-            }
-        }
-        let regular = &flow.regular;
         let message = "the relations are not shown to determine how Q moves";
         let error = refuted(
             code::DIMENSION,
@@ -281,11 +267,75 @@ impl Prover<'_> {
             message,
             "with these degrees of freedom",
         );
+        let regular = self.where_irregular(&flow.regular);
+        let written = regular.to_string();
+        let help = match (is_cross_product, written.len() <= LONGEST) {
+            (false, true) => format!(
+                "if the joint ends there, declare it: `except {written} = 0;`, in this form or in one that differs from it by a factor of \
+                 parameters; other independent directions, named by `basis`, end elsewhere"
+            ),
+            (false, false) => format!(
+                "if the joint ends there, declare it: `except … = 0;` with the determinant of the derivatives of the relations along the other \
+                 directions, those of {}, in any form, or its factors one by one; other independent directions, named by `basis`, end elsewhere",
+                self.dependent_factors(flow)
+            ),
+            (true, _) => "if the joint ends there, declare it: `except … = 0;`; independent directions, named by `basis`, end elsewhere".to_owned(),
+        };
         Err(Box::new(
             error
-                .note(format!("they do not where {regular} = 0"))
-                .help("if the joint ends there, declare it: `except … = 0;`; other independent directions, named by `basis`, end elsewhere"),
+                .note(format!("they do not where {written} = 0"))
+                .help(help),
         ))
+    }
+
+    /// The factors along which Φ comes back, by their names.
+    fn dependent_factors(&self, flow: &Flow) -> String {
+        let mut first = 0;
+        let factors = self.joint.space.manifold.factors().iter();
+        let names = factors.filter_map(|factor| {
+            let own = first..first + factor.kind.dimension();
+            first = own.end;
+            let moves = own
+                .into_iter()
+                .any(|d| (0..flow.normal.columns()).any(|j| !flow.normal.at(d, j).is_zero()));
+            moves.then(|| format!("`{}`", factor.name))
+        });
+        names.collect::<Vec<_>>().join(", ")
+    }
+
+    /// A certificate that these have no common zero.
+    fn certificate_of_entries(&self, entries: &[Expr]) -> Option<String> {
+        let square: Expr = entries.iter().map(Expr::square).sum();
+        let whole = || {
+            let square = self.ideal.simplest(&square);
+            self.domain.nonzero(&square).map(|c| c.to_string())
+        };
+        let single = || {
+            entries.iter().enumerate().find_map(|(n, entry)| {
+                let certificate = self.domain.nonzero(entry)?;
+                Some(format!("entry {} of B: {certificate}", n + 1))
+            })
+        };
+        let together = || {
+            let certificate = self.domain.no_common_zero(entries)?;
+            Some(format!("entries of B: {certificate}"))
+        };
+        let column = Matrix::column_vector(entries.to_vec());
+        whole()
+            .or_else(single)
+            .or_else(together)
+            .or_else(|| rank::full_column_rank(&column, &self.domain).ok())
+    }
+
+    /// What vanishes where the relations do not determine the motion, in as few terms as is known.
+    fn where_irregular(&self, regular: &[Expr]) -> Expr {
+        match regular {
+            [determinant] => without_content(determinant).1,
+            entries => {
+                let square: Expr = entries.iter().map(Expr::square).sum();
+                self.ideal.simplest(&square)
+            }
+        }
     }
 
     /// The manifold has as many dimensions as there are degrees of freedom.

@@ -2,11 +2,13 @@
 
 use super::{Attempt, Prover, certified, degenerate, refuted};
 use crate::diagnostic::Diagnostic;
+use crate::domain::Domain;
 use crate::expand::{directions, in_child_frames, rank, twist_map_in_frame};
 use crate::expr::Expr;
 use crate::matrix::Matrix;
 use crate::model::VelocityFrame;
 use crate::spec::code;
+use std::borrow::Cow;
 use std::ops::Range;
 
 impl Prover<'_> {
@@ -193,7 +195,7 @@ impl Prover<'_> {
         span: Range<usize>,
         what: &str,
     ) -> Attempt {
-        match rank::full_column_rank(m, &self.domain) {
+        match rank::full_column_rank(m, &self.domain_of_names()) {
             Ok(certificate) => Ok(Some(certified(
                 name,
                 &self.where_it_holds(statement),
@@ -232,8 +234,8 @@ impl Prover<'_> {
     pub(super) fn twist_map_has_full_rank(&self) -> Attempt {
         // Ad is invertible, so that X and X^c have the same rank: the simpler one is certified.
         let child = &self.x.twist_map_child;
-        let shown =
-            |m: &Matrix| rank::full_column_rank(&self.x.still.below(m), &self.domain).is_ok();
+        let domain = self.domain_of_names();
+        let shown = |m: &Matrix| rank::full_column_rank(&self.x.still.below(m), &domain).is_ok();
         let still = &self.x.still;
         // In its own frame the first of several bodies has what others have moved about.
         let several = !self.joint.spec.more.is_empty();
@@ -259,6 +261,14 @@ impl Prover<'_> {
             self.twist_map_span(),
             what,
         )
+    }
+
+    /// The domain with what is known of the names in B.
+    fn domain_of_names(&self) -> Cow<'_, Domain<'_>> {
+        match self.relations() {
+            Some((relations, _)) => Cow::Owned(self.domain.knowing(relations.of_tangent())),
+            None => Cow::Borrowed(&self.domain),
+        }
     }
 
     /// What stands below X.

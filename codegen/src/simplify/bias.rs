@@ -105,10 +105,12 @@ impl Maker<'_> {
         let all = coordinates.chain(named);
         let all = all.filter(|(symbol, _)| occurring.contains(*symbol));
         let shortened = all.map(|(symbol, rate)| (symbol, words.shorten(&rate)));
-        let bound = shortened.filter(|(_, rate)| !rate.is_zero()).map(|(symbol, rate)| {
-            let name = format!("{}_rate", symbol.name);
-            (symbol.clone(), steps.bind(&name, rate))
-        });
+        let bound = shortened
+            .filter(|(_, rate)| !rate.is_zero())
+            .map(|(symbol, rate)| {
+                let name = format!("{}_rate", symbol.name);
+                (symbol.clone(), steps.bind(&name, rate))
+            });
         bound.collect()
     }
 

@@ -200,7 +200,7 @@ fn declared(joint: &Prepared, kind: KernelKind) -> Option<Vec<Matrix>> {
     }
 }
 
-/// The kernel with a line for each word that it uses; derivatives that are used once stand in their place.
+/// The kernel with a line for each word that it uses; derivatives that are used once, and names for other symbols, stand in their place.
 pub(super) fn with_lines(words: &Words<'_>, mut kernel: Kernel) -> Kernel {
     let mut lines: Vec<Word> = vec![];
     for word in words.words().iter().rev() {
@@ -208,7 +208,7 @@ pub(super) fn with_lines(words: &Words<'_>, mut kernel: Kernel) -> Kernel {
         if uses == 0 {
             continue;
         }
-        if word.is_derivative() && uses == 1 {
+        if word.is_derivative() && uses == 1 || words.is_another_name(word) {
             let value = BTreeMap::from([(word.symbol.clone(), word.value.clone())]);
             put_in(&mut kernel, &mut lines, &value);
             continue;

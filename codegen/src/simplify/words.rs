@@ -63,11 +63,13 @@ impl<'a> Words<'a> {
             as_derived: has_exponentials(joint),
         };
         for word in expansion.named() {
-            let value = words.shorten(&word.value);
-            words.words.push(Word {
-                value,
-                ..word.clone()
-            });
+            let mut word = word.clone();
+            word.value = words.shorten(&word.value);
+            if word.value.is_plain() {
+                let count = word.rates.len();
+                word.rates = (0..count).map(|k| motion.along(&word.value, k)).collect();
+            }
+            words.words.push(word);
         }
         if words.as_derived {
             return words;
@@ -209,6 +211,12 @@ impl<'a> Words<'a> {
     /// Whether the author's names can be used.
     pub fn are_used(&self) -> bool {
         !self.as_derived
+    }
+
+    /// Whether a word stands for no more than another symbol, so that its value is written in its place.
+    pub fn is_another_name(&self, word: &Word) -> bool {
+        let derived = &self.words[..self.derived_in.min(self.words.len())];
+        word.value.is_plain() && derived.iter().any(|other| other.symbol == word.symbol)
     }
 
     /// The words, each after those in its value.

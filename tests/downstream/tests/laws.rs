@@ -3,11 +3,12 @@
 use hamel::joint::Member;
 use hamel_downstream::joints::{
     BallCayley, BallTurns, Bead, CamCircle, CamFollower, CarWheels, Catenary, CatenaryLength,
-    CrankRocker, DirectionSensor, ENTRIES, FiveBar, FourBar, FourBarThrough, GearedRotor,
-    MeasuredRocker, ParallelAnkle, PlanarTurns, PowerGuide, Rail, RollingBallCayley, Scara,
-    SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint, Valley, Wishbone,
+    CrankRocker, DirectionSensor, ENTRIES, FiveBar, FourBar, FourBarAny, FourBarThrough,
+    GearedRotor, MeasuredRocker, ParallelAnkle, PlanarTurns, PowerGuide, Rail, RollingBallCayley,
+    Scara, SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint, Valley,
+    Wishbone,
 };
-use hamel_tests::laws::Reach::{self, Entries, HalfTurn};
+use hamel_tests::laws::Reach::{self, Around, Entries, HalfTurn};
 use hamel_tests::laws::check_within;
 use hamel_tests::laws::search::{Effort, check_everywhere};
 use std::path::Path;
@@ -87,14 +88,14 @@ laws_by_relations! {
 
 /// The law suite of joints that carry several bodies: of the joint as each of them sees it. The first is the joint itself.
 macro_rules! laws_of_bodies {
-    ($($name:ident: $joint:expr, [$($body:literal),*];)*) => {
+    ($($name:ident: $joint:expr, $reach:expr, [$($body:literal),*];)*) => {
         const OF_BODIES: &[&str] = &[$(stringify!($name)),*];
         $(
             #[test]
             fn $name() {
                 let joint = $joint;
-                check_within(&joint, Entries(0.5));
-                $(check_within(&Member::<_, $body>(joint), Entries(0.5));)*
+                check_within(&joint, $reach);
+                $(check_within(&Member::<_, $body>(joint), $reach);)*
                 assert_eq!(bodies_of(stringify!($name)), [0, $($body),*]);
             }
         )*
@@ -102,14 +103,15 @@ macro_rules! laws_of_bodies {
 }
 
 laws_of_bodies! {
-    cam_follower: CamFollower::new(0.03), [1];
-    car_wheels: CarWheels::new(1.1, 0.7, 0.4), [1, 2, 3, 4];
-    crank_rocker: CrankRocker::new(0.9, 0.4, 1.1, 1.2), [1, 2];
-    five_bar: FiveBar::new(0.3, 0.2, 0.3, 0.22, 0.28), [1, 2, 3];
-    geared_rotor: GearedRotor::new(5.5), [1];
-    parallel_ankle: ParallelAnkle::new(0.25, 0.04, 0.05, 0.06, 0.26), [1, 2];
-    slider_crank_links: SliderCrankLinks::new(1.1, 0.4, 0.2), [1, 2];
-    wishbone: Wishbone::new(0.35, 0.28, 0.25, 0.26, 0.34, 0.1), [1, 2];
+    cam_follower: CamFollower::new(0.03), Entries(0.5), [1];
+    car_wheels: CarWheels::new(1.1, 0.7, 0.4), Entries(0.5), [1, 2, 3, 4];
+    crank_rocker: CrankRocker::new(0.9, 0.4, 1.1, 1.2), Entries(0.5), [1, 2];
+    five_bar: FiveBar::new(0.3, 0.2, 0.3, 0.22, 0.28), Around(0.2), [1, 2, 3];
+    four_bar_any: FourBarAny::new(0.6, 0.5, 0.24, 0.44), Around(0.5), [1, 2];
+    geared_rotor: GearedRotor::new(5.5), Entries(0.5), [1];
+    parallel_ankle: ParallelAnkle::new(0.25, 0.04, 0.05, 0.06, 0.26), Around(0.2), [1, 2];
+    slider_crank_links: SliderCrankLinks::new(1.1, 0.4, 0.2), Entries(0.5), [1, 2];
+    wishbone: Wishbone::new(0.35, 0.28, 0.25, 0.26, 0.34, 0.1), Around(0.3), [1, 2];
 }
 
 /// What is emitted of the second body, against the definition of a joint with that body alone.

@@ -44,7 +44,15 @@ fn inertia(body: usize) -> (f64, Vector3<f64>, Matrix3<f64>) {
     let n = body as f64;
     let centre = Vector3::new(0.05 + 0.01 * n, 0.02, -0.01 * n);
     let moments = Matrix3::new(
-        2e-3, 1e-4, 0.0, 1e-4, 3e-3, -2e-4, 0.0, -2e-4, 2.5e-3 + 1e-4 * n,
+        2e-3,
+        1e-4,
+        0.0,
+        1e-4,
+        3e-3,
+        -2e-4,
+        0.0,
+        -2e-4,
+        2.5e-3 + 1e-4 * n,
     );
     (0.4 + 0.3 * n, centre, moments)
 }
@@ -459,7 +467,11 @@ fn energy_and_relations_are_kept() {
             for state in &states {
                 let own = mechanism.bodies()[0].joint();
                 let residual = own.residual(&state.configuration);
-                assert!(residual < 4e-15, "{}, {form:?}: {residual:e}", linkage.joint);
+                assert!(
+                    residual < 4e-15,
+                    "{}, {form:?}: {residual:e}",
+                    linkage.joint
+                );
                 // The tolerance of 1e-11 a step, some thousands of them.
                 let drift = (energy(state) - first).abs();
                 assert!(drift < 1e-7, "{}, {form:?}: {drift:e}", linkage.joint);

@@ -36,7 +36,12 @@ pub enum Reach {
     HalfTurn,
     /// Entries up to this number: beyond, Φ(Q, ·) takes values twice, or meets an exception.
     Entries(f64),
+    /// The same from configurations that are no further from home: a linkage has ends all around.
+    Around(f64),
 }
+
+/// How far from home configurations are looked at, in entries of ϕ.
+const AWAY: f64 = 1.5;
 
 /// Checks every law at many configurations and sizes of ϕ, up to half a turn.
 ///
@@ -69,8 +74,12 @@ pub fn check_within<
     reach: Reach,
 ) {
     let mut random = ChaCha8Rng::seed_from_u64(7);
+    let furthest = match reach {
+        Reach::Around(furthest) => furthest,
+        Reach::HalfTurn | Reach::Entries(_) => AWAY,
+    };
     for _ in 0..CONFIGURATIONS {
-        let away: SVector<f64, K> = vector(&mut random, 1.5);
+        let away: SVector<f64, K> = vector(&mut random, furthest);
         let at = At {
             joint,
             q: joint.retract(&joint.home(), &away),
@@ -78,7 +87,7 @@ pub fn check_within<
         at.velocity_laws(&vector(&mut random, 2.0), &vector(&mut random, 2.0));
         at.speed_laws(&vector(&mut random, 2.0), &vector(&mut random, 2.0));
         at.manifold_laws(&vector(&mut random, 1e-6));
-        at.unidentifiable_laws(&vector(&mut random, 1.0));
+        at.unidentifiable_laws(&vector(&mut random, furthest.min(1.0)));
         at.singular_sets();
         for phi in at.sizes(&vector(&mut random, 1.0), reach) {
             at.finite_laws(&phi, &vector(&mut random, 2.0));
@@ -119,7 +128,7 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
 {
     /// ϕ = 0, of size 1e-8, and up to the reach: as given and with its turn within 1e-6 of π, or a half and the whole.
     fn sizes(&self, phi: &SVector<f64, K>, reach: Reach) -> [SVector<f64, K>; 4] {
-        if let Reach::Entries(most) = reach {
+        if let Reach::Entries(most) | Reach::Around(most) = reach {
             return [SVector::zeros(), phi * 1e-8, phi * (most / 2.0), phi * most];
         }
         let turn = (self.joint.twist_map_child(&self.q) * self.joint.velocity_map(&self.q) * phi)

@@ -54,8 +54,8 @@ impl<'a> Directions<'a> {
         complete.min_by_key(|(_, determinant)| determinant.terms().len())
     }
 
-    /// B, N = ∂φᵀ and |B|² for one degree of freedom: the maximal minors of ∂φ with alternating signs.
-    pub fn cross_product(&self) -> Option<(Matrix, Matrix, Expr)> {
+    /// B for one degree of freedom: the maximal minors of ∂φ with alternating signs.
+    pub fn cross_product(&self) -> Vec<Expr> {
         let size = self.gradient.columns();
         let simplify = |e: &Expr| self.ideal.simplest(e);
         let transposed = self.gradient.transpose();
@@ -67,10 +67,7 @@ impl<'a> Directions<'a> {
                 _ => -&minor,
             }
         };
-        let tangent = Matrix::column_vector((0..size).map(minor).collect());
-        let square: Expr = tangent.entries().iter().map(Expr::square).sum();
-        let square = self.ideal.simplest(&square);
-        (!tangent.is_zero() && !square.is_zero()).then_some((tangent, transposed, square))
+        (0..size).map(minor).collect()
     }
 
     /// The rates of the stored scalars along a combination of the directions.
@@ -83,6 +80,16 @@ impl<'a> Directions<'a> {
         };
         let count = self.along.direction(0).len();
         (0..count).map(|n| self.ideal.simplest(&sum(n))).collect()
+    }
+
+    /// The derivatives of functions along a combination of the directions.
+    pub fn combined_of(&self, functions: &[Expr], weights: &Matrix) -> Vec<Expr> {
+        let along = |function: &Expr| -> Expr {
+            let directions = (0..weights.rows()).filter(|&d| !weights.at(d, 0).is_zero());
+            let terms = directions.map(|d| weights.at(d, 0) * &self.along.along(function, d));
+            terms.sum()
+        };
+        functions.iter().map(along).collect()
     }
 
     /// `½ (L_a L_b + L_b L_a) f` with a and b the columns i and j of `tangent`, held constant.
@@ -102,25 +109,4 @@ impl<'a> Directions<'a> {
             false => &(&twice(i, j) + &twice(j, i)) * &Expr::fraction(1, 2),
         }
     }
-
-    /// `N ∂²λ/∂ϕ_i∂ϕ_j = −N (∂φ N)⁻¹ ½ (L_i L_j + L_j L_i) φ`, in the standard directions.
-    pub fn corrections(&self, tangent: &Matrix, normal: &Matrix) -> Option<Vec<Vec<Vec<Expr>>>> {
-        let k = tangent.columns();
-        let simplify = |e: &Expr| self.ideal.normal_form(e);
-        let square = self.ideal.normal_forms(&self.gradient.times(normal));
-        let inverse = square.determinant(&simplify).recip()?;
-        let inverse = square.adjugate(&simplify).scale(&inverse);
-        let correction = |i: usize, j: usize| {
-            let bends = self
-                .relations
-                .iter()
-                .map(|relation| simplify(&self.symmetric(relation, tangent, i, j)));
-            let bends = Matrix::column_vector(bends.collect());
-            let back = normal.times(&inverse.times(&bends)).map(|entry| -entry);
-            self.ideal.simplest_entries(&back).entries().to_vec()
-        };
-        let rows = (0..k).map(|i| (0..k).map(|j| correction(i, j)).collect());
-        Some(rows.collect())
-    }
 }
-

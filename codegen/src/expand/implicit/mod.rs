@@ -4,12 +4,16 @@
 //! c×dim G. The columns of B span its null space, and v is read along them: `Q⁻¹Q̇ = B v`. N holds c directions along which the moved
 //! configuration comes back onto the manifold. λ begins with second order in ϕ.
 
+mod cross_product;
 mod directions;
 mod named;
 mod system;
 
 pub use directions::Directions;
 pub use named::Systems;
+pub use system::without_content;
+
+use named::Named;
 
 use super::motion::Motion;
 use crate::algebra;
@@ -32,25 +36,22 @@ pub struct Flow {
     pub normal: Matrix,
     /// `N ∂²λ/∂ϕ_i∂ϕ_j`, in the standard directions of G.
     pub corrections: Vec<Vec<Vec<Expr>>>,
-    /// What [B_l, B_i] has along the independent directions: slice l holds it in column i. None where no directions are.
-    pub brackets: Vec<Matrix>,
-    /// Never 0: the determinant that B is divided by, or the square of B where that is the cross product.
-    pub regular: Expr,
+    /// These have no common zero: the determinant that B is divided by, or the entries of B where that is the cross product.
+    pub regular: Vec<Expr>,
     /// ∂S/∂ϕ_l, from the motion of Q alone; S₀ = I.
     pub slopes: Vec<Matrix>,
     /// ∂φ, c×dim G.
     pub gradient: Matrix,
     /// Whether ϕ adds up along every motion, so that S = I at finite ϕ.
     pub adds: bool,
-    /// The names in B and in what is derived of it, and what they are; none where B is written out.
-    pub systems: Option<Systems>,
+    /// The names in B and in what is derived of it, and what they are.
+    pub systems: Systems,
 }
 
 impl Flow {
     /// The names in B and in what is derived of it, each after those in its value.
     pub fn words(&self) -> &[Word] {
-        let systems = self.systems.as_ref();
-        systems.map_or(&[], |systems| &systems.words)
+        &self.systems.words
     }
 }
 
@@ -69,20 +70,20 @@ pub fn expand(
         Implicit::Independent(chosen) => {
             Bases::independent(joint, &directions, &columns(joint, chosen))
         }
-        Implicit::CrossProduct => Bases::cross_product(&directions),
+        Implicit::CrossProduct => Bases::cross_product(joint, &directions),
     };
     let bases = bases.ok_or_else(|| vec![dependent(joint)])?;
-    let motion = motion(joint, domain.ideal(), &directions, &bases);
-    let slopes = slopes(joint, implicit, &motion, &bases);
+    let motion = motion(joint, domain.ideal(), &directions, &bases.named);
+    let ideal = domain.ideal();
+    let slopes = bases.named.slopes.iter();
     let flow = Flow {
+        slopes: slopes.map(|slope| ideal.simplest_entries(slope)).collect(),
         adds: adds(joint, implicit, &bases.normal),
-        tangent: bases.tangent,
+        tangent: bases.named.tangent,
         normal: bases.normal,
         regular: bases.regular,
-        systems: bases.systems,
-        corrections: bases.corrections,
-        brackets: bases.brackets,
-        slopes,
+        systems: bases.named.systems,
+        corrections: bases.named.corrections,
         gradient: directions.gradient,
     };
     Ok((motion, flow))
@@ -90,54 +91,44 @@ pub fn expand(
 
 /// What Φ is made of.
 struct Bases {
-    /// B.
-    tangent: Matrix,
+    named: Named,
     /// N.
     normal: Matrix,
-    /// Never 0.
-    regular: Expr,
-    /// `N ∂²λ/∂ϕ_i∂ϕ_j`, in the standard directions.
-    corrections: Vec<Vec<Vec<Expr>>>,
-    /// What [B_l, B_i] has along the independent directions.
-    brackets: Vec<Matrix>,
-    /// The names in B, and what they are.
-    systems: Option<Systems>,
+    /// These have no common zero.
+    regular: Vec<Expr>,
 }
 
 impl Bases {
     fn independent(joint: &Prepared, directions: &Directions<'_>, chosen: &Matrix) -> Option<Self> {
-        let (normal, regular) = directions.normal(chosen)?;
-        let named = named::expand(joint, directions, (chosen, &normal))?;
+        let (normal, determinant) = directions.normal(chosen)?;
         Some(Self {
-            tangent: named.tangent,
+            named: named::expand(joint, directions, (chosen, &normal))?,
             normal,
-            regular,
-            corrections: named.corrections,
-            brackets: named.brackets,
-            systems: Some(named.systems),
+            regular: vec![determinant],
         })
     }
 
-    fn cross_product(directions: &Directions<'_>) -> Option<Self> {
-        let (tangent, normal, regular) = directions.cross_product()?;
+    fn cross_product(joint: &Prepared, directions: &Directions<'_>) -> Option<Self> {
+        let regular = directions.cross_product();
+        let ideal = joint.space.manifold.ideal();
+        if regular.iter().all(|entry| ideal.vanishes(entry)) {
+            return None;
+        }
         Some(Self {
-            corrections: directions.corrections(&tangent, &normal)?,
-            tangent,
-            normal,
+            named: cross_product::expand(joint, directions, &regular)?,
+            normal: directions.gradient.transpose(),
             regular,
-            brackets: vec![],
-            systems: None,
         })
     }
 }
 
 /// Φ to second order.
-fn motion(joint: &Prepared, ideal: &Ideal, directions: &Directions<'_>, bases: &Bases) -> Motion {
-    let Bases {
+fn motion(joint: &Prepared, ideal: &Ideal, directions: &Directions<'_>, named: &Named) -> Motion {
+    let Named {
         tangent,
         corrections,
         ..
-    } = bases;
+    } = named;
     let k = tangent.columns();
     let first = (0..k)
         .map(|i| directions.combined(&tangent.column(i)))
@@ -154,8 +145,7 @@ fn motion(joint: &Prepared, ideal: &Ideal, directions: &Directions<'_>, bases: &
     let second = (0..k)
         .map(|i| (0..k).map(|j| second(i, j)).collect())
         .collect();
-    let words = bases.systems.as_ref().map(|systems| &systems.words[..]);
-    Motion::new(coordinates.clone(), first, second).with_named(words.unwrap_or_default())
+    Motion::new(coordinates.clone(), first, second).with_named(named.rates.clone())
 }
 
 /// The displacement ξ of Q in G, in its standard directions; none where relations are not all that Φ is made of.
@@ -197,38 +187,6 @@ fn columns(joint: &Prepared, chosen: &[(usize, Vec<Expr>)]) -> Matrix {
         column
     };
     Matrix::from_columns(size, &chosen.iter().map(column).collect::<Vec<_>>())
-}
-
-/// ∂S/∂ϕ_l from `B S_l e_k = N λ_kl − ½ [B_l, B_k] − ∂_l B_k`, to which a left inverse of B is applied: of the independent directions, or `Bᵀ / |B|²`.
-fn slopes(
-    joint: &Prepared,
-    implicit: &Implicit,
-    motion: &Motion,
-    bases: &Bases,
-) -> Vec<Matrix> {
-    let (tangent, corrections) = (&bases.tangent, &bases.corrections);
-    let ideal = joint.space.manifold.ideal();
-    let k = tangent.columns();
-    let left = match implicit {
-        Implicit::Independent(chosen) => upper(&columns(joint, chosen), &bases.normal),
-        Implicit::CrossProduct => tangent
-            .transpose()
-            .scale(&bases.regular.recip().unwrap_or_default()),
-    };
-    let column = |l: usize, i: usize| -> Vec<Expr> {
-        let bracket = bracket(joint, &tangent.column(l), &tangent.column(i));
-        let entries = (0..tangent.rows()).map(|d| {
-            let curved = &corrections[i][l][d] - &(&bracket[d] * &Expr::fraction(1, 2));
-            &curved - &motion.along(tangent.at(d, i), l)
-        });
-        entries.collect()
-    };
-    let slope = |l: usize| {
-        let columns: Vec<Vec<Expr>> = (0..k).map(|i| column(l, i)).collect();
-        let right = Matrix::from_columns(tangent.rows(), &columns);
-        ideal.simplest_entries(&left.times(&right))
-    };
-    (0..k).map(slope).collect()
 }
 
 /// P with `P E = I` and `P N = 0` for the independent directions E: what a displacement has along them, k×dim G.

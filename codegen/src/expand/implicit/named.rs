@@ -3,26 +3,29 @@
 //!
 //! The columns of b solve `∂φ N b_i = −∂φ E_i`, so that `∂φ B = 0`. What brings Φ back, `N λ_ij`, solves `∂φ N λ_ij = −½ (L_i L_j + L_j L_i) φ`,
 //! L_i the derivative along B_i held constant. With P the part of a displacement along E, `∂b_i/∂ϕ_l = λ_li − ½ [B_l, B_i] + ½ B P [B_l, B_i]`
-//! along N: both sides solve the same system, by the derivative of `∂φ B = 0`. So all that is derived is a short polynomial in Q and these names.
+//! along N, and S to first order is `I − ½ P [B ϕ, B ·]`: both sides solve the same system, by the derivative of `∂φ B = 0`. So all that is derived is a short polynomial in Q and these names.
 
 use super::directions::Directions;
 use super::system::{Inverse, LONGEST, Names};
 use super::{bracket, upper};
-use crate::expr::Expr;
+use crate::expr::{Expr, Symbol};
 use crate::kernel::Word;
 use crate::matrix::Matrix;
 use crate::prepare::Prepared;
+use std::collections::BTreeMap;
 
 /// Most terms of a second derivative of a relation that has no name of its own: multiplied out, those of loops in a plane become shorter.
-const LONGEST_BEND: usize = 4;
+pub(super) const LONGEST_BEND: usize = 4;
 
 /// B with its derivatives, in names.
 pub struct Named {
     pub tangent: Matrix,
     /// `N λ_ij`, in the standard directions.
     pub corrections: Vec<Vec<Vec<Expr>>>,
-    /// `P [B_l, B_i]`: slice l holds it in column i.
-    pub brackets: Vec<Matrix>,
+    /// ∂S/∂ϕ_l.
+    pub slopes: Vec<Matrix>,
+    /// The derivatives of the names in B along each ϕ_l, such that `X S = J` holds for any values of names.
+    pub rates: BTreeMap<Symbol, Vec<Expr>>,
     pub systems: Systems,
 }
 
@@ -35,8 +38,6 @@ pub struct Systems {
     pub gradient: Matrix,
     /// `½ (L_i L_j + L_j L_i) φ` in names, by i and j.
     pub bends: Vec<Vec<Vec<Expr>>>,
-    /// Which of the names are made of others, by Cramer's rule: minors and the reciprocal of the determinant.
-    pub minors: std::ops::Range<usize>,
 }
 
 /// B and what follows, for these independent directions and those that depend on them.
@@ -45,15 +46,14 @@ pub fn expand(
     directions: &Directions<'_>,
     (chosen, normal): (&Matrix, &Matrix),
 ) -> Option<Named> {
+    let ideal = joint.space.manifold.ideal();
     let labels = Labels::new(joint, directions, normal);
-    let mut names = Names::new(joint.space.manifold.ideal());
+    let mut names = Names::new(ideal);
     let gradient = named_gradient(directions, &labels, &mut names);
-    let first = names.words.len();
     let square = gradient.times(normal);
     let inverse = Inverse::new(&square, (&labels.relations, &labels.dependent), &mut names)?;
-    let minors = first..names.words.len();
     let mut solver = Solver {
-        ideal: joint.space.manifold.ideal(),
+        ideal,
         labels,
         names,
         inverse,
@@ -63,18 +63,20 @@ pub fn expand(
     let (bends, corrections) = solver.corrections(directions, &tangent);
     let brackets = brackets(joint, &tangent);
     let left = upper(chosen, normal);
-    let along_chosen: Vec<Matrix> = brackets.iter().map(|b| left.times(b)).collect();
-    let mut words = solver.names.words;
+    let half = Expr::fraction(1, 2);
+    let slope = |bracket: &Matrix| left.times(bracket).scale(&-&half);
+    let slopes: Vec<Matrix> = brackets.iter().map(slope).collect();
+    let (mut words, mut known) = (solver.names.words, BTreeMap::new());
     for i in 0..tangent.columns() {
         for (n, entry) in dependent.column(i).iter().enumerate() {
             let rate = |l: usize| {
-                let back = tangent.times(&along_chosen[l]).minus(&brackets[l]);
-                let turned = normal.transpose().times(&back).at(n, i) * &Expr::fraction(1, 2);
-                &corrections[l][i][n] + &turned
+                let turned = brackets[l].scale(&half).plus(&tangent.times(&slopes[l]));
+                &corrections[l][i][n] - normal.transpose().times(&turned).at(n, i)
             };
-            let mut own = words.iter_mut();
-            if let Some(word) = own.find(|word| entry.as_symbol() == Some(&word.symbol)) {
-                word.rates = (0..tangent.columns()).map(rate).collect();
+            if let Some(symbol) = entry.as_symbol() {
+                let rates: Vec<Expr> = (0..tangent.columns()).map(rate).collect();
+                give_rates(&mut words, symbol, rates.clone());
+                known.insert(symbol.clone(), rates);
             }
         }
     }
@@ -88,26 +90,34 @@ pub fn expand(
             .map(|row| row.iter().map(along_normal).collect())
             .collect(),
         tangent,
-        brackets: along_chosen,
+        slopes,
+        rates: known,
         systems: Systems {
             words,
             gradient,
             bends,
-            minors,
         },
     })
 }
 
+/// Gives a name its derivatives along ϕ.
+pub(super) fn give_rates(words: &mut [Word], symbol: &Symbol, rates: Vec<Expr>) {
+    let own = words.iter_mut().find(|word| word.symbol == *symbol);
+    if let Some(word) = own {
+        word.rates = rates;
+    }
+}
+
 /// Names of directions and relations.
-struct Labels {
-    relations: Vec<String>,
-    standard: Vec<String>,
+pub(super) struct Labels {
+    pub relations: Vec<String>,
+    pub standard: Vec<String>,
     dependent: Vec<String>,
-    freedoms: Vec<String>,
+    pub freedoms: Vec<String>,
 }
 
 impl Labels {
-    fn new(joint: &Prepared, directions: &Directions<'_>, normal: &Matrix) -> Self {
+    pub fn new(joint: &Prepared, directions: &Directions<'_>, normal: &Matrix) -> Self {
         let factors = joint.space.manifold.factors().iter();
         let standard = factors.flat_map(|factor| {
             let of_one = |n: usize| match factor.kind.dimension() {
@@ -131,7 +141,7 @@ impl Labels {
     }
 }
 
-fn named_gradient(
+pub(super) fn named_gradient(
     directions: &Directions<'_>,
     labels: &Labels,
     names: &mut Names<'_>,

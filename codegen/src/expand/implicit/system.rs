@@ -56,27 +56,29 @@ pub struct Inverse {
 
 impl Inverse {
     /// The inverse of a matrix whose rows and columns have these names; `None` where the determinant is 0.
-    pub fn new(
+    pub fn new(matrix: &Matrix, labels: Labels<'_>, names: &mut Names<'_>) -> Option<Self> {
+        let all: Vec<usize> = (0..matrix.rows()).collect();
+        let determinant = Minors::new(matrix, labels).expanded(&all, &all, names);
+        let determinant = names.ideal.simplest(&determinant);
+        Self::over(&determinant, matrix, labels, names)
+    }
+
+    /// The same where the determinant is known.
+    pub fn over(
+        determinant: &Expr,
         matrix: &Matrix,
-        labels: (&[String], &[String]),
+        labels: Labels<'_>,
         names: &mut Names<'_>,
     ) -> Option<Self> {
         let size = matrix.rows();
-        let all: Vec<usize> = (0..size).collect();
-        let mut minors = Minors {
-            matrix,
-            labels,
-            known: BTreeMap::new(),
-        };
-        let determinant = minors.expanded(&all, &all, names);
+        let mut minors = Minors::new(matrix, labels);
         let without = |n: usize| (0..size).filter(|&other| other != n).collect::<Vec<_>>();
         let mut adjugate = vec![];
         for (i, j) in (0..size).flat_map(|i| (0..size).map(move |j| (i, j))) {
             let minor = minors.get(&without(j), &without(i), names);
             adjugate.push(if (i + j) % 2 == 0 { minor } else { -minor });
         }
-        let determinant = names.ideal.simplest(&determinant);
-        let (content, core) = without_content(&determinant);
+        let (content, core) = without_content(determinant);
         let core = core.recip()?;
         let core = match determinant.terms().len() > LONGEST {
             true => Expr::symbol(&names.named("per_determinant", core)),
@@ -88,6 +90,11 @@ impl Inverse {
         })
     }
 
+    /// The reciprocal of the determinant.
+    pub fn reciprocal(&self) -> &Expr {
+        &self.reciprocal
+    }
+
     /// The inverse times a column.
     pub fn times(&self, right: &[Expr]) -> Vec<Expr> {
         let solved = self.adjugate.times(&Matrix::column_vector(right.to_vec()));
@@ -95,14 +102,27 @@ impl Inverse {
     }
 }
 
+/// Names of the rows and of the columns of a matrix.
+pub type Labels<'a> = (&'a [String], &'a [String]);
+
 /// Minors of a matrix, each found once, by expansion along its first row.
-struct Minors<'a> {
+pub struct Minors<'a> {
     matrix: &'a Matrix,
-    labels: (&'a [String], &'a [String]),
+    labels: Labels<'a>,
     known: BTreeMap<(Vec<usize>, Vec<usize>), Expr>,
 }
 
-impl Minors<'_> {
+impl<'a> Minors<'a> {
+    /// Those of a matrix whose rows and columns have these names.
+    pub fn new(matrix: &'a Matrix, labels: Labels<'a>) -> Self {
+        let known = BTreeMap::new();
+        Self {
+            matrix,
+            labels,
+            known,
+        }
+    }
+
     /// The minor of these rows and columns, or its name.
     fn get(&mut self, rows: &[usize], columns: &[usize], names: &mut Names<'_>) -> Expr {
         let key = (rows.to_vec(), columns.to_vec());
@@ -127,7 +147,8 @@ impl Minors<'_> {
         minor
     }
 
-    fn expanded(&mut self, rows: &[usize], columns: &[usize], names: &mut Names<'_>) -> Expr {
+    /// The minor of these rows and columns, of smaller ones or of their names.
+    pub fn expanded(&mut self, rows: &[usize], columns: &[usize], names: &mut Names<'_>) -> Expr {
         let [first, rest @ ..] = rows else {
             return Expr::one();
         };
@@ -149,7 +170,7 @@ impl Minors<'_> {
 }
 
 /// The parameters that all terms of a sum share, and the sum without them.
-fn without_content(sum: &Expr) -> (Expr, Expr) {
+pub fn without_content(sum: &Expr) -> (Expr, Expr) {
     let one = Rational::from(1);
     let monomials: Vec<&Monomial> = sum.terms().map(|(monomial, _)| monomial).collect();
     let Some((first, others)) = monomials.split_first() else {
@@ -158,7 +179,10 @@ fn without_content(sum: &Expr) -> (Expr, Expr) {
     let powers = first.units().iter();
     let shared = powers.map(|(atom, power)| {
         let least = others.iter().map(|other| other.power(atom)).min();
-        (atom.clone(), least.map_or(*power, |least| least.min(*power)))
+        (
+            atom.clone(),
+            least.map_or(*power, |least| least.min(*power)),
+        )
     });
     let content = shared.fold(Expr::one(), |product, (atom, power)| {
         let factor = Expr::atom(atom);

@@ -1,6 +1,6 @@
 //! `relation`: polynomials in the stored scalars of Q that vanish on the manifold of the joint.
 
-use super::super::ast::Equation;
+use super::super::ast::{Equation, Target};
 use super::super::evaluate::Evaluator;
 use super::super::{code, limits};
 use super::equation;
@@ -22,7 +22,11 @@ pub(super) fn constrained(
         relations.extend(relation(*at, manifold, evaluator).unwrap_or_default());
     }
     let constrained = match statements.relations_span() {
-        Some(span) if !relations.is_empty() => basis(relations, &manifold.value, &span, evaluator),
+        Some(span) if !relations.is_empty() => {
+            let has_retract = statements.target(Target::Retract).is_some();
+            let manifold = &manifold.value;
+            basis(relations, manifold, &span, evaluator, !has_retract)
+        }
         _ => None,
     };
     Declared {
@@ -104,15 +108,17 @@ fn says_nothing(
     )
 }
 
-/// The manifold with the Gröbner basis of all relations, or of the factors' alone where that of all takes too long.
+/// The manifold with the Gröbner basis of all relations. Where that takes too long and the relations alone are to say how Q moves, it is that
+/// of the factors: the proofs of such joints take few steps.
 fn basis(
     relations: Vec<Expr>,
     manifold: &Manifold,
     span: &Range<usize>,
     evaluator: &mut Evaluator<'_>,
+    alone: bool,
 ) -> Option<Manifold> {
     let found = match evaluator.errors.is_empty() {
-        true => {
+        true if alone => {
             let whole = || manifold.clone().constrained(relations.clone());
             match budget::scope(limits::RELATIONS_BUDGET, whole) {
                 Ok(found) => Some(found),
@@ -121,6 +127,9 @@ fn basis(
                 }),
             }
         }
+        true => evaluator.bounded_by(limits::RELATIONS_BUDGET, "relation", span, |_| {
+            Some(manifold.clone().constrained(relations.clone()))
+        }),
         // In a spec that is wrong already, only a contradiction that is soon found is told.
         false => budget::scope(limits::RELATIONS_BUDGET_OF_WRONG, || {
             manifold.clone().constrained(relations.clone())

@@ -1,1 +1,0 @@
-fn main(){ for f in std::env::args().skip(1){ let s=std::fs::read_to_string(&f).unwrap(); match hamel_codegen::derive(&s,&f){Ok(j)=>{println!("{}",hamel_codegen::emit::rust::file(&j,&f,&hamel_codegen::emit::rust::Runtime::default()).unwrap()); for c in &j.claims {eprintln!("{}: {} [{}]",c.name,c.statement,c.detail);}},Err(e)=>eprintln!("{e}")}}}
