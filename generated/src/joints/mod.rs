@@ -158,7 +158,7 @@ macro_rules! for_each_joint {
         $callback!(ellipse, $crate::joints::Ellipse, $crate::joints::Ellipse::new(0.7f64, 0.85f64), 2, 1, 1, 0);
         $callback!(ellipsoid, $crate::joints::Ellipsoid, $crate::joints::Ellipsoid::new(0.7f64, 0.85f64, 1f64), 9, 3, 3, 0);
         $callback!(falling_disk, $crate::joints::FallingDisk, $crate::joints::FallingDisk::new(0.7f64), 11, 5, 3, 2);
-        $callback!(four_bar, $crate::joints::FourBar, $crate::joints::FourBar::new(0.7f64, 0.2f64, 1f64, 1.15f64), 6, 1, 1, 0);
+        $callback!(four_bar, $crate::joints::FourBar, $crate::joints::FourBar::new(0.2f64, 0.85f64, 1f64, 1.15f64), 6, 1, 1, 0);
         $callback!(free, $crate::joints::Free, $crate::joints::Free, 12, 6, 6, 0);
         $callback!(geared_revolute, $crate::joints::GearedRevolute, $crate::joints::GearedRevolute::new(0.7f64), 1, 1, 1, 0);
         $callback!(gimbal, $crate::joints::Gimbal, $crate::joints::Gimbal, 3, 3, 3, 0);
@@ -195,8 +195,8 @@ macro_rules! for_each_body {
         $callback!(differential_pinion, $crate::joints::Differential, $crate::joints::Differential::new(0.7f64), 3, 2, 2, 2, 0);
         $callback!(differential_drive_left, $crate::joints::DifferentialDrive, $crate::joints::DifferentialDrive::new(0.7f64, 0.85f64), 1, 8, 5, 2, 3);
         $callback!(differential_drive_right, $crate::joints::DifferentialDrive, $crate::joints::DifferentialDrive::new(0.7f64, 0.85f64), 2, 8, 5, 2, 3);
-        $callback!(four_bar_coupler, $crate::joints::FourBar, $crate::joints::FourBar::new(0.7f64, 0.2f64, 1f64, 1.15f64), 1, 6, 1, 1, 0);
-        $callback!(four_bar_rocker, $crate::joints::FourBar, $crate::joints::FourBar::new(0.7f64, 0.2f64, 1f64, 1.15f64), 2, 6, 1, 1, 0);
+        $callback!(four_bar_coupler, $crate::joints::FourBar, $crate::joints::FourBar::new(0.2f64, 0.85f64, 1f64, 1.15f64), 1, 6, 1, 1, 0);
+        $callback!(four_bar_rocker, $crate::joints::FourBar, $crate::joints::FourBar::new(0.2f64, 0.85f64, 1f64, 1.15f64), 2, 6, 1, 1, 0);
         $callback!(geared_revolute_rotor, $crate::joints::GearedRevolute, $crate::joints::GearedRevolute::new(0.7f64), 1, 1, 1, 1, 0);
         $callback!(scissor_second, $crate::joints::Scissor, $crate::joints::Scissor::new(0.7f64), 1, 1, 1, 1, 0);
         $callback!(scissor_platform, $crate::joints::Scissor, $crate::joints::Scissor::new(0.7f64), 2, 1, 1, 1, 0);

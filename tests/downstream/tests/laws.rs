@@ -3,7 +3,7 @@
 use hamel::joint::Member;
 use hamel_downstream::joints::{
     BallCayley, BallTurns, Bead, CamCircle, CamFollower, CarWheels, Catenary, CatenaryLength,
-    CrankRocker, DirectionSensor, ENTRIES, FiveBar, FourBar, FourBarAny, FourBarThrough,
+    CrankRocker, DirectionSensor, ENTRIES, FiveBar, FourBar, FourBarThrough,
     GearedRotor, MeasuredRocker, ParallelAnkle, PlanarTurns, PowerGuide, Rail, RollingBallCayley,
     Scara, SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint, Valley,
     Wishbone,
@@ -107,7 +107,6 @@ laws_of_bodies! {
     car_wheels: CarWheels::new(1.1, 0.7, 0.4), Entries(0.5), [1, 2, 3, 4];
     crank_rocker: CrankRocker::new(0.9, 0.4, 1.1, 1.2), Entries(0.5), [1, 2];
     five_bar: FiveBar::new(0.3, 0.2, 0.3, 0.22, 0.28), Around(0.2), [1, 2, 3];
-    four_bar_any: FourBarAny::new(0.6, 0.5, 0.24, 0.44), Around(0.5), [1, 2];
     geared_rotor: GearedRotor::new(5.5), Entries(0.5), [1];
     parallel_ankle: ParallelAnkle::new(0.25, 0.04, 0.05, 0.06, 0.26), Around(0.2), [1, 2];
     slider_crank_links: SliderCrankLinks::new(1.1, 0.4, 0.2), Entries(0.5), [1, 2];

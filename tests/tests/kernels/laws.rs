@@ -6,7 +6,7 @@
 use hamel::joint::{Joint, Member};
 use hamel_tests::laws::{Reach, check_within};
 
-/// How far ϕ goes where Φ is found by Newton's method: a quarter of the least distance at which the branches of the library's linkages meet, 2 rad.
+/// How far from home configurations are where Φ is found by Newton's method, and how far ϕ goes from them: a quarter of the least distance at which the branches of the library's linkages meet, 2 rad.
 const BY_RELATIONS: f64 = 0.5;
 
 fn check<J, const N: usize, const K: usize, const S: usize, const C: usize>(joint: &J)
@@ -15,7 +15,7 @@ where
 {
     let by_relations = hamel_tests::derived(J::NAME).spec.implicit.is_some();
     let reach = match by_relations {
-        true => Reach::Entries(BY_RELATIONS),
+        true => Reach::Around(BY_RELATIONS),
         false => Reach::HalfTurn,
     };
     check_within(joint, reach);
