@@ -23,6 +23,7 @@ use hamel_compiler::prune::{Pruning, prune};
 use rand::RngExt;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -47,18 +48,40 @@ pub fn joint(name: &str) -> Option<Rc<JointType>> {
     })
 }
 
+/// The joint type of a spec in a folder.
+///
+/// # Panics
+/// Where it is missing or not sound.
+pub fn joint_in(folder: &Path, name: &str) -> Rc<JointType> {
+    let derived = crate::derived_in(folder, name);
+    Rc::new(JointType::new(derived).expect("its products take little work"))
+}
+
 /// A mechanism of the library's joints on which gravity alone acts, with its rotors and drives.
 ///
 /// # Panics
 /// Where a joint is not of the library.
 pub fn model(name: &str, mechanism: &Mechanism) -> Model {
+    model_of(name, mechanism, &joint)
+}
+
+/// The same of joints of any origin, by their names.
+///
+/// # Panics
+/// Where a joint is not among them.
+pub fn model_of(
+    name: &str,
+    mechanism: &Mechanism,
+    joints: &dyn Fn(&str) -> Option<Rc<JointType>>,
+) -> Model {
     let bodies = mechanism.bodies().iter().enumerate();
     Model {
         name: name.to_owned(),
         gravity: *mechanism.gravity(),
         bodies: bodies
             .map(|(index, owner)| {
-                body(owner, mechanism.armature(index), mechanism.is_driven(index))
+                let driven = mechanism.is_driven(index);
+                body(owner, mechanism.armature(index), driven, joints)
             })
             .collect(),
         elements: Elements::default(),
@@ -69,12 +92,17 @@ pub fn model(name: &str, mechanism: &Mechanism) -> Model {
     }
 }
 
-fn body(body: &TreeBody, armature: &[f64], driven: bool) -> Body {
+fn body(
+    body: &TreeBody,
+    armature: &[f64],
+    driven: bool,
+    joints: &dyn Fn(&str) -> Option<Rc<JointType>>,
+) -> Body {
     let mut parameters = vec![];
     body.joint()
         .parameters(&mut |_, value| parameters.push(value));
     let kind = body.joint().name();
-    let first = joint(kind).unwrap_or_else(|| panic!("`{kind}` is not of the library"));
+    let first = joints(kind).unwrap_or_else(|| panic!("`{kind}` is not among the joints"));
     Body {
         name: body.name().to_owned(),
         joint_name: body.joint_name().to_owned(),
