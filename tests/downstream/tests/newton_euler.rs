@@ -8,7 +8,9 @@ use hamel::integrate::{Form, Method, Options, State, integrate, no_inputs, no_ob
 use hamel::mechanism::{BodySpec, Mechanism};
 use hamel::registry::JointRegistry;
 use hamel::spatial::{MassProperties, Pose};
+use hamel_tests::compiled::{self, Point};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Where a body's frame is, in the frame of the joint.
@@ -476,6 +478,29 @@ fn energy_and_relations_are_kept() {
                 let drift = (energy(state) - first).abs();
                 assert!(drift < 1e-7, "{}, {form:?}: {drift:e}", linkage.joint);
             }
+        }
+    }
+}
+
+/// Values and derivatives of compiled equations, in which names of B are common to all kernels.
+#[test]
+fn compiled_scenes_have_the_values_of_the_tree() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("joints");
+    for linkage in [five_bar(), parallel_ankle(), wishbone()] {
+        let mechanism = mechanism(&linkage);
+        let joint = compiled::joint_in(&folder, linkage.joint);
+        let joints = |name: &str| (name == linkage.joint).then(|| joint.clone());
+        let model = compiled::model_on(linkage.joint, &mechanism, joints);
+        for (seed, state) in run(&linkage, &mechanism, Form::Lagrangian, 1.0)
+            .into_iter()
+            .enumerate()
+        {
+            let at = || {
+                let q = state.configuration.clone();
+                Point::at(model.clone(), &mechanism, q, seed as u64)
+            };
+            at().agrees();
+            at().derivatives_agree();
         }
     }
 }

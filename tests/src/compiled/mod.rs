@@ -23,6 +23,7 @@ use hamel_compiler::prune::{Pruning, prune};
 use rand::RngExt;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -45,6 +46,15 @@ pub fn joint(name: &str) -> Option<Rc<JointType>> {
         });
         Some(Rc::clone(entry))
     })
+}
+
+/// The joint type of a spec in a folder.
+///
+/// # Panics
+/// Where it is missing or not sound.
+pub fn joint_in(folder: &Path, name: &str) -> Rc<JointType> {
+    let derived = crate::derived_in(folder, name);
+    Rc::new(JointType::new(derived).expect("its products take little work"))
 }
 
 /// A mechanism of the library's joints on which gravity alone acts, with its rotors and drives.

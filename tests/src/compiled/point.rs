@@ -47,14 +47,30 @@ impl Point {
     /// At a random state.
     pub fn random(model: Model, mechanism: &Arc<Mechanism>, seed: u64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let q = random::configuration(&mut random, mechanism);
+        Self::with_speeds(model, mechanism, q, &mut random)
+    }
+
+    /// At a configuration, with random speeds and efforts.
+    pub fn at(model: Model, mechanism: &Arc<Mechanism>, q: Vec<f64>, seed: u64) -> Self {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        Self::with_speeds(model, mechanism, q, &mut random)
+    }
+
+    fn with_speeds(
+        model: Model,
+        mechanism: &Arc<Mechanism>,
+        q: Vec<f64>,
+        random: &mut ChaCha8Rng,
+    ) -> Self {
         let layout = *mechanism.layout();
         Self {
             place: model.name.clone(),
             loops: &BOTH,
             model,
-            q: random::configuration(&mut random, mechanism),
-            speeds: random::numbers(&mut random, layout.speeds),
-            inputs: random::numbers(&mut random, layout.freedoms),
+            q,
+            speeds: random::numbers(random, layout.speeds),
+            inputs: random::numbers(random, layout.freedoms),
             mechanism: Arc::clone(mechanism),
         }
     }

@@ -75,7 +75,10 @@ fn names(derived: &Derived, notation: &Notation, kernels: &[KernelKind]) -> Opti
         right: notation.set(&word.value),
     };
     let equations: Vec<Equation> = words.map(equation).collect();
-    let title = "Names of the spec, and their derivatives";
+    let title = match derived.named.is_empty() {
+        true => "Names of the spec, and their derivatives",
+        false => "Names: rates of what follows by the relations, and what they are made of",
+    };
     (!equations.is_empty()).then(|| Formula::new(title, equations, String::new()))
 }
 

@@ -17,6 +17,9 @@ use std::collections::BTreeMap;
 /// Most terms of a second derivative of a relation that has no name of its own: multiplied out, those of loops in a plane become shorter.
 pub(super) const LONGEST_BEND: usize = 4;
 
+/// A column for each pair of degrees of freedom.
+type ByPairs = Vec<Vec<Vec<Expr>>>;
+
 /// B with its derivatives, in names.
 pub struct Named {
     pub tangent: Matrix,
@@ -67,17 +70,23 @@ pub fn expand(
     let slope = |bracket: &Matrix| left.times(bracket).scale(&-&half);
     let slopes: Vec<Matrix> = brackets.iter().map(slope).collect();
     let (mut words, mut known) = (solver.names.words, BTreeMap::new());
-    for i in 0..tangent.columns() {
-        for (n, entry) in dependent.column(i).iter().enumerate() {
-            let rate = |l: usize| {
-                let turned = brackets[l].scale(&half).plus(&tangent.times(&slopes[l]));
-                &corrections[l][i][n] - normal.transpose().times(&turned).at(n, i)
+    let turned = brackets.iter().zip(&slopes);
+    let turned = turned.map(|(bracket, slope)| {
+        let whole = bracket.scale(&half).plus(&tangent.times(slope));
+        normal.transpose().times(&whole)
+    });
+    let turned: Vec<Matrix> = turned.collect();
+    let columns = (0..tangent.columns()).map(|i| dependent.column(i));
+    for (i, column) in columns.enumerate() {
+        for (n, entry) in column.iter().enumerate() {
+            let Some(symbol) = entry.as_symbol() else {
+                continue;
             };
-            if let Some(symbol) = entry.as_symbol() {
-                let rates: Vec<Expr> = (0..tangent.columns()).map(rate).collect();
-                give_rates(&mut words, symbol, rates.clone());
-                known.insert(symbol.clone(), rates);
-            }
+            let along = corrections.iter().zip(&turned);
+            let rate = |(bent, turned): (&Vec<Vec<Expr>>, &Matrix)| &bent[i][n] - turned.at(n, i);
+            let rates: Vec<Expr> = along.map(rate).collect();
+            give_rates(&mut words, symbol, rates.clone());
+            known.insert(symbol.clone(), rates);
         }
     }
     let along_normal = |entries: &Vec<Expr>| {
@@ -192,11 +201,7 @@ impl Solver<'_> {
     }
 
     /// `½ (L_i L_j + L_j L_i) φ` and λ_ij, by i and j.
-    fn corrections(
-        &mut self,
-        directions: &Directions<'_>,
-        tangent: &Matrix,
-    ) -> (Vec<Vec<Vec<Expr>>>, Vec<Vec<Vec<Expr>>>) {
+    fn corrections(&mut self, directions: &Directions<'_>, tangent: &Matrix) -> (ByPairs, ByPairs) {
         let count = tangent.columns();
         let mut bends = vec![vec![vec![]; count]; count];
         let mut solved = bends.clone();
