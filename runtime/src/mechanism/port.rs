@@ -3,7 +3,6 @@
 use super::check::{Space, check_size};
 use super::initial::CONSTRAINT_TOLERANCE;
 use super::{Body, Mechanism, StateError};
-use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
