@@ -276,7 +276,8 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
                 "the joint has ports: it must implement port_map"
             )
         };
-        [[T::zero(); K]; 0]
+        let none: [[T; K]; 0] = [];
+        none
     }
 
     /// The values of the ports, rad or m; that of a [port that wraps](Port::wraps) is between −π and π.
@@ -287,7 +288,8 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
                 "the joint has ports: it must implement port_values"
             )
         };
-        [T::zero(); 0]
+        let none: [T; 0] = [];
+        none
     }
 
     /// For each of [`Joint::RELATIONS`] the twist of the body, in the child frame, at the displacement rate of Q at which that relation would change at
@@ -299,7 +301,8 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
                 "the joint has relations: it must implement relation_twists"
             )
         };
-        [[T::zero(); 6]; 0]
+        let none: [[T; 6]; 0] = [];
+        none
     }
 
     /// The rates of the ports at the same displacement rates: of all ports for the first relation, then for the next.
@@ -310,7 +313,8 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
                 "the joint has relations and ports: it must implement relation_ports"
             )
         };
-        [T::zero(); 0]
+        let none: [T; 0] = [];
+        none
     }
 
     /// Q̇(Q, v), (31).

@@ -47,7 +47,7 @@ codes! {
     NOT_CLOSED "E0305" "A basis that does not close under the bracket."
     DEPENDENT "E0306" "A basis whose elements are dependent, or too many or too few."
     NOT_CONSTANT "E0307" "A basis element that is not constant."
-    FREEDOMS "E0308" "Too many degrees of freedom, factors, stored scalars or bodies."
+    FREEDOMS "E0308" "Too many degrees of freedom, factors, stored scalars, bodies or ports."
     UNUSED "E0309" "A parameter or a let that nothing uses."
     UNDEFINED_VALUE "E0310" "Division by zero, or a function outside its domain."
     TOO_LARGE "E0311" "A value that is too large to work with."

@@ -9,6 +9,8 @@ mod error;
 #[cfg(feature = "scene")]
 mod model;
 #[cfg(feature = "scene")]
+mod ports;
+#[cfg(feature = "scene")]
 mod simulation;
 
 #[cfg(feature = "scene")]
@@ -32,5 +34,7 @@ pub use hamel_runtime::{dynamics, elements, mechanism, steps, time_function};
 pub use hamel_scene as scene;
 #[cfg(feature = "scene")]
 pub use model::{Model, load, load_with};
+#[cfg(feature = "scene")]
+pub use ports::PortReading;
 #[cfg(feature = "scene")]
 pub use simulation::Simulation;

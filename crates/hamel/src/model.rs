@@ -99,7 +99,7 @@ impl Model {
         Ok(&self.mechanism().bodies()[self.joint_index(name)?])
     }
 
-    fn joint_index(&self, name: &str) -> Result<usize, UnknownName> {
+    pub(crate) fn joint_index(&self, name: &str) -> Result<usize, UnknownName> {
         let mut joints = self.mechanism().joints();
         let found = joints.find(|(_, body)| body.joint_name() == name);
         let found = found.map(|(index, _)| index);

@@ -309,3 +309,21 @@ fn a_method_is_chosen_for_what_the_motion_has() -> Result<(), Error> {
     }
     Ok(())
 }
+
+/// The bolt of this scene advances 0.05 m for each radian.
+#[test]
+fn ports_are_read_by_name() -> Result<(), Error> {
+    let mut tree = hamel::load(format!("{SCENES}mixed_tree.toml"))?;
+    let state = tree.state();
+    let travel = tree.port(&state, "thread", "travel")?;
+    // A rounding of the lead, of 2 pi and of their quotient.
+    assert!((travel.value - 0.05 * 0.8).abs() < 1e-16, "{travel:?}");
+    assert!((travel.rate - 0.05 * 4.0).abs() < 1e-15, "{travel:?}");
+    let unknown = tree.port(&state, "thread", "traval");
+    let message = unknown.expect_err("there is none").to_string();
+    assert!(message.contains("travel"), "{message}");
+    assert!(tree.port(&state, "no joint", "travel").is_err());
+    let rest = vec![0.0; state.speeds.len()];
+    assert!(tree.relation_forces(&state, &rest, "thread")?.is_empty());
+    Ok(())
+}

@@ -158,8 +158,17 @@ pub enum Motion {
     Speeds(Located<Vec<f64>>),
     /// Twist of the joint's child frame relative to its parent frame.
     Twist(Located<TwistDescription>),
-    /// Rates of ports by name, which determine all speeds.
-    Rates(Located<Vec<(Located<String>, f64)>>),
+    /// Rates of ports, which determine all speeds.
+    Rates(Located<Vec<PortRate>>),
+}
+
+/// The rate of one port.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PortRate {
+    /// Name of the port.
+    pub name: Located<String>,
+    /// rad/s or m/s.
+    pub rate: f64,
 }
 
 /// A twist and the axes in which it is read.

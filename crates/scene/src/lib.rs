@@ -33,7 +33,7 @@ pub use control::{
     ReferenceDescription, RegulatorDescription,
 };
 pub use description::{
-    BodyDescription, InitialDescription, JointDescription, Motion, Part, Position,
+    BodyDescription, InitialDescription, JointDescription, Motion, Part, PortRate, Position,
     SceneDescription, TwistDescription, TwistFrame,
 };
 pub use diagnostics::{Diagnostic, Diagnostics};

@@ -39,7 +39,8 @@ pub trait Carries<const B: usize, const N: usize, const K: usize, const S: usize
                 "the joint has relations: the body must implement relation_twists"
             )
         };
-        [[T::zero(); 6]; 0]
+        let none: [[T; 6]; 0] = [];
+        none
     }
 
     /// ∂X^c/∂ϕ of the body; slice k is the derivative along ϕ_k.

@@ -3,7 +3,6 @@
 use super::check::{Space, check_size};
 use super::initial::CONSTRAINT_TOLERANCE;
 use super::{Body, Mechanism, StateError};
-use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
@@ -113,10 +112,7 @@ impl Mechanism {
         let map = all.select_rows(rates.iter().map(|(port, _)| port)) * body.speed_basis(q);
         let target = DVector::from_iterator(rates.len(), rates.iter().map(|(_, rate)| *rate));
         let speeds = map.ncols();
-        let found = map.clone().svd(true, true);
-        let values = &found.singular_values;
-        let limit = DETERMINED * values.iter().copied().fold(0.0, f64::max);
-        let rank = values.iter().filter(|value| **value > limit).count();
+        let (rank, solved) = least_squares(&map, &target);
         if rank < speeds {
             return Err(StateError::PortRatesLeaveOpen {
                 joint: joint(),
@@ -124,9 +120,6 @@ impl Mechanism {
                 speeds,
             });
         }
-        let Ok(solved) = found.solve(&target, limit) else {
-            return Ok(vec![f64::NAN; speeds]);
-        };
         let residual = (&map * &solved - &target).norm();
         let limit = CONSTRAINT_TOLERANCE * target.norm().max(1.0);
         if residual.is_nan() || residual > limit {
@@ -138,4 +131,19 @@ impl Mechanism {
         }
         Ok(solved.as_slice().to_vec())
     }
+}
+
+/// The rank of a matrix, and the shortest x with the least `|F x − r|`.
+fn least_squares(matrix: &DMatrix<f64>, right: &DVector<f64>) -> (usize, DVector<f64>) {
+    // Of nothing there is no decomposition.
+    if matrix.is_empty() {
+        return (0, DVector::zeros(matrix.ncols()));
+    }
+    let found = matrix.clone().svd(true, true);
+    let values = &found.singular_values;
+    let limit = DETERMINED * values.iter().copied().fold(0.0, f64::max);
+    let rank = values.iter().filter(|value| **value > limit).count();
+    let solved = found.solve(right, limit);
+    let solved = solved.unwrap_or_else(|_| DVector::repeat(matrix.ncols(), f64::NAN));
+    (rank, solved)
 }

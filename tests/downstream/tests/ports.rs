@@ -4,8 +4,10 @@ use hamel::dynamics::{Dynamics, Recursive, Reference};
 use hamel::integrate::{Form, Method, Options, State, integrate, no_inputs, no_observer};
 use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
-use hamel_compiler::scene_of;
+use hamel_compiler::model::Model;
+use hamel_compiler::{Error, scene_of};
 use hamel_scene::{Scene, SceneDescription};
+use hamel_tests::c99::agree;
 use hamel_tests::compiled::Point;
 use std::path::Path;
 use std::sync::Arc;
@@ -296,15 +298,27 @@ fn scenes_with_ports_are_written_as_they_were_read() {
     assert_eq!(built[0], built[1]);
 }
 
+/// What is compiled of a scene with these ports.
+fn compiled(ports: &str) -> Result<Model, Error> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("joints");
+    scene_of("linkage", described("", ports))
+        .specs(folder)
+        .library(hamel_joints::specs())
+        .model()
+}
+
+/// In C bit by bit as evaluated, and against the tree.
+#[test]
+fn compiled_scenes_in_c_are_the_tree() {
+    let model = compiled(ALL).unwrap_or_else(|error| panic!("{error}"));
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c99/ports");
+    agree(&folder, &[(scene("", ALL).mechanism, model)]);
+}
+
 #[test]
 fn compiled_scenes_are_the_tree() {
     let scene = scene("", ALL);
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("joints");
-    let model = scene_of("linkage", described("", ALL))
-        .specs(folder)
-        .library(hamel_joints::specs())
-        .model();
-    let model = model.unwrap_or_else(|error| panic!("{error}"));
+    let model = compiled(ALL).unwrap_or_else(|error| panic!("{error}"));
     for seed in 0..4 {
         let point = || Point::random(model.clone(), &scene.mechanism, seed);
         point().agrees();
@@ -315,12 +329,7 @@ fn compiled_scenes_are_the_tree() {
 #[test]
 fn efforts_that_change_with_time_are_not_compiled() {
     let timed = r#"ports.rocker = { effort = "2 * sin(3 * t)" }"#;
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("joints");
-    let model = scene_of("linkage", described("", timed))
-        .specs(folder)
-        .library(hamel_joints::specs())
-        .model();
-    let message = model.expect_err("it is refused").to_string();
+    let message = compiled(timed).expect_err("it is refused").to_string();
     let expected = "effort at port `rocker` of joint `linkage`: it changes with time";
     assert!(message.contains(expected), "{message}");
 }

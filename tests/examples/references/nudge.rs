@@ -9,6 +9,7 @@ fn entries(body: &mut BodyDescription) -> Vec<&mut f64> {
         Motion::Velocity(values) | Motion::Speeds(values) => values.value.iter_mut().collect(),
         // Ball joints alone are given twists, and have no linear part.
         Motion::Twist(twist) => twist.value.twist.iter_mut().take(3).collect(),
+        Motion::Rates(rates) => rates.value.iter_mut().map(|own| &mut own.rate).collect(),
     }
 }
 

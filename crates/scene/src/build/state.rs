@@ -159,10 +159,8 @@ impl Stand {
                 self.allowed(q, &velocity.value, &velocity.span)
             }
             Motion::Rates(rates) => {
-                let own = rates.value.iter().map(|(name, rate)| {
-                    let port = self.port(name)?;
-                    Ok((port, *rate))
-                });
+                let own = rates.value.iter();
+                let own = own.map(|own| Ok((self.port(&own.name)?, own.rate)));
                 let own: Vec<(usize, f64)> = own.collect::<Result<_, Diagnostic>>()?;
                 let found = self.mechanism.speeds_from_port_rates(0, q, &own);
                 found.map_err(refusal(&rates.span))

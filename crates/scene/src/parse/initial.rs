@@ -1,7 +1,9 @@
 //! The `initial` state of a body's joint.
 
 use super::placement;
-use crate::description::{InitialDescription, Motion, Position, TwistDescription, TwistFrame};
+use crate::description::{
+    InitialDescription, Motion, PortRate, Position, TwistDescription, TwistFrame,
+};
 use crate::read::{Fields, Sink, Value};
 use crate::source::Located;
 use nalgebra::{Vector3, Vector6};
@@ -42,11 +44,14 @@ fn motion(fields: &mut Fields<'_>, sink: &mut Sink) -> Option<Motion> {
 }
 
 /// Rates of ports, each under its name.
-fn rates(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Vec<(Located<String>, f64)>>> {
+fn rates(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Vec<PortRate>>> {
     let named = value.table(sink)?.unclaimed();
     let all: Vec<_> = named
         .into_iter()
-        .map(|(name, value)| Some((name, value.number(sink)?.value)))
+        .map(|(name, value)| {
+            let rate = value.number(sink)?.value;
+            Some(PortRate { name, rate })
+        })
         .collect();
     let rates: Option<Vec<_>> = all.into_iter().collect();
     Some(Located::new(rates?, value.span()))

@@ -107,7 +107,7 @@ fn initial(initial: &InitialDescription) -> Option<String> {
         Motion::Speeds(speeds) => entries.push(("speeds", list(&speeds.value))),
         Motion::Rates(rates) => {
             let rates = rates.value.iter();
-            let rates = rates.map(|(name, rate)| (name.value.as_str(), number(*rate)));
+            let rates = rates.map(|own| (own.name.value.as_str(), number(own.rate)));
             entries.push(("rates", table(&rates.collect::<Vec<_>>())));
         }
         Motion::Twist(twist) => {
