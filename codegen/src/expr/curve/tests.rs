@@ -189,7 +189,7 @@ fn degrees_are_radians_in_doubles() {
         for order in 0..5 {
             // The value of a table at a knot is one coefficient times a factorial.
             let factorial: f64 = (1..=order).map(f64::from).product();
-            let written = table.coefficients[6 * piece + order as usize] * factorial;
+            let written = table.coefficients[7 * piece + order as usize] * factorial;
             let value = curve.value(&x, order as u8);
             // Knots in doubles are off by their rounding, times the next derivative, which is of the size of these; products of five.
             assert!(
