@@ -8,9 +8,9 @@ use num_bigint::BigInt;
 use num_traits::{One, Signed, Zero};
 
 /// Bits of numerator and denominator together beyond which a number is rounded.
-const LONGEST: u64 = 2048;
+const LONGEST: u64 = 1024;
 /// Bits of what is rounded, of 1 or of itself where that is larger.
-const KEPT: u64 = 512;
+const KEPT: u64 = 320;
 
 /// Degree and smoothness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -79,6 +79,8 @@ struct Piece<'a> {
     length: Rational,
     from: &'a Rational,
     to: &'a Rational,
+    /// Its polynomial where all unknowns are 0, and where one of them is 1: those of the left end, those of the right end.
+    examples: Vec<Numbers>,
 }
 
 fn whole(value: i64) -> Rational {
@@ -91,17 +93,15 @@ pub(super) fn pieces(
     ends: &Ends,
     points: &[(Rational, Rational)],
 ) -> Option<Vec<Numbers>> {
-    let pairs = points.windows(2).map(|pair| Piece {
-        kind,
-        length: &pair[1].0 - &pair[0].0,
-        from: &pair[0].1,
-        to: &pair[1].1,
-    });
-    let pieces: Vec<Piece<'_>> = pairs.collect();
-    let first = pieces.first()?;
-    if pieces.len() < 2 || pieces.iter().any(|piece| !piece.length.is_positive()) {
+    let mut pairs = points.windows(2);
+    if points.len() < 3 || pairs.any(|pair| pair[0].0 >= pair[1].0) {
         return None;
     }
+    let pieces: Vec<Piece<'_>> = points
+        .windows(2)
+        .map(|pair| Piece::new(kind, &pair[0], &pair[1]))
+        .collect();
+    let first = pieces.first()?;
     let knots = match ends {
         Ends::Periodic if first.from != pieces.last()?.to || pieces.len() < 3 => return None,
         Ends::Periodic => solve_cyclic(equations(kind, ends, &pieces)?)?,
@@ -198,7 +198,32 @@ fn of_end(rows: Vec<Row>, last: bool) -> Equations {
     }
 }
 
-impl Piece<'_> {
+impl<'a> Piece<'a> {
+    fn new(kind: Kind, from: &'a (Rational, Rational), to: &'a (Rational, Rational)) -> Self {
+        let mut piece = Self {
+            kind,
+            length: &to.0 - &from.0,
+            from: &from.1,
+            to: &to.1,
+            examples: vec![],
+        };
+        let size = kind.unknowns();
+        let zero = vec![Rational::zero(); size];
+        let unit = |place: usize| {
+            let mut unit = zero.clone();
+            unit[place] = Rational::one();
+            unit
+        };
+        let left = (0..size).map(|i| (unit(i), zero.clone()));
+        let right = (0..size).map(|i| (zero.clone(), unit(i)));
+        let all = std::iter::once((zero.clone(), zero.clone()));
+        let all = all.chain(left).chain(right);
+        piece.examples = all
+            .map(|(left, right)| piece.coefficients(&left, &right))
+            .collect();
+        piece
+    }
+
     fn rise(&self) -> Rational {
         self.to - self.from
     }
@@ -230,24 +255,20 @@ impl Piece<'_> {
 
     /// A derivative at an end, as a function of the unknowns: coefficients are linear in them.
     fn derivative(&self, order: usize, last: bool) -> Row {
-        let size = self.kind.unknowns();
-        let zero = vec![Rational::zero(); size];
-        let unit = |place: usize| {
-            let mut unit = zero.clone();
-            unit[place] = Rational::one();
-            unit
+        let t = match last {
+            false => Rational::zero(),
+            true => self.length.clone(),
         };
-        let at = |left: &Numbers, right: &Numbers| {
-            let t = match last {
-                false => Rational::zero(),
-                true => self.length.clone(),
-            };
-            derivative_at(&self.coefficients(left, right), order, &t)
-        };
-        let constant = at(&zero, &zero);
+        let mut values = self
+            .examples
+            .iter()
+            .map(|coefficients| derivative_at(coefficients, order, &t));
+        let constant = values.next().unwrap_or_else(Rational::zero);
+        let mut slopes: Numbers = values.map(|value| value - &constant).collect();
+        let right = slopes.split_off(self.kind.unknowns());
         Row {
-            left: (0..size).map(|i| at(&unit(i), &zero) - &constant).collect(),
-            right: (0..size).map(|i| at(&zero, &unit(i)) - &constant).collect(),
+            left: slopes,
+            right,
             constant,
         }
     }

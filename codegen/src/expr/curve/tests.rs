@@ -215,8 +215,8 @@ fn long_tables_are_smooth_to_many_digits() {
     }
     for kind in [Kind::Cubic, Kind::Quintic] {
         let curve = through(kind, &Ends::Natural, &points);
-        // 512 bits are kept of each number, and errors do not grow: 400 bits are left.
-        let bound = Rational::new(1.into(), num_bigint::BigInt::from(2).pow(400));
+        // 320 bits are kept of each number, and errors do not grow: 256 bits are left.
+        let bound = Rational::new(1.into(), num_bigint::BigInt::from(2).pow(256));
         for piece in 0..points.len() - 2 {
             for order in 0..=kind.smoothness() {
                 let jump = at(curve, piece, order, true) - at(curve, piece + 1, order, false);
