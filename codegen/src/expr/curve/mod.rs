@@ -4,6 +4,7 @@
 //! ([`Function::Curve`]): what is proved of it holds for every function that is as smooth. Where a sign or a value is asked for, all
 //! arithmetics evaluate the same polynomials.
 
+mod blocks;
 mod evaluate;
 mod intern;
 mod spline;
