@@ -4,9 +4,11 @@
 const RESERVED_TYPES: &[&str] = &[
     "Arc",
     "AnyJoint",
+    "Curve",
     "Joint",
     "JointEntry",
     "Limit",
+    "Outside",
     "Patterns",
     "Pose",
     "ParameterError",

@@ -1,22 +1,31 @@
 use super::{Curve, Outside};
 use crate::scalar::{Dual, Extended, Lane};
 
-/// x³ on [0, 1], and its continuation 1 + 3 t + 3 t² + t³ on [1, 3].
-const CUBE: [f64; 8] = [0.0, 0.0, 0.0, 1.0, 1.0, 3.0, 3.0, 1.0];
+/// x³ about 0, 1 and 3.
+const CUBE: [f64; 15] = [
+    0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 3.0, 3.0, 1.0, 1.0, 27.0, 27.0, 9.0, 1.0, 1.0,
+];
+/// The same with the numbers of the last knot at the first one: no smooth function, but a periodic table.
+const PERIODIC: [f64; 15] = [
+    27.0, 27.0, 9.0, 1.0, 1.0, 1.0, 3.0, 3.0, 1.0, 1.0, 27.0, 27.0, 9.0, 1.0, 1.0,
+];
 const KNOTS: [f64; 3] = [0.0, 1.0, 3.0];
 
 fn cube(outside: Outside) -> Curve {
-    Curve::new(&KNOTS, &CUBE, outside)
+    match outside {
+        Outside::Periodic => Curve::new(&KNOTS, &PERIODIC, outside),
+        _ => Curve::new(&KNOTS, &CUBE, outside),
+    }
 }
 
 #[test]
 fn inside_it_is_its_polynomials() {
     let curve = cube(Outside::Undefined);
-    for x in [0.0, 0.25, 0.99, 1.0, 1.5, 3.0] {
+    for x in [0.0_f64, 0.25, 0.99, 1.0, 1.5, 3.0] {
         let exact = [x * x * x, 3.0 * x * x, 6.0 * x, 6.0, 0.0, 0.0];
         for (order, exact) in exact.into_iter().enumerate() {
-            // Four products and sums, of terms of one sign.
-            let bound = 8.0 * f64::EPSILON * exact;
+            // Four products and sums of terms of at most 27.
+            let bound = 8.0 * f64::EPSILON * 27.0;
             assert!(
                 (curve.derivative(x, order) - exact).abs() <= bound,
                 "{order} at {x}"
@@ -35,7 +44,7 @@ fn outside_it_is_what_it_says() {
     assert_eq!(at(Outside::Straight, 4.0), [54.0, 27.0, 0.0, 0.0]);
     assert_eq!(at(Outside::Polynomial, -2.0), [-8.0, 12.0, -12.0, 6.0]);
     assert_eq!(at(Outside::Polynomial, 4.0), [64.0, 48.0, 24.0, 6.0]);
-    for x in [0.5, 1.0, 2.75] {
+    for x in [0.625, 1.0, 2.75] {
         for turns in [-3.0, 1.0, 1e6] {
             assert_eq!(
                 at(Outside::Periodic, x + 3.0 * turns),
@@ -45,6 +54,20 @@ fn outside_it_is_what_it_says() {
     }
     assert!(cube(Outside::Straight).at(f64::NAN).is_nan());
     assert!(cube(Outside::Periodic).at(f64::NEG_INFINITY).is_nan());
+}
+
+/// Left of a knot at which it and its slope are 0, a curve keeps its digits; the first knot of a period is one.
+#[test]
+fn digits_are_kept_on_both_sides_of_a_knot() {
+    const HUMPS: [f64; 15] = [
+        0.0, 0.0, 3.0, 2.0, -2.0, 1.0, 0.0, -3.0, -2.0, 2.0, 0.0, 0.0, 3.0, 2.0, -2.0,
+    ];
+    let curve = Curve::new(&[0.0, 1.0, 2.0], &HUMPS, Outside::Periodic);
+    for x in [1e-9_f64, -1e-9, 3e-17, -3e-17] {
+        let exact = 3.0 * x * x;
+        assert!((curve.at(x) / exact - 1.0).abs() < 1e-8, "{x:e}");
+        assert_eq!(curve.derivative(x, 3), if x < 0.0 { 12.0 } else { -12.0 });
+    }
 }
 
 #[test]

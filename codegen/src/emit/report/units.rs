@@ -72,36 +72,12 @@ fn unit(derived: &Derived, k: usize, freedom: &Freedom) -> &'static str {
     let angle_if = |angle: bool| if angle { "rad" } else { "m" };
     match factor.kind {
         // A degree of freedom of `local` is what Φ makes of it.
-        _ if freedom.generator.is_empty() => of_motion(derived, k),
+        _ if freedom.generator.is_empty() => of_twist(derived, Some(&derived.local_twist_map), k),
         Kind::S1 | Kind::So2 | Kind::So3 | Kind::S3 | Kind::S2 => "rad",
         Kind::Se2 => angle_if(turns(1)),
         Kind::Se3 => angle_if(turns(3)),
-        Kind::Real(_) => of_motion(derived, k),
+        Kind::Real(_) => of_twist(derived, Some(&derived.local_twist_map), k),
     }
-}
-
-/// By the twist; a length too where the child's origin moves along an axis of the parent as far as the coordinate changes, however it moves otherwise.
-fn of_motion(derived: &Derived, k: usize) -> &'static str {
-    let twist_map = &derived.local_twist_map;
-    match of_twist(derived, Some(twist_map), k) {
-        "" if twist_map.columns() > k && slides(derived, &twist_map.column(k)[3..]) => "m",
-        unit => unit,
-    }
-}
-
-/// Whether a velocity in child axes has an entry ±1 in parent axes.
-fn slides(derived: &Derived, velocity: &[Expr]) -> bool {
-    let ideal = derived.space.manifold.ideal();
-    let velocity = Matrix::column_vector(velocity.to_vec());
-    let is_unit = || {
-        let moved = derived.spec.pose.value.rotation.times(&velocity);
-        let mut squares = moved
-            .entries()
-            .iter()
-            .map(|entry| ideal.normal_form(entry).square());
-        squares.any(|square| square.is_one())
-    };
-    budget::scope(UNIT_WORK, is_unit).unwrap_or(false)
 }
 
 /// A coordinate is an angle or a length, and a velocity its rate, where its twist is a unit rotation or a unit translation.
@@ -166,16 +142,6 @@ mod tests {
         let double = "config a: R1; H = rot_z(a); X = [0; 0; 2; 0; 0; 0];";
         assert_eq!(units(double).0, ["rad"]);
         assert_eq!(units(double).1, [""]);
-    }
-
-    #[test]
-    fn a_place_along_an_axis_is_a_length() {
-        let parabola = "config x: R1; H = trans([x, x * x, 0]);";
-        assert_eq!(units(parabola).0, ["m"]);
-        let turning = "config x: R1; H = trans([x, x * x, 0]) * rot_z(atan(2 * x));";
-        assert_eq!(units(turning).0, ["m"]);
-        let half = "config x: R1; H = trans([x / 2, x * x, 0]);";
-        assert_eq!(units(half).0, [""]);
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! ([`Function::Curve`]): what is proved of it holds for every function that is as smooth. Where a sign or a value is asked for, all
 //! arithmetics evaluate the same polynomials.
 
+mod blocks;
 mod evaluate;
 mod intern;
 mod spline;
@@ -21,7 +22,6 @@ use num_traits::Zero;
 use rustc_hash::FxHasher;
 use std::cmp::Ordering;
 use std::hash::{Hash, Hasher};
-use std::sync::OnceLock;
 
 /// What a curve is beyond its first and its last knot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -63,8 +63,8 @@ pub struct Curve(&'static Interned);
 struct Interned {
     definition: Definition,
     hash: u64,
-    /// The numbers of kernels, once they are asked for.
-    table: OnceLock<Table>,
+    /// The numbers of kernels.
+    table: Table,
 }
 
 impl Curve {
@@ -73,7 +73,7 @@ impl Curve {
         let mut hasher = FxHasher::default();
         definition.hash(&mut hasher);
         let hash = hasher.finish();
-        let table = OnceLock::new();
+        let table = Table::new(&definition);
         Self(intern::object(Interned {
             definition,
             hash,

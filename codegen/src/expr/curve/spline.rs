@@ -1,16 +1,10 @@
 //! Interpolating splines: the slopes at the knots, and of quintic ones the second derivatives too, by which all derivatives below the degree are continuous.
 //!
-//! They solve one system of equations, tridiagonal in blocks, in rational numbers. Of a long table numbers would grow without bound: what is
-//! longer than [`LONGEST`] bits is rounded to [`KEPT`] bits, and the derivatives above those at the knots are then continuous to so many.
+//! They solve one system of equations, tridiagonal in blocks ([`super::blocks`]).
 
+use super::blocks::{Block, Equations, Numbers, kept, solve, solve_cyclic, zeros};
 use crate::expr::Rational;
-use num_bigint::BigInt;
-use num_traits::{One, Signed, Zero};
-
-/// Bits of numerator and denominator together beyond which a number is rounded.
-const LONGEST: u64 = 2048;
-/// Bits of what is rounded, of 1 or of itself where that is larger.
-const KEPT: u64 = 512;
+use num_traits::{One, Zero};
 
 /// Degree and smoothness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -55,22 +49,11 @@ pub enum Ends {
     Clamped(Rational, Rational),
 }
 
-type Numbers = Vec<Rational>;
-type Block = Vec<Numbers>;
-
 /// A linear function of the unknowns at both ends of a piece.
 struct Row {
     left: Numbers,
     right: Numbers,
     constant: Rational,
-}
-
-/// Equations of one knot: `before · u_{i−1} + own · u_i + after · u_{i+1} = right`.
-struct Equations {
-    before: Block,
-    own: Block,
-    after: Block,
-    right: Block,
 }
 
 /// One piece: its length, and the values at its ends.
@@ -79,6 +62,8 @@ struct Piece<'a> {
     length: Rational,
     from: &'a Rational,
     to: &'a Rational,
+    /// Its polynomial where all unknowns are 0, and where one of them is 1: those of the left end, those of the right end.
+    examples: Vec<Numbers>,
 }
 
 fn whole(value: i64) -> Rational {
@@ -91,17 +76,15 @@ pub(super) fn pieces(
     ends: &Ends,
     points: &[(Rational, Rational)],
 ) -> Option<Vec<Numbers>> {
-    let pairs = points.windows(2).map(|pair| Piece {
-        kind,
-        length: &pair[1].0 - &pair[0].0,
-        from: &pair[0].1,
-        to: &pair[1].1,
-    });
-    let pieces: Vec<Piece<'_>> = pairs.collect();
-    let first = pieces.first()?;
-    if pieces.len() < 2 || pieces.iter().any(|piece| !piece.length.is_positive()) {
+    let mut pairs = points.windows(2);
+    if points.len() < 3 || pairs.any(|pair| pair[0].0 >= pair[1].0) {
         return None;
     }
+    let pieces: Vec<Piece<'_>> = points
+        .windows(2)
+        .map(|pair| Piece::new(kind, &pair[0], &pair[1]))
+        .collect();
+    let first = pieces.first()?;
     let knots = match ends {
         Ends::Periodic if first.from != pieces.last()?.to || pieces.len() < 3 => return None,
         Ends::Periodic => solve_cyclic(equations(kind, ends, &pieces)?)?,
@@ -198,7 +181,32 @@ fn of_end(rows: Vec<Row>, last: bool) -> Equations {
     }
 }
 
-impl Piece<'_> {
+impl<'a> Piece<'a> {
+    fn new(kind: Kind, from: &'a (Rational, Rational), to: &'a (Rational, Rational)) -> Self {
+        let mut piece = Self {
+            kind,
+            length: &to.0 - &from.0,
+            from: &from.1,
+            to: &to.1,
+            examples: vec![],
+        };
+        let size = kind.unknowns();
+        let zero = vec![Rational::zero(); size];
+        let unit = |place: usize| {
+            let mut unit = zero.clone();
+            unit[place] = Rational::one();
+            unit
+        };
+        let left = (0..size).map(|i| (unit(i), zero.clone()));
+        let right = (0..size).map(|i| (zero.clone(), unit(i)));
+        let all = std::iter::once((zero.clone(), zero.clone()));
+        let all = all.chain(left).chain(right);
+        piece.examples = all
+            .map(|(left, right)| piece.coefficients(&left, &right))
+            .collect();
+        piece
+    }
+
     fn rise(&self) -> Rational {
         self.to - self.from
     }
@@ -230,24 +238,20 @@ impl Piece<'_> {
 
     /// A derivative at an end, as a function of the unknowns: coefficients are linear in them.
     fn derivative(&self, order: usize, last: bool) -> Row {
-        let size = self.kind.unknowns();
-        let zero = vec![Rational::zero(); size];
-        let unit = |place: usize| {
-            let mut unit = zero.clone();
-            unit[place] = Rational::one();
-            unit
+        let t = match last {
+            false => Rational::zero(),
+            true => self.length.clone(),
         };
-        let at = |left: &Numbers, right: &Numbers| {
-            let t = match last {
-                false => Rational::zero(),
-                true => self.length.clone(),
-            };
-            derivative_at(&self.coefficients(left, right), order, &t)
-        };
-        let constant = at(&zero, &zero);
+        let mut values = self
+            .examples
+            .iter()
+            .map(|coefficients| derivative_at(coefficients, order, &t));
+        let constant = values.next().unwrap_or_else(Rational::zero);
+        let mut slopes: Numbers = values.map(|value| value - &constant).collect();
+        let right = slopes.split_off(self.kind.unknowns());
         Row {
-            left: (0..size).map(|i| at(&unit(i), &zero) - &constant).collect(),
-            right: (0..size).map(|i| at(&zero, &unit(i)) - &constant).collect(),
+            left: slopes,
+            right,
             constant,
         }
     }
@@ -302,138 +306,4 @@ pub(super) fn derivative_at(coefficients: &[Rational], order: usize, t: &Rationa
 pub(super) fn falling(power: usize, order: usize) -> Rational {
     let factors = (0..order).map(|i| (power - i) as i64);
     whole(factors.product())
-}
-
-/// A number as it is, or rounded where it is long.
-fn kept(value: Rational) -> Rational {
-    if value.bits() <= LONGEST {
-        return value;
-    }
-    let (above, below) = (value.numer(), value.denom());
-    let size = above.bits().saturating_sub(below.bits());
-    let scale = BigInt::one() << (KEPT.saturating_sub(size));
-    let half: BigInt = &below >> 1;
-    let rounded = (above.abs() * &scale + half) / below;
-    let sign = if above.is_negative() { -1 } else { 1 };
-    Rational::new(rounded * sign, scale)
-}
-
-fn zeros(size: usize) -> Block {
-    vec![vec![Rational::zero(); size]; size]
-}
-
-fn product(a: &Block, b: &Block) -> Block {
-    let entry = |row: &Numbers, column: usize| -> Rational {
-        row.iter().zip(b).map(|(a, b)| a * &b[column]).sum()
-    };
-    let columns = b.first().map_or(0, Vec::len);
-    a.iter()
-        .map(|row| (0..columns).map(|j| kept(entry(row, j))).collect())
-        .collect()
-}
-
-fn minus(a: &Block, b: &Block) -> Block {
-    let row = |(a, b): (&Numbers, &Numbers)| a.iter().zip(b).map(|(a, b)| a - b).collect();
-    a.iter().zip(b).map(row).collect()
-}
-
-/// Blocks side by side.
-fn beside(a: &Block, b: &Block) -> Block {
-    let row = |(a, b): (&Numbers, &Numbers)| a.iter().chain(b).cloned().collect();
-    a.iter().zip(b).map(row).collect()
-}
-
-/// The columns of a block in a range.
-fn columns(block: &Block, range: std::ops::Range<usize>) -> Block {
-    block
-        .iter()
-        .map(|row| row[range.clone()].to_vec())
-        .collect()
-}
-
-/// The inverse of one or two rows; `None` where there is none.
-fn inverse(block: &Block) -> Option<Block> {
-    let reciprocal = |x: &Rational| (!x.is_zero()).then(|| x.recip());
-    match block.as_slice() {
-        [row] => Some(vec![vec![reciprocal(&row[0])?]]),
-        [first, second] => {
-            let (a, b, c, d) = (&first[0], &first[1], &second[0], &second[1]);
-            let scale = reciprocal(&(a * d - b * c))?;
-            let row = |x: &Rational, y: &Rational| vec![kept(x * &scale), kept(y * &scale)];
-            Some(vec![row(d, &-b), row(&-c, a)])
-        }
-        _ => None,
-    }
-}
-
-/// Elimination block by block, of all columns of the right side at once (L. H. Thomas).
-fn solve(equations: Vec<Equations>) -> Option<Vec<Block>> {
-    let mut eliminated: Vec<(Block, Block)> = Vec::with_capacity(equations.len());
-    for row in &equations {
-        let (own, right) = match eliminated.last() {
-            None => (row.own.clone(), row.right.clone()),
-            Some((after, value)) => (
-                minus(&row.own, &product(&row.before, after)),
-                minus(&row.right, &product(&row.before, value)),
-            ),
-        };
-        let inverse = inverse(&own)?;
-        eliminated.push((product(&inverse, &row.after), product(&inverse, &right)));
-    }
-    let mut solution: Vec<Block> = vec![];
-    for (after, value) in eliminated.into_iter().rev() {
-        let own = match solution.last() {
-            None => value,
-            Some(next) => minus(&value, &product(&after, next)),
-        };
-        solution.push(own);
-    }
-    solution.reverse();
-    Some(solution)
-}
-
-/// The same where the first and the last knot are neighbours: all others as functions of the last one first.
-fn solve_cyclic(mut equations: Vec<Equations>) -> Option<Vec<Block>> {
-    let last = equations.pop()?;
-    let size = last.own.len();
-    let count = equations.len();
-    for (i, row) in equations.iter_mut().enumerate() {
-        // Beside each right side, what the last knot's unknowns add to it.
-        let mut of_last = zeros(size);
-        if i == 0 {
-            of_last = minus(&of_last, &row.before);
-        }
-        if i + 1 == count {
-            of_last = minus(&of_last, &row.after);
-        }
-        row.right = beside(&row.right, &of_last);
-    }
-    let others = solve(equations)?;
-    let (first, neighbour) = (others.first()?, others.last()?);
-    let effect = |block: &Block, of: &Block, range| product(block, &columns(of, range));
-    let constant = minus(
-        &minus(&last.right, &effect(&last.after, first, 0..1)),
-        &effect(&last.before, neighbour, 0..1),
-    );
-    let negative = minus(
-        &minus(&zeros(size), &effect(&last.after, first, 1..size + 1)),
-        &effect(&last.before, neighbour, 1..size + 1),
-    );
-    let own = minus(&last.own, &negative);
-    let end = product(&inverse(&own)?, &constant);
-    let mut solution: Vec<Block> = others
-        .iter()
-        .map(|other| {
-            let change = product(&columns(other, 1..size + 1), &end);
-            let negated = minus(&zeros_of(&change), &change);
-            minus(&columns(other, 0..1), &negated)
-        })
-        .collect();
-    solution.push(end);
-    Some(solution)
-}
-
-fn zeros_of(block: &Block) -> Block {
-    let row = |row: &Numbers| vec![Rational::zero(); row.len()];
-    block.iter().map(row).collect()
 }

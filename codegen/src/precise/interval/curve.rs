@@ -181,11 +181,10 @@ impl Enclosed {
         let degree = powers.len() - 1;
         let mut weight = Rational::one();
         let mut sum = powers[0].clone();
-        for k in 1..=j {
-            let ratio = [j + 1 - k, degree + 1 - k].map(|factor| Rational::from(factor as i64));
-            let [above, below] = ratio;
+        for (k, power) in powers.iter().enumerate().take(j + 1).skip(1) {
+            let [above, below] = [j, degree].map(|n| Rational::from((n + 1 - k) as i64));
             weight = weight * above / below;
-            sum = sum.plus(&powers[k].times(&self.number(&weight)));
+            sum = sum.plus(&power.times(&self.number(&weight)));
         }
         sum
     }

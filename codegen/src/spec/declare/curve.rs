@@ -31,7 +31,7 @@ pub(super) fn curve(
     let declared = statement.value;
     let units = [&declared.argument, &declared.unit];
     let [of_argument, of_value] = units.map(unit::of_curve);
-    let (of_argument, of_value) = (of_argument.map_err(Box::new)?, of_value.map_err(Box::new)?);
+    let (of_argument, of_value) = (of_argument?, of_value?);
     let (knots, file) = match &declared.knots {
         Knots::Points(points) => (points.iter().map(of_spec).collect(), None),
         Knots::File(name, span) => {

@@ -1,7 +1,7 @@
 //! Units of parameters.
 
 use super::super::ast::Name;
-use super::super::code;
+use super::super::{Fallible, code};
 use crate::diagnostic::Diagnostic;
 use crate::expr::Rational;
 
@@ -37,7 +37,7 @@ pub(super) struct Written {
 }
 
 /// The unit of a curve: those of parameters, and millimetres and degrees, in which tables are mostly written.
-pub(super) fn of_curve(unit: &Name) -> Result<Written, Diagnostic> {
+pub(super) fn of_curve(unit: &Name) -> Fallible<Written> {
     let (factor, degrees) = match unit.text.as_str() {
         "mm" => (Rational::new(1.into(), 1000.into()), false),
         "deg" => (Rational::from(1), true),
@@ -46,10 +46,11 @@ pub(super) fn of_curve(unit: &Name) -> Result<Written, Diagnostic> {
             Some(_) => {
                 let message = format!("`{}` is not a unit of curves", unit.text);
                 let error = Diagnostic::new(code::UNIT, unit.span.clone(), message);
-                return Err(error.label("not known").help(format!(
+                let error = error.label("not known").help(format!(
                     "units of curves are `mm`, `deg`, and products and quotients of {}",
                     UNITS.join(", ")
-                )));
+                ));
+                return Err(Box::new(error));
             }
         },
     };

@@ -2,7 +2,7 @@
 
 use super::coordinates::Factor;
 use hamel::erased::AnyJoint;
-use nalgebra::{DMatrix, DVector, Matrix3, Vector6};
+use nalgebra::{DMatrix, DVector, Vector6};
 
 /// What a coordinate measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,8 +57,6 @@ impl Unit {
 
 /// Roundings of kernels at home.
 const EXACT: f64 = 1e-9;
-/// How far from home every degree of freedom is moved to see whether what holds there holds elsewhere.
-const AWAY: f64 = 0.1;
 
 /// What a joint's coordinates measure.
 #[derive(Clone, Debug)]
@@ -76,14 +74,9 @@ pub struct Units {
 impl Units {
     /// Those of `joint`.
     pub fn of(joint: &dyn AnyJoint) -> Self {
-        let home = Place::home(joint);
-        let away = Place::away(joint);
+        let home = Home::of(joint);
         let columns = 0..joint.layout().freedoms;
-        let freedom = |k| match home.freedom(k) {
-            Unit::None if home.slides(k) && away.slides(k) => Unit::Length,
-            unit => unit,
-        };
-        let freedoms: Vec<_> = columns.clone().map(freedom).collect();
+        let freedoms: Vec<_> = columns.clone().map(|k| home.freedom(k)).collect();
         let velocities: Vec<_> = columns
             .map(|k| match is_unit(home.velocity_map.row(k).iter(), k) {
                 true => freedoms[k],
@@ -108,11 +101,9 @@ fn is_unit<'e>(entries: impl Iterator<Item = &'e f64>, k: usize) -> bool {
     entries.all(|(i, entry)| (entry - f64::from(u8::from(i == k))).abs() < EXACT)
 }
 
-/// A joint at a configuration, where its kernels say what its coordinates do.
-struct Place {
+/// A joint at home, where its kernels say what its coordinates do.
+struct Home {
     factors: Vec<Factor>,
-    /// Of H, from child to parent axes.
-    rotation: Matrix3<f64>,
     /// X^c.
     twist_map: DMatrix<f64>,
     /// S₀.
@@ -123,41 +114,26 @@ struct Place {
     rates: DMatrix<f64>,
 }
 
-impl Place {
-    fn home(joint: &dyn AnyJoint) -> Self {
-        let mut q = vec![0.0; joint.layout().configuration];
-        joint.home(&mut q);
-        Self::at(joint, &q)
-    }
-
-    /// A little off home.
-    fn away(joint: &dyn AnyJoint) -> Self {
-        let layout = joint.layout();
-        let mut home = vec![0.0; layout.configuration];
-        joint.home(&mut home);
-        let mut q = home.clone();
-        joint.retract(&home, &vec![AWAY; layout.freedoms], &mut q);
-        Self::at(joint, &q)
-    }
-
-    fn at(joint: &dyn AnyJoint, q: &[f64]) -> Self {
+impl Home {
+    fn of(joint: &dyn AnyJoint) -> Self {
         let layout = joint.layout();
         let (size, freedoms) = (layout.configuration, layout.freedoms);
+        let mut q = vec![0.0; size];
+        joint.home(&mut q);
         let mut twist_map = DMatrix::zeros(6, freedoms);
-        joint.twist_map_child(q, twist_map.as_mut_slice());
+        joint.twist_map_child(&q, twist_map.as_mut_slice());
         let mut velocity_map = DMatrix::zeros(freedoms, freedoms);
-        joint.velocity_map(q, velocity_map.as_mut_slice());
+        joint.velocity_map(&q, velocity_map.as_mut_slice());
         let mut speed_basis = DMatrix::zeros(freedoms, layout.speeds);
-        joint.speed_basis(q, speed_basis.as_mut_slice());
+        joint.speed_basis(&q, speed_basis.as_mut_slice());
         let mut rates = DMatrix::zeros(size, freedoms);
         for (velocity, mut rate) in velocity_map.column_iter().zip(rates.column_iter_mut()) {
             let mut column = vec![0.0; size];
-            joint.configuration_rate(q, velocity.clone_owned().as_slice(), &mut column);
+            joint.configuration_rate(&q, velocity.clone_owned().as_slice(), &mut column);
             rate.copy_from_slice(&column);
         }
         Self {
             factors: Factor::all(joint),
-            rotation: joint.pose(q).rotation,
             twist_map,
             velocity_map,
             speed_basis,
@@ -185,15 +161,6 @@ impl Place {
             }
             Some(_) => Unit::Length,
         }
-    }
-
-    /// Whether the child's origin moves along an axis of the parent as far as a real coordinate changes.
-    fn slides(&self, k: usize) -> bool {
-        let column = &self.twist_map * self.velocity_map.column(k);
-        let twist = six(&column);
-        let (_, linear) = hamel::spatial::split(&twist);
-        let moved = self.rotation * linear;
-        moved.iter().any(|entry| (entry.abs() - 1.0).abs() < EXACT)
     }
 
     fn twist(&self, k: usize) -> Vector6<f64> {

@@ -11,7 +11,7 @@ pub struct Table {
     /// The name of the spec, and what the curve is.
     said: String,
     knots: Vec<String>,
-    /// Coefficients of a piece.
+    /// Coefficients of a knot.
     terms: usize,
     coefficients: Vec<String>,
     /// What it is beyond its ends, as the helper has it.
@@ -27,7 +27,7 @@ impl Table {
             name: curve_name(curve),
             said: format!("{}: {}", curve.name(), curve.in_words()),
             knots: written(&table.knots),
-            terms: table.coefficients.len() / (table.knots.len() - 1),
+            terms: table.coefficients.len() / table.knots.len(),
             coefficients: written(&table.coefficients),
             outside: match table.outside {
                 Outside::Undefined => 0,

@@ -34,7 +34,7 @@ const TEMPLATES: [(&str, &str); 4] = [
 ];
 
 /// Names that lines must not take: arguments, what the functions bind themselves, helpers, and what `<math.h>` defines.
-const RESERVED: [&str; 28] = [
+const RESERVED: [&str; 27] = [
     "q",
     "v",
     "p",
@@ -48,7 +48,6 @@ const RESERVED: [&str; 28] = [
     "places",
     "mul_add",
     "curve",
-    "curve_polynomial",
     "stumpff",
     "stumpff_direct",
     "inverse_factorials",
