@@ -3,10 +3,9 @@
 use hamel::joint::Member;
 use hamel_downstream::joints::{
     BallCayley, BallTurns, Bead, CamCircle, CamFollower, CarWheels, Catenary, CatenaryLength,
-    CrankRocker, DirectionSensor, ENTRIES, FiveBar, FourBar, FourBarThrough,
-    GearedRotor, MeasuredRocker, ParallelAnkle, PlanarTurns, PowerGuide, Rail, RollingBallCayley,
-    Scara, SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint, Valley,
-    Wishbone,
+    CrankRocker, DirectionSensor, ENTRIES, FiveBar, FourBar, FourBarThrough, GearedRotor,
+    MeasuredRocker, ParallelAnkle, PlanarTurns, PowerGuide, Rail, RollingBallCayley, Scara,
+    SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint, Valley, Wishbone,
 };
 use hamel_tests::laws::Reach::{self, Around, Entries, HalfTurn};
 use hamel_tests::laws::check_within;

@@ -35,7 +35,7 @@ enum Motion {
     /// Φ(Q, ϕ), stored scalars.
     Explicit(Vec<Expr>),
     /// By relations alone.
-    Implicit(Relations),
+    Implicit(Box<Relations>),
 }
 
 /// H(Q), rotation and translation.
@@ -257,7 +257,7 @@ fn arguments_in(expression: &Expr) -> Vec<Expr> {
 /// Φ as declared, or as it follows from the manifold.
 fn motion(spec: &JointSpec) -> Motion {
     if let Some(relations) = Relations::of(spec) {
-        return Motion::Implicit(relations);
+        return Motion::Implicit(Box::new(relations));
     }
     let declared = spec.retract.as_ref().map(|declared| declared.value.clone());
     Motion::Explicit(declared.unwrap_or_else(|| exponential_of_freedoms(spec)))

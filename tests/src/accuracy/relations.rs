@@ -130,10 +130,12 @@ impl Relations {
     }
 }
 
+/// ϕ and λ to Q exp(B ϕ + N λ).
+type Along<'a> = &'a dyn Fn(&Grid<Jet>, &Grid<Jet>) -> Vec<Jet>;
+
 /// The surface on which λ is sought.
 struct Path<'a> {
-    /// ϕ and λ to Q exp(B ϕ + N λ).
-    along: &'a dyn Fn(&Grid<Jet>, &Grid<Jet>) -> Vec<Jet>,
+    along: Along<'a>,
     relations: &'a dyn Fn(&[Jet]) -> Grid<Jet>,
     count: usize,
 }
@@ -257,7 +259,10 @@ fn determinant(matrix: &Grid<Jet>) -> Jet {
             matrix.at(i + 1, column(n)).clone()
         });
         let term = matrix.at(0, j).times(&determinant(&rest));
-        if j % 2 == 0 { term } else { negative(&term) }
+        match j.is_multiple_of(2) {
+            true => term,
+            false => negative(&term),
+        }
     };
     (1..size).fold(term(0), |sum, j| sum.plus(&term(j)))
 }

@@ -29,7 +29,7 @@ fn in_first_period(curve: Curve, argument: &Ball) -> Ball {
     let period = last - first;
     let from_first = argument.minus(&Ball::rational(first));
     let periods = from_first.over(&Ball::rational(&period)).to_f64().floor();
-    if !(periods.abs() < 1e15) {
+    if periods.is_nan() || periods.abs() >= 1e15 {
         return Ball::unknown();
     }
     argument.minus(&Ball::rational(

@@ -33,6 +33,7 @@ pub fn constant(curve: Curve, name: &str, docs: &TokenStream) -> TokenStream {
     });
     quote! {
         #docs
+        #[allow(clippy::approx_constant, reason = "knots in radians are multiples of π where those of the spec are in degrees")]
         static #name: Curve = Curve::new(&[#(#knots),*], &[#(#numbers),*], Outside::#outside);
     }
 }
