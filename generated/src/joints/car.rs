@@ -6,7 +6,7 @@
 //! rate of steering, rad/s.
 //!
 //! - Configuration: Q ∈ SE2, steer ∈ R1, fl ∈ R1, fr ∈ R1, rl ∈ R1, rr ∈ R1, stored as Q₁₁, Q₁₂, Q₁₃, Q₂₁, Q₂₂, Q₂₃, steer, fl, fr, rl, rr.
-//! - Degrees of freedom: `turn` (ϕ₁, rad), `forward` (ϕ₂, m), `sideways` (ϕ₃, m), `steer` (ϕ₄), `fl` (ϕ₅), `fr` (ϕ₆), `rl` (ϕ₇), `rr` (ϕ₈).
+//! - Degrees of freedom: `turn` (ϕ₁, rad), `forward` (ϕ₂, m), `sideways` (ϕ₃, m), `steer` (ϕ₄, rad), `fl` (ϕ₅, rad), `fr` (ϕ₆, rad), `rl` (ϕ₇, rad), `rr` (ϕ₈, rad).
 //! - Velocity v: read in the axes of the child.
 //! - Speeds v̄: `drive`, `steering`; constraints: 6.
 //! - The identity, and not written: S₀, S₀⁻¹.
@@ -197,7 +197,7 @@ impl Joint<11, 8, 2, 6> for Car {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v. Operations: none.
+    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s, rad/s, rad/s, rad/s, rad/s, rad/s. Operations: none.
     /// From line 18 `basis`, line 19 `velocity`, line 20 `let`, line 23 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 11>) -> SMatrix<T, 6, 8> {
         let [q_q11, q_q12, q_q13, q_q21, q_q22, q_q23, _, _, _, _, _]: [T; 11] = (*q).into();
@@ -214,7 +214,7 @@ impl Joint<11, 8, 2, 6> for Car {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v. Independent of Q. Operations: none.
+    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s, rad/s, rad/s, rad/s, rad/s, rad/s. Independent of Q. Operations: none.
     /// From line 18 `basis`, line 19 `velocity`, line 20 `let`, line 23 `H`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 11>) -> SMatrix<T, 6, 8> {
         let zero = T::zero();
@@ -413,7 +413,7 @@ impl Joint<11, 8, 2, 6> for Car {
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    /// 8-vector. Operations: 14 additions, 15 multiplications (6 of each fused), 2 function calls.
+    /// 8-vector, rad, m, m, rad, rad, rad, rad, rad. Operations: 14 additions, 15 multiplications (6 of each fused), 2 function calls.
     /// From line 16 `config`, line 18 `basis`.
     fn local<T: Scalar>(&self, q: &SVector<T, 11>, target: &SVector<T, 11>) -> SVector<T, 8> {
         let q_local = se2::log_between(&part(q, 0), &part(target, 0));
@@ -442,7 +442,7 @@ impl Joint<11, 8, 2, 6> for Car {
     }
 
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    /// 8-vector. Operations: 6 additions, 11 multiplications (4 of each fused), 1 function call.
+    /// 8-vector, rad/s, m/s, m/s, rad/s, rad/s, rad/s, rad/s, rad/s. Operations: 6 additions, 11 multiplications (4 of each fused), 1 function call.
     /// From line 16 `config`, line 18 `basis`.
     fn retract_differential_inverse<T: Scalar>(
         &self,

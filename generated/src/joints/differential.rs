@@ -5,7 +5,7 @@
 //! turns in it, about the x axis of the cage, by `ratio` times half of their difference.
 //!
 //! - Configuration: left ∈ R1, right ∈ R1, stored as left, right.
-//! - Degrees of freedom: `left` (ϕ₁, rad), `right` (ϕ₂).
+//! - Degrees of freedom: `left` (ϕ₁, rad), `right` (ϕ₂, rad).
 //! - Velocity v: read as the rates of the local coordinates.
 //! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹, the projection.
 //! - Zero, and not written: ∂X^c/∂ϕ, ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, the residual, c, the dual of c.
@@ -150,7 +150,7 @@ impl Joint<2, 2, 2, 0> for Differential {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v. Independent of Q. Operations: none.
+    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
     /// From line 14 `H.left = rot_z(left);`.
     fn twist_map<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 6, 2> {
         let zero = T::zero();
@@ -159,7 +159,7 @@ impl Joint<2, 2, 2, 0> for Differential {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v. Independent of Q. Operations: none.
+    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
     /// From line 14 `H.left = rot_z(left);`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 6, 2> {
         let zero = T::zero();
@@ -182,7 +182,7 @@ impl Joint<2, 2, 2, 0> for Differential {
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    /// 2-vector. Operations: 2 additions.
+    /// 2-vector, rad. Operations: 2 additions.
     /// From line 11 `config left: R1, right: R1;`.
     fn local<T: Scalar>(&self, q: &SVector<T, 2>, target: &SVector<T, 2>) -> SVector<T, 2> {
         target - q

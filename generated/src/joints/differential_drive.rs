@@ -6,7 +6,7 @@
 //! axes.
 //!
 //! - Configuration: Q ∈ SE2, left ∈ R1, right ∈ R1, stored as Q₁₁, Q₁₂, Q₁₃, Q₂₁, Q₂₂, Q₂₃, left, right.
-//! - Degrees of freedom: `turn` (ϕ₁, rad), `forward` (ϕ₂, m), `sideways` (ϕ₃, m), `left` (ϕ₄), `right` (ϕ₅).
+//! - Degrees of freedom: `turn` (ϕ₁, rad), `forward` (ϕ₂, m), `sideways` (ϕ₃, m), `left` (ϕ₄, rad), `right` (ϕ₅, rad).
 //! - Velocity v: read in the axes of the child.
 //! - Speeds v̄: `left_wheel`, `right_wheel`; constraints: 3.
 //! - The identity, and not written: S₀, S₀⁻¹.
@@ -159,7 +159,7 @@ impl Joint<8, 5, 2, 3> for DifferentialDrive {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×5, rows rad/s (angular) and m/s (linear), columns by v. Operations: none.
+    /// 6×5, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s, rad/s, rad/s. Operations: none.
     /// From line 16 `basis`, line 17 `velocity`, line 18 `let`, line 19 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 8>) -> SMatrix<T, 6, 5> {
         let [q_q11, q_q12, q_q13, q_q21, q_q22, q_q23, _, _]: [T; 8] = (*q).into();
@@ -176,7 +176,7 @@ impl Joint<8, 5, 2, 3> for DifferentialDrive {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×5, rows rad/s (angular) and m/s (linear), columns by v. Independent of Q. Operations: none.
+    /// 6×5, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s, rad/s, rad/s. Independent of Q. Operations: none.
     /// From line 16 `basis`, line 17 `velocity`, line 18 `let`, line 19 `H`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 8>) -> SMatrix<T, 6, 5> {
         let zero = T::zero();
@@ -288,7 +288,7 @@ impl Joint<8, 5, 2, 3> for DifferentialDrive {
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    /// 5-vector. Operations: 11 additions, 15 multiplications (6 of each fused), 2 function calls.
+    /// 5-vector, rad, m, m, rad, rad. Operations: 11 additions, 15 multiplications (6 of each fused), 2 function calls.
     /// From line 14 `config`, line 16 `basis`.
     fn local<T: Scalar>(&self, q: &SVector<T, 8>, target: &SVector<T, 8>) -> SVector<T, 5> {
         let q_local = se2::log_between(&part(q, 0), &part(target, 0));
@@ -307,7 +307,7 @@ impl Joint<8, 5, 2, 3> for DifferentialDrive {
     }
 
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    /// 5-vector. Operations: 6 additions, 11 multiplications (4 of each fused), 1 function call.
+    /// 5-vector, rad/s, m/s, m/s, rad/s, rad/s. Operations: 6 additions, 11 multiplications (4 of each fused), 1 function call.
     /// From line 14 `config`, line 16 `basis`.
     fn retract_differential_inverse<T: Scalar>(
         &self,

@@ -23,10 +23,10 @@
 //!            ⎢0⎥
 //!            ⎣0⎦
 //!
-//!           ⎡cos(ratio q)  −sin(ratio q)  0  0⎤
-//! H_rotor = ⎢sin(ratio q)   cos(ratio q)  0  0⎥
-//!           ⎢           0              0  1  0⎥
-//!           ⎣           0              0  0  1⎦
+//!           ⎡cos turn  −sin turn  0  0⎤
+//! H_rotor = ⎢sin turn   cos turn  0  0⎥
+//!           ⎢       0          0  1  0⎥
+//!           ⎣       0          0  0  1⎦
 //!
 //!           ⎡    0⎤
 //!           ⎢    0⎥
@@ -34,6 +34,8 @@
 //!           ⎢    0⎥
 //!           ⎢    0⎥
 //!           ⎣    0⎦
+//!
+//! turn = ratio q
 //!
 //! S(Q, ϕ) = I
 //! ```
@@ -104,7 +106,7 @@ impl Joint<1, 1, 1, 0> for GearedRevolute {
 
     /// H(Q): child coordinates to parent coordinates.
     /// Rotation matrix and translation in m. Operations: 1 function call.
-    /// From line 13 `H.output = rot_z(q);`.
+    /// From line 14 `H.output = rot_z(q);`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 1>) -> Pose<T> {
         let q = q[0];
         let zero = T::zero();
@@ -118,7 +120,7 @@ impl Joint<1, 1, 1, 0> for GearedRevolute {
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
     /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
-    /// From line 13 `H.output = rot_z(q);`.
+    /// From line 14 `H.output = rot_z(q);`.
     fn twist_map<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let zero = T::zero();
         let one = T::one();
@@ -127,7 +129,7 @@ impl Joint<1, 1, 1, 0> for GearedRevolute {
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
     /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
-    /// From line 13 `H.output = rot_z(q);`.
+    /// From line 14 `H.output = rot_z(q);`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let zero = T::zero();
         let one = T::one();
@@ -136,7 +138,7 @@ impl Joint<1, 1, 1, 0> for GearedRevolute {
 
     /// Q̇(Q, v) (31): the rates of the stored scalars.
     /// 1-vector. Independent of Q. Operations: none.
-    /// From line 13 `H.output = rot_z(q);`.
+    /// From line 14 `H.output = rot_z(q);`.
     fn configuration_rate<T: Scalar>(&self, _q: &SVector<T, 1>, v: &SVector<T, 1>) -> SVector<T, 1> {
         *v
     }
@@ -167,22 +169,23 @@ impl ::hamel_runtime::joint::Carries<1, 1, 1, 1, 0> for GearedRevolute {
 
     /// H(Q): child coordinates to parent coordinates.
     /// Rotation matrix and translation in m. Operations: 1 multiplication, 1 function call.
-    /// From line 14 `H.rotor = rot_z(ratio * q);`.
+    /// From line 13 `let`, line 15 `H`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 1>) -> Pose<T> {
         let ratio = T::from_f64(self.ratio);
         let q = q[0];
         let zero = T::zero();
         let one = T::one();
-        let (sin_shared1, cos_shared1) = (ratio * q).sin_cos();
+        let turn = ratio * q;
+        let (sin_turn, cos_turn) = turn.sin_cos();
         Pose {
-            rotation: from_rows([[cos_shared1, -sin_shared1, zero], [sin_shared1, cos_shared1, zero], [zero, zero, one]]),
+            rotation: from_rows([[cos_turn, -sin_turn, zero], [sin_turn, cos_turn, zero], [zero, zero, one]]),
             translation: SVector::zeros(),
         }
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
     /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Independent of Q. Operations: none.
-    /// From line 14 `H.rotor = rot_z(ratio * q);`.
+    /// From line 13 `let`, line 15 `H`.
     fn twist_map<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let ratio = T::from_f64(self.ratio);
         let zero = T::zero();
@@ -191,7 +194,7 @@ impl ::hamel_runtime::joint::Carries<1, 1, 1, 1, 0> for GearedRevolute {
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
     /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Independent of Q. Operations: none.
-    /// From line 14 `H.rotor = rot_z(ratio * q);`.
+    /// From line 13 `let`, line 15 `H`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let ratio = T::from_f64(self.ratio);
         let zero = T::zero();
@@ -235,7 +238,8 @@ joint geared_revolute(
 ) {
     config  q: R1;                      // rad
     bodies  output, rotor;
+    let turn = ratio * q;
     H.output = rot_z(q);
-    H.rotor  = rot_z(ratio * q);
+    H.rotor  = rot_z(turn);
 }
 "#;

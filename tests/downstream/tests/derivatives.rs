@@ -6,9 +6,9 @@ use hamel::registry::JointRegistry;
 use hamel_downstream::WITH_KNOTS;
 use hamel_downstream::joints::{
     BallCayley, BallTurns, Bead, CamCircle, CamFollower, CarWheels, Catenary, CatenaryLength,
-    CrankRocker, DirectionSensor, ENTRIES, FourBar, FourBarThrough, GearedRotor, MeasuredRocker,
-    PlanarTurns, PowerGuide, Rail, RollingBallCayley, Scara, SkateHeading, SkewScrew,
-    SliderCrankLinks, SliderCrankRod, SpherePoint, Valley,
+    CrankCoupler, CrankRocker, DirectionSensor, ENTRIES, FourBarThrough, GearedRotor,
+    MeasuredRocker, PlanarTurns, PowerGuide, Rail, RollingBallCayley, Scara, SkateHeading,
+    SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint, Valley,
 };
 use hamel_tests::derivatives::{self, Equipped, Kernels, bare_and_equipped, behind, of};
 use hamel_tests::differences::STEP;
@@ -59,7 +59,12 @@ fn kernels(joint: &dyn AnyJoint) -> Box<dyn Kernels> {
         of(Catenary::new(0.7)),
         of(CatenaryLength::new(0.7)),
         of(DirectionSensor::new(0.7)),
-        of(FourBar::new(0.9, 0.2, 0.9 + 0.1 * 2.0, 0.9 + 0.1 * 3.0)),
+        of(CrankCoupler::new(
+            0.9,
+            0.2,
+            0.9 + 0.1 * 2.0,
+            0.9 + 0.1 * 3.0,
+        )),
         of(FourBarThrough),
         of(PlanarTurns),
         of(PowerGuide::new(0.7)),

@@ -118,7 +118,7 @@ fn quarters(t_end: f64) -> Vec<f64> {
 
 #[test]
 fn accelerations_are_those_with_multipliers() {
-    let mechanism = four_bar("four_bar", &LINKS);
+    let mechanism = four_bar("crank_coupler", &LINKS);
     let mut recursive = Recursive::new(Arc::clone(&mechanism));
     let mut reference = Reference::new(Arc::clone(&mechanism));
     for state in run(&mechanism, 9.0, Form::Lagrangian, 4.0, quarters(4.0)) {
@@ -140,7 +140,7 @@ fn accelerations_are_those_with_multipliers() {
 #[test]
 fn energy_and_relations_are_kept() {
     for (joint, links, speed) in [
-        ("four_bar", &LINKS[..], 9.0),
+        ("crank_coupler", &LINKS[..], 9.0),
         ("four_bar_through", &[], 50.0),
         ("slider_crank_rod", &[], 5.0),
     ] {
@@ -168,7 +168,7 @@ fn energy_and_relations_are_kept() {
 #[test]
 fn named_angles_add_up() {
     for (joint, links, adds) in [
-        ("four_bar", &LINKS[..], true),
+        ("crank_coupler", &LINKS[..], true),
         ("slider_crank_rod", &[], true),
         ("four_bar_through", &[], false),
     ] {

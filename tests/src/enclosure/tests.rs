@@ -25,11 +25,13 @@ fn at(chart: &[f64], parameters: &[f64]) -> Point {
     }
 }
 
-/// The library at points near and far; parameters that all of its requirements allow.
+/// The library at points near and far; parameters that all of its requirements allow. The judge knows joints of one body that declare Φ or have that of
+/// their manifold; those of several bodies and of relations alone are held to their definitions by [`crate::accuracy`].
 #[test]
 fn the_library_holds() {
-    for name in crate::spec_names() {
-        let derived = crate::derived(&name);
+    let all = crate::spec_names().into_iter();
+    let all = all.map(|name| (crate::derived(&name), name));
+    for (derived, name) in all.filter(|(d, _)| d.more.is_empty() && d.spec.implicit.is_none()) {
         let count = super::dimensions(&derived.space);
         let parameters: Vec<f64> = (0..derived.spec.parameters.len())
             .map(|i| 1.5 / (1.0 + i as f64))

@@ -72,12 +72,19 @@ fn unit(derived: &Derived, k: usize, freedom: &Freedom) -> &'static str {
     let angle_if = |angle: bool| if angle { "rad" } else { "m" };
     match factor.kind {
         // A degree of freedom of `local` is what Φ makes of it.
-        _ if freedom.generator.is_empty() => of_twist(derived, Some(&derived.local_twist_map), k),
+        _ if freedom.generator.is_empty() => of_twists(derived, k),
         Kind::S1 | Kind::So2 | Kind::So3 | Kind::S3 | Kind::S2 => "rad",
         Kind::Se2 => angle_if(turns(1)),
         Kind::Se3 => angle_if(turns(3)),
-        Kind::Real(_) => of_twist(derived, Some(&derived.local_twist_map), k),
+        Kind::Real(_) => of_twists(derived, k),
     }
+}
+
+/// Of a coordinate by the first of the bodies whose twist tells.
+fn of_twists(derived: &Derived, k: usize) -> &'static str {
+    let bodies = derived.bodies();
+    let mut units = bodies.map(|body| of_twist(body, Some(&body.local_twist_map), k));
+    units.find(|unit| !unit.is_empty()).unwrap_or_default()
 }
 
 /// A coordinate is an angle or a length, and a velocity its rate, where its twist is a unit rotation or a unit translation.

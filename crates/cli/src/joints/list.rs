@@ -23,6 +23,8 @@ struct Entry {
     configuration: String,
     freedoms: Vec<String>,
     speeds: Vec<String>,
+    /// Those that the spec names; none where it carries one body.
+    bodies: Vec<String>,
     ports: Vec<Parameter>,
     parameters: Vec<Parameter>,
 }
@@ -83,6 +85,7 @@ fn entry(joint: &Derived) -> Entry {
             .map(|freedom| freedom.name.clone())
             .collect(),
         speeds: joint.speed_names.clone(),
+        bodies: spec.bodies.clone(),
         ports: spec.ports.iter().map(port).collect(),
         parameters: spec.parameters.iter().map(parameter).collect(),
     }

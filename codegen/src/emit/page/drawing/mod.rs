@@ -1,4 +1,4 @@
-//! A drawing of a joint, made from its kernels: for each direction of its velocity, the child at home and swept along it.
+//! A drawing of a joint, made from its kernels: for each direction of its velocity, its bodies at home and swept along it.
 
 mod parameters;
 mod pen;
@@ -29,7 +29,7 @@ pub struct Drawing {
     panels: Vec<Panel>,
 }
 
-/// The child swept along one direction.
+/// The bodies swept along one direction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Panel {
     caption: String,

@@ -1,10 +1,13 @@
 //! Kernels of a joint in numbers, for a drawing.
 
 use crate::derived::{Derived, KernelKind, Step};
-use crate::expr::{Symbol, evaluate_f64};
+use crate::expr::{Expr, Symbol, evaluate_f64};
 use std::collections::BTreeMap;
 
 type Values = BTreeMap<Symbol, f64>;
+
+/// Rounds of projection onto the relations: enough for a picture, since each comes nearer by a factor.
+const PROJECTIONS: usize = 200;
 
 /// A placed frame: its axes and its origin in parent coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,11 +50,63 @@ impl<'a> Sampler<'a> {
         conditions.all(|condition| self.value(&condition.value.value, &self.parameters) > 0.0)
     }
 
-    /// The stored scalars of the home configuration.
+    /// The stored scalars of the home configuration; where that is a guess, brought onto the manifold.
     pub fn home(&self) -> Vec<f64> {
         let values = self.parameters.clone();
         let outputs = self.outputs(KernelKind::Home, values);
-        outputs.into_iter().next().unwrap_or_default()
+        let home = outputs.into_iter().next().unwrap_or_default();
+        match self.derived.space.home_is_guess {
+            true => self.projected(home),
+            false => home,
+        }
+    }
+
+    /// Onto the manifold by the method of Kaczmarz: the shortest step to each relation in turn.
+    fn projected(&self, mut q: Vec<f64>) -> Vec<f64> {
+        let manifold = &self.derived.space.manifold;
+        let coordinates = manifold.coordinates();
+        let slopes = |relation: &Expr| -> Vec<Expr> {
+            coordinates.iter().map(|q| relation.derivative(q)).collect()
+        };
+        let relations: Vec<(Expr, Vec<Expr>)> = manifold
+            .relations()
+            .into_iter()
+            .map(|relation| (relation.clone(), slopes(&relation)))
+            .collect();
+        for (relation, slopes) in std::iter::repeat_n(&relations, PROJECTIONS).flatten() {
+            let at = self.at(&q);
+            let slopes: Vec<f64> = slopes.iter().map(|slope| self.value(slope, &at)).collect();
+            let square: f64 = slopes.iter().map(|slope| slope * slope).sum();
+            let step = self.value(relation, &at) / square;
+            if step.is_finite() {
+                q.iter_mut()
+                    .zip(slopes)
+                    .for_each(|(q, slope)| *q -= step * slope);
+            }
+        }
+        q
+    }
+
+    /// Number of bodies.
+    pub fn bodies(&self) -> usize {
+        self.derived.bodies().count()
+    }
+
+    /// H(Q) of every body; nothing where one is not finite.
+    pub fn poses(&self, q: &[f64]) -> Option<Vec<Frame>> {
+        self.each_body().map(|body| body.pose(q)).collect()
+    }
+
+    /// The twist of every body in its child frame: angular, linear.
+    pub fn twists(&self, q: &[f64], v: &[f64]) -> Option<Vec<[f64; 6]>> {
+        self.each_body().map(|body| body.twist(q, v)).collect()
+    }
+
+    fn each_body(&self) -> impl Iterator<Item = Sampler<'a>> {
+        self.derived.bodies().map(|derived| Sampler {
+            derived,
+            parameters: self.parameters.clone(),
+        })
     }
 
     /// H(Q); nothing where it is not finite.
@@ -82,7 +137,7 @@ impl<'a> Sampler<'a> {
     }
 
     /// The twist in the child frame: angular, linear.
-    pub fn twist(&self, q: &[f64], v: &[f64]) -> Option<[f64; 6]> {
+    fn twist(&self, q: &[f64], v: &[f64]) -> Option<[f64; 6]> {
         let matrix = self.matrix(KernelKind::TwistMapChild, q)?;
         let entry = |i: usize| (0..v.len()).map(|j| matrix[i * v.len() + j] * v[j]).sum();
         Some(std::array::from_fn(entry))
@@ -150,7 +205,7 @@ impl<'a> Sampler<'a> {
         entries.collect()
     }
 
-    fn value(&self, expression: &crate::expr::Expr, values: &Values) -> f64 {
+    fn value(&self, expression: &Expr, values: &Values) -> f64 {
         evaluate_f64(expression, &|symbol| {
             values.get(symbol).copied().unwrap_or(f64::NAN)
         })

@@ -1,8 +1,8 @@
-//! What a panel shows: the parent frame, the child at home and at the ends of its sweep, and the path of a point of it.
+//! What a panel shows: the parent frame, each body at home and at the ends of its sweep, and the path of a point of it.
 
 use super::pen::{ALLOWED, AXES, BODY, FORBIDDEN, INK, Look, Pen};
 use super::sampler::Frame;
-use super::sweep::Sweep;
+use super::sweep::{Sweep, Track};
 use super::view::faces_viewer;
 
 /// Half the sides of the block that stands for the child, m; all different, so that every turn of it shows.
@@ -12,56 +12,78 @@ const AXIS: f64 = 0.66;
 /// Length of the parent's axes, m.
 const PARENT_AXIS: f64 = 1.0;
 
+/// The size of blocks and axes of one of several bodies, so that the links of a mechanism stand apart.
+const SMALL: f64 = 0.4;
+
+/// The size of blocks and axes.
+fn scale(sweep: &Sweep) -> f64 {
+    match sweep.bodies.len() {
+        1 => 1.0,
+        _ => SMALL,
+    }
+}
+
 /// Points that must fit into the picture.
 pub fn extent(sweep: &Sweep) -> Vec<[f64; 3]> {
     let parent = (0..3).map(|axis| unit(axis, PARENT_AXIS)).chain([[0.0; 3]]);
+    let bodies = sweep.bodies.iter();
+    parent
+        .chain(bodies.flat_map(|track| extent_of(track, scale(sweep))))
+        .collect()
+}
+
+fn extent_of(track: &Track, scale: f64) -> Vec<[f64; 3]> {
     let ends = [
-        sweep.frames.first(),
-        sweep.frames.get(sweep.home),
-        sweep.frames.last(),
+        track.frames.first(),
+        track.frames.get(track.home),
+        track.frames.last(),
     ];
     let of_child = |frame: &Frame| {
         let frame = *frame;
-        corners()
+        corners(scale)
             .into_iter()
             .map(move |corner| frame.point(corner))
             .collect::<Vec<_>>()
     };
-    let at_home = sweep.frames.get(sweep.home).into_iter();
-    let tips = at_home.flat_map(|frame| (0..3).map(|axis| frame.point(unit(axis, AXIS))));
-    let marker = marker(sweep);
-    let path = sweep.frames.iter().map(|frame| frame.point(marker));
-    parent
-        .chain(ends.into_iter().flatten().flat_map(of_child))
-        .chain(tips)
-        .chain(path)
-        .collect()
+    let at_home = track.frames.get(track.home).into_iter();
+    let tips = at_home.flat_map(|frame| (0..3).map(|axis| frame.point(unit(axis, scale * AXIS))));
+    let marker = marker(track, scale);
+    let path = track.frames.iter().map(|frame| frame.point(marker));
+    let blocks = ends.into_iter().flatten().flat_map(of_child);
+    blocks.chain(tips).chain(path).collect()
 }
 
 /// Draws a panel, the farthest first.
 pub fn draw(pen: &mut Pen, sweep: &Sweep, forbidden: bool) {
     let colour = if forbidden { FORBIDDEN } else { ALLOWED };
-    for ghost in ghosts(sweep) {
-        block(pen, ghost, Look::surface(colour, 0.13, 0.5));
+    let scale = scale(sweep);
+    for track in &sweep.bodies {
+        for ghost in ghosts(track) {
+            block(pen, ghost, scale, Look::surface(colour, 0.13, 0.5));
+        }
     }
     parent(pen);
-    if let Some(home) = sweep.frames.get(sweep.home) {
-        let stem = Look {
-            dashed: true,
-            ..Look::line(INK, 0.8)
-        };
-        pen.path(&[[0.0; 3], home.origin], false, stem);
-        block(pen, home, Look::surface(BODY, 0.45, 0.9));
-        axes(pen, home);
+    for track in &sweep.bodies {
+        if let Some(home) = track.frames.get(track.home) {
+            let stem = Look {
+                dashed: true,
+                ..Look::line(INK, 0.8)
+            };
+            pen.path(&[[0.0; 3], home.origin], false, stem);
+            block(pen, home, scale, Look::surface(BODY, 0.45, 0.9));
+            axes(pen, home, scale);
+        }
     }
-    path(pen, sweep, forbidden, colour);
+    for track in &sweep.bodies {
+        path(pen, track, scale, forbidden);
+    }
 }
 
 /// The ends of the sweep.
-fn ghosts(sweep: &Sweep) -> impl Iterator<Item = &Frame> {
-    let last = sweep.frames.len().saturating_sub(1);
-    let ends = [0, last].into_iter().filter(|at| *at != sweep.home);
-    ends.filter_map(|at| sweep.frames.get(at))
+fn ghosts(track: &Track) -> impl Iterator<Item = &Frame> {
+    let last = track.frames.len().saturating_sub(1);
+    let ends = [0, last].into_iter().filter(|at| *at != track.home);
+    ends.filter_map(|at| track.frames.get(at))
 }
 
 fn parent(pen: &mut Pen) {
@@ -72,17 +94,18 @@ fn parent(pen: &mut Pen) {
     }
 }
 
-fn axes(pen: &mut Pen, frame: &Frame) {
+fn axes(pen: &mut Pen, frame: &Frame, scale: f64) {
     for (axis, colour) in AXES.into_iter().enumerate() {
-        let tip = frame.point(unit(axis, AXIS));
+        let tip = frame.point(unit(axis, scale * AXIS));
         pen.arrow(&[frame.origin, tip], Look::line(colour, 1.8));
     }
 }
 
-/// The path of a point of the child; the line of a forbidden one is broken.
-fn path(pen: &mut Pen, sweep: &Sweep, forbidden: bool, colour: &'static str) {
-    let marker = marker(sweep);
-    let points: Vec<[f64; 3]> = sweep
+/// The path of a point of a body; the line of a forbidden one is broken.
+fn path(pen: &mut Pen, track: &Track, scale: f64, forbidden: bool) {
+    let colour = if forbidden { FORBIDDEN } else { ALLOWED };
+    let marker = marker(track, scale);
+    let points: Vec<[f64; 3]> = track
         .frames
         .iter()
         .map(|frame| frame.point(marker))
@@ -95,8 +118,8 @@ fn path(pen: &mut Pen, sweep: &Sweep, forbidden: bool, colour: &'static str) {
 }
 
 /// The point whose path is shown: the origin, unless the tip of an axis goes clearly farther.
-fn marker(sweep: &Sweep) -> [f64; 3] {
-    let (Some(home), Some(last)) = (sweep.frames.get(sweep.home), sweep.frames.last()) else {
+fn marker(track: &Track, scale: f64) -> [f64; 3] {
+    let (Some(home), Some(last)) = (track.frames.get(track.home), track.frames.last()) else {
         return [0.0; 3];
     };
     let travel = |local: [f64; 3]| {
@@ -104,7 +127,7 @@ fn marker(sweep: &Sweep) -> [f64; 3] {
         (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
     };
     let mut best = ([0.0; 3], 1.02 * travel([0.0; 3]));
-    for tip in (0..3).map(|axis| unit(axis, AXIS)) {
+    for tip in (0..3).map(|axis| unit(axis, scale * AXIS)) {
         // A tenth more, so that rounding does not decide between two tips that go equally far.
         if travel(tip) > 1.1 * best.1 + 1e-6 {
             best = (tip, travel(tip));
@@ -114,14 +137,14 @@ fn marker(sweep: &Sweep) -> [f64; 3] {
 }
 
 /// The faces of the block that the viewer sees.
-fn block(pen: &mut Pen, frame: &Frame, look: Look) {
+fn block(pen: &mut Pen, frame: &Frame, scale: f64, look: Look) {
     for axis in 0..3 {
         for side in [-1.0, 1.0] {
             let normal = frame.point(unit(axis, side));
             let normal = std::array::from_fn(|i| normal[i] - frame.origin[i]);
             if faces_viewer(normal) {
                 pen.path(
-                    &face(axis, side).map(|corner| frame.point(corner)),
+                    &face(axis, side, scale).map(|corner| frame.point(corner)),
                     true,
                     look,
                 );
@@ -131,21 +154,21 @@ fn block(pen: &mut Pen, frame: &Frame, look: Look) {
 }
 
 /// The corners of a face, around it.
-fn face(axis: usize, side: f64) -> [[f64; 3]; 4] {
+fn face(axis: usize, side: f64, scale: f64) -> [[f64; 3]; 4] {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(a, b)| {
         let mut corner = [0.0; 3];
-        corner[axis] = side * BLOCK[axis];
-        corner[u] = a * BLOCK[u];
-        corner[v] = b * BLOCK[v];
+        corner[axis] = side * scale * BLOCK[axis];
+        corner[u] = a * scale * BLOCK[u];
+        corner[v] = b * scale * BLOCK[v];
         corner
     })
 }
 
-fn corners() -> Vec<[f64; 3]> {
+fn corners(scale: f64) -> Vec<[f64; 3]> {
     [-1.0, 1.0]
         .into_iter()
-        .flat_map(|side| face(2, side))
+        .flat_map(|side| face(2, side, scale))
         .collect()
 }
 

@@ -1,4 +1,4 @@
-//! The child along one direction of velocity: Q̇ = Q̇(Q, v) from home, forwards and backwards.
+//! The bodies of a joint along one direction of velocity: Q̇ = Q̇(Q, v) from home, forwards and backwards.
 
 use super::sampler::{Frame, Sampler};
 use crate::derived::{KernelKind, Shape};
@@ -51,52 +51,60 @@ impl Direction {
     }
 }
 
-/// Frames of the child in order, home among them.
-pub struct Sweep {
+/// Frames of a body in order, home among them.
+pub struct Track {
     /// The frames.
     pub frames: Vec<Frame>,
     /// Which of them is home.
     pub home: usize,
 }
 
+/// All bodies along one direction.
+pub struct Sweep {
+    /// Each of them.
+    pub bodies: Vec<Track>,
+}
+
 impl Sweep {
     /// The frames along a direction; nothing where it moves nothing at home.
     pub fn new(sampler: &Sampler<'_>, home: &[f64], direction: Direction) -> Option<Self> {
-        let duration = duration(&sampler.twist(home, &direction.velocity(sampler, home)?)?)?;
+        let duration = duration(&sampler.twists(home, &direction.velocity(sampler, home)?)?)?;
         let side = |sign: f64| {
             let mut q = home.to_vec();
-            let mut frames = vec![];
+            let mut poses = vec![];
             for _ in 0..STEPS {
                 let step = sign * duration / STEPS as f64;
                 let Some(next) = stepped(sampler, &q, direction, step) else {
                     break;
                 };
-                let Some(frame) = sampler.pose(&next) else {
+                let Some(frames) = sampler.poses(&next) else {
                     break;
                 };
-                frames.push(frame);
+                poses.push(frames);
                 q = next;
             }
-            frames
+            poses
         };
         let (before, after) = (side(-1.0), side(1.0));
-        let home_frame = sampler.pose(home)?;
+        let at_home = before.len();
+        let poses = before.into_iter().rev().chain([sampler.poses(home)?]);
+        let poses: Vec<Vec<Frame>> = poses.chain(after).collect();
+        let track = |body: usize| Track {
+            home: at_home,
+            frames: poses.iter().map(|frames| frames[body]).collect(),
+        };
         Some(Self {
-            home: before.len(),
-            frames: before
-                .into_iter()
-                .rev()
-                .chain([home_frame])
-                .chain(after)
-                .collect(),
+            bodies: (0..sampler.bodies()).map(track).collect(),
         })
     }
 }
 
-/// How long to sweep at a twist, so that neither turn nor slide gets out of the picture.
-fn duration(twist: &[f64; 6]) -> Option<f64> {
+/// How long to sweep at these twists, so that no turn and no slide gets out of the picture.
+fn duration(twists: &[[f64; 6]]) -> Option<f64> {
     let size = |part: &[f64]| part.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let (turn, slide) = (size(&twist[..3]), size(&twist[3..]));
+    let largest = |part: &dyn Fn(&[f64; 6]) -> f64| twists.iter().map(part).fold(0.0, f64::max);
+    let turn = largest(&|twist| size(&twist[..3]));
+    let slide = largest(&|twist| size(&twist[3..]));
     let moves = |speed: f64| speed > 1e-9;
     match (moves(turn), moves(slide)) {
         (true, false) => Some(TURN / turn),

@@ -180,9 +180,12 @@ mod tests {
     fn joint(name: &str) -> Arc<dyn AnyJoint> {
         let joints = hamel_joints::registry();
         let entry = joints.get(name).expect("a joint of the library");
-        let values = [1.0, 0.6, 0.4, 0.3];
-        let values = &values[..entry.parameters.len()];
-        (entry.build)(values).expect("parameters in range")
+        let [descending, ascending] = [[1.0, 0.6, 0.4, 0.3], [0.3, 1.0, 0.6, 0.4]];
+        let values =
+            [descending, ascending].map(|values| values[..entry.parameters.len()].to_vec());
+        let mut built = values.iter().map(|values| (entry.build)(values));
+        let found = built.find_map(Result::ok);
+        found.expect("parameters in range")
     }
 
     fn kinds(name: &str) -> Vec<Kind> {
@@ -222,7 +225,11 @@ mod tests {
         let wheel = units("upright_wheel");
         assert_eq!(wheel.freedoms, [angle, length, length, angle]);
         assert_eq!(wheel.speeds, [angle; 2]);
-        for entry in hamel_joints::registry().entries() {
+        assert_eq!(units("car").freedoms[3..], [angle; 5]);
+        // Its v runs along the cross product of its relations, which has a scale of its own.
+        assert_eq!(units("four_bar").velocities, [Unit::None]);
+        let joints = hamel_joints::registry();
+        for entry in joints.entries().filter(|entry| entry.name != "four_bar") {
             let found = units(entry.name);
             let all = found.freedoms.iter().chain(&found.speeds);
             let all: Vec<_> = all.chain(&found.velocities).collect();

@@ -1,6 +1,6 @@
 //! Units of a joint's degrees of freedom, velocities and speeds, which are those on its page: read off how they move Q and the child.
 
-use super::coordinates::Factor;
+use super::coordinates::{Factor, Kind};
 use hamel::erased::AnyJoint;
 use nalgebra::{DMatrix, DVector, Vector6};
 
@@ -80,7 +80,7 @@ impl Units {
         let velocities: Vec<_> = columns
             .map(|k| match is_unit(home.velocity_map.row(k).iter(), k) {
                 true => freedoms[k],
-                false => Unit::of_twist(&home.twist(k)),
+                false => home.unit(&home.entry(k)),
             })
             .collect();
         let speeds = 0..joint.layout().speeds;
@@ -104,8 +104,10 @@ fn is_unit<'e>(entries: impl Iterator<Item = &'e f64>, k: usize) -> bool {
 /// A joint at home, where its kernels say what its coordinates do.
 struct Home {
     factors: Vec<Factor>,
-    /// X^c.
-    twist_map: DMatrix<f64>,
+    /// X^c of each body.
+    twist_maps: Vec<DMatrix<f64>>,
+    /// Whether relations alone say how Q moves, so that a velocity may have a scale of its own.
+    by_relations: bool,
     /// S₀.
     velocity_map: DMatrix<f64>,
     /// S̄.
@@ -120,8 +122,14 @@ impl Home {
         let (size, freedoms) = (layout.configuration, layout.freedoms);
         let mut q = vec![0.0; size];
         joint.home(&mut q);
-        let mut twist_map = DMatrix::zeros(6, freedoms);
-        joint.twist_map_child(&q, twist_map.as_mut_slice());
+        let twist_map = |body: &dyn AnyJoint| {
+            let mut twist_map = DMatrix::zeros(6, freedoms);
+            body.twist_map_child(&q, twist_map.as_mut_slice());
+            twist_map
+        };
+        let others = joint.more();
+        let others = others.iter().map(|body| twist_map(&**body));
+        let twist_maps = std::iter::once(twist_map(joint)).chain(others).collect();
         let mut velocity_map = DMatrix::zeros(freedoms, freedoms);
         joint.velocity_map(&q, velocity_map.as_mut_slice());
         let mut speed_basis = DMatrix::zeros(freedoms, layout.speeds);
@@ -134,7 +142,8 @@ impl Home {
         }
         Self {
             factors: Factor::all(joint),
-            twist_map,
+            twist_maps,
+            by_relations: !joint.relations().is_empty(),
             velocity_map,
             speed_basis,
             rates,
@@ -151,20 +160,42 @@ impl Home {
             places.map(|place| (factor.kind, factor.kind.turns(place)))
         });
         let moved: Vec<_> = moved.collect();
+        let by_twists = || self.unit(&self.velocity_map.column(k).clone_owned());
         if moved.iter().any(|(_, turns)| *turns) {
-            return Unit::Angle;
+            return match self.by_relations && !self.turns_by_one(k) {
+                true => by_twists(),
+                false => Unit::Angle,
+            };
         }
         match moved.first() {
-            Some((super::coordinates::Kind::Scalar, _)) | None => {
-                let column = &self.twist_map * self.velocity_map.column(k);
-                Unit::of_twist(&six(&column))
-            }
+            Some((Kind::Scalar, _)) | None => by_twists(),
             Some(_) => Unit::Length,
         }
     }
 
-    fn twist(&self, k: usize) -> Vector6<f64> {
-        six(&self.twist_map.column(k).clone_owned())
+    /// Whether some direction of the plane turns by one radian for one of ϕ_k.
+    fn turns_by_one(&self, k: usize) -> bool {
+        let planar = self.factors.iter().filter(|factor| factor.kind == Kind::S1);
+        let mut turns = planar.map(|factor| {
+            let rate = |place: usize| self.rates[(factor.first + place, k)];
+            rate(0).hypot(rate(1))
+        });
+        turns.any(|turn| (turn - 1.0).abs() < EXACT)
+    }
+
+    /// By the first body whose twist at this velocity tells.
+    fn unit(&self, velocity: &DVector<f64>) -> Unit {
+        let twists = self.twist_maps.iter().map(|map| six(&(map * velocity)));
+        let mut units = twists.map(|twist| Unit::of_twist(&twist));
+        let found = units.find(|unit| *unit != Unit::None);
+        found.unwrap_or(Unit::None)
+    }
+
+    /// A unit of v.
+    fn entry(&self, k: usize) -> DVector<f64> {
+        DVector::from_fn(self.velocity_map.nrows(), |i, _| {
+            f64::from(u8::from(i == k))
+        })
     }
 
     /// Of a speed that is one entry of v, as of that; of any other by its twist.
@@ -173,7 +204,7 @@ impl Home {
         let own = (0..velocities.len()).find(|&k| is_unit(column.iter(), k));
         match own {
             Some(k) => velocities[k],
-            None => Unit::of_twist(&six(&(&self.twist_map * column))),
+            None => self.unit(&column.clone_owned()),
         }
     }
 
