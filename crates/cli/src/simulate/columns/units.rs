@@ -198,13 +198,19 @@ impl Home {
         })
     }
 
-    /// Of a speed that is one entry of v, as of that; of any other by its twist.
+    /// Of a speed that is one entry of v, as of that; of any other by its twist, or as of an entry of v that equals it.
     fn speed(&self, speed: usize, velocities: &[Unit]) -> Unit {
         let column = self.speed_basis.column(speed);
-        let own = (0..velocities.len()).find(|&k| is_unit(column.iter(), k));
-        match own {
-            Some(k) => velocities[k],
-            None => self.unit(&column.clone_owned()),
+        let mut entries = 0..velocities.len();
+        if let Some(k) = entries.find(|&k| is_unit(column.iter(), k)) {
+            return velocities[k];
+        }
+        let equals = |k: &usize| is_unit(self.speed_basis.row(*k).iter(), speed);
+        match self.unit(&column.clone_owned()) {
+            Unit::None => (0..velocities.len())
+                .find(equals)
+                .map_or(Unit::None, |k| velocities[k]),
+            unit => unit,
         }
     }
 
