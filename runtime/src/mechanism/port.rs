@@ -3,10 +3,11 @@
 use super::check::{Space, check_size};
 use super::initial::CONSTRAINT_TOLERANCE;
 use super::{Body, Mechanism, StateError};
+use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
-/// How small the smallest singular value of `P S̄` may be next to the largest for rates at ports to determine the speeds.
+/// How small the smallest singular value of `P S̄` may be, next to the largest or to the rates of Q at unit speeds, for rates at ports to determine the speeds.
 const DETERMINED: f64 = 1e-9;
 
 impl Body {
@@ -18,6 +19,20 @@ impl Body {
             joint.port_row(q, port, column.as_mut_slice());
         }
         transposed.transpose()
+    }
+
+    /// The largest rate of a stored scalar at unit speeds: what rates at ports are small beside, where the ports stand still.
+    fn largest_rate(&self, q: &[f64], basis: &DMatrix<f64>) -> f64 {
+        let mut rate = vec![0.0; q.len()];
+        let mut largest = 0.0_f64;
+        for velocity in basis.column_iter() {
+            self.joint()
+                .configuration_rate(q, velocity.clone_owned().as_slice(), &mut rate);
+            largest = rate
+                .iter()
+                .fold(largest, |most, entry| most.max(entry.abs()));
+        }
+        largest
     }
 }
 
@@ -109,10 +124,11 @@ impl Mechanism {
             })?;
             body.check_finite("port rates", &[known.name], &[value])?;
         }
-        let map = all.select_rows(rates.iter().map(|(port, _)| port)) * body.speed_basis(q);
+        let basis = body.speed_basis(q);
+        let map = all.select_rows(rates.iter().map(|(port, _)| port)) * &basis;
         let target = DVector::from_iterator(rates.len(), rates.iter().map(|(_, rate)| *rate));
         let speeds = map.ncols();
-        let (rank, solved) = least_squares(&map, &target);
+        let (rank, solved) = least_squares(&map, &target, body.largest_rate(q, &basis));
         if rank < speeds {
             return Err(StateError::PortRatesLeaveOpen {
                 joint: joint(),
@@ -133,15 +149,15 @@ impl Mechanism {
     }
 }
 
-/// The rank of a matrix, and the shortest x with the least `|F x − r|`.
-fn least_squares(matrix: &DMatrix<f64>, right: &DVector<f64>) -> (usize, DVector<f64>) {
+/// The rank of a matrix whose entries are of the order of `scale` or larger, and the shortest x with the least `|F x − r|`.
+fn least_squares(matrix: &DMatrix<f64>, right: &DVector<f64>, scale: f64) -> (usize, DVector<f64>) {
     // Of nothing there is no decomposition.
     if matrix.is_empty() {
         return (0, DVector::zeros(matrix.ncols()));
     }
     let found = matrix.clone().svd(true, true);
     let values = &found.singular_values;
-    let limit = DETERMINED * values.iter().copied().fold(0.0, f64::max);
+    let limit = DETERMINED * values.iter().copied().fold(scale, f64::max);
     let rank = values.iter().filter(|value| **value > limit).count();
     let solved = found.solve(right, limit);
     let solved = solved.unwrap_or_else(|_| DVector::repeat(matrix.ncols(), f64::NAN));

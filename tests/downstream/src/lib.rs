@@ -14,6 +14,10 @@ pub const WITH_KNOTS: [&str; 5] = [
     "valley",
 ];
 
+/// Linkages with ends all around: most random configurations and rests of springs are beyond them. The test `newton_euler` holds them to equations with
+/// multipliers, and their derivatives to compiled ones.
+pub const ENDED: [&str; 3] = ["five_bar", "parallel_ankle", "wishbone"];
+
 /// Joints unlike those of the library, which the generator's own tests derive.
 pub mod held_out {
     include!(concat!(env!("OUT_DIR"), "/held_out/joints.rs"));

@@ -3,13 +3,13 @@
 use hamel::erased::AnyJoint;
 use hamel::joint::Member;
 use hamel::registry::JointRegistry;
-use hamel_downstream::WITH_KNOTS;
 use hamel_downstream::joints::{
     BallCayley, BallTurns, Bead, CamCircle, CamFollower, CarWheels, Catenary, CatenaryLength,
     CrankCoupler, CrankRocker, DirectionSensor, ENTRIES, FourBarThrough, GearedRotor,
     MeasuredRocker, PlanarTurns, PowerGuide, Rail, RollingBallCayley, Scara, SkateHeading,
     SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint, Valley,
 };
+use hamel_downstream::{ENDED, WITH_KNOTS};
 use hamel_tests::derivatives::{self, Equipped, Kernels, bare_and_equipped, behind, of};
 use hamel_tests::differences::STEP;
 use hamel_tests::linear_step;
@@ -21,9 +21,6 @@ const TREES: u64 = 60;
 
 /// These joints bend more than those of the library: h⁶ f⁽⁷⁾ is 8e-4 with the usual step where loops are near a dead point, and 8⁶ times less with an eighth of it.
 const FINE: f64 = STEP / 8.0;
-
-/// Linkages with ends all around: most random rests of springs are beyond them. `multipliers.rs` holds their derivatives against compiled ones.
-const ENDED: [&str; 4] = ["five_bar", "four_bar_any", "parallel_ankle", "wishbone"];
 
 fn kinds() -> Vec<Arc<dyn AnyJoint>> {
     let mut registry = JointRegistry::new();
