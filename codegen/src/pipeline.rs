@@ -36,7 +36,7 @@ pub fn derive(source: &str, file: &str) -> Result<Derived, Diagnostics> {
 /// The same of a spec in a folder, in which files with knots of curves are looked for.
 ///
 /// # Errors
-/// As [`derive`], and files that cannot be read.
+/// As [`derive()`], and files that cannot be read.
 pub fn derive_in(source: &str, file: &str, folder: Option<&Path>) -> Result<Derived, Diagnostics> {
     let spec = spec::parse_in(source, file, folder)?;
     let failed = |mut errors: Vec<Diagnostic>| {
