@@ -93,8 +93,8 @@ impl Recursive {
         self.over_elements(q, speeds, |element, view| element.power(view))
     }
 
-    /// A sum over all elements.
-    fn over_elements(
+    /// A sum over all elements, at the placements and twists of the nodes.
+    pub(super) fn over_elements(
         &self,
         q: &[f64],
         speeds: &[f64],

@@ -6,8 +6,6 @@
 //! directions are named, it acts on these. With the displacement `D = N (∂φ N)⁻¹` then `λ = Dᵀ (Σ J_iᵀ F_i − Σ (∂y)ᵀ f)`.
 
 use super::Recursive;
-use super::elements::Seen;
-use crate::elements::View;
 use crate::mechanism::StateError;
 use alloc::vec::Vec;
 
@@ -54,21 +52,16 @@ impl Recursive {
     /// The power of what acts at the ports of a joint along what one of its relations forbids.
     fn port_power(&self, body: usize, relation: usize, q: &[f64], speeds: &[f64]) -> f64 {
         let joints = self.mechanism.carried(body);
-        let view = View {
-            mechanism: &self.mechanism,
-            configuration: q,
-            speeds,
-            motions: &Seen(&self.nodes),
-            moment: self.moment,
-        };
-        let elements = self.mechanism.elements().iter();
-        let at_ports = elements.filter_map(|element| element.port_effort(&view));
-        let own = at_ports.filter(|(index, ..)| joints.contains(index));
-        let powers = own.map(|(index, port, effort)| {
-            let link = &self.links[index];
-            let own = &q[link.configuration.clone()];
-            effort * link.joint.relation_port(own, relation, port)
-        });
-        powers.sum()
+        self.over_elements(q, speeds, |element, view| {
+            let effort = element.port_effort(view);
+            effort.filter(|(index, ..)| joints.contains(index)).map_or(
+                0.0,
+                |(index, port, effort)| {
+                    let link = &self.links[index];
+                    let own = &q[link.configuration.clone()];
+                    effort * link.joint.relation_port(own, relation, port)
+                },
+            )
+        })
     }
 }
