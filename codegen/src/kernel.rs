@@ -2,7 +2,7 @@
 
 use crate::expr::{Expr, Role, Symbol};
 use crate::matrix::Matrix;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The kernels of a joint, in the order in which they are emitted: one method each of the runtime's `Joint` trait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -201,19 +201,31 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// The results with the values of the lines before them in their places, as far as these have formulas.
-    pub fn expanded(&self) -> Vec<Matrix> {
-        self.expanded_but(&[])
+    /// The arguments that the results are made of, by way of the lines before them.
+    pub fn arguments(&self) -> BTreeSet<Symbol> {
+        let of = |matrix: &Matrix| -> BTreeSet<Symbol> {
+            matrix.entries().iter().flat_map(Expr::symbols).collect()
+        };
+        let mut needed: BTreeSet<Symbol> = self.outputs.iter().flat_map(of).collect();
+        for step in self.steps.iter().rev() {
+            let mut is_needed = false;
+            for symbol in step.bound() {
+                is_needed |= needed.remove(symbol);
+            }
+            match step {
+                _ if !is_needed => {}
+                Step::Let(_, value) => needed.extend(value.symbols()),
+                Step::Call { argument, .. } => needed.extend(of(argument)),
+            }
+        }
+        needed
     }
 
-    /// The same with these names left as they are.
-    pub fn expanded_but(&self, kept: &[Word]) -> Vec<Matrix> {
-        let is_kept = |symbol: &Symbol| kept.iter().any(|word| word.symbol == *symbol);
+    /// The results with the values of the lines before them in their places, as far as these have formulas.
+    pub fn expanded(&self) -> Vec<Matrix> {
         let mut values: BTreeMap<Symbol, Expr> = BTreeMap::new();
         for step in &self.steps {
-            if let Step::Let(symbol, value) = step
-                && !is_kept(symbol)
-            {
+            if let Step::Let(symbol, value) = step {
                 let value = value.substitute(&values);
                 values.insert(symbol.clone(), value);
             }

@@ -267,6 +267,9 @@ fn mass(random: &mut ChaCha8Rng) -> MassProperties {
 /// Least distance from a singular set, in the value of its function: nearer, derivatives of high order grow beyond what differences resolve.
 const CLEARANCE: f64 = 0.3;
 
+/// The same as part of the value at home, where that is less: of a function in lengths, its scale is theirs.
+const PART_OF_HOME: f64 = 0.5;
+
 /// Most configurations that are drawn for one joint.
 const MOST_DRAWS: usize = 1000;
 
@@ -285,7 +288,8 @@ pub fn configuration(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Vec<f64>
     };
     let own = |(index, size): (usize, usize)| {
         let joint = mechanism.bodies()[index].joint();
-        let is_clear = |q: &Vec<f64>| joint.singularity(q) >= CLEARANCE;
+        let clearance = CLEARANCE.min(PART_OF_HOME * at_home(joint));
+        let is_clear = |q: &Vec<f64>| joint.singularity(q) >= clearance;
         let mut draws = std::iter::repeat_with(|| draw(index, size))
             .take(MOST_DRAWS)
             .flatten();
@@ -296,4 +300,11 @@ pub fn configuration(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Vec<f64>
     let joints = mechanism.joints();
     let sizes = joints.map(|(index, body)| (index, body.ranges().freedoms.len()));
     sizes.flat_map(own).collect()
+}
+
+/// [`AnyJoint::singularity`] at home.
+fn at_home(joint: &dyn AnyJoint) -> f64 {
+    let mut home = vec![0.0; joint.layout().configuration];
+    joint.home(&mut home);
+    joint.singularity(&home)
 }

@@ -23,7 +23,7 @@ pub use self::squares::squares;
 
 use self::sign::Signs;
 use crate::expr::{Atom, Expr, Function, Monomial, Rational, Role, Symbol, budget};
-use crate::manifold::Ideal;
+use crate::manifold::{Ideal, cleared_by_squares};
 use crate::matrix::combinations;
 use crate::model::ConfigurationSpace;
 use num_traits::One;
@@ -189,7 +189,18 @@ impl<'a> Domain<'a> {
             || [expression, &normal]
                 .iter()
                 .any(|e| e.polynomial_root().is_some_and(|root| has_sign(&root)))
+            || self.is_positive_in_one_scalar(expression)
             || self.signs.is_positive_on_cells(&normal)
+    }
+
+    /// Whether the expression, without its quotients, is a positive polynomial in one scalar between −1 and 1.
+    fn is_positive_in_one_scalar(&self, expression: &Expr) -> bool {
+        let numerator = || self.ideal.normal_form(&cleared_by_squares(expression));
+        let sign = |e: &Expr| self.signs.of(e);
+        let found = budget::scope(CERTIFICATE_LIMIT, || {
+            univariate::sign_of(&numerator(), self.signs.bounded(), sign)
+        });
+        found.ok().flatten() == Some(true)
     }
 
     /// Constants of which no number of bits decided the sign.

@@ -60,47 +60,77 @@ fn in_one_scalar(expression: &Expr, scalars: &BTreeSet<Symbol>) -> Option<(Vec<E
     Some((coefficients, found?))
 }
 
+/// Whether the expression, in normal form, is a polynomial in one of the `scalars`, which lie between −1 and 1, that is positive there, or negative;
+/// `sign` as for [`is_never_zero`].
+pub fn sign_of(
+    expression: &Expr,
+    scalars: &BTreeSet<Symbol>,
+    sign: impl Fn(&Expr) -> Option<bool>,
+) -> Option<bool> {
+    let (coefficients, scalar) = in_one_scalar(expression, scalars)?;
+    sign_between(&coefficients, &scalar, sign)
+}
+
 fn has_no_zero(
     coefficients: &[Expr],
     scalar: &Symbol,
     sign: impl Fn(&Expr) -> Option<bool>,
 ) -> bool {
+    sign_between(coefficients, scalar, sign).is_some()
+}
+
+/// Whether the polynomial is positive, or negative, for all values of the scalar between −1 and 1; `None` where it may have a zero there.
+fn sign_between(
+    coefficients: &[Expr],
+    scalar: &Symbol,
+    sign: impl Fn(&Expr) -> Option<bool>,
+) -> Option<bool> {
     let numbers: Option<Vec<Rational>> = coefficients.iter().map(Expr::as_rational).collect();
     if let Some(mut numbers) = numbers {
         while numbers.last().is_some_and(num_traits::Zero::is_zero) {
             numbers.pop();
         }
-        return roots::has_none_in_unit_interval(&numbers);
+        let at_zero = numbers.first()?.is_positive();
+        return roots::has_none_in_unit_interval(&numbers).then_some(at_zero);
+    }
+    if let Some((multiple, factors)) = linear_factors(coefficients) {
+        let of_factor = |[b, a]: &[Expr; 2]| {
+            // Least at one end and largest at the other.
+            let (least, largest) = match sign(a)? {
+                true => (b - a, b + a),
+                false => (b + a, b - a),
+            };
+            match (sign(&least), sign(&largest)) {
+                (Some(true), _) => Some(true),
+                (_, Some(false)) => Some(false),
+                _ => None,
+            }
+        };
+        let mut signs = factors.iter().map(of_factor);
+        return signs.try_fold(sign(&multiple)?, |product, own| Some(product == own?));
     }
     let x = Expr::symbol(scalar);
-    if let Some(factors) = linear_factors(coefficients) {
-        let never_zero = |[b, a]: &[Expr; 2]| {
-            // Least at one end and largest at the other.
-            let (least, largest) = match sign(a) {
-                Some(true) => (b - a, b + a),
-                Some(false) => (b + a, b - a),
-                None => return false,
-            };
-            sign(&least) == Some(true) || sign(&largest) == Some(false)
-        };
-        return factors.iter().all(never_zero);
-    }
     let terms = coefficients.iter().enumerate();
     let whole: Expr = terms.map(|(n, c)| c * &x.pow(n as u32)).sum();
-    let root = whole.polynomial_root();
-    sign(root.as_ref().unwrap_or(&whole)).is_some()
+    match whole.polynomial_root() {
+        Some(root) => sign(&root).map(|_| true),
+        None => sign(&whole),
+    }
 }
 
-/// The factors `B + A x`, each as (B, A), of a multiple of the polynomial: itself, or those of `4 A (A x² + B x + C)`, which are
-/// `2 A x + B ± √(B² − 4 A C)`, where the root is a polynomial.
-fn linear_factors(coefficients: &[Expr]) -> Option<Vec<[Expr; 2]>> {
+/// The factors `B + A x`, each as (B, A), of a multiple of the polynomial, beside what it is multiplied by: itself, or those of `4 A (A x² + B x + C)`, which
+/// are `2 A x + B ± √(B² − 4 A C)`, where the root is a polynomial.
+fn linear_factors(coefficients: &[Expr]) -> Option<(Expr, Vec<[Expr; 2]>)> {
     match coefficients {
-        [b, a] => Some(vec![[b.clone(), a.clone()]]),
+        [b, a] => Some((Expr::one(), vec![[b.clone(), a.clone()]])),
         [c, b, a] => {
             let discriminant = &b.square() - &(&(a * c) * &Expr::integer(4));
             let root = discriminant.polynomial_root()?;
             let slope = a * &Expr::integer(2);
-            Some(vec![[b + &root, slope.clone()], [b - &root, slope]])
+            Some((
+                a.clone(),
+                vec![[b + &root, slope.clone()], [b - &root, slope]],
+            ))
         }
         _ => None,
     }

@@ -1,6 +1,7 @@
 //! Equality on a manifold: normal forms modulo its relations and those of the functions that occur.
 
 use super::dependence;
+use super::quotients::{cleared, quotient_in};
 use super::reduction::Reduction;
 use super::{angles, canonical};
 use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, Role, Symbol, budget};
@@ -420,35 +421,6 @@ fn relations_of(functions: &BTreeSet<Atom>, wanted: impl Fn(Function) -> bool) -
         }
     }
     relations
-}
-
-/// A quotient in the expression itself, with its denominator.
-fn quotient_in(expression: &Expr) -> Option<(Atom, Expr)> {
-    expression.atoms().into_iter().find_map(|atom| match &atom {
-        Atom::Apply(application) if application.function == Function::Recip => {
-            let denominator = application.arguments.first()?.clone();
-            Some((atom, denominator))
-        }
-        _ => None,
-    })
-}
-
-/// The expression times the highest power of the denominator in it.
-fn cleared(expression: &Expr, quotient: &Atom, denominator: &Expr) -> Expr {
-    let power_in = |monomial: &Monomial| monomial.power(quotient).max(0);
-    let highest = expression
-        .terms()
-        .map(|(monomial, _)| power_in(monomial))
-        .max()
-        .unwrap_or(0);
-    let term = |(monomial, coefficient): (&Monomial, &Rational)| {
-        let power = power_in(monomial);
-        let single = Monomial::atom(quotient.clone());
-        let rest = (0..power).try_fold(monomial.clone(), |rest, _| rest.divided_by(&single));
-        let rest = Expr::term(coefficient.clone(), rest.unwrap_or_default());
-        &rest * &denominator.pow((highest - power).unsigned_abs())
-    };
-    expression.terms().map(term).sum()
 }
 
 /// The angles and exponents of sines, cosines, exponentials and hyperbolic functions.

@@ -6,6 +6,7 @@ mod dependence;
 mod factor;
 mod groebner;
 mod ideal;
+mod quotients;
 mod reduction;
 #[cfg(test)]
 mod tests;
@@ -13,6 +14,7 @@ mod tests;
 pub use factor::{Factor, Kind, LARGEST_CONSTRAINED_REAL, LARGEST_REAL};
 pub use ideal::Ideal;
 pub(crate) use ideal::weight;
+pub use quotients::cleared_by_squares;
 
 use crate::expr::{Expr, Role, Symbol};
 use std::collections::BTreeSet;

@@ -242,9 +242,13 @@ impl Prover<'_> {
         let in_child = child.is_constant()
             || (several && shown(child))
             || (!several && !shown(&self.x.twist_map) && shown(child));
-        let (m, shown_for) = match in_child {
-            true => (child, " (shown for X^c = Ad_{H⁻¹} X)"),
-            false => (&self.x.twist_map, ""),
+        let at_origin = || (!several && !shown(&self.x.twist_map)).then(|| self.origin_map());
+        let at_origin = if in_child { None } else { at_origin() };
+        let at_origin = at_origin.filter(|m| shown(m));
+        let (m, shown_for) = match (&at_origin, in_child) {
+            (Some(at_origin), _) => (at_origin, " (shown for the velocity of the child's origin)"),
+            (None, true) => (child, " (shown for X^c = Ad_{H⁻¹} X)"),
+            (None, false) => (&self.x.twist_map, ""),
         };
         let (statement, what) = match still.is_empty() {
             true => (format!("rank X = k{shown_for}"), "X"),
@@ -261,6 +265,21 @@ impl Prover<'_> {
             self.twist_map_span(),
             what,
         )
+    }
+
+    /// v to the angular velocity of the child and the velocity of its origin, in parent axes: `[ω; v + ω × p]` of X = [ω; v], of the same rank.
+    fn origin_map(&self) -> Matrix {
+        let p = &self.joint.spec.pose.value.translation;
+        let ideal = self.domain.ideal();
+        Matrix::from_fn(6, self.x.twist_map.columns(), |i, j| {
+            let entry = |i: usize| self.x.twist_map.at(i, j);
+            if i < 3 {
+                return entry(i).clone();
+            }
+            let (next, last) = ((i + 1) % 3, (i + 2) % 3);
+            let turned = &(entry(next) * p.at(last, 0)) - &(entry(last) * p.at(next, 0));
+            ideal.normal_form(&(entry(i) + &turned))
+        })
     }
 
     /// The domain with what is known of the names in B.

@@ -6,6 +6,7 @@ pub mod ball_child;
 pub mod ball_on_plane;
 pub mod ball_quaternion;
 pub mod ball_quaternion_child;
+pub mod cam_follower;
 pub mod car;
 pub mod cart;
 pub mod cylindrical;
@@ -14,16 +15,19 @@ pub mod differential_drive;
 pub mod ellipse;
 pub mod ellipsoid;
 pub mod falling_disk;
+pub mod five_bar;
 pub mod four_bar;
 pub mod free;
 pub mod geared_revolute;
 pub mod gimbal;
 pub mod knife_edge;
 pub mod offset_sleigh;
+pub mod parallel_ankle;
 pub mod planar;
 pub mod planar_euclidean;
 pub mod pointing;
 pub mod prismatic;
+pub mod rail;
 pub mod revolute;
 pub mod revolute_circle;
 pub mod scissor;
@@ -33,12 +37,14 @@ pub mod torus;
 pub mod translation;
 pub mod universal;
 pub mod upright_wheel;
+pub mod wishbone;
 
 pub use self::ball::Ball;
 pub use self::ball_child::BallChild;
 pub use self::ball_on_plane::BallOnPlane;
 pub use self::ball_quaternion::BallQuaternion;
 pub use self::ball_quaternion_child::BallQuaternionChild;
+pub use self::cam_follower::CamFollower;
 pub use self::car::Car;
 pub use self::cart::Cart;
 pub use self::cylindrical::Cylindrical;
@@ -47,16 +53,19 @@ pub use self::differential_drive::DifferentialDrive;
 pub use self::ellipse::Ellipse;
 pub use self::ellipsoid::Ellipsoid;
 pub use self::falling_disk::FallingDisk;
+pub use self::five_bar::FiveBar;
 pub use self::four_bar::FourBar;
 pub use self::free::Free;
 pub use self::geared_revolute::GearedRevolute;
 pub use self::gimbal::Gimbal;
 pub use self::knife_edge::KnifeEdge;
 pub use self::offset_sleigh::OffsetSleigh;
+pub use self::parallel_ankle::ParallelAnkle;
 pub use self::planar::Planar;
 pub use self::planar_euclidean::PlanarEuclidean;
 pub use self::pointing::Pointing;
 pub use self::prismatic::Prismatic;
+pub use self::rail::Rail;
 pub use self::revolute::Revolute;
 pub use self::revolute_circle::RevoluteCircle;
 pub use self::scissor::Scissor;
@@ -66,6 +75,7 @@ pub use self::torus::Torus;
 pub use self::translation::Translation;
 pub use self::universal::Universal;
 pub use self::upright_wheel::UprightWheel;
+pub use self::wishbone::Wishbone;
 
 /// Registry entries of all joints, in alphabetic order.
 pub const ENTRIES: &[::hamel_runtime::registry::JointEntry] = &[
@@ -74,6 +84,7 @@ pub const ENTRIES: &[::hamel_runtime::registry::JointEntry] = &[
     self::ball_on_plane::ENTRY,
     self::ball_quaternion::ENTRY,
     self::ball_quaternion_child::ENTRY,
+    self::cam_follower::ENTRY,
     self::car::ENTRY,
     self::cart::ENTRY,
     self::cylindrical::ENTRY,
@@ -82,16 +93,19 @@ pub const ENTRIES: &[::hamel_runtime::registry::JointEntry] = &[
     self::ellipse::ENTRY,
     self::ellipsoid::ENTRY,
     self::falling_disk::ENTRY,
+    self::five_bar::ENTRY,
     self::four_bar::ENTRY,
     self::free::ENTRY,
     self::geared_revolute::ENTRY,
     self::gimbal::ENTRY,
     self::knife_edge::ENTRY,
     self::offset_sleigh::ENTRY,
+    self::parallel_ankle::ENTRY,
     self::planar::ENTRY,
     self::planar_euclidean::ENTRY,
     self::pointing::ENTRY,
     self::prismatic::ENTRY,
+    self::rail::ENTRY,
     self::revolute::ENTRY,
     self::revolute_circle::ENTRY,
     self::scissor::ENTRY,
@@ -101,6 +115,7 @@ pub const ENTRIES: &[::hamel_runtime::registry::JointEntry] = &[
     self::translation::ENTRY,
     self::universal::ENTRY,
     self::upright_wheel::ENTRY,
+    self::wishbone::ENTRY,
 ];
 
 /// Name and text of every spec, in alphabetic order.
@@ -110,6 +125,7 @@ pub const SPECS: &[(&::core::primitive::str, &::core::primitive::str)] = &[
     ("ball_on_plane", self::ball_on_plane::SPEC),
     ("ball_quaternion", self::ball_quaternion::SPEC),
     ("ball_quaternion_child", self::ball_quaternion_child::SPEC),
+    ("cam_follower", self::cam_follower::SPEC),
     ("car", self::car::SPEC),
     ("cart", self::cart::SPEC),
     ("cylindrical", self::cylindrical::SPEC),
@@ -118,16 +134,19 @@ pub const SPECS: &[(&::core::primitive::str, &::core::primitive::str)] = &[
     ("ellipse", self::ellipse::SPEC),
     ("ellipsoid", self::ellipsoid::SPEC),
     ("falling_disk", self::falling_disk::SPEC),
+    ("five_bar", self::five_bar::SPEC),
     ("four_bar", self::four_bar::SPEC),
     ("free", self::free::SPEC),
     ("geared_revolute", self::geared_revolute::SPEC),
     ("gimbal", self::gimbal::SPEC),
     ("knife_edge", self::knife_edge::SPEC),
     ("offset_sleigh", self::offset_sleigh::SPEC),
+    ("parallel_ankle", self::parallel_ankle::SPEC),
     ("planar", self::planar::SPEC),
     ("planar_euclidean", self::planar_euclidean::SPEC),
     ("pointing", self::pointing::SPEC),
     ("prismatic", self::prismatic::SPEC),
+    ("rail", self::rail::SPEC),
     ("revolute", self::revolute::SPEC),
     ("revolute_circle", self::revolute_circle::SPEC),
     ("scissor", self::scissor::SPEC),
@@ -137,6 +156,7 @@ pub const SPECS: &[(&::core::primitive::str, &::core::primitive::str)] = &[
     ("translation", self::translation::SPEC),
     ("universal", self::universal::SPEC),
     ("upright_wheel", self::upright_wheel::SPEC),
+    ("wishbone", self::wishbone::SPEC),
 ];
 
 /// Calls the macro `$callback` once for each joint with
@@ -149,35 +169,40 @@ macro_rules! for_each_joint {
         $callback!(ball_on_plane, $crate::joints::BallOnPlane, $crate::joints::BallOnPlane::new(0.7f64), 11, 5, 3, 2);
         $callback!(ball_quaternion, $crate::joints::BallQuaternion, $crate::joints::BallQuaternion, 4, 3, 3, 0);
         $callback!(ball_quaternion_child, $crate::joints::BallQuaternionChild, $crate::joints::BallQuaternionChild, 4, 3, 3, 0);
+        $callback!(cam_follower, $crate::joints::CamFollower, $crate::joints::CamFollower::new(0.7f64), 1, 1, 1, 0);
         $callback!(car, $crate::joints::Car, $crate::joints::Car::new(0.7f64, 0.85f64, 1f64), 11, 8, 2, 6);
         $callback!(cart, $crate::joints::Cart, $crate::joints::Cart, 6, 3, 2, 1);
-        $callback!(cylindrical, $crate::joints::Cylindrical, $crate::joints::Cylindrical, 2, 2, 2, 0); $callback
-        ! (differential, $crate::joints::Differential,
-        $crate::joints::Differential::new(0.7f64), 2, 2, 2, 0); 
+        $callback!(cylindrical, $crate::joints::Cylindrical, $crate::joints::Cylindrical, 2, 2, 2, 0);
+        $callback!(differential, $crate::joints::Differential, $crate::joints::Differential::new(0.7f64), 2, 2, 2, 0);
         $callback!(differential_drive, $crate::joints::DifferentialDrive, $crate::joints::DifferentialDrive::new(0.7f64, 0.85f64), 8, 5, 2, 3);
         $callback!(ellipse, $crate::joints::Ellipse, $crate::joints::Ellipse::new(0.7f64, 0.85f64), 2, 1, 1, 0);
         $callback!(ellipsoid, $crate::joints::Ellipsoid, $crate::joints::Ellipsoid::new(0.7f64, 0.85f64, 1f64), 9, 3, 3, 0);
         $callback!(falling_disk, $crate::joints::FallingDisk, $crate::joints::FallingDisk::new(0.7f64), 11, 5, 3, 2);
+        $callback!(five_bar, $crate::joints::FiveBar, $crate::joints::FiveBar::new(0.7f64, 0.85f64, 1f64, 1.15f64, 1.3f64), 8, 2, 2, 0);
         $callback!(four_bar, $crate::joints::FourBar, $crate::joints::FourBar::new(0.2f64, 0.85f64, 1f64, 1.15f64), 6, 1, 1, 0);
         $callback!(free, $crate::joints::Free, $crate::joints::Free, 12, 6, 6, 0);
         $callback!(geared_revolute, $crate::joints::GearedRevolute, $crate::joints::GearedRevolute::new(0.7f64), 1, 1, 1, 0);
         $callback!(gimbal, $crate::joints::Gimbal, $crate::joints::Gimbal, 3, 3, 3, 0);
         $callback!(knife_edge, $crate::joints::KnifeEdge, $crate::joints::KnifeEdge, 3, 3, 2, 1);
         $callback!(offset_sleigh, $crate::joints::OffsetSleigh, $crate::joints::OffsetSleigh::new(0.7f64), 6, 3, 2, 1);
+        $callback!(parallel_ankle, $crate::joints::ParallelAnkle, $crate::joints::ParallelAnkle::new(0.7f64, 0.85f64, 1f64, 1.15f64, 1.3f64), 8, 2, 2, 0);
         $callback!(planar, $crate::joints::Planar, $crate::joints::Planar, 6, 3, 3, 0);
         $callback!(planar_euclidean, $crate::joints::PlanarEuclidean, $crate::joints::PlanarEuclidean, 3, 3, 3, 0);
         $callback!(pointing, $crate::joints::Pointing, $crate::joints::Pointing, 9, 3, 2, 1);
         $callback!(prismatic, $crate::joints::Prismatic, $crate::joints::Prismatic, 1, 1, 1, 0);
+        $callback!(rail, $crate::joints::Rail, $crate::joints::Rail::new(0.7f64, 0.85f64, 1f64), 1, 1, 1, 0);
         $callback!(revolute, $crate::joints::Revolute, $crate::joints::Revolute, 1, 1, 1, 0);
         $callback!(revolute_circle, $crate::joints::RevoluteCircle, $crate::joints::RevoluteCircle, 2, 1, 1, 0);
         $callback!(scissor, $crate::joints::Scissor, $crate::joints::Scissor::new(0.7f64), 1, 1, 1, 0);
-        $callback!(screw, $crate::joints::Screw, $crate::joints::Screw::new(0.7f64), 1, 1, 1, 0);
-        $callback!(slider_crank, $crate::joints::SliderCrank, $crate::joints::SliderCrank::new(0.3f64, 1.9f64, 0.7f64), 5, 1, 1, 0); $callback
+        $callback!(screw, $crate::joints::Screw, $crate::joints::Screw::new(0.7f64), 1, 1, 1, 0); $callback
+        ! (slider_crank, $crate::joints::SliderCrank,
+        $crate::joints::SliderCrank::new(0.3f64, 1.9f64, 0.7f64), 5, 1, 1, 0); $callback
         ! (torus, $crate::joints::Torus, $crate::joints::Torus::new(0.85f64, 0.7f64), 4,
         2, 2, 0); 
         $callback!(translation, $crate::joints::Translation, $crate::joints::Translation, 3, 3, 3, 0);
         $callback!(universal, $crate::joints::Universal, $crate::joints::Universal, 2, 2, 2, 0);
         $callback!(upright_wheel, $crate::joints::UprightWheel, $crate::joints::UprightWheel::new(0.7f64), 7, 4, 2, 2);
+        $callback!(wishbone, $crate::joints::Wishbone, $crate::joints::Wishbone::new(0.7f64, 0.85f64, 1f64, 1.15f64, 1.3f64, 1.45f64), 13, 1, 1, 0);
     };
 }
 
@@ -186,6 +211,7 @@ macro_rules! for_each_joint {
 #[macro_export]
 macro_rules! for_each_body {
     ($callback:path) => {
+        $callback!(cam_follower_follower, $crate::joints::CamFollower, $crate::joints::CamFollower::new(0.7f64), 1, 1, 1, 1, 0);
         $callback!(car_front_left, $crate::joints::Car, $crate::joints::Car::new(0.7f64, 0.85f64, 1f64), 1, 11, 8, 2, 6);
         $callback!(car_front_right, $crate::joints::Car, $crate::joints::Car::new(0.7f64, 0.85f64, 1f64), 2, 11, 8, 2, 6);
         $callback!(car_rear_left, $crate::joints::Car, $crate::joints::Car::new(0.7f64, 0.85f64, 1f64), 3, 11, 8, 2, 6);
@@ -195,12 +221,19 @@ macro_rules! for_each_body {
         $callback!(differential_pinion, $crate::joints::Differential, $crate::joints::Differential::new(0.7f64), 3, 2, 2, 2, 0);
         $callback!(differential_drive_left, $crate::joints::DifferentialDrive, $crate::joints::DifferentialDrive::new(0.7f64, 0.85f64), 1, 8, 5, 2, 3);
         $callback!(differential_drive_right, $crate::joints::DifferentialDrive, $crate::joints::DifferentialDrive::new(0.7f64, 0.85f64), 2, 8, 5, 2, 3);
+        $callback!(five_bar_left_rod, $crate::joints::FiveBar, $crate::joints::FiveBar::new(0.7f64, 0.85f64, 1f64, 1.15f64, 1.3f64), 1, 8, 2, 2, 0);
+        $callback!(five_bar_right_crank, $crate::joints::FiveBar, $crate::joints::FiveBar::new(0.7f64, 0.85f64, 1f64, 1.15f64, 1.3f64), 2, 8, 2, 2, 0);
+        $callback!(five_bar_right_rod, $crate::joints::FiveBar, $crate::joints::FiveBar::new(0.7f64, 0.85f64, 1f64, 1.15f64, 1.3f64), 3, 8, 2, 2, 0);
         $callback!(four_bar_coupler, $crate::joints::FourBar, $crate::joints::FourBar::new(0.2f64, 0.85f64, 1f64, 1.15f64), 1, 6, 1, 1, 0);
         $callback!(four_bar_rocker, $crate::joints::FourBar, $crate::joints::FourBar::new(0.2f64, 0.85f64, 1f64, 1.15f64), 2, 6, 1, 1, 0);
         $callback!(geared_revolute_rotor, $crate::joints::GearedRevolute, $crate::joints::GearedRevolute::new(0.7f64), 1, 1, 1, 1, 0);
+        $callback!(parallel_ankle_right, $crate::joints::ParallelAnkle, $crate::joints::ParallelAnkle::new(0.7f64, 0.85f64, 1f64, 1.15f64, 1.3f64), 1, 8, 2, 2, 0);
+        $callback!(parallel_ankle_foot, $crate::joints::ParallelAnkle, $crate::joints::ParallelAnkle::new(0.7f64, 0.85f64, 1f64, 1.15f64, 1.3f64), 2, 8, 2, 2, 0);
         $callback!(scissor_second, $crate::joints::Scissor, $crate::joints::Scissor::new(0.7f64), 1, 1, 1, 1, 0);
         $callback!(scissor_platform, $crate::joints::Scissor, $crate::joints::Scissor::new(0.7f64), 2, 1, 1, 1, 0);
         $callback!(slider_crank_rod, $crate::joints::SliderCrank, $crate::joints::SliderCrank::new(0.3f64, 1.9f64, 0.7f64), 1, 5, 1, 1, 0);
         $callback!(slider_crank_slider, $crate::joints::SliderCrank, $crate::joints::SliderCrank::new(0.3f64, 1.9f64, 0.7f64), 2, 5, 1, 1, 0);
+        $callback!(wishbone_upper, $crate::joints::Wishbone, $crate::joints::Wishbone::new(0.7f64, 0.85f64, 1f64, 1.15f64, 1.3f64, 1.45f64), 1, 13, 1, 1, 0);
+        $callback!(wishbone_upright, $crate::joints::Wishbone, $crate::joints::Wishbone::new(0.7f64, 0.85f64, 1f64, 1.15f64, 1.3f64, 1.45f64), 2, 13, 1, 1, 0);
     };
 }

@@ -5,17 +5,16 @@ use hamel::erased::AnyJoint;
 use hamel::integrate::{Form, Method, Options, State, integrate, no_inputs, no_observer};
 use hamel::joint::{Joint, Member};
 use hamel::mechanism::{BodySpec, Mechanism};
-use hamel::registry::JointRegistry;
 use hamel::spatial::{MassProperties, Pose};
 use hamel_codegen::expr::curve::Curve;
 use hamel_codegen::precise::Precise;
 use hamel_compiler::JointType;
-use hamel_downstream::WITH_KNOTS;
-use hamel_downstream::joints::{CamFollower, MeasuredRocker, Valley, cam_circle};
+use hamel_downstream::joints::{MeasuredRocker, Valley, cam_circle};
+use hamel_joints::CamFollower;
 use hamel_tests::c99;
 use hamel_tests::compiled::{self, Point};
 use nalgebra::{Matrix3, SVector, Vector3};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -26,10 +25,27 @@ const CAM_INERTIA: f64 = 2e-4;
 const FOLLOWER_MASS: f64 = 0.15;
 const GRAVITY: f64 = 9.81;
 
+/// Joints with curves, of this crate and of the library, with parameters that they allow.
+const WITH_CURVES: [(&str, &[f64]); 5] = [
+    ("cam_circle", &[0.7]),
+    ("cam_follower", &[0.7]),
+    ("measured_rocker", &[]),
+    ("rail", &[0.7, 0.2, 0.1]),
+    ("valley", &[]),
+];
+
+/// The folder in which the spec of a joint stands: this crate's, or the library's.
+fn folder(joint: &str) -> PathBuf {
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("joints");
+    match own.join(format!("{joint}.joint")).exists() {
+        true => own,
+        false => hamel_tests::spec_folder(),
+    }
+}
+
 /// The only curve of a joint, as its spec declares it.
 fn declared(joint: &str) -> Curve {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("joints");
-    let curves = hamel_tests::derived_in(&folder, joint).spec.curves();
+    let curves = hamel_tests::derived_in(&folder(joint), joint).spec.curves();
     let [curve] = curves.as_slice() else {
         panic!("`{joint}` has one curve");
     };
@@ -104,7 +120,7 @@ fn knots_of_a_file_are_in_the_emitted_spec() {
 }
 
 fn built(joint: &str, parameters: &[f64]) -> Arc<dyn AnyJoint> {
-    let mut registry = JointRegistry::new();
+    let mut registry = hamel_joints::registry();
     registry
         .extend(hamel_downstream::joints::ENTRIES.iter().copied())
         .expect("distinct names");
@@ -169,12 +185,8 @@ fn the_cam_feels_its_follower() {
 #[test]
 fn compiled_scenes_have_curves() {
     let mut scenes = vec![];
-    for (seed, kind) in (0..).zip(WITH_KNOTS) {
-        let entry = hamel_downstream::joints::ENTRIES
-            .iter()
-            .find(|entry| entry.name == kind);
-        let count = entry.expect("registered").parameters.len();
-        let joint = built(kind, &[0.7, 0.2][..count]);
+    for (seed, (kind, parameters)) in (0..).zip(WITH_CURVES) {
+        let joint = built(kind, parameters);
         let mechanism = carried(&joint, &[(0.3, 0.02), (0.2, 0.03)]);
         let model = compiled::model_on(kind, &mechanism, joint_type);
         let point = || Point::random(model.clone(), &mechanism, seed);
@@ -187,13 +199,7 @@ fn compiled_scenes_have_curves() {
 }
 
 fn joint_type(name: &str) -> Option<Rc<JointType>> {
-    let specs = hamel_downstream::joints::SPECS.iter();
-    let (_, text) = specs.copied().find(|(known, _)| *known == name)?;
-    let derived = hamel_codegen::derive(text, &format!("{name}.joint"));
-    let derived = derived.unwrap_or_else(|errors| panic!("{errors}"));
-    Some(Rc::new(
-        JointType::new(derived).expect("its products take little work"),
-    ))
+    Some(compiled::joint_in(&folder(name), name))
 }
 
 fn moved(

@@ -47,6 +47,7 @@ law_tests! {
     constant_velocity: ConstantVelocity, Entries(0.5);
     cycloid: Cycloid::new(0.7), Entries(0.5);
     dual_crank: DualCrank::new(0.7, 0.85), HalfTurn;
+    grashof_coupler: GrashofCoupler::new(0.9, 0.4, 1.1, 1.2), HalfTurn;
     helicoid: Helicoid::new(0.7), HalfTurn;
     hyperbolic_cam: HyperbolicCam::new(0.7, 0.85), HalfTurn;
     mixed4: Mixed4::new(0.7, 0.85, 1.0, 1.15), HalfTurn;

@@ -21,6 +21,8 @@ const USUAL: f64 = 2.0;
 const NEAREST_TO_PI: f64 = 1e-12;
 /// Local coordinates without a group have no radius that is known here; their Φ holds near 0.
 const LARGEST_LOCAL: f64 = 0.5;
+/// Decimal exponent of the smallest arguments of curves: the splines that kernels are compared with have 256 bits behind the point.
+const SMALLEST_OF_CURVES: f64 = -20.0;
 /// How near a locus extreme points come.
 const SMALLEST_LOCUS: f64 = 1e-3;
 
@@ -60,16 +62,26 @@ pub struct Points<'a> {
     range: Range,
     /// Real coordinates that enter H through a function.
     angles: BTreeSet<Symbol>,
+    /// Functions of Q that are not 0, at home, where relations alone give Φ.
+    at_home: Vec<f64>,
 }
 
 impl<'a> Points<'a> {
     /// Cases in numbers of that range; `seed` tells batches apart.
     pub fn new(definition: &'a Definition, range: Range, seed: u64) -> Self {
+        let range = match definition.spec().curves().is_empty() {
+            true => range,
+            false => Range {
+                smallest: range.smallest.max(SMALLEST_OF_CURVES),
+                ..range
+            },
+        };
         Self {
             sampler: Sampler::new(definition.space(), BITS),
             random: ChaCha8Rng::seed_from_u64(seed),
             range,
             angles: definition.declared().arguments(),
+            at_home: loci(definition, &home(definition)),
             definition,
         }
     }
@@ -88,13 +100,19 @@ impl<'a> Points<'a> {
             }
         };
         let freedoms = self.definition.freedoms();
+        let reach = self.reach(&q);
+        let phi = self
+            .phi(extreme)
+            .iter()
+            .map(|entry| (self.range.round)(entry * reach))
+            .collect();
         Case {
             q,
             exact: exact
                 .into_iter()
                 .map(|x| Tracked::computed(x, 0.0))
                 .collect(),
-            phi: self.phi(extreme),
+            phi,
             v: self.numbers(freedoms),
             speeds: self.numbers(self.definition.speeds()),
             wrench: self.numbers(6),
@@ -123,11 +141,21 @@ impl<'a> Points<'a> {
     }
 
     fn is_allowed(&self, q: &[f64]) -> bool {
-        let values = self.definition.loci(q);
-        values
-            .entries()
-            .iter()
-            .all(|value| value.value.to_f64().abs() > SMALLEST_LOCUS)
+        let values = loci(self.definition, q);
+        values.iter().all(|value| *value > SMALLEST_LOCUS)
+    }
+
+    /// The part of ϕ that Φ is asked for. Relations alone give it as far as Newton's method finds it, from Q. Where the matrix that it divides by has a
+    /// determinant d, second derivatives along the relations are as 1/d³ for a motion of the independent directions, first ones as 1/d: that is so far as d².
+    fn reach(&self, q: &[f64]) -> f64 {
+        match self.definition.spec().implicit {
+            None => 1.0,
+            Some(_) => {
+                let parts = loci(self.definition, q).into_iter().zip(&self.at_home);
+                let parts = parts.map(|(here, home)| here / home);
+                parts.fold(1.0_f64, f64::min).powi(2)
+            }
+        }
     }
 
     /// On the manifold, in high precision.
@@ -328,4 +356,22 @@ fn rotation(q: &[f64], offset: &[Wide]) -> Vec<Wide> {
 fn bordered(rows: &[&[Wide]], offset: &[Wide]) -> Vec<Wide> {
     let row = |(i, row): (usize, &&[Wide])| [*row, offset.get(i..=i).unwrap_or_default()].concat();
     rows.iter().enumerate().flat_map(row).collect()
+}
+
+/// Absolute values of the functions of Q that are not 0.
+fn loci(definition: &Definition, q: &[f64]) -> Vec<f64> {
+    let values = definition.loci(q);
+    values
+        .entries()
+        .iter()
+        .map(|value| value.value.to_f64().abs())
+        .collect()
+}
+
+fn home(definition: &Definition) -> Vec<f64> {
+    definition
+        .home()
+        .iter()
+        .map(|entry| entry.value.to_f64())
+        .collect()
 }

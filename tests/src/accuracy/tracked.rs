@@ -135,6 +135,11 @@ impl Number for Tracked {
     fn function(&self, function: Function, arguments: &[Self]) -> Self {
         match arguments {
             [] => Self::computed(by_precise(function, &[]), 0.0),
+            // Its argument is reduced by the period, and turned into the unit of the knots, in the numbers of the kernel.
+            [x] if matches!(function, Function::Curve(..)) => {
+                let moved = slope(function, x.value).to_f64().abs() * x.scale;
+                Self::computed(value(function, x.value), moved)
+            }
             [x] if x.exact => Self::computed(value(function, x.value), 0.0),
             [x] => x.mapped(value(function, x.value), slope(function, x.value)),
             [y, x] => angle(y, x),

@@ -12,6 +12,7 @@ mod euler_lagrange;
 mod frames;
 mod instructions;
 mod linear_step;
+mod newton_euler;
 mod numbers;
 mod random_trees;
 mod reference_form;

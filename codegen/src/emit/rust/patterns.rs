@@ -46,9 +46,7 @@ pub fn tokens(derived: &Derived) -> TokenStream {
 fn bias_gradient(derived: &Derived) -> Option<String> {
     let kinds = [KernelKind::BiasAcceleration, KernelKind::BiasMomentum];
     let kernels = kinds.into_iter().filter_map(|kind| derived.kernel(kind));
-    let results: Vec<Matrix> = kernels.flat_map(Kernel::expanded).collect();
-    let entries = results.iter().flat_map(Matrix::entries);
-    let symbols: BTreeSet<Symbol> = entries.flat_map(Expr::symbols).collect();
+    let symbols: BTreeSet<Symbol> = kernels.flat_map(Kernel::arguments).collect();
     let arguments = &derived.arguments;
     let is_needed = |symbol: &&Symbol| symbols.contains(*symbol);
     arguments.configuration.iter().find(is_needed)?;
