@@ -223,9 +223,17 @@ impl Kernel {
 
     /// The results with the values of the lines before them in their places, as far as these have formulas.
     pub fn expanded(&self) -> Vec<Matrix> {
+        self.expanded_but(&[])
+    }
+
+    /// The same with these names left as they are.
+    pub fn expanded_but(&self, kept: &[Word]) -> Vec<Matrix> {
+        let is_kept = |symbol: &Symbol| kept.iter().any(|word| word.symbol == *symbol);
         let mut values: BTreeMap<Symbol, Expr> = BTreeMap::new();
         for step in &self.steps {
-            if let Step::Let(symbol, value) = step {
+            if let Step::Let(symbol, value) = step
+                && !is_kept(symbol)
+            {
                 let value = value.substitute(&values);
                 values.insert(symbol.clone(), value);
             }

@@ -1,7 +1,8 @@
 //! Random and extreme arguments of kernels: what a caller can have, rounded to the kernel's type.
 
 use super::Definition;
-use super::tracked::Tracked;
+use super::definition::numbers;
+use super::tracked::{Tracked, larger};
 use super::wide::{BITS, Wide};
 use chacha20::ChaCha8Rng;
 use hamel_codegen::expr::Symbol;
@@ -21,8 +22,14 @@ const USUAL: f64 = 2.0;
 const NEAREST_TO_PI: f64 = 1e-12;
 /// Local coordinates without a group have no radius that is known here; their Φ holds near 0.
 const LARGEST_LOCAL: f64 = 0.5;
+/// What a rounding of Q may become in Φ(Q, ϕ).
+const WORST_CONDITION: f64 = 100.0;
+/// How often ϕ is halved for that.
+const MOST_HALVES: usize = 20;
 /// Decimal exponent of the smallest arguments of curves: the splines that kernels are compared with have 256 bits behind the point.
 const SMALLEST_OF_CURVES: f64 = -20.0;
+/// The largest arguments of curves: of digits after the point, and these alone count in a period, large ones have few.
+const LARGEST_OF_CURVES: f64 = 100.0;
 /// How near a locus extreme points come.
 const SMALLEST_LOCUS: f64 = 1e-3;
 
@@ -62,26 +69,25 @@ pub struct Points<'a> {
     range: Range,
     /// Real coordinates that enter H through a function.
     angles: BTreeSet<Symbol>,
-    /// Functions of Q that are not 0, at home, where relations alone give Φ.
-    at_home: Vec<f64>,
+    /// The largest angles and offsets.
+    largest: [f64; 2],
 }
 
 impl<'a> Points<'a> {
     /// Cases in numbers of that range; `seed` tells batches apart.
     pub fn new(definition: &'a Definition, range: Range, seed: u64) -> Self {
-        let range = match definition.spec().curves().is_empty() {
-            true => range,
-            false => Range {
-                smallest: range.smallest.max(SMALLEST_OF_CURVES),
-                ..range
-            },
-        };
+        let mut range = range;
+        let mut largest = [LARGEST_ANGLE, LARGEST_OFFSET];
+        if !definition.spec().curves().is_empty() {
+            range.smallest = range.smallest.max(SMALLEST_OF_CURVES);
+            largest = [LARGEST_OF_CURVES; 2];
+        }
         Self {
+            largest,
             sampler: Sampler::new(definition.space(), BITS),
             random: ChaCha8Rng::seed_from_u64(seed),
             range,
             angles: definition.declared().arguments(),
-            at_home: loci(definition, &home(definition)),
             definition,
         }
     }
@@ -100,12 +106,8 @@ impl<'a> Points<'a> {
             }
         };
         let freedoms = self.definition.freedoms();
-        let reach = self.reach(&q);
-        let phi = self
-            .phi(extreme)
-            .iter()
-            .map(|entry| (self.range.round)(entry * reach))
-            .collect();
+        let phi = self.phi(extreme);
+        let phi = self.inside(&q, phi);
         Case {
             q,
             exact: exact
@@ -145,17 +147,24 @@ impl<'a> Points<'a> {
         values.iter().all(|value| *value > SMALLEST_LOCUS)
     }
 
-    /// The part of ϕ that Φ is asked for. Relations alone give it as far as Newton's method finds it, from Q. Where the matrix that it divides by has a
-    /// determinant d, second derivatives along the relations are as 1/d³ for a motion of the independent directions, first ones as 1/d: that is so far as d².
-    fn reach(&self, q: &[f64]) -> f64 {
-        match self.definition.spec().implicit {
-            None => 1.0,
-            Some(_) => {
-                let parts = loci(self.definition, q).into_iter().zip(&self.at_home);
-                let parts = parts.map(|(here, home)| here / home);
-                parts.fold(1.0_f64, f64::min).powi(2)
+    /// ϕ, or, where relations alone give Φ, the part of it that stays away from where the joint ends: there Newton's method follows no branch.
+    fn inside(&self, q: &[f64], mut phi: Vec<f64>) -> Vec<f64> {
+        let is_inside = |phi: &[f64]| {
+            let moved = self.definition.moved(&numbers(q), &numbers(phi));
+            let moved = moved.entries().iter();
+            moved.fold(0.0, |worst, entry| larger(worst, entry.scale)) <= WORST_CONDITION
+        };
+        let halves = match self.definition.spec().implicit {
+            None => 0,
+            Some(_) => MOST_HALVES,
+        };
+        for _ in 0..halves {
+            if is_inside(&phi) {
+                break;
             }
+            phi.iter_mut().for_each(|entry| *entry *= 0.5);
         }
+        phi
     }
 
     /// On the manifold, in high precision.
@@ -191,9 +200,10 @@ impl<'a> Points<'a> {
     }
 
     fn coordinate(&mut self, symbol: &Symbol, extreme: bool) -> Wide {
+        let [angle, offset] = self.largest;
         let largest = match self.angles.contains(symbol) {
-            true => LARGEST_ANGLE,
-            false => LARGEST_OFFSET,
+            true => angle,
+            false => offset,
         };
         self.offset(largest, extreme)
     }
@@ -365,13 +375,5 @@ fn loci(definition: &Definition, q: &[f64]) -> Vec<f64> {
         .entries()
         .iter()
         .map(|value| value.value.to_f64().abs())
-        .collect()
-}
-
-fn home(definition: &Definition) -> Vec<f64> {
-    definition
-        .home()
-        .iter()
-        .map(|entry| entry.value.to_f64())
         .collect()
 }
