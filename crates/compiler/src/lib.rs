@@ -26,6 +26,7 @@ pub mod alike;
 mod build;
 mod check;
 mod couple;
+mod coupled;
 mod describe;
 pub mod emit;
 pub mod equations;
