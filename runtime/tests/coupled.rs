@@ -129,7 +129,13 @@ fn pair(seed: u64, coordinates: usize) -> Pair {
     let types: Vec<Arc<dyn AnyJoint>> = std::iter::once(Arc::clone(&joint))
         .chain(joint.more())
         .collect();
-    let base = body("base", None, joints::ball(), pose(&mut random), mass(&mut random));
+    let base = body(
+        "base",
+        None,
+        joints::ball(),
+        pose(&mut random),
+        mass(&mut random),
+    );
     let (mut together, mut apart) = (vec![base.clone()], vec![base]);
     let roots: Vec<Pose<f64>> = links.iter().map(|_| pose(&mut random)).collect();
     for (number, (link, joint)) in links.iter().zip(types).enumerate() {
@@ -165,7 +171,13 @@ fn pair(seed: u64, coordinates: usize) -> Pair {
     }
     for (n, parent) in [FIRST + 1, FIRST + 4].into_iter().enumerate() {
         let name = format!("tail {n}");
-        let spec = body(&name, Some(parent), joints::revolute(), pose(&mut random), mass(&mut random));
+        let spec = body(
+            &name,
+            Some(parent),
+            joints::revolute(),
+            pose(&mut random),
+            mass(&mut random),
+        );
         together.push(spec.clone());
         apart.push(spec);
     }
@@ -177,7 +189,8 @@ fn pair(seed: u64, coordinates: usize) -> Pair {
     for (number, link) in links.iter().enumerate() {
         map[(3 + number, 3 + link.coordinate)] = link.ratio;
     }
-    map.view_mut((3 + links.len(), 3 + coordinates), (2, 2)).fill_with_identity();
+    map.view_mut((3 + links.len(), 3 + coordinates), (2, 2))
+        .fill_with_identity();
     Pair {
         coupled,
         tree,
@@ -323,9 +336,14 @@ fn links_that_make_no_joint_are_refused() {
         let mut links = sound.clone();
         change(&mut links);
         let size = links.len().min(PORTS.len());
-        coupled(&links, &PORTS[..size]).expect_err("a fault").to_string()
+        coupled(&links, &PORTS[..size])
+            .expect_err("a fault")
+            .to_string()
     };
-    assert_eq!(fault(&|links| links.clear()), "coupled links: 0 links, not 1 to 16");
+    assert_eq!(
+        fault(&|links| links.clear()),
+        "coupled links: 0 links, not 1 to 16"
+    );
     assert_eq!(
         fault(&|links| links[1].before = Some(1)),
         "coupled link 1: it hangs on link 1, which does not come before it"
@@ -346,7 +364,9 @@ fn links_that_make_no_joint_are_refused() {
         fault(&|links| links[4].coordinate = 3),
         "coupled links: no link follows coordinate 2"
     );
-    assert!(fault(&|links| links[1].frame.rotation *= 2.0).starts_with("coupled link 1: its frame: "));
+    assert!(
+        fault(&|links| links[1].frame.rotation *= 2.0).starts_with("coupled link 1: its frame: ")
+    );
     let few = coupled(&sound, &PORTS[..2]).expect_err("a fault");
     assert_eq!(few.to_string(), "coupled links: 2 ports, not one a link");
     let other = Coupled::<3>::new(&sound, &PORTS).expect_err("two coordinates");

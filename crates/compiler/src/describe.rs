@@ -113,7 +113,7 @@ fn found(
     match &joint.coupling {
         Some(coupling) => types
             .borrow_mut()
-            .derive(&coupled::spec(coupling))
+            .of(coupling)
             .map_err(|reason| format!("joint `{name}`: its coupling cannot be derived: {reason}")),
         None => joints(kind)
             .ok_or_else(|| format!("joint `{name}`: there is no spec of the joint type `{kind}`")),

@@ -24,6 +24,7 @@
 mod acting;
 pub mod alike;
 mod build;
+mod chain;
 mod check;
 mod couple;
 mod coupled;

@@ -96,11 +96,15 @@ impl Robot {
             let ranges = body.ranges();
             return (ranges.freedoms.start, ranges.configuration.start);
         }
-        let (_, coupling) = named(self.joint).expect("the coupling has the name of what is followed");
+        let (_, coupling) =
+            named(self.joint).expect("the coupling has the name of what is followed");
         let number = self.joint.split('+').position(|name| name == joint);
         let number = number.unwrap_or_else(|| panic!("no joint {joint}"));
         let ranges = coupling.ranges();
-        (ranges.freedoms.start + number, ranges.configuration.start + number)
+        (
+            ranges.freedoms.start + number,
+            ranges.configuration.start + number,
+        )
     }
 
     fn map(&self, coupled: &Mechanism, free: &Mechanism) -> Map {
@@ -167,7 +171,9 @@ impl Pair {
         let joints = self.coupled.joints();
         let q = joints.flat_map(|(index, body)| {
             let own = &phi[body.ranges().freedoms.clone()];
-            self.coupled.configuration_from_local(index, own).expect("finite")
+            self.coupled
+                .configuration_from_local(index, own)
+                .expect("finite")
         });
         q.collect()
     }
@@ -199,14 +205,24 @@ fn bodies_stand_where_they_do_without_couplings() {
             let v = DVector::from_vec(numbers(pair.coupled.layout().speeds, seed + 50));
             let found = pair.coupled.kinematics(&q, v.as_slice()).expect("finite");
             let (y, rates) = (pair.of_free(&q), &pair.map.rates * &v);
-            let expected = pair.free.kinematics(y.as_slice(), rates.as_slice()).expect("finite");
+            let expected = pair
+                .free
+                .kinematics(y.as_slice(), rates.as_slice())
+                .expect("finite");
             for (body, state) in pair.coupled.bodies().iter().zip(&found.bodies) {
-                let same = pair.free.body_index(body.name()).expect("a body of the same name");
+                let same = pair
+                    .free
+                    .body_index(body.name())
+                    .expect("a body of the same name");
                 let wanted = &expected.bodies[same];
                 let away = (state.pose.matrix() - wanted.pose.matrix()).amax();
                 let faster = (state.twist - wanted.twist).amax();
                 // Products of some ten poses, and velocities up to 10.
-                assert!(away < 1e-14 && faster < 1e-13, "{}: {away:e}, {faster:e}", body.name());
+                assert!(
+                    away < 1e-14 && faster < 1e-13,
+                    "{}: {away:e}, {faster:e}",
+                    body.name()
+                );
             }
         }
     }
@@ -228,7 +244,8 @@ fn both_forms_are_the_free_robot_with_the_coupling_eliminated() {
             let momenta = map.tr_mul(&(matrix.matrix() * (map * &v)));
             for mut form in pair.forms() {
                 let mut found = DVector::zeros(v.len());
-                form.momenta(&q, v.as_slice(), found.as_mut_slice()).expect("finite");
+                form.momenta(&q, v.as_slice(), found.as_mut_slice())
+                    .expect("finite");
                 close(robot.name, &found, &momenta);
                 form.forward_dynamics(&q, v.as_slice(), efforts.as_slice(), found.as_mut_slice())
                     .expect("regular");
@@ -303,7 +320,9 @@ fn energy_stays_for_ten_seconds() {
             ..scene.start()
         };
         let energy = |state: &State| {
-            let found = scene.mechanism.kinematics(&state.configuration, &state.speeds);
+            let found = scene
+                .mechanism
+                .kinematics(&state.configuration, &state.speeds);
             found.expect("finite").energy()
         };
         for form in [Form::Lagrangian, Form::Hamiltonian] {
@@ -314,8 +333,16 @@ fn energy_stays_for_ten_seconds() {
                 samples: vec![],
             };
             let mut dynamics = Recursive::new(Arc::clone(&scene.mechanism));
-            let end = integrate(&mut dynamics, &start, &options, &mut no_inputs, &mut no_observer);
-            let end = end.unwrap_or_else(|error| panic!("{}: {error}", robot.name)).state;
+            let end = integrate(
+                &mut dynamics,
+                &start,
+                &options,
+                &mut no_inputs,
+                &mut no_observer,
+            );
+            let end = end
+                .unwrap_or_else(|error| panic!("{}: {error}", robot.name))
+                .state;
             let drift = (energy(&end) - energy(&start)).abs();
             eprintln!("{}, {form:?}: the energy drifts by {drift:e} J", robot.name);
             // The errors of some thousand steps, of which each is held to the tolerance, in a motion that parts from its neighbours by up to e⁴ in ten
@@ -351,7 +378,10 @@ fn ports_tell_angles_by_the_names_of_joints() {
             .joints()
             .find(|(_, body)| body.joint_name() == robot.joint)
             .expect("the coupling");
-        let values = pair.coupled.port_values(index, body.configuration(&q)).expect("finite");
+        let values = pair
+            .coupled
+            .port_values(index, body.configuration(&q))
+            .expect("finite");
         assert_eq!(values.len(), pair.coupled.carried(index).len());
         for (port, value) in body.joint().ports().iter().zip(values) {
             let joints = pair.free.joints();
@@ -359,7 +389,11 @@ fn ports_tell_angles_by_the_names_of_joints() {
             let (_, own) = named.next().expect("a joint of that name");
             let expected = y[own.ranges().configuration.start];
             // A chain of two laws multiplied out here, and there.
-            assert!((value - expected).abs() < 4e-16, "{}: {value} {expected}", port.name);
+            assert!(
+                (value - expected).abs() < 4e-16,
+                "{}: {value} {expected}",
+                port.name
+            );
         }
     }
 }
@@ -370,7 +404,10 @@ fn robots_are_the_scenes_that_are_written_of_them() -> Outcome {
     for robot in ROBOTS {
         let import = robot.import();
         assert!(
-            !import.notices.iter().any(|notice| notice.to_string().contains("mimic")),
+            !import
+                .notices
+                .iter()
+                .any(|notice| notice.to_string().contains("mimic")),
             "{}: {:?}",
             robot.name,
             import.notices
@@ -378,7 +415,11 @@ fn robots_are_the_scenes_that_are_written_of_them() -> Outcome {
         let text = import.to_toml();
         assert!(text.contains("mimic = { joint = "), "{text}");
         let again = Scene::from_toml(&text, "imported.toml")?;
-        assert_eq!(again.to_toml(&[], |_| vec![]), Scene::from_toml(&again.to_toml(&[], |_| vec![]), "again.toml")?.to_toml(&[], |_| vec![]));
+        assert_eq!(
+            again.to_toml(&[], |_| vec![]),
+            Scene::from_toml(&again.to_toml(&[], |_| vec![]), "again.toml")?
+                .to_toml(&[], |_| vec![])
+        );
         let (written, built) = (again.build(&registry)?, import.build(&registry)?);
         let mut rates = [written, built].map(|scene| {
             let size = scene.speeds.len();
@@ -386,7 +427,12 @@ fn robots_are_the_scenes_that_are_written_of_them() -> Outcome {
             let mut dynamics = Recursive::new(Arc::clone(&scene.mechanism));
             let efforts = numbers(size, 5);
             dynamics
-                .forward_dynamics(&scene.configuration, &numbers(size, 6), &efforts, &mut rates)
+                .forward_dynamics(
+                    &scene.configuration,
+                    &numbers(size, 6),
+                    &efforts,
+                    &mut rates,
+                )
                 .expect("regular");
             DVector::from_vec(rates)
         });
