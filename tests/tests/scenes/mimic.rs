@@ -6,12 +6,14 @@
 
 use hamel::dynamics::{Dynamics, MassMatrix, Recursive, Reference};
 use hamel::integrate::{Form, Method, Options, State, integrate, no_inputs, no_observer};
+use hamel::joint::Coupled;
 use hamel::mechanism::Mechanism;
 use hamel::nalgebra::{DMatrix, DVector};
 use hamel_compiler::model::Model;
 use hamel_scene::urdf::{self, Import};
-use hamel_scene::{Scene, SceneDescription};
+use hamel_scene::{Coupling, Scene, SceneDescription};
 use hamel_tests::compiled::{self, Point};
+use hamel_tests::laws;
 use std::error::Error;
 use std::path::Path;
 use std::sync::Arc;
@@ -363,6 +365,32 @@ fn compiled_couplings_are_those_of_the_tree() {
             let point = || Point::random(model.clone(), &mechanism, seed);
             point().agrees();
             point().derivatives_agree();
+        }
+    }
+}
+
+/// The laws that the joints of the library are held to, by dual numbers, at random configurations: what X^c is of H, ∂X^c of X^c, P of the ports.
+#[test]
+fn kernels_of_couplings_obey_the_laws_of_joints() {
+    fn check<const K: usize>(coupling: &Coupling) {
+        let joint = Coupled::<K>::new(&coupling.links, coupling.ports).expect("links of a joint");
+        for body in 0..coupling.links.len() {
+            laws::check_all(&joint.member(body).expect("a body"));
+        }
+    }
+    for robot in ROBOTS {
+        let scene = robot.import().scene;
+        let coupled = scene.coupled().expect("a coupling");
+        let couplings = coupled
+            .bodies
+            .iter()
+            .filter_map(|body| body.joint.coupling.as_ref());
+        for coupling in couplings {
+            match coupling.coordinates() {
+                1 => check::<1>(coupling),
+                2 => check::<2>(coupling),
+                more => panic!("{}: {more} coordinates", robot.name),
+            }
         }
     }
 }

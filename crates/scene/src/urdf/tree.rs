@@ -20,14 +20,15 @@ pub(super) struct Links {
     /// For each link of the file its joint and its parent link; `None` for the root.
     pub(super) parents: Vec<Option<(usize, usize)>>,
     /// The links that mimic joints couple.
-    pub(super) groups: Vec<Group>,
+    groups: Vec<Group>,
+    /// For each link of the file the group that it is in.
+    places: Vec<Option<usize>>,
 }
 
 impl Links {
     /// What couples a link with others, if something does.
     pub(super) fn group(&self, link: usize) -> Option<&Group> {
-        let holds = |group: &&Group| group.members.iter().any(|(own, _)| *own == link);
-        self.groups.iter().find(holds)
+        self.groups.get((*self.places.get(link)?)?)
     }
 }
 
@@ -68,10 +69,18 @@ pub(super) fn links(
     if !groups.is_empty() {
         order = coupling::order(&links, &groups);
     }
+    let mut places = vec![None; parents.len()];
+    for (place, group) in groups.iter().enumerate() {
+        group
+            .members
+            .iter()
+            .for_each(|(link, _)| places[*link] = Some(place));
+    }
     Some(Links {
         order,
         parents,
         groups,
+        places,
     })
 }
 
