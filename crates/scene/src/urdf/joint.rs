@@ -216,6 +216,8 @@ pub(super) fn tell(
     notices: &mut Notices,
 ) {
     let limits = facts.limits.as_ref();
+    let stops = stop.as_ref();
+    let is_beyond = stops.is_some_and(|stop| is_beyond_at(coupled.home, stop));
     let has = |name: &str| child(joint.node, name).is_some();
     let owner = format!("joint `{}`", joint.name);
     // What moves otherwise than the file says.
@@ -225,9 +227,12 @@ pub(super) fn tell(
             "limits of position are not simulated: the joint moves past them",
         ),
         (
-            stop.as_ref()
-                .is_some_and(|stop| is_beyond_at(coupled.home, stop)),
-            "the joint begins at home, which is beyond its limits: the stop pushes it back",
+            is_beyond && coupled.home == 0.0,
+            "the joint begins at home, 0, which is beyond its limits: the stop pushes it back",
+        ),
+        (
+            is_beyond && coupled.home != 0.0,
+            "the joint begins, by the offset of its mimic, beyond its limits: the stop pushes it back",
         ),
         (
             facts.friction != 0.0 && !has_one_coordinate(joint),
