@@ -7,7 +7,7 @@ use crate::source::Located;
 use crate::suggest::all_of;
 use hamel_runtime::joint::{MOST_COORDINATES, MOST_LINKS};
 use hamel_runtime::shown::Number;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// How a body moves on its joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -235,6 +235,15 @@ fn out_of_range(nodes: &[Node<'_>], node: usize, law: &Law) -> Diagnostic {
     Diagnostic::new(span, message)
 }
 
+/// Nodes, each once.
+#[derive(Default)]
+struct Set {
+    nodes: Vec<usize>,
+    known: HashSet<usize>,
+    /// How many of them move.
+    moving: usize,
+}
+
 /// The nodes as the tree that they are.
 struct Forest<'n, 'a> {
     nodes: &'n [Node<'a>],
@@ -273,50 +282,51 @@ impl<'n, 'a> Forest<'n, 'a> {
     fn gathered(&self, laws: &[Law], sink: &mut Sink) -> Option<Vec<Vec<usize>>> {
         let followers = laws.iter().enumerate();
         let followers = followers.filter(|(node, law)| law.leader != *node);
-        let mut sets: Vec<Vec<usize>> = Vec::new();
+        let mut sets: Vec<Set> = Vec::new();
         let mut of: HashMap<usize, usize> = HashMap::new();
         for (node, law) in followers {
             let mut waiting = vec![node, law.leader];
-            let mut set: Vec<usize> = Vec::new();
+            let mut set = Set::default();
             // What is met of other sets becomes part of this one, and what stands between comes in.
             while let Some(next) = waiting.pop() {
-                if set.contains(&next) {
-                    continue;
+                if let Some(other) = of.get(&next).and_then(|&other| sets.get_mut(other)) {
+                    let other = std::mem::take(other);
+                    other.nodes.iter().for_each(|node| _ = of.remove(node));
+                    waiting.extend(other.nodes);
                 }
-                if let Some(other) = of.remove(&next) {
-                    let other = std::mem::take(&mut sets[other]);
-                    other.iter().for_each(|node| _ = of.remove(node));
-                    waiting.extend(other);
-                }
-                set.push(next);
-                let moving = set.iter().filter(|&&node| self.moves(node)).count();
-                if moving > MOST_LINKS {
+                if !self.take(&mut set, next) {
                     sink.push(self.too_many(node, law));
                     return None;
                 }
                 if waiting.is_empty() {
-                    waiting = self.between(&set, (node, law), sink)?;
+                    let Some(between) = self.between(&set) else {
+                        sink.push(self.too_many(node, law));
+                        return None;
+                    };
+                    waiting = between.nodes;
                 }
             }
-            for &own in &set {
-                of.insert(own, sets.len());
-            }
+            of.extend(set.nodes.iter().map(|&own| (own, sets.len())));
             sets.push(set);
         }
-        sets.retain(|set| !set.is_empty());
-        Some(sets)
+        let sets = sets.into_iter().map(|set| set.nodes);
+        Some(sets.filter(|nodes| !nodes.is_empty()).collect())
     }
 
-    /// The nodes on the way from a set to what all of it hangs on that are not in it.
-    fn between(
-        &self,
-        set: &[usize],
-        (node, law): (usize, &Law),
-        sink: &mut Sink,
-    ) -> Option<Vec<usize>> {
-        let mut more = Vec::new();
-        let mut base = self.nodes[*set.first()?].parent;
-        for &own in set {
+    /// Adds a node to a set; whether it is not too large then.
+    fn take(&self, set: &mut Set, node: usize) -> bool {
+        if set.known.insert(node) {
+            set.nodes.push(node);
+            set.moving += usize::from(self.moves(node));
+        }
+        set.moving <= MOST_LINKS
+    }
+
+    /// The nodes on the way from a set to what all of it hangs on that are not in it; `None` where they are too many.
+    fn between(&self, set: &Set) -> Option<Set> {
+        let mut more = Set::default();
+        let mut base = self.nodes[*set.nodes.first()?].parent;
+        for &own in &set.nodes {
             let mut at = self.nodes[own].parent;
             while at != base {
                 let depth = |node: Option<usize>| node.map_or(0, |node| self.depths[node] + 1);
@@ -326,12 +336,7 @@ impl<'n, 'a> Forest<'n, 'a> {
                 };
                 let Some(passed) = *deeper else { break };
                 *deeper = self.nodes[passed].parent;
-                if !set.contains(&passed) && !more.contains(&passed) {
-                    more.push(passed);
-                }
-                let moving = more.iter().filter(|&&node| self.moves(node)).count();
-                if moving > MOST_LINKS {
-                    sink.push(self.too_many(node, law));
+                if !set.known.contains(&passed) && !self.take(&mut more, passed) {
                     return None;
                 }
             }

@@ -14,6 +14,7 @@ use hamel_runtime::joint::{Link, LinkMotion};
 use hamel_runtime::mechanism::CONFIGURATION_TOLERANCE;
 use hamel_runtime::shown::Number;
 use hamel_runtime::spatial::Pose;
+use std::collections::HashSet;
 use std::f64::consts::TAU;
 
 /// What messages call the type of such joints.
@@ -24,8 +25,11 @@ pub(super) fn lower(scene: &SceneDescription, sink: &mut Sink) -> Option<SceneDe
     let nodes: Vec<Node<'_>> = scene.bodies.iter().map(Node::of).collect();
     let found = groups(&nodes, "scene", sink)?;
     let mut lowered = scene.clone();
+    let names = scene.bodies.iter().map(|body| &*body.joint.name.value);
+    let names: HashSet<&str> = names.collect();
     for group in &found {
         let coupling = Lowering { scene, group };
+        coupling.refuse_name(&names, sink)?;
         for (place, body) in coupling.bodies(sink)? {
             *lowered.bodies.get_mut(place)? = body;
         }
@@ -82,6 +86,22 @@ impl<'a> Lowering<'a> {
             (*place, body)
         });
         Some(bodies.collect())
+    }
+
+    /// Whether the name of several joints is that of another.
+    fn refuse_name(&self, names: &HashSet<&str>, sink: &mut Sink) -> Option<()> {
+        let leaders = self.group.leaders();
+        let of = |place: usize| &self.scene.bodies[place].joint.name;
+        let name = self.group.name(|place| of(place).value.clone());
+        let span = of(*leaders.first()?).span.clone();
+        if leaders.len() == 1 || !names.contains(name.as_str()) {
+            return Some(());
+        }
+        let message = format!(
+            "joint `{name}`: so are called the joints that are coupled and move independently"
+        );
+        sink.push(Diagnostic::new(span, message).help("give another name to one of them"));
+        None
     }
 
     fn members(&self) -> Vec<(usize, Law)> {
