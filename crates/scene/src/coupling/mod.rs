@@ -5,9 +5,11 @@
 //! joints that follow none. [`SceneDescription::coupled`] puts it in their place: every body keeps its name and its mass, and what acts at a follower acts
 //! at the port that has its name.
 //!
-//! `graph` finds who follows whom and what moves between, `order` lets the bodies of a coupling follow each other, `lower` makes the joint of it.
+//! `graph` finds who follows whom (`follow`) and what moves between (`forest`), `order` lets the bodies of a coupling follow each other, `lower` makes the joint of it.
 
+mod follow;
 mod forces;
+mod forest;
 mod graph;
 mod initial;
 mod joint;

@@ -100,10 +100,11 @@ fn names_of_joints(
 }
 
 fn movement(joint: &Joint<'_, '_>) -> Movement<'static> {
-    joint
-        .kind
-        .of_library()
-        .map_or(Movement::Fixed, Movement::of)
+    match joint.kind.of_library().map(Movement::of) {
+        None => Movement::Fixed,
+        Some(Movement::Other(_)) => Movement::Other(joint.kind.name()),
+        Some(movement) => movement,
+    }
 }
 
 /// The place of every name among the elements.
