@@ -153,7 +153,7 @@ impl Chain {
         let axes = self.axes(q);
         let mut all = vec![Sym::zero(); self.coordinates];
         for (i, (k, axis)) in axes.iter().enumerate() {
-            all[*k] = all[*k] + axis.bracket(&carried(&axes, i, v)).dot(momentum);
+            all[*k] += axis.bracket(&carried(&axes, i, v)).dot(momentum);
         }
         all
     }

@@ -73,7 +73,7 @@ impl Model {
         let mut bodies: Vec<Body> = vec![];
         let mut first = 0;
         for group in scene.bodies.chunk_by(|_, next| !next.leads()) {
-            match of_joint((first, group), &joints, &mut elements) {
+            match of_joint((first, group), joints, &mut elements) {
                 Ok(own) => bodies.extend(own),
                 Err(more) => reasons.extend(more),
             }

@@ -32,12 +32,11 @@ impl<'n, 'a> Forest<'n, 'a> {
                 path.push(node);
                 at = nodes[node].parent;
             }
-            let mut depth = at
+            let first = at
                 .and_then(|node| depths[node])
                 .map_or(0, |depth| depth + 1);
-            for &node in path.iter().rev() {
+            for (depth, &node) in (first..).zip(path.iter().rev()) {
                 depths[node] = Some(depth);
-                depth += 1;
             }
         }
         let depths = depths.into_iter().map(|depth| depth.unwrap_or(0));

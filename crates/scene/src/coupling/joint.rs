@@ -3,8 +3,8 @@
 use super::Movement;
 use hamel_runtime::erased::Shared;
 use hamel_runtime::joint::{Link, LinkFault, Port, coupled};
-use std::collections::{HashMap, HashSet};
-use std::sync::{Mutex, PoisonError};
+use std::collections::HashSet;
+use std::sync::{LazyLock, Mutex, PoisonError};
 
 /// The links of a coupled joint, and what their ports are called.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,34 +49,26 @@ pub(super) fn port(name: &str, movement: Movement<'_>) -> Port {
 }
 
 /// Names and lists of ports that have been asked for, each once: a joint's names live as long as the program.
-static NAMES: Mutex<Option<HashSet<&'static str>>> = Mutex::new(None);
-static PORTS: Mutex<Option<HashMap<Vec<(&'static str, bool)>, Vec<&'static [Port]>>>> =
-    Mutex::new(None);
+static NAMES: LazyLock<Mutex<HashSet<&'static str>>> = LazyLock::new(Mutex::default);
+static PORTS: LazyLock<Mutex<HashSet<&'static [Port]>>> = LazyLock::new(Mutex::default);
 
 fn kept(name: &str) -> &'static str {
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
-    let names = names.get_or_insert_default();
-    match names.get(name) {
-        Some(known) => known,
-        None => {
-            let own: &'static str = Box::leak(name.into());
-            names.insert(own);
-            own
-        }
+    if let Some(known) = names.get(name) {
+        return known;
     }
+    let own: &'static str = Box::leak(name.into());
+    names.insert(own);
+    own
 }
 
 /// These ports, kept.
 pub(super) fn list(ports: Vec<Port>) -> &'static [Port] {
-    let key = ports.iter().map(|port| (port.name, port.wraps)).collect();
     let mut lists = PORTS.lock().unwrap_or_else(PoisonError::into_inner);
-    let alike = lists.get_or_insert_default().entry(key).or_default();
-    match alike.iter().find(|known| ***known == *ports) {
-        Some(known) => known,
-        None => {
-            let own: &'static [Port] = Vec::leak(ports);
-            alike.push(own);
-            own
-        }
+    if let Some(known) = lists.get(ports.as_slice()) {
+        return known;
     }
+    let own: &'static [Port] = Vec::leak(ports);
+    lists.insert(own);
+    own
 }

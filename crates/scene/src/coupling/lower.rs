@@ -45,28 +45,14 @@ struct Lowering<'a> {
 impl<'a> Lowering<'a> {
     /// The bodies of the coupling with their places.
     fn bodies(&self, sink: &mut Sink) -> Option<Vec<(usize, BodyDescription)>> {
-        let members: Vec<(usize, Law)> = self.members();
-        let first = members.first()?.0;
-        if let Some((place, _)) = members
-            .iter()
-            .enumerate()
-            .map(|(n, own)| (own.0, first + n))
-            .find(|(place, wanted)| place != wanted)
-        {
-            let body = &self.scene.bodies[place].name;
-            let message = format!(
-                "body `{}`: it does not follow the other bodies of its coupling",
-                body.value
-            );
-            sink.push(Diagnostic::new(body.span.clone(), message));
-            return None;
-        }
+        let members = self.members();
+        self.refuse_order(&members, sink)?;
         let owners = self.owners(&members);
         let coordinates = self.group.leaders().len();
         let initial = state(&owners, coordinates).map_err(|error| sink.push(error));
         let acting = forces::joined(&owners, coordinates, sink);
         let (mut initial, mut acting) = (Some(initial.ok()?), Some(acting));
-        let joint = self.joint(&owners, &members);
+        let joint = self.joint(&owners);
         let bodies = owners.iter().zip(&members).enumerate();
         let bodies = bodies.map(|(number, (owner, (place, _)))| {
             let name = format!("link_{}", number + 1);
@@ -86,6 +72,22 @@ impl<'a> Lowering<'a> {
             (*place, body)
         });
         Some(bodies.collect())
+    }
+
+    /// Whether the bodies follow each other.
+    fn refuse_order(&self, members: &[(usize, Law)], sink: &mut Sink) -> Option<()> {
+        let (first, _) = members.first()?;
+        let mut places = members.iter().map(|(place, _)| *place).zip(*first..);
+        let Some((place, _)) = places.find(|(place, wanted)| place != wanted) else {
+            return Some(());
+        };
+        let body = &self.scene.bodies[place].name;
+        let message = format!(
+            "body `{}`: it does not follow the other bodies of its coupling",
+            body.value
+        );
+        sink.push(Diagnostic::new(body.span.clone(), message));
+        None
     }
 
     /// Whether the name of several joints is that of another.
@@ -160,7 +162,7 @@ impl<'a> Lowering<'a> {
         owners.collect()
     }
 
-    fn joint(&self, owners: &[Owner<'_>], members: &[(usize, Law)]) -> JointDescription {
+    fn joint(&self, owners: &[Owner<'_>]) -> JointDescription {
         let of = |place: usize| &self.scene.bodies[place].joint;
         let leader = self.group.leaders().first().map_or(0, |leader| *leader);
         let span = of(leader).span.clone();
@@ -168,7 +170,6 @@ impl<'a> Lowering<'a> {
         let ports = owners
             .iter()
             .map(|owner| joint::port(owner.name, owner.movement));
-        debug_assert_eq!(owners.len(), members.len());
         JointDescription {
             name: Located::new(name, of(leader).name.span.clone()),
             kind: Located::new(KIND.to_owned(), span.clone()),
