@@ -4,194 +4,25 @@
 //! `M = Gᵀ M_free G`, poses are those at y, and accelerations a are those at which the efforts that the free robot needs, `Gᵀ τ_free(y, G v, G a)`, are what
 //! acts. The free robot knows nothing of couplings: its equations share no code with them.
 
-use super::trials::{FORMS, fine_methods, run, scene, slide, times};
-use hamel::dynamics::{Dynamics, MassMatrix, Recursive, Reference};
+mod acting;
+mod robots;
+
+use hamel::dynamics::{Dynamics, MassMatrix, Recursive};
 use hamel::integrate::{Form, Method, Options, State, integrate, no_inputs, no_observer};
 use hamel::joint::Coupled;
-use hamel::mechanism::Mechanism;
-use hamel::nalgebra::{DMatrix, DVector};
+use hamel::nalgebra::DVector;
 use hamel_compiler::model::Model;
-use hamel_scene::urdf::{self, Import};
 use hamel_scene::{Coupling, Located, Scene, SceneDescription};
 use hamel_tests::compiled::{self, Point};
 use hamel_tests::laws;
+use robots::{ROBOTS, build, numbers, read};
 use std::error::Error;
-use std::path::Path;
 use std::sync::Arc;
 
 type Outcome = Result<(), Box<dyn Error>>;
 
-/// A follower, what it follows, the multiplier and the offset: as the file has them, those of a chain multiplied out.
-type Law = (&'static str, &'static str, f64, f64);
-
-/// A robot, the joint that its coupling is, and who follows whom.
-struct Robot {
-    name: &'static str,
-    joint: &'static str,
-    laws: &'static [Law],
-}
-
-const ROBOTS: [Robot; 4] = [
-    Robot {
-        name: "parallel_gripper",
-        joint: "left",
-        laws: &[("right", "left", -1.0, 0.0)],
-    },
-    Robot {
-        name: "adaptive_gripper",
-        joint: "finger_joint",
-        laws: &[
-            ("left_inner_knuckle_joint", "finger_joint", 1.0, 0.0),
-            ("left_inner_finger_joint", "finger_joint", -1.0, 0.0),
-            ("right_outer_knuckle_joint", "finger_joint", 1.0, 0.0),
-            ("right_inner_knuckle_joint", "finger_joint", 1.0, 0.0),
-            ("right_inner_finger_joint", "finger_joint", -1.0, 0.0),
-        ],
-    },
-    Robot {
-        name: "tendon_finger",
-        joint: "knuckle",
-        laws: &[
-            ("pip", "knuckle", 1.1, 0.05),
-            ("dip", "knuckle", 0.67 * 1.1, 0.67 * 0.05 - 0.02),
-        ],
-    },
-    Robot {
-        name: "two_limbs",
-        joint: "swing+crank",
-        laws: &[("rack", "crank", 0.11, 0.04)],
-    },
-];
-
 /// Rounding of sums over some hundred products times the conditions of these mass matrices, in units of the largest entry: fingers of 10 g on arms of 2 kg.
 const ROUNDING: f64 = 1e-11;
-
-impl Robot {
-    fn text(&self) -> String {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/urdf/mimic");
-        let path = folder.join(format!("{}.urdf", self.name));
-        std::fs::read_to_string(path).expect("a robot of the tests")
-    }
-
-    fn import(&self) -> Import {
-        read(&self.text(), self.name)
-    }
-
-    /// The robot whose joints all move by themselves.
-    fn free(&self) -> Arc<Mechanism> {
-        let lines = self.text();
-        let lines = lines.lines().filter(|line| !line.contains("<mimic"));
-        let text: Vec<&str> = lines.collect();
-        build(&read(&text.join("\n"), self.name).scene).mechanism
-    }
-
-    fn pair(&self) -> Pair {
-        let coupled = build(&self.import().scene).mechanism;
-        let free = self.free();
-        let map = self.map(&coupled, &free);
-        Pair { coupled, free, map }
-    }
-
-    /// Where a joint's first freedom stands among those of the coupled robot, and its first scalar in Q.
-    fn place(&self, coupled: &Mechanism, joint: &str) -> (usize, usize) {
-        let named = |name: &str| coupled.joints().find(|(_, body)| body.joint_name() == name);
-        if let Some((_, body)) = named(joint) {
-            let ranges = body.ranges();
-            return (ranges.freedoms.start, ranges.configuration.start);
-        }
-        let (_, coupling) =
-            named(self.joint).expect("the coupling has the name of what is followed");
-        let number = self.joint.split('+').position(|name| name == joint);
-        let number = number.unwrap_or_else(|| panic!("no joint {joint}"));
-        let ranges = coupling.ranges();
-        (
-            ranges.freedoms.start + number,
-            ranges.configuration.start + number,
-        )
-    }
-
-    fn map(&self, coupled: &Mechanism, free: &Mechanism) -> Map {
-        let (rows, columns) = (free.layout().freedoms, coupled.layout().freedoms);
-        let mut map = Map {
-            rates: DMatrix::zeros(rows, columns),
-            scalars: DMatrix::zeros(free.layout().configuration, coupled.layout().configuration),
-            offset: DVector::zeros(free.layout().configuration),
-        };
-        for (_, body) in free.joints() {
-            let (own, ranges) = (body.joint_name(), body.ranges());
-            let law = self.laws.iter().find(|(follower, ..)| *follower == own);
-            let (leader, ratio, offset) = match law {
-                Some((_, leader, ratio, offset)) => (*leader, *ratio, *offset),
-                None => (own, 1.0, 0.0),
-            };
-            let (freedom, scalar) = self.place(coupled, leader);
-            for (n, row) in ranges.freedoms.clone().enumerate() {
-                map.rates[(row, freedom + n)] = ratio;
-            }
-            for (n, row) in ranges.configuration.clone().enumerate() {
-                map.scalars[(row, scalar + n)] = ratio;
-                map.offset[row] = offset;
-            }
-        }
-        map
-    }
-}
-
-fn read(text: &str, name: &str) -> Import {
-    let options = urdf::Options::default();
-    urdf::read(text, name, &options).unwrap_or_else(|errors| panic!("{errors}"))
-}
-
-fn build(scene: &SceneDescription) -> Scene {
-    let built = scene.build(&hamel_joints::registry());
-    built.unwrap_or_else(|errors| panic!("{errors}"))
-}
-
-/// How motions of the coupled robot are motions of the free one.
-struct Map {
-    /// G.
-    rates: DMatrix<f64>,
-    /// The same for the stored scalars of Q, with y₀.
-    scalars: DMatrix<f64>,
-    offset: DVector<f64>,
-}
-
-struct Pair {
-    coupled: Arc<Mechanism>,
-    free: Arc<Mechanism>,
-    map: Map,
-}
-
-/// Numbers in waves, another for each seed.
-fn numbers(count: usize, seed: u32) -> Vec<f64> {
-    let phase = 0.3 + 1.9 * f64::from(seed);
-    (0..count).map(|i| (1.7 * i as f64 + phase).sin()).collect()
-}
-
-impl Pair {
-    fn configuration(&self, seed: u32) -> Vec<f64> {
-        let phi = numbers(self.coupled.layout().freedoms, seed);
-        let joints = self.coupled.joints();
-        let q = joints.flat_map(|(index, body)| {
-            let own = &phi[body.ranges().freedoms.clone()];
-            self.coupled
-                .configuration_from_local(index, own)
-                .expect("finite")
-        });
-        q.collect()
-    }
-
-    fn of_free(&self, q: &[f64]) -> DVector<f64> {
-        &self.map.scalars * DVector::from_column_slice(q) + &self.map.offset
-    }
-
-    fn forms(&self) -> [Box<dyn Dynamics>; 2] {
-        [
-            Box::new(Recursive::new(Arc::clone(&self.coupled))),
-            Box::new(Reference::new(Arc::clone(&self.coupled))),
-        ]
-    }
-}
 
 #[track_caller]
 fn close(what: &str, found: &DVector<f64>, expected: &DVector<f64>) {
@@ -471,94 +302,4 @@ fn robots_are_the_scenes_that_are_written_of_them() -> Outcome {
         close(robot.name, found, expected);
     }
     Ok(())
-}
-
-/// Two slides along one line, of which one follows the other by −2 q + 0.3, with everything that can act at either.
-fn slides(leader: &str, follower: &str) -> Scene {
-    let body = |name: &str, mass: f64, keys: &str| {
-        format!(
-            "[[body]]\nname = \"{name}\"\nparent = \"world\"\nmass = {mass:?}\njoint = {{ type = \"prismatic\" }}\n\
-             inertia_xx_yy_zz_xy_xz_yz = [0.1, 0.1, 0.1, 0.0, 0.0, 0.0]\n{keys}\n"
-        )
-    };
-    let mimic = "mimic = { joint = \"a\", multiplier = -2.0, offset = 0.3 }\n";
-    scene(&(body("b", 0.5, &format!("{mimic}{follower}")) + &body("a", 1.0, leader)))
-}
-
-/// At a leader, at its follower, and at one slide of 2 kg that does as both: its armature of 1 kg makes the mass of 1 kg and four times 0.5 kg.
-const ACTING: [[&str; 3]; 6] = [
-    // 8 (q − 0.1) − 2 · 3 (−2 q + 0.3 − 0.5) = 20 (q + 0.02).
-    [
-        "spring = { stiffness = 8.0, rest = { phi = [0.1] } }\ndamping = 0.5\narmature = 0.25",
-        "spring = { stiffness = 3.0, rest = { phi = [0.5] } }\ndamping = 0.2\narmature = 0.5",
-        "spring = { stiffness = 20.0, rest = { phi = [-0.02] } }\ndamping = 1.3\narmature = 3.25",
-    ],
-    [
-        "effort = [\"0.3 * sin(3 * t)\"]",
-        "effort = [\"0.2 * cos(t)\"]",
-        "effort = [\"0.3 * sin(3 * t) - 0.4 * cos(t)\"]\narmature = 1.0",
-    ],
-    [
-        "effort = [\"4 * cos(5 * t)\"]\nlimit = { upper = 0.12, stiffness = 300.0, damping = 0.2 }",
-        "",
-        "effort = [\"4 * cos(5 * t)\"]\nlimit = { upper = 0.12, stiffness = 300.0, damping = 0.2 }\narmature = 1.0",
-    ],
-    // The follower is at 0.1 where its leader is at 0.1.
-    [
-        "effort = [\"4 * cos(5 * t)\"]",
-        "limit = { lower = 0.1, stiffness = 80.0, damping = 0.1 }",
-        "effort = [\"4 * cos(5 * t)\"]\nlimit = { upper = 0.1, stiffness = 320.0, damping = 0.2 }\narmature = 1.0",
-    ],
-    [
-        "effort = [\"4 * cos(5 * t)\"]\nlimit = { lower = -0.5, upper = 0.3, restitution = 0.5 }",
-        "limit = { lower = 0.1, restitution = 0.5 }",
-        "effort = [\"4 * cos(5 * t)\"]\nlimit = { lower = -0.5, upper = 0.1, restitution = 0.5 }\narmature = 1.0",
-    ],
-    [
-        "effort = [\"2 * cos(2 * t)\"]\nfriction = 0.3",
-        "friction = { sliding = 0.2, sticking = 0.4 }",
-        "effort = [\"2 * cos(2 * t)\"]\nfriction = { sliding = 0.7, sticking = 1.1 }\narmature = 1.0",
-    ],
-];
-
-/// What acts at a follower acts at what it follows, times the multiplier; stiffness, damping and inertia times its square.
-#[test]
-fn what_acts_at_a_follower_acts_at_what_it_follows() {
-    const START: &str = "initial = { phi = [0.05], speeds = [0.3] }";
-    for [leader, follower, alone] in ACTING {
-        let coupled = slides(&format!("{START}\n{leader}"), follower);
-        let alone = slide(&format!("{START}\n{alone}"));
-        for form in FORMS {
-            let [method, ..] = fine_methods(1e-3);
-            let samples = times(2.0);
-            let [found, expected] =
-                [&coupled, &alone].map(|scene| run(scene, form, method, &samples));
-            let pairs = found.samples.iter().zip(&expected.samples);
-            let away = pairs.map(|(a, b)| (a.configuration[0] - b.configuration[0]).abs());
-            let away = away.fold(0.0, f64::max);
-            // Steps of both are held to 1e-12, some hundred of them, and impacts part what is near by a factor of ten.
-            assert!(away < 1e-9, "{leader}, {follower}, {form:?}: {away:e}");
-        }
-    }
-}
-
-#[test]
-fn a_prescribed_motion_is_that_of_the_follower_too() {
-    let driven = slides(
-        "motion = { speeds = [{ amplitude = 0.4, frequency = 2.0 }] }",
-        "",
-    );
-    let [method, ..] = fine_methods(1e-3);
-    let found = run(&driven, Form::Lagrangian, method, &times(2.0));
-    let index = driven.mechanism.body_index("b").expect("the follower");
-    for state in &found.samples {
-        let bodies = driven
-            .mechanism
-            .kinematics(&state.configuration, &state.speeds);
-        let bodies = bodies.expect("finite");
-        let twice = -2.0 * state.speeds[0];
-        assert!((bodies.bodies[index].twist[5] - twice).abs() < 1e-15);
-        let place = -2.0 * state.configuration[0] + 0.3;
-        assert!((bodies.bodies[index].pose.translation.z - place).abs() < 1e-15);
-    }
 }
