@@ -101,9 +101,27 @@ impl<const K: usize> Coupled<K> {
         for link in self.upwards() {
             let own = link.axis() * T::from_f64(link.ratio);
             twists.push((link.coordinate, below.act_twist_inverse(&own)));
-            below = link.pose(q[link.coordinate]) * below;
+            // What stands above the last one does not matter.
+            if link.before.is_some() {
+                below = link.pose(q[link.coordinate]) * below;
+            }
         }
         twists
+    }
+
+    /// For each link from this body's upwards, its coordinate and `[a_i, w_i]`, with w_i the twist of what is behind it at v: the rate of a_i.
+    fn twist_rates<T: Scalar>(
+        &self,
+        q: &SVector<T, K>,
+        v: &SVector<T, K>,
+    ) -> Filled<(usize, Vector6<T>)> {
+        let mut rates = Filled::new((0, Vector6::zeros()));
+        let mut behind = Vector6::zeros();
+        for (k, twist) in self.twists(q).as_ref() {
+            rates.push((*k, bracket_product(twist, &behind)));
+            behind += twist * v[*k];
+        }
+        rates
     }
 }
 
@@ -201,9 +219,9 @@ impl<const K: usize> Joint<K, K, K, 0> for Coupled<K> {
     }
 
     fn pose<T: Scalar>(&self, q: &SVector<T, K>) -> Pose<T> {
-        self.upwards().fold(Pose::identity(), |below, link| {
-            link.pose(q[link.coordinate]) * below
-        })
+        let mut poses = self.upwards().map(|link| link.pose(q[link.coordinate]));
+        let own = poses.next().unwrap_or_else(Pose::identity);
+        poses.fold(own, |below, pose| pose * below)
     }
 
     fn twist_map<T: Scalar>(&self, q: &SVector<T, K>) -> SMatrix<T, 6, K> {
@@ -227,6 +245,31 @@ impl<const K: usize> Joint<K, K, K, 0> for Coupled<K> {
             }
         }
         slices
+    }
+
+    fn bias_acceleration<T: Scalar>(
+        &self,
+        q: &SVector<T, K>,
+        speeds: &SVector<T, K>,
+    ) -> SVector<T, 6> {
+        let rates = self.twist_rates(q, speeds);
+        let parts = rates.as_ref().iter();
+        parts.fold(SVector::zeros(), |sum, (k, rate)| sum + rate * speeds[*k])
+    }
+
+    fn bias_momentum<T: Scalar>(
+        &self,
+        q: &SVector<T, K>,
+        speeds: &SVector<T, K>,
+        h: &SVector<T, 6>,
+    ) -> SVector<T, K> {
+        let mut out = SVector::zeros();
+        for (k, rate) in self.twist_rates(q, speeds).as_ref() {
+            for i in 0..6 {
+                out[*k] = rate[i].mul_add(h[i], out[*k]);
+            }
+        }
+        out
     }
 
     fn port_map<T: Scalar>(&self, _q: &SVector<T, K>) -> impl AsRef<[[T; K]]> {

@@ -5,7 +5,7 @@ use crate::joint::Port;
 use crate::scalar::Scalar;
 use crate::shown::Number;
 use crate::spatial::{Pose, PoseError};
-use nalgebra::{Matrix3, Vector3, Vector6};
+use nalgebra::Vector6;
 
 /// Most links of a joint, each with a body.
 pub const MOST_LINKS: usize = 16;
@@ -100,21 +100,28 @@ impl Link {
 
     /// Its child frame in the child frame of what it hangs on.
     pub(super) fn pose<T: Scalar>(&self, q: T) -> Pose<T> {
-        let frame = Pose::new(
+        let y = self.value(q);
+        let mut frame = Pose::new(
             self.frame.rotation.map(T::from_f64),
             self.frame.translation.map(T::from_f64),
         );
-        let (zero, one, y) = (T::zero(), T::one(), self.value(q));
-        frame
-            * match self.motion {
-                LinkMotion::Turn => {
-                    let (sin, cos) = y.sin_cos();
-                    Pose::from_rotation(Matrix3::new(
-                        cos, -sin, zero, sin, cos, zero, zero, zero, one,
-                    ))
+        match self.motion {
+            LinkMotion::Turn => {
+                let (sin, cos) = y.sin_cos();
+                for i in 0..3 {
+                    let [a, b] = [0, 1].map(|j| frame.rotation[(i, j)]);
+                    frame.rotation[(i, 0)] = cos.mul_add(a, sin * b);
+                    frame.rotation[(i, 1)] = cos.mul_add(b, -(sin * a));
                 }
-                LinkMotion::Slide => Pose::from_translation(Vector3::new(zero, zero, y)),
             }
+            LinkMotion::Slide => {
+                for i in 0..3 {
+                    let along = frame.rotation[(i, 2)];
+                    frame.translation[i] = along.mul_add(y, frame.translation[i]);
+                }
+            }
+        }
+        frame
     }
 
     /// Its twist at unit rate of y, in its own child frame.
