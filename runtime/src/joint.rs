@@ -28,6 +28,8 @@
 //! }
 //! ```
 
+#[cfg(feature = "alloc")]
+mod coupled;
 mod patterns;
 mod port;
 mod products;
@@ -38,6 +40,8 @@ mod structure;
 /// Most degrees of freedom of a joint.
 pub const MOST_FREEDOMS: usize = 8;
 
+#[cfg(feature = "alloc")]
+pub use coupled::{Coupled, Link, LinkFault, LinkMotion, MOST_COORDINATES, MOST_LINKS, coupled};
 pub use patterns::{Entry, Patterns};
 pub use port::{Port, PortLaw};
 pub use products::{FirstOrder, Products};
@@ -136,7 +140,22 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     /// Which of them this is the joint of: 0 but for a [`Member`].
     const BODY: usize = 0;
 
-    /// Hands the joint as each further body sees it, a [`Member`], to `visit`, in the order of [`Joint::BODIES`].
+    /// The ports: [`Joint::PORTS`], but of a joint that knows them when it is made.
+    fn ports(&self) -> &'static [Port] {
+        Self::PORTS
+    }
+
+    /// Names of the bodies: [`Joint::BODIES`], but of a joint that knows them when it is made.
+    fn bodies(&self) -> &'static [&'static str] {
+        Self::BODIES
+    }
+
+    /// Which of the bodies this is the joint of: [`Joint::BODY`], but of a joint that knows it when it is made.
+    fn body(&self) -> usize {
+        Self::BODY
+    }
+
+    /// Hands the joint as each further body sees it, a [`Member`], to `visit`, in the order of [`Joint::bodies`].
     fn more(&self, _visit: &mut dyn FnMut(Shared)) {
         const {
             assert!(

@@ -5,7 +5,7 @@ mod common;
 use common::joints;
 use common::random::Random;
 use common::readings::{assert_same, readings};
-use common::several::{arms, between, drifter};
+use common::several::{arms, between, drifter, links};
 use common::trees::{GRAVITY, body, mass, pose};
 use hamel_runtime::dynamics::{
     Dynamics, ForwardDerivatives, Frame, HamiltonianDerivatives, InverseDerivatives, LoadedMass,
@@ -78,8 +78,9 @@ fn pair(
     Pair { joined, apart }
 }
 
-fn pairs() -> [Pair; 2] {
+fn pairs() -> [Pair; 3] {
     [
+        pair(3, links, [joints::revolute, joints::revolute]),
         pair(1, arms, [joints::revolute, joints::revolute]),
         pair(2, drifter, [joints::drift, joints::revolute]),
     ]
@@ -279,7 +280,7 @@ fn equipped(mechanism: Mechanism, has_rotors: bool) -> Mechanism {
 
 #[test]
 fn elements_rotors_and_drives_agree() {
-    for (pair, has_rotors) in pairs().into_iter().zip([true, false]) {
+    for (pair, has_rotors) in pairs().into_iter().zip([true, true, false]) {
         let equipped = pair.map(|own| equipped(own, has_rotors));
         equipped.agree("equipped", all);
         equipped.agree("derivatives, equipped", derivatives);

@@ -77,8 +77,11 @@ impl Held<'_> {
         let known = &self.joint.derived.spec.ports;
         for forces in &self.body.forces.ports {
             let name = &forces.name.value;
-            let mut ports = known.iter();
-            let Some(port) = ports.position(|port| port.value.name == *name) else {
+            let port = match &self.body.joint.coupling {
+                Some(coupling) => coupling.port(name),
+                None => known.iter().position(|port| port.value.name == *name),
+            };
+            let Some(port) = port else {
                 reasons.push(format!(
                     "joint `{joint}`: its type `{kind}` has no port `{name}`"
                 ));

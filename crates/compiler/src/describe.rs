@@ -2,10 +2,14 @@
 
 use super::acting::Held;
 use super::check;
+use super::coupled::{self, Types};
 use super::model::{Body, Coupling, Elements, Model};
 use super::products::JointType;
 use hamel_runtime::elements::{BodySpring, BodyWrench, JointLimit, WrenchAxes};
-use hamel_scene::{BodyDescription, LimitKind, PointSpring, SceneDescription, WrenchDescription};
+use hamel_scene::{
+    BodyDescription, JointDescription, LimitKind, PointSpring, SceneDescription, WrenchDescription,
+};
+use std::cell::RefCell;
 use std::rc::Rc;
 
 /// Why a scene cannot be compiled: one line for each reason.
@@ -29,10 +33,10 @@ impl std::fmt::Display for Refused {
 impl std::error::Error for Refused {}
 
 impl Model {
-    /// The model of a scene; `joints` finds a joint type by its name.
+    /// The model of a scene; `joints` finds a joint type by its name. Couplings of mimic joints are derived here.
     ///
     /// # Errors
-    /// Joint types that are not found, parameters that do not fit them, and what the scene has that the compiler does not write.
+    /// Mimic joints that make no coupling, joint types that are not found, parameters that do not fit them, and what the scene has that the compiler does not write.
     pub fn new(
         scene: &SceneDescription,
         joints: impl Fn(&str) -> Option<Rc<JointType>>,
@@ -41,6 +45,15 @@ impl Model {
             scene: scene.name.clone(),
             reasons,
         };
+        let coupled = scene.coupled().map_err(|errors| {
+            let errors = errors.errors().iter();
+            refused(errors.map(|error| error.message().to_owned()).collect())
+        })?;
+        let mut scene = coupled.into_owned();
+        let types = RefCell::new(Types::default());
+        let joints = |joint: &JointDescription| found(joint, &joints, &types);
+        number(&mut scene);
+        let scene = &scene;
         let mut reasons = check::of_scene(scene);
         if !reasons.is_empty() {
             return Err(refused(reasons));
@@ -54,13 +67,13 @@ impl Model {
                 .enumerate()
                 .filter_map(wrench)
                 .collect(),
-            limits: scene.bodies.iter().enumerate().filter_map(limit).collect(),
+            limits: scene.bodies.iter().enumerate().flat_map(limits).collect(),
             ..Elements::default()
         };
         let mut bodies: Vec<Body> = vec![];
         let mut first = 0;
         for group in scene.bodies.chunk_by(|_, next| !next.leads()) {
-            match of_joint((first, group), &joints, &mut elements) {
+            match of_joint((first, group), joints, &mut elements) {
                 Ok(own) => bodies.extend(own),
                 Err(more) => reasons.extend(more),
             }
@@ -81,21 +94,42 @@ impl Model {
     }
 }
 
+/// Gives couplings the parameters of their specs.
+fn number(scene: &mut SceneDescription) {
+    for body in &mut scene.bodies {
+        if let Some(coupling) = &body.joint.coupling {
+            body.joint.parameters = coupled::spec(coupling).parameters;
+        }
+    }
+}
+
+/// The type of a joint: of its name, or of its links where it is a coupling.
+fn found(
+    joint: &JointDescription,
+    joints: impl Fn(&str) -> Option<Rc<JointType>>,
+    types: &RefCell<Types>,
+) -> Result<Rc<JointType>, String> {
+    let (name, kind) = (&joint.name.value, &joint.kind.value);
+    match &joint.coupling {
+        Some(coupling) => types
+            .borrow_mut()
+            .of(coupling)
+            .map_err(|reason| format!("joint `{name}`: its coupling cannot be derived: {reason}")),
+        None => joints(kind)
+            .ok_or_else(|| format!("joint `{name}`: there is no spec of the joint type `{kind}`")),
+    }
+}
+
 /// The bodies of one joint, and its spring among the elements; `group` are all that the scene gives for it, the first of them with its index.
 fn of_joint(
     (index, group): (usize, &[BodyDescription]),
-    joints: impl Fn(&str) -> Option<Rc<JointType>>,
+    joints: impl Fn(&JointDescription) -> Result<Rc<JointType>, String>,
     elements: &mut Elements,
 ) -> Result<Vec<Body>, Vec<String>> {
     let Some(first) = group.first() else {
         return Ok(vec![]);
     };
-    let (name, kind) = (&first.joint.name.value, &first.joint.kind.value);
-    let joint = joints(kind).ok_or_else(|| {
-        vec![format!(
-            "joint `{name}`: there is no spec of the joint type `{kind}`"
-        )]
-    })?;
+    let joint = joints(&first.joint).map_err(|reason| vec![reason])?;
     check::of_joint(group, &joint.derived).map_err(|reason| vec![reason])?;
     let types = std::iter::once(&joint).chain(&joint.more);
     let bodies = group.iter().zip(types);
@@ -145,18 +179,21 @@ fn wrench((index, wrench): (usize, &WrenchDescription)) -> Option<BodyWrench> {
 }
 
 /// Stops that give way; impacts are no part of the equations.
-fn limit((index, body): (usize, &BodyDescription)) -> Option<JointLimit> {
-    let limit = body.forces.limit.as_ref()?.value;
-    let LimitKind::Compliant { stiffness, damping } = limit.kind else {
-        return None;
-    };
-    Some(JointLimit {
-        name: format!("limit of joint `{}`", body.joint.name.value),
-        body: index,
-        lower: limit.lower,
-        upper: limit.upper,
-        stiffness,
-        damping,
+fn limits((index, body): (usize, &BodyDescription)) -> impl Iterator<Item = JointLimit> {
+    let forces = &body.forces;
+    let all = forces.limit.iter().chain(&forces.further_limits);
+    all.filter_map(move |limit| {
+        let LimitKind::Compliant { stiffness, damping } = limit.value.kind else {
+            return None;
+        };
+        Some(JointLimit {
+            name: format!("limit of joint `{}`", body.joint.name.value),
+            body: index,
+            lower: limit.value.lower,
+            upper: limit.value.upper,
+            stiffness,
+            damping,
+        })
     })
 }
 

@@ -1,5 +1,6 @@
 //! The kernels of one joint of a scene, on the graph.
 
+use super::chain::Chain;
 use super::graph::{Sym, call, call_two, primitive, sin_cos};
 use super::products::{JointType, Product};
 use super::spatial::{Mat3, Step, Twist, Vec3, Wrench, simplified};
@@ -13,6 +14,15 @@ use std::collections::BTreeMap;
 pub struct Joint<'a> {
     joint: &'a JointType,
     values: BTreeMap<Symbol, Sym>,
+    /// Where the body hangs on other links of its joint, these.
+    chain: Option<Chained<'a>>,
+}
+
+/// The links that a body hangs on, at one state.
+struct Chained<'a> {
+    links: &'a Chain,
+    q: Vec<Sym>,
+    speeds: Vec<Sym>,
 }
 
 impl<'a> Joint<'a> {
@@ -31,7 +41,18 @@ impl<'a> Joint<'a> {
                 .zip(q.iter().copied()),
         );
         values.extend(arguments.speeds.iter().cloned().zip(speeds.iter().copied()));
-        Self { joint, values }
+        let chain = joint.chain.as_ref().map(|links| Chained {
+            links,
+            q: q.to_vec(),
+            speeds: speeds.to_vec(),
+        });
+        // Home is asked for without Q.
+        let chain = chain.filter(|_| q.len() == derived.shape.configuration);
+        Self {
+            joint,
+            values,
+            chain,
+        }
     }
 
     /// The stored scalars of the home configuration.
@@ -41,6 +62,9 @@ impl<'a> Joint<'a> {
 
     /// H(Q), from child to parent.
     pub fn pose(&self) -> Vec<Step> {
+        if let Some(Chained { links, q, .. }) = &self.chain {
+            return links.pose(q);
+        }
         let entries = self.entries(KernelKind::Pose);
         let Some((rotation, translation)) = entries.split_at_checked(9) else {
             return vec![];
@@ -54,12 +78,18 @@ impl<'a> Joint<'a> {
 
     /// The rotation of H(Q).
     pub fn rotation(&self) -> Mat3 {
+        if let Some(Chained { links, q, .. }) = &self.chain {
+            return links.rotation(q);
+        }
         let entries = self.entries(KernelKind::Pose);
         Mat3::from_fn(|i, j| entries.get(3 * i + j).copied().unwrap_or(Sym::Number(0.0)))
     }
 
     /// The columns of X^c.
     pub fn freedoms(&self) -> Vec<Twist> {
+        if let Some(Chained { links, q, .. }) = &self.chain {
+            return links.twists(q);
+        }
         let entries = self.entries(KernelKind::TwistMapChild);
         columns(&entries, self.joint.derived.shape.freedoms)
     }
@@ -81,12 +111,18 @@ impl<'a> Joint<'a> {
 
     /// `c = Ẋ̄^c v̄`.
     pub fn bias_acceleration(&self) -> Twist {
+        if let Some(Chained { links, q, speeds }) = &self.chain {
+            return links.bias(q, speeds);
+        }
         let entries = self.entries(KernelKind::BiasAcceleration);
         columns(&entries, 1).pop().unwrap_or_else(Twist::zero)
     }
 
     /// The columns of X.
     pub fn freedoms_in_parent(&self) -> Vec<Twist> {
+        if let Some(Chained { links, q, .. }) = &self.chain {
+            return links.twists_in_parent(q);
+        }
         let entries = self.entries(KernelKind::TwistMap);
         columns(&entries, self.joint.derived.shape.freedoms)
     }
@@ -101,12 +137,18 @@ impl<'a> Joint<'a> {
 
     /// The columns of X^c S₀: ϕ̇ to the twist in the child frame.
     pub fn local_twist_map(&self) -> Vec<Twist> {
+        if let Some(Chained { links, q, .. }) = &self.chain {
+            return links.twists(q);
+        }
         let entries = self.product(&self.joint.products.local_twist_map, &[]);
         columns(&entries, self.joint.derived.shape.freedoms)
     }
 
     /// ∂(X̄^c x)/∂ϕ, one column per degree of freedom.
     pub fn twist_gradient(&self, x: &[Sym]) -> Vec<Twist> {
+        if let Some(Chained { links, q, .. }) = &self.chain {
+            return links.gradient(q, x);
+        }
         let given = [(self.joint.derived.arguments.speeds.as_slice(), x)];
         let entries = self.product(&self.joint.products.twist_gradient, &given);
         columns(&entries, self.joint.derived.shape.freedoms)
@@ -114,18 +156,27 @@ impl<'a> Joint<'a> {
 
     /// ∂c/∂ϕ, one column per degree of freedom.
     pub fn bias_gradient(&self) -> Vec<Twist> {
+        if let Some(Chained { links, q, speeds }) = &self.chain {
+            return links.bias_gradient(q, speeds);
+        }
         let entries = self.product(&self.joint.products.bias_acceleration_gradient, &[]);
         columns(&entries, self.joint.derived.shape.freedoms)
     }
 
     /// ∂c/∂v̄, one column per speed.
     pub fn bias_slope(&self) -> Vec<Twist> {
+        if let Some(Chained { links, q, speeds }) = &self.chain {
+            return links.bias_slope(q, speeds);
+        }
         let entries = self.product(&self.joint.products.bias_acceleration_slope, &[]);
         columns(&entries, self.joint.derived.shape.speeds)
     }
 
     /// ∂(X̄^cᵀ h)/∂ϕ by rows, one per speed; none where X̄^c is constant.
     pub fn effort_gradient(&self, wrench: &Wrench) -> Vec<Vec<Sym>> {
+        if let Some(Chained { links, q, .. }) = &self.chain {
+            return links.effort_gradient(q, wrench);
+        }
         let parts = parts_of(wrench);
         let given = [(self.joint.derived.arguments.wrench.as_slice(), &parts[..])];
         let entries = self.product(&self.joint.products.effort_gradient, &given);
@@ -199,6 +250,9 @@ impl<'a> Joint<'a> {
 
     /// `Ẋ̄^cᵀ h` at v̄.
     pub fn bias_momentum(&self, momentum: &Wrench) -> Vec<Sym> {
+        if let Some(Chained { links, q, speeds }) = &self.chain {
+            return links.bias_momentum(q, speeds, momentum);
+        }
         let parts = parts_of(momentum);
         let given = [(self.joint.derived.arguments.wrench.as_slice(), &parts[..])];
         self.entries_with(KernelKind::BiasMomentum, &given)

@@ -24,8 +24,10 @@
 mod acting;
 pub mod alike;
 mod build;
+mod chain;
 mod check;
 mod couple;
+mod coupled;
 mod describe;
 pub mod emit;
 pub mod equations;

@@ -3,6 +3,7 @@
 //!
 //! The runtime forms the same products in numbers: `hamel_runtime::joint::Products`.
 
+use super::chain::Chain;
 use hamel_codegen::WORK_LIMIT;
 use hamel_codegen::derived::{Derived, KernelKind, Step, Word};
 use hamel_codegen::expr::budget::{self, Exhausted};
@@ -35,6 +36,8 @@ pub struct JointType {
     pub products: Products,
     /// The joint as each further body sees it, of the first.
     pub more: Vec<Rc<JointType>>,
+    /// What the body hangs on within the joint, of a coupling of mimic joints.
+    pub(crate) chain: Option<Chain>,
 }
 
 impl JointType {
@@ -49,7 +52,17 @@ impl JointType {
             more: more.collect::<Result<_, _>>()?,
             products: Products::new(&derived)?,
             derived,
+            chain: None,
         })
+    }
+
+    /// Lets the body hang on other links of its coupling.
+    pub(crate) fn hang(&mut self, chain: Option<Chain>) {
+        // What it does not feel is not known then.
+        if chain.is_some() {
+            self.derived.unidentifiable.clear();
+        }
+        self.chain = chain;
     }
 
     /// The formulas of one of its products, in its own names.

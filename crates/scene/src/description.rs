@@ -1,6 +1,7 @@
 //! What a scene file says, checked as far as that goes without knowing the joints.
 
 use crate::control::ControllerDescription;
+use crate::coupling::Coupling;
 use crate::event::EventDescription;
 use crate::forces::{
     ConstraintDescription, FrameDescription, JointForces, PointSpring, WrenchDescription,
@@ -20,7 +21,7 @@ pub struct SceneDescription {
     pub description: String,
     /// Acceleration of gravity in world axes, m/s².
     pub gravity: Vector3<f64>,
-    /// The bodies, each after its parent.
+    /// The bodies, each after its parent; those that mimic joints couple follow each other.
     pub bodies: Vec<BodyDescription>,
     /// Named frames.
     pub frames: Vec<FrameDescription>,
@@ -92,6 +93,19 @@ pub struct BodyDescription {
     pub initial: InitialDescription,
     /// What acts at the joint.
     pub forces: JointForces,
+    /// The joint that it follows, if it follows one.
+    pub mimic: Option<Located<MimicDescription>>,
+}
+
+/// What a joint follows: its angle or displacement is `multiplier · y + offset`, with the y of another joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MimicDescription {
+    /// Name of the other joint.
+    pub joint: Located<String>,
+    /// Not 0.
+    pub multiplier: f64,
+    /// rad or m.
+    pub offset: f64,
 }
 
 /// One of several bodies of a joint. They follow each other, in the order of the file.
@@ -119,6 +133,8 @@ pub struct JointDescription {
     pub kind: Located<String>,
     /// Parameters of the type, in the order of the file.
     pub parameters: Vec<(Located<String>, f64)>,
+    /// What [`SceneDescription::coupled`] has made one joint; no type of the registry then.
+    pub coupling: Option<Coupling>,
     /// Where the joint stands in the file.
     pub span: Span,
 }

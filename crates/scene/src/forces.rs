@@ -23,6 +23,8 @@ pub struct JointForces {
     pub friction: Option<Located<FrictionDescription>>,
     /// Where the joint's range ends.
     pub limit: Option<Located<LimitDescription>>,
+    /// Stops that give way at other joints of its coupling.
+    pub further_limits: Vec<Located<LimitDescription>>,
     /// What acts at its ports.
     pub ports: Vec<PortForces>,
 }

@@ -9,6 +9,7 @@
 mod build;
 mod choose;
 mod control;
+mod coupling;
 mod description;
 mod diagnostics;
 mod event;
@@ -32,9 +33,10 @@ pub use control::{
     Control, ControllerDescription, GoalDescription, LawDescription, PortDescription,
     ReferenceDescription, RegulatorDescription,
 };
+pub use coupling::Coupling;
 pub use description::{
-    BodyDescription, InitialDescription, JointDescription, Motion, Part, PortRate, Position,
-    SceneDescription, TwistDescription, TwistFrame,
+    BodyDescription, InitialDescription, JointDescription, MimicDescription, Motion, Part,
+    PortRate, Position, SceneDescription, TwistDescription, TwistFrame,
 };
 pub use diagnostics::{Diagnostic, Diagnostics};
 pub use event::{EventDescription, PointAlong, Quantity, QuantityDescription, SceneEvent};

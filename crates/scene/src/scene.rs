@@ -67,7 +67,7 @@ pub struct Scene {
     pub name: String,
     /// What the scene shows; may be empty.
     pub description: String,
-    /// The mechanism, with its named frames. Its bodies stand in the order of the file, except that parents come first.
+    /// The mechanism, with its named frames. Its bodies stand in the order of the file, except that parents come first and that those of a joint follow each other.
     pub mechanism: Arc<Mechanism>,
     /// Configurations Q of all joints at time 0, one joint after the other.
     pub configuration: Vec<f64>,
@@ -155,13 +155,14 @@ impl SceneDescription {
     /// Unknown joint types or parameters, initial states that a joint cannot take, and whatever the mechanism refuses; all
     /// at once.
     pub fn build(&self, registry: &JointRegistry) -> Result<Scene, Diagnostics> {
+        let coupled = self.coupled()?;
         let mut sink = Sink::default();
-        let states = build::states(&self.bodies, registry, &mut sink);
-        let scene = states.and_then(|states| build::scene(self, states, &mut sink));
+        let states = build::states(&coupled.bodies, registry, &mut sink);
+        let scene = states.and_then(|states| build::scene(&coupled, states, &mut sink));
         scene.ok_or_else(|| self.refuse(sink))
     }
 
-    fn refuse(&self, sink: Sink) -> Diagnostics {
+    pub(crate) fn refuse(&self, sink: Sink) -> Diagnostics {
         sink.refuse(&self.source.name, &self.source.text, INCOMPLETE)
     }
 }
@@ -213,7 +214,7 @@ pub(crate) fn stem(source_name: &str) -> String {
 
 /// The bodies in the order of the tree; `None` if a part of one could not be read.
 fn complete(mut draft: Draft) -> Option<(Draft, Vec<BodyDescription>)> {
-    let Tree { order, parents } = draft.tree.take()?;
+    let Tree { order, parents, .. } = draft.tree.take()?;
     let mut drafts: Vec<Option<BodyDraft>> = draft.bodies.drain(..).map(Some).collect();
     let bodies = order.iter().zip(parents).map(|(&place, parent)| {
         let body = drafts.get_mut(place)?.take()?;
@@ -227,6 +228,7 @@ fn complete(mut draft: Draft) -> Option<(Draft, Vec<BodyDescription>)> {
             body_at: body.body_at,
             initial: body.initial?,
             forces: body.forces?,
+            mimic: body.mimic,
         })
     });
     let bodies: Option<Vec<_>> = bodies.collect();

@@ -143,3 +143,27 @@ fn mutilated_text_is_refused_in_order() {
         }
     }
 }
+
+#[test]
+fn bodies_of_a_coupling_follow_each_other() {
+    let mimic = "mimic = { joint = \"left\", multiplier = -1.0 }";
+    let bodies =
+        body("left", "world", "") + &body("between", "left", "") + &body("right", "world", mimic);
+    let mut scene = read(&bodies.replace("\"any\"", "\"revolute\""));
+    let names = |scene: &SceneDescription| -> Vec<String> {
+        let bodies = scene.bodies.iter();
+        bodies.map(|body| body.name.value.clone()).collect()
+    };
+    assert_eq!(names(&scene), ["left", "right", "between"]);
+    let coupled = scene.coupled().expect("a coupling");
+    let parts: Vec<bool> = coupled
+        .bodies
+        .iter()
+        .map(|body| body.part.is_some())
+        .collect();
+    assert_eq!(parts, [true, true, false]);
+    scene.bodies.swap(1, 2);
+    let told = scene.coupled().expect_err("bodies apart").to_string();
+    let wanted = "body `right`: it does not follow the other bodies of its coupling";
+    assert!(told.contains(wanted), "{told}");
+}

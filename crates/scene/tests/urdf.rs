@@ -212,7 +212,7 @@ fn limits_of_position_are_compliant_ones_where_that_is_asked_for() {
 fn what_is_not_simulated_is_told_and_kept() {
     let inside = "<axis xyz=\"0 0 1\"/><limit lower=\"-1\" upper=\"2\" effort=\"3\" velocity=\"4\" current=\"5\"/>\
                   <dynamics damping=\"0.1\" friction=\"0.2\"/><safety_controller k_velocity=\"1\"/>\
-                  <calibration rising=\"0\"/><mimic joint=\"other\" multiplier=\"-1\"/>";
+                  <calibration rising=\"0\"/>";
     let more = format!(
         "<link name=\"hand\">{INERTIAL}<visual><geometry><mesh filename=\"hand.dae\"/></geometry></visual></link><joint name=\"other\" type=\"planar\"><parent link=\"arm\"/>\
          <child link=\"hand\"/><axis xyz=\"0 0 1\"/></joint><transmission name=\"t\"/><gear/>"
@@ -220,7 +220,6 @@ fn what_is_not_simulated_is_told_and_kept() {
     let import = robot("revolute", inside, &more);
     let wanted = [
         "warning: limits of position are not simulated: the joint moves past them: joint `joint`",
-        "warning: mimic joints are not coupled: the joint moves by itself: joint `joint`",
         "note: attributes `current` of <limit> are not read: joint `joint`",
         "note: transmissions are not simulated: transmission `t`",
         "note: elements <gear> in <robot> are not read: gear 1",
@@ -236,11 +235,6 @@ fn what_is_not_simulated_is_told_and_kept() {
     assert_eq!(
         (limits.position, limits.velocity, limits.effort),
         (Some([-1.0, 2.0]), Some(4.0), Some(3.0))
-    );
-    let mimic = facts.mimic.as_ref().expect("a mimic joint");
-    assert_eq!(
-        (mimic.joint.as_str(), mimic.multiplier, mimic.offset),
-        ("other", -1.0, 0.0)
     );
     let damping = arm(&import)
         .forces
@@ -318,11 +312,45 @@ fn simple_visual_shapes_are_kept_for_pictures() {
     assert_eq!(again.shapes, import.scene.shapes);
 }
 
+/// Several independent joints in one coupling.
 #[test]
-fn a_mimic_joint_that_follows_nothing_is_told() {
-    let inside = "<axis xyz=\"0 0 1\"/><mimic joint=\"absent\"/>";
-    let told = "warning: mimic joints follow no other joint of the robot: the joint moves by itself: joint `joint`";
-    assert_eq!(notices(&robot("revolute", inside, "")), [told]);
+fn what_a_coupling_cannot_have_is_told() {
+    let joint = |name: &str, parent: &str, inside: &str| {
+        format!(
+            "<link name=\"of_{name}\">{INERTIAL}</link><joint name=\"{name}\" type=\"revolute\"><parent link=\"{parent}\"/>\
+             <child link=\"of_{name}\"/><axis xyz=\"0 0 1\"/>{inside}</joint>"
+        )
+    };
+    let free = joint("between", "base", "<dynamics friction=\"0.5\"/>");
+    let follower = joint(
+        "end",
+        "of_between",
+        "<mimic joint=\"joint\" multiplier=\"-2\" offset=\"0.5\"/>",
+    );
+    let import = robot("revolute", "<axis xyz=\"0 0 1\"/>", &(free + &follower));
+    let told = "warning: dry friction is not simulated of joints that mimic couples with several independent ones: joint `between`";
+    assert_eq!(notices(&import), [told]);
+    let mimics = import
+        .scene
+        .bodies
+        .iter()
+        .filter_map(|body| body.mimic.as_ref());
+    let mimics: Vec<_> = mimics.collect();
+    let [mimic] = mimics.as_slice() else {
+        panic!("{mimics:?}")
+    };
+    let found = &mimic.value;
+    assert_eq!(
+        (found.joint.value.as_str(), found.multiplier, found.offset),
+        ("joint", -2.0, 0.5)
+    );
+    let coupled = import.scene.coupled().expect("a coupling");
+    let names: Vec<&str> = coupled
+        .bodies
+        .iter()
+        .map(|body| body.joint.name.value.as_str())
+        .collect();
+    assert_eq!(names, ["joint+between"; 3]);
 }
 
 #[test]

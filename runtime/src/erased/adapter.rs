@@ -52,11 +52,11 @@ where
     }
 
     fn bodies(&self) -> &'static [&'static str] {
-        J::BODIES
+        self.0.bodies()
     }
 
     fn body(&self) -> usize {
-        J::BODY
+        self.0.body()
     }
 
     fn more(&self) -> Vec<Shared> {
@@ -82,7 +82,7 @@ where
     }
 
     fn ports(&self) -> &'static [Port] {
-        J::PORTS
+        self.0.ports()
     }
 
     fn freedoms(&self) -> &'static [&'static str] {
@@ -184,7 +184,7 @@ where
     fn relation_port(&self, q: &[T], relation: usize, port: usize) -> T {
         let q = vector(q);
         let rates = self.0.relation_ports(&q);
-        let mut of_relation = rates.as_ref().chunks_exact(J::PORTS.len().max(1));
+        let mut of_relation = rates.as_ref().chunks_exact(self.0.ports().len().max(1));
         let own = of_relation.nth(relation);
         own.and_then(|own| own.get(port).copied()).unwrap_or(nan())
     }

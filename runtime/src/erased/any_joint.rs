@@ -29,9 +29,9 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     fn name(&self) -> &'static str;
     /// N, K, S and C.
     fn layout(&self) -> Layout;
-    /// Names of the bodies that the joint carries, [`Joint::BODIES`].
+    /// Names of the bodies that the joint carries, [`Joint::bodies`].
     fn bodies(&self) -> &'static [&'static str];
-    /// Which of them this is the joint of, [`Joint::BODY`].
+    /// Which of them this is the joint of, [`Joint::body`].
     fn body(&self) -> usize;
     /// The joint as each further body sees it, [`Joint::more`].
     fn more(&self) -> Vec<Shared>;
@@ -43,7 +43,7 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     fn coordinates(&self) -> &'static [&'static str];
     /// The declared relations, [`Joint::RELATIONS`].
     fn relations(&self) -> &'static [&'static str];
-    /// The ports, [`Joint::PORTS`].
+    /// The ports, [`Joint::ports`].
     fn ports(&self) -> &'static [Port];
     /// Names of the degrees of freedom.
     fn freedoms(&self) -> &'static [&'static str];

@@ -3,7 +3,7 @@
 use crate::scalar::Scalar;
 
 /// A coordinate y(Q) of a joint: the angle of a motor inside a linkage. Its rate is w = P v, with its row of P(Q).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Port {
     /// Its name, unique in its joint.
     pub name: &'static str,

@@ -3,7 +3,7 @@
 
 use super::derived::{Declared, DeclaredSecond, Derived, twists_of_rates};
 use hamel_runtime::erased::{AnyJoint, Shared, erase};
-use hamel_runtime::joint::{Member, VelocityFrame, from_rows};
+use hamel_runtime::joint::{Link, LinkMotion, Member, Port, VelocityFrame, coupled, from_rows};
 use hamel_runtime::scalar::Scalar;
 use hamel_runtime::spatial::{Pose, so3};
 use nalgebra::{SMatrix, SVector, Vector3};
@@ -25,6 +25,32 @@ pub fn arms() -> Arc<dyn AnyJoint> {
 /// [`joints::drift`](super::joints::drift), and a turn in series with it.
 pub fn drifter() -> Arc<dyn AnyJoint> {
     erase(Derived(Drifter))
+}
+
+/// [`Arms`] as links of a coupling that both move by themselves.
+pub fn links() -> Arc<dyn AnyJoint> {
+    let link = |number: usize| Link {
+        before: number.checked_sub(1),
+        frame: if number == 0 {
+            Pose::identity()
+        } else {
+            between()
+        },
+        motion: LinkMotion::Turn,
+        coordinate: number,
+        ratio: 1.0,
+        offset: 0.0,
+    };
+    const PORTS: [Port; 2] = [port("first"), port("second")];
+    coupled(&[link(0), link(1)], &PORTS).expect("links of a joint")
+}
+
+const fn port(name: &'static str) -> Port {
+    Port {
+        name,
+        unit: "rad",
+        wraps: false,
+    }
 }
 
 /// Where the second joint of a pair stands in the child frame of the first.

@@ -58,7 +58,7 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
         let map = self.joint.port_map(&self.q);
         let here = self.joint.port_values(&self.q);
         let sizes = [map.as_ref().len(), here.as_ref().len()];
-        assert_eq!(sizes, [J::PORTS.len(); 2], "{}: ports", J::NAME);
+        assert_eq!(sizes, [self.joint.ports().len(); 2], "{}: ports", J::NAME);
         for k in 0..K {
             let moved = self.along(&unit(k));
             let values = self.joint.port_values(&moved);

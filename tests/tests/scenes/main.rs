@@ -10,6 +10,7 @@ mod fuzz_scenes;
 mod limits;
 mod linkages;
 mod methods;
+mod mimic;
 mod motions;
 mod orthonormality;
 mod pieces;

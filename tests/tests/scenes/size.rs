@@ -23,7 +23,7 @@ struct Family {
     read: fn(&str, &JointRegistry) -> Result<(), Diagnostics>,
 }
 
-const FAMILIES: [Family; 20] = [
+const FAMILIES: [Family; 21] = [
     accepted("bodies in a chain", |n| scene(n, |i| format!("b{i}"), "")),
     accepted("bodies on the world", |n| {
         repeated(HEAD, n, |i| body(&format!("b{i}"), "world", ""))
@@ -125,10 +125,10 @@ const FAMILIES: [Family; 20] = [
         |_| 0,
         |n| robot_of(n, |_| String::new()),
     ),
-    // Each follows the last joint, and has the last colour.
+    // Each follows the last joint, which follows itself, and has the last colour.
     robot(
         "joints that follow others, and materials",
-        |_| 0,
+        |_| 1,
         |n| {
             let material =
                 |i: usize| format!("<material name=\"m{i}\"><color rgba=\"1 0 0 1\"/></material>");
@@ -139,6 +139,17 @@ const FAMILIES: [Family; 20] = [
                     &format!("<material name=\"m{}\"/><geometry>", n - 1),
                 )
                 .replace("</robot>", &(materials + "</robot>"))
+        },
+    ),
+    // Every other one follows the one before it.
+    robot(
+        "couplings of two",
+        |_| 0,
+        |n| {
+            robot_of(n, |i| match i % 2 {
+                0 => String::new(),
+                _ => format!("<mimic joint=\"j{}\"/>", i - 1),
+            })
         },
     ),
     robot(

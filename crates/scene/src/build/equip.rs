@@ -123,9 +123,10 @@ fn at_joint(
     for (port, forces) in &acting.ports {
         at_port((body, *port), joint, forces, elements);
     }
-    if let Some(limit) = &acting.limit
-        && let LimitKind::Compliant { stiffness, damping } = limit.kind
-    {
+    for limit in acting.limit.iter().chain(&acting.further_limits) {
+        let LimitKind::Compliant { stiffness, damping } = limit.kind else {
+            continue;
+        };
         elements.push(Arc::new(JointLimit {
             name: format!("limit of joint `{joint}`"),
             body,

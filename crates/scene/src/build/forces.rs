@@ -32,6 +32,8 @@ pub(crate) struct Acting {
     pub(crate) friction: Option<FrictionDescription>,
     /// Ends of the joint's range.
     pub(crate) limit: Option<LimitDescription>,
+    /// Stops that give way at other joints of its coupling.
+    pub(crate) further_limits: Vec<LimitDescription>,
     /// What acts at its ports, by their indices.
     pub(crate) ports: Vec<(usize, PortForces)>,
 }
@@ -70,6 +72,7 @@ pub(super) fn acting(
     let motion = motion(stand, initial, forces.motion.as_ref());
     let friction = of_one_coordinate(stand, "friction", forces.friction.as_ref());
     let limit = of_one_coordinate(stand, "a limit", forces.limit.as_ref());
+    let further = forces.further_limits.iter().map(|own| own.value);
     let ports = forces.ports.iter().filter_map(|own| {
         let port = stand.port(&own.name).map_err(&mut noted).ok()?;
         Some((port, own.clone()))
@@ -83,6 +86,7 @@ pub(super) fn acting(
         motion: motion.map_err(&mut noted).unwrap_or_default(),
         friction: friction.map_err(&mut noted).unwrap_or_default(),
         limit: limit.map_err(&mut noted).unwrap_or_default(),
+        further_limits: further.collect(),
         ports,
     };
     (sink.len() == errors_before).then_some(acting)

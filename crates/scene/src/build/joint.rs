@@ -5,15 +5,23 @@ use crate::diagnostics::Diagnostic;
 use crate::read::Sink;
 use crate::suggest::{all_of, nearest};
 use hamel_runtime::erased::AnyJoint;
+use hamel_runtime::joint::LinkFault;
 use hamel_runtime::registry::{JointEntry, JointRegistry};
 use std::sync::Arc;
 
-/// Builds the joint.
+/// Builds the joint: of its type, or of its links where it is a coupling.
 pub(super) fn joint(
     description: &JointDescription,
     registry: &JointRegistry,
     sink: &mut Sink,
 ) -> Option<Arc<dyn AnyJoint>> {
+    if let Some(coupling) = &description.coupling {
+        let refuse = |error: LinkFault| {
+            let message = format!("joint `{}`: {error}", description.name.value);
+            sink.push(Diagnostic::new(description.span.clone(), message));
+        };
+        return coupling.joint().map_err(refuse).ok();
+    }
     let Some(entry) = registry.get(&description.kind.value) else {
         sink.push(unknown_type(description, registry));
         return None;

@@ -1,7 +1,7 @@
 //! One `[[body]]`: a body and its joint, or a joint and the bodies that it carries.
 
 use super::{BodyDraft, elastic, forces, initial, joint, mass, placement};
-use crate::description::Part;
+use crate::description::{MimicDescription, Part};
 use crate::diagnostics::Diagnostic;
 use crate::read::{Fields, Sink, Value};
 use crate::source::Located;
@@ -53,6 +53,8 @@ fn parts(mut fields: Fields<'_>, value: &Value<'_>, sink: &mut Sink) -> Vec<Body
             initial: initial.take().unwrap_or_else(|| Some(Default::default())),
             forces: forces.take().unwrap_or_else(|| Some(Default::default())),
             elastic: None,
+            motor: None,
+            mimic: None,
             part: Some(Part { name: key, number }),
         });
         own.finish(sink);
@@ -86,11 +88,34 @@ fn body(mut fields: Fields<'_>, sink: &mut Sink) -> BodyDraft {
         elastic: fields
             .optional("elastic")
             .and_then(|value| elastic::elastic(&value, sink)),
+        motor: None,
+        mimic: fields
+            .optional("mimic")
+            .and_then(|value| mimic(&value, sink)),
         part: None,
         name,
     };
     fields.finish(sink);
     draft
+}
+
+/// What the joint follows.
+fn mimic(value: &Value<'_>, sink: &mut Sink) -> Option<Located<MimicDescription>> {
+    let mut fields = value.table(sink)?;
+    let joint = fields.required("joint", sink);
+    let joint = joint.and_then(|joint| joint.text(sink));
+    let mut number = |key, default| match fields.optional(key) {
+        Some(value) => value.number(sink).map(|number| number.value),
+        None => Some(default),
+    };
+    let (multiplier, offset) = (number("multiplier", 1.0), number("offset", 0.0));
+    fields.finish(sink);
+    let mimic = MimicDescription {
+        joint: joint?,
+        multiplier: multiplier?,
+        offset: offset?,
+    };
+    Some(Located::new(mimic, value.span()))
 }
 
 fn name(fields: &mut Fields<'_>, sink: &mut Sink) -> Option<Located<String>> {

@@ -91,6 +91,7 @@ fn motor(draft: &mut BodyDraft, elastic: &Located<Elastic>, sink: &mut Sink) -> 
         ("spring", forces.spring.is_some()),
         ("limit", forces.limit.is_some()),
         ("armature", forces.armature.is_some()),
+        ("mimic", draft.mimic.is_some()),
     ];
     for (key, _) in taken.into_iter().filter(|(_, is_given)| *is_given) {
         let message = format!(
@@ -122,9 +123,12 @@ fn motor(draft: &mut BodyDraft, elastic: &Located<Elastic>, sink: &mut Sink) -> 
         }),
         forces: Some(forces),
         elastic: None,
+        motor: None,
+        mimic: None,
         part: None,
         name: Some(name),
     };
+    draft.motor = motor.name.as_ref().map(|name| name.value.clone());
     draft.forces = Some(behind(&elastic.value, span));
     Some(motor)
 }

@@ -26,6 +26,7 @@ pub(super) fn joint(
         name: name?,
         kind: kind?,
         parameters,
+        coupling: None,
         span: joint.span(),
     })
 }

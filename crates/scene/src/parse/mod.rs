@@ -21,7 +21,8 @@ pub(crate) use body::WORLD;
 pub(crate) use tree::{cycles, order};
 
 use crate::control::ControllerDescription;
-use crate::description::{InitialDescription, JointDescription, Part};
+use crate::coupling::{Group, Movement, Node};
+use crate::description::{InitialDescription, JointDescription, MimicDescription, Part};
 use crate::diagnostics::Diagnostic;
 use crate::forces::JointForces;
 use crate::read::{Fields, Sink};
@@ -32,6 +33,7 @@ use elastic::Elastic;
 use elements::Elements;
 use hamel_runtime::spatial::{MassProperties, Pose};
 use nalgebra::Vector3;
+use std::collections::HashSet;
 use toml::Spanned;
 use toml::de::DeTable;
 
@@ -67,6 +69,10 @@ pub(crate) struct BodyDraft {
     pub(crate) forces: Option<JointForces>,
     /// The motor behind a spring, until the body is made two.
     pub(crate) elastic: Option<Located<Elastic>>,
+    /// The motor that it has become two with.
+    pub(crate) motor: Option<String>,
+    /// What its joint follows.
+    pub(crate) mimic: Option<Located<MimicDescription>>,
 }
 
 impl BodyDraft {
@@ -74,15 +80,33 @@ impl BodyDraft {
     pub(crate) fn leads(&self) -> bool {
         self.part.as_ref().is_none_or(|part| part.number == 0)
     }
+
+    /// As couplings look at it, with its parent as a place in the file.
+    fn node(&self, parent: Option<usize>) -> Node<'_> {
+        let joint = self.joint.as_ref();
+        let kind = joint.map_or("", |joint| &joint.kind.value);
+        Node {
+            joint: joint.map(|joint| &joint.name).filter(|_| self.leads()),
+            parent,
+            movement: match self.part {
+                None => Movement::of(kind),
+                Some(_) => Movement::Other(kind),
+            },
+            mimic: self.mimic.as_ref(),
+            motor: self.motor.as_deref(),
+        }
+    }
 }
 
 /// The bodies as a tree.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug)]
 pub(crate) struct Tree {
     /// Places in the file, parents first.
     pub(crate) order: Vec<usize>,
     /// Parent of each body of `order`, as a place in `order`.
     pub(crate) parents: Vec<Option<usize>>,
+    /// The bodies, as places in the file, that mimic joints couple.
+    pub(crate) groups: Vec<Group>,
 }
 
 /// Reads a scene. With syntax errors in it the text is not read further: what they swallow would mislead.
@@ -113,13 +137,17 @@ fn table<'a>(text: &'a str, sink: &mut Sink) -> Option<Spanned<DeTable<'a>>> {
     Some(root)
 }
 
-/// The joints of bodies; `None` where some could not be read, which may be the ones that are spoken of.
-fn joints(bodies: &[BodyDraft]) -> Option<Joints<'_>> {
-    let joints = bodies.iter().filter(|body| body.leads());
-    let joints = joints.map(|body| body.joint.as_ref());
-    joints
-        .map(|joint| Some(joint?.name.value.as_str()))
-        .collect()
+/// The joints of bodies, a coupling as one; `None` where some could not be read, which may be the ones that are spoken of.
+fn joints(bodies: &[BodyDraft], groups: &[Group]) -> Option<Vec<String>> {
+    let coupled = groups.iter().flat_map(|group| &group.members);
+    let coupled: HashSet<usize> = coupled.map(|(place, _)| *place).collect();
+    let own = bodies.iter().enumerate();
+    let own = own.filter(|(place, body)| body.leads() && !coupled.contains(place));
+    let name = |body: &BodyDraft| Some(body.joint.as_ref()?.name.value.clone());
+    let mut names: Vec<String> = own.map(|(_, body)| name(body)).collect::<Option<_>>()?;
+    let joined = groups.iter();
+    names.extend(joined.map(|group| group.name(|place| name(&bodies[place]).unwrap_or_default())));
+    Some(names)
 }
 
 /// Reads a file that holds a controller and nothing else.
@@ -147,7 +175,10 @@ fn scene(fields: &mut Fields<'_>, sink: &mut Sink) -> Draft {
     let gravity = gravity(fields, sink);
     let bodies = elastic::expand(bodies(fields, sink), sink);
     let tree = tree::tree(&bodies, sink);
-    let joints = joints(&bodies);
+    let groups = tree.as_ref().map_or(&[][..], |tree| &tree.groups);
+    let names = joints(&bodies, groups);
+    let names = names.as_ref().map(|names| names.iter().map(String::as_str));
+    let joints: Option<Joints<'_>> = names.map(Iterator::collect);
     let elements = elements::elements(fields, (&bodies, joints.as_ref()), tree.as_ref(), sink);
     let controller = controller::controller(fields, joints.as_ref(), sink);
     Draft {

@@ -2,6 +2,7 @@
 
 use super::body::WORLD;
 use super::{BodyDraft, Tree};
+use crate::coupling::{self, Group, Node, groups};
 use crate::diagnostics::Diagnostic;
 use crate::read::Sink;
 use crate::source::Located;
@@ -25,12 +26,17 @@ pub(super) fn tree(bodies: &[BodyDraft], sink: &mut Sink) -> Option<Tree> {
     });
     unique(joints, "joints", sink);
     let parents = parents(bodies, &places, sink)?;
-    let order = order(&last_parents(bodies, &parents));
+    let last = last_parents(bodies, &parents);
+    let mut order = order(&last);
     for cycle in cycles(&parents, &order) {
         sink.push(cycle_error(bodies, &cycle));
     }
     if sink.len() > errors_before {
         return None;
+    }
+    let groups = coupled(bodies, &parents, sink)?;
+    if !groups.is_empty() {
+        order = coupling::order(&last, &groups);
     }
     let mut rank = vec![0; order.len()];
     for (position, &place) in order.iter().enumerate() {
@@ -40,7 +46,18 @@ pub(super) fn tree(bodies: &[BodyDraft], sink: &mut Sink) -> Option<Tree> {
     Some(Tree {
         parents: order.iter().map(|&place| parent_of(place)).collect(),
         order,
+        groups,
     })
+}
+
+/// What mimic joints couple; nothing where a joint could not be read.
+fn coupled(bodies: &[BodyDraft], parents: &[Option<usize>], sink: &mut Sink) -> Option<Vec<Group>> {
+    if bodies.iter().any(|body| body.joint.is_none()) {
+        return Some(Vec::new());
+    }
+    let nodes = bodies.iter().zip(parents);
+    let nodes: Vec<Node<'_>> = nodes.map(|(body, parent)| body.node(*parent)).collect();
+    groups(&nodes, "scene", sink)
 }
 
 /// Where each name stands first; every repetition is an error.

@@ -2,7 +2,7 @@
 //! the same tree.
 
 use super::document::{finite, parse, tag};
-use super::schema::{Attribute, Child, Element, Kind, NOT_READ, Need, SHOWN};
+use super::schema::{Attribute, Child, Element, Kind, NOT_READ, Need, REFUSED, SHOWN};
 use crate::diagnostics::Diagnostic;
 use crate::notice::Notices;
 use crate::read::LONGEST_NAME;
@@ -100,6 +100,14 @@ impl Audit<'_> {
         let name = node.tag_name().name();
         if SHOWN.contains(&name) {
             return;
+        }
+        if let Some((_, why, advice)) = REFUSED.iter().find(|(known, ..)| *known == name)
+            && schema.name == "robot"
+        {
+            let message = format!("{}: <{name}> {why}", named(node, place));
+            return self
+                .sink
+                .push(Diagnostic::new(tag(node), message).help(*advice));
         }
         let element = match owner {
             "" => named(node, place),

@@ -7,7 +7,8 @@ use super::robot::Robot;
 use super::tree::{self, Links, name_span};
 use super::{Import, Options, Stops, mass, masses, shapes};
 use crate::description::{
-    BodyDescription, InitialDescription, JointDescription, SceneDescription, Source,
+    BodyDescription, InitialDescription, JointDescription, MimicDescription, SceneDescription,
+    Source,
 };
 use crate::diagnostics::Diagnostic;
 use crate::forces::{FrameDescription, JointForces, PerFreedom};
@@ -33,11 +34,12 @@ pub(super) fn convert(
     sink: &mut Sink,
 ) -> Option<Import> {
     let errors_before = sink.len();
-    let links = tree::links(robot, sink);
+    let mimics: Vec<_> = robot.joints.iter().map(joint::mimic).collect();
+    let links = tree::links(robot, &mimics, sink);
     let facts = facts(robot, version, sink);
     let links = links?;
     let errors_before_masses = sink.len();
-    let mut converter = Converter::new(robot, version, &mut notices, sink);
+    let mut converter = Converter::new((robot, &mimics), version, &mut notices, sink);
     converter.root(&links, options);
     for &link in links.order.iter().skip(1) {
         converter.link(link, &links, (&facts, options.limits));
@@ -101,6 +103,16 @@ fn facts(robot: &Robot<'_, '_>, version: (u32, u32), sink: &mut Sink) -> Vec<Joi
     facts
 }
 
+/// What the joint of a link has of its coupling.
+fn coupled(link: usize, links: &Links) -> joint::Coupled {
+    let group = links.group(link);
+    let own = group.and_then(|group| group.members.iter().find(|(own, _)| *own == link));
+    joint::Coupled {
+        home: own.and_then(|(_, law)| *law).map_or(0.0, |law| law.offset),
+        by_one: group.is_none_or(|group| group.leaders().len() <= 1),
+    }
+}
+
 /// Where a link frame is: on which body, and its pose there.
 #[derive(Clone, Copy, Debug)]
 struct Anchor {
@@ -110,6 +122,8 @@ struct Anchor {
 
 struct Converter<'c, 'a, 'i> {
     robot: &'c Robot<'a, 'i>,
+    /// What each joint follows.
+    mimics: &'c [Option<Located<MimicDescription>>],
     version: (u32, u32),
     notices: &'c mut Notices,
     sink: &'c mut Sink,
@@ -123,7 +137,7 @@ struct Converter<'c, 'a, 'i> {
 
 impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
     fn new(
-        robot: &'c Robot<'a, 'i>,
+        (robot, mimics): (&'c Robot<'a, 'i>, &'c [Option<Located<MimicDescription>>]),
         version: (u32, u32),
         notices: &'c mut Notices,
         sink: &'c mut Sink,
@@ -131,6 +145,7 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
         Self {
             anchors: vec![None; robot.links.len()],
             robot,
+            mimics,
             version,
             notices,
             sink,
@@ -188,8 +203,10 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
             let body = parent.body;
             return self.attach(link, Anchor { body, pose: origin });
         };
+        let coupled = coupled(link, links);
+        let stops = stops.filter(|_| coupled.by_one);
         let limit = stops.and_then(|stops| joint::stopped(&joint, &facts[index], stops));
-        joint::tell(&joint, self.robot, (&facts[index], &limit), self.notices);
+        joint::tell(&joint, coupled, (&facts[index], &limit), self.notices);
         let damping = Some(facts[index].damping).filter(|&damping| damping != 0.0);
         let span = place(joint.node, "dynamics", "damping");
         let forces = JointForces {
@@ -199,6 +216,7 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
                 Located::new(limit, span)
             }),
             friction: joint::friction(&joint, &facts[index])
+                .filter(|_| coupled.by_one)
                 .map(|friction| Located::new(friction, place(joint.node, "dynamics", "friction"))),
             ..JointForces::default()
         };
@@ -210,6 +228,9 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
             [origin * axis, axis.inverse()],
             forces,
         );
+        if let (Some(body), Some(mimic)) = (self.bodies.last_mut(), self.mimics.get(index)) {
+            body.mimic.clone_from(mimic);
+        }
     }
 
     /// Begins a body with a link.
@@ -224,6 +245,7 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
         let body = self.bodies.len();
         self.bodies.push(BodyDescription {
             part: None,
+            mimic: None,
             name: self.name(link),
             parent,
             mass: MassProperties::massless(),
@@ -231,6 +253,7 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
                 name: Located::new(joint, span.clone()),
                 kind: Located::new(kind.to_owned(), span.clone()),
                 parameters: Vec::new(),
+                coupling: None,
                 span,
             },
             at,

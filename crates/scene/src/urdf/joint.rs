@@ -2,7 +2,8 @@
 
 use super::Stops;
 use super::document::{attribute, child, number, numbers, place, vector};
-use super::robot::{Joint, JointType, Robot};
+use super::robot::{Joint, JointType};
+use crate::description::MimicDescription;
 use crate::diagnostics::Diagnostic;
 use crate::forces::{FrictionDescription, LimitDescription, LimitKind};
 use crate::notice::Notices;
@@ -21,8 +22,6 @@ pub struct JointFacts {
     pub name: String,
     /// The `<limit>` element.
     pub limits: Option<Limits>,
-    /// The `<mimic>` element: `multiplier · q + offset` of another joint.
-    pub mimic: Option<Mimic>,
     /// Viscous damping, N m s/rad or N s/m.
     pub damping: f64,
     /// Dry friction, N m or N.
@@ -35,18 +34,6 @@ impl JointFacts {
         let mut lines = Vec::new();
         if let Some(limits) = &self.limits {
             lines.extend(limits.line());
-        }
-        if let Some(Mimic {
-            joint,
-            multiplier,
-            offset,
-        }) = &self.mimic
-        {
-            lines.push(format!(
-                "mimics `{joint}`: {:?} times its position, and {:?}",
-                Number(*multiplier),
-                Number(*offset)
-            ));
         }
         lines
     }
@@ -79,15 +66,17 @@ pub struct Limits {
     pub effort: Option<f64>,
 }
 
-/// A joint that follows another.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mimic {
-    /// The joint that it follows.
-    pub joint: String,
-    /// Its motion per motion of the other.
-    pub multiplier: f64,
-    /// Its position where the other is at 0.
-    pub offset: f64,
+/// The `<mimic>` element of a joint that moves.
+pub(super) fn mimic(joint: &Joint<'_, '_>) -> Option<Located<MimicDescription>> {
+    let node = joint.node;
+    let followed = attribute(node, "mimic", "joint")?;
+    let mimic = MimicDescription {
+        joint: Located::new(followed.to_owned(), place(node, "mimic", "joint")),
+        multiplier: number(node, "mimic", "multiplier").unwrap_or(1.0),
+        offset: number(node, "mimic", "offset").unwrap_or(0.0),
+    };
+    let moves = joint.kind != JointType::Fixed;
+    moves.then(|| Located::new(mimic, place(node, "mimic", "")))
 }
 
 /// The rotation that turns z onto the joint's axis; the identity where the joint has none.
@@ -149,15 +138,9 @@ fn quaternion(
 pub(super) fn facts(joint: &Joint<'_, '_>, version: (u32, u32)) -> JointFacts {
     let node = joint.node;
     let has_limits = child(node, "limit").is_some();
-    let mimic = attribute(node, "mimic", "joint").map(|followed| Mimic {
-        joint: followed.to_owned(),
-        multiplier: number(node, "mimic", "multiplier").unwrap_or(1.0),
-        offset: number(node, "mimic", "offset").unwrap_or(0.0),
-    });
     JointFacts {
         name: joint.name.to_owned(),
         limits: has_limits.then(|| limits(joint, version)),
-        mimic,
         damping: number(node, "dynamics", "damping").unwrap_or(0.0),
         friction: number(node, "dynamics", "friction").unwrap_or(0.0),
     }
@@ -212,21 +195,29 @@ fn has_one_coordinate(joint: &Joint<'_, '_>) -> bool {
 }
 
 /// Whether a joint is beyond its limits where it begins.
-fn is_beyond_at_home(limit: &LimitDescription) -> bool {
-    limit.lower.is_some_and(|lower| lower > 0.0) || limit.upper.is_some_and(|upper| upper < 0.0)
+fn is_beyond_at(home: f64, limit: &LimitDescription) -> bool {
+    limit.lower.is_some_and(|lower| lower > home) || limit.upper.is_some_and(|upper| upper < home)
+}
+
+/// What a joint has of its coupling, which changes what is simulated of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Coupled {
+    /// Its position where all joints that follow none are at home.
+    pub(super) home: f64,
+    /// Whether all joints that are coupled with it follow one.
+    pub(super) by_one: bool,
 }
 
 /// Tells what of a moving joint is not simulated, and what URDF leaves open.
 pub(super) fn tell(
     joint: &Joint<'_, '_>,
-    robot: &Robot<'_, '_>,
+    coupled: Coupled,
     (facts, stop): (&JointFacts, &Option<LimitDescription>),
     notices: &mut Notices,
 ) {
     let limits = facts.limits.as_ref();
-    let follows =
-        |mimic: &Mimic| mimic.joint != joint.name && robot.joint_names.contains(&*mimic.joint);
-    let mimic = facts.mimic.as_ref().map(follows);
+    let stops = stop.as_ref();
+    let is_beyond = stops.is_some_and(|stop| is_beyond_at(coupled.home, stop));
     let has = |name: &str| child(joint.node, name).is_some();
     let owner = format!("joint `{}`", joint.name);
     // What moves otherwise than the file says.
@@ -236,20 +227,20 @@ pub(super) fn tell(
             "limits of position are not simulated: the joint moves past them",
         ),
         (
-            stop.as_ref().is_some_and(is_beyond_at_home),
+            is_beyond && coupled.home == 0.0,
             "the joint begins at home, 0, which is beyond its limits: the stop pushes it back",
         ),
         (
-            mimic == Some(true),
-            "mimic joints are not coupled: the joint moves by itself",
-        ),
-        (
-            mimic == Some(false),
-            "mimic joints follow no other joint of the robot: the joint moves by itself",
+            is_beyond && coupled.home != 0.0,
+            "the joint begins, by the offset of its mimic, beyond its limits: the stop pushes it back",
         ),
         (
             facts.friction != 0.0 && !has_one_coordinate(joint),
             "dry friction is simulated of revolute and prismatic joints alone",
+        ),
+        (
+            facts.friction != 0.0 && has_one_coordinate(joint) && !coupled.by_one,
+            "dry friction is not simulated of joints that mimic couples with several independent ones",
         ),
     ] {
         if holds {

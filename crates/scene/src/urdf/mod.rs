@@ -11,7 +11,8 @@
 //! | `<visual>` of a box, a sphere, a cylinder or a capsule | a shape for pictures; meshes are told as [`Notice`]s |
 //! | `<limit lower upper>` of `revolute` and `prismatic` | compliant limits, if [`Options::limits`] gives their numbers |
 //! | `<dynamics damping friction>` | damping; dry friction of `revolute` and `prismatic` |
-//! | other limits, mimic, safety controllers, transmissions, collision shapes, unknown elements | not simulated, and told as [`Notice`]s |
+//! | `<mimic>` | `mimic`: the joint follows the other exactly, and both are one joint of several bodies |
+//! | other limits, safety controllers, transmissions, collision shapes, unknown elements | not simulated, and told as [`Notice`]s |
 //!
 //! A state is not part of a URDF: every joint is at home (angles, displacements 0) and at rest.
 
@@ -27,7 +28,7 @@ mod schema;
 mod shapes;
 mod tree;
 
-pub use joint::{JointFacts, Limits, Mimic};
+pub use joint::{JointFacts, Limits};
 
 use crate::description::{SceneDescription, Source};
 use crate::diagnostics::{Diagnostic, Diagnostics};

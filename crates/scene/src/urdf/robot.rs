@@ -122,6 +122,13 @@ impl JointType {
         "spherical",
     ];
 
+    /// As URDF writes it.
+    pub(super) fn name(self) -> &'static str {
+        let known = Self::NAMES.into_iter();
+        let mut own = known.filter(|name| Self::of(name) == Some(self));
+        own.next().unwrap_or("")
+    }
+
     fn of(name: &str) -> Option<Self> {
         Some(match name {
             "revolute" => Self::Revolute,

@@ -68,6 +68,20 @@ pub(super) const NOT_READ: [(&str, &str); 3] = [
     ("gazebo", "settings for Gazebo are not read"),
 ];
 
+/// Elements of a robot in URDF+ (arXiv 2411.19753) that close loops and couple joints, why they are refused, and what to do: without them the robot is another mechanism.
+pub(super) const REFUSED: [(&str, &str, &str); 2] = [
+    (
+        "loop",
+        "closes a kinematic loop, and links are read as a tree",
+        "write the loop as a joint of several bodies, and the robot as a scene: docs/loops.md",
+    ),
+    (
+        "coupling",
+        "couples joints by a ratio, and is not read",
+        "give the joint that follows a <mimic> with the joint, multiplier and offset that it follows",
+    ),
+];
+
 /// Elements of URDF that pictures show: `shapes` reads them.
 pub(super) const SHOWN: [&str; 2] = ["visual", "material"];
 

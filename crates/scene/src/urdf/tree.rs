@@ -2,10 +2,12 @@
 
 use super::document::{place, tag};
 use super::robot::{Joint, Robot};
+use crate::coupling::{self, Group, Movement, Node as Member, groups};
+use crate::description::MimicDescription;
 use crate::diagnostics::Diagnostic;
 use crate::parse::{cycles, order};
 use crate::read::Sink;
-use crate::source::Span;
+use crate::source::{Located, Span};
 use crate::suggest::{Suggestions, all_of};
 use roxmltree::Node;
 use std::collections::HashMap;
@@ -17,10 +19,25 @@ pub(super) struct Links {
     pub(super) order: Vec<usize>,
     /// For each link of the file its joint and its parent link; `None` for the root.
     pub(super) parents: Vec<Option<(usize, usize)>>,
+    /// The links that mimic joints couple.
+    groups: Vec<Group>,
+    /// For each link of the file the group that it is in.
+    places: Vec<Option<usize>>,
 }
 
-/// Orders the links.
-pub(super) fn links(robot: &Robot<'_, '_>, sink: &mut Sink) -> Option<Links> {
+impl Links {
+    /// What couples a link with others, if something does.
+    pub(super) fn group(&self, link: usize) -> Option<&Group> {
+        self.groups.get((*self.places.get(link)?)?)
+    }
+}
+
+/// Orders the links; `mimics` are those of the joints.
+pub(super) fn links(
+    robot: &Robot<'_, '_>,
+    mimics: &[Option<Located<MimicDescription>>],
+    sink: &mut Sink,
+) -> Option<Links> {
     let errors_before = sink.len();
     let named = robot.links.iter().map(|link| (link.name, link.node));
     let names = unique("links", named, sink);
@@ -31,12 +48,63 @@ pub(super) fn links(robot: &Robot<'_, '_>, sink: &mut Sink) -> Option<Links> {
         return None;
     }
     let links: Vec<Option<usize>> = parents.iter().map(|p| Some((*p)?.1)).collect();
-    let order = order(&links);
+    let mut order = order(&links);
     cycles(&links, &order)
         .iter()
         .for_each(|cycle| sink.push(cycle_error(robot, &parents, cycle)));
     roots(robot, &links, sink);
-    (sink.len() == errors_before).then_some(Links { order, parents })
+    if sink.len() > errors_before {
+        return None;
+    }
+    let names: Vec<Option<Located<String>>> = names_of_joints(robot, &parents);
+    let members = parents.iter().zip(&names).map(|(hangs_on, name)| Member {
+        joint: name.as_ref(),
+        parent: hangs_on.map(|(_, parent)| parent),
+        movement: hangs_on.map_or(Movement::Fixed, |(joint, _)| movement(&robot.joints[joint])),
+        mimic: hangs_on.and_then(|(joint, _)| mimics.get(joint)?.as_ref()),
+        motor: None,
+    });
+    let members: Vec<Member<'_>> = members.collect();
+    let groups = groups(&members, "robot", sink)?;
+    if !groups.is_empty() {
+        order = coupling::order(&links, &groups);
+    }
+    let mut places = vec![None; parents.len()];
+    for (place, group) in groups.iter().enumerate() {
+        group
+            .members
+            .iter()
+            .for_each(|(link, _)| places[*link] = Some(place));
+    }
+    Some(Links {
+        order,
+        parents,
+        groups,
+        places,
+    })
+}
+
+/// The name of the joint of each link, where it stands.
+fn names_of_joints(
+    robot: &Robot<'_, '_>,
+    parents: &[Option<(usize, usize)>],
+) -> Vec<Option<Located<String>>> {
+    let name = |joint: usize| {
+        let joint = &robot.joints[joint];
+        Located::new(joint.name.to_owned(), name_span(joint.node))
+    };
+    let names = parents.iter();
+    names
+        .map(|parent| parent.map(|(joint, _)| name(joint)))
+        .collect()
+}
+
+fn movement(joint: &Joint<'_, '_>) -> Movement<'static> {
+    match joint.kind.of_library().map(Movement::of) {
+        None => Movement::Fixed,
+        Some(Movement::Other(_)) => Movement::Other(joint.kind.name()),
+        Some(movement) => movement,
+    }
 }
 
 /// The place of every name among the elements.

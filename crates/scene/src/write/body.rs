@@ -3,7 +3,8 @@
 use super::value::{key, list, number, rows, table, text};
 use super::{entry, forces, pose};
 use crate::description::{
-    BodyDescription, InitialDescription, JointDescription, Motion, Position, TwistFrame,
+    BodyDescription, InitialDescription, JointDescription, MimicDescription, Motion, Position,
+    TwistFrame,
 };
 use crate::parse::WORLD;
 use hamel_runtime::spatial::{MassProperties, split};
@@ -43,6 +44,9 @@ pub(super) fn bodies(
     if let Some(value) = initial(&first.initial) {
         entry(out, "initial", &value);
     }
+    if let Some(mimic) = &first.mimic {
+        entry(out, "mimic", &self::mimic(&mimic.value));
+    }
     forces::of_joint(out, &first.forces);
     for own in group {
         if let Some(part) = &own.part {
@@ -59,6 +63,19 @@ pub(super) fn bodies(
             );
         }
     }
+}
+
+fn mimic(mimic: &MimicDescription) -> String {
+    let mut entries = vec![("joint", text(&mimic.joint.value))];
+    let numbers = [
+        ("multiplier", mimic.multiplier, 1.0),
+        ("offset", mimic.offset, 0.0),
+    ];
+    let given = numbers
+        .into_iter()
+        .filter(|(_, value, default)| value != default);
+    entries.extend(given.map(|(key, value, _)| (key, number(value))));
+    table(&entries)
 }
 
 /// Name of a body of `bodies`, or of the world.

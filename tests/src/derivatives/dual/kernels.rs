@@ -112,7 +112,7 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
         let q = vector(q);
         let (values, map) = (self.0.port_values(&q), self.0.port_map(&q));
         let mut way = values.as_ref()[port] - Dual::constant(rest);
-        if J::PORTS[port].wraps {
+        if self.0.ports()[port].wraps {
             let (sin, cos) = way.sin_cos();
             way = sin.atan2(cos);
         }

@@ -1,0 +1,141 @@
+//! Joints that mimic joints couple: a spec says what belongs to their coordinates and ports, a [`Chain`] where each body stands.
+//!
+//! In the spec every link hangs on the joint's parent. What a body inherits of the links that it hangs on are products of their motions, which are
+//! written on the graph: expanded, as a spec is, they would have hundreds of terms.
+
+use super::chain::Chain;
+use super::products::JointType;
+use hamel_runtime::joint::{Link, LinkMotion};
+use hamel_scene::{Coupling, Located};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::rc::Rc;
+
+/// A spec with the values of its parameters.
+pub(super) struct Spec {
+    /// The text.
+    text: String,
+    /// Names and values, in the order of the text.
+    pub(super) parameters: Vec<(Located<String>, f64)>,
+}
+
+/// What has been derived from specs, by their texts: couplings that differ in numbers alone have one.
+#[derive(Default)]
+pub(super) struct Types(BTreeMap<String, JointType>);
+
+impl Types {
+    /// The type of a coupling.
+    ///
+    /// # Errors
+    /// Why it is not derived.
+    pub(super) fn of(&mut self, coupling: &Coupling) -> Result<Rc<JointType>, String> {
+        let spec = spec(coupling);
+        let mut joint = match self.0.get(&spec.text) {
+            Some(known) => known.clone(),
+            None => {
+                let derived = hamel_codegen::derive(&spec.text, "coupled.joint");
+                let derived = derived.map_err(|errors| errors.to_string())?;
+                let joint = JointType::new(derived).map_err(|error| error.task.to_string())?;
+                self.0.insert(spec.text, joint.clone());
+                joint
+            }
+        };
+        joint.hang(Chain::of(coupling, 0));
+        let more = joint.more.iter_mut().enumerate();
+        more.for_each(|(index, own)| {
+            Rc::make_mut(own).hang(Chain::of(coupling, index + 1));
+        });
+        Ok(Rc::new(joint))
+    }
+}
+
+/// The spec of a coupling whose links all hang on the parent.
+pub(super) fn spec(coupling: &Coupling) -> Spec {
+    let mut writer = Writer::default();
+    let (mut motions, mut poses, mut ports) = (String::new(), String::new(), String::new());
+    for (index, (link, port)) in coupling.links.iter().zip(coupling.ports).enumerate() {
+        let number = index + 1;
+        let value = writer.value(number, link, coupling);
+        _ = writeln!(motions, "    let y_{number} = {value};");
+        let motion = match link.motion {
+            LinkMotion::Turn => "rot_z",
+            LinkMotion::Slide => "trans_z",
+        };
+        _ = writeln!(poses, "    H.link_{number} = {motion}(y_{number});");
+        let unit = port.unit;
+        let value = match port.wraps {
+            true => format!("[cos(y_{number}), sin(y_{number})]"),
+            false => format!("y_{number}"),
+        };
+        _ = writeln!(
+            ports,
+            "    /// Of link {number}.\n    port port_{number}: {unit} = {value};"
+        );
+    }
+    let coordinates =
+        (0..coupling.coordinates()).map(|k| format!("{}: R1", coordinate(k, coupling)));
+    let coordinates: Vec<String> = coordinates.collect();
+    let bodies = (1..=coupling.links.len()).map(|number| format!("link_{number}"));
+    let bodies: Vec<String> = bodies.collect();
+    let text = format!(
+        "hamel = 1;\n\n/// Links that follow one another.\njoint coupled({}) {{\n    config {};\n    bodies {};\n{motions}{poses}{ports}}}\n",
+        writer.declared,
+        coordinates.join(", "),
+        bodies.join(", "),
+    );
+    Spec {
+        text,
+        parameters: writer.parameters,
+    }
+}
+
+/// What a coordinate is called.
+fn coordinate(k: usize, coupling: &Coupling) -> String {
+    match coupling.coordinates() {
+        1 => String::from("q"),
+        _ => format!("q_{}", k + 1),
+    }
+}
+
+/// Parameters, as the text meets them.
+#[derive(Default)]
+struct Writer {
+    declared: String,
+    parameters: Vec<(Located<String>, f64)>,
+}
+
+impl Writer {
+    /// The name of a parameter of this value.
+    fn parameter(&mut self, name: String, unit: &str, meaning: &str, value: f64) -> String {
+        _ = write!(self.declared, "\n    /// {meaning}\n    {name}: {unit},");
+        let located = Located::new(name.clone(), 0..0);
+        self.parameters.push((located, value));
+        name
+    }
+
+    /// y of a link.
+    fn value(&mut self, number: usize, link: &Link, coupling: &Coupling) -> String {
+        let q = coordinate(link.coordinate, coupling);
+        let turned = match link.ratio {
+            1.0 => q,
+            -1.0 => format!("-{q}"),
+            ratio => {
+                let name = format!("ratio_{number}");
+                let meaning = "Its motion per motion of what it follows.";
+                let name = self.parameter(name, "1", meaning, ratio);
+                format!("{name} * {q}")
+            }
+        };
+        if link.offset == 0.0 {
+            return turned;
+        }
+        let unit = match link.motion {
+            LinkMotion::Turn => "rad",
+            LinkMotion::Slide => "m",
+        };
+        let meaning = "Its place where what it follows is at 0.";
+        let offset = format!("offset_{number}");
+        let offset = self.parameter(offset, unit, meaning, link.offset);
+        format!("{turned} + {offset}")
+    }
+}

@@ -1,0 +1,118 @@
+//! Who follows whom, and what moves between: the groups of bodies that move as one joint.
+
+use super::follow::{composed, direct};
+use super::forest::Forest;
+use crate::description::MimicDescription;
+use crate::read::Sink;
+use crate::source::Located;
+
+/// How a body moves on its joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Movement<'a> {
+    /// Not at all.
+    Fixed,
+    /// About z, by an angle.
+    Turn,
+    /// About z, by an angle up to whole turns.
+    Circle,
+    /// Along z.
+    Slide,
+    /// By a joint of another type.
+    Other(&'a str),
+}
+
+impl<'a> Movement<'a> {
+    /// That of a joint type of the library.
+    pub(crate) fn of(kind: &'a str) -> Self {
+        match kind {
+            "revolute" => Self::Turn,
+            "revolute_circle" => Self::Circle,
+            "prismatic" => Self::Slide,
+            other => Self::Other(other),
+        }
+    }
+
+    /// The type that cannot be coupled, if it is none that can.
+    pub(super) fn other(self) -> Option<&'a str> {
+        match self {
+            Self::Fixed => Some("fixed"),
+            Self::Other(kind) => Some(kind),
+            _ => None,
+        }
+    }
+}
+
+/// A body, or a link of a robot, as far as couplings look at it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Node<'a> {
+    /// The name of its joint; `None` of what stands for no joint.
+    pub(crate) joint: Option<&'a Located<String>>,
+    /// What it hangs on.
+    pub(crate) parent: Option<usize>,
+    /// How it moves.
+    pub(crate) movement: Movement<'a>,
+    /// What it follows.
+    pub(crate) mimic: Option<&'a Located<MimicDescription>>,
+    /// The motor behind whose spring it is: its joint is then the spring's deflection.
+    pub(crate) motor: Option<&'a str>,
+}
+
+/// `y = ratio · y of the leader + offset`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Law {
+    /// The node that is followed, which follows none; itself of one that follows none.
+    pub(crate) leader: usize,
+    pub(crate) ratio: f64,
+    pub(crate) offset: f64,
+}
+
+/// Nodes that move as one joint.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Group {
+    /// What it hangs on.
+    pub(crate) base: Option<usize>,
+    /// The nodes, each after what it hangs on, with the laws of those that move.
+    pub(crate) members: Vec<(usize, Option<Law>)>,
+}
+
+impl Group {
+    /// The nodes that follow none, in their order: one a coordinate.
+    pub(crate) fn leaders(&self) -> Vec<usize> {
+        let own = self.members.iter();
+        let own = own.filter(|(node, law)| law.is_some_and(|law| law.leader == *node));
+        own.map(|(node, _)| *node).collect()
+    }
+
+    /// The name of its joint: that of its leader, or those of all, with a plus between.
+    pub(crate) fn name(&self, joint: impl Fn(usize) -> String) -> String {
+        let names: Vec<String> = self.leaders().into_iter().map(joint).collect();
+        names.join("+")
+    }
+}
+
+/// The groups that followers make with what they follow; none without followers. `None` where there is an error, which is noted.
+pub(crate) fn groups(nodes: &[Node<'_>], elements: &str, sink: &mut Sink) -> Option<Vec<Group>> {
+    if nodes.iter().all(|node| node.mimic.is_none()) {
+        return Some(Vec::new());
+    }
+    let errors_before = sink.len();
+    let direct = direct(nodes, elements, sink);
+    let laws = composed(nodes, &direct, sink);
+    if sink.len() > errors_before {
+        return None;
+    }
+    let tree = Forest::new(nodes);
+    let found = tree.gathered(&laws, sink)?;
+    let groups = found.into_iter().map(|members| tree.group(&members, &laws));
+    let groups: Vec<Group> = groups.collect();
+    for group in &groups {
+        tree.check(group, sink);
+    }
+    (sink.len() == errors_before).then_some(groups)
+}
+
+/// The name of a node's joint.
+pub(super) fn name<'a>(nodes: &[Node<'a>], node: usize) -> &'a str {
+    let named = nodes.get(node).and_then(|own| own.joint);
+    named.map_or("", |name| &name.value)
+}
