@@ -45,3 +45,21 @@ fn quotients_of_parameters_must_be_defined() {
     assert_eq!(cone(""), Some("E0420"));
     assert_eq!(cone("> 0 < 4"), Some("E0420"));
 }
+
+/// The closed form of a four-bar is real for Grashof's lengths, and for no others: each of these requirements is needed.
+#[test]
+fn a_coupler_needs_the_lengths_that_close() {
+    let whole = include_str!("held-out/grashof_coupler.joint");
+    for needed in [
+        "coupler + rocker > ground + crank",
+        "ground + rocker > crank + coupler",
+        "ground + coupler > crank + rocker",
+    ] {
+        let statement = format!("    require {needed};\n");
+        let source = whole.replace(&statement, "");
+        assert_ne!(source, whole);
+        let errors = derive(&source, "grashof_coupler.joint").err();
+        let code = errors.map(|errors| errors.errors[0].code);
+        assert_eq!(code, Some("E0420"), "without {needed}");
+    }
+}
