@@ -29,6 +29,9 @@ pub enum Error {
     /// Equations of motion without a solution.
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),
+    /// Forces at pins that are not known.
+    #[error(transparent)]
+    Pins(#[from] PinError),
     /// A motion that cannot begin or go on.
     #[error(transparent)]
     Integrate(#[from] IntegrateError),
