@@ -2,7 +2,7 @@
 
 use hamel_control::ControlError;
 use hamel_integrate::IntegrateError;
-use hamel_runtime::dynamics::DynamicsError;
+use hamel_runtime::dynamics::{DynamicsError, PinError};
 use hamel_runtime::mechanism::{MechanismErrors, StateError};
 use hamel_runtime::registry::DuplicateJoint;
 use hamel_runtime::shown::Number;

@@ -133,10 +133,7 @@ impl Recursive {
     fn wrench_in_parent(&self, index: usize, q: &[f64]) -> Vector6<f64> {
         let link = &self.links[index];
         let pose = link.joint.pose(&q[link.configuration.clone()]);
-        let wrench = self.joint_wrench(index).unwrap_or_default();
-        let (moment, force) = crate::spatial::split(&wrench);
-        let (moment, force) = (pose.rotation * moment, pose.rotation * force);
-        crate::spatial::join(&(moment + pose.translation.cross(&force)), &force)
+        pose.act_wrench(&self.joint_wrench(index).unwrap_or_default())
     }
 
     /// The efforts on a joint: at each port, and on each degree of freedom beside these.
