@@ -248,7 +248,12 @@ impl Driver<'_> {
 
     fn record(&mut self, outputs: &mut Outputs<'_>, found: Found) -> Result<(), StepFailure> {
         let state = state_of(outputs.dense.at(&mut self.flow, found.part)?);
-        let event = &outputs.location.events[found.event];
+        let event = &mut outputs.location.events[found.event];
+        if let Some(condition) = &mut event.condition
+            && !condition(state.time, &state.configuration, &state.speeds)
+        {
+            return Ok(());
+        }
         if event.stops {
             self.end = Some(state.clone());
         }

@@ -34,7 +34,7 @@ pub use view::MotionList;
 pub use view::{Action, Motions, View};
 
 use crate::mechanism::Mechanism;
-use crate::time_function::TimeFunction;
+use crate::time_function::{Moment, TimeFunction};
 use core::fmt::Debug;
 
 /// Something that acts on a mechanism, and what energy it stores.
@@ -66,6 +66,11 @@ pub trait Element: Debug + Send + Sync {
 
     /// What it exerts at a port of a joint, if that is all that it does: the body whose joint it is, the port, and the effort, N·m or N.
     fn port_effort(&self, _view: &View<'_>) -> Option<(usize, usize, f64)> {
+        None
+    }
+
+    /// The same of an effort that changes with time, and with nothing else: what compiled equations are handed with τ.
+    fn timed_port_effort(&self, _at: Moment) -> Option<(usize, usize, f64)> {
         None
     }
 

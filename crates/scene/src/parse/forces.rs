@@ -129,6 +129,26 @@ fn motion(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Vec<TimeFunction
     Some(Located::new(speeds?, value.span()))
 }
 
+/// What acts at degrees of freedom and not at ports, and what to do.
+const OF_FREEDOMS: &[(&str, &str)] = &[
+    (
+        "armature",
+        "let the joint's spec name a body that turns with the port, and give it the inertia of the rotor",
+    ),
+    (
+        "friction",
+        "friction acts at degrees of freedom: name the direction of the port by `basis` in the joint's spec, so that it is one; a port has `damping`",
+    ),
+    (
+        "limit",
+        "limits are those of degrees of freedom: name the direction of the port by `basis` in the joint's spec, so that it is one",
+    ),
+    (
+        "motion",
+        "motions are prescribed at degrees of freedom: name the direction of the port by `basis` in the joint's spec, so that it is one",
+    ),
+];
+
 /// What acts at the ports of a joint, each under its name.
 fn ports(value: &Value<'_>, sink: &mut Sink) -> Option<Vec<PortForces>> {
     let named = value.table(sink)?.unclaimed();
@@ -147,6 +167,12 @@ fn port(name: Located<String>, value: &Value<'_>, sink: &mut Sink) -> Option<Por
         Some(damping) => damping.not_negative(sink).map(|damping| damping.value),
         None => Some(0.0),
     };
+    for (key, advice) in OF_FREEDOMS {
+        if let Some(value) = fields.optional(key) {
+            let message = format!("`{}`: nothing of this kind acts at a port", value.path());
+            sink.push(Diagnostic::new(value.span(), message).help(*advice));
+        }
+    }
     fields.finish(sink);
     Some(PortForces {
         name,
