@@ -110,6 +110,7 @@ laws_of_bodies! {
     parallel_ankle: ParallelAnkle::new(0.25, 0.04, 0.05, 0.06, 0.26), Around(0.2), [1, 2];
     press: Press::new(0.4, 1.1), Entries(0.5), [1, 2];
     slider_crank_links: SliderCrankLinks::new(1.1, 0.4, 0.2), Entries(0.5), [1, 2];
+    unpinned: Unpinned::new(0.7), Entries(0.5), [1];
     wishbone: Wishbone::new(0.35, 0.28, 0.25, 0.26, 0.34, 0.1), Around(0.3), [1, 2];
 }
 

@@ -1,6 +1,6 @@
 //! What the pins of a linkage carry, against Newton and Euler for each of its bodies, whose accelerations are differences of the velocities of a motion.
 
-use hamel::dynamics::{PinForce, Recursive};
+use hamel::dynamics::{Dynamics, PinForce, Recursive};
 use hamel::integrate::{Form, Integration, Method, Options, Scheme, State};
 use hamel::mechanism::{BodyState, Kinematics, Mechanism};
 use hamel::nalgebra::Vector3;
@@ -218,8 +218,8 @@ fn pins_carry_what_newton_and_euler_ask_for() {
             assert!(open < 2e-11 * largest.max(1.0), "{form:?}: {missing:?} of {largest}");
         }
         assert!(told.forces[2].moment.iter().all(|moment| *moment == 0.0));
-        let slide = told.forces[3];
-        assert_eq!((slide.force.x, slide.moment.x), (0.0, 0.0));
+        let (elbow, slide) = (told.forces[1], told.forces[3]);
+        assert_eq!((elbow.force.z, elbow.moment.z, slide.force.x), (0.0, 0.0, 0.0));
     }
 }
 
@@ -241,6 +241,37 @@ fn efforts_elsewhere_leave_it_open() {
     assert_eq!(
         refusal("ports.rod.effort = 1.0"),
         "port `rod` of joint `press` has an effort, and is the motion of none of its pins: where it acts, and so what the pins carry, is not known"
+    );
+}
+
+#[test]
+fn pins_that_are_missing_are_noticed() {
+    let text = r#"
+hamel = 1
+name = "leg"
+gravity = [0.0, -9.81, 0.0]
+[[body]]
+name = "leg"
+parent = "world"
+joint = { type = "unpinned", thigh = 0.4 }
+bodies.thigh = { mass = 2.0, com = [0.2, 0.0, 0.0], inertia = [[0.01, 0.0, 0.0], [0.0, 0.02, 0.0], [0.0, 0.0, 0.02]] }
+bodies.shank = { mass = 1.0, com = [0.2, 0.0, 0.0], inertia = [[0.01, 0.0, 0.0], [0.0, 0.02, 0.0], [0.0, 0.0, 0.02]] }
+"#;
+    let mut registry = hamel_joints::registry();
+    registry
+        .extend(hamel_downstream::joints::ENTRIES.iter().copied())
+        .expect("distinct names");
+    let scene = Scene::parse(text, "leg.toml", &registry);
+    let scene = scene.unwrap_or_else(|errors| panic!("{errors}"));
+    let mut dynamics = Recursive::new(Arc::clone(&scene.mechanism));
+    let (q, none) = (&scene.configuration, [0.0; 2]);
+    let (mut rates, mut needed) = (none, none);
+    dynamics.forward_dynamics(q, &none, &none, &mut rates).expect("regular");
+    dynamics.inverse_dynamics(q, &none, &rates, &mut needed).expect("sizes fit");
+    let refused = dynamics.pin_forces(0, q, &none).expect_err("the knee is missing");
+    assert_eq!(
+        refused.to_string(),
+        "the pins of joint `leg` let its bodies move in 7 ways, and it has 2 degrees of freedom: pins are missing, or the linkage is at a dead point"
     );
 }
 

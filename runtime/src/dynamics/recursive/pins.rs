@@ -157,13 +157,11 @@ impl Recursive {
                 *size += (entry * effort).abs();
             }
         }
-        // What rounding leaves of nothing is nothing.
-        for (effort, size) in freedoms.iter_mut().zip(&sizes) {
-            if effort.abs() <= NOTHING * size {
-                *effort = 0.0;
-            }
+        Efforts {
+            freedoms,
+            sizes,
+            ports,
         }
-        Efforts { freedoms, ports }
     }
 
     fn effort_at_port(&self, body: usize, port: usize, q: &[f64], speeds: &[f64]) -> f64 {
@@ -181,8 +179,11 @@ impl Recursive {
         let acts = |source| pins.iter().any(|placed| placed.pin.is_driven_by(source));
         let ports = efforts.ports.iter().enumerate();
         let mut ports = ports.filter(|&(n, f)| *f != 0.0 && !acts(DriveSource::Port(n)));
-        let freedoms = efforts.freedoms.iter().enumerate();
-        let mut freedoms = freedoms.filter(|&(n, f)| *f != 0.0 && !acts(DriveSource::Freedom(n)));
+        let freedoms = efforts.freedoms.iter().zip(&efforts.sizes).enumerate();
+        let mut freedoms = freedoms.filter(|&(n, (f, size))| {
+            // What rounding leaves of nothing is nothing.
+            f.abs() > NOTHING * size && !acts(DriveSource::Freedom(n))
+        });
         match (ports.next(), freedoms.next()) {
             (Some((n, _)), _) => Some(alloc::format!("port `{}`", joint.ports()[n].name)),
             (None, Some((n, _))) => Some(alloc::format!(
@@ -197,6 +198,8 @@ impl Recursive {
 /// Efforts on a joint, N·m or N.
 struct Efforts {
     freedoms: Vec<f64>,
+    /// What they are sums of: the sum of its sizes.
+    sizes: Vec<f64>,
     ports: Vec<f64>,
 }
 
