@@ -32,8 +32,8 @@ pub use implicit::{Directions as RelationDirections, Flow, Systems, without_cont
 pub use kernels::{kernels, of_body, speed_map};
 pub use motion::Motion;
 pub use nonholonomic::{Nonholonomic, speed_names};
-pub use pins::{PinDrive, Source};
 pub use numbers::{beyond_doubles, rough_curve};
+pub use pins::{PinDrive, Source};
 pub use steps::Steps;
 pub use still::Still;
 pub use twist::{TwistJacobian, bracket, in_child_frames};

@@ -98,7 +98,8 @@ pub fn drives(spec: &JointSpec, x: &Expansion, ideal: &Ideal) -> Vec<Vec<PinDriv
             let sources = sources.chain((0..x.shape.freedoms).map(Source::Freedom));
             for source in sources {
                 let reversed = [false, true].into_iter();
-                let mut reversed = reversed.filter(|&reversed| rates.agree(&rate, source, reversed));
+                let mut reversed =
+                    reversed.filter(|&reversed| rates.agree(&rate, source, reversed));
                 drives.extend(reversed.next().map(|reversed| PinDrive {
                     source,
                     turns,
@@ -162,7 +163,8 @@ impl<'a> Rates<'a> {
         let axis = in_parent(self.spec, &pin.ends[1], &direction(axis));
         let point = point(self.spec, &pin.ends[1]);
         let rate = |d: usize| {
-            let [first, second] = (pin.ends.each_ref()).map(|end| self.velocity(end, &point, turns, d));
+            let [first, second] =
+                (pin.ends.each_ref()).map(|end| self.velocity(end, &point, turns, d));
             product(&axis, &difference(&first, &second))
         };
         Some((0..self.twists.columns()).map(rate).collect())

@@ -106,9 +106,8 @@ impl Prover<'_> {
             let entries = port.value.entries().into_iter().cloned();
             (entries.collect(), port.span.clone())
         };
-        let of_pin = |pin: &Declared<Pin>| {
-            (pin.value.entries().cloned().collect(), pin.span.clone())
-        };
+        let of_pin =
+            |pin: &Declared<Pin>| (pin.value.entries().cloned().collect(), pin.span.clone());
         let poses = joint.spec.poses().map(of_pose);
         let statements = poses
             .chain(matrices.into_iter().flatten().map(of_matrix))

@@ -62,7 +62,9 @@ impl Prover<'_> {
         let spec = &self.joint.spec;
         let across = |axis: Axis, vector: Vec<Expr>| {
             let axis = in_parent(spec, &pin.ends[1], &direction(axis));
-            Matrix::tilde(&axis).times(&Matrix::column_vector(vector)).column(0)
+            Matrix::tilde(&axis)
+                .times(&Matrix::column_vector(vector))
+                .column(0)
         };
         let turning = match (pin.about, pin.along) {
             (None, None) => vec![Expr::zero(); 3],
@@ -102,7 +104,10 @@ fn moves_otherwise(pin: &Declared<Pin>, turns: bool) -> Diagnostic {
     } = &pin.value;
     let (message, help) = match (turns, about, along) {
         (true, Some(axis), _) => (
-            format!("the bodies of pin `{name}` do not turn about {} alone", letter(*axis)),
+            format!(
+                "the bodies of pin `{name}` do not turn about {} alone",
+                letter(*axis)
+            ),
             "name the axis of the second body about which the first turns; without `about` and `along` they turn freely",
         ),
         (true, ..) => (
@@ -110,7 +115,10 @@ fn moves_otherwise(pin: &Declared<Pin>, turns: bool) -> Diagnostic {
             "say about which axis of the second body, as `about z`",
         ),
         (false, _, Some(axis)) => (
-            format!("the point of pin `{name}` does not slide along {} alone", letter(*axis)),
+            format!(
+                "the point of pin `{name}` does not slide along {} alone",
+                letter(*axis)
+            ),
             "name the axis of the second body along which the first slides",
         ),
         (false, ..) => (

@@ -68,10 +68,7 @@ impl<'a> Event<'a> {
 
     /// Only crossings at states where the condition holds: of an angle up to whole turns, whose sine is 0 on the other side of the circle as well.
     #[must_use]
-    pub fn provided(
-        mut self,
-        condition: impl FnMut(f64, &[f64], &[f64]) -> bool + 'a,
-    ) -> Self {
+    pub fn provided(mut self, condition: impl FnMut(f64, &[f64], &[f64]) -> bool + 'a) -> Self {
         self.condition = Some(Box::new(condition));
         self
     }

@@ -125,7 +125,9 @@ impl SceneEvent {
                 Quantity::Coordinate(entry) => entry_of(q, entry),
                 Quantity::Speed(entry) => entry_of(speeds, entry),
                 // An angle up to whole turns crosses the value modulo a turn.
-                Quantity::Port(port) if port.wraps => return (port.value(&mechanism, q) - value).sin(),
+                Quantity::Port(port) if port.wraps => {
+                    return (port.value(&mechanism, q) - value).sin();
+                }
                 Quantity::Port(port) => port.value(&mechanism, q),
                 Quantity::Rate(port) => port.rate(&mechanism, q, speeds),
             };

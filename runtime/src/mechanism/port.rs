@@ -114,7 +114,8 @@ impl Mechanism {
             let row = &mut row[..own.ranges().freedoms.len()];
             own.joint().port_row(own.configuration(q), port, row);
             let sums = efforts[own.ranges().freedoms.clone()].iter_mut();
-            sums.zip(row).for_each(|(sum, entry)| *sum += *entry * effort);
+            sums.zip(row)
+                .for_each(|(sum, entry)| *sum += *entry * effort);
         }
     }
 

@@ -109,7 +109,9 @@ fn told(scene: &Scene, form: Form) -> Told {
         .expect("no failure");
     let samples = solution.samples.iter();
     let samples = samples.map(|state| {
-        let found = scene.mechanism.kinematics(&state.configuration, &state.speeds);
+        let found = scene
+            .mechanism
+            .kinematics(&state.configuration, &state.speeds);
         found.expect("sizes fit")
     });
     Told {
@@ -156,7 +158,11 @@ fn unbalanced(scene: &Scene, told: &Told, torque: [f64; 2], push: f64) -> ([f64;
     let parent: Pose<f64> = bodies[1].pose * joint(1).pose(q(1)).inverse();
     let axes = parent.rotation;
     let [crank, rod] = [0.3, 0.7];
-    let end = |body: usize, length: f64| bodies[body].pose.transform_point(&Vector3::new(length, 0.0, 0.0));
+    let end = |body: usize, length: f64| {
+        bodies[body]
+            .pose
+            .transform_point(&Vector3::new(length, 0.0, 0.0))
+    };
     // Where pins are, and which links hold each other there: the first, and the second if it is a link.
     let pins = [
         (bodies[1].pose.translation, 1, None),
@@ -165,11 +171,12 @@ fn unbalanced(scene: &Scene, told: &Told, torque: [f64; 2], push: f64) -> ([f64;
         (bodies[3].pose.translation, 3, None),
     ];
     let mut wrench = [[Vector3::zeros(); 2]; 4];
-    let mut exert = |body: usize, force: Vector3<f64>, point: Vector3<f64>, couple: Vector3<f64>| {
-        let arm = point - bodies[body].position_com;
-        wrench[body][0] += force;
-        wrench[body][1] += couple + arm.cross(&force);
-    };
+    let mut exert =
+        |body: usize, force: Vector3<f64>, point: Vector3<f64>, couple: Vector3<f64>| {
+            let arm = point - bodies[body].position_com;
+            wrench[body][0] += force;
+            wrench[body][1] += couple + arm.cross(&force);
+        };
     for (own, (point, first, second)) in told.forces.iter().zip(pins) {
         let (force, couple) = (axes * own.force, axes * own.moment);
         exert(first, force, point, couple);
@@ -178,9 +185,19 @@ fn unbalanced(scene: &Scene, told: &Told, torque: [f64; 2], push: f64) -> ([f64;
         }
     }
     let z = axes.column(2).into_owned();
-    exert(1, Vector3::zeros(), parent.translation, z * (torque[0] - torque[1]));
+    exert(
+        1,
+        Vector3::zeros(),
+        parent.translation,
+        z * (torque[0] - torque[1]),
+    );
     exert(2, Vector3::zeros(), parent.translation, z * torque[1]);
-    exert(3, axes.column(0) * push, bodies[3].pose.translation, Vector3::zeros());
+    exert(
+        3,
+        axes.column(0) * push,
+        bodies[3].pose.translation,
+        Vector3::zeros(),
+    );
     let [force, couple] = rates(mechanism, told, BOB);
     let hanging = force - gravity * mass(mechanism, BOB).mass;
     exert(3, -hanging, bodies[BOB].position_com, -couple);
@@ -191,7 +208,11 @@ fn unbalanced(scene: &Scene, told: &Told, torque: [f64; 2], push: f64) -> ([f64;
         (force - weight - own).norm().max((couple - moment).norm())
     });
     let missing: Vec<f64> = missing.collect();
-    let largest = told.forces.iter().map(|own| own.force.norm()).fold(0.0, f64::max);
+    let largest = told
+        .forces
+        .iter()
+        .map(|own| own.force.norm())
+        .fold(0.0, f64::max);
     ([missing[0], missing[1], missing[2]], largest)
 }
 
@@ -215,11 +236,17 @@ fn pins_carry_what_newton_and_euler_ask_for() {
         assert!(largest > 10.0, "{largest}");
         for open in missing {
             // Velocities of 5 m/s, rounded, over a step of 1e-3 s, times what the differences add up.
-            assert!(open < 2e-11 * largest.max(1.0), "{form:?}: {missing:?} of {largest}");
+            assert!(
+                open < 2e-11 * largest.max(1.0),
+                "{form:?}: {missing:?} of {largest}"
+            );
         }
         assert!(told.forces[2].moment.iter().all(|moment| *moment == 0.0));
         let (elbow, slide) = (told.forces[1], told.forces[3]);
-        assert_eq!((elbow.force.z, elbow.moment.z, slide.force.x), (0.0, 0.0, 0.0));
+        assert_eq!(
+            (elbow.force.z, elbow.moment.z, slide.force.x),
+            (0.0, 0.0, 0.0)
+        );
     }
 }
 
@@ -266,9 +293,15 @@ bodies.shank = { mass = 1.0, com = [0.2, 0.0, 0.0], inertia = [[0.01, 0.0, 0.0],
     let mut dynamics = Recursive::new(Arc::clone(&scene.mechanism));
     let (q, none) = (&scene.configuration, [0.0; 2]);
     let (mut rates, mut needed) = (none, none);
-    dynamics.forward_dynamics(q, &none, &none, &mut rates).expect("regular");
-    dynamics.inverse_dynamics(q, &none, &rates, &mut needed).expect("sizes fit");
-    let refused = dynamics.pin_forces(0, q, &none).expect_err("the knee is missing");
+    dynamics
+        .forward_dynamics(q, &none, &none, &mut rates)
+        .expect("regular");
+    dynamics
+        .inverse_dynamics(q, &none, &rates, &mut needed)
+        .expect("sizes fit");
+    let refused = dynamics
+        .pin_forces(0, q, &none)
+        .expect_err("the knee is missing");
     assert_eq!(
         refused.to_string(),
         "the pins of joint `leg` let its bodies move in 7 ways, and it has 2 degrees of freedom: pins are missing, or the linkage is at a dead point"
@@ -281,7 +314,12 @@ fn only_pins_carry() {
     let scene = scene("");
     let dynamics = Recursive::new(Arc::clone(&scene.mechanism));
     let (q, speeds) = (&scene.configuration, &scene.speeds);
-    assert!(dynamics.pin_forces(BOB, q, speeds).expect("it is there").is_empty());
+    assert!(
+        dynamics
+            .pin_forces(BOB, q, speeds)
+            .expect("it is there")
+            .is_empty()
+    );
     assert!(dynamics.pin_forces(BOB + 1, q, speeds).is_err());
     assert!(dynamics.pin_forces(1, &q[1..], speeds).is_err());
 }

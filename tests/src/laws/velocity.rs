@@ -79,12 +79,22 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
                     Turning::AboutAxis => angular.cross(&turning),
                     Turning::Not => angular,
                 };
-                close("turns as the pin says", J::NAME, &otherwise, &Vector3::zeros());
+                close(
+                    "turns as the pin says",
+                    J::NAME,
+                    &otherwise,
+                    &Vector3::zeros(),
+                );
                 let otherwise = match pin.slides {
                     true => there.cross(&sliding),
                     false => there,
                 };
-                close("slides as the pin says", J::NAME, &otherwise, &Vector3::zeros());
+                close(
+                    "slides as the pin says",
+                    J::NAME,
+                    &otherwise,
+                    &Vector3::zeros(),
+                );
             }
         }
     }
@@ -93,7 +103,7 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
     fn twist_maps(&self) -> Vec<SMatrix<f64, 6, K>> {
         let mut maps = vec![self.joint.twist_map(&self.q)];
         self.joint.more(&mut |body| {
-            let mut map = SMatrix::zeros();
+            let mut map = SMatrix::<f64, 6, K>::zeros();
             body.twist_map(self.q.as_slice(), map.as_mut_slice());
             maps.push(map);
         });

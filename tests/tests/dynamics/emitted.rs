@@ -9,7 +9,9 @@ use hamel::scalar::F64x4;
 use hamel_compiler::functions::Kind;
 use hamel_compiler::{Build, scene};
 use hamel_scene::Scene;
-use hamel_tests::emitted::{ball_chain, crank_rocker, geodesic_springs, plate_cart_arm as module, snakeboard};
+use hamel_tests::emitted::{
+    ball_chain, crank_rocker, geodesic_springs, plate_cart_arm as module, snakeboard,
+};
 use hamel_tests::{random, scenes};
 use rand::SeedableRng;
 use std::path::Path;
@@ -343,7 +345,9 @@ fn timed_efforts_at_ports_are_those_of_the_tree() {
         let found = both.map(|dynamics| {
             dynamics.set_moment(time.into());
             let (mut rates, mut speeds, mut changes) = ([0.0], [0.0], [0.0]);
-            dynamics.forward_dynamics(q, v, &tau, &mut rates).expect("regular");
+            dynamics
+                .forward_dynamics(q, v, &tau, &mut rates)
+                .expect("regular");
             let mut given = |_: &[f64], efforts: &mut [f64]| efforts.copy_from_slice(&tau);
             dynamics
                 .momentum_rates(q, &momenta, &mut given, &mut speeds, &mut changes)
@@ -356,9 +360,15 @@ fn timed_efforts_at_ports_are_those_of_the_tree() {
         });
         for (expected, found) in found[0].iter().zip(found[1]) {
             // Some hundred roundings.
-            assert!((expected - found).abs() < 1e-12 * expected.abs().max(1.0), "{expected} {found}");
+            assert!(
+                (expected - found).abs() < 1e-12 * expected.abs().max(1.0),
+                "{expected} {found}"
+            );
         }
-        assert!((found[0][0] - before).abs() > 1e-3, "the efforts change with time");
+        assert!(
+            (found[0][0] - before).abs() > 1e-3,
+            "the efforts change with time"
+        );
         before = found[0][0];
     }
 }

@@ -96,9 +96,7 @@ impl Part {
 
 /// The parts that a kernel is derived from.
 fn parts(spec: &JointSpec, kind: KernelKind) -> Vec<Part> {
-    use Part::{
-        Constraint, Home, Loci, Manifold, Motion, Pins, Ports, Pose, SpeedBasis, Velocity,
-    };
+    use Part::{Constraint, Home, Loci, Manifold, Motion, Pins, Ports, Pose, SpeedBasis, Velocity};
     // Without a declared X, its columns are the twists of H along ϕ.
     let twist: &[Part] = match (&spec.twist_map, spec.velocity.value) {
         (Some(_), _) => &[Velocity],

@@ -5,9 +5,9 @@ use super::ranges;
 use super::units;
 use crate::derived::{Claim, Derived, Kernel, Method as FoundBy, Structure};
 use crate::emit::method::{Method, of_further_body, products};
+use crate::expand::{PinDrive, Source};
 use crate::expr::Rational;
 use crate::formula::Counts;
-use crate::expand::{PinDrive, Source};
 use crate::model::{Declared, Parameter, Pin, Port};
 use num_traits::{One, Zero};
 

@@ -12,8 +12,7 @@ pub fn constant(derived: &Derived) -> Option<TokenStream> {
     let own = pins.iter().zip(&derived.pin_drives);
     let own = own.map(|(declared, drives)| pin(&declared.value, drives));
     let own: Vec<TokenStream> = own.collect();
-    (!own.is_empty())
-        .then(|| quote! { const PINS: &'static [::hamel::joint::Pin] = &[#(#own),*]; })
+    (!own.is_empty()).then(|| quote! { const PINS: &'static [::hamel::joint::Pin] = &[#(#own),*]; })
 }
 
 fn pin(pin: &Pin, drives: &[PinDrive]) -> TokenStream {

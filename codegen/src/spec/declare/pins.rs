@@ -104,9 +104,11 @@ fn end(
     let Some(point) = value.as_vector3() else {
         let message = format!("a pin is at a point, found {}", value.describe());
         let error = Diagnostic::new(code::PIN, end.point.span.clone(), message);
-        evaluator.report(error.label("no point").help(
-            "give three coordinates in the frame of the body, in m: `[length, 0, 0]`",
-        ));
+        evaluator.report(
+            error
+                .label("no point")
+                .help("give three coordinates in the frame of the body, in m: `[length, 0, 0]`"),
+        );
         return None;
     };
     Some(model::PinEnd { body: body?, point })

@@ -109,5 +109,8 @@ fn text(joint: &Derived) -> String {
     let pins: String = pins
         .map(|pin| format!("  pin {}: {}\n", pin.value.name, pin.value.text))
         .collect();
-    format!("{}{bodies}\n{lines}{ports}{pins}{note}\n", joint.spec.name.value)
+    format!(
+        "{}{bodies}\n{lines}{ports}{pins}{note}\n",
+        joint.spec.name.value
+    )
 }

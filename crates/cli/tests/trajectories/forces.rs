@@ -60,28 +60,43 @@ fn multipliers_and_pins_are_those_of_the_motion() {
         let of = |name: &str| &columns[name];
         let wrist = [of("engine.pin.wrist.fx_N"), of("engine.pin.wrist.fy_N")];
         let multipliers = [of("engine.lambda.1_N"), of("engine.lambda.2_N")];
-        let momentum = |row: usize| 1.9 * of("engine.slider.vx_m_per_s")[row] + 0.2 * of("hook.vx_m_per_s")[row];
+        let momentum = |row: usize| {
+            1.9 * of("engine.slider.vx_m_per_s")[row] + 0.2 * of("hook.vx_m_per_s")[row]
+        };
         for row in 1..of("t_s").len() - 1 {
             let [x, y] = wrist.map(|force| force[row]);
             let rate = (momentum(row + 1) - momentum(row - 1)) / (2.0 * STEP);
             // The third derivative of the momentum, below 2e5 N/s², times a sixth of the squared step.
             assert!((rate - x).abs() < 0.05, "{rate} {x}");
             for (pin, multiplier) in [x, y].into_iter().zip(multipliers) {
-                assert!((pin + multiplier[row]).abs() < 1e-9 * pin.abs().max(1.0), "{pin} {multiplier:?}");
+                assert!(
+                    (pin + multiplier[row]).abs() < 1e-9 * pin.abs().max(1.0),
+                    "{pin} {multiplier:?}"
+                );
             }
         }
-        for open in ["main.fz_N", "crank_pin.mx_N_m", "wrist.my_N_m", "slide.fz_N"] {
+        for open in [
+            "main.fz_N",
+            "crank_pin.mx_N_m",
+            "wrist.my_N_m",
+            "slide.fz_N",
+        ] {
             let column = of(&format!("engine.pin.{open}"));
             assert!(column.iter().all(|number| number.is_nan()), "{open}");
         }
-        let largest = of("engine.pin.slide.mz_N_m").iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let largest = of("engine.pin.slide.mz_N_m")
+            .iter()
+            .fold(0.0_f64, |m, x| m.max(x.abs()));
         assert!(largest > 1e-3 && largest.is_finite(), "{largest}");
     }
     for (name, column) in &lagrangian {
         let scale = column.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
         for (a, b) in column.iter().zip(&hamiltonian[name]) {
             // A tolerance of 1e-12 over some hundred steps, and accelerations a thousand times as large as what is integrated.
-            assert!((a - b).abs() < 1e-8 * scale || a.is_nan() && b.is_nan(), "{name}: {a} {b}");
+            assert!(
+                (a - b).abs() < 1e-8 * scale || a.is_nan() && b.is_nan(),
+                "{name}: {a} {b}"
+            );
         }
     }
 }
@@ -105,8 +120,16 @@ fn json_and_the_summary_tell_what_is_open() {
     assert_eq!(joint["lambda"].as_array().map(Vec::len), Some(2));
     assert!(joint["pin"][0].is_number() && joint["pin"][2].is_null());
     let columns = told["columns"].as_array().expect("a list");
-    let of = |name: &str| columns.iter().find(|column| column["name"] == name).expect("a column");
-    assert_eq!(of("engine.lambda.1_N")["meaning"], "multiplier of the relation `-s + rod*b.c + crank*a.c = 0`");
+    let of = |name: &str| {
+        columns
+            .iter()
+            .find(|column| column["name"] == name)
+            .expect("a column")
+    };
+    assert_eq!(
+        of("engine.lambda.1_N")["meaning"],
+        "multiplier of the relation `-s + rod*b.c + crank*a.c = 0`"
+    );
     assert_eq!(of("engine.pin.wrist.mz_N_m")["pointer"], "/joints/0/pin/17");
     let summary = run(&[]);
     let line = "forces      the equations of motion do not determine all that the pins of joint `engine` carry: fz, mx, my of `main`; fz, mx, my of `crank_pin`; \

@@ -96,15 +96,6 @@ impl Recursive {
 
     /// `X^cᵀF` of one joint, summed over the bodies that it carries.
     pub(super) fn joint_effort(&self, index: usize, q: &[f64], effort: &mut [f64]) {
-        self.add_efforts(index, q, effort, |part| part);
-    }
-
-    /// The sum of the sizes of what is added up there.
-    pub(super) fn joint_effort_size(&self, index: usize, q: &[f64], sizes: &mut [f64]) {
-        self.add_efforts(index, q, sizes, f64::abs);
-    }
-
-    fn add_efforts(&self, index: usize, q: &[f64], effort: &mut [f64], of: impl Fn(f64) -> f64) {
         effort.fill(0.0);
         for index in self.mechanism.carried(index) {
             let link = &self.links[index];
@@ -114,8 +105,7 @@ impl Recursive {
             let q = &q[link.configuration.clone()];
             link.joint.twist_map_child(q, map);
             for (effort, column) in effort.iter_mut().zip(map.chunks_exact(6)) {
-                let parts = column.iter().zip(&wrench).map(|(x, f)| of(x * f));
-                *effort += parts.sum::<f64>();
+                *effort += column.iter().zip(&wrench).map(|(x, f)| x * f).sum::<f64>();
             }
         }
     }

@@ -11,6 +11,7 @@ use super::Recursive;
 use super::inverse::MOST_FREEDOMS;
 use crate::joint::{DriveSource, Pin, PinDrive, Turning};
 use crate::mechanism::StateError;
+use crate::spatial::split;
 use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -88,13 +89,14 @@ impl Recursive {
         if pins.is_empty() {
             return Ok(vec![]);
         }
-        let efforts = self.own_efforts(body, q, speeds);
+        let length = self.extent(body, q, &pins);
+        let efforts = self.own_efforts(body, (q, speeds), length);
         if let Some(what) = self.unplaced(body, &pins, &efforts) {
             let joint = owner.joint_name().into();
             return Err(PinError::Unplaced { joint, what });
         }
         let bodies = self.mechanism.carried(body);
-        let mut balance = Balance::new(bodies.len(), &pins);
+        let mut balance = Balance::new(bodies.len(), &pins, length);
         for (place, index) in bodies.enumerate() {
             balance.exert(place, &self.wrench_in_parent(index, q));
         }
@@ -136,14 +138,46 @@ impl Recursive {
         pose.act_wrench(&self.joint_wrench(index).unwrap_or_default())
     }
 
+    /// How far pins and origins of bodies are from the first pin, m; 1 where all are one point.
+    fn extent(&self, body: usize, q: &[f64], pins: &[Placed]) -> f64 {
+        let first = pins.first().map_or(Vector3::zeros(), |placed| placed.point);
+        let origins = self.mechanism.carried(body).map(|index| {
+            let link = &self.links[index];
+            link.joint.pose(&q[link.configuration.clone()]).translation
+        });
+        let points = pins.iter().map(|placed| placed.point).chain(origins);
+        let farthest = points
+            .map(|point| (point - first).norm())
+            .fold(0.0, f64::max);
+        if farthest > 0.0 { farthest } else { 1.0 }
+    }
+
+    /// What the efforts on each degree of freedom are the sums of, in size: twists by wrenches, lengths of the size of the joint.
+    fn effort_sizes(&self, body: usize, q: &[f64], length: f64) -> Vec<f64> {
+        let mut sizes = vec![0.0; self.links[body].freedoms.len()];
+        let mut map = [0.0; 6 * MOST_FREEDOMS];
+        let map = &mut map[..6 * sizes.len()];
+        for index in self.mechanism.carried(body) {
+            let link = &self.links[index];
+            link.joint
+                .twist_map_child(&q[link.configuration.clone()], map);
+            let (moment, force) = split(&self.joint_wrench(index).unwrap_or_default());
+            let strength = moment.norm() / length + force.norm();
+            for (size, column) in sizes.iter_mut().zip(map.chunks_exact(6)) {
+                let (turn, slide) = split(&Vector6::from_column_slice(column));
+                *size += (turn.norm() * length + slide.norm()) * strength;
+            }
+        }
+        sizes
+    }
+
     /// The efforts on a joint: at each port, and on each degree of freedom beside these.
-    fn own_efforts(&self, body: usize, q: &[f64], speeds: &[f64]) -> Efforts {
+    fn own_efforts(&self, body: usize, (q, speeds): (&[f64], &[f64]), length: f64) -> Efforts {
         let link = &self.links[body];
         let own = &q[link.configuration.clone()];
         let mut freedoms = vec![0.0; link.freedoms.len()];
-        let mut sizes = freedoms.clone();
+        let mut sizes = self.effort_sizes(body, q, length);
         self.joint_effort(body, q, &mut freedoms);
-        self.joint_effort_size(body, q, &mut sizes);
         let ports = 0..link.joint.ports().len();
         let ports: Vec<f64> = ports
             .map(|port| self.effort_at_port(body, port, q, speeds))

@@ -40,11 +40,15 @@ impl<'a> Columns<'a> {
         let notes = Rc::clone(&self.notes);
         self.add("lambda", endings.collect(), move |moment, row| {
             let (q, speeds) = (moment.configuration, moment.speeds);
-            let found = moment.carried.map(|carried| carried.relation_forces(index, q, speeds));
+            let found = moment
+                .carried
+                .map(|carried| carried.relation_forces(index, q, speeds));
             match found {
                 Some(Ok(forces)) => row.extend(forces),
                 other => {
-                    notes.borrow_mut().extend(other.and_then(Result::err).map(|e| e.to_string()));
+                    notes
+                        .borrow_mut()
+                        .extend(other.and_then(Result::err).map(|e| e.to_string()));
                     row.extend(vec![f64::NAN; relations.len()]);
                 }
             }
@@ -90,14 +94,19 @@ fn pin_endings(body: &Body, pin: &Pin) -> Vec<Ending> {
     };
     let forces = ending('f', "force", "N").into_iter();
     let moments = ending('m', "moment", "N m").into_iter();
-    forces.chain(moments.filter(|_| carries_moments(pin))).collect()
+    forces
+        .chain(moments.filter(|_| carries_moments(pin)))
+        .collect()
 }
 
 /// The forces at all pins of a joint, and what there is to say of them.
 fn told_at_pins(index: usize, body: &Body, moment: &Moment<'_>) -> (Vec<PinForce>, Option<String>) {
     let (q, speeds) = (moment.configuration, moment.speeds);
     let pins = body.joint().pins();
-    match moment.carried.map(|carried| carried.pin_forces(index, q, speeds)) {
+    match moment
+        .carried
+        .map(|carried| carried.pin_forces(index, q, speeds))
+    {
         Some(Ok(told)) => {
             let note = undetermined(body, pins, &told);
             (told, note)
@@ -118,7 +127,9 @@ fn undetermined(body: &Body, pins: &[Pin], told: &[PinForce]) -> Option<String> 
     let of_pin = |(pin, own): (&Pin, &PinForce)| {
         let parts = [('f', own.force), ('m', own.moment)];
         let parts = parts.into_iter().flat_map(|(letter, part)| {
-            let entries = AXES.into_iter().zip(part.iter().copied().collect::<Vec<_>>());
+            let entries = AXES
+                .into_iter()
+                .zip(part.iter().copied().collect::<Vec<_>>());
             let open = entries.filter(|(_, entry)| entry.is_nan());
             open.map(move |(axis, _)| format!("{letter}{axis}"))
         });

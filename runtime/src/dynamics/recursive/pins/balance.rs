@@ -28,11 +28,9 @@ pub(super) struct Solution {
 }
 
 impl Balance {
-    /// Of so many bodies.
-    pub(super) fn new(bodies: usize, pins: &[Placed]) -> Self {
+    /// Of so many bodies, within a length, m.
+    pub(super) fn new(bodies: usize, pins: &[Placed], length: f64) -> Self {
         let about = pins.first().map_or(Vector3::zeros(), |placed| placed.point);
-        let distances = pins.iter().map(|placed| (placed.point - about).norm());
-        let farthest = distances.fold(0.0, f64::max);
         let carried = pins.iter().map(|placed| {
             let [forces, moments] = placed.carries();
             forces.len() + moments.len()
@@ -40,7 +38,7 @@ impl Balance {
         let unknowns = carried.sum();
         let mut balance = Self {
             about,
-            length: if farthest > 0.0 { farthest } else { 1.0 },
+            length,
             rows: vec![vec![0.0; unknowns + 1]; 6 * bodies],
             unknowns,
         };
@@ -62,7 +60,12 @@ impl Balance {
     }
 
     /// A moment and a force of the second body of a pin on the first, into a column.
-    fn add(&mut self, placed: &Placed, column: usize, (moment, force): &(Vector3<f64>, Vector3<f64>)) {
+    fn add(
+        &mut self,
+        placed: &Placed,
+        column: usize,
+        (moment, force): &(Vector3<f64>, Vector3<f64>),
+    ) {
         for (body, sign) in placed.pin.bodies.into_iter().zip([1.0, -1.0]) {
             let Some(body) = body else { continue };
             for i in 0..3 {
@@ -123,7 +126,9 @@ impl Balance {
             let place = pivots.len();
             self.rows.swap(place, row);
             let pivot = self.rows[place][column];
-            self.rows[place].iter_mut().for_each(|entry| *entry /= pivot);
+            self.rows[place]
+                .iter_mut()
+                .for_each(|entry| *entry /= pivot);
             let own = self.rows[place].clone();
             for (n, other) in self.rows.iter_mut().enumerate() {
                 let factor = other[column];
@@ -163,7 +168,11 @@ impl Balance {
                 });
                 match is_free {
                     true => f64::NAN,
-                    false => unit * weights().map(|(weight, j)| weight * numbers[j]).sum::<f64>(),
+                    false => {
+                        unit * weights()
+                            .map(|(weight, j)| weight * numbers[j])
+                            .sum::<f64>()
+                    }
                 }
             };
             Vector3::from_fn(|i, _| component(i))
