@@ -4,8 +4,9 @@ use hamel::joint::Member;
 use hamel_downstream::joints::{
     BallCayley, BallTurns, Bead, CamCircle, CamFollower, CarWheels, Catenary, CatenaryLength,
     CrankCoupler, CrankRocker, DirectionSensor, ENTRIES, FiveBar, FourBarThrough, GearedRotor,
-    MeasuredRocker, ParallelAnkle, PlanarTurns, PowerGuide, Rail, RollingBallCayley, Scara,
-    SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint, Valley, Wishbone,
+    MeasuredRocker, ParallelAnkle, PlanarTurns, PowerGuide, Press, Rail, RollingBallCayley, Scara,
+    SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint, Unpinned, Valley,
+    Wishbone,
 };
 use hamel_tests::laws::Reach::{self, Around, Entries, HalfTurn};
 use hamel_tests::laws::check_within;
