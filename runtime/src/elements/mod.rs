@@ -79,7 +79,7 @@ pub trait Element: Debug + Send + Sync {
         [f64::NAN; 2]
     }
 
-    /// The functions of time that it reads at the view's [`Moment`](crate::time_function::Moment); none where it does not change with time.
+    /// The functions of time that it reads at the view's [`Moment`]; none where it does not change with time.
     fn functions(&self) -> &[TimeFunction] {
         &[]
     }
