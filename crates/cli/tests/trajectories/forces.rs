@@ -108,7 +108,7 @@ fn json_and_the_summary_tell_what_is_open() {
         let output = Command::new(env!("CARGO_BIN_EXE_hamel"))
             .current_dir(env!("CARGO_TARGET_TMPDIR"))
             .args(["simulate", &scene("engine_open"), "--force"])
-            .args(&STEPS)
+            .args(STEPS)
             .args(options)
             .output()
             .expect("the program starts");
