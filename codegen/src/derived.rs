@@ -1,5 +1,6 @@
 //! What is derived from a spec: kernels in symbols, and the claims that were proved. The border between derivation and output.
 
+use crate::expand::PinDrive;
 use crate::expr::{Expr, Rational};
 use crate::formula::{Names, Program};
 use crate::matrix::Matrix;
@@ -52,6 +53,8 @@ pub struct Derived {
     pub still: Vec<usize>,
     /// The speeds that move no body, by their places.
     pub still_speeds: Vec<usize>,
+    /// The efforts that act at each pin.
+    pub pin_drives: Vec<Vec<PinDrive>>,
     /// N_X: basis of the inertias that do not affect the joint, `[m, mc_x, mc_y, mc_z, Ixx, Iyy, Izz, Ixy, Ixz, Iyz]`.
     pub unidentifiable: Vec<[Rational; 10]>,
     /// All that was proved, and what was checked instead.

@@ -37,6 +37,8 @@ pub enum KernelKind {
     PortMap,
     /// The values of the ports.
     PortValues,
+    /// Points and axes of the pins, in the frame that the joint hangs on.
+    Pins,
     /// Q̇(Q, v).
     ConfigurationRate,
     /// Φ(Q, ϕ) at finite ϕ.
@@ -258,6 +260,8 @@ pub struct Shape {
     pub displacements: usize,
     /// How many ports there are.
     pub ports: usize,
+    /// How many pins there are.
+    pub pins: usize,
 }
 
 /// The symbols that stand for the arguments of the kernels.

@@ -180,6 +180,50 @@ impl Port {
     }
 }
 
+/// A point at which two bodies of a joint hold each other, or a body and the frame that the joint hangs on.
+#[derive(Clone, Debug)]
+pub struct Pin {
+    /// Its name.
+    pub name: String,
+    /// Doc comment.
+    pub docs: String,
+    /// What it says, as the spec writes it.
+    pub text: String,
+    /// The point in the frame of each.
+    pub ends: [PinEnd; 2],
+    /// The axis of the second one about which the first turns.
+    pub about: Option<Axis>,
+    /// The axis of the second one along which the first slides.
+    pub along: Option<Axis>,
+}
+
+/// A point of a body.
+#[derive(Clone, Debug)]
+pub struct PinEnd {
+    /// The place of the body; `None` for the frame that the joint hangs on.
+    pub body: Option<usize>,
+    /// Three coordinates in its frame.
+    pub point: Vec<Expr>,
+}
+
+/// An axis of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// Its x axis.
+    X,
+    /// Its y axis.
+    Y,
+    /// Its z axis.
+    Z,
+}
+
+impl Pin {
+    /// What its points are made of.
+    pub fn entries(&self) -> impl Iterator<Item = &Expr> {
+        self.ends.iter().flat_map(|end| &end.point)
+    }
+}
+
 /// The frame in which v is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VelocityFrame {
@@ -270,6 +314,8 @@ pub struct JointSpec {
     pub requirements: Vec<Declared<Requirement>>,
     /// Where Q lives; relations that the spec declares are part of it.
     pub manifold: Declared<Manifold>,
+    /// The unit of each relation that the spec declares: `m`, `m^2`, `1` for a number or an angle; empty where nothing tells it.
+    pub relation_units: Vec<String>,
     /// Where Q must not come: H, Φ, X, A or S̄ lose their meaning or their rank there.
     pub loci: Vec<Declared<Locus>>,
     /// The stored scalars of the home configuration, where declared.
@@ -288,6 +334,8 @@ pub struct JointSpec {
     pub more: Vec<Declared<PoseExpr>>,
     /// Coordinates at which efforts act and rates are read, besides v.
     pub ports: Vec<Declared<Port>>,
+    /// Where bodies hold each other.
+    pub pins: Vec<Declared<Pin>>,
     /// Φ(Q, ϕ) as stored scalars, where declared.
     pub retract: Option<Declared<Vec<Expr>>>,
     /// How v moves Q on the manifold of the relations, where these say more than the basis and Φ is not declared.

@@ -170,6 +170,7 @@ impl Known {
             named: expansion.named().to_vec(),
             arguments: expansion.arguments,
             still: expansion.still.freedoms,
+            pin_drives: expansion.pin_drives,
             still_speeds: self.still_speeds.clone(),
             kernels,
             words,

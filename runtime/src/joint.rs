@@ -31,6 +31,7 @@
 #[cfg(feature = "alloc")]
 mod coupled;
 mod patterns;
+mod pin;
 mod port;
 mod products;
 mod several;
@@ -43,6 +44,7 @@ pub const MOST_FREEDOMS: usize = 8;
 #[cfg(feature = "alloc")]
 pub use coupled::{Coupled, Link, LinkFault, LinkMotion, MOST_COORDINATES, MOST_LINKS, coupled};
 pub use patterns::{Entry, Patterns};
+pub use pin::{DriveSource, Pin, PinDrive, Turning};
 pub use port::{Port, PortLaw};
 pub use products::{FirstOrder, Products};
 pub use several::{Carries, Member};
@@ -131,8 +133,14 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     /// The declared relations, as equations, of a joint whose motion relations alone give. Each has a multiplier.
     const RELATIONS: &'static [&'static str] = &[];
 
+    /// The unit of each relation, as `m`, `m^2`, or `1` for a number or an angle; empty where nothing tells it. That of its multiplier is J over it.
+    const RELATION_UNITS: &'static [&'static str] = &[];
+
     /// The ports: angles and lengths of Q, besides v, at which efforts act and rates are read.
     const PORTS: &'static [Port] = &[];
+
+    /// The pins: where the bodies hold each other.
+    const PINS: &'static [Pin] = &[];
 
     /// Names of the bodies that the joint carries; empty where it carries one that has no name.
     const BODIES: &'static [&'static str] = &[];
@@ -308,6 +316,19 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
             )
         };
         let none: [T; 0] = [];
+        none
+    }
+
+    /// For each of [`Joint::PINS`] its point, m, the axis about which the first body turns and that along which it slides, in the parent frame; 0 for an axis that
+    /// it does not have.
+    fn pins<T: Scalar>(&self, _q: &SVector<T, N>) -> impl AsRef<[[T; 9]]> {
+        const {
+            assert!(
+                Self::PINS.is_empty(),
+                "the joint has pins: it must implement pins"
+            )
+        };
+        let none: [[T; 9]; 0] = [];
         none
     }
 

@@ -31,6 +31,7 @@ impl Critical {
             .flat_map(Matrix::entries)
             .chain(spec.loci.iter().map(|locus| &locus.value.function))
             .chain(spec.ports.iter().flat_map(|port| port.value.entries()))
+            .chain(spec.pins.iter().flat_map(|pin| pin.value.entries()))
             .for_each(|e| Self::collect(e, &[], &mut found));
         found
     }

@@ -26,6 +26,7 @@ pub fn kernels(
     let mut kernels = maker.velocity();
     kernels.extend(maker.nonholonomic());
     kernels.extend(maker.ports());
+    kernels.extend(maker.pins());
     kernels.extend(maker.finite_maps()?);
     kernels.sort_by_key(|kernel| kernel.kind);
     Ok(kernels)
@@ -87,6 +88,12 @@ impl Maker<'_> {
             plain(KernelKind::PortMap, vec![self.x.port_map.clone()]),
             plain(KernelKind::PortValues, vec![ports::values(ports)]),
         ]
+    }
+
+    /// Where the pins are; nothing where there are none.
+    fn pins(&self) -> Option<Kernel> {
+        let has_pins = self.x.shape.pins > 0;
+        has_pins.then(|| plain(KernelKind::Pins, vec![self.x.pins.clone()]))
     }
 
     fn short(&self, matrix: &Matrix) -> Matrix {

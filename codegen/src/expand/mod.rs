@@ -15,6 +15,7 @@ mod kernels;
 mod motion;
 mod nonholonomic;
 mod numbers;
+pub(crate) mod pins;
 pub(crate) mod ports;
 pub(crate) mod rank;
 mod steps;
@@ -32,6 +33,7 @@ pub use kernels::{kernels, of_body, speed_map};
 pub use motion::Motion;
 pub use nonholonomic::{Nonholonomic, speed_names};
 pub use numbers::{beyond_doubles, rough_curve};
+pub use pins::{PinDrive, Source};
 pub use steps::Steps;
 pub use still::Still;
 pub use twist::{TwistJacobian, bracket, in_child_frames};
@@ -82,6 +84,10 @@ pub struct Expansion {
     pub still: Still,
     /// P: v to the rates of the ports.
     pub port_map: Matrix,
+    /// Point, axis of turning and axis of sliding of each pin, by rows of nine.
+    pub pins: Matrix,
+    /// The efforts that act at each pin.
+    pub pin_drives: Vec<Vec<PinDrive>>,
     /// What displacements that relations forbid would do, where these alone say how Q moves.
     pub forbidden: Option<Forbidden>,
 }
@@ -159,7 +165,7 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
     let forbidden = flow.as_ref().map(|_| Forbidden::new(joint));
     budget::begin(task::CONSTRAINT);
     let nonholonomic = Nonholonomic::new(joint, &motion, &domain)?;
-    Ok(Expansion {
+    let mut expansion = Expansion {
         shape: Shape {
             configuration: arguments.configuration.len(),
             freedoms: motion.freedoms(),
@@ -167,7 +173,10 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
             constraints: nonholonomic.constraint.columns(),
             displacements: arguments.displacement.len(),
             ports: joint.spec.ports.len(),
+            pins: joint.spec.pins.len(),
         },
+        pins: pins::places(&joint.spec, ideal),
+        pin_drives: vec![],
         arguments,
         exponential,
         motion,
@@ -183,7 +192,10 @@ pub fn expand(joint: &Prepared) -> Result<Expansion, Vec<Diagnostic>> {
         still,
         port_map,
         forbidden,
-    })
+    };
+    budget::begin(task::PINS);
+    expansion.pin_drives = pins::drives(&joint.spec, &expansion, ideal);
+    Ok(expansion)
 }
 
 fn arguments(joint: &Prepared) -> Arguments {

@@ -13,6 +13,8 @@ pub const TWIST_MAP: &str = "X";
 pub const VELOCITY_MAP: &str = "S, the solution of X S = J";
 /// P.
 pub const PORTS: &str = "the rates of the ports";
+/// Where pins are, and what acts there.
+pub const PINS: &str = "the pins";
 /// A and S̄.
 pub const CONSTRAINT: &str = "A and S_bar";
 /// What is proved.
@@ -29,6 +31,7 @@ pub fn span(spec: &JointSpec, task: &str) -> Range<usize> {
         MOTION => (spec.retract.as_ref()).map_or(spec.freedoms.span.clone(), |r| r.span.clone()),
         TWIST => pose(),
         TWIST_MAP | VELOCITY_MAP => (spec.twist_map.as_ref()).map_or_else(pose, |x| x.span.clone()),
+        PINS => (spec.pins.first()).map_or_else(pose, |pin| pin.span.clone()),
         PORTS => (spec.ports.first()).map_or_else(pose, |port| port.span.clone()),
         CONSTRAINT => {
             let declared = spec.constraint.as_ref().or(spec.speed_basis.as_ref());

@@ -5,7 +5,7 @@ use crate::diagnostic::Diagnostic;
 use crate::domain::{Critical, Domain};
 use crate::expr::{Expr, Function};
 use crate::matrix::Matrix;
-use crate::model::{Declared, Locus, Port, PoseExpr};
+use crate::model::{Declared, Locus, Pin, Port, PoseExpr};
 use crate::prepare::Prepared;
 use crate::spec::code;
 use std::collections::BTreeSet;
@@ -64,9 +64,12 @@ impl Prover<'_> {
         if let Some(open) = open {
             return Err(Box::new(refusal(open, &self.statement_with(open))));
         }
-        let all = match self.joint.spec.ports.is_empty() {
-            true => "H, Φ, X, S, A and S̄ are smooth at Q",
-            false => "H, Φ, X, S, A, S̄ and ports are smooth at Q",
+        let spec = &self.joint.spec;
+        let all = match (spec.ports.is_empty(), spec.pins.is_empty()) {
+            (true, true) => "H, Φ, X, S, A and S̄ are smooth at Q",
+            (false, true) => "H, Φ, X, S, A, S̄ and ports are smooth at Q",
+            (true, false) => "H, Φ, X, S, A, S̄ and pins are smooth at Q",
+            (false, false) => "H, Φ, X, S, A, S̄, ports and pins are smooth at Q",
         };
         let mut statement = self.where_it_holds(all);
         let sides = self.sides();
@@ -103,11 +106,14 @@ impl Prover<'_> {
             let entries = port.value.entries().into_iter().cloned();
             (entries.collect(), port.span.clone())
         };
+        let of_pin =
+            |pin: &Declared<Pin>| (pin.value.entries().cloned().collect(), pin.span.clone());
         let poses = joint.spec.poses().map(of_pose);
         let statements = poses
             .chain(matrices.into_iter().flatten().map(of_matrix))
             .chain(joint.space.loci.iter().map(of_locus))
-            .chain(joint.spec.ports.iter().map(of_port));
+            .chain(joint.spec.ports.iter().map(of_port))
+            .chain(joint.spec.pins.iter().map(of_pin));
         let holds = |entries: &[Expr]| {
             let mut found = BTreeSet::new();
             entries

@@ -15,6 +15,7 @@ mod degenerate;
 mod fibres;
 mod named;
 mod nonholonomic;
+mod pins;
 mod ports;
 mod retract;
 mod search;
@@ -74,6 +75,8 @@ pub fn prove(joint: &Prepared, expansion: &Expansion) -> Result<Vec<Claim>, Vec<
         prover.child_twist_map_agrees(),
         prover.port_angles(),
         prover.port_rates(),
+        prover.pins_meet(),
+        prover.pins_hold(),
     ])?);
     claims.sort_by_key(|claim| place(claim.name));
     claims.extend(fibres::claim(
@@ -108,6 +111,8 @@ fn place(name: &str) -> usize {
         "constraint_rank",
         "port_angles",
         "port_rates",
+        "pins_meet",
+        "pins_hold",
     ];
     let found = order.iter().position(|other| *other == name);
     found.unwrap_or(order.len())

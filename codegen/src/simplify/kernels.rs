@@ -14,7 +14,7 @@ use crate::prepare::Prepared;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Kernels of which every entry is shortened.
-const OF_CONFIGURATION: [KernelKind; 10] = [
+const OF_CONFIGURATION: [KernelKind; 11] = [
     KernelKind::Pose,
     KernelKind::TwistMap,
     KernelKind::TwistMapChild,
@@ -24,6 +24,7 @@ const OF_CONFIGURATION: [KernelKind; 10] = [
     KernelKind::SpeedBasis,
     KernelKind::VelocityMapGradient,
     KernelKind::PortMap,
+    KernelKind::Pins,
     KernelKind::ConfigurationRate,
 ];
 

@@ -2,6 +2,7 @@
 
 use crate::expr::Rational;
 use crate::expr::curve::{Ends, Kind, Outside};
+use crate::model::Axis;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
@@ -80,6 +81,7 @@ impl Statement {
             }
             StatementKind::Require(requirement) => vec![&requirement.larger, &requirement.smaller],
             StatementKind::Port(port) => vec![&port.value],
+            StatementKind::Pin(pin) => pin.ends.iter().map(|end| &end.point).collect(),
             StatementKind::Assign(_, values) | StatementKind::BodyPose(_, values) => {
                 values.iter().collect()
             }
@@ -104,6 +106,8 @@ pub(super) enum StatementKind {
     Bodies(Vec<Name>),
     /// `port a: unit = …;`
     Port(Port),
+    /// `pin a: body at … = body at … about z;`
+    Pin(Pin),
     /// `let a = …;`
     Let(Name, Node),
     /// `curve f(unit): unit = … ;`
@@ -182,6 +186,25 @@ pub(super) struct Port {
     pub name: Name,
     pub unit: Name,
     pub value: Node,
+}
+
+/// `name: body at point = body at point`, with `about axis` and `along axis`, and with the doc comment before the statement.
+#[derive(Debug)]
+pub(super) struct Pin {
+    pub docs: Vec<String>,
+    pub name: Name,
+    pub ends: [PinEnd; 2],
+    pub about: Option<Axis>,
+    pub along: Option<Axis>,
+    /// The bytes after the name.
+    pub span: Range<usize>,
+}
+
+/// `body at point`.
+#[derive(Debug)]
+pub(super) struct PinEnd {
+    pub body: Name,
+    pub point: Node,
 }
 
 #[derive(Debug)]

@@ -47,7 +47,7 @@ codes! {
     NOT_CLOSED "E0305" "A basis that does not close under the bracket."
     DEPENDENT "E0306" "A basis whose elements are dependent, or too many or too few."
     NOT_CONSTANT "E0307" "A basis element that is not constant."
-    FREEDOMS "E0308" "Too many degrees of freedom, factors, stored scalars, bodies or ports."
+    FREEDOMS "E0308" "Too many degrees of freedom, factors, stored scalars, bodies, ports or pins."
     UNUSED "E0309" "A parameter or a let that nothing uses."
     UNDEFINED_VALUE "E0310" "Division by zero, or a function outside its domain."
     TOO_LARGE "E0311" "A value that is too large to work with."
@@ -67,6 +67,7 @@ codes! {
     PORT "E0325" "A port that is no angle or length of Q, or that no velocity moves."
     CURVE "E0326" "Knots, ends or a continuation that make no curve."
     TABLE "E0327" "A file of knots that cannot be read."
+    PIN "E0328" "A pin whose points are apart, or that holds other motions than it says."
 
     DIMENSION "E0401" "The number of local coordinates is not the dimension of the manifold."
     PARENT_FRAME "E0402" "No constant directions to read in the parent frame."

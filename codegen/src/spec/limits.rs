@@ -21,6 +21,8 @@ pub(super) const TALLEST_MATRIX: usize = 6 * MOST_BODIES;
 pub(super) const MOST_BODIES: usize = 16;
 /// Most ports of a joint.
 pub(super) const MOST_PORTS: usize = 16;
+/// Most pins of a joint.
+pub(super) const MOST_PINS: usize = 32;
 /// Largest exponent of `pow`, up or down.
 pub(super) const LARGEST_POWER: u32 = 16;
 

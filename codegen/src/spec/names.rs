@@ -8,11 +8,11 @@ use proc_macro2::{Ident, Span, TokenTree};
 /// Words that begin the statements of the language.
 pub const STATEMENTS: &[&str] = &[
     "config", "relation", "home", "except", "require", "basis", "local", "velocity", "speeds",
-    "bodies", "port", "let", "curve", "Phi", "H", "X", "A", "S_bar", "unproved",
+    "bodies", "port", "pin", "let", "curve", "Phi", "H", "X", "A", "S_bar", "unproved",
 ];
 
 /// Those of them that came after specs could use them as names, which they still can: no expression begins a statement.
-const STILL_NAMES: &[&str] = &["bodies", "port", "curve"];
+const STILL_NAMES: &[&str] = &["bodies", "port", "pin", "curve"];
 
 /// Words that belong to the language.
 const WORDS: &[&str] = &[
@@ -55,7 +55,7 @@ pub(super) fn check_joint(name: &Name) -> Option<Diagnostic> {
     form_error(name, Form::Snake).or_else(taken)
 }
 
-/// Whether a body or a port may have the name; else why not. No expression speaks of them, and no name in Rust is made of theirs.
+/// Whether a body, a port or a pin may have the name; else why not. No expression speaks of them, and no name in Rust is made of theirs.
 pub(super) fn check_unspoken(name: &Name) -> Option<Diagnostic> {
     form_error(name, Form::Snake)
 }

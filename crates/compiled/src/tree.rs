@@ -95,8 +95,12 @@ const AGREEMENT: f64 = 1e-6;
 pub struct Compiled {
     equations: &'static Equations,
     tree: Recursive,
-    /// τ of the inputs, and none.
-    inputs: [vec::Vec<f64>; 2],
+    /// τ of the inputs, none, and τ with the efforts at ports that change with time.
+    inputs: [vec::Vec<f64>; 3],
+    /// When these act.
+    moment: Moment,
+    /// Whether there are any.
+    is_timed: bool,
     /// Rows of derivatives of forward dynamics.
     rows: vec::Vec<f64>,
 }
@@ -153,6 +157,8 @@ impl Compiled {
         Ok(Self {
             equations,
             rows: vec![0.0; ForwardDerivatives::entries(&mechanism)],
+            moment: Moment::default(),
+            is_timed: mechanism.has_timed_port_efforts(),
             tree: Recursive::new(mechanism),
             inputs: core::array::from_fn(|_| vec![0.0; equations.freedoms]),
         })
@@ -200,7 +206,7 @@ impl Compiled {
         if let Some(forward) = self.equations.forward_dynamics {
             self.tree
                 .forward_dynamics(q, &speeds, &efforts, &mut expected)?;
-            forward(q, &speeds, &efforts, &mut found);
+            forward(q, &speeds, self.with_timed(q, &efforts), &mut found);
             Self::close(&found, &expected)?;
         }
         self.compare_derivatives(q, &speeds, &efforts)?;
@@ -235,7 +241,7 @@ impl Compiled {
             let mut given = |_: &[f64], tau: &mut [f64]| tau.copy_from_slice(efforts);
             self.tree
                 .momentum_rates(q, &momenta, &mut given, speeds, &mut expected)?;
-            momentum_rates(q, &momenta, efforts, speeds, &mut found);
+            momentum_rates(q, &momenta, self.with_timed(q, efforts), speeds, &mut found);
             Self::close(&found, &expected)?;
         }
         Ok(())
@@ -326,7 +332,8 @@ impl Compiled {
         accelerations: &[f64],
         out: &mut InverseDerivatives,
     ) -> Result<(), DynamicsError> {
-        if let Some(inverse) = self.equations.inverse_dynamics_derivatives {
+        let inverse = self.equations.inverse_dynamics_derivatives;
+        if let Some(inverse) = inverse.filter(|_| !self.is_timed) {
             self.check(q, [("speeds", speeds), ("accelerations", accelerations)])?;
             let count = speeds.len() * (self.equations.freedoms + speeds.len());
             let rows = &mut self.rows[..count];
@@ -361,6 +368,18 @@ impl Compiled {
     fn check_efforts(&self, efforts: &[f64]) -> Result<(), StateError> {
         let mechanism = self.tree.mechanism();
         mechanism.check_vector("efforts", Space::Freedoms, efforts)
+    }
+
+    /// τ with the efforts at ports that change with time, of which the module is not told.
+    fn with_timed<'t>(&'t mut self, q: &[f64], efforts: &'t [f64]) -> &'t [f64] {
+        if !self.is_timed {
+            return efforts;
+        }
+        let [.., all] = &mut self.inputs;
+        all.copy_from_slice(efforts);
+        let mechanism = self.tree.mechanism();
+        mechanism.add_timed_port_efforts(self.moment, q, all);
+        all
     }
 
     /// `p̄̇ += S̄ᵀτ`: they are affine in τ, which depends on the v̄ that come with them.
@@ -407,6 +426,7 @@ impl Dynamics for Compiled {
     }
 
     fn set_moment(&mut self, moment: Moment) {
+        self.moment = moment;
         self.tree.set_moment(moment);
     }
 
@@ -427,7 +447,7 @@ impl Dynamics for Compiled {
         self.check(q, [("speeds", speeds)])?;
         self.check_efforts(efforts)?;
         self.check_room("rates", rates)?;
-        forward(q, speeds, efforts, rates);
+        forward(q, speeds, self.with_timed(q, efforts), rates);
         if all_finite(rates) {
             return Ok(());
         }
@@ -485,7 +505,7 @@ impl Dynamics for Compiled {
         self.check(q, [("momenta", momenta)])?;
         self.check_room("speeds", speeds)?;
         self.check_room("rates", rates)?;
-        let [inputs, none] = &mut self.inputs;
+        let [inputs, none, _] = &mut self.inputs;
         momentum_rates(q, momenta, none, speeds, rates);
         if !(all_finite(speeds) && all_finite(rates)) {
             return self.tree.momentum_rates(q, momenta, efforts, speeds, rates);
@@ -493,7 +513,11 @@ impl Dynamics for Compiled {
         inputs.fill(0.0);
         efforts(speeds, inputs);
         self.check_efforts(&self.inputs[0])?;
-        let [inputs, _] = &self.inputs;
+        if self.is_timed {
+            let mechanism = self.tree.mechanism();
+            mechanism.add_timed_port_efforts(self.moment, q, &mut self.inputs[0]);
+        }
+        let [inputs, ..] = &self.inputs;
         match self.tree.mechanism().constraints() {
             [] => self.add_inputs(q, rates),
             // What inputs make of dependent speeds falls to others: the module knows how.
@@ -521,7 +545,8 @@ impl Dynamics for Compiled {
         efforts: &[f64],
         out: &mut ForwardDerivatives,
     ) -> Result<(), DynamicsError> {
-        if let Some(forward) = self.equations.forward_dynamics_derivatives {
+        let forward = self.equations.forward_dynamics_derivatives;
+        if let Some(forward) = forward.filter(|_| !self.is_timed) {
             self.check(q, [("speeds", speeds)])?;
             self.check_efforts(efforts)?;
             forward(q, speeds, efforts, &mut self.rows);

@@ -70,7 +70,7 @@ impl Held<'_> {
     /// Puts what acts at the joint's ports among the elements.
     ///
     /// # Errors
-    /// Ports that the joint's type does not have; efforts that change with time, of which equations are not told.
+    /// Ports that the joint's type does not have.
     pub fn add_ports(&self, elements: &mut Elements) -> Result<(), Vec<String>> {
         let (mut reasons, body) = (vec![], self.index);
         let (joint, kind) = (&self.body.joint.name.value, &self.body.joint.kind.value);
@@ -88,18 +88,14 @@ impl Held<'_> {
                 continue;
             };
             if let Some(effort) = &forces.effort {
-                let name = forces.element("effort", joint);
-                if effort.constant().is_none() {
-                    reasons.push(format!(
-                        "{name}: it changes with time, which is not compiled: simulate the scene as it is, or let an effort of the joint change with time"
-                    ));
-                }
-                elements.port_efforts.push(PortEffort {
-                    name,
+                // Those that change with time come in with τ.
+                let constant = effort.constant().map(|_| PortEffort {
+                    name: forces.element("effort", joint),
                     body,
                     port,
                     effort: effort.clone(),
                 });
+                elements.port_efforts.extend(constant);
             }
             if forces.spring.is_some() || forces.damping > 0.0 {
                 let spring = forces.spring.unwrap_or_default();

@@ -2,7 +2,7 @@
 
 use hamel_control::ControlError;
 use hamel_integrate::IntegrateError;
-use hamel_runtime::dynamics::DynamicsError;
+use hamel_runtime::dynamics::{DynamicsError, PinError};
 use hamel_runtime::mechanism::{MechanismErrors, StateError};
 use hamel_runtime::registry::DuplicateJoint;
 use hamel_runtime::shown::Number;
@@ -29,6 +29,9 @@ pub enum Error {
     /// Equations of motion without a solution.
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),
+    /// Forces at pins that are not known.
+    #[error(transparent)]
+    Pins(#[from] PinError),
     /// A motion that cannot begin or go on.
     #[error(transparent)]
     Integrate(#[from] IntegrateError),

@@ -1,7 +1,8 @@
-//! What is told of a joint beside its own coordinates: its ports, and the forces that hold its relations.
+//! What is told of a joint beside its own coordinates: its ports, the forces that hold its relations, and those at its pins.
 
 use crate::{Error, Model, UnknownName};
 use hamel_integrate::State;
+use hamel_runtime::dynamics::PinForce;
 
 /// A port at one state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,5 +50,25 @@ impl Model {
         self.inverse_dynamics(state, accelerations)?;
         let (q, speeds) = (&*state.configuration, &*state.speeds);
         Ok(self.dynamics_mut().relation_forces(index, q, speeds)?)
+    }
+
+    /// What bodies of a joint exert on each other at its pins, where it accelerates with v̄̇ = `accelerations`: each with the name of its pin, in the order of the
+    /// joint's spec. Empty for joints without pins. A component that the equations of motion do not determine is NaN. Constraints that couple joints
+    /// exert nothing here.
+    ///
+    /// # Errors
+    /// An unknown joint; a wrong size; numbers that are not finite; an effort that is the rate of no pin; pins that do not hold the bodies.
+    pub fn pin_forces(
+        &mut self,
+        state: &State,
+        accelerations: &[f64],
+        joint: &str,
+    ) -> Result<Vec<(&'static str, PinForce)>, Error> {
+        let index = self.joint_index(joint)?;
+        self.inverse_dynamics(state, accelerations)?;
+        let (q, speeds) = (&*state.configuration, &*state.speeds);
+        let pins = self.joint(joint)?.joint().pins().iter();
+        let forces = self.dynamics_mut().pin_forces(index, q, speeds)?;
+        Ok(pins.map(|pin| pin.name).zip(forces).collect())
     }
 }

@@ -2,6 +2,7 @@
 
 use super::approach::Watch;
 use super::bends::Bends;
+use super::carried::Carried;
 use super::clock::Clock;
 use super::flow::Flow;
 use super::hybrid::{Guards, Hybrid};
@@ -85,6 +86,18 @@ pub(super) struct Driver<'a> {
     pub(super) resolving: f64,
     /// Where something within a step has ended the integration.
     pub(super) end: Option<State>,
+    /// What the joints carry at samples, where that is asked for.
+    pub(super) carried: Option<Carried>,
+}
+
+/// What an integration is asked for beside its options.
+pub(super) struct Wanted<'a> {
+    pub(super) sampling: Sampling,
+    pub(super) events: Vec<Event<'a>>,
+    /// Whether the method is looked at again on the way.
+    pub(super) is_open: bool,
+    /// Whether samples tell what the joints carry.
+    pub(super) tells_forces: bool,
 }
 
 /// How the next step is chosen.
@@ -102,8 +115,14 @@ impl<'a> Driver<'a> {
         options: &'a Options,
         period: Option<f64>,
         (inputs, input_bends): (Option<&'a mut Inputs<'a>>, Option<&'a mut InputBends<'a>>),
-        (sampling, events, is_open): (Sampling, Vec<Event<'a>>, bool),
+        wanted: Wanted<'a>,
     ) -> Result<Self, IntegrateError> {
+        let Wanted {
+            sampling,
+            events,
+            is_open,
+            tells_forces,
+        } = wanted;
         let mut flow = Flow::new(dynamics, inputs, options.form).bending(input_bends);
         let watch = Watch::new(&flow.mechanism);
         let time = initial.time;
@@ -173,19 +192,20 @@ impl<'a> Driver<'a> {
             hybrid,
             resolving: resolving(options.t_end - time, holds),
             end: None,
+            carried: tells_forces.then(Carried::default),
         })
     }
 
     /// Steps until the end, or until the observer breaks.
     pub(super) fn run(mut self, observer: &mut Observer<'_>) -> Result<Solution, IntegrateError> {
         let mut pacing = self.pacing()?;
-        let mut stopped = self.report(observer);
+        let mut stopped = self.report(observer)?;
         while !stopped && self.clock.time() < self.options.t_end {
             self.advance(&mut pacing, observer)?;
             // What ends on the end of the step is a sample as well, if one falls there.
             let is_past = self.end.as_ref();
             let is_past = is_past.is_some_and(|end| end.time < self.clock.time());
-            stopped = is_past || self.report(observer) || self.end.is_some();
+            stopped = is_past || self.report(observer)? || self.end.is_some();
             if !stopped {
                 self.look_ahead()?;
                 self.reconsider(&mut pacing)?;
@@ -498,7 +518,7 @@ impl<'a> Driver<'a> {
     }
 
     /// Records the samples that fall on this time and shows the state; whether to stop.
-    fn report(&mut self, observer: &mut Observer<'_>) -> bool {
+    fn report(&mut self, observer: &mut Observer<'_>) -> Result<bool, IntegrateError> {
         let time = self.clock.time();
         self.watch
             .see(&self.flow.mechanism, time, &self.step_state.configuration);
@@ -509,6 +529,14 @@ impl<'a> Driver<'a> {
             sample = Some(self.samples.len());
             self.samples.push(self.state());
         }
+        let carried = self.carried.as_mut().filter(|_| sample.is_some());
+        let carried = carried.map(|carried| carried.at(&mut self.flow, time, at));
+        let carried = carried.transpose();
+        let carried = carried.map_err(|cause| IntegrateError::AtState {
+            time,
+            cause: Box::new(cause),
+            near: (self.watch).nearest_at(&self.flow.mechanism, time, at.0),
+        })?;
         let step = Step {
             time: self.clock.time(),
             number: self.statistics.steps,
@@ -517,8 +545,9 @@ impl<'a> Driver<'a> {
             momenta: (self.flow.form == Form::Hamiltonian).then_some(&*self.step_state.y),
             sample,
             is_within: false,
+            carried,
         };
-        observer(&step).is_break()
+        Ok(observer(&step).is_break())
     }
 
     pub(super) fn state(&self) -> State {

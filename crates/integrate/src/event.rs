@@ -8,6 +8,9 @@ use core::fmt::{Debug, Formatter};
 /// Time, q and v̄ of all joints to a number that is positive on one side and negative on the other.
 pub(super) type Function<'a> = dyn FnMut(f64, &[f64], &[f64]) -> f64 + 'a;
 
+/// Time, q and v̄ of all joints to whether a crossing there counts.
+pub(super) type Condition<'a> = dyn FnMut(f64, &[f64], &[f64]) -> bool + 'a;
+
 /// Which crossings count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Direction {
@@ -27,6 +30,7 @@ pub enum Direction {
 pub struct Event<'a> {
     pub(super) name: String,
     pub(super) function: Box<Function<'a>>,
+    pub(super) condition: Option<Box<Condition<'a>>>,
     pub(super) direction: Direction,
     pub(super) stops: bool,
 }
@@ -40,6 +44,7 @@ impl<'a> Event<'a> {
         Self {
             name: name.into(),
             function: Box::new(function),
+            condition: None,
             direction: Direction::Any,
             stops: false,
         }
@@ -48,12 +53,24 @@ impl<'a> Event<'a> {
     /// The same event for one integration, after which it can be asked for again.
     pub fn by_ref(&mut self) -> Event<'_> {
         let function = &mut self.function;
+        let condition = self.condition.as_mut();
+        let condition = condition.map(|condition| -> Box<Condition<'_>> {
+            Box::new(|time, q, speeds| condition(time, q, speeds))
+        });
         Event {
             name: self.name.clone(),
             function: Box::new(|time, q, speeds| function(time, q, speeds)),
+            condition,
             direction: self.direction,
             stops: self.stops,
         }
+    }
+
+    /// Only crossings at states where the condition holds: of an angle up to whole turns, whose sine is 0 on the other side of the circle as well.
+    #[must_use]
+    pub fn provided(mut self, condition: impl FnMut(f64, &[f64], &[f64]) -> bool + 'a) -> Self {
+        self.condition = Some(Box::new(condition));
+        self
     }
 
     /// Only crossings in that direction.

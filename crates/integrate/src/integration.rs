@@ -1,6 +1,6 @@
 //! An integration with all that may be asked of it.
 
-use super::driver::Driver;
+use super::driver::{Driver, Wanted};
 use super::options::check_length;
 use super::{
     Event, InputBends, Inputs, IntegrateError, Observer, Options, Solution, State, Step,
@@ -51,6 +51,7 @@ pub struct Integration<'a> {
     sampling: Sampling,
     events: Vec<Event<'a>>,
     is_open: bool,
+    tells_forces: bool,
 }
 
 impl<'a> Integration<'a> {
@@ -67,6 +68,7 @@ impl<'a> Integration<'a> {
             sampling: Sampling::Landing,
             events: Vec::new(),
             is_open: false,
+            tells_forces: false,
         }
     }
 
@@ -99,6 +101,13 @@ impl<'a> Integration<'a> {
     /// With samples from there.
     pub const fn sampling(mut self, sampling: Sampling) -> Self {
         self.sampling = sampling;
+        self
+    }
+
+    /// With [`Step::carried`] at every sample: what the joints carry there, in either form, with inputs, elements, friction and drives. It costs a forward and an
+    /// inverse dynamics a sample.
+    pub const fn telling_forces(mut self) -> Self {
+        self.tells_forces = true;
         self
     }
 
@@ -151,7 +160,12 @@ impl<'a> Integration<'a> {
         let bends = self.input_bends.as_mut();
         let bends = bends.map(|bends| -> &mut InputBends<'_> { &mut **bends });
         let (dynamics, options) = (self.dynamics, self.options);
-        let wanted = (self.sampling, self.events, self.is_open);
+        let wanted = Wanted {
+            sampling: self.sampling,
+            events: self.events,
+            is_open: self.is_open,
+            tells_forces: self.tells_forces,
+        };
         then(Driver::new(
             dynamics,
             self.initial,

@@ -24,6 +24,7 @@ extern crate alloc;
 
 mod approach;
 mod bends;
+mod carried;
 mod choice;
 mod clock;
 mod collocation;

@@ -225,6 +225,10 @@ impl Driver<'_> {
             time,
             ..state_of(instant)
         };
+        let at = (instant.configuration, instant.speeds);
+        let carried = self.carried.as_mut();
+        let carried = carried.map(|carried| carried.at(&mut self.flow, time, at));
+        let carried = carried.transpose()?;
         let step = Step {
             time,
             number: self.statistics.steps,
@@ -233,6 +237,7 @@ impl Driver<'_> {
             momenta: (self.flow.form == Form::Hamiltonian).then_some(instant.y),
             sample: Some(index),
             is_within: true,
+            carried,
         };
         if observer(&step).is_break() {
             self.end = Some(state.clone());
@@ -243,7 +248,12 @@ impl Driver<'_> {
 
     fn record(&mut self, outputs: &mut Outputs<'_>, found: Found) -> Result<(), StepFailure> {
         let state = state_of(outputs.dense.at(&mut self.flow, found.part)?);
-        let event = &outputs.location.events[found.event];
+        let event = &mut outputs.location.events[found.event];
+        if let Some(condition) = &mut event.condition
+            && !condition(state.time, &state.configuration, &state.speeds)
+        {
+            return Ok(());
+        }
         if event.stops {
             self.end = Some(state.clone());
         }

@@ -2,6 +2,7 @@
 
 use super::{Approach, Crossing, MethodChange, RoundingLimit};
 use alloc::vec::Vec;
+use hamel_runtime::dynamics::Recursive;
 
 /// State of a mechanism at one time.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,7 +16,7 @@ pub struct State {
 }
 
 /// What an observer sees.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Step<'a> {
     /// s.
     pub time: f64,
@@ -31,6 +32,9 @@ pub struct Step<'a> {
     pub sample: Option<usize>,
     /// Whether it lies between the ends of a step: a sample of dense output.
     pub is_within: bool,
+    /// At a sample, where [`Integration::telling_forces`](super::Integration::telling_forces) asks for it: the mechanism at the accelerations that it has there, from
+    /// which what the joints carry can be read, as after [`Recursive::inverse_dynamics`].
+    pub carried: Option<&'a Recursive>,
 }
 
 /// The work done.

@@ -46,6 +46,20 @@ pub enum QuantityDescription {
         /// Its speed.
         name: Located<String>,
     },
+    /// The value of one of a joint's ports, by name.
+    Port {
+        /// The joint.
+        joint: Located<String>,
+        /// Its port.
+        name: Located<String>,
+    },
+    /// The rate of one of a joint's ports, by name.
+    Rate {
+        /// The joint.
+        joint: Located<String>,
+        /// Its port.
+        name: Located<String>,
+    },
 }
 
 /// How far a point of a body lies along a direction of the world.
@@ -68,6 +82,21 @@ pub enum Quantity {
     Coordinate(usize),
     /// The entry of the speeds v̄ of all joints.
     Speed(usize),
+    /// The value of a port of the joint under a body.
+    Port(PortOf),
+    /// Its rate.
+    Rate(PortOf),
+}
+
+/// A port of a joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PortOf {
+    /// Index of the body.
+    pub body: usize,
+    /// Index of the port among those of its joint.
+    pub port: usize,
+    /// Whether its value is an angle up to whole turns.
+    pub wraps: bool,
 }
 
 /// An event, fitted to the mechanism of its scene.
@@ -88,20 +117,49 @@ pub struct SceneEvent {
 impl SceneEvent {
     /// As an integration of `mechanism` takes it.
     pub fn event(&self, mechanism: &Arc<Mechanism>) -> Event<'static> {
-        let (quantity, value, mechanism) = (self.quantity, self.value, Arc::clone(mechanism));
+        let (quantity, value) = (self.quantity, self.value);
+        let (mechanism, there) = (Arc::clone(mechanism), Arc::clone(mechanism));
         let beyond = move |_time: f64, q: &[f64], speeds: &[f64]| {
             let found = match quantity {
                 Quantity::Point(point) => point.of(&mechanism, q),
                 Quantity::Coordinate(entry) => entry_of(q, entry),
                 Quantity::Speed(entry) => entry_of(speeds, entry),
+                // An angle up to whole turns crosses the value modulo a turn.
+                Quantity::Port(port) if port.wraps => {
+                    return (port.value(&mechanism, q) - value).sin();
+                }
+                Quantity::Port(port) => port.value(&mechanism, q),
+                Quantity::Rate(port) => port.rate(&mechanism, q, speeds),
             };
             found - value
         };
         let event = Event::new(&*self.name, beyond).towards(self.direction);
+        let event = match quantity {
+            Quantity::Port(port) if port.wraps => {
+                event.provided(move |_, q, _| (port.value(&there, q) - value).cos() > 0.0)
+            }
+            _ => event,
+        };
         match self.stops {
             true => event.stopping(),
             false => event,
         }
+    }
+}
+
+impl PortOf {
+    /// rad or m; NaN of a port that is not there.
+    fn value(&self, mechanism: &Mechanism, q: &[f64]) -> f64 {
+        let body = mechanism.body(self.body);
+        body.map_or(f64::NAN, |body| {
+            body.joint().port_value(body.configuration(q), self.port)
+        })
+    }
+
+    /// rad/s or m/s.
+    fn rate(&self, mechanism: &Mechanism, q: &[f64], speeds: &[f64]) -> f64 {
+        let rates = mechanism.port_rates(self.body, q, speeds);
+        rates.map_or(f64::NAN, |rates| entry_of(&rates, self.port))
     }
 }
 

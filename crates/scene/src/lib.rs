@@ -39,7 +39,7 @@ pub use description::{
     PortRate, Position, SceneDescription, TwistDescription, TwistFrame,
 };
 pub use diagnostics::{Diagnostic, Diagnostics};
-pub use event::{EventDescription, PointAlong, Quantity, QuantityDescription, SceneEvent};
+pub use event::{EventDescription, PointAlong, PortOf, Quantity, QuantityDescription, SceneEvent};
 pub use forces::{
     BodyPoint, ConstraintDescription, FrameDescription, FrictionDescription, JointForces,
     JointSpring, LimitDescription, LimitKind, PerFreedom, PointSpring, PortForces,

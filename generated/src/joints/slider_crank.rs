@@ -68,6 +68,8 @@
 //! - `velocity_map_inverse`: S₀ S₀⁻¹ = I (normal form)
 //! - `twist_map_child`: X^c = Ad_{H⁻¹} X (normal form)
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) where b.c ≠ 0 (certificate)
+//! - `pins_meet`: both points of each pin are one where b.c ≠ 0 (normal form)
+//! - `pins_hold`: bodies turn and slide at each pin as it says where b.c ≠ 0 (normal form)
 //! - `fibres`: one pose has one Q; the poses of all bodies count as one (certificate)
 
 use ::hamel_runtime::joint::{
@@ -220,6 +222,43 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
         visit(::hamel_runtime::erased::erase(::hamel_runtime::joint::Member::<_, 2>(*self)));
     }
     const RELATIONS: &'static [&'static str] = &["-s + rod*b.c + crank*a.c = 0", "rod*b.s + crank*a.s - offset = 0"];
+    const RELATION_UNITS: &'static [&'static str] = &["m", "m"];
+    const PINS: &'static [::hamel_runtime::joint::Pin] = &[
+        ::hamel_runtime::joint::Pin {
+            name: "main",
+            bodies: [Some(0), None],
+            turning: ::hamel_runtime::joint::Turning::AboutAxis,
+            slides: false,
+            drives: &[
+                ::hamel_runtime::joint::PinDrive {
+                    source: ::hamel_runtime::joint::DriveSource::Freedom(0),
+                    turns: true,
+                    reversed: false,
+                },
+            ],
+        },
+        ::hamel_runtime::joint::Pin {
+            name: "crank_pin",
+            bodies: [Some(1), Some(0)],
+            turning: ::hamel_runtime::joint::Turning::AboutAxis,
+            slides: false,
+            drives: &[],
+        },
+        ::hamel_runtime::joint::Pin {
+            name: "wrist",
+            bodies: [Some(2), Some(1)],
+            turning: ::hamel_runtime::joint::Turning::AboutAxis,
+            slides: false,
+            drives: &[],
+        },
+        ::hamel_runtime::joint::Pin {
+            name: "slide",
+            bodies: [Some(2), None],
+            turning: ::hamel_runtime::joint::Turning::Not,
+            slides: true,
+            drives: &[],
+        },
+    ];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
         [("crank", self.crank), ("rod", self.rod), ("offset", self.offset)].into_iter()
@@ -267,6 +306,23 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
         let zero = T::zero();
         let one = T::one();
         from_rows([[zero], [zero], [one], [zero], [zero], [zero]])
+    }
+
+    /// For each pin its point, the axis about which the first body turns and that along which it slides, in the parent frame; 0 for an axis that it does not have.
+    /// 4×9. Operations: 2 multiplications.
+    /// From line 25 `H`, line 29 `pin`, line 31 `pin`, line 33 `pin`, line 35 `pin`.
+    fn pins<T: Scalar>(&self, q: &SVector<T, 5>) -> impl AsRef<[[T; 9]]> {
+        let crank = T::from_f64(self.crank);
+        let offset = T::from_f64(self.offset);
+        let (a_c, a_s, s) = (q[0], q[1], q[4]);
+        let zero = T::zero();
+        let one = T::one();
+        [
+            [zero, zero, zero, zero, zero, one, zero, zero, zero],
+            [crank * a_c, crank * a_s, zero, zero, zero, one, zero, zero, zero],
+            [s, offset, zero, zero, zero, one, zero, zero, zero],
+            [s, offset, zero, zero, zero, zero, one, zero, zero],
+        ]
     }
 
     /// Q̇(Q, v) (31): the rates of the stored scalars.
@@ -612,5 +668,13 @@ joint slider_crank(
     H.crank  = rot_z(a);
     H.rod    = pose(rot_z(b), [crank * a.c, crank * a.s, 0]);
     H.slider = trans([s, offset, 0]);
+    /// The crank in the frame.
+    pin main:      crank at [0, 0, 0] = parent at [0, 0, 0] about z;
+    /// The rod on the crank.
+    pin crank_pin: rod at [0, 0, 0] = crank at [crank, 0, 0] about z;
+    /// The slider on the rod.
+    pin wrist:     slider at [0, 0, 0] = rod at [rod, 0, 0] about z;
+    /// The slider on its slide.
+    pin slide:     slider at [0, 0, 0] = parent at [s, offset, 0] along x;
 }
 "#;

@@ -16,7 +16,7 @@ pub use error::DynamicsError;
 pub use recursive::LoadedMass;
 pub use recursive::{
     ForwardDerivatives, Frame, FrameReadings, HamiltonianDerivatives, InverseDerivatives,
-    MassMatrix, Readings, Recursive, Refined, Sensitivity,
+    MassMatrix, PinError, PinForce, Readings, Recursive, Refined, Sensitivity,
 };
 pub use reference::Reference;
 

@@ -34,7 +34,7 @@ pub use view::MotionList;
 pub use view::{Action, Motions, View};
 
 use crate::mechanism::Mechanism;
-use crate::time_function::TimeFunction;
+use crate::time_function::{Moment, TimeFunction};
 use core::fmt::Debug;
 
 /// Something that acts on a mechanism, and what energy it stores.
@@ -69,12 +69,17 @@ pub trait Element: Debug + Send + Sync {
         None
     }
 
+    /// The same of an effort that changes with time, and with nothing else: what compiled equations are handed with τ.
+    fn timed_port_effort(&self, _at: Moment) -> Option<(usize, usize, f64)> {
+        None
+    }
+
     /// Up to two functions of Q at whose zeros what it exerts bends, continuous as it is; NaN in place of those that it does not have. Steps end there.
     fn bends(&self, _mechanism: &Mechanism, _q: &[f64]) -> [f64; 2] {
         [f64::NAN; 2]
     }
 
-    /// The functions of time that it reads at the view's [`Moment`](crate::time_function::Moment); none where it does not change with time.
+    /// The functions of time that it reads at the view's [`Moment`]; none where it does not change with time.
     fn functions(&self) -> &[TimeFunction] {
         &[]
     }

@@ -6,7 +6,7 @@ use super::error::{body, functions, values};
 use super::{Action, Element, ElementError, Slope, Slopes, View};
 use crate::joint::{MOST_FREEDOMS, Port, PortLaw};
 use crate::mechanism::Mechanism;
-use crate::time_function::TimeFunction;
+use crate::time_function::{Moment, TimeFunction};
 use alloc::string::String;
 use core::slice;
 
@@ -89,6 +89,11 @@ impl Element for PortEffort {
 
     fn port_effort(&self, view: &View<'_>) -> Option<(usize, usize, f64)> {
         Some((self.body, self.port, self.effort.value(view.moment)))
+    }
+
+    fn timed_port_effort(&self, at: Moment) -> Option<(usize, usize, f64)> {
+        let is_timed = self.effort.constant().is_none();
+        is_timed.then(|| (self.body, self.port, self.effort.value(at)))
     }
 
     fn functions(&self) -> &[TimeFunction] {

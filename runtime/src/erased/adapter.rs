@@ -3,7 +3,7 @@
 use super::kernels::{kernels, passed_on};
 use super::slices::{Store, array, array_mut, nan, vector};
 use super::{AnyJoint, FiniteMapError, Layout, Shared, Sizes};
-use crate::joint::{Entry, Joint, Port, PortLaw, Products, Structures, VelocityFrame};
+use crate::joint::{Entry, Joint, Pin, Port, PortLaw, Products, Structures, VelocityFrame};
 use crate::scalar::{Extended, Native, Scalar};
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
 use crate::steps::{
@@ -81,8 +81,16 @@ where
         J::RELATIONS
     }
 
+    fn relation_units(&self) -> &'static [&'static str] {
+        J::RELATION_UNITS
+    }
+
     fn ports(&self) -> &'static [Port] {
         self.0.ports()
+    }
+
+    fn pins(&self) -> &'static [Pin] {
+        J::PINS
     }
 
     fn freedoms(&self) -> &'static [&'static str] {
@@ -172,6 +180,12 @@ where
         let map = self.0.port_map(&q);
         let row = map.as_ref().get(port).copied().unwrap_or([nan(); K]);
         SVector::from(row).store(out);
+    }
+
+    fn pin_place(&self, q: &[T], pin: usize) -> [T; 9] {
+        let q = vector(q);
+        let places = self.0.pins(&q);
+        places.as_ref().get(pin).copied().unwrap_or([nan(); 9])
     }
 
     fn relation_twist(&self, q: &[T], relation: usize) -> Vector6<T> {

@@ -4,7 +4,7 @@ use super::kernels::{declared, kernels};
 use super::{FiniteMapError, Layout, Shared};
 #[cfg(doc)]
 use crate::joint::{Joint, Products};
-use crate::joint::{Port, PortLaw, Structures, VelocityFrame};
+use crate::joint::{Pin, Port, PortLaw, Structures, VelocityFrame};
 use crate::scalar::{Extended, Native, Scalar};
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
 use crate::steps::{ChartDerivatives, Motion, Pivot, PivotFailure, Placement, Variation};
@@ -43,8 +43,12 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     fn coordinates(&self) -> &'static [&'static str];
     /// The declared relations, [`Joint::RELATIONS`].
     fn relations(&self) -> &'static [&'static str];
+    /// Their units, [`Joint::RELATION_UNITS`].
+    fn relation_units(&self) -> &'static [&'static str];
     /// The ports, [`Joint::ports`].
     fn ports(&self) -> &'static [Port];
+    /// The pins, [`Joint::PINS`].
+    fn pins(&self) -> &'static [Pin];
     /// Names of the degrees of freedom.
     fn freedoms(&self) -> &'static [&'static str];
     /// Names of the speeds.
@@ -84,6 +88,8 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     fn port_value(&self, q: &[T], port: usize) -> T;
     /// The row of P of one port into `out` (K); NaN of a port that is not there.
     fn port_row(&self, q: &[T], port: usize, out: &mut [T]);
+    /// Point and axes of one pin, [`Joint::pins`]; NaN of a pin that is not there.
+    fn pin_place(&self, q: &[T], pin: usize) -> [T; 9];
     /// What one relation forbids the body, [`Joint::relation_twists`]; NaN of a relation that is not there.
     fn relation_twist(&self, q: &[T], relation: usize) -> Vector6<T>;
     /// What one relation forbids a port, [`Joint::relation_ports`]; NaN of one that is not there.

@@ -5,7 +5,7 @@
 //! [`Carries`] adds the others, and [`Member`] makes a [`Joint`] of each of them. Condition (23) on the rank of X holds for all X_b below
 //! one another, not for each.
 
-use super::{Joint, Patterns, Port, Structures, VelocityFrame};
+use super::{Joint, Patterns, Pin, Port, Structures, VelocityFrame};
 use crate::erased::Shared;
 use crate::scalar::Scalar;
 use crate::spatial::Pose;
@@ -76,7 +76,9 @@ where
     const UNIDENTIFIABLE: &'static [[f64; 10]] = <J as Carries<B, N, K, S, C>>::UNIDENTIFIABLE;
     const SINGULARITIES: &'static [&'static str] = J::SINGULARITIES;
     const RELATIONS: &'static [&'static str] = J::RELATIONS;
+    const RELATION_UNITS: &'static [&'static str] = J::RELATION_UNITS;
     const PORTS: &'static [Port] = J::PORTS;
+    const PINS: &'static [Pin] = J::PINS;
     const BODIES: &'static [&'static str] = J::BODIES;
     const BODY: usize = B;
 
@@ -146,6 +148,10 @@ where
 
     fn port_values<T: Scalar>(&self, q: &SVector<T, N>) -> impl AsRef<[T]> {
         self.0.port_values(q)
+    }
+
+    fn pins<T: Scalar>(&self, q: &SVector<T, N>) -> impl AsRef<[[T; 9]]> {
+        self.0.pins(q)
     }
 
     fn relation_twists<T: Scalar>(&self, q: &SVector<T, N>) -> impl AsRef<[[T; 6]]> {

@@ -3,6 +3,8 @@
 use super::check::{Space, check_size};
 use super::initial::CONSTRAINT_TOLERANCE;
 use super::{Body, Mechanism, StateError};
+use crate::joint::MOST_FREEDOMS;
+use crate::time_function::Moment;
 use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
@@ -99,6 +101,29 @@ impl Mechanism {
         check_size(name, "efforts at ports", map.nrows(), efforts.len())?;
         let own = map.tr_mul(&DVector::from_column_slice(efforts));
         Ok(own.as_slice().to_vec())
+    }
+
+    /// Adds the efforts at ports that are functions of time to τ, as `Pᵀ f`, at the configuration `q` of all joints. The tree has them among its elements; equations that
+    /// were compiled are handed them. At joints whose motion is prescribed they do nothing.
+    pub fn add_timed_port_efforts(&self, at: Moment, q: &[f64], efforts: &mut [f64]) {
+        let elements = self.elements().iter();
+        let timed = elements.filter_map(|element| element.timed_port_effort(at));
+        for (body, port, effort) in timed.filter(|(body, ..)| !self.is_driven(*body)) {
+            let Ok(own) = self.body(body) else { continue };
+            let mut row = [0.0; MOST_FREEDOMS];
+            let row = &mut row[..own.ranges().freedoms.len()];
+            own.joint().port_row(own.configuration(q), port, row);
+            let sums = efforts[own.ranges().freedoms.clone()].iter_mut();
+            sums.zip(row)
+                .for_each(|(sum, entry)| *sum += *entry * effort);
+        }
+    }
+
+    /// Whether efforts at some port change with time.
+    pub fn has_timed_port_efforts(&self) -> bool {
+        let at = Moment::default();
+        let mut elements = self.elements().iter();
+        elements.any(|element| element.timed_port_effort(at).is_some())
     }
 
     /// The speeds v̄ at which some ports of the joint under `body`, at its own configuration `q`, have these `rates`: by index, rad/s and m/s.

@@ -4,8 +4,8 @@ use hamel::joint::Member;
 use hamel_downstream::joints::{
     BallCayley, BallTurns, Bead, CamCircle, CarWheels, Catenary, CatenaryLength, CrankCoupler,
     CrankRocker, DirectionSensor, ENTRIES, FourBarThrough, GearedRotor, MeasuredRocker,
-    PlanarTurns, PowerGuide, RollingBallCayley, Scara, SkateHeading, SkewScrew, SliderCrankLinks,
-    SliderCrankRod, SpherePoint, Valley,
+    PlanarTurns, PowerGuide, Press, RollingBallCayley, Scara, SkateHeading, SkewScrew,
+    SliderCrankLinks, SliderCrankRod, SpherePoint, Unpinned, Valley,
 };
 use hamel_tests::laws::Reach::{self, Around, Entries, HalfTurn};
 use hamel_tests::laws::check_within;
@@ -104,7 +104,9 @@ laws_of_bodies! {
     car_wheels: CarWheels::new(1.1, 0.7, 0.4), Entries(0.5), [1, 2, 3, 4];
     crank_rocker: CrankRocker::new(0.9, 0.4, 1.1, 1.2), Entries(0.5), [1, 2];
     geared_rotor: GearedRotor::new(5.5), Entries(0.5), [1];
+    press: Press::new(0.4, 1.1), Entries(0.5), [1, 2];
     slider_crank_links: SliderCrankLinks::new(1.1, 0.4, 0.2), Entries(0.5), [1, 2];
+    unpinned: Unpinned::new(0.7), Entries(0.5), [1];
 }
 
 /// What is emitted of the second body, against the definition of a joint with that body alone.

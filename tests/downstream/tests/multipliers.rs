@@ -1,7 +1,7 @@
-//! The multipliers of a crank-rocker's relations are the force in the pin of coupler and rocker: against Newton and Euler for each link, with the
-//! forces of all pins as unknowns.
+//! The forces in the pins of a crank-rocker, and the multipliers of its relations, which are the force in the pin of coupler and rocker: against Newton and Euler
+//! for each link, with the forces of all pins as unknowns.
 
-use hamel::dynamics::{Dynamics, Recursive};
+use hamel::dynamics::{Dynamics, PinForce, Recursive};
 use hamel::mechanism::Mechanism;
 use hamel_scene::Scene;
 use nalgebra::{SMatrix, SVector, Vector2};
@@ -63,11 +63,11 @@ fn perpendicular(v: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-v.y, v.x)
 }
 
-/// The crank's angular acceleration, and the force of the rocker on the end of the coupler.
+/// The crank's angular acceleration, and the forces in the pins.
 ///
 /// Unknowns: for each link the acceleration of its centre of mass and its angular acceleration; the forces of the pins on the link that comes first in: crank
 /// and ground, coupler and crank, coupler and rocker, rocker and ground.
-fn with_pins(q: &[f64], rate: f64, acting: Acting) -> (f64, Vector2<f64>) {
+fn with_pins(q: &[f64], rate: f64, acting: Acting) -> (f64, [Vector2<f64>; 4]) {
     let [_, crank, coupler, rocker] = LINKS;
     let directions = [[q[0], q[1]], [q[2], q[3]], [q[4], q[5]]];
     let [a, b, c] = directions;
@@ -122,7 +122,8 @@ fn with_pins(q: &[f64], rate: f64, acting: Acting) -> (f64, Vector2<f64>) {
         }
     }
     let solved = matrix.lu().solve(&right).expect("regular");
-    (solved[2], Vector2::new(solved[13], solved[14]))
+    let force = |pin: usize| Vector2::new(solved[9 + 2 * pin], solved[10 + 2 * pin]);
+    (solved[2], std::array::from_fn(force))
 }
 
 /// All port efforts at once, and an effort on v, at many states; `efforts` act, as `acting` says of the links.
@@ -140,7 +141,8 @@ fn assert_forces(ports: &str, effort: f64, acting: Acting) {
         dynamics
             .forward_dynamics(&q, &[rate], &[effort], &mut found)
             .expect("regular");
-        let (expected, force) = with_pins(&q, rate, acting);
+        let (expected, forces) = with_pins(&q, rate, acting);
+        let force = forces[2];
         // Solves with matrices of a condition below 1000, of numbers up to a hundred.
         let apart = (found[0] - expected).abs();
         assert!(
@@ -160,7 +162,28 @@ fn assert_forces(ports: &str, effort: f64, acting: Acting) {
             apart < 1e-11 * force.norm().max(1.0),
             "{multipliers:?} and {force} at {q:?}"
         );
+        let told = dynamics.pin_forces(0, &q, &[rate]);
+        match acting.lift == 0.0 {
+            true => assert_pins(&told.expect("they are known"), &forces),
+            false => assert_eq!(
+                told.expect_err("a lift is no pin's").to_string(),
+                "port `lift` of joint `linkage` has an effort, and is the motion of none of its pins: where it acts, and so what the pins carry, is not known"
+            ),
+        }
     }
+}
+
+/// In the plane they are those of Newton and Euler; across it the linkage leaves them open.
+fn assert_pins(told: &[PinForce], forces: &[Vector2<f64>; 4]) {
+    let scale = forces.iter().map(|force| force.norm()).fold(1.0, f64::max);
+    for (own, force) in told.iter().zip(forces) {
+        let apart = (own.force.xy() - force).norm();
+        // As the multipliers.
+        assert!(apart < 1e-11 * scale, "{own:?} and {force}");
+        assert_eq!(own.moment.z, 0.0);
+        assert!(own.force.z.is_nan() && own.moment.x.is_nan() && own.moment.y.is_nan());
+    }
+    assert_eq!(told.len(), 4);
 }
 
 #[test]
@@ -188,6 +211,18 @@ fn efforts_at_ports_act_on_their_links() {
     };
     let ports = "ports.crank.effort = -1.5\nports.rocker.effort = 3.0\nports.knee.effort = 2.0\nports.lift.effort = -7.0\n";
     assert_forces(ports, 0.0, acting);
+}
+
+#[test]
+fn efforts_at_pins_are_not_what_pins_carry() {
+    let acting = Acting {
+        crank: 2.5,
+        rocker: 3.0,
+        knee: -2.0,
+        ..Acting::default()
+    };
+    let ports = "ports.crank.effort = -1.5\nports.rocker.effort = 3.0\nports.knee.effort = -2.0\n";
+    assert_forces(ports, 4.0, acting);
 }
 
 /// A joint without relations has no multipliers, and a body that is not there is an error.

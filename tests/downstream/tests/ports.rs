@@ -1,7 +1,9 @@
 //! Ports of linkages: their rates, what efforts at them do, scenes that name them, and compiled scenes.
 
 use hamel::dynamics::{Dynamics, Recursive, Reference};
-use hamel::integrate::{Form, Method, Options, State, integrate, no_inputs, no_observer};
+use hamel::integrate::{
+    Form, Integration, Method, Options, State, integrate, no_inputs, no_observer,
+};
 use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
 use hamel_compiler::model::Model;
@@ -326,10 +328,95 @@ fn compiled_scenes_are_the_tree() {
     }
 }
 
+/// Crossings of a port's value and rate, against the motion's own samples: an angle up to whole turns crosses its value once a turn, not on the other side of the
+/// circle as well.
 #[test]
-fn efforts_that_change_with_time_are_not_compiled() {
-    let timed = r#"ports.rocker = { effort = "2 * sin(3 * t)" }"#;
-    let message = compiled(timed).expect_err("it is refused").to_string();
-    let expected = "effort at port `rocker` of joint `linkage`: it changes with time";
-    assert!(message.contains(expected), "{message}");
+fn events_are_crossings_of_ports() {
+    let events = r#"
+[[event]]
+name = "straight"
+joint = "linkage"
+port = "crank"
+value = 0.5
+[[event]]
+name = "risen"
+joint = "linkage"
+port = "lift"
+value = 0.6
+direction = "rising"
+[[event]]
+name = "turning"
+joint = "linkage"
+rate = "rocker"
+[simulation]
+t_end = 2.0
+"#;
+    let text = text("speeds = [9.0]", "") + events;
+    let scene = Scene::parse(&text, "linkage.toml", &registry());
+    let scene = scene.unwrap_or_else(|errors| panic!("{errors}"));
+    let mechanism = &scene.mechanism;
+    let options = Options {
+        form: Form::Lagrangian,
+        method: Method::dormand_prince(1e-11),
+        t_end: 2.0,
+        samples: (0..=4000).map(|n| 5e-4 * f64::from(n)).collect(),
+    };
+    let initial = scene.start();
+    let mut dynamics = Recursive::new(Arc::clone(mechanism));
+    let mut integration = Integration::new(&mut dynamics, &initial, &options);
+    for event in &scene.events {
+        integration = integration.event(event.event(mechanism));
+    }
+    let solution = integration.run().expect("no failure");
+    let rates = |state: &State| {
+        let rates = mechanism.port_rates(0, &state.configuration, &state.speeds);
+        rates.expect("sizes fit")
+    };
+    // From one sample to the next, none of which falls on a crossing.
+    let count = |beyond: &dyn Fn(&State) -> f64, rising_only: bool| {
+        let pairs = solution.samples.windows(2);
+        let crossed = pairs.filter(|pair| {
+            let [a, b] = [beyond(&pair[0]), beyond(&pair[1])];
+            let is_near = (b - a).abs() < 1.0;
+            is_near && a * b < 0.0 && (!rising_only || b > a)
+        });
+        crossed.count()
+    };
+    let wanted = [
+        count(&|state| values(mechanism, state)[0] - 0.5, false),
+        count(&|state| values(mechanism, state)[3] - 0.6, true),
+        count(&|state| rates(state)[1], false),
+    ];
+    let found: [usize; 3] = std::array::from_fn(|n| {
+        let events = solution.events.iter();
+        events.filter(|crossing| crossing.event == n).count()
+    });
+    assert_eq!(found, wanted);
+    assert!(wanted.iter().all(|count| *count >= 2), "{wanted:?}");
+    for crossing in &solution.events {
+        let state = &crossing.state;
+        let beyond = match crossing.event {
+            0 => values(mechanism, state)[0] - 0.5,
+            1 => values(mechanism, state)[3] - 0.6,
+            _ => rates(state)[1],
+        };
+        // The rounding of time, at rates below a thousand.
+        assert!(beyond.abs() < 1e-11, "{} {beyond}", crossing.name);
+    }
+}
+
+#[test]
+fn what_belongs_to_degrees_of_freedom_is_refused_at_ports() {
+    for (key, value) in [
+        ("armature", "0.1"),
+        ("friction", "0.2"),
+        ("limit", "{ upper = 1.0 }"),
+        ("motion", "{ speeds = [1.0] }"),
+    ] {
+        let text = text("", &format!("ports.crank.{key} = {value}"));
+        let refused = Scene::from_toml(&text, "linkage.toml").expect_err("it is refused");
+        let message = refused.to_string();
+        let expected = format!("ports.crank.{key}`: nothing of this kind acts at a port");
+        assert!(message.contains(&expected), "{message}");
+    }
 }

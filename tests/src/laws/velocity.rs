@@ -2,8 +2,8 @@
 
 use super::dual::{constant, slopes, twist, unit};
 use super::{At, D2, close};
-use hamel::joint::Joint;
-use hamel::nalgebra::{SMatrix, SVector, Vector6};
+use hamel::joint::{Joint, Turning};
+use hamel::nalgebra::{SMatrix, SVector, Vector3, Vector6};
 use hamel::scalar::Dual;
 
 impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const C: usize>
@@ -51,6 +51,63 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
         );
         self.hamel_laws(v, p, &gradient, &inverse);
         self.port_laws(&s);
+        self.pin_laws();
+    }
+
+    /// Bodies turn and slide at pins as these say, and in no other way.
+    fn pin_laws(&self) {
+        let places = self.joint.pins(&self.q);
+        let places = places.as_ref();
+        assert_eq!(places.len(), J::PINS.len(), "{}: pins", J::NAME);
+        // As the first body sees it: `more` has the others.
+        if J::BODY != 0 {
+            return;
+        }
+        let maps = self.twist_maps();
+        for (pin, place) in J::PINS.iter().zip(places) {
+            let [first, second] = pin.bodies.map(|body| match body {
+                Some(body) => maps[body],
+                None => SMatrix::zeros(),
+            });
+            let [point, turning, sliding] =
+                [0, 3, 6].map(|n| Vector3::from_column_slice(&place[n..n + 3]));
+            for column in (first - second).column_iter() {
+                let angular: Vector3<f64> = column.fixed_rows::<3>(0).into_owned();
+                let there = column.fixed_rows::<3>(3) + angular.cross(&point);
+                let otherwise = match pin.turning {
+                    Turning::Freely => Vector3::zeros(),
+                    Turning::AboutAxis => angular.cross(&turning),
+                    Turning::Not => angular,
+                };
+                close(
+                    "turns as the pin says",
+                    J::NAME,
+                    &otherwise,
+                    &Vector3::zeros(),
+                );
+                let otherwise = match pin.slides {
+                    true => there.cross(&sliding),
+                    false => there,
+                };
+                close(
+                    "slides as the pin says",
+                    J::NAME,
+                    &otherwise,
+                    &Vector3::zeros(),
+                );
+            }
+        }
+    }
+
+    /// X of every body.
+    fn twist_maps(&self) -> Vec<SMatrix<f64, 6, K>> {
+        let mut maps = vec![self.joint.twist_map(&self.q)];
+        self.joint.more(&mut |body| {
+            let mut map = SMatrix::<f64, 6, K>::zeros();
+            body.twist_map(self.q.as_slice(), map.as_mut_slice());
+            maps.push(map);
+        });
+        maps
     }
 
     /// The rates of ports are those of their values: P S₀ = ∂y/∂ϕ.

@@ -9,7 +9,9 @@ use hamel::scalar::F64x4;
 use hamel_compiler::functions::Kind;
 use hamel_compiler::{Build, scene};
 use hamel_scene::Scene;
-use hamel_tests::emitted::{ball_chain, geodesic_springs, plate_cart_arm as module, snakeboard};
+use hamel_tests::emitted::{
+    ball_chain, crank_rocker, geodesic_springs, plate_cart_arm as module, snakeboard,
+};
 use hamel_tests::{random, scenes};
 use rand::SeedableRng;
 use std::path::Path;
@@ -318,3 +320,55 @@ static ONLY_MOMENTUM_RATES: Equations = Equations {
     momentum_rates: module::EQUATIONS.momentum_rates,
     ..NONE
 };
+
+/// Efforts at ports that change with time come in with τ: a module that knows nothing of them moves as the tree, which has them as elements, in both forms, with
+/// derivatives.
+#[test]
+fn timed_efforts_at_ports_are_those_of_the_tree() {
+    let text = std::fs::read_to_string(folder().join("../scenes/report/crank_rocker.toml"));
+    let text = text.expect("a file").replace(
+        "\n[simulation]",
+        "ports.rocker.effort = \"3 * cos(2 * t)\"\nports.crank.effort = \"t * t - 1\"\n[simulation]",
+    );
+    let scene = Scene::parse(&text, "crank_rocker", &hamel_joints::registry());
+    let scene = scene.unwrap_or_else(|errors| panic!("{errors}"));
+    let mechanism = scene.mechanism;
+    let compiled = Compiled::new(Arc::clone(&mechanism), &crank_rocker::EQUATIONS);
+    let mut compiled = compiled.unwrap_or_else(|error| panic!("{error}"));
+    let mut tree = Recursive::new(Arc::clone(&mechanism));
+    let (q, v, tau) = (&scene.configuration, &scene.speeds, [0.3]);
+    let mut momenta = [0.0];
+    tree.momenta(q, v, &mut momenta).expect("regular");
+    let mut before = 0.0;
+    for time in [0.0, 0.4, 1.1] {
+        let both: [&mut dyn Dynamics; 2] = [&mut tree, &mut compiled];
+        let found = both.map(|dynamics| {
+            dynamics.set_moment(time.into());
+            let (mut rates, mut speeds, mut changes) = ([0.0], [0.0], [0.0]);
+            dynamics
+                .forward_dynamics(q, v, &tau, &mut rates)
+                .expect("regular");
+            let mut given = |_: &[f64], efforts: &mut [f64]| efforts.copy_from_slice(&tau);
+            dynamics
+                .momentum_rates(q, &momenta, &mut given, &mut speeds, &mut changes)
+                .expect("regular");
+            let mut derivatives = ForwardDerivatives::new(&mechanism);
+            dynamics
+                .forward_dynamics_derivatives(q, v, &tau, &mut derivatives)
+                .expect("regular");
+            [rates[0], changes[0], derivatives.by_local().entry(0, 0)]
+        });
+        for (expected, found) in found[0].iter().zip(found[1]) {
+            // Some hundred roundings.
+            assert!(
+                (expected - found).abs() < 1e-12 * expected.abs().max(1.0),
+                "{expected} {found}"
+            );
+        }
+        assert!(
+            (found[0][0] - before).abs() > 1e-3,
+            "the efforts change with time"
+        );
+        before = found[0][0];
+    }
+}

@@ -81,7 +81,7 @@ pub enum Output {
     Slices(usize, usize),
     /// A scalar.
     Scalar,
-    /// A row for each port.
+    /// A row for each port or pin.
     Rows(usize, usize),
     /// A scalar for each port.
     List(usize),
@@ -132,6 +132,7 @@ impl Signature {
             KernelKind::SpeedBasisGradient => ("speed_basis_gradient", q(), Slices(k, s)),
             KernelKind::PortMap => ("port_map", q(), Rows(shape.ports, k)),
             KernelKind::PortValues => ("port_values", q(), List(shape.ports)),
+            KernelKind::Pins => ("pins", q(), Rows(shape.pins, 9)),
             KernelKind::ConfigurationRate => (
                 "configuration_rate",
                 vec![Configuration, Velocity],
@@ -204,6 +205,9 @@ pub fn meaning(kind: KernelKind) -> &'static str {
         KernelKind::PortMap => "P(Q), a row for each port: v to its rate.",
         KernelKind::PortValues => {
             "The values of the ports; an angle that does not count turns is between −π and π."
+        }
+        KernelKind::Pins => {
+            "For each pin its point, the axis about which the first body turns and that along which it slides, in the parent frame; 0 for an axis that it does not have."
         }
         KernelKind::ConfigurationRate => "Q̇(Q, v) (31): the rates of the stored scalars.",
         KernelKind::Retract => {

@@ -127,6 +127,7 @@ fn tables(context: &mut Context, report: &Report, medium: Medium) {
     context.insert("parameters", &medium.table(parameters(report)));
     context.insert("freedoms", &medium.table(freedoms(report)));
     context.insert("ports", &medium.table(ports(report)));
+    context.insert("pins", &medium.table(pins(report)));
     context.insert("formulas", &formulas(report, medium));
     context.insert("singularities", &singularities(report, medium));
     context.insert("claims", &medium.table(claims(report)));
@@ -181,6 +182,18 @@ fn ports(report: &Report) -> Vec<Row> {
         row([
             ("name", &p.name),
             ("unit", &p.unit),
+            ("value", &p.value),
+            ("description", &p.description),
+        ])
+    })
+    .collect()
+}
+
+fn pins(report: &Report) -> Vec<Row> {
+    let rows = report.pins.iter();
+    rows.map(|p| {
+        row([
+            ("name", &p.name),
             ("value", &p.value),
             ("description", &p.description),
         ])

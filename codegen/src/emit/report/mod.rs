@@ -18,7 +18,7 @@ pub use finite::FiniteRow;
 pub use formulas::{Formula, main_formulas};
 pub use provenance::{Statement, sources, statement};
 pub use series::{Series, series};
-pub use tables::{ClaimRow, CountRow, FreedomRow, ParameterRow, PortRow, proof_in_words};
+pub use tables::{ClaimRow, CountRow, FreedomRow, ParameterRow, PinRow, PortRow, proof_in_words};
 
 use super::types::type_name;
 use crate::derived::{Derived, Shape};
@@ -57,6 +57,8 @@ pub struct Report {
     pub speeds: Vec<String>,
     /// Ports in order.
     pub ports: Vec<PortRow>,
+    /// Pins in order.
+    pub pins: Vec<PinRow>,
     /// What moves no body, in words; empty where everything does.
     pub still: String,
     /// The frame in which v is read, in words.
@@ -112,6 +114,7 @@ impl Report {
             freedoms: tables::freedoms(derived, &notation),
             speeds: derived.speed_names.clone(),
             ports: tables::ports(derived),
+            pins: tables::pins(derived),
             still: derived.still_in_words().unwrap_or_default(),
             velocity_frame: velocity_frame(spec).to_owned(),
             formulas: vec![],

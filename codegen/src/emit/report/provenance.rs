@@ -47,6 +47,7 @@ enum Part {
     Constraint,
     SpeedBasis,
     Ports,
+    Pins,
 }
 
 impl Part {
@@ -64,6 +65,7 @@ impl Part {
                 .map(|locus| locus.span.clone())
                 .collect(),
             Self::Ports => spec.ports.iter().map(|port| port.span.clone()).collect(),
+            Self::Pins => spec.pins.iter().map(|pin| pin.span.clone()).collect(),
             Self::Motion => of(spec.retract.as_ref().map(|declared| declared.span.clone())),
             Self::Pose => vec![spec.pose.span.clone()],
             Self::Velocity => of(spec
@@ -94,7 +96,7 @@ impl Part {
 
 /// The parts that a kernel is derived from.
 fn parts(spec: &JointSpec, kind: KernelKind) -> Vec<Part> {
-    use Part::{Constraint, Home, Loci, Manifold, Motion, Ports, Pose, SpeedBasis, Velocity};
+    use Part::{Constraint, Home, Loci, Manifold, Motion, Pins, Ports, Pose, SpeedBasis, Velocity};
     // Without a declared X, its columns are the twists of H along ϕ.
     let twist: &[Part] = match (&spec.twist_map, spec.velocity.value) {
         (Some(_), _) => &[Velocity],
@@ -148,6 +150,7 @@ fn parts(spec: &JointSpec, kind: KernelKind) -> Vec<Part> {
         KernelKind::RelationPorts => vec![&[Manifold, Motion, Ports]],
         KernelKind::PortMap => vec![&[Ports], twist, &[Pose, Motion]],
         KernelKind::PortValues => vec![&[Ports]],
+        KernelKind::Pins => vec![&[Pins, Pose]],
         KernelKind::BiasAcceleration | KernelKind::BiasMomentum => {
             vec![twist, speeds, &[Pose, Motion]]
         }

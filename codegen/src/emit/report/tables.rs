@@ -5,9 +5,10 @@ use super::ranges;
 use super::units;
 use crate::derived::{Claim, Derived, Kernel, Method as FoundBy, Structure};
 use crate::emit::method::{Method, of_further_body, products};
+use crate::expand::{PinDrive, Source};
 use crate::expr::Rational;
 use crate::formula::Counts;
-use crate::model::{Declared, Parameter, Port};
+use crate::model::{Declared, Parameter, Pin, Port};
 use num_traits::{One, Zero};
 
 /// A parameter.
@@ -48,6 +49,17 @@ pub struct PortRow {
     /// Its value as the spec writes it.
     pub value: String,
     /// What it means, and that its angle does not count turns where it does not.
+    pub description: String,
+}
+
+/// A pin.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PinRow {
+    /// Its name.
+    pub name: String,
+    /// The bodies and points that it joins, as the spec writes them.
+    pub value: String,
+    /// What it means, and which efforts act there.
     pub description: String,
 }
 
@@ -119,6 +131,31 @@ pub(super) fn ports(derived: &Derived) -> Vec<PortRow> {
         }
     };
     derived.spec.ports.iter().map(row).collect()
+}
+
+pub(super) fn pins(derived: &Derived) -> Vec<PinRow> {
+    let spec = &derived.spec;
+    let rows = spec.pins.iter().zip(&derived.pin_drives);
+    let row = |(declared, drives): (&Declared<Pin>, &Vec<PinDrive>)| {
+        let pin = &declared.value;
+        let docs = pin.docs.split_whitespace().collect::<Vec<_>>().join(" ");
+        let efforts = drives.iter().map(|drive| match drive.source {
+            Source::Port(place) => format!("at port `{}`", spec.ports[place].value.name),
+            Source::Freedom(place) => format!("on `{}`", spec.freedoms.value[place].name),
+        });
+        let efforts: Vec<String> = efforts.collect();
+        let acting = match efforts.as_slice() {
+            [] => String::new(),
+            efforts => format!("Efforts {} act here.", efforts.join(" and ")),
+        };
+        let said = [docs, acting].into_iter().filter(|text| !text.is_empty());
+        PinRow {
+            name: pin.name.clone(),
+            value: pin.text.clone(),
+            description: said.collect::<Vec<_>>().join(" "),
+        }
+    };
+    rows.map(row).collect()
 }
 
 pub(super) fn freedoms(derived: &Derived, notation: &Notation) -> Vec<FreedomRow> {

@@ -5,6 +5,7 @@ use super::docs;
 use super::limits;
 use super::numeric;
 use super::patterns;
+use super::pins;
 use super::tokens::{ident, signed_literal};
 use super::type_ident;
 use crate::derived::{Derived, Kernel, KernelKind, Structure};
@@ -26,6 +27,7 @@ pub fn tokens(derived: &Derived) -> TokenStream {
     let bodies = bodies::names(derived);
     let ports = ports(derived);
     let relations = relations(derived);
+    let pins = pins::constant(derived);
     let carried = bodies::carried(derived);
     let parameters = parameters(derived);
     let names = derived.names();
@@ -49,6 +51,7 @@ pub fn tokens(derived: &Derived) -> TokenStream {
             #bodies
             #ports
             #relations
+            #pins
             #parameters
             #(#methods)*
         }
@@ -120,12 +123,16 @@ fn constructor_docs(derived: &Derived) -> TokenStream {
     docs::outer(&lines)
 }
 
-/// The constant `RELATIONS`; the trait's default where relations alone do not give Φ.
+/// The constants `RELATIONS` and `RELATION_UNITS`; the trait's defaults where relations alone do not give Φ.
 fn relations(derived: &Derived) -> Option<TokenStream> {
     derived.spec.implicit.as_ref()?;
     let relations = derived.spec.manifold.value.declared().iter();
     let texts = relations.map(|relation| format!("{relation} = 0"));
-    Some(quote! { const RELATIONS: &'static [&'static str] = &[#(#texts),*]; })
+    let units = &derived.spec.relation_units;
+    Some(quote! {
+        const RELATIONS: &'static [&'static str] = &[#(#texts),*];
+        const RELATION_UNITS: &'static [&'static str] = &[#(#units),*];
+    })
 }
 
 /// The constant `PORTS`; the trait's default where there are none. The runtime's type is written with its path: a joint may have its name.

@@ -14,6 +14,7 @@ mod lines;
 mod method;
 mod numeric;
 mod patterns;
+mod pins;
 mod result;
 mod runtime;
 mod spacing;

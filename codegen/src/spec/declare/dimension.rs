@@ -70,6 +70,20 @@ pub(super) fn error(
     Some(of_value(message, "another unit"))
 }
 
+/// The unit of each relation that is declared, by its first term whose unit is known; empty where there is none.
+pub(super) fn of_relations(parameters: &[Parameter], manifold: &Manifold) -> Vec<String> {
+    let known = Known {
+        parameters,
+        manifold,
+    };
+    let unit = |relation: &Expr| match known.of_sum(relation) {
+        None => String::new(),
+        Some(number) if number.is_empty() => "1".to_owned(),
+        Some(dimension) => in_words(&dimension),
+    };
+    manifold.declared().iter().map(unit).collect()
+}
+
 /// What tells units.
 struct Known<'a> {
     parameters: &'a [Parameter],

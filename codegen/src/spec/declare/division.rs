@@ -75,6 +75,9 @@ fn values<'a>(
     for port in &spec.ports {
         values.push((&port.span, port.value.entries()));
     }
+    for pin in &spec.pins {
+        values.push((&pin.span, pin.value.entries().collect()));
+    }
     for scalars in [&spec.home, &spec.retract].into_iter().flatten() {
         values.push((&scalars.span, scalars.value.iter().collect()));
     }

@@ -14,6 +14,7 @@ mod loci;
 mod matrices;
 mod once;
 mod parameter;
+mod pins;
 mod ports;
 mod relations;
 mod retract;
@@ -91,6 +92,7 @@ fn without_manifold(
     scope.lets(&statements.lets);
     bodies::bodies(source, file, statements, evaluator);
     ports::evaluate_only(source, statements, evaluator);
+    pins::evaluate_only(source, statements, evaluator);
     matrices::evaluate_only(statements, evaluator);
     scope::report_unused(file, statements, evaluator);
 }
@@ -141,6 +143,8 @@ fn declare(
         .and_then(|freedoms| retract::retract(&context, freedoms, evaluator));
     let bodies = bodies::bodies(source, file, statements, evaluator);
     let ports = ports::ports(&context, source, &parameters, evaluator);
+    let pins = pins::pins(source, statements, evaluator);
+    let relation_units = dimension::of_relations(&parameters, &manifold.value);
     let matrices = match &freedoms {
         Some(freedoms) => Some(matrices::matrices(&context, &freedoms.names(), evaluator)),
         None => {
@@ -166,6 +170,7 @@ fn declare(
         parameters,
         requirements,
         manifold,
+        relation_units,
         loci,
         home_is_guess: home.is_guess,
         home: home.declared,
@@ -175,6 +180,7 @@ fn declare(
         pose: poses.next()?,
         more: poses.collect(),
         ports,
+        pins,
         retract,
         implicit: freedoms.implicit,
         twist_map: matrices.twist_map,

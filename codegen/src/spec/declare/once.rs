@@ -1,7 +1,7 @@
 //! Statements by kind: which may stand once, and where they stand.
 
 use super::super::ast::{
-    Basis, Curve, Equation, File, Name, Node, Port, Requirement, StatementKind, Target,
+    Basis, Curve, Equation, File, Name, Node, Pin, Port, Requirement, StatementKind, Target,
 };
 use super::super::code;
 use crate::diagnostic::Diagnostic;
@@ -35,6 +35,7 @@ pub(super) struct Once<'a> {
     pub body_poses: Vec<(&'a Name, At<'a, [Node]>)>,
     pub bases: Vec<At<'a, Basis>>,
     pub ports: Vec<At<'a, Port>>,
+    pub pins: Vec<At<'a, Pin>>,
     pub lets: Vec<(&'a Name, &'a Node)>,
     pub curves: Vec<At<'a, Curve>>,
     pub relations: Vec<At<'a, Equation>>,
@@ -104,6 +105,10 @@ pub(super) fn collect<'a>(source: &str, file: &'a File, errors: &mut Vec<Diagnos
             }
             StatementKind::Port(value) => {
                 once.ports.push(At { value, span });
+                continue;
+            }
+            StatementKind::Pin(value) => {
+                once.pins.push(At { value, span });
                 continue;
             }
             StatementKind::Let(name, value) => {

@@ -3,6 +3,7 @@
 mod curve;
 mod expression;
 pub(super) mod number;
+mod pin;
 mod range;
 mod statement;
 

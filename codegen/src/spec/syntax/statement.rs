@@ -61,6 +61,7 @@ fn statement(tokens: &mut Tokens<'_>, docs: Vec<String>) -> Fallible<StatementKi
         "speeds" => StatementKind::Speeds(list(tokens, |t| t.expect_name("the name of a speed"))?),
         "bodies" => StatementKind::Bodies(list(tokens, |t| t.expect_name("the name of a body"))?),
         "port" => StatementKind::Port(port(tokens, docs)?),
+        "pin" => StatementKind::Pin(super::pin::pin(tokens, docs)?),
         "velocity" => velocity(tokens)?,
         "relation" => StatementKind::Relation(equation(tokens, docs)?),
         "except" => StatementKind::Except(equation(tokens, docs)?),
@@ -241,7 +242,7 @@ fn requirement(tokens: &mut Tokens<'_>) -> Fallible<Requirement> {
     Ok(Requirement { larger, smaller })
 }
 
-fn keyword(tokens: &mut Tokens<'_>, word: &str) -> Fallible<()> {
+pub(super) fn keyword(tokens: &mut Tokens<'_>, word: &str) -> Fallible<()> {
     match tokens.peek_name() {
         Some(name) if name.text == word => {
             tokens.name();

@@ -105,5 +105,12 @@ fn text(joint: &Derived) -> String {
         format!("  port {name}: {unit} = {text}\n")
     });
     let ports: String = ports.collect();
-    format!("{}{bodies}\n{lines}{ports}{note}\n", joint.spec.name.value)
+    let pins = joint.spec.pins.iter();
+    let pins: String = pins
+        .map(|pin| format!("  pin {}: {}\n", pin.value.name, pin.value.text))
+        .collect();
+    format!(
+        "{}{bodies}\n{lines}{ports}{pins}{note}\n",
+        joint.spec.name.value
+    )
 }

@@ -50,6 +50,8 @@ CSV and Parquet have one row a sample and the same columns, whose names end with
   JOINT.q.q_rad, JOINT.v.q_rad_per_s         angle of a revolute joint, not reduced to a turn, and its rate; of a prismatic one
                                              JOINT.q.q_m, JOINT.v.q_m_per_s; the names of other joints are in docs/trajectories.md
   JOINT.port.travel_m, .rate.travel_m_per_s  value and rate of a port, of joints whose type has some
+  JOINT.lambda.1_N                           with --forces, the multiplier of a joint's first relation
+  JOINT.pin.NAME.fx_N, …, .mx_N_m, …         with --forces, what bodies of a joint exert on each other at a pin
   JOINT.tau.q_N_m                            with a controller, its efforts
 
 The page (`--html`) shows bodies by the [[shape]]s of the scene, or by the ellipsoids or boxes of their inertias. Drag to turn,
@@ -176,6 +178,11 @@ pub struct Args {
     /// Print the samples as JSON on stdout, and nothing else; no CSV unless asked for
     #[arg(long)]
     pub json: bool,
+
+    /// Tell in CSV, Parquet and JSON the forces within joints of several bodies: the multipliers of the relations that close their loops, and what
+    /// bodies exert on each other at pins
+    #[arg(long)]
+    pub forces: bool,
 
     /// Do not estimate the error of the motion, which takes about as long again as the motion
     #[arg(long)]

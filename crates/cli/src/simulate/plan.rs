@@ -39,6 +39,8 @@ pub struct Plan {
     pub parquet: Option<Output>,
     /// Where it goes as a page to look at, if anywhere.
     pub html: Option<Output>,
+    /// Whether the forces within joints are told.
+    pub forces: bool,
     /// Whether it is printed as JSON.
     pub json: bool,
     /// Where a picture of it goes, if anywhere.
@@ -86,6 +88,7 @@ impl Plan {
             metadata,
             parquet,
             html,
+            forces: args.forces,
             json: args.json,
             picture,
             instants: args.instants.into(),

@@ -47,7 +47,7 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     match (args.json, args.quiet) {
         (true, _) => print_json(&plan, &columns, &run)?,
         (false, true) => {}
-        (false, false) => print_summary(&plan, &run)?,
+        (false, false) => print_summary(&plan, &columns, &run)?,
     }
     match run.is_interrupted {
         true => Err(interrupted(&plan, &run.solution)),
@@ -181,6 +181,9 @@ pub fn move_on(
     if plan.is_open {
         integration = integration.choosing();
     }
+    if plan.forces && !motion.is_companion {
+        integration = integration.telling_forces();
+    }
     if !motion.is_companion {
         integration = integration.sampling(plan.settings.sampling);
         for event in &plan.scene.events {
@@ -253,7 +256,7 @@ fn print_json(plan: &Plan, columns: &Columns<'_>, run: &Run) -> Result<(), Failu
     })
 }
 
-fn print_summary(plan: &Plan, run: &Run) -> Result<(), Failure> {
+fn print_summary(plan: &Plan, columns: &Columns<'_>, run: &Run) -> Result<(), Failure> {
     let solution = &run.solution;
     let mechanism = &plan.scene.mechanism;
     let (first, last) = (plan.scene.start(), &solution.state);
@@ -280,6 +283,7 @@ fn print_summary(plan: &Plan, run: &Run) -> Result<(), Failure> {
         accuracy: run.accuracy.as_ref(),
         statistics: run.statistics,
         approaches: &solution.approaches,
+        forces: &columns.notes(),
         rounding: solution.rounding.as_ref(),
         method_changes: &solution.method_changes,
         events: &solution.events,

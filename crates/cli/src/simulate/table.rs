@@ -49,6 +49,8 @@ pub struct Summary<'a> {
     pub rounding: Option<&'a RoundingLimit>,
     /// How near joints came to singular sets.
     pub approaches: &'a [Approach],
+    /// What was found out about the forces within joints.
+    pub forces: &'a [String],
 }
 
 impl fmt::Display for Summary<'_> {
@@ -91,6 +93,9 @@ impl fmt::Display for Summary<'_> {
                 "rounding    decided the length of {steps} steps, not the tolerance: at joint `{joint}` the error of a step is not below {error:.1e} in \
                  doubles; see `--arithmetic refined`"
             )?;
+        }
+        for note in self.forces {
+            writeln!(f, "forces      {note}")?;
         }
         for approach in self.approaches {
             writeln!(f, "singular    {approach}")?;

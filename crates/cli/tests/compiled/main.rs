@@ -70,6 +70,8 @@ fn scenes_move_as_on_the_tree() {
         "tests/data/scenes/geodesic_springs.toml",
         // Efforts of a controller.
         "scenes/panda7_tracking.toml",
+        // Efforts at ports that change with time.
+        "tests/data/scenes/timed_ports.toml",
         // Friction and limits, with joints that are held for some of the time.
         "tests/data/scenes/held_joints.toml",
     ] {

@@ -1,6 +1,7 @@
 //! The files of one motion say the same: the CSV, the Parquet and the page, each read back.
 
 mod columns;
+mod forces;
 mod joints;
 mod recorded;
 

@@ -12,7 +12,6 @@ impl Tree<'_> {
         let elements = &self.model.elements;
         let efforts = elements.port_efforts.iter();
         let constant = efforts.filter(|effort| effort.body == index);
-        // Efforts that change with time are refused before.
         let constant = constant.filter_map(|own| Some((own.port, own.effort.constant()?)));
         let constant = constant.map(|(port, effort)| (port, Sym::from(effort)));
         let springs = elements.port_springs.iter();

@@ -2,7 +2,7 @@
 
 use super::by_joint;
 use crate::diagnostics::Diagnostic;
-use crate::event::{EventDescription, Quantity, QuantityDescription, SceneEvent};
+use crate::event::{EventDescription, PortOf, Quantity, QuantityDescription, SceneEvent};
 use crate::read::Sink;
 use crate::source::Located;
 use crate::suggest::{nearest, one_of};
@@ -19,7 +19,7 @@ pub(super) fn events(
     // The parser has seen to it that there is one.
     let find = |joint: &Located<String>| {
         let index = *joints.get(joint.value.as_str())?;
-        mechanism.bodies().get(index)
+        Some((index, mechanism.bodies().get(index)?))
     };
     let found: Vec<_> = descriptions
         .iter()
@@ -38,22 +38,45 @@ pub(super) fn events(
 
 fn quantity<'a>(
     description: &QuantityDescription,
-    find: &impl Fn(&Located<String>) -> Option<&'a Body>,
+    find: &impl Fn(&Located<String>) -> Option<(usize, &'a Body)>,
     sink: &mut Sink,
 ) -> Option<Quantity> {
     match description {
         QuantityDescription::Point(point) => Some(Quantity::Point(*point)),
         QuantityDescription::Coordinate { joint, name } => {
-            let body = find(joint)?;
+            let (_, body) = find(joint)?;
             let own = (body.joint().coordinates(), &body.ranges().configuration);
             entry(body, "coordinate", name, own, sink).map(Quantity::Coordinate)
         }
         QuantityDescription::Speed { joint, name } => {
-            let body = find(joint)?;
+            let (_, body) = find(joint)?;
             let own = (body.joint().speeds(), &body.ranges().speeds);
             entry(body, "speed", name, own, sink).map(Quantity::Speed)
         }
+        QuantityDescription::Port { joint, name } => {
+            port(find(joint)?, "port", name, sink).map(Quantity::Port)
+        }
+        QuantityDescription::Rate { joint, name } => {
+            port(find(joint)?, "rate", name, sink).map(Quantity::Rate)
+        }
     }
+}
+
+/// The port called `name`.
+fn port(
+    (index, body): (usize, &Body),
+    key: &str,
+    name: &Located<String>,
+    sink: &mut Sink,
+) -> Option<PortOf> {
+    let ports = body.joint().ports();
+    let names: Vec<&str> = ports.iter().map(|port| port.name).collect();
+    let port = entry(body, key, name, (&names, &(0..ports.len())), sink)?;
+    Some(PortOf {
+        body: index,
+        port,
+        wraps: ports[port].wraps,
+    })
 }
 
 /// The index, among those of all joints, of the entry called `name`.
@@ -76,6 +99,7 @@ fn entry(
     let known = names.iter().copied();
     sink.push(match nearest(&name.value, known.clone()) {
         Some(near) => error.label(format!("did you mean `{near}`?")),
+        None if names.is_empty() => error.help("joints of its type have no ports"),
         None => error.help(format!("a {key} of it is {}", one_of(known))),
     });
     None

@@ -80,11 +80,13 @@ fn of_joint(
     sink: &mut Sink,
 ) -> Option<QuantityDescription> {
     let joint = known(joint, joints, sink);
-    let entry = fields.exactly_one(&["coordinate", "speed"], sink);
+    let entry = fields.exactly_one(&["coordinate", "speed", "port", "rate"], sink);
     let (kind, value) = entry?;
     let (joint, name) = (joint?, value.text(sink)?);
     Some(match kind {
         0 => QuantityDescription::Coordinate { joint, name },
-        _ => QuantityDescription::Speed { joint, name },
+        1 => QuantityDescription::Speed { joint, name },
+        2 => QuantityDescription::Port { joint, name },
+        _ => QuantityDescription::Rate { joint, name },
     })
 }

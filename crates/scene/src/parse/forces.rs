@@ -130,6 +130,32 @@ fn motion(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Vec<TimeFunction
     Some(Located::new(speeds?, value.span()))
 }
 
+const NOT_AT_PORTS: &str = "nothing of this kind acts at a port";
+
+/// What acts at degrees of freedom and not at ports, and what to do.
+const OF_FREEDOMS: &[(&str, &str, &str)] = &[
+    (
+        "armature",
+        NOT_AT_PORTS,
+        "let the joint's spec name a body that turns with the port, and give it the inertia of the rotor",
+    ),
+    (
+        "friction",
+        NOT_AT_PORTS,
+        "friction acts at degrees of freedom: name the direction of the port by `basis` in the joint's spec, so that it is one; a port has `damping`",
+    ),
+    (
+        "limit",
+        NOT_AT_PORTS,
+        "limits are those of degrees of freedom: name the direction of the port by `basis` in the joint's spec, so that it is one",
+    ),
+    (
+        "motion",
+        NOT_AT_PORTS,
+        "motions are prescribed at degrees of freedom: name the direction of the port by `basis` in the joint's spec, so that it is one",
+    ),
+];
+
 /// What acts at the ports of a joint, each under its name.
 fn ports(value: &Value<'_>, sink: &mut Sink) -> Option<Vec<PortForces>> {
     let named = value.table(sink)?.unclaimed();
@@ -148,7 +174,7 @@ fn port(name: Located<String>, value: &Value<'_>, sink: &mut Sink) -> Option<Por
         Some(damping) => damping.not_negative(sink).map(|damping| damping.value),
         None => Some(0.0),
     };
-    fields.finish(sink);
+    fields.finish_but(OF_FREEDOMS, sink);
     Some(PortForces {
         name,
         effort: effort?,

@@ -103,7 +103,18 @@ impl<'a> Fields<'a> {
 
     /// Notes every key that nobody asked for.
     pub(crate) fn finish(self, sink: &mut Sink) {
+        self.finish_but(&[], sink);
+    }
+
+    /// The same; of keys that belong elsewhere, with the advice what to do instead.
+    pub(crate) fn finish_but(self, elsewhere: &[(&str, &str, &str)], sink: &mut Sink) {
         for (key, value) in self.unclaimed() {
+            let mut others = elsewhere.iter();
+            if let Some((_, why, advice)) = others.find(|(other, ..)| *other == key.value) {
+                let message = format!("{}{}: {why}", self.owner, value.name());
+                sink.push(Diagnostic::new(key.span, message).help(*advice));
+                continue;
+            }
             let message = format!("{}unknown key {}", self.owner, value.name());
             let error = Diagnostic::new(key.span, message);
             let known = self.known.iter().copied();

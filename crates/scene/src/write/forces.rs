@@ -192,6 +192,14 @@ fn event(out: &mut String, event: &EventDescription, scene: &SceneDescription) {
             entry(out, "joint", &text(&joint.value));
             entry(out, "speed", &text(&name.value));
         }
+        QuantityDescription::Port { joint, name } => {
+            entry(out, "joint", &text(&joint.value));
+            entry(out, "port", &text(&name.value));
+        }
+        QuantityDescription::Rate { joint, name } => {
+            entry(out, "joint", &text(&joint.value));
+            entry(out, "rate", &text(&name.value));
+        }
     }
     entry(out, "value", &number(event.value));
     let [any, rising, falling] = DIRECTION_NAMES;

@@ -95,7 +95,7 @@ impl Recursive {
     }
 
     /// `X^cᵀF` of one joint, summed over the bodies that it carries.
-    fn joint_effort(&self, index: usize, q: &[f64], effort: &mut [f64]) {
+    pub(super) fn joint_effort(&self, index: usize, q: &[f64], effort: &mut [f64]) {
         effort.fill(0.0);
         for index in self.mechanism.carried(index) {
             let link = &self.links[index];

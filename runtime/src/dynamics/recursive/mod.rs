@@ -23,6 +23,7 @@ mod loaded;
 mod mass;
 mod multipliers;
 mod operational;
+mod pins;
 mod readings;
 mod refined;
 mod rows;
@@ -36,6 +37,7 @@ pub use derivatives::{
 pub use frames::FrameReadings;
 pub use loaded::LoadedMass;
 pub use mass::MassMatrix;
+pub use pins::{PinError, PinForce};
 pub use readings::{Frame, Readings};
 pub use refined::Refined;
 

@@ -3,7 +3,9 @@
 use super::parts::{BODY, FRAME, MECHANISM, ends};
 
 /// What stands between a joint and one of its numbers.
-const OF_JOINTS: [&str; 5] = [".q.", ".v.", ".port.", ".rate.", ".tau."];
+const OF_JOINTS: [&str; 7] = [
+    ".q.", ".v.", ".port.", ".rate.", ".lambda.", ".pin.", ".tau.",
+];
 
 /// The columns of version 0.1: a file that it wrote is replaced as one of today's is.
 const OLDER: [&str; 3] = [

@@ -9,7 +9,7 @@ use hamel::mechanism::{Body, Mechanism};
 
 impl<'a> Columns<'a> {
     /// Coordinates and speeds of all joints.
-    pub(super) fn joints(&mut self, mechanism: &'a Mechanism) {
+    pub(super) fn joints(&mut self, mechanism: &'a Mechanism, tells_forces: bool) {
         for (index, body) in mechanism.joints() {
             let units = Units::of(body.joint());
             self.enter(Some(List::Joints), body.joint_name());
@@ -20,6 +20,9 @@ impl<'a> Columns<'a> {
             });
             if !body.joint().ports().is_empty() {
                 self.ports(index, body);
+            }
+            if tells_forces {
+                self.forces(index, body);
             }
         }
     }

@@ -1,6 +1,7 @@
 //! The columns of a trajectory: names, units, meanings and numbers in one list, of which CSV, Parquet and JSON are written.
 
 mod coordinates;
+mod forces;
 mod header;
 mod joint;
 mod parts;
@@ -15,6 +16,8 @@ pub use turns::Turns;
 pub use units::Units;
 
 use super::plan::Plan;
+use forces::Notes;
+use hamel::dynamics::Recursive;
 use hamel::integrate::Step;
 use hamel::mechanism::{Kinematics, Mechanism};
 use hamel::spatial::Pose;
@@ -48,6 +51,8 @@ pub struct Moment<'m> {
     pub speeds: &'m [f64],
     /// A controller's τ; empty without one.
     pub efforts: &'m [f64],
+    /// What the joints carry, where that is asked for.
+    pub carried: Option<&'m Recursive>,
     /// The angles that [`Turns`] follows, rad.
     pub angles: &'m [f64],
 }
@@ -66,6 +71,7 @@ impl<'m> Moment<'m> {
             configuration: step.configuration,
             speeds: step.speeds,
             efforts,
+            carried: step.carried,
             angles: turns.angles(),
         }
     }
@@ -130,6 +136,7 @@ pub struct Columns<'a> {
     list: Vec<Column>,
     entries: Vec<Entry<'a>>,
     turns: Vec<Turn>,
+    notes: Notes,
 }
 
 impl<'a> Columns<'a> {
@@ -140,12 +147,13 @@ impl<'a> Columns<'a> {
             list: Vec::new(),
             entries: Vec::new(),
             turns: Vec::new(),
+            notes: Notes::default(),
         };
         let mechanism = &plan.scene.mechanism;
         columns.mechanism();
         columns.bodies(mechanism);
         columns.frames(mechanism);
-        columns.joints(mechanism);
+        columns.joints(mechanism, plan.forces);
         if plan.control.is_some() {
             columns.efforts(mechanism);
         }
@@ -165,6 +173,11 @@ impl<'a> Columns<'a> {
     /// What follows the angles among them over the motion.
     pub fn turns(&self) -> Turns {
         Turns::new(self.turns.clone())
+    }
+
+    /// What was found out about forces while their numbers were read.
+    pub fn notes(&self) -> Vec<String> {
+        self.notes.borrow().iter().cloned().collect()
     }
 
     /// Their numbers.
