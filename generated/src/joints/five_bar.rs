@@ -272,6 +272,7 @@ impl Joint<8, 2, 2, 0> for FiveBar {
         "-right_rod*d.c - right_crank*c.c + left_rod*b.c + left_crank*a.c - ground = 0",
         "-right_rod*d.s - right_crank*c.s + left_rod*b.s + left_crank*a.s = 0",
     ];
+    const RELATION_UNITS: &'static [&'static str] = &["m", "m"];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
         [

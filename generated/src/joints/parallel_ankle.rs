@@ -347,6 +347,7 @@ impl Joint<8, 2, 2, 0> for ParallelAnkle {
         "half*half*pitch.s*pitch.s*roll.s*roll.s + half*half*pitch.c*pitch.c*roll.s*roll.s - 2*half*crank*a.s*pitch.c*roll.s + 2*half*crank*a.c*pitch.s*roll.s + half*half*roll.c*roll.c + heel*heel*pitch.s*pitch.s - 2*height*half*pitch.c*roll.s + heel*heel*pitch.c*pitch.c - 2*crank*heel*a.s*pitch.s + crank*crank*a.s*a.s - 2*crank*heel*a.c*pitch.c + crank*crank*a.c*a.c - 2*half*half*roll.c - 2*height*heel*pitch.s + 2*height*crank*a.s - rod*rod + half*half + height*height = 0",
         "half*half*pitch.s*pitch.s*roll.s*roll.s + half*half*pitch.c*pitch.c*roll.s*roll.s + 2*half*crank*b.s*pitch.c*roll.s - 2*half*crank*b.c*pitch.s*roll.s + half*half*roll.c*roll.c + heel*heel*pitch.s*pitch.s + 2*height*half*pitch.c*roll.s + heel*heel*pitch.c*pitch.c - 2*crank*heel*b.s*pitch.s + crank*crank*b.s*b.s - 2*crank*heel*b.c*pitch.c + crank*crank*b.c*b.c - 2*half*half*roll.c - 2*height*heel*pitch.s + 2*height*crank*b.s - rod*rod + half*half + height*height = 0",
     ];
+    const RELATION_UNITS: &'static [&'static str] = &["m^2", "m^2"];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
         [

@@ -397,6 +397,7 @@ impl Joint<13, 1, 1, 0> for Wishbone {
         "upright*R[3, 3] - upper*b.s + lower*a.s - height = 0",
         "behind*behind*R[3, 1]*R[3, 1] + behind*behind*R[2, 1]*R[2, 1] + behind*behind*R[1, 1]*R[1, 1] - 2*lower*behind*a.s*R[3, 1] + lower*lower*a.s*a.s - 2*lower*behind*a.c*R[2, 1] + lower*lower*a.c*a.c - 2*behind*behind*R[1, 1] + behind*behind - rod*rod = 0",
     ];
+    const RELATION_UNITS: &'static [&'static str] = &["m", "m", "m", "m^2"];
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
         [

@@ -7,7 +7,7 @@ use hamel_downstream::joints::{
     PlanarTurns, PowerGuide, Press, RollingBallCayley, Scara, SkateHeading, SkewScrew,
     SliderCrankLinks, SliderCrankRod, SpherePoint, Unpinned, Valley,
 };
-use hamel_tests::laws::Reach::{self, Around, Entries, HalfTurn};
+use hamel_tests::laws::Reach::{self, Entries, HalfTurn};
 use hamel_tests::laws::check_within;
 use hamel_tests::laws::search::{Effort, check_everywhere};
 use std::path::Path;
