@@ -36,6 +36,11 @@ fn main() -> Result<(), Error> {
         .compile()?;
     }
     compiled(
+        "../scenes/humanoid.toml",
+        [Kind::ForwardDynamics, Kind::MomentumRates],
+    )
+    .compile()?;
+    compiled(
         "data/scenes/ball_chain.toml",
         [Kind::ForwardDynamics, Kind::InverseDynamics],
     )

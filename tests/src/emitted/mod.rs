@@ -21,6 +21,10 @@ pub mod geared_pendulum {
 pub mod geodesic_springs {
     include!(concat!(env!("OUT_DIR"), "/geodesic_springs.rs"));
 }
+/// Both forms of `scenes/humanoid.toml`: loops between hinges.
+pub mod humanoid {
+    include!(concat!(env!("OUT_DIR"), "/humanoid.rs"));
+}
 /// `tests/data/scenes/pendulum.toml`: one joint in general position.
 #[rustfmt::skip]
 pub mod pendulum;

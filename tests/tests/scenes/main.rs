@@ -7,6 +7,7 @@ mod estimates;
 mod formats;
 mod forms_agree;
 mod fuzz_scenes;
+mod humanoid;
 mod limits;
 mod linkages;
 mod methods;
