@@ -147,12 +147,25 @@ impl<'a> Points<'a> {
         values.iter().all(|value| *value > SMALLEST_LOCUS)
     }
 
-    /// ϕ, or, where relations alone give Φ, the part of it that stays away from where the joint ends: there Newton's method follows no branch.
+    /// ϕ, or, where relations alone give Φ, the part of it that changes by half at most what vanishes where the joint ends: Newton's method follows no branch
+    /// beyond.
     fn inside(&self, q: &[f64], mut phi: Vec<f64>) -> Vec<f64> {
+        let here = self.definition.loci(q);
         let is_inside = |phi: &[f64]| {
             let moved = self.definition.moved(&numbers(q), &numbers(phi));
-            let moved = moved.entries().iter();
-            moved.fold(0.0, |worst, entry| larger(worst, entry.scale)) <= WORST_CONDITION
+            let worst = moved.entries().iter();
+            let worst = worst.fold(0.0, |worst, entry| larger(worst, entry.scale));
+            let moved: Vec<f64> = moved
+                .entries()
+                .iter()
+                .map(|entry| entry.value.to_f64())
+                .collect();
+            let there = self.definition.loci(&moved);
+            let mut parts = there.entries().iter().zip(here.entries());
+            let is_near = |(there, here): (&Tracked, &Tracked)| {
+                (0.5..=1.5).contains(&(there.value.to_f64() / here.value.to_f64()))
+            };
+            worst <= WORST_CONDITION && parts.all(is_near)
         };
         let halves = match self.definition.spec().implicit {
             None => 0,
