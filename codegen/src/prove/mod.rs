@@ -8,8 +8,8 @@
 //! undecided, unless it says `unproved` for that claim. Ranks, signs and invertibility need a certificate that holds at every
 //! configuration.
 
+mod assembled;
 mod claim;
-
 mod defined;
 mod degenerate;
 mod fibres;

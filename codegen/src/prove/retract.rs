@@ -238,6 +238,9 @@ impl Prover<'_> {
 
     /// Relations alone determine Φ: their derivatives have full rank, and a column of them, or all, is solved for.
     fn implicit_retract(&self, flow: &Flow) -> Attempt {
+        if let Some(error) = self.cannot_be_assembled() {
+            return Err(error);
+        }
         let is_cross_product = matches!(self.joint.spec.implicit, Some(Implicit::CrossProduct));
         let claim = |certificate: String| {
             let what = match is_cross_product {
