@@ -75,7 +75,7 @@ pub fn derived_in(folder: &Path, name: &str) -> Derived {
 
 /// A registry of the paper's joints and one linkage, so that messages which list the known types stay the same when the library grows.
 pub fn corpus_registry() -> JointRegistry {
-    const KNOWN: [&str; 8] = [
+    const KNOWN: [&str; 9] = [
         "ball",
         "cart",
         "four_bar",
@@ -84,6 +84,7 @@ pub fn corpus_registry() -> JointRegistry {
         "planar_euclidean",
         "prismatic",
         "revolute",
+        "screw",
     ];
     let mut registry = JointRegistry::new();
     let entries = hamel_joints::ENTRIES

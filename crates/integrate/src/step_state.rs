@@ -9,10 +9,15 @@ use super::turns::Turns;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
+use hamel_runtime::erased::AnyJoint;
 
 /// The ϕ from which on a joint gets a new base point. Each of them costs one rounding of Q, which a base at every step would
 /// cost at every step; from a half on, ϕ bends more than most steps do.
 const FAR: f64 = 0.5;
+
+/// Where relations alone give Φ, Newton's method finds it from the base point, so far as these determine it: the part by which what vanishes where they do not has
+/// changed when a joint gets a new base point.
+const NEARER: f64 = 0.2;
 
 /// The state at the last accepted step, and the end of the one being tried.
 #[derive(Clone, Debug)]
@@ -293,7 +298,14 @@ impl StepState {
         let mut moved = false;
         for (_, body) in mechanism.joints() {
             let (freedoms, own) = (&body.ranges().freedoms, &body.ranges().configuration);
-            if !far(&self.offset[freedoms.clone()]) {
+            let bends = |joint: &dyn AnyJoint| {
+                let there = joint.singularity(&self.base[own.clone()]);
+                let here = joint.singularity(&self.configuration[own.clone()]);
+                (here - there).abs() > NEARER * there
+            };
+            let joint = body.joint();
+            let has_ends = !joint.relations().is_empty() && !joint.singularities().is_empty();
+            if !far(&self.offset[freedoms.clone()]) && !(has_ends && bends(joint)) {
                 continue;
             }
             let (old, new) = (

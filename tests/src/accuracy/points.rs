@@ -30,6 +30,8 @@ const MOST_HALVES: usize = 20;
 const SMALLEST_OF_CURVES: f64 = -20.0;
 /// The largest arguments of curves: of digits after the point, and these alone count in a period, large ones have few.
 const LARGEST_OF_CURVES: f64 = 100.0;
+/// Where a joint ends by its relations: how near points come to that, and the largest ϕ, which Φ has a value for.
+const FROM_ENDS: (f64, f64) = (0.1, 0.02);
 /// How near a locus extreme points come.
 const SMALLEST_LOCUS: f64 = 1e-3;
 
@@ -106,7 +108,11 @@ impl<'a> Points<'a> {
             }
         };
         let freedoms = self.definition.freedoms();
-        let phi = self.phi(extreme);
+        let mut phi = self.phi(extreme);
+        if self.has_ends() {
+            phi.iter_mut()
+                .for_each(|entry| *entry *= FROM_ENDS.1 / LARGEST_LOCAL);
+        }
         let phi = self.inside(&q, phi);
         Case {
             q,
@@ -144,7 +150,16 @@ impl<'a> Points<'a> {
 
     fn is_allowed(&self, q: &[f64]) -> bool {
         let values = loci(self.definition, q);
-        values.iter().all(|value| *value > SMALLEST_LOCUS)
+        let smallest = match self.has_ends() {
+            true => FROM_ENDS.0,
+            false => SMALLEST_LOCUS,
+        };
+        values.iter().all(|value| *value > smallest)
+    }
+
+    /// Whether relations alone give Φ, and there is a configuration at which they do not.
+    fn has_ends(&self) -> bool {
+        self.definition.spec().implicit.is_some() && !self.definition.space().loci.is_empty()
     }
 
     /// ϕ, or, where relations alone give Φ, the part of it that changes by half at most what vanishes where the joint ends: Newton's method follows no branch

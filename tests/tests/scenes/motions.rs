@@ -2,7 +2,7 @@
 //!
 //! A new case is a scene file with a reference beside it, in `scenes/report/`. The floor of a case is `max(1, c, ω t) ε/2`: c, its
 //! `conditioning`, is the change of the final state per unit relative change of the initial velocities, ε/2 what one rounding does
-//! to them, and ω its `frequency`, where a stiff spring swings. A sample may have a `conditioning` of its own. No method in doubles can be expected to fall below it.
+//! to them, and ω its `frequency`, where a stiff spring swings. No method in doubles can be expected to fall below it.
 
 use hamel::dynamics::{Dynamics, MassMatrix, Recursive};
 use hamel::integrate::{Form, Options, Solution, State, integrate, no_inputs, no_observer};
@@ -115,11 +115,6 @@ fn run_by(scene: &Scene, dynamics: &mut dyn Dynamics, form: Form, samples: Vec<f
     .unwrap_or_else(|error| panic!("{}: {error}", scene.name))
 }
 
-/// What a motion makes, until a sample that has a conditioning of its own, of a relative error of its initial velocities: max(1, c) there.
-fn growth_until(sample: &Value) -> Option<f64> {
-    Some(sample["conditioning"].as_f64()?.max(1.0))
-}
-
 /// What a motion makes of a relative error of its initial velocities, or of its frequency: max(1, c, ω t).
 pub(super) fn growth(reference: &Value) -> f64 {
     let end = list(&reference["samples"]).last().expect("a sample");
@@ -142,7 +137,7 @@ pub(super) fn errors(found: &BodyState, expected: &Value) -> [f64; 4] {
     ]
 }
 
-/// The largest errors of one case in one form, in floors: each sample by its own, where it has one.
+/// The largest errors of one case in one form, in floors.
 struct Multiples {
     floor: f64,
     laws: [Largest; 4],
@@ -164,8 +159,6 @@ impl Multiples {
             .mechanism
             .kinematics(&state.configuration, &state.speeds)
             .expect("sizes fit");
-        let own = growth_until(sample).map(|growth| growth * 0.5 * f64::EPSILON);
-        let floor = own.unwrap_or(self.floor);
         for (name, expected) in names.iter().zip(list(&sample["bodies"])) {
             let name = name.as_str().expect("a name");
             let mut bodies = scene.mechanism.bodies().iter();
@@ -173,7 +166,7 @@ impl Multiples {
             let body = &kinematics.bodies[index.expect("the scene has the body")];
             let place = format!("{name} at {} s", state.time);
             for (largest, error) in self.laws.iter_mut().zip(errors(body, expected)) {
-                largest.meet(error / floor, &place);
+                largest.meet(error / self.floor, &place);
             }
         }
     }
