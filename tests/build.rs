@@ -18,12 +18,7 @@ fn main() -> Result<(), Error> {
         ],
     )
     .compile()?;
-    for linkage in [
-        "crank_rocker",
-        "five_bar",
-        "geared_pendulum",
-        "slider_crank_offset",
-    ] {
+    for linkage in ["crank_rocker", "geared_pendulum", "slider_crank_offset"] {
         let scene = format!("../scenes/report/{linkage}.toml");
         compiled(
             &scene,

@@ -9,10 +9,6 @@ pub mod ball_chain {
 pub mod crank_rocker {
     include!(concat!(env!("OUT_DIR"), "/crank_rocker.rs"));
 }
-/// Both forms of `scenes/report/five_bar.toml`: a loop of two degrees of freedom.
-pub mod five_bar {
-    include!(concat!(env!("OUT_DIR"), "/five_bar.rs"));
-}
 /// Both forms of `scenes/report/geared_pendulum.toml`: a gear on a base that moves.
 pub mod geared_pendulum {
     include!(concat!(env!("OUT_DIR"), "/geared_pendulum.rs"));
