@@ -7,8 +7,8 @@ use hamel_downstream::WITH_KNOTS;
 use hamel_downstream::joints::{
     BallCayley, BallTurns, Bead, CamCircle, CarWheels, Catenary, CatenaryLength, CrankCoupler,
     CrankRocker, DirectionSensor, ENTRIES, FourBarThrough, GearedRotor, MeasuredRocker,
-    PlanarTurns, PowerGuide, RollingBallCayley, Scara, SkateHeading, SkewScrew, SliderCrankLinks,
-    SliderCrankRod, SpherePoint, Valley,
+    PlanarTurns, PowerGuide, Press, RollingBallCayley, Scara, SkateHeading, SkewScrew,
+    SliderCrankLinks, SliderCrankRod, SpherePoint, Unpinned, Valley,
 };
 use hamel_tests::derivatives::{self, Equipped, Kernels, bare_and_equipped, behind, of};
 use hamel_tests::differences::STEP;
@@ -42,6 +42,7 @@ fn kernels(joint: &dyn AnyJoint) -> Box<dyn Kernels> {
     let car = CarWheels::new(0.7, 0.85, 1.0);
     let linkage = CrankRocker::new(0.9, 0.2, 0.9 + 0.1 * 2.0, 0.9 + 0.1 * 3.0);
     let slider = SliderCrankLinks::new(0.9, 0.9 / 3.0, 0.9 / 9.0);
+    let press = Press::new(0.7, 0.85);
     let all = [
         of(BallCayley),
         of(BallTurns),
@@ -61,12 +62,17 @@ fn kernels(joint: &dyn AnyJoint) -> Box<dyn Kernels> {
         of(FourBarThrough),
         of(PlanarTurns),
         of(PowerGuide::new(0.7)),
+        of(press),
+        of(Member::<_, 1>(press)),
+        of(Member::<_, 2>(press)),
         of(RollingBallCayley::new(0.7)),
         of(Scara),
         of(SkateHeading),
         of(SkewScrew),
         of(SliderCrankRod),
         of(SpherePoint::new(0.7)),
+        of(Unpinned::new(0.7)),
+        of(Member::<_, 1>(Unpinned::new(0.7))),
         of(car),
         of(Member::<_, 1>(car)),
         of(Member::<_, 2>(car)),
