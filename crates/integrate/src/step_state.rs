@@ -15,9 +15,19 @@ use hamel_runtime::erased::AnyJoint;
 /// cost at every step; from a half on, ϕ bends more than most steps do.
 const FAR: f64 = 0.5;
 
-/// Where relations alone give Φ, Newton's method finds it from the base point, so far as these determine it: the part by which what vanishes where they do not has
-/// changed when a joint gets a new base point.
+/// The change of what vanishes where a joint ends, as a part of its value at the base point, from which on a joint gets a new base point if relations alone give
+/// its Φ: Newton's method finds Φ from the base point, and not past such an end.
 const NEARER: f64 = 0.2;
+
+/// Whether a joint at `configuration`, which is Φ(`base`, `phi`), gets a new base point.
+fn is_far(joint: &dyn AnyJoint, base: &[f64], configuration: &[f64], phi: &[f64]) -> bool {
+    let has_ends = !joint.relations().is_empty() && !joint.singularities().is_empty();
+    let is_nearer = || {
+        let there = joint.singularity(base);
+        (joint.singularity(configuration) - there).abs() > NEARER * there
+    };
+    phi.iter().any(|entry| entry.abs() > FAR) || has_ends && is_nearer()
+}
 
 /// The state at the last accepted step, and the end of the one being tried.
 #[derive(Clone, Debug)]
@@ -294,18 +304,11 @@ impl StepState {
     /// Moves the base point of every joint that is far from it to the state.
     fn recentre(&mut self, flow: &mut Flow<'_>) -> Result<(), StepFailure> {
         let mechanism = Arc::clone(&flow.mechanism);
-        let far = |phi: &[f64]| phi.iter().any(|entry| entry.abs() > FAR);
         let mut moved = false;
         for (_, body) in mechanism.joints() {
             let (freedoms, own) = (&body.ranges().freedoms, &body.ranges().configuration);
-            let bends = |joint: &dyn AnyJoint| {
-                let there = joint.singularity(&self.base[own.clone()]);
-                let here = joint.singularity(&self.configuration[own.clone()]);
-                (here - there).abs() > NEARER * there
-            };
-            let joint = body.joint();
-            let has_ends = !joint.relations().is_empty() && !joint.singularities().is_empty();
-            if !far(&self.offset[freedoms.clone()]) && !(has_ends && bends(joint)) {
+            let (base, here) = (&self.base[own.clone()], &self.configuration[own.clone()]);
+            if !is_far(body.joint(), base, here, &self.offset[freedoms.clone()]) {
                 continue;
             }
             let (old, new) = (
