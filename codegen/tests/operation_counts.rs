@@ -9,8 +9,8 @@ use std::path::Path;
 /// Additions, multiplications, of these fused, divisions, calls.
 type Counts = [usize; 5];
 
-/// Functions that count as calls; those of one angle, sine and cosine, are one.
-const CALLS: [&str; 10] = [
+/// Functions that count as calls, those of curves among them; those of one angle, sine and cosine, are one.
+const CALLS: [&str; 12] = [
     "sin_cos",
     "sqrt",
     "exp",
@@ -21,6 +21,8 @@ const CALLS: [&str; 10] = [
     "rotation_vector",
     "quaternion_vector",
     "nearest_rotation",
+    "at",
+    "derivative",
 ];
 
 /// A parameter as divisor, shared sums, functions of one angle, and a column of relations.
@@ -149,6 +151,14 @@ fn relations(statement: &syn::Stmt) -> Option<usize> {
     let syn::Stmt::Local(local) = statement else {
         return None;
     };
+    if let syn::Pat::Type(typed) = &local.pat {
+        let syn::Type::Array(array) = typed.ty.as_ref() else {
+            return None;
+        };
+        let count = array.len.to_token_stream().to_string().parse().ok();
+        let is_it = typed.pat.to_token_stream().to_string() == "relations";
+        return count.filter(|_| is_it);
+    }
     let syn::Expr::Array(array) = local.init.as_ref()?.expr.as_ref() else {
         return None;
     };

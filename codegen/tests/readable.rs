@@ -120,13 +120,17 @@ fn is_known(local: &str, names: &BTreeSet<String>) -> bool {
         || by_prefix.chain(by_suffix).any(made_of)
 }
 
-/// `b_by_left`, the rate of b by that of a direction that the spec names, and `b_by_left_right`, its derivative; by `along` where none is named.
+/// `b_by_left`, the rate of b by that of a direction that the spec names, and `b_by_left_right`, its derivative; by `along` where none is named. `r_2` is the second
+/// direction of R; `relation_1_by_b` is a derivative of a relation.
 fn is_rate_by(local: &str, names: &BTreeSet<String>) -> bool {
     let Some((of, by)) = local.split_once("_by_") else {
         return false;
     };
-    let is_direction = |word: &str| word == "along" || names.contains(word);
-    names.contains(of) && by.split('_').all(is_direction)
+    let is_number = |word: &str| word.chars().all(|c| c.is_ascii_digit());
+    let is_name = |word: &str| names.iter().any(|name| name.eq_ignore_ascii_case(word));
+    let is_direction = |word: &str| word == "along" || is_name(word) || is_number(word);
+    let of_what = of.split('_').all(is_direction) || is_of_relations(of);
+    of_what && by.split('_').all(is_direction)
 }
 
 /// Entries of the linear systems of relations by their numbers, `relation_1_beside_2`, `back_1`; those of a displacement, `xi2`.

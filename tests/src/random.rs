@@ -44,6 +44,15 @@ pub fn library() -> Vec<Arc<dyn AnyJoint>> {
     all
 }
 
+/// Joints with curves in their specs: polynomials by pieces.
+const WITH_CURVES: [&str; 2] = ["cam_follower", "rail"];
+
+/// The [`library`] without joints that have curves: where a piece ends a derivative of high order jumps, and differences of order 6 across it tell nothing.
+pub fn without_knots() -> Vec<Arc<dyn AnyJoint>> {
+    let is_smooth = |joint: &Arc<dyn AnyJoint>| !WITH_CURVES.contains(&joint.name());
+    library().into_iter().filter(is_smooth).collect()
+}
+
 /// Every joint of a registry with parameters near 0.7, no two alike.
 ///
 /// # Panics

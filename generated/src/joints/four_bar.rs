@@ -79,6 +79,7 @@
 //! - `pins_hold`: bodies turn and slide at each pin as it says (normal form)
 //! - `fibres`: one pose has one Q; the poses of all bodies count as one (certificate)
 
+use ::hamel_runtime::group::{part, s1, stacked};
 use ::hamel_runtime::joint::{
     Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
 };
@@ -117,10 +118,9 @@ impl FourBar {
 }
 
 impl FourBar {
-    /// B(Q): v to the displacement rate Q⁻¹Q̇.
-    /// 3×1. Operations: 3 additions, 12 multiplications.
-    /// From line 25 `config a: S1, b: S1, c: S1;`.
-    pub fn tangent_basis<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 3, 1> {
+    /// The values of `a_by_along`, `b_by_along`, `c_by_along`, for other kernels.
+    /// Operations: 3 additions, 12 multiplications.
+    fn first_derivatives<T: Scalar>(&self, q: &SVector<T, 6>) -> [T; 3] {
         let crank = T::from_f64(self.crank);
         let coupler = T::from_f64(self.coupler);
         let rocker = T::from_f64(self.rocker);
@@ -128,6 +128,14 @@ impl FourBar {
         let a_by_along = coupler * rocker * (b_s * c_c - b_c * c_s);
         let b_by_along = crank * rocker * (a_c * c_s - a_s * c_c);
         let c_by_along = crank * coupler * (a_c * b_s - a_s * b_c);
+        [a_by_along, b_by_along, c_by_along]
+    }
+
+    /// B(Q): v to the displacement rate Q⁻¹Q̇.
+    /// 3×1. Operations: none and those of `first_derivatives`.
+    /// From line 25 `config a: S1, b: S1, c: S1;`.
+    pub fn tangent_basis<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 3, 1> {
+        let [a_by_along, b_by_along, c_by_along] = self.first_derivatives(q);
         from_rows([[a_by_along], [b_by_along], [c_by_along]])
     }
 
@@ -143,43 +151,23 @@ impl FourBar {
     }
 
     /// Q exp(ξ) at a finite displacement ξ.
-    /// 6-vector. Operations: 6 additions, 18 multiplications (3 of each fused), 6 function calls.
+    /// 6-vector. Operations: 6 additions, 12 multiplications, 3 function calls.
     /// From line 25 `config a: S1, b: S1, c: S1;`.
     pub fn displaced<T: Scalar>(&self, q: &SVector<T, 6>, xi: &SVector<T, 3>) -> SVector<T, 6> {
-        let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
-        let [xi1, xi2, xi3]: [T; 3] = (*xi).into();
-        let a_theta_squared = xi1 * xi1;
-        let a_c0 = a_theta_squared.stumpff(0);
-        let a_c1 = a_theta_squared.stumpff(1);
-        let t1 = xi1 * a_c1;
-        let b_theta_squared = xi2 * xi2;
-        let b_c0 = b_theta_squared.stumpff(0);
-        let b_c1 = b_theta_squared.stumpff(1);
-        let t2 = xi2 * b_c1;
-        let c_theta_squared = xi3 * xi3;
-        let c_c0 = c_theta_squared.stumpff(0);
-        let c_c1 = c_theta_squared.stumpff(1);
-        let t3 = xi3 * c_c1;
-        SVector::from([
-            a_c * a_c0 - a_s * t1,
-            dot([a_c, a_s], [t1, a_c0]),
-            b_c * b_c0 - b_s * t2,
-            dot([b_c, b_s], [t2, b_c0]),
-            c_c * c_c0 - c_s * t3,
-            dot([c_c, c_s], [t3, c_c0]),
-        ])
+        let a_moved = s1::times_exp(&part(q, 0), &part(xi, 0));
+        let b_moved = s1::times_exp(&part(q, 2), &part(xi, 1));
+        let c_moved = s1::times_exp(&part(q, 4), &part(xi, 2));
+        stacked(&[a_moved.as_slice(), b_moved.as_slice(), c_moved.as_slice()])
     }
 
     /// The displacement ξ with Q exp(ξ) = `target`.
     /// 3-vector. Operations: 6 additions, 12 multiplications (3 of each fused), 3 function calls.
     /// From line 25 `config a: S1, b: S1, c: S1;`.
     pub fn displacement<T: Scalar>(&self, q: &SVector<T, 6>, target: &SVector<T, 6>) -> SVector<T, 3> {
-        let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
-        let [a_c_target, a_s_target, b_c_target, b_s_target, c_c_target, c_s_target]: [T; 6] = (*target).into();
-        let a_angle = (a_c * a_s_target - a_s * a_c_target).atan2(dot([a_c, a_s], [a_c_target, a_s_target]));
-        let b_angle = (b_c * b_s_target - b_s * b_c_target).atan2(dot([b_c, b_s], [b_c_target, b_s_target]));
-        let c_angle = (c_c * c_s_target - c_s * c_c_target).atan2(dot([c_c, c_s], [c_c_target, c_s_target]));
-        SVector::from([a_angle, b_angle, c_angle])
+        let a_local = s1::log_between(&part(q, 0), &part(target, 0));
+        let b_local = s1::log_between(&part(q, 2), &part(target, 2));
+        let c_local = s1::log_between(&part(q, 4), &part(target, 4));
+        stacked(&[a_local.as_slice(), b_local.as_slice(), c_local.as_slice()])
     }
 
     /// The relations of the manifold: 0 on it.
@@ -318,7 +306,7 @@ impl Joint<6, 1, 1, 0> for FourBar {
     }
 
     /// The home configuration.
-    /// 6-vector. Independent of Q. The configuration nearest to these numbers, by Newton's method in at most `finite::PROJECT_ITERATIONS` steps; NaN where it does not converge.
+    /// 6-vector. Independent of Q. The configuration nearest to these numbers and on their branch, by Newton's method; NaN where it does not converge.
     /// From line 29 `home near [1/2, 6/7], [1, 0], [-1/4, 1];`.
     fn home<T: Scalar>(&self) -> SVector<T, 6> {
         let start: SVector<T, 6> = {
@@ -329,7 +317,12 @@ impl Joint<6, 1, 1, 0> for FourBar {
             let one = T::one();
             SVector::from([half, ratio_6_7, one, zero, -quarter, one])
         };
-        ::hamel_runtime::finite::project(&start, 5, |q| self.relations(q))
+        ::hamel_runtime::finite::assemble(
+            &start,
+            5,
+            |q| self.relations(q),
+            |q| self.relation_gradient(q) * self.normal_basis(q),
+        )
     }
 
     /// H(Q): child coordinates to parent coordinates.
@@ -346,45 +339,37 @@ impl Joint<6, 1, 1, 0> for FourBar {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 4 multiplications.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: none and those of `first_derivatives`.
     /// From line 30 `H.crank = rot_z(a);`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 1> {
-        let coupler = T::from_f64(self.coupler);
-        let rocker = T::from_f64(self.rocker);
-        let [_, _, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
         let zero = T::zero();
-        let a_by_along = coupler * rocker * (b_s * c_c - b_c * c_s);
+        let [a_by_along, _, _] = self.first_derivatives(q);
         from_rows([[zero], [zero], [a_by_along], [zero], [zero], [zero]])
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 4 multiplications.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: none and those of `first_derivatives`.
     /// From line 30 `H.crank = rot_z(a);`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 1> {
-        let coupler = T::from_f64(self.coupler);
-        let rocker = T::from_f64(self.rocker);
-        let [_, _, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
         let zero = T::zero();
-        let a_by_along = coupler * rocker * (b_s * c_c - b_c * c_s);
+        let [a_by_along, _, _] = self.first_derivatives(q);
         from_rows([[zero], [zero], [a_by_along], [zero], [zero], [zero]])
     }
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    /// 1 slice of 6×1. Operations: 4 additions, 13 multiplications (1 of each fused).
+    /// 1 slice of 6×1. Operations: 2 additions, 5 multiplications (1 of each fused) and those of `first_derivatives`.
     /// From line 30 `H.crank = rot_z(a);`.
     fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, 6>) -> [SMatrix<T, 6, 1>; 1] {
-        let crank = T::from_f64(self.crank);
         let coupler = T::from_f64(self.coupler);
         let rocker = T::from_f64(self.rocker);
-        let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
-        let b_by_along = crank * rocker * (a_c * c_s - a_s * c_c);
-        let c_by_along = crank * coupler * (a_c * b_s - a_s * b_c);
+        let [_, _, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
+        let [_, b_by_along, c_by_along] = self.first_derivatives(q);
         let a_by_along_along_along = coupler * rocker * (b_by_along - c_by_along) * dot([b_c, b_s], [c_c, c_s]);
         [rows_at([(2, [a_by_along_along_along])])]
     }
 
     /// ∂S/∂ϕ at ϕ = 0 (23), (32); slice k is ∂S/∂ϕ_k.
-    /// 1 slice of 1×1. Operations: 31 additions, 78 multiplications (15 of each fused), 1 division.
+    /// 1 slice of 1×1. Operations: 28 additions, 66 multiplications (15 of each fused), 1 division and those of `first_derivatives`.
     /// From line 30 `H.crank = rot_z(a);`.
     fn velocity_map_gradient<T: Scalar>(&self, q: &SVector<T, 6>) -> [SMatrix<T, 1, 1>; 1] {
         let crank = T::from_f64(self.crank);
@@ -392,9 +377,7 @@ impl Joint<6, 1, 1, 0> for FourBar {
         let rocker = T::from_f64(self.rocker);
         let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
         let one = T::one();
-        let a_by_along = coupler * rocker * (b_s * c_c - b_c * c_s);
-        let b_by_along = crank * rocker * (a_c * c_s - a_s * c_c);
-        let c_by_along = crank * coupler * (a_c * b_s - a_s * b_c);
+        let [a_by_along, b_by_along, c_by_along] = self.first_derivatives(q);
         let crank_squared = crank * crank;
         let coupler_squared = coupler * coupler;
         let rocker_squared = rocker * rocker;
@@ -428,16 +411,10 @@ impl Joint<6, 1, 1, 0> for FourBar {
     }
 
     /// P(Q), a row for each port: v to its rate.
-    /// 3×1. Operations: 3 additions, 12 multiplications.
+    /// 3×1. Operations: none and those of `first_derivatives`.
     /// From line 30 `H`, line 33 `port`, line 34 `port`, line 35 `port`.
     fn port_map<T: Scalar>(&self, q: &SVector<T, 6>) -> impl AsRef<[[T; 1]]> {
-        let crank = T::from_f64(self.crank);
-        let coupler = T::from_f64(self.coupler);
-        let rocker = T::from_f64(self.rocker);
-        let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
-        let a_by_along = coupler * rocker * (b_s * c_c - b_c * c_s);
-        let b_by_along = crank * rocker * (a_c * c_s - a_s * c_c);
-        let c_by_along = crank * coupler * (a_c * b_s - a_s * b_c);
+        let [a_by_along, b_by_along, c_by_along] = self.first_derivatives(q);
         [[a_by_along], [b_by_along], [c_by_along]]
     }
 
@@ -468,17 +445,12 @@ impl Joint<6, 1, 1, 0> for FourBar {
     }
 
     /// Q̇(Q, v) (31): the rates of the stored scalars.
-    /// 6-vector. Operations: 3 additions, 21 multiplications.
+    /// 6-vector. Operations: 9 multiplications and those of `first_derivatives`.
     /// From line 30 `H.crank = rot_z(a);`.
     fn configuration_rate<T: Scalar>(&self, q: &SVector<T, 6>, v: &SVector<T, 1>) -> SVector<T, 6> {
-        let crank = T::from_f64(self.crank);
-        let coupler = T::from_f64(self.coupler);
-        let rocker = T::from_f64(self.rocker);
         let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
         let v_along = v[0];
-        let a_by_along = coupler * rocker * (b_s * c_c - b_c * c_s);
-        let b_by_along = crank * rocker * (a_c * c_s - a_s * c_c);
-        let c_by_along = crank * coupler * (a_c * b_s - a_s * b_c);
+        let [a_by_along, b_by_along, c_by_along] = self.first_derivatives(q);
         let t1 = v_along * a_by_along;
         let t2 = v_along * b_by_along;
         let t3 = v_along * c_by_along;
@@ -486,7 +458,7 @@ impl Joint<6, 1, 1, 0> for FourBar {
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
-    /// 6-vector. Q exp(B ϕ + N λ), with λ by Newton's method from 0 so that the relations hold, in `finite::RETRACT_ITERATIONS` steps; NaN where it does not converge.
+    /// 6-vector. Q exp(B ϕ + N λ), with λ by Newton's method from 0 so that the relations hold, in `finite::RETRACT_ITERATIONS` steps; NaN where it does not converge or leaves the branch of Q.
     /// From line 25 `config a: S1, b: S1, c: S1;`.
     fn retract<T: Scalar>(&self, q: &SVector<T, 6>, phi: &SVector<T, 1>) -> SVector<T, 6> {
         ::hamel_runtime::finite::retract(
@@ -589,23 +561,10 @@ impl Joint<6, 1, 1, 0> for FourBar {
     }
 
     /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
-    /// A scalar. Operations: 16 additions, 17 multiplications (16 of each fused), 1 function call.
+    /// A scalar. Operations: 5 additions, 5 multiplications (5 of each fused), 1 function call.
     /// From line 25 `config a: S1, b: S1, c: S1;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 6>) -> T {
-        let ground = T::from_f64(self.ground);
-        let crank = T::from_f64(self.crank);
-        let coupler = T::from_f64(self.coupler);
-        let rocker = T::from_f64(self.rocker);
-        let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
-        let one = T::one();
-        let relations = [
-            a_c.mul_add(a_c, a_s.mul_add(a_s, -one)),
-            b_c.mul_add(b_c, b_s.mul_add(b_s, -one)),
-            c_c.mul_add(c_c, c_s.mul_add(c_s, -one)),
-            crank.mul_add(a_c, coupler.mul_add(b_c, rocker.mul_add(-c_c, -ground))),
-            dot([crank, rocker, coupler], [a_s, -c_s, b_s]),
-        ];
-        let sum = relations.into_iter().fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
+        let sum = self.relations(q).iter().fold(T::zero(), |sum, &relation| relation.mul_add(relation, sum));
         sum.sqrt()
     }
 }
@@ -637,58 +596,48 @@ impl ::hamel_runtime::joint::Carries<1, 6, 1, 1, 0> for FourBar {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 3 additions, 11 multiplications.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 3 multiplications and those of `first_derivatives`.
     /// From line 31 `H.coupler = pose(rot_z(b), [crank * a.c, crank * a.s, 0]);`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 1> {
         let crank = T::from_f64(self.crank);
-        let coupler = T::from_f64(self.coupler);
-        let rocker = T::from_f64(self.rocker);
-        let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
+        let (a_c, a_s) = (q[0], q[1]);
         let zero = T::zero();
-        let a_by_along = coupler * rocker * (b_s * c_c - b_c * c_s);
-        let b_by_along = crank * rocker * (a_c * c_s - a_s * c_c);
+        let [a_by_along, b_by_along, _] = self.first_derivatives(q);
         let t1 = crank * (a_by_along - b_by_along);
         from_rows([[zero], [zero], [b_by_along], [-t1 * a_s], [t1 * a_c], [zero]])
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 4 additions, 15 multiplications (1 of each fused).
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 2 additions, 7 multiplications (1 of each fused) and those of `first_derivatives`.
     /// From line 31 `H.coupler = pose(rot_z(b), [crank * a.c, crank * a.s, 0]);`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 1> {
         let crank = T::from_f64(self.crank);
-        let coupler = T::from_f64(self.coupler);
-        let rocker = T::from_f64(self.rocker);
-        let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
+        let [a_c, a_s, b_c, b_s, _, _]: [T; 6] = (*q).into();
         let zero = T::zero();
-        let a_by_along = coupler * rocker * (b_s * c_c - b_c * c_s);
-        let b_by_along = crank * rocker * (a_c * c_s - a_s * c_c);
+        let [a_by_along, b_by_along, _] = self.first_derivatives(q);
         let t1 = crank * a_by_along;
         from_rows([[zero], [zero], [b_by_along], [t1 * (a_c * b_s - a_s * b_c)], [t1 * dot([a_c, a_s], [b_c, b_s])], [zero]])
     }
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    /// 1 slice of 6×1. Operations: 11 additions, 29 multiplications (4 of each fused).
+    /// 1 slice of 6×1. Operations: 9 additions, 21 multiplications (4 of each fused) and those of `first_derivatives`.
     /// From line 31 `H.coupler = pose(rot_z(b), [crank * a.c, crank * a.s, 0]);`.
     fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, 6>) -> [SMatrix<T, 6, 1>; 1] {
         let crank = T::from_f64(self.crank);
         let coupler = T::from_f64(self.coupler);
         let rocker = T::from_f64(self.rocker);
         let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
-        let t1 = coupler * rocker;
-        let a_by_along = t1 * (b_s * c_c - b_c * c_s);
-        let t2 = crank * rocker;
-        let b_by_along = t2 * (a_c * c_s - a_s * c_c);
-        let t3 = a_c * b_s - a_s * b_c;
-        let c_by_along = crank * coupler * t3;
-        let a_by_along_along_along = t1 * (b_by_along - c_by_along) * dot([b_c, b_s], [c_c, c_s]);
-        let b_by_along_along_along = t2 * (c_by_along - a_by_along) * dot([a_c, a_s], [c_c, c_s]);
-        let t4 = a_by_along * (a_by_along - b_by_along);
-        let t5 = dot([a_c, a_s], [b_c, b_s]);
+        let [a_by_along, b_by_along, c_by_along] = self.first_derivatives(q);
+        let a_by_along_along_along = coupler * rocker * (b_by_along - c_by_along) * dot([b_c, b_s], [c_c, c_s]);
+        let b_by_along_along_along = crank * rocker * (c_by_along - a_by_along) * dot([a_c, a_s], [c_c, c_s]);
+        let t1 = a_c * b_s - a_s * b_c;
+        let t2 = a_by_along * (a_by_along - b_by_along);
+        let t3 = dot([a_c, a_s], [b_c, b_s]);
         [
             rows_at([
                 (2, [b_by_along_along_along]),
-                (3, [crank * (a_by_along_along_along * t3 - t4 * t5)]),
-                (4, [crank * dot([a_by_along_along_along, t4], [t5, t3])]),
+                (3, [crank * (a_by_along_along_along * t1 - t2 * t3)]),
+                (4, [crank * dot([a_by_along_along_along, t2], [t3, t1])]),
             ]),
         ]
     }
@@ -747,40 +696,32 @@ impl ::hamel_runtime::joint::Carries<2, 6, 1, 1, 0> for FourBar {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 5 multiplications.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 multiplication and those of `first_derivatives`.
     /// From line 32 `H.rocker = pose(rot_z(c), [ground, 0, 0]);`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 1> {
         let ground = T::from_f64(self.ground);
-        let crank = T::from_f64(self.crank);
-        let coupler = T::from_f64(self.coupler);
-        let [a_c, a_s, b_c, b_s, _, _]: [T; 6] = (*q).into();
         let zero = T::zero();
-        let c_by_along = crank * coupler * (a_c * b_s - a_s * b_c);
+        let [_, _, c_by_along] = self.first_derivatives(q);
         from_rows([[zero], [zero], [c_by_along], [zero], [-ground * c_by_along], [zero]])
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 4 multiplications.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: none and those of `first_derivatives`.
     /// From line 32 `H.rocker = pose(rot_z(c), [ground, 0, 0]);`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 1> {
-        let crank = T::from_f64(self.crank);
-        let coupler = T::from_f64(self.coupler);
-        let [a_c, a_s, b_c, b_s, _, _]: [T; 6] = (*q).into();
         let zero = T::zero();
-        let c_by_along = crank * coupler * (a_c * b_s - a_s * b_c);
+        let [_, _, c_by_along] = self.first_derivatives(q);
         from_rows([[zero], [zero], [c_by_along], [zero], [zero], [zero]])
     }
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    /// 1 slice of 6×1. Operations: 4 additions, 13 multiplications (1 of each fused).
+    /// 1 slice of 6×1. Operations: 2 additions, 5 multiplications (1 of each fused) and those of `first_derivatives`.
     /// From line 32 `H.rocker = pose(rot_z(c), [ground, 0, 0]);`.
     fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, 6>) -> [SMatrix<T, 6, 1>; 1] {
         let crank = T::from_f64(self.crank);
         let coupler = T::from_f64(self.coupler);
-        let rocker = T::from_f64(self.rocker);
-        let [a_c, a_s, b_c, b_s, c_c, c_s]: [T; 6] = (*q).into();
-        let a_by_along = coupler * rocker * (b_s * c_c - b_c * c_s);
-        let b_by_along = crank * rocker * (a_c * c_s - a_s * c_c);
+        let [a_c, a_s, b_c, b_s, _, _]: [T; 6] = (*q).into();
+        let [a_by_along, b_by_along, _] = self.first_derivatives(q);
         let c_by_along_along_along = crank * coupler * (b_by_along - a_by_along) * dot([a_c, a_s], [b_c, b_s]);
         [rows_at([(2, [c_by_along_along_along])])]
     }

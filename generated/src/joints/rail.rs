@@ -208,6 +208,71 @@ impl Rail {
     }
 }
 
+impl Rail {
+    /// The values of `drift`, `slope`, `level`, `stretch`, `tangent1`, `tangent2`, `tangent3`, `left1`, `left2`, `d_slope_d_x`, `d_drift_d_x`, `d_level_d_x`, `d_stretch_d_x`, `d_tangent1_d_x`, `d_tangent2_d_x`, `d_tangent3_d_x`, `d_left1_d_x`, `d_left2_d_x`, for other kernels.
+    /// Operations: 6 additions, 24 multiplications (6 of each fused), 8 divisions, 6 function calls.
+    fn first_derivatives<T: Scalar>(&self, q: &SVector<T, 1>) -> [T; 18] {
+        let length = T::from_f64(self.length);
+        let width = T::from_f64(self.width);
+        let height = T::from_f64(self.height);
+        let x = q[0];
+        let one = T::one();
+        let inverse_length = one / length;
+        let t1 = x * inverse_length;
+        let drift = width * CURVE_SIDE.derivative(t1, 1) * inverse_length;
+        let slope = height * CURVE_RISE.derivative(t1, 1) * inverse_length;
+        let level = drift.mul_add(drift, one).sqrt();
+        let level_squared = level * level;
+        let stretch = slope.mul_add(slope, level_squared).sqrt();
+        let tangent1 = one / stretch;
+        let tangent2 = drift * tangent1;
+        let tangent3 = slope * tangent1;
+        let inverse_level = one / level;
+        let left1 = -drift * inverse_level;
+        let length_squared = length * length;
+        let d_slope_d_x = height * CURVE_RISE.derivative(t1, 2) / length_squared;
+        let d_drift_d_x = width * CURVE_SIDE.derivative(t1, 2) / length_squared;
+        let d_level_d_x = -left1 * d_drift_d_x;
+        let d_stretch_d_x = dot([slope, level], [d_slope_d_x, d_level_d_x]) / stretch;
+        let d_tangent1_d_x = -d_stretch_d_x / (stretch * stretch);
+        let d_tangent2_d_x = dot([drift, d_drift_d_x], [d_tangent1_d_x, tangent1]);
+        let d_tangent3_d_x = dot([slope, d_slope_d_x], [d_tangent1_d_x, tangent1]);
+        let d_left1_d_x = -left1.mul_add(d_level_d_x, d_drift_d_x) * inverse_level;
+        let d_left2_d_x = -d_level_d_x / level_squared;
+        [
+            drift, slope, level, stretch, tangent1, tangent2, tangent3, left1, inverse_level, d_slope_d_x, d_drift_d_x,
+            d_level_d_x, d_stretch_d_x, d_tangent1_d_x, d_tangent2_d_x, d_tangent3_d_x, d_left1_d_x, d_left2_d_x,
+        ]
+    }
+
+    /// The values of `d2_drift_d_x_d_x`, `d2_level_d_x_d_x`, `d2_slope_d_x_d_x`, `d2_tangent1_d_x_d_x`, `d2_tangent2_d_x_d_x`, for other kernels.
+    /// Operations: 9 additions, 19 multiplications (9 of each fused), 6 divisions, 3 function calls.
+    fn second_derivatives<T: Scalar>(&self, q: &SVector<T, 1>) -> [T; 5] {
+        let length = T::from_f64(self.length);
+        let width = T::from_f64(self.width);
+        let height = T::from_f64(self.height);
+        let x = q[0];
+        let two = T::from_f64(2.0);
+        let [drift, slope, level, stretch, _, _, _, left1, _, d_slope_d_x, d_drift_d_x,
+        d_level_d_x, d_stretch_d_x, d_tangent1_d_x, _, _, d_left1_d_x, _] = self.first_derivatives(q);
+        let t1 = x / length;
+        let t2 = length * length * length;
+        let d2_drift_d_x_d_x = width * CURVE_SIDE.derivative(t1, 3) / t2;
+        let d2_level_d_x_d_x = -dot([left1, d_drift_d_x], [d2_drift_d_x_d_x, d_left1_d_x]);
+        let d2_slope_d_x_d_x = height * CURVE_RISE.derivative(t1, 3) / t2;
+        let d2_tangent1_d_x_d_x = -(two * d_stretch_d_x).mul_add(
+            d_tangent1_d_x,
+            dot(
+                [slope, level, d_slope_d_x, d_stretch_d_x, d_level_d_x],
+                [d2_slope_d_x_d_x, d2_level_d_x_d_x, d_slope_d_x, -d_stretch_d_x, d_level_d_x],
+            ) / (dot([slope, level], [slope, level]).sqrt() * stretch),
+        ) / stretch;
+        let d2_tangent2_d_x_d_x = drift
+            .mul_add(d2_tangent1_d_x_d_x, (two * d_drift_d_x).mul_add(d_tangent1_d_x, d2_drift_d_x_d_x / stretch));
+        [d2_drift_d_x_d_x, d2_level_d_x_d_x, d2_slope_d_x_d_x, d2_tangent1_d_x_d_x, d2_tangent2_d_x_d_x]
+    }
+}
+
 impl Joint<1, 1, 1, 0> for Rail {
     const NAME: &'static str = "rail";
     const COORDINATES: [&'static str; 1] = ["x"];
@@ -240,7 +305,7 @@ impl Joint<1, 1, 1, 0> for Rail {
     }
 
     /// H(Q): child coordinates to parent coordinates.
-    /// Rotation matrix and translation in m. Operations: 3 additions, 16 multiplications (2 of each fused), 4 divisions, 6 function calls.
+    /// Rotation matrix and translation in m. Operations: 1 addition, 6 multiplications, 1 division, 2 function calls and those of `first_derivatives`.
     /// From line 18 `let`, line 19 `let`, line 20 `let`, line 21 `let`, line 22 `let`, line 23 `let`, line 24 `H`.
     fn pose<T: Scalar>(&self, q: &SVector<T, 1>) -> Pose<T> {
         let length = T::from_f64(self.length);
@@ -248,18 +313,9 @@ impl Joint<1, 1, 1, 0> for Rail {
         let height = T::from_f64(self.height);
         let x = q[0];
         let zero = T::zero();
-        let one = T::one();
-        let inverse_length = one / length;
-        let t1 = x * inverse_length;
-        let drift = width * CURVE_SIDE.derivative(t1, 1) * inverse_length;
-        let slope = height * CURVE_RISE.derivative(t1, 1) * inverse_length;
-        let level = drift.mul_add(drift, one).sqrt();
-        let stretch = dot([slope, level], [slope, level]).sqrt();
-        let tangent1 = one / stretch;
-        let tangent2 = drift * tangent1;
-        let tangent3 = slope * tangent1;
-        let left1 = -drift / level;
-        let left2 = one / level;
+        let [_, _, _, _, tangent1, tangent2, tangent3, left1, left2, _, _, _, _, _, _, _,
+        _, _] = self.first_derivatives(q);
+        let t1 = x / length;
         Pose {
             rotation: from_rows([
                 [tangent1, left1, -tangent3 * left2],
@@ -271,7 +327,7 @@ impl Joint<1, 1, 1, 0> for Rail {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 25 additions, 66 multiplications (15 of each fused), 10 divisions, 9 function calls.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 22 additions, 38 multiplications (12 of each fused), 9 divisions, 4 function calls and those of `first_derivatives`.
     /// From line 18 `let`, line 19 `let`, line 20 `let`, line 21 `let`, line 22 `let`, line 23 `let`, line 24 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let length = T::from_f64(self.length);
@@ -279,86 +335,57 @@ impl Joint<1, 1, 1, 0> for Rail {
         let height = T::from_f64(self.height);
         let x = q[0];
         let one = T::one();
-        let inverse_length = one / length;
-        let drift = width * CURVE_SIDE.derivative(x * inverse_length, 1) * inverse_length;
-        let slope = height * CURVE_RISE.derivative(x * inverse_length, 1) * inverse_length;
+        let [drift, slope, level, stretch, tangent1, tangent2, tangent3, left1, left2,
+        d_slope_d_x, d_drift_d_x, d_level_d_x, _, d_tangent1_d_x, _, d_tangent3_d_x, _,
+        d_left2_d_x] = self.first_derivatives(q);
         let drift_squared = drift * drift;
-        let level = (one + drift_squared).sqrt();
-        let slope_squared = slope * slope;
-        let level_squared = level * level;
-        let stretch = (slope_squared + level_squared).sqrt();
-        let tangent1 = one / stretch;
-        let tangent2 = drift * tangent1;
-        let tangent3 = slope * tangent1;
-        let inverse_level = one / level;
-        let left1 = -drift * inverse_level;
-        let length_squared = length * length;
-        let d_slope_d_x = height * CURVE_RISE.derivative(x * inverse_length, 2) / length_squared;
-        let d_drift_d_x = width * CURVE_SIDE.derivative(x * inverse_length, 2) / length_squared;
-        let d_level_d_x = -left1 * d_drift_d_x;
-        let d_tangent1_d_x = -dot([slope, level], [d_slope_d_x, d_level_d_x]) / (stretch * stretch * stretch);
-        let d_tangent3_d_x = dot([slope, d_slope_d_x], [d_tangent1_d_x, tangent1]);
-        let d_left2_d_x = -d_level_d_x / level_squared;
-        let t1 = d_drift_d_x / (level * level);
-        let t2 = (one + drift_squared + slope_squared).sqrt();
-        let t3 = one / (t2 * t2);
-        let t4 = height * t3 * CURVE_RISE.at(x * inverse_length);
-        let t5 = width * CURVE_SIDE.at(x * inverse_length);
+        let t1 = (one + drift_squared).sqrt();
+        let t2 = d_drift_d_x / (t1 * t1);
+        let t3 = slope.mul_add(slope, one + drift_squared).sqrt();
+        let t4 = height * CURVE_RISE.at(x / length) / (t3 * t3);
+        let t5 = width * CURVE_SIDE.at(x / length);
         let t6 = drift * d_slope_d_x - slope * left1 * d_drift_d_x * left1;
         from_rows([
             [
                 dot([tangent2, tangent3 * left1], [
                     d_tangent3_d_x,
-                    dot([tangent1, inverse_level, left1, tangent2 * inverse_level], [
-                        d_left2_d_x, d_tangent1_d_x,
-                        dot([drift, d_drift_d_x, tangent2 * inverse_level], [-d_tangent1_d_x, -tangent1, d_level_d_x]),
-                        d_drift_d_x,
-                    ]),
+                    tangent1.mul_add(
+                        d_left2_d_x,
+                        left2.mul_add(
+                            d_tangent1_d_x,
+                            left1.mul_add(
+                                drift.mul_add(-d_tangent1_d_x, d_level_d_x * tangent2 / level - d_drift_d_x / stretch),
+                                d_drift_d_x * tangent2 / level,
+                            ),
+                        ),
+                    ),
                 ]),
             ],
             [
-                tangent3 * (d_tangent1_d_x - d_left2_d_x * (tangent1 * inverse_level - tangent2 * left1))
-                    - inverse_level * d_tangent3_d_x * (tangent1 * inverse_level - tangent2 * left1),
+                tangent3 * (d_tangent1_d_x - d_left2_d_x * (tangent1 * left2 - tangent2 * left1))
+                    - left2 * d_tangent3_d_x * (tangent1 * left2 - tangent2 * left1),
             ],
-            [t1],
-            [t4.mul_add(d_slope_d_x + slope * left1 * d_drift_d_x / level, t5.mul_add(t1, one))],
-            [x.mul_add(-t1, t4.mul_add(t6, drift))],
-            [dot([x, t5], [(drift * slope).mul_add(-t1, d_slope_d_x), t6]).mul_add(-t3, slope)],
+            [t2],
+            [t4.mul_add(d_slope_d_x + slope * left1 * d_drift_d_x / t1, t5.mul_add(t2, one))],
+            [x.mul_add(-t2, t4.mul_add(t6, drift))],
+            [slope - dot([x, t5], [(drift * slope).mul_add(-t2, d_slope_d_x), t6]) / (t3 * t3)],
         ])
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 11 additions, 36 multiplications (8 of each fused), 6 divisions, 6 function calls.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 9 additions, 15 multiplications (5 of each fused), 3 divisions and those of `first_derivatives`.
     /// From line 18 `let`, line 19 `let`, line 20 `let`, line 21 `let`, line 22 `let`, line 23 `let`, line 24 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
-        let length = T::from_f64(self.length);
-        let width = T::from_f64(self.width);
-        let height = T::from_f64(self.height);
-        let x = q[0];
         let zero = T::zero();
         let one = T::one();
-        let inverse_length = one / length;
-        let t1 = x * inverse_length;
-        let drift = width * CURVE_SIDE.derivative(t1, 1) * inverse_length;
-        let slope = height * CURVE_RISE.derivative(t1, 1) * inverse_length;
-        let level = drift.mul_add(drift, one).sqrt();
-        let stretch = dot([slope, level], [slope, level]).sqrt();
-        let tangent1 = one / stretch;
-        let tangent2 = drift * tangent1;
-        let tangent3 = slope * tangent1;
-        let inverse_level = one / level;
-        let left1 = -drift * inverse_level;
-        let length_squared = length * length;
-        let d_slope_d_x = height * CURVE_RISE.derivative(t1, 2) / length_squared;
-        let d_drift_d_x = width * CURVE_SIDE.derivative(t1, 2) / length_squared;
-        let d_level_d_x = -left1 * d_drift_d_x;
-        let d_tangent1_d_x = -dot([slope, level], [d_slope_d_x, d_level_d_x]) / (stretch * stretch * stretch);
-        let d_tangent2_d_x = dot([drift, d_drift_d_x], [d_tangent1_d_x, tangent1]);
-        let t2 = dot([slope, d_slope_d_x], [d_tangent1_d_x, tangent1]);
+        let [drift, slope, level, stretch, tangent1, tangent2, tangent3, left1, left2,
+        d_slope_d_x, d_drift_d_x, d_level_d_x, _, d_tangent1_d_x, d_tangent2_d_x, _, _, _,
+        ] = self.first_derivatives(q);
+        let t1 = slope.mul_add(d_tangent1_d_x, d_slope_d_x / stretch);
         from_rows([
-            [tangent3 * inverse_level * d_drift_d_x * inverse_level],
-            [inverse_level * (tangent3 * d_tangent1_d_x - tangent1 * t2) - left1 * (tangent3 * d_tangent2_d_x - tangent2 * t2)],
-            [dot([left1, inverse_level], [d_tangent1_d_x, d_tangent2_d_x])],
+            [tangent3 * dot([left2, left1 * d_level_d_x], [d_drift_d_x, left2 - one / level]) / level],
+            [left2 * (tangent3 * d_tangent1_d_x - tangent1 * t1) - left1 * (tangent3 * d_tangent2_d_x - tangent2 * t1)],
+            [dot([left1, left2], [d_tangent1_d_x, d_tangent2_d_x])],
             [drift.mul_add(tangent2, slope.mul_add(tangent3, tangent1))],
             [zero],
             [zero],
@@ -366,78 +393,43 @@ impl Joint<1, 1, 1, 0> for Rail {
     }
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    /// 1 slice of 6×1. Operations: 38 additions, 80 multiplications (37 of each fused), 11 divisions, 8 function calls.
+    /// 1 slice of 6×1. Operations: 24 additions, 37 multiplications (23 of each fused), 2 divisions and those of `first_derivatives` and those of `second_derivatives`.
     /// From line 18 `let`, line 19 `let`, line 20 `let`, line 21 `let`, line 22 `let`, line 23 `let`, line 24 `H`.
     fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, 1>) -> [SMatrix<T, 6, 1>; 1] {
-        let length = T::from_f64(self.length);
-        let width = T::from_f64(self.width);
-        let height = T::from_f64(self.height);
-        let x = q[0];
         let one = T::one();
         let two = T::from_f64(2.0);
-        let inverse_length = one / length;
-        let t1 = x * inverse_length;
-        let drift = width * CURVE_SIDE.derivative(t1, 1) * inverse_length;
-        let slope = height * CURVE_RISE.derivative(t1, 1) * inverse_length;
-        let level = drift.mul_add(drift, one).sqrt();
-        let level_squared = level * level;
-        let stretch = slope.mul_add(slope, level_squared).sqrt();
-        let tangent1 = one / stretch;
-        let tangent2 = drift * tangent1;
-        let tangent3 = slope * tangent1;
+        let [drift, slope, level, stretch, tangent1, tangent2, tangent3, left1, left2,
+        d_slope_d_x, d_drift_d_x, d_level_d_x, _, d_tangent1_d_x, d_tangent2_d_x,
+        d_tangent3_d_x, d_left1_d_x, d_left2_d_x] = self.first_derivatives(q);
+        let [d2_drift_d_x_d_x, d2_level_d_x_d_x, d2_slope_d_x_d_x, d2_tangent1_d_x_d_x,
+        d2_tangent2_d_x_d_x] = self.second_derivatives(q);
+        let t1 = left1 * d_left2_d_x;
         let inverse_level = one / level;
-        let left1 = -drift * inverse_level;
-        let length_squared = length * length;
-        let d_slope_d_x = height * CURVE_RISE.derivative(t1, 2) / length_squared;
-        let d_drift_d_x = width * CURVE_SIDE.derivative(t1, 2) / length_squared;
-        let d_level_d_x = -left1 * d_drift_d_x;
-        let d_stretch_d_x = dot([slope, level], [d_slope_d_x, d_level_d_x]) / stretch;
-        let d_tangent1_d_x = -d_stretch_d_x / (stretch * stretch);
-        let d_tangent2_d_x = dot([drift, d_drift_d_x], [d_tangent1_d_x, tangent1]);
-        let d_tangent3_d_x = dot([slope, d_slope_d_x], [d_tangent1_d_x, tangent1]);
-        let d_left1_d_x = -left1.mul_add(d_level_d_x, d_drift_d_x) * inverse_level;
-        let d_left2_d_x = -d_level_d_x / level_squared;
-        let t2 = length_squared * length;
-        let d2_drift_d_x_d_x = width * CURVE_SIDE.derivative(t1, 3) / t2;
-        let d2_level_d_x_d_x = -dot([left1, d_drift_d_x], [d2_drift_d_x_d_x, d_left1_d_x]);
-        let d2_slope_d_x_d_x = height * CURVE_RISE.derivative(t1, 3) / t2;
-        let d2_tangent1_d_x_d_x = -(two * d_stretch_d_x).mul_add(
-            d_tangent1_d_x,
-            dot(
-                [slope, level, d_slope_d_x, d_stretch_d_x, d_level_d_x],
-                [d2_slope_d_x_d_x, d2_level_d_x_d_x, d_slope_d_x, -d_stretch_d_x, d_level_d_x],
-            ) / (stretch * stretch),
-        ) * tangent1;
-        let d2_tangent2_d_x_d_x = dot(
-            [drift, two * d_drift_d_x, d2_drift_d_x_d_x],
-            [d2_tangent1_d_x_d_x, d_tangent1_d_x, tangent1],
-        );
-        let t3 = left1 * d_left2_d_x;
-        let t4 = dot([slope, two * d_slope_d_x, d2_slope_d_x_d_x], [d2_tangent1_d_x_d_x, d_tangent1_d_x, tangent1]);
+        let t2 = slope.mul_add(d2_tangent1_d_x_d_x, (two * d_slope_d_x).mul_add(d_tangent1_d_x, d2_slope_d_x_d_x / stretch));
         [
             rows_at([
                 (0, [
                     dot([d_tangent3_d_x, tangent3], [
-                        inverse_level.mul_add(-d_left1_d_x, t3),
-                        inverse_level * dot(
+                        left2.mul_add(-d_left1_d_x, t1),
+                        left2 * dot(
                             [d_left2_d_x, left1.mul_add(d2_level_d_x_d_x, d2_drift_d_x_d_x)],
-                            [level.mul_add(-level.mul_add(t3, d_left1_d_x), d_drift_d_x), inverse_level],
+                            [level.mul_add(-level.mul_add(t1, d_left1_d_x), d_drift_d_x), inverse_level],
                         ) - left1 * dot([two * d_level_d_x, d2_level_d_x_d_x], [d_left2_d_x, inverse_level]) * inverse_level,
                     ]),
                 ]),
                 (1, [
                     dot([tangent3, tangent1, tangent2], [
                         dot(
-                            [inverse_level, d_tangent2_d_x, left1, d_tangent1_d_x],
+                            [left2, d_tangent2_d_x, left1, d_tangent1_d_x],
                             [d2_tangent1_d_x_d_x, -d_left1_d_x, -d2_tangent2_d_x_d_x, d_left2_d_x],
                         ),
-                        -dot([d_tangent3_d_x, inverse_level], [d_left2_d_x, t4]),
-                        dot([d_tangent3_d_x, left1], [d_left1_d_x, t4]),
+                        -dot([d_tangent3_d_x, left2], [d_left2_d_x, t2]),
+                        dot([d_tangent3_d_x, left1], [d_left1_d_x, t2]),
                     ]),
                 ]),
                 (2, [
                     dot(
-                        [left1, inverse_level, d_tangent1_d_x, d_tangent2_d_x],
+                        [left1, left2, d_tangent1_d_x, d_tangent2_d_x],
                         [d2_tangent1_d_x_d_x, d2_tangent2_d_x_d_x, d_left1_d_x, d_left2_d_x],
                     ),
                 ]),

@@ -72,6 +72,7 @@
 //! - `pins_hold`: bodies turn and slide at each pin as it says where b.c ≠ 0 (normal form)
 //! - `fibres`: one pose has one Q; the poses of all bodies count as one (certificate)
 
+use ::hamel_runtime::group::{part, real, s1, stacked};
 use ::hamel_runtime::joint::{
     Joint, Patterns, Structure, Structures, VelocityFrame, from_rows, rows_at,
 };
@@ -103,16 +104,23 @@ impl SliderCrank {
 }
 
 impl SliderCrank {
-    /// B(Q): v to the displacement rate Q⁻¹Q̇.
-    /// 3×1. Operations: 1 addition, 4 multiplications, 2 divisions.
-    /// From line 17 `config`, line 24 `basis`.
-    pub fn tangent_basis<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 3, 1> {
+    /// The values of `b_by_turn`, `s_by_turn`, for other kernels.
+    /// Operations: 1 addition, 4 multiplications, 2 divisions.
+    fn first_derivatives<T: Scalar>(&self, q: &SVector<T, 5>) -> [T; 2] {
         let crank = T::from_f64(self.crank);
         let rod = T::from_f64(self.rod);
         let [a_c, a_s, b_c, b_s, _]: [T; 5] = (*q).into();
-        let one = T::one();
         let b_by_turn = -crank * a_c / (rod * b_c);
         let s_by_turn = crank * (a_c * b_s / b_c - a_s);
+        [b_by_turn, s_by_turn]
+    }
+
+    /// B(Q): v to the displacement rate Q⁻¹Q̇.
+    /// 3×1. Operations: none and those of `first_derivatives`.
+    /// From line 17 `config`, line 24 `basis`.
+    pub fn tangent_basis<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 3, 1> {
+        let one = T::one();
+        let [b_by_turn, s_by_turn] = self.first_derivatives(q);
         from_rows([[one], [b_by_turn], [s_by_turn]])
     }
 
@@ -126,37 +134,23 @@ impl SliderCrank {
     }
 
     /// Q exp(ξ) at a finite displacement ξ.
-    /// 5-vector. Operations: 5 additions, 12 multiplications (2 of each fused), 4 function calls.
+    /// 5-vector. Operations: 5 additions, 8 multiplications, 2 function calls.
     /// From line 17 `config`, line 24 `basis`.
     pub fn displaced<T: Scalar>(&self, q: &SVector<T, 5>, xi: &SVector<T, 3>) -> SVector<T, 5> {
-        let [a_c, a_s, b_c, b_s, s]: [T; 5] = (*q).into();
-        let [xi1, xi2, xi3]: [T; 3] = (*xi).into();
-        let a_theta_squared = xi1 * xi1;
-        let a_c0 = a_theta_squared.stumpff(0);
-        let a_c1 = a_theta_squared.stumpff(1);
-        let t1 = xi1 * a_c1;
-        let b_theta_squared = xi2 * xi2;
-        let b_c0 = b_theta_squared.stumpff(0);
-        let b_c1 = b_theta_squared.stumpff(1);
-        let t2 = xi2 * b_c1;
-        SVector::from([
-            a_c * a_c0 - a_s * t1,
-            dot([a_c, a_s], [t1, a_c0]),
-            b_c * b_c0 - b_s * t2,
-            dot([b_c, b_s], [t2, b_c0]),
-            s + xi3,
-        ])
+        let a_moved = s1::times_exp(&part(q, 0), &part(xi, 0));
+        let b_moved = s1::times_exp(&part(q, 2), &part(xi, 1));
+        let s_moved = real::times_exp::<T, 1>(&part(q, 4), &part(xi, 2));
+        stacked(&[a_moved.as_slice(), b_moved.as_slice(), s_moved.as_slice()])
     }
 
     /// The displacement ξ with Q exp(ξ) = `target`.
     /// 3-vector. Operations: 5 additions, 8 multiplications (2 of each fused), 2 function calls.
     /// From line 17 `config`, line 24 `basis`.
     pub fn displacement<T: Scalar>(&self, q: &SVector<T, 5>, target: &SVector<T, 5>) -> SVector<T, 3> {
-        let [a_c, a_s, b_c, b_s, s]: [T; 5] = (*q).into();
-        let [a_c_target, a_s_target, b_c_target, b_s_target, s_target]: [T; 5] = (*target).into();
-        let a_angle = (a_c * a_s_target - a_s * a_c_target).atan2(dot([a_c, a_s], [a_c_target, a_s_target]));
-        let b_angle = (b_c * b_s_target - b_s * b_c_target).atan2(dot([b_c, b_s], [b_c_target, b_s_target]));
-        SVector::from([a_angle, b_angle, s_target - s])
+        let a_local = s1::log_between(&part(q, 0), &part(target, 0));
+        let b_local = s1::log_between(&part(q, 2), &part(target, 2));
+        let s_local = real::log_between::<T, 1>(&part(q, 4), &part(target, 4));
+        stacked(&[a_local.as_slice(), b_local.as_slice(), s_local.as_slice()])
     }
 
     /// The relations of the manifold: 0 on it.
@@ -265,7 +259,7 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
     }
 
     /// The home configuration.
-    /// 5-vector. Independent of Q. The configuration nearest to these numbers, by Newton's method in at most `finite::PROJECT_ITERATIONS` steps; NaN where it does not converge.
+    /// 5-vector. Independent of Q. The configuration nearest to these numbers and on their branch, by Newton's method; NaN where it does not converge.
     /// From line 21 `home near [0, 1], [1, 0], rod;`.
     fn home<T: Scalar>(&self) -> SVector<T, 5> {
         let start: SVector<T, 5> = {
@@ -274,7 +268,12 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
             let one = T::one();
             SVector::from([zero, one, one, zero, rod])
         };
-        ::hamel_runtime::finite::project(&start, 4, |q| self.relations(q))
+        ::hamel_runtime::finite::assemble(
+            &start,
+            4,
+            |q| self.relations(q),
+            |q| self.relation_gradient(q) * self.normal_basis(q),
+        )
     }
 
     /// H(Q): child coordinates to parent coordinates.
@@ -326,21 +325,18 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
     }
 
     /// Q̇(Q, v) (31): the rates of the stored scalars.
-    /// 5-vector. Operations: 1 addition, 10 multiplications, 2 divisions.
+    /// 5-vector. Operations: 6 multiplications and those of `first_derivatives`.
     /// From line 24 `basis`, line 25 `H`.
     fn configuration_rate<T: Scalar>(&self, q: &SVector<T, 5>, v: &SVector<T, 1>) -> SVector<T, 5> {
-        let crank = T::from_f64(self.crank);
-        let rod = T::from_f64(self.rod);
         let [a_c, a_s, b_c, b_s, _]: [T; 5] = (*q).into();
         let v_turn = v[0];
-        let b_by_turn = -crank * a_c / (rod * b_c);
-        let s_by_turn = crank * (a_c * b_s / b_c - a_s);
+        let [b_by_turn, s_by_turn] = self.first_derivatives(q);
         let t1 = v_turn * b_by_turn;
         SVector::from([-a_s * v_turn, a_c * v_turn, -b_s * t1, b_c * t1, v_turn * s_by_turn])
     }
 
     /// Φ(Q, ϕ) at finite ϕ: the stored scalars of the moved configuration.
-    /// 5-vector. Q exp(B ϕ + N λ), with λ by Newton's method from 0 so that the relations hold, in `finite::RETRACT_ITERATIONS` steps; NaN where it does not converge.
+    /// 5-vector. Q exp(B ϕ + N λ), with λ by Newton's method from 0 so that the relations hold, in `finite::RETRACT_ITERATIONS` steps; NaN where it does not converge or leaves the branch of Q.
     /// From line 17 `config`, line 24 `basis`.
     fn retract<T: Scalar>(&self, q: &SVector<T, 5>, phi: &SVector<T, 1>) -> SVector<T, 5> {
         ::hamel_runtime::finite::retract(
@@ -399,21 +395,10 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
     }
 
     /// Root of the sum of squares of the manifold's relations: 0 on the manifold.
-    /// A scalar. Operations: 12 additions, 12 multiplications (12 of each fused), 1 function call.
+    /// A scalar. Operations: 4 additions, 4 multiplications (4 of each fused), 1 function call.
     /// From line 17 `config a: S1, b: S1, s: R1;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 5>) -> T {
-        let crank = T::from_f64(self.crank);
-        let rod = T::from_f64(self.rod);
-        let offset = T::from_f64(self.offset);
-        let [a_c, a_s, b_c, b_s, s]: [T; 5] = (*q).into();
-        let one = T::one();
-        let relations = [
-            a_c.mul_add(a_c, a_s.mul_add(a_s, -one)),
-            b_c.mul_add(b_c, b_s.mul_add(b_s, -one)),
-            crank.mul_add(a_c, rod.mul_add(b_c, -s)),
-            crank.mul_add(a_s, rod.mul_add(b_s, -offset)),
-        ];
-        let sum = relations.into_iter().fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
+        let sum = self.relations(q).iter().fold(T::zero(), |sum, &relation| relation.mul_add(relation, sum));
         sum.sqrt()
     }
 
@@ -455,29 +440,26 @@ impl ::hamel_runtime::joint::Carries<1, 5, 1, 1, 0> for SliderCrank {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 5 multiplications, 1 division.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 3 multiplications and those of `first_derivatives`.
     /// From line 24 `basis`, line 26 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 6, 1> {
         let crank = T::from_f64(self.crank);
-        let rod = T::from_f64(self.rod);
-        let (a_c, a_s, b_c) = (q[0], q[1], q[2]);
+        let (a_c, a_s) = (q[0], q[1]);
         let zero = T::zero();
         let one = T::one();
-        let t1 = crank * a_c;
-        let b_by_turn = -t1 / (rod * b_c);
-        let t2 = one - b_by_turn;
-        from_rows([[zero], [zero], [b_by_turn], [-crank * a_s * t2], [t1 * t2], [zero]])
+        let [b_by_turn, _] = self.first_derivatives(q);
+        let t1 = crank * (one - b_by_turn);
+        from_rows([[zero], [zero], [b_by_turn], [-t1 * a_s], [t1 * a_c], [zero]])
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 2 additions, 8 multiplications (1 of each fused), 1 division.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 2 additions, 6 multiplications (1 of each fused) and those of `first_derivatives`.
     /// From line 24 `basis`, line 26 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 6, 1> {
         let crank = T::from_f64(self.crank);
-        let rod = T::from_f64(self.rod);
         let [a_c, a_s, b_c, b_s, _]: [T; 5] = (*q).into();
         let zero = T::zero();
-        let b_by_turn = -crank * a_c / (rod * b_c);
+        let [b_by_turn, _] = self.first_derivatives(q);
         from_rows([
             [zero],
             [zero],
@@ -489,14 +471,14 @@ impl ::hamel_runtime::joint::Carries<1, 5, 1, 1, 0> for SliderCrank {
     }
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    /// 1 slice of 6×1. Operations: 4 additions, 13 multiplications (2 of each fused), 3 divisions.
+    /// 1 slice of 6×1. Operations: 4 additions, 11 multiplications (2 of each fused), 2 divisions and those of `first_derivatives`.
     /// From line 24 `basis`, line 26 `H`.
     fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, 5>) -> [SMatrix<T, 6, 1>; 1] {
         let crank = T::from_f64(self.crank);
         let rod = T::from_f64(self.rod);
         let [a_c, a_s, b_c, b_s, _]: [T; 5] = (*q).into();
         let one = T::one();
-        let b_by_turn = -crank * a_c / (rod * b_c);
+        let [b_by_turn, _] = self.first_derivatives(q);
         let b_by_turn_turn = (b_s * b_by_turn).mul_add(b_by_turn, crank * a_s / rod) / b_c;
         let t1 = one - b_by_turn;
         let t2 = a_c * t1;
@@ -562,35 +544,31 @@ impl ::hamel_runtime::joint::Carries<2, 5, 1, 1, 0> for SliderCrank {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 2 multiplications, 1 division.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: none and those of `first_derivatives`.
     /// From line 24 `basis`, line 27 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 6, 1> {
-        let crank = T::from_f64(self.crank);
-        let [a_c, a_s, b_c, b_s, _]: [T; 5] = (*q).into();
         let zero = T::zero();
-        let s_by_turn = crank * (a_c * b_s / b_c - a_s);
+        let [_, s_by_turn] = self.first_derivatives(q);
         from_rows([[zero], [zero], [zero], [s_by_turn], [zero], [zero]])
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 2 multiplications, 1 division.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: none and those of `first_derivatives`.
     /// From line 24 `basis`, line 27 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 6, 1> {
-        let crank = T::from_f64(self.crank);
-        let [a_c, a_s, b_c, b_s, _]: [T; 5] = (*q).into();
         let zero = T::zero();
-        let s_by_turn = crank * (a_c * b_s / b_c - a_s);
+        let [_, s_by_turn] = self.first_derivatives(q);
         from_rows([[zero], [zero], [zero], [s_by_turn], [zero], [zero]])
     }
 
     /// ∂X^c/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
-    /// 1 slice of 6×1. Operations: 2 additions, 6 multiplications (1 of each fused), 3 divisions.
+    /// 1 slice of 6×1. Operations: 2 additions, 4 multiplications (1 of each fused), 2 divisions and those of `first_derivatives`.
     /// From line 24 `basis`, line 27 `H`.
     fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, 5>) -> [SMatrix<T, 6, 1>; 1] {
         let crank = T::from_f64(self.crank);
         let rod = T::from_f64(self.rod);
         let [a_c, a_s, b_c, b_s, _]: [T; 5] = (*q).into();
-        let b_by_turn = -crank * a_c / (rod * b_c);
+        let [b_by_turn, _] = self.first_derivatives(q);
         let s_by_turn_turn = -crank.mul_add(a_c + a_s * b_s / b_c, rod * b_by_turn * b_by_turn / b_c);
         [rows_at([(3, [s_by_turn_turn])])]
     }

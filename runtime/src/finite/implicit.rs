@@ -7,7 +7,8 @@
 #[cfg(test)]
 mod tests;
 
-use super::{least_squares, norm, unless_apart};
+use super::solve::{orientation, substitute_back, triangular};
+use super::{least_squares, norm, unless_apart, unless_turned};
 use crate::scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
@@ -21,7 +22,8 @@ const STEPS: usize = 5;
 /// Newton steps of [`retract`]: one after each part but the last, which goes on along the tangent to the end of the next, and those at the end.
 pub const RETRACT_ITERATIONS: usize = PARTS - 1 + STEPS;
 
-/// Φ(Q, ϕ) by Newton's method from λ = 0; NaN in every entry where it does not converge within [`RETRACT_ITERATIONS`].
+/// Φ(Q, ϕ) by Newton's method from λ = 0; NaN in every entry where it does not converge within [`RETRACT_ITERATIONS`], and where it comes to
+/// another branch than that of Q: between two branches ∂φ N is singular, and its determinant has another sign beyond.
 ///
 /// `bases` are B and N at Q, `displaced` is Q exp(ξ); `relations` has their values at a configuration Q exp(ξ), C, and their derivatives
 /// along ξ, C×G.
@@ -31,26 +33,30 @@ pub fn retract<T: Scalar, const N: usize, const K: usize, const G: usize, const 
     displaced: impl Fn(&SVector<T, G>) -> SVector<T, N>,
     relations: impl Fn(&SVector<T, N>, &SVector<T, G>) -> (SVector<T, C>, SMatrix<T, C, G>),
 ) -> SVector<T, N> {
-    // The λ that the relations ask for, less that at ξ, to first order, after ξ is led on by `ahead`.
+    // The λ that the relations ask for, less that at ξ, to first order, after ξ is led on by `ahead`; and the sign of the determinant of ∂φ N.
     let step = |xi: &SVector<T, G>, ahead: &SVector<T, G>| {
         let (values, slopes) = relations(&displaced(xi), xi);
-        -least_squares(&(slopes * normal), &(values + slopes * ahead))
+        let (triangle, side) = triangular(slopes * normal, values + slopes * ahead);
+        (-substitute_back(&triangle, &side), orientation(&triangle))
     };
+    let here = SVector::zeros();
+    let (_, own_sign) = step(&here, &here);
     let whole = tangent * phi;
     let part = whole * T::from_f64(1.0 / PARTS as f64);
     let mut lambda = SVector::<T, C>::zeros();
     for n in 1..PARTS {
         let along = part * T::from_f64(n as f64);
-        lambda += step(&(along + normal * lambda), &part);
+        lambda += step(&(along + normal * lambda), &part).0;
     }
-    let mut last = SVector::zeros();
+    let (mut last, mut sign) = (SVector::zeros(), own_sign);
     for _ in 0..STEPS {
-        last = step(&(whole + normal * lambda), &SVector::zeros());
+        (last, sign) = step(&(whole + normal * lambda), &here);
         lambda += last;
     }
     let xi = whole + normal * lambda;
     // The scale of a displacement is that of a turn by one radian, or its own where that is larger.
-    displaced(&unless_apart(&xi, norm(&last), T::one() + norm(&xi)))
+    let found = unless_apart(&xi, norm(&last), T::one() + norm(&xi));
+    displaced(&unless_turned(&found, own_sign, sign))
 }
 
 /// The ϕ of displacements ξ = B ϕ + N λ, M of them: the inverse of [`retract`] where ξ leads to a point of the manifold.

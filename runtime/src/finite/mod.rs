@@ -14,7 +14,7 @@ mod tests;
 
 pub use implicit::{RETRACT_ITERATIONS, along_tangent, retract};
 pub use invert::{LOCAL_ITERATIONS, differential, differential_inverse, local};
-pub use project::{PROJECT_ITERATIONS, project, project_by_displacements};
+pub use project::{PROJECT_ITERATIONS, assemble, project, project_by_displacements};
 pub use solve::{inverse, least_squares};
 
 use crate::scalar::{Dual, Scalar};
@@ -99,4 +99,14 @@ fn unless_apart<T: Scalar, const D: usize>(
     let limit = T::epsilon().sqrt() * scale + T::from_f64(f32::MIN_POSITIVE.into());
     let close = error.less(limit);
     value.map(|entry| T::select(close, entry, T::from_f64(f64::NAN)))
+}
+
+/// `value` where two signs are the same, NaN elsewhere.
+fn unless_turned<T: Scalar, const D: usize>(
+    value: &SVector<T, D>,
+    sign: T,
+    other: T,
+) -> SVector<T, D> {
+    let same = T::zero().less(sign * other);
+    value.map(|entry| T::select(same, entry, T::from_f64(f64::NAN)))
 }

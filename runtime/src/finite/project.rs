@@ -1,6 +1,7 @@
 //! Projection onto a manifold that is given by relations, redundant ones among them.
 
-use super::{least_squares, norm, unless_apart, with_jacobian};
+use super::solve::{orientation, triangular};
+use super::{least_squares, norm, unless_apart, unless_turned, with_jacobian};
 use crate::scalar::{Dual, Scalar};
 use nalgebra::{SMatrix, SVector};
 
@@ -27,6 +28,40 @@ pub fn project<T: Scalar, const N: usize, const R: usize>(
     let apart = norm(&left.values);
     let step = norm(&left.shortest_solution(codimension));
     unless_apart(&q, apart + step, norm(&q))
+}
+
+/// Parts in which [`assemble`] takes the values of the relations back to zero where Newton's method alone leaves the branch of the guess.
+const PARTS: usize = 16;
+
+/// The configuration of a linkage that a guess means: [`project`] of the guess, on its branch; NaN in every entry where none is found.
+///
+/// Two branches meet where a matrix, `across` (C×C), is singular: ∂φ N, where N are directions that lead back to the manifold. Where the sign of its determinant changes on
+/// the way, the values of the relations are taken back to zero in parts, so that Newton's method follows the branch of the guess.
+pub fn assemble<T: Scalar, const N: usize, const R: usize, const C: usize>(
+    guess: &SVector<T, N>,
+    codimension: usize,
+    relations: impl Fn(&SVector<Dual<T>, N>) -> SVector<Dual<T>, R>,
+    across: impl Fn(&SVector<T, N>) -> SMatrix<T, C, C>,
+) -> SVector<T, N> {
+    let sign = |q: &SVector<T, N>| {
+        let (triangle, _) = triangular(across(q), SVector::<T, C>::zeros());
+        orientation(&triangle)
+    };
+    let own_sign = sign(guess);
+    let on_branch = |q: SVector<T, N>| unless_turned(&q, own_sign, sign(&q));
+    let direct = on_branch(project(guess, codimension, &relations));
+    let values = relations(&guess.map(Dual::constant)).map(|value| value.value);
+    let mut q = *guess;
+    for left in (1..PARTS).rev() {
+        let offset = values * T::from_f64(left as f64 / PARTS as f64);
+        let shifted = |q: &SVector<Dual<T>, N>| relations(q) - offset.map(Dual::constant);
+        q += Equations::at(&q, shifted).shortest_solution(codimension);
+    }
+    let followed = on_branch(project(&q, codimension, &relations));
+    let found = norm(&direct).less(T::from_f64(f64::INFINITY));
+    direct.zip_map(&followed, |direct, followed| {
+        T::select(found, direct, followed)
+    })
 }
 
 /// The point `start exp(ξ) exp(ξ₂) …` of a manifold in a group, of dimension G, each displacement the shortest that Newton's method asks for;

@@ -16,13 +16,28 @@ pub fn least_squares<T: Scalar, const N: usize, const K: usize, const M: usize>(
     matrix: &SMatrix<T, N, K>,
     side: &SMatrix<T, N, M>,
 ) -> SMatrix<T, K, M> {
-    let (mut triangle, mut side) = (*matrix, *side);
+    let (triangle, side) = triangular(*matrix, *side);
+    substitute_back(&triangle, &side)
+}
+
+/// F and the columns of `side`, reflected so that F is an upper triangle in its first K rows.
+pub(super) fn triangular<T: Scalar, const N: usize, const K: usize, const M: usize>(
+    mut matrix: SMatrix<T, N, K>,
+    mut side: SMatrix<T, N, M>,
+) -> (SMatrix<T, N, K>, SMatrix<T, N, M>) {
     for k in 0..K {
-        let mirror = mirror(&triangle, k);
-        reflect(&mut triangle, &mirror, k);
+        let mirror = mirror(&matrix, k);
+        reflect(&mut matrix, &mirror, k);
         reflect(&mut side, &mirror, k);
     }
-    substitute_back(&triangle, &side)
+    (matrix, side)
+}
+
+/// The sign of the determinant of a square matrix by its triangle: times −1 for each of the K reflections, the same of any matrix of this size.
+pub(super) fn orientation<T: Scalar, const K: usize>(triangle: &SMatrix<T, K, K>) -> T {
+    (0..K).fold(T::one(), |sign, k| {
+        T::select(triangle[(k, k)].less(T::zero()), -sign, sign)
+    })
 }
 
 /// The vector u, zero above row `column`, whose reflection `I − 2 u uᵀ` clears that column below the diagonal.
@@ -63,7 +78,7 @@ fn reflect<T: Scalar, const N: usize, const M: usize>(
 }
 
 /// Solves the upper triangle of the first K rows.
-fn substitute_back<T: Scalar, const N: usize, const K: usize, const M: usize>(
+pub(super) fn substitute_back<T: Scalar, const N: usize, const K: usize, const M: usize>(
     triangle: &SMatrix<T, N, K>,
     side: &SMatrix<T, N, M>,
 ) -> SMatrix<T, K, M> {

@@ -11,16 +11,13 @@ use hamel_downstream::joints::{
     SliderCrankLinks, SliderCrankRod, SpherePoint, Unpinned, Valley,
 };
 use hamel_tests::derivatives::{self, Equipped, Kernels, bare_and_equipped, behind, of};
-use hamel_tests::differences::STEP;
+use hamel_tests::differences::FINE;
 use hamel_tests::linear_step;
 use hamel_tests::random::{self, cases};
 use std::sync::Arc;
 
 /// Every joint at the root of three trees.
 const TREES: u64 = 60;
-
-/// These joints bend more than those of the library: h⁶ f⁽⁷⁾ is 8e-4 with the usual step where loops are near a dead point, and 8⁶ times less with an eighth of it.
-const FINE: f64 = STEP / 8.0;
 
 fn kinds() -> Vec<Arc<dyn AnyJoint>> {
     let mut registry = JointRegistry::new();

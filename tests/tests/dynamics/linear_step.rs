@@ -4,11 +4,11 @@ use chacha20::ChaCha8Rng;
 use hamel::elements::Drive;
 use hamel::integrate::{Form, LinearStep, Method, Scheme, StepControl, StepFailure, Tableau};
 use hamel::time_function::Law;
-use hamel_tests::differences::STEP;
+use hamel_tests::differences::FINE;
 use hamel_tests::figures::Largest;
 use hamel_tests::linear_step::{self, BOUND, DT, FIXED, FORMS, place, stepping};
 use hamel_tests::peers::{Reference, convert, numbers};
-use hamel_tests::random::{self, Case, cases, library};
+use hamel_tests::random::{self, Case, cases, without_knots};
 use rand::SeedableRng;
 use std::path::Path;
 use std::sync::Arc;
@@ -25,18 +25,17 @@ const fn unchecked(scheme: Scheme) -> Method {
 
 #[test]
 fn random_trees() {
-    // Cases with fast joints bend more than those that STEP is for; a quarter of it leaves 4⁻⁶ of the error of differences.
-    linear_step::bare(cases(&library(), 6, 48), STEP / 4.0);
+    linear_step::bare(cases(&without_knots(), 6, 48), FINE);
 }
 
 #[test]
 fn equipped_trees() {
-    linear_step::equipped(cases(&library(), 4, 24), STEP);
+    linear_step::equipped(cases(&without_knots(), 4, 24), FINE);
 }
 
 #[test]
 fn coupled_trees() {
-    linear_step::constrained(cases(&library(), 5, 30), 20, STEP / 4.0);
+    linear_step::constrained(cases(&without_knots(), 5, 30), 20, FINE);
 }
 
 #[test]
@@ -44,7 +43,7 @@ fn every_pair() {
     let pairs = Scheme::ALL.into_iter();
     for pair in pairs.filter(|scheme| scheme.tableau().is_some() && scheme.has_estimate()) {
         let mut worst = Largest::new(pair.name());
-        for (case, form) in cases(&library(), 4, 8).zip(FORMS.into_iter().cycle()) {
+        for (case, form) in cases(&without_knots(), 4, 8).zip(FORMS.into_iter().cycle()) {
             let stepping = stepping(&case, form, unchecked(pair));
             worst.meet(stepping.error(&case), place(&case));
         }
@@ -88,7 +87,7 @@ fn robots() {
 
 #[test]
 fn what_cannot_be_stepped_is_refused() {
-    let case = cases(&library(), 1, 1).next().expect("one case");
+    let case = cases(&without_knots(), 1, 1).next().expect("one case");
     let mut step = LinearStep::new(&case.mechanism, Form::Lagrangian, &Tableau::RK4);
     for length in [0.0, -DT, f64::NAN, f64::INFINITY] {
         let refused = step.linearize(&case.q, &case.speeds, &case.efforts, length);

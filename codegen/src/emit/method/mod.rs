@@ -3,6 +3,7 @@
 mod absent;
 mod bias;
 pub mod group;
+pub mod shared;
 mod signature;
 
 pub use absent::{Absent, absent, in_words as absent_in_words, of_further_body};
@@ -10,12 +11,11 @@ pub use bias::{WORTH_WRITING, operations as operations_by_products, products};
 pub use signature::{Argument, Output, Signature, meaning};
 
 use crate::derived::{Derived, Kernel, KernelKind, Step};
-use crate::expr::Symbol;
 use crate::formula::{Binding, Counts, Names, Program};
 use crate::matrix::Matrix;
 use group::Calls;
+use shared::Function;
 use std::borrow::Cow;
-use std::collections::BTreeSet;
 
 /// A kernel with all that is needed to write it and to count it.
 pub struct Method<'a> {
@@ -29,8 +29,10 @@ pub struct Method<'a> {
     pub names: Names,
     /// Its formulas.
     pub program: Cow<'a, Program>,
-    /// The symbols that these use.
-    pub used: BTreeSet<Symbol>,
+    /// The functions that give it some of its words.
+    pub asked: Vec<Function>,
+    /// Whether it is the norm of what the kernel of the relations gives.
+    pub asks_relations: bool,
     /// The calls of groups that compute it, instead of its formulas.
     pub calls: Option<Calls<'a>>,
 }
@@ -63,21 +65,48 @@ impl<'a> Method<'a> {
             .flat_map(Binding::names)
             .for_each(|symbol| names.adopt(symbol));
         let signature = Signature::new(kernel, derived.shape);
-        let used = program.symbols();
         Self {
             derived,
             kernel,
             signature,
             names,
             program,
-            used,
+            asked: vec![],
+            asks_relations: false,
             calls,
         }
     }
 
+    /// The same, where functions of the joint give what kernels share.
+    pub fn with_functions(
+        derived: &'a Derived,
+        kernel: &'a Kernel,
+        names: &Names,
+        functions: &[Function],
+    ) -> Self {
+        let mut whole = Self::new(derived, kernel, names);
+        let relations = derived.kernel(KernelKind::Relations);
+        whole.asks_relations = kernel.kind == KernelKind::Residual
+            && relations.is_some_and(|relations| relations.outputs == kernel.outputs);
+        let steps = shared::without(functions, kernel);
+        let is_formula = kernel.method == crate::derived::Method::Formula && whole.calls.is_none();
+        if !is_formula || steps.len() == kernel.steps.len() {
+            return whole;
+        }
+        let (program, names) = shared::program(&kernel.steps, &steps, &kernel.outputs, names);
+        let used = program.symbols();
+        let asks = |function: &&Function| function.words.iter().any(|word| used.contains(word));
+        whole.asked = functions.iter().filter(asks).cloned().collect();
+        (whole.program, whole.names) = (Cow::Owned(program), names);
+        whole
+    }
+
     /// The operations of the emitted method.
     pub fn counts(&self) -> Counts {
-        let mut counts = Counts::of_program(&self.program);
+        let mut counts = match self.asks_relations {
+            true => Counts::default(),
+            false => Counts::of_program(&self.program),
+        };
         if let Some(calls) = &self.calls {
             counts += calls.counts();
             return counts;

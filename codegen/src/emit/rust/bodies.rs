@@ -5,6 +5,7 @@
 use super::joint::{self, sizes};
 use super::{docs, patterns, type_ident};
 use crate::derived::Derived;
+use crate::emit::method::shared::Function;
 use crate::emit::method::{Method, of_further_body};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -31,11 +32,12 @@ pub fn names(derived: &Derived) -> Option<TokenStream> {
 }
 
 /// The implementations of `Carries`.
-pub fn carried(derived: &Derived) -> TokenStream {
-    derived.more.iter().map(body).collect()
+pub fn carried(derived: &Derived, functions: &[Function]) -> TokenStream {
+    let bodies = derived.more.iter();
+    bodies.map(|derived| body(derived, functions)).collect()
 }
 
-fn body(derived: &Derived) -> TokenStream {
+fn body(derived: &Derived, functions: &[Function]) -> TokenStream {
     let name = type_ident(derived);
     let [n, k, s, c] = sizes(derived);
     let place = Literal::usize_unsuffixed(derived.body);
@@ -44,7 +46,7 @@ fn body(derived: &Derived) -> TokenStream {
     let inertias = joint::inertias(derived);
     let symbols = derived.names();
     let methods = of_further_body(derived).map(|kernel| {
-        let method = Method::new(derived, kernel, &symbols);
+        let method = Method::with_functions(derived, kernel, &symbols, functions);
         method.tokens(&docs::kernel(derived, kernel, &method))
     });
     quote! {

@@ -110,14 +110,24 @@ pub fn kernel(derived: &Derived, kernel: &Kernel, method: &Method<'_>) -> TokenS
     let cost = match numeric::sentence(derived, kernel) {
         Some(sentence) => sentence.to_owned(),
         None => format!(
-            "Operations: {}{}.",
+            "Operations: {}{}{}.",
             method.counts(),
+            asked(method),
             instead(derived, kernel)
         ),
     };
     lines.push(format!("{shape}{} {cost}", constancy(kernel.structure)));
     lines.extend(origin(&sources(derived, kernel.kind)));
     outer(&lines)
+}
+
+/// The functions whose operations are not counted.
+fn asked(method: &Method<'_>) -> String {
+    let names = method
+        .asked
+        .iter()
+        .map(|function| format!(" and those of `{}`", function.name));
+    names.collect()
 }
 
 /// What the products of other kernels would take, for a kernel that follows from them.

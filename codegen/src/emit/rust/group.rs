@@ -39,7 +39,7 @@ impl Calls<'_> {
             KernelKind::Local => self.stacked("local", &|part| self.logarithm(part)),
             KernelKind::RetractDifferential => self.differential(),
             KernelKind::RetractDifferentialInverse => {
-                let phi = |part: &Part<'_>| self.of_freedoms("phi", part);
+                let phi = |part: &Part<'_>| self.of_freedoms(self.element, part);
                 let rate = |part: &Part<'_>| self.of_freedoms("rate", part);
                 self.replaced("rate", "local_rate", &|part| {
                     (part.freedoms[0], vec![phi(part), rate(part)])
@@ -76,11 +76,12 @@ impl Calls<'_> {
 
     fn retract(&self, writer: &Writer<'_>, values: &[Node]) -> TokenStream {
         if self.is_sum() {
-            return quote! { q + phi };
+            let element = ident(self.element);
+            return quote! { q + #element };
         }
         let mut rest = values;
         let elements = self.parts.iter().map(|part| match part.basis {
-            Basis::Standard => self.of_freedoms("phi", part),
+            Basis::Standard => self.of_freedoms(self.element, part),
             _ => {
                 let (own, others) = rest.split_at(part.dimension().min(rest.len()));
                 rest = others;
@@ -146,7 +147,10 @@ impl Calls<'_> {
 
     fn differential(&self) -> TokenStream {
         if let [only] = self.parts.as_slice() {
-            let (path, phi) = (only.path("differential"), self.of_freedoms("phi", only));
+            let (path, phi) = (
+                only.path("differential"),
+                self.of_freedoms(self.element, only),
+            );
             return quote! { #path(#phi) };
         }
         let size = Literal::usize_unsuffixed(self.sizes[1]);
@@ -154,7 +158,7 @@ impl Calls<'_> {
             let path = part.path(part.function(self.kind)?);
             let (start, phi) = (
                 Literal::usize_unsuffixed(part.freedoms[0]),
-                self.of_freedoms("phi", part),
+                self.of_freedoms(self.element, part),
             );
             Some(quote! { put_block(&mut differential, #start, &#path(#phi)); })
         });

@@ -2,6 +2,7 @@
 
 use super::bodies;
 use super::docs;
+use super::functions;
 use super::limits;
 use super::numeric;
 use super::patterns;
@@ -9,8 +10,7 @@ use super::pins;
 use super::tokens::{ident, signed_literal};
 use super::type_ident;
 use crate::derived::{Derived, Kernel, KernelKind, Structure};
-use crate::emit::method::Method;
-use crate::emit::method::absent;
+use crate::emit::method::{Method, absent, shared};
 use crate::emit::report::summary;
 use crate::expr::Rational;
 use crate::model::VelocityFrame;
@@ -28,11 +28,12 @@ pub fn tokens(derived: &Derived) -> TokenStream {
     let ports = ports(derived);
     let relations = relations(derived);
     let pins = pins::constant(derived);
-    let carried = bodies::carried(derived);
+    let functions = shared::functions(derived);
+    let carried = bodies::carried(derived, &functions);
     let parameters = parameters(derived);
     let names = derived.names();
     let method = |kernel: &Kernel| {
-        let method = Method::new(derived, kernel, &names);
+        let method = Method::with_functions(derived, kernel, &names, &functions);
         method.tokens(&docs::kernel(derived, kernel, &method))
     };
     let (own, methods): (Vec<&Kernel>, Vec<&Kernel>) = derived
@@ -41,7 +42,8 @@ pub fn tokens(derived: &Derived) -> TokenStream {
         .filter(|kernel| absent(derived, kernel).is_none())
         .partition(|kernel| numeric::is_beside_the_trait(kernel.kind));
     let (own, methods) = (own.into_iter().map(method), methods.into_iter().map(method));
-    let own: Vec<TokenStream> = own.collect();
+    let shared = functions::tokens(derived, &functions, &names);
+    let own: Vec<TokenStream> = shared.into_iter().chain(own).collect();
     let own = (!own.is_empty()).then(|| quote! { impl #name { #(#own)* } });
     quote! {
         #definition

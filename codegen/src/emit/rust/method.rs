@@ -2,18 +2,16 @@
 
 use super::collect_identifiers;
 use super::numeric;
+use super::program::Lines;
 use super::result;
 use super::tokens::{Writer, ident};
-use crate::derived::{self, Primitive, Shape};
+use crate::derived::{self, Shape};
 use crate::emit::method::{Argument, Method, Output, Signature};
-use crate::expr::{Role, Symbol};
-use crate::formula::Binding;
-use proc_macro2::{Ident, Literal, TokenStream};
+use crate::expr::Symbol;
+use crate::matrix::Matrix;
+use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use std::collections::BTreeSet;
-
-/// Up to this many scalars are read one by one where an argument has more.
-const FEW: usize = 3;
 
 impl Method<'_> {
     /// The method, with its documentation.
@@ -75,6 +73,12 @@ impl Method<'_> {
         if let Some(factor) = numeric::factor(self.kernel.kind) {
             return self.times(&factor);
         }
+        if self.asks_relations {
+            let count: usize = self.kernel.outputs.iter().map(Matrix::rows).sum();
+            let count = Literal::usize_unsuffixed(count);
+            let norm = result::norm();
+            return quote! { let relations: [T; #count] = self.relations(q).into(); #norm };
+        }
         let start = self.start();
         let begins_at_value = start.is_none() && !self.kernel.outputs.is_empty();
         let start = start.unwrap_or_else(|| quote! { &start });
@@ -121,105 +125,20 @@ impl Method<'_> {
 
     fn formulas(&self) -> TokenStream {
         let writer = Writer::new(&self.names, &self.program);
-        let parameters = self
-            .used
-            .iter()
-            .filter(|symbol| symbol.role == Role::Parameter)
-            .map(|symbol| {
-                let (local, field) = (writer.symbol(symbol), ident(&symbol.name));
-                quote! { let #local = T::from_f64(self.#field); }
-            });
-        let arguments = self
-            .signature
-            .arguments
-            .iter()
-            .map(|argument| self.read(*argument));
-        let lines = self.calls.as_ref().map(|calls| calls.lines(&writer));
-        let bindings = self.bindings(&writer);
+        let lines = Lines {
+            derived: self.derived,
+            names: &self.names,
+            program: &self.program,
+            asked: &self.asked,
+            arguments: &self.signature.arguments,
+        };
+        let groups = self.calls.as_ref().map(|calls| calls.lines(&writer));
         let outputs = &self.program.outputs;
         let result = match &self.calls {
             Some(calls) => calls.result(&writer, outputs),
             None => result::tokens(&writer, self.kernel, &self.signature, outputs),
         };
-        let constants = writer.constants();
-        quote! { #(#parameters)* #(#arguments)* #lines #constants #bindings #result }
-    }
-
-    /// The lines before the result.
-    fn bindings(&self, writer: &Writer<'_>) -> TokenStream {
-        let bindings = self.program.bindings.iter();
-        bindings
-            .map(|binding| self.binding(writer, binding))
-            .collect()
-    }
-
-    /// Reads from an argument the scalars that are used.
-    fn read(&self, argument: Argument) -> TokenStream {
-        let symbols = argument.symbols(&self.derived.arguments);
-        let source = ident(argument.name());
-        let read: Vec<usize> = (0..symbols.len())
-            .filter(|&i| self.used.contains(&symbols[i]))
-            .collect();
-        let local = |i: &usize| ident(self.names.get(&symbols[*i]));
-        let locals: Vec<Ident> = read.iter().map(local).collect();
-        let indices: Vec<Literal> = read.iter().map(|&i| Literal::usize_unsuffixed(i)).collect();
-        match read.len() {
-            0 => TokenStream::new(),
-            1 => quote! { #(let #locals = #source[#indices];)* },
-            count if count <= FEW && count < symbols.len() => {
-                quote! { let (#(#locals),*) = (#(#source[#indices]),*); }
-            }
-            _ => {
-                let size = Literal::usize_unsuffixed(symbols.len());
-                let all = symbols.iter().map(|symbol| self.pattern_of(symbol));
-                quote! { let [#(#all),*]: [T; #size] = (*#source).into(); }
-            }
-        }
-    }
-
-    fn binding(&self, writer: &Writer<'_>, binding: &Binding) -> TokenStream {
-        match binding {
-            Binding::Value { name, value } => {
-                let (name, value) = (writer.symbol(name), writer.formula(value));
-                quote! { let #name = #value; }
-            }
-            Binding::SinCos { sin, cos, angle } => {
-                let pattern = |symbol: &Option<Symbol>| {
-                    symbol
-                        .as_ref()
-                        .map_or_else(|| quote! { _ }, |symbol| self.pattern_of(symbol))
-                };
-                let (sin, cos) = (pattern(sin), pattern(cos));
-                let call = writer.method(angle, "sin_cos");
-                quote! { let (#sin, #cos) = #call; }
-            }
-            Binding::Call {
-                primitive,
-                argument,
-                outputs,
-            } => {
-                let argument = match primitive {
-                    Primitive::QuaternionVector => writer.list(argument),
-                    _ => writer.rows(argument, 3),
-                };
-                let names: Vec<TokenStream> = outputs
-                    .iter()
-                    .map(|symbol| self.pattern_of(symbol))
-                    .collect();
-                call(*primitive, &argument, &names)
-            }
-        }
-    }
-
-    /// The name of a value, or `_` where it is not used.
-    fn pattern_of(&self, symbol: &Symbol) -> TokenStream {
-        match self.used.contains(symbol) {
-            true => {
-                let name = ident(self.names.get(symbol));
-                quote! { #name }
-            }
-            false => quote! { _ },
-        }
+        lines.tokens(&writer, groups, &result)
     }
 }
 
@@ -228,33 +147,6 @@ fn identifiers(tokens: &TokenStream) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     collect_identifiers(tokens.clone(), &mut found);
     found
-}
-
-/// A call of the runtime; `names` are its results, row by row.
-fn call(primitive: Primitive, argument: &TokenStream, names: &[TokenStream]) -> TokenStream {
-    match primitive {
-        Primitive::RotationVector => {
-            let size = Literal::usize_unsuffixed(names.len());
-            quote! {
-                let rotation = #argument;
-                let [#(#names),*]: [T; #size] = T::rotation_vector(&rotation).into();
-            }
-        }
-        Primitive::QuaternionVector => quote! {
-            let [#(#names),*]: [T; 3] = T::quaternion_vector(#argument).into();
-        },
-        Primitive::NearestRotation => {
-            // Nested arrays of a matrix are its columns.
-            let columns = (0..3).map(|j| {
-                let column = names.iter().skip(j).step_by(3);
-                quote! { [#(#column),*] }
-            });
-            quote! {
-                let rotation = nearest_rotation(&#argument);
-                let [#(#columns),*]: [[T; 3]; 3] = rotation.into();
-            }
-        }
-    }
 }
 
 impl Signature {

@@ -68,7 +68,17 @@ fn by_relations(derived: &Derived, kind: KernelKind, start: &TokenStream) -> Opt
             normal * ::hamel::finite::inverse(&(self.relation_gradient(q) * normal))
         },
         // A guess may be far away, and off the factors.
-        KernelKind::Home => projection(derived, start),
+        KernelKind::Home => {
+            let codimension = Literal::usize_unsuffixed(codimension(derived));
+            quote! {
+                ::hamel::finite::assemble(
+                    #start,
+                    #codimension,
+                    |q| self.relations(q),
+                    |q| self.relation_gradient(q) * self.normal_basis(q),
+                )
+            }
+        }
         KernelKind::Project => quote! {
             ::hamel::finite::project_by_displacements(
                 #start,
@@ -146,8 +156,7 @@ pub fn sentence(derived: &Derived, kernel: &Kernel) -> Option<&'static str> {
              does not converge.",
         ),
         (Method::Newton, KernelKind::Home) => Some(
-            "The configuration nearest to these numbers, by Newton's method in at most \
-             `finite::PROJECT_ITERATIONS` steps; NaN where it does not converge.",
+            "The configuration nearest to these numbers and on their branch, by Newton's method; NaN where it does not converge.",
         ),
         (Method::Newton, KernelKind::Project) => Some(
             "By Newton's method, in at most `finite::PROJECT_ITERATIONS` steps; NaN where it does \
@@ -155,7 +164,7 @@ pub fn sentence(derived: &Derived, kernel: &Kernel) -> Option<&'static str> {
         ),
         (Method::Newton, KernelKind::Retract) => Some(
             "Q exp(B ϕ + N λ), with λ by Newton's method from 0 so that the relations hold, in \
-             `finite::RETRACT_ITERATIONS` steps; NaN where it does not converge.",
+             `finite::RETRACT_ITERATIONS` steps; NaN where it does not converge or leaves the branch of Q.",
         ),
         (Method::Solve, KernelKind::Local) => {
             Some("The part along B of the displacement from Q to Q′, by a solve with [B, N].")

@@ -41,7 +41,7 @@ pub fn tokens(
             let (functions, sides) = (list(writer, functions), list(writer, sides));
             quote! { ::hamel::finite::least_absolute_beside(#functions, #sides) }
         }
-        (Output::Scalar, _) => norm(writer, entries),
+        (Output::Scalar, _) => norm_of(writer, entries),
         (Output::Vector(_), [(column, own)]) => vector(writer, column, own),
         (Output::Matrix(..), [(only, own)]) => matrix(writer, only, own),
         (Output::List(_) | Output::Rows(..), [(along, own)])
@@ -112,15 +112,19 @@ fn list(writer: &Writer<'_>, entries: &[Node]) -> TokenStream {
     quote! { [#(#entries),*] }
 }
 
-/// Root of the sum of squares.
-fn norm(writer: &Writer<'_>, relations: &[Node]) -> TokenStream {
+/// Root of the sum of squares of `relations`.
+pub fn norm() -> TokenStream {
+    quote! {
+        let sum = relations.into_iter().fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
+        sum.sqrt()
+    }
+}
+
+fn norm_of(writer: &Writer<'_>, relations: &[Node]) -> TokenStream {
     if relations.iter().all(Node::is_zero) {
         return quote! { T::zero() };
     }
     let relations = relations.iter().map(|relation| writer.formula(relation));
-    quote! {
-        let relations = [#(#relations),*];
-        let sum = relations.into_iter().fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
-        sum.sqrt()
-    }
+    let norm = norm();
+    quote! { let relations = [#(#relations),*]; #norm }
 }

@@ -1,7 +1,7 @@
 //! Φ by relations, and projection along them, on a circle, where both have closed forms.
 
 use super::{along_tangent, retract};
-use crate::finite::project_by_displacements;
+use crate::finite::{assemble, project_by_displacements};
 use crate::scalar::{Dual, Extended, Scalar};
 use nalgebra::{SMatrix, SVector};
 use num_traits::{One, Zero};
@@ -98,4 +98,47 @@ fn projection_by_displacements_takes_the_shortest() {
     // At the centre no direction leads to the circle.
     let centre = projected(&SVector::zeros());
     assert!(centre.iter().all(|entry| entry.is_nan()));
+}
+
+/// A crank of 0.12 whose rod of 0.121 ends on a slide, by their angles: `crank sin a = rod sin b`.
+fn slider_crank<T: Scalar>(q: &SVector<T, 2>) -> (SVector<T, 1>, SMatrix<T, 1, 2>) {
+    let [(sin_a, cos_a), (sin_b, cos_b)] = [q[0].sin_cos(), q[1].sin_cos()];
+    let [crank, rod] = [0.12, 0.121].map(T::from_f64);
+    let gradient = SMatrix::from([[crank * cos_a], [-rod * cos_b]]);
+    (SVector::from([crank * sin_a - rod * sin_b]), gradient)
+}
+
+/// The rod nearly stands across the slide where the crank is upright: from there on Newton's method finds the slider on either side.
+#[test]
+fn the_branch_is_kept_or_there_is_no_result() {
+    let (turn, rod) = (SVector::from([1.0, 0.0]), SVector::from([0.0, 1.0]));
+    for start in 0..60 {
+        let a = 0.025 * f64::from(start);
+        let q = SVector::from([a, (0.12 / 0.121 * a.sin()).asin()]);
+        let gradient = slider_crank(&q).1;
+        let along = SMatrix::<f64, 2, 1>::from(turn - rod * (gradient[0] / gradient[1]));
+        for step in 1..60 {
+            let phi = SVector::from([0.05 * f64::from(step)]);
+            let found = retract(&phi, (along, rod), |xi| q + xi, |q, _| slider_crank(q));
+            // Before the rod is steep every step is found, long ones as well.
+            let is_short = a + phi[0] < 1.2;
+            let is_none = found[0].is_nan() && !is_short;
+            assert!(is_none || found[1].cos() > 0.0, "{a} {phi}: {found}");
+        }
+    }
+}
+
+/// A guess with the slider on the right means a configuration with the slider there, however far it is.
+#[test]
+fn linkages_are_assembled_on_the_branch_of_the_guess() {
+    let relations = |q: &SVector<Dual<f64>, 2>| slider_crank(q).0;
+    let across = |q: &SVector<f64, 2>| slider_crank(q).1.fixed_columns::<1>(1).into_owned();
+    for a in 0..30 {
+        for b in -14..15 {
+            let guess = SVector::from([0.1 * f64::from(a), 0.1 * f64::from(b)]);
+            let found = assemble(&guess, 1, relations, across);
+            assert!(found[1].cos() > 0.0, "{guess}: {found}");
+            assert!(slider_crank(&found).0[0].abs() < f64::EPSILON, "{found}");
+        }
+    }
 }

@@ -58,6 +58,18 @@ pub fn parts(spec: &JointSpec) -> Vec<Part<'_>> {
     part.collect()
 }
 
+/// The same with all directions of their algebras as degrees of freedom, in the standard bases.
+pub fn parts_of_displacements(spec: &JointSpec) -> Vec<Part<'_>> {
+    let mut parts = parts(spec);
+    let mut first = 0;
+    for part in &mut parts {
+        part.freedoms = (first..first + part.dimension()).collect();
+        part.basis = Basis::Standard;
+        first += part.dimension();
+    }
+    parts
+}
+
 fn basis(spec: &JointSpec, kind: Kind, freedoms: &[usize]) -> Basis {
     let is_unit = |(i, &k): (usize, &usize)| {
         let generator = &spec.freedoms.value[k].generator;

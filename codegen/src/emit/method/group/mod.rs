@@ -14,12 +14,14 @@ use crate::expr::{Expr, Symbol};
 use crate::formula::Counts;
 use crate::manifold::Kind;
 use crate::matrix::Matrix;
-use factor::parts;
+use factor::{parts, parts_of_displacements};
 
 /// A kernel that calls groups.
 pub struct Calls<'a> {
-    /// Which one.
+    /// Which one; of displacements that of ϕ which does the same.
     pub kind: KernelKind,
+    /// The name of ϕ, or of ξ.
+    pub element: &'static str,
     /// The factors of the manifold.
     pub parts: Vec<Part<'a>>,
     /// N and K.
@@ -29,6 +31,9 @@ pub struct Calls<'a> {
 impl<'a> Calls<'a> {
     /// The kernel as calls; nothing where a factor has no function for it.
     pub fn new(derived: &'a Derived, kernel: &Kernel) -> Option<Self> {
+        if let Some(kind) = of_displacements(kernel.kind) {
+            return Self::of_displacements(derived, kind);
+        }
         let spec = &derived.spec;
         let is_finite = matches!(
             kernel.kind,
@@ -66,8 +71,21 @@ impl<'a> Calls<'a> {
             called && parts.iter().all(fits) && (!is_rate || are_rates(derived, &parts, kernel));
         fits.then_some(Self {
             kind: kernel.kind,
+            element: "phi",
             parts,
             sizes,
+        })
+    }
+
+    /// That of displacements in the standard basis: nothing where a factor is no group.
+    fn of_displacements(derived: &'a Derived, kind: KernelKind) -> Option<Self> {
+        let parts = parts_of_displacements(&derived.spec);
+        let are_groups = parts.iter().all(|part| part.kind() != Kind::S2);
+        are_groups.then_some(Self {
+            kind,
+            element: "xi",
+            parts,
+            sizes: [derived.shape.configuration, derived.shape.displacements],
         })
     }
 
@@ -141,6 +159,16 @@ impl<'a> Calls<'a> {
                 .iter()
                 .all(|part| matches!(part.kind(), Kind::Real(_)))
     }
+}
+
+/// What does with ϕ what the kernel does with a displacement ξ.
+fn of_displacements(kind: KernelKind) -> Option<KernelKind> {
+    Some(match kind {
+        KernelKind::Displaced => KernelKind::Retract,
+        KernelKind::Displacement => KernelKind::Local,
+        KernelKind::DisplacedDifferential => KernelKind::RetractDifferential,
+        _ => return None,
+    })
 }
 
 /// Whether Q̇ is `Q v^` on every factor.
