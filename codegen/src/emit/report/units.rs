@@ -163,7 +163,7 @@ mod tests {
     #[test]
     fn a_long_twist_is_no_unit_and_takes_little_work() {
         let source = "hamel = 1;
-            joint bend(a: m, b: m, c: m, d: m) {
+            joint bend(a: 1, b: 1, c: 1, d: 1) {
                 config q: R1;
                 H = trans([pow(a + b + c + d + q, 7), 0, q]);
             }";

@@ -15,6 +15,7 @@ use crate::emit::report::summary;
 use crate::expr::Rational;
 use crate::model::VelocityFrame;
 use crate::text::inline;
+use crate::units::Dimension;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -128,7 +129,8 @@ fn relations(derived: &Derived) -> Option<TokenStream> {
     derived.spec.implicit.as_ref()?;
     let relations = derived.spec.manifold.value.declared().iter();
     let texts = relations.map(|relation| format!("{relation} = 0"));
-    let units = &derived.spec.relation_units;
+    let units = derived.spec.units.relations.iter();
+    let units = units.map(|unit| unit.as_ref().map_or_else(String::new, Dimension::in_units));
     Some(quote! {
         const RELATIONS: &'static [&'static str] = &[#(#texts),*];
         const RELATION_UNITS: &'static [&'static str] = &[#(#units),*];
