@@ -92,6 +92,29 @@ impl Dimension {
         }
     }
 
+    /// The unit of its rate.
+    pub fn rate(&self) -> String {
+        let mut rate = self.clone();
+        rate.add(&Self::parsed("s"), &Rational::from(-1));
+        rate.in_units()
+    }
+
+    /// The unit of the effort that does work at its rate, in newtons where that is a force by lengths.
+    pub fn effort(&self) -> String {
+        let mut effort = Self::parsed("N*m");
+        let (_, lengths) = self.clone().split();
+        effort.add(&lengths, &Rational::from(-1));
+        let mut lever = effort.clone();
+        lever.add(&Self::parsed("N"), &Rational::from(-1));
+        let is_lever = lever.vanishes(&(1..3));
+        match is_lever {
+            true if lever.vanishes(&COMPARED) => "N".to_owned(),
+            true if lever.0[0].is_positive() => format!("N {}", lever.in_units()),
+            true => format!("N{}", &lever.in_units()[1..]),
+            false => effort.in_units(),
+        }
+    }
+
     /// The same in a sentence, where an angle is a number.
     pub fn in_words(&self) -> String {
         let (_, others) = self.clone().split();
@@ -143,6 +166,17 @@ mod tests {
             ("N/N", "1"),
         ] {
             assert_eq!(Dimension::parsed(read).in_units(), written, "{read}");
+        }
+        for (read, rate, effort) in [
+            ("rad", "rad/s", "N m"),
+            ("m", "m/s", "N"),
+            ("1", "1/s", "N m"),
+            ("1/m/m", "1/(m^2 s)", "N m^3"),
+            ("m*m", "m^2/s", "N/m"),
+            ("kg", "kg/s", "m^2/s^2"),
+        ] {
+            let unit = Dimension::parsed(read);
+            assert_eq!((&*unit.rate(), &*unit.effort()), (rate, effort), "{read}");
         }
         assert_eq!(Dimension::parsed("m/rad").in_words(), "m");
         assert_eq!(Dimension::parsed("rad").in_words(), "rad or 1");

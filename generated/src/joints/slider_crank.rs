@@ -215,6 +215,15 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
     ];
     const SINGULARITIES: &'static [&'static str] = &["b.c = 0"];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH],
+            freedoms: &[Unit::ANGLE],
+            velocities: &[Unit::ANGLE],
+            speeds: &[Unit::ANGLE],
+        }
+    };
     const BODIES: &'static [&'static str] = &["crank", "rod", "slider"];
 
     fn more(&self, visit: &mut dyn FnMut(::hamel_runtime::erased::Shared)) {
@@ -455,7 +464,7 @@ impl ::hamel_runtime::joint::Carries<1, 5, 1, 1, 0> for SliderCrank {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 5 multiplications, 1 division.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 1 addition, 5 multiplications, 1 division.
     /// From line 24 `basis`, line 26 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 6, 1> {
         let crank = T::from_f64(self.crank);
@@ -470,7 +479,7 @@ impl ::hamel_runtime::joint::Carries<1, 5, 1, 1, 0> for SliderCrank {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 2 additions, 8 multiplications (1 of each fused), 1 division.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 2 additions, 8 multiplications (1 of each fused), 1 division.
     /// From line 24 `basis`, line 26 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 6, 1> {
         let crank = T::from_f64(self.crank);
@@ -562,7 +571,7 @@ impl ::hamel_runtime::joint::Carries<2, 5, 1, 1, 0> for SliderCrank {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 2 multiplications, 1 division.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 1 addition, 2 multiplications, 1 division.
     /// From line 24 `basis`, line 27 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 6, 1> {
         let crank = T::from_f64(self.crank);
@@ -573,7 +582,7 @@ impl ::hamel_runtime::joint::Carries<2, 5, 1, 1, 0> for SliderCrank {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 2 multiplications, 1 division.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 1 addition, 2 multiplications, 1 division.
     /// From line 24 `basis`, line 27 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 6, 1> {
         let crank = T::from_f64(self.crank);

@@ -254,3 +254,63 @@ impl<'s> Analysis<'s> {
         system
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::spec::parse;
+    use crate::units::Dimension;
+
+    /// Units of Q; `?` where they are not determined.
+    fn coordinates(declared: &str) -> Vec<String> {
+        let source = format!("hamel = 1; joint test{declared}");
+        let spec = parse(&source, "test").unwrap_or_else(|errors| panic!("{errors}"));
+        let units = spec.units.coordinates.iter();
+        let told = units.map(|unit| unit.as_ref().map(Dimension::in_units));
+        told.map(|unit| unit.unwrap_or_else(|| "?".into()))
+            .collect()
+    }
+
+    #[test]
+    fn what_the_spec_does_not_determine_has_no_unit() {
+        let steered = " { config q: R1, steer: R1; H = trans_z(q); }";
+        assert_eq!(coordinates(steered), ["m", "?"]);
+    }
+
+    #[test]
+    fn numbers_have_the_unit_that_is_missing() {
+        for (declared, units) in [
+            (" { config q: R1; H = trans_z(0.3 * cos(q)); }", "rad"),
+            (" { config x: R1; H = trans([x, x * x, 0]); }", "m"),
+            (" { config x: R1; H = trans([x, sin(x), 0]); }", "m"),
+            (" { config q: R1; H = rot_z(q) * trans_z(q); }", "rad"),
+            (
+                "(a: 1) { config q: R1; H = rot_z(q) * trans_z(a * q); }",
+                "rad",
+            ),
+            (
+                "(l: m) { config q: R1; H = rot_z(q) * trans_x(l + 0.3); }",
+                "rad",
+            ),
+            (
+                "(l: m) { config x: R1; H = trans([x, l * sin(x / l), 0]); }",
+                "m",
+            ),
+        ] {
+            assert_eq!(coordinates(declared), [units], "{declared}");
+        }
+    }
+
+    #[test]
+    fn units_go_through_relations_and_curves() {
+        let through = "(l: m) {
+            curve f(mm): deg = cubic natural through [0, 0], [10, 30], [20, 90];
+            config  x: R1, y: R1, q: R1;
+            relation x = 2 * y;
+            relation q * l = x;
+            home    = 0, 0, 0;
+            basis   along of r1(y);
+            H = rot_z(f(x));
+        }";
+        assert_eq!(coordinates(through), ["m", "m", "1"]);
+    }
+}
