@@ -26,6 +26,7 @@ mod simplify;
 pub mod source;
 pub mod spec;
 pub mod text;
+pub mod units;
 
 pub use build::{Build, BuildError, GENERATE_VARIABLE};
 pub use pipeline::{WORK_LIMIT, derive, derive_in};

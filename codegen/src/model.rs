@@ -4,6 +4,7 @@ use crate::expr::curve::Curve;
 use crate::expr::{Expr, Rational, Symbol};
 use crate::manifold::Manifold;
 use crate::matrix::Matrix;
+use crate::units::Units;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -314,8 +315,10 @@ pub struct JointSpec {
     pub requirements: Vec<Declared<Requirement>>,
     /// Where Q lives; relations that the spec declares are part of it.
     pub manifold: Declared<Manifold>,
-    /// The unit of each relation that the spec declares: `m`, `m^2`, `1` for a number or an angle; empty where nothing tells it.
-    pub relation_units: Vec<String>,
+    /// Where each relation that the spec declares stands; a matrix of relations is several.
+    pub relation_spans: Vec<Range<usize>>,
+    /// What everything is measured in.
+    pub units: Units,
     /// Where Q must not come: H, Φ, X, A or S̄ lose their meaning or their rank there.
     pub loci: Vec<Declared<Locus>>,
     /// The stored scalars of the home configuration, where declared.
@@ -354,6 +357,8 @@ pub struct JointSpec {
     pub unproved: Vec<Declared<Unproved>>,
     /// Curves in order.
     pub curves: Vec<DeclaredCurve>,
+    /// Where they are called, with which argument.
+    pub calls: Vec<Declared<(Curve, Expr)>>,
 }
 
 /// A curve, and where it is declared.
@@ -361,6 +366,8 @@ pub struct JointSpec {
 pub struct DeclaredCurve {
     /// The curve.
     pub curve: Curve,
+    /// Units of its argument and of its values, as they are after those of the knots are brought to metres and radians.
+    pub units: [String; 2],
     /// The bytes of its statement.
     pub span: Range<usize>,
     /// The file with its knots, where they stand in one.

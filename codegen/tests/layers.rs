@@ -5,13 +5,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// From what knows nothing to what knows all. `derive` calls the steps parse, prepare, expand, prove, simplify; `build` uses what it gives.
-const ORDER: [&str; 28] = [
+const ORDER: [&str; 29] = [
     "text",
     "diagnostic",
     "source",
     "expr",
     "matrix",
     "manifold",
+    "units",
     "model",
     "algebra",
     "precise",

@@ -12,7 +12,7 @@ use std::sync::LazyLock;
 const STRAINING: [&str; 5] = [
     "hamel = 1;
 /// Text with <angle> brackets, an `a < b` in code & an ampersand.
-joint offset_universal(r_outer: m, lead: m/rad) {
+joint offset_universal(r_outer: 1, lead: m/rad) {
     config alpha: R1, beta_2: R1;
     H = rot_x(alpha) * trans_z(lead * alpha / sqrt(1 + r_outer * r_outer)) * rot_y(beta_2);
 }",

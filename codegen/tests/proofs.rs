@@ -138,3 +138,31 @@ fn true_claims_are_not_refuted_outside_of_the_domain() {
         assert_eq!(met.proof, Proof::Checked);
     }
 }
+
+/// Beyond its ends the curve keeps the slopes that it has there, which are not 0.
+#[test]
+fn a_curve_that_goes_on_straight_keeps_its_rank() {
+    for kind in ["quintic", "cubic"] {
+        let joint = derived(&format!(
+            " {{ curve f(m): m = {kind} natural through [0, 0], [1, 1], [2, 2.5], [3, 4] continue linear;
+                config x: R1; H = trans_x(f(x)); }}"
+        ));
+        let full = claim(&joint, "twist_map_rank").expect("the rank of X is claimed");
+        assert!(matches!(full.proof, Proof::Certificate), "{:?}", full.proof);
+    }
+}
+
+/// The value at ϕ = 0, and the slope, are numbers.
+#[test]
+fn a_curve_may_say_how_phi_moves() {
+    let joint = derived(
+        " { curve f(rad): rad = quintic natural through [-2, -3], [-1, -1.2], [0, 0], [1, 1], [2, 3] continue linear;
+            config q: R1; local s; Phi = q + f(phi.s); H = rot_z(q); }",
+    );
+    let at_zero = claim(&joint, "retract_at_zero").expect("Phi is declared");
+    assert!(
+        matches!(at_zero.proof, Proof::NormalForm),
+        "{:?}",
+        at_zero.proof
+    );
+}

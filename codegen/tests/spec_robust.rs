@@ -7,7 +7,7 @@ const CART: &str = include_str!("../../joint-specs/cart.joint");
 const PLANAR_EUCLIDEAN: &str = include_str!("../../joint-specs/planar_euclidean.joint");
 const DECLARED: &str = "hamel = 1;
 /// Everything that a declared manifold has.
-joint on_sphere(radius: m > 0 <= 5, height: m in 0..=1/2) {
+joint on_sphere(radius: 1 > 0 <= 5, height: 1 in 0..=1/2) {
     require radius > 2 * height;
     config  n: R3, R: SO3;
     relation dot(n, n) = radius * radius;

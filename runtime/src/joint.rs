@@ -37,6 +37,7 @@ mod products;
 mod several;
 mod slices;
 mod structure;
+mod units;
 
 /// Most degrees of freedom of a joint.
 pub const MOST_FREEDOMS: usize = 8;
@@ -49,6 +50,7 @@ pub use port::{Port, PortLaw};
 pub use products::{FirstOrder, Products};
 pub use several::{Carries, Member};
 pub use structure::{Structure, Structures};
+pub use units::{Unit, Units};
 
 use crate::erased::Shared;
 use crate::scalar::Scalar;
@@ -136,6 +138,9 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     /// The unit of each relation, as `m`, `m^2`, or `1` for a number or an angle; empty where nothing tells it. That of its multiplier is J over it.
     const RELATION_UNITS: &'static [&'static str] = &[];
 
+    /// What everything is measured in, as far as the spec determines it.
+    const UNITS: Units = Units::UNKNOWN;
+
     /// The ports: angles and lengths of Q, besides v, at which efforts act and rates are read.
     const PORTS: &'static [Port] = &[];
 
@@ -147,6 +152,11 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
 
     /// Which of them this is the joint of: 0 but for a [`Member`].
     const BODY: usize = 0;
+
+    /// What everything is measured in: [`Joint::UNITS`], but of a joint that knows it when it is made.
+    fn units(&self) -> Units {
+        Self::UNITS
+    }
 
     /// The ports: [`Joint::PORTS`], but of a joint that knows them when it is made.
     fn ports(&self) -> &'static [Port] {

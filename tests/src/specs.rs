@@ -41,7 +41,7 @@ pub fn random(seed: u64) -> String {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let family = FAMILIES[seed as usize % FAMILIES.len()];
     let body = body(family, &mut random);
-    let parameters = ["a: m", "b: m"].iter().filter(|p| mentions(&body, &p[..1]));
+    let parameters = ["a: 1", "b: 1"].iter().filter(|p| mentions(&body, &p[..1]));
     let parameters: Vec<&str> = parameters.copied().collect();
     let head = match parameters.is_empty() {
         true => String::new(),

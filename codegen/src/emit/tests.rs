@@ -22,7 +22,7 @@ joint ball {
 /// Parameters called like arguments of kernels, coordinates like constants, a type called like one of the runtime's.
 const ODD: &str = "hamel = 1;
 /// Text with \"#quotes\"# in it.
-joint pose(v: m, h: m) {
+joint pose(v: m, h: 1) {
     config p: R1, half: R1, q: R1;
     H = rot_z(p) * trans_z(half) * trans_x(q) * trans_x(v / h);
 }";
@@ -279,7 +279,7 @@ fn names_that_would_be_written_alike_are_not() {
 #[test]
 fn a_name_of_the_spec_has_one_value_in_all_kernels() {
     let text = emitted(
-        "hamel = 1; joint angle_names(angle: rad, arm: m > 0) { config u: R1, w: R1;
+        "hamel = 1; joint angle_names(angle: rad, arm: 1 > 0) { config u: R1, w: R1;
            let cos_angle2 = sin(u + w + angle) * arm; let inverse_arm = cos(u - w) * sin(2 * u);
            let sin_w = sin(u - 2*w);
            H = rot_z(u) * trans([cos_angle2, w*arm + cos(w), w + u]) * trans_x(sin_w + inverse_arm) * rot_x(w/arm + u/arm); }",
@@ -308,7 +308,7 @@ fn a_name_of_the_spec_has_one_value_in_all_kernels() {
 #[test]
 fn sums_of_squares_do_not_become_differences() {
     let text = emitted(
-        "hamel = 1; joint small_tilt(w: m > 0) { config R: SO3, p: R2; basis wx, wy, wz of so3; velocity in child;
+        "hamel = 1; joint small_tilt(w: 1 > 0) { config R: SO3, p: R2; basis wx, wy, wz of so3; velocity in child;
            let tilt2 = R[1,3]*R[1,3] + R[2,3]*R[2,3]; let f = sqrt(w*w + tilt2); H = pose(R, [p.x, p.y, 0]);
            S_bar = [I(3); R[1,3]/f, 0, 0; 0, R[2,3]/f, f]; speeds wx, wy, wz; }",
     );

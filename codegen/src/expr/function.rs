@@ -149,6 +149,7 @@ impl Expr {
             (Function::Stumpff(order), [x]) => x.stumpff(order),
             (Function::DexpInverse(order), [x]) => x.dexp_inverse(order),
             (Function::Group, [x]) => x.grouped(),
+            (Function::Curve(curve, order), [x]) => curve.at(x, order),
             (Function::Recip, [x]) if !x.is_zero() => x.recip().unwrap_or_default(),
             _ => apply(function, arguments.to_vec()),
         }

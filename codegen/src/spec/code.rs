@@ -68,6 +68,7 @@ codes! {
     CURVE "E0326" "Knots, ends or a continuation that make no curve."
     TABLE "E0327" "A file of knots that cannot be read."
     PIN "E0328" "A pin whose points are apart, or that holds other motions than it says."
+    UNITS "E0329" "Quantities of different units that should be alike."
 
     DIMENSION "E0401" "The number of local coordinates is not the dimension of the manifold."
     PARENT_FRAME "E0402" "No constant directions to read in the parent frame."

@@ -2,7 +2,7 @@
 //!
 //! Stages: `scan` bounds what may reach the tokenizer, `tokens` walks syn's token cursors with exact byte ranges,
 //! `syntax` builds the tree of `ast` and recovers at each `;`, `evaluate` turns expressions into symbols, `declare`
-//! assembles and checks the joint. All errors of a file come back together. The reference of the language is
+//! assembles and checks the joint, `units` what everything is measured in. All errors of a file come back together. The reference of the language is
 //! `joint-specs/README.md`.
 
 mod ast;
@@ -15,6 +15,7 @@ mod names;
 mod scan;
 mod syntax;
 mod tokens;
+mod units;
 mod value;
 
 pub use evaluate::FUNCTIONS;

@@ -116,13 +116,21 @@ impl Writer {
     /// y of a link.
     fn value(&mut self, number: usize, link: &Link, coupling: &Coupling) -> String {
         let q = coordinate(link.coordinate, coupling);
+        let mut same = coupling.links.iter();
+        let first = same.find(|other| other.coordinate == link.coordinate);
+        let leader = first.map_or(link.motion, |first| first.motion);
         let turned = match link.ratio {
-            1.0 => q,
-            -1.0 => format!("-{q}"),
+            1.0 if leader == link.motion => q,
+            -1.0 if leader == link.motion => format!("-{q}"),
             ratio => {
                 let name = format!("ratio_{number}");
                 let meaning = "Its motion per motion of what it follows.";
-                let name = self.parameter(name, "1", meaning, ratio);
+                let unit = match (leader, link.motion) {
+                    (LinkMotion::Turn, LinkMotion::Slide) => "m/rad",
+                    (LinkMotion::Slide, LinkMotion::Turn) => "rad/m",
+                    _ => "1",
+                };
+                let name = self.parameter(name, unit, meaning, ratio);
                 format!("{name} * {q}")
             }
         };

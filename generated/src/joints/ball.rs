@@ -78,6 +78,18 @@ impl Joint<9, 3, 3, 0> for Ball {
         ]);
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[
+                Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER,
+                Unit::NUMBER,
+            ],
+            freedoms: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+            velocities: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+            speeds: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+        }
+    };
 
     /// The home configuration.
     /// 9-vector. Independent of Q. Operations: none.

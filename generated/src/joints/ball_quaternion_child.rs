@@ -71,6 +71,15 @@ impl Joint<4, 3, 3, 0> for BallQuaternionChild {
     const PATTERNS: Patterns<3, 3> = Patterns::new(["xxx", "xxx", "xxx"], "000", ["100", "010", "001", "000", "000", "000"]);
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER],
+            freedoms: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+            velocities: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+            speeds: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+        }
+    };
 
     /// The home configuration.
     /// 4-vector. Independent of Q. Operations: none.

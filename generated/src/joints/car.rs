@@ -160,6 +160,22 @@ impl Joint<11, 8, 2, 6> for Car {
     .bias_gradient("000x0000");
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[
+                Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::ANGLE, Unit::ANGLE,
+                Unit::ANGLE, Unit::ANGLE, Unit::ANGLE,
+            ],
+            freedoms: &[
+                Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::ANGLE,
+            ],
+            velocities: &[
+                Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::ANGLE,
+            ],
+            speeds: &[Unit::LENGTH, Unit::ANGLE],
+        }
+    };
     const BODIES: &'static [&'static str] = &["chassis", "front_left", "front_right", "rear_left", "rear_right"];
 
     fn more(&self, visit: &mut dyn FnMut(::hamel_runtime::erased::Shared)) {
@@ -547,7 +563,7 @@ impl ::hamel_runtime::joint::Carries<1, 11, 8, 2, 6> for Car {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v. Operations: 11 additions, 16 multiplications (11 of each fused), 1 function call.
+    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s, rad/s, rad/s, rad/s, rad/s, rad/s. Operations: 11 additions, 16 multiplications (11 of each fused), 1 function call.
     /// From line 18 `basis`, line 19 `velocity`, line 20 `let`, line 24 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 11>) -> SMatrix<T, 6, 8> {
         let base = T::from_f64(self.base);
@@ -577,7 +593,7 @@ impl ::hamel_runtime::joint::Carries<1, 11, 8, 2, 6> for Car {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v. Operations: 2 additions, 10 multiplications (1 of each fused), 2 function calls.
+    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s, rad/s, rad/s, rad/s, rad/s, rad/s. Operations: 2 additions, 10 multiplications (1 of each fused), 2 function calls.
     /// From line 18 `basis`, line 19 `velocity`, line 20 `let`, line 24 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 11>) -> SMatrix<T, 6, 8> {
         let base = T::from_f64(self.base);
@@ -684,7 +700,7 @@ impl ::hamel_runtime::joint::Carries<2, 11, 8, 2, 6> for Car {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v. Operations: 11 additions, 16 multiplications (10 of each fused), 1 function call.
+    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s, rad/s, rad/s, rad/s, rad/s, rad/s. Operations: 11 additions, 16 multiplications (10 of each fused), 1 function call.
     /// From line 18 `basis`, line 19 `velocity`, line 20 `let`, line 25 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 11>) -> SMatrix<T, 6, 8> {
         let base = T::from_f64(self.base);
@@ -712,7 +728,7 @@ impl ::hamel_runtime::joint::Carries<2, 11, 8, 2, 6> for Car {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v. Operations: 2 additions, 10 multiplications (1 of each fused), 2 function calls.
+    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s, rad/s, rad/s, rad/s, rad/s, rad/s. Operations: 2 additions, 10 multiplications (1 of each fused), 2 function calls.
     /// From line 18 `basis`, line 19 `velocity`, line 20 `let`, line 25 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 11>) -> SMatrix<T, 6, 8> {
         let base = T::from_f64(self.base);
@@ -808,7 +824,7 @@ impl ::hamel_runtime::joint::Carries<3, 11, 8, 2, 6> for Car {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 4 multiplications.
+    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s, rad/s, rad/s, rad/s, rad/s, rad/s. Operations: 1 addition, 4 multiplications.
     /// From line 18 `basis`, line 19 `velocity`, line 20 `let`, line 26 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 11>) -> SMatrix<T, 6, 8> {
         let radius = T::from_f64(self.radius);
@@ -826,7 +842,7 @@ impl ::hamel_runtime::joint::Carries<3, 11, 8, 2, 6> for Car {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v. Operations: 2 multiplications, 1 function call.
+    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s, rad/s, rad/s, rad/s, rad/s, rad/s. Operations: 2 multiplications, 1 function call.
     /// From line 18 `basis`, line 19 `velocity`, line 20 `let`, line 26 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 11>) -> SMatrix<T, 6, 8> {
         let half_parameter = T::from_f64(self.half);
@@ -908,7 +924,7 @@ impl ::hamel_runtime::joint::Carries<4, 11, 8, 2, 6> for Car {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 4 multiplications.
+    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s, rad/s, rad/s, rad/s, rad/s, rad/s. Operations: 1 addition, 4 multiplications.
     /// From line 18 `basis`, line 19 `velocity`, line 20 `let`, line 27 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 11>) -> SMatrix<T, 6, 8> {
         let radius = T::from_f64(self.radius);
@@ -926,7 +942,7 @@ impl ::hamel_runtime::joint::Carries<4, 11, 8, 2, 6> for Car {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v. Operations: 2 multiplications, 1 function call.
+    /// 6×8, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s, rad/s, rad/s, rad/s, rad/s, rad/s. Operations: 2 multiplications, 1 function call.
     /// From line 18 `basis`, line 19 `velocity`, line 20 `let`, line 27 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 11>) -> SMatrix<T, 6, 8> {
         let half_parameter = T::from_f64(self.half);

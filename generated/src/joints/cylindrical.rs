@@ -59,6 +59,15 @@ impl Joint<2, 2, 2, 0> for Cylindrical {
     const PATTERNS: Patterns<2, 2> = Patterns::new(["xx0", "xx0", "001"], "00x", ["00", "00", "10", "00", "00", "01"]);
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::ANGLE, Unit::LENGTH],
+            freedoms: &[Unit::ANGLE, Unit::LENGTH],
+            velocities: &[Unit::ANGLE, Unit::LENGTH],
+            speeds: &[Unit::ANGLE, Unit::LENGTH],
+        }
+    };
 
     /// The home configuration.
     /// 2-vector. Zero. Operations: none.

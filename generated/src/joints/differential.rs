@@ -116,6 +116,15 @@ impl Joint<2, 2, 2, 0> for Differential {
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
     ];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::ANGLE, Unit::ANGLE],
+            freedoms: &[Unit::ANGLE, Unit::ANGLE],
+            velocities: &[Unit::ANGLE, Unit::ANGLE],
+            speeds: &[Unit::ANGLE, Unit::ANGLE],
+        }
+    };
     const BODIES: &'static [&'static str] = &["left", "right", "cage", "pinion"];
 
     fn more(&self, visit: &mut dyn FnMut(::hamel_runtime::erased::Shared)) {
@@ -213,7 +222,7 @@ impl ::hamel_runtime::joint::Carries<1, 2, 2, 2, 0> for Differential {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v. Independent of Q. Operations: none.
+    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
     /// From line 15 `H.right = rot_z(right);`.
     fn twist_map<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 6, 2> {
         let zero = T::zero();
@@ -222,7 +231,7 @@ impl ::hamel_runtime::joint::Carries<1, 2, 2, 2, 0> for Differential {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v. Independent of Q. Operations: none.
+    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
     /// From line 15 `H.right = rot_z(right);`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 6, 2> {
         let zero = T::zero();
@@ -257,7 +266,7 @@ impl ::hamel_runtime::joint::Carries<2, 2, 2, 2, 0> for Differential {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v. Independent of Q. Operations: none.
+    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
     /// From line 13 `let`, line 16 `H`.
     fn twist_map<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 6, 2> {
         let zero = T::zero();
@@ -266,7 +275,7 @@ impl ::hamel_runtime::joint::Carries<2, 2, 2, 2, 0> for Differential {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v. Independent of Q. Operations: none.
+    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
     /// From line 13 `let`, line 16 `H`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 2>) -> SMatrix<T, 6, 2> {
         let zero = T::zero();
@@ -312,7 +321,7 @@ impl ::hamel_runtime::joint::Carries<3, 2, 2, 2, 0> for Differential {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 5 multiplications, 1 function call.
+    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 1 addition, 5 multiplications, 1 function call.
     /// From line 13 `let`, line 17 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 2>) -> SMatrix<T, 6, 2> {
         let ratio = T::from_f64(self.ratio);
@@ -327,7 +336,7 @@ impl ::hamel_runtime::joint::Carries<3, 2, 2, 2, 0> for Differential {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 5 multiplications, 1 function call.
+    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 1 addition, 5 multiplications, 1 function call.
     /// From line 13 `let`, line 17 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 2>) -> SMatrix<T, 6, 2> {
         let ratio = T::from_f64(self.ratio);

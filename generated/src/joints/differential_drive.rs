@@ -124,6 +124,17 @@ impl Joint<8, 5, 2, 3> for DifferentialDrive {
     .speed_basis(["xx", "xx", "00", "10", "01"]);
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[
+                Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::ANGLE, Unit::ANGLE,
+            ],
+            freedoms: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::ANGLE, Unit::ANGLE],
+            velocities: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::ANGLE, Unit::ANGLE],
+            speeds: &[Unit::ANGLE, Unit::ANGLE],
+        }
+    };
     const BODIES: &'static [&'static str] = &["chassis", "left", "right"];
 
     fn more(&self, visit: &mut dyn FnMut(::hamel_runtime::erased::Shared)) {
@@ -376,7 +387,7 @@ impl ::hamel_runtime::joint::Carries<1, 8, 5, 2, 3> for DifferentialDrive {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×5, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 4 multiplications.
+    /// 6×5, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s, rad/s, rad/s. Operations: 1 addition, 4 multiplications.
     /// From line 16 `basis`, line 17 `velocity`, line 18 `let`, line 20 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 8>) -> SMatrix<T, 6, 5> {
         let radius = T::from_f64(self.radius);
@@ -394,7 +405,7 @@ impl ::hamel_runtime::joint::Carries<1, 8, 5, 2, 3> for DifferentialDrive {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×5, rows rad/s (angular) and m/s (linear), columns by v. Operations: 2 multiplications, 1 function call.
+    /// 6×5, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s, rad/s, rad/s. Operations: 2 multiplications, 1 function call.
     /// From line 16 `basis`, line 17 `velocity`, line 18 `let`, line 20 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 8>) -> SMatrix<T, 6, 5> {
         let half_parameter = T::from_f64(self.half);
@@ -474,7 +485,7 @@ impl ::hamel_runtime::joint::Carries<2, 8, 5, 2, 3> for DifferentialDrive {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×5, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 4 multiplications.
+    /// 6×5, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s, rad/s, rad/s. Operations: 1 addition, 4 multiplications.
     /// From line 16 `basis`, line 17 `velocity`, line 18 `let`, line 21 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 8>) -> SMatrix<T, 6, 5> {
         let radius = T::from_f64(self.radius);
@@ -492,7 +503,7 @@ impl ::hamel_runtime::joint::Carries<2, 8, 5, 2, 3> for DifferentialDrive {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×5, rows rad/s (angular) and m/s (linear), columns by v. Operations: 2 multiplications, 1 function call.
+    /// 6×5, rows rad/s (angular) and m/s (linear), columns by v in rad/s, m/s, m/s, rad/s, rad/s. Operations: 2 multiplications, 1 function call.
     /// From line 16 `basis`, line 17 `velocity`, line 18 `let`, line 21 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 8>) -> SMatrix<T, 6, 5> {
         let half_parameter = T::from_f64(self.half);

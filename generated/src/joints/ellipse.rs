@@ -97,6 +97,15 @@ impl Joint<2, 1, 1, 0> for Ellipse {
         .twist_map_child_gradient(&[(0, ["0", "0", "x", "x", "0", "0"])]);
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::NUMBER, Unit::NUMBER],
+            freedoms: &[Unit::ANGLE],
+            velocities: &[Unit::ANGLE],
+            speeds: &[Unit::ANGLE],
+        }
+    };
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
         [("a", self.a), ("b", self.b)].into_iter()

@@ -88,6 +88,18 @@ impl Joint<12, 6, 6, 0> for Free {
     );
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[
+                Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH,
+                Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH,
+            ],
+            freedoms: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::LENGTH],
+            velocities: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::LENGTH],
+            speeds: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::LENGTH],
+        }
+    };
 
     /// The home configuration.
     /// 12-vector. Independent of Q. Operations: none.

@@ -87,6 +87,15 @@ impl Joint<1, 1, 1, 0> for GearedRevolute {
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
     ];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::ANGLE],
+            freedoms: &[Unit::ANGLE],
+            velocities: &[Unit::ANGLE],
+            speeds: &[Unit::ANGLE],
+        }
+    };
     const BODIES: &'static [&'static str] = &["output", "rotor"];
 
     fn more(&self, visit: &mut dyn FnMut(::hamel_runtime::erased::Shared)) {
@@ -184,7 +193,7 @@ impl ::hamel_runtime::joint::Carries<1, 1, 1, 1, 0> for GearedRevolute {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Independent of Q. Operations: none.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
     /// From line 13 `let`, line 15 `H`.
     fn twist_map<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let ratio = T::from_f64(self.ratio);
@@ -193,7 +202,7 @@ impl ::hamel_runtime::joint::Carries<1, 1, 1, 1, 0> for GearedRevolute {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Independent of Q. Operations: none.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
     /// From line 13 `let`, line 15 `H`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let ratio = T::from_f64(self.ratio);

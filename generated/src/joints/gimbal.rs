@@ -74,6 +74,15 @@ impl Joint<3, 3, 3, 0> for Gimbal {
         .bias_gradient("0xx");
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &["cos(pitch) = 0"];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+            freedoms: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+            velocities: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+            speeds: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+        }
+    };
 
     /// The home configuration.
     /// 3-vector. Zero. Operations: none.

@@ -76,6 +76,15 @@ impl Joint<3, 3, 2, 1> for KnifeEdge {
         .speed_basis_gradient(&[(0, ["00", "0x", "0x"])]);
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+            freedoms: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+            velocities: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+            speeds: &[Unit::ANGLE, Unit::LENGTH],
+        }
+    };
 
     /// The home configuration.
     /// 3-vector. Zero. Operations: none.

@@ -91,6 +91,15 @@ impl Joint<6, 3, 2, 1> for OffsetSleigh {
         .speed_basis(["10", "01", "x0"]);
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH],
+            freedoms: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+            velocities: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+            speeds: &[Unit::ANGLE, Unit::LENGTH],
+        }
+    };
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
         [("offset", self.offset)].into_iter()

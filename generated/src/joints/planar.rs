@@ -77,6 +77,15 @@ impl Joint<6, 3, 3, 0> for Planar {
     const PATTERNS: Patterns<3, 3> = Patterns::new(["xx0", "xx0", "001"], "xx0", ["000", "000", "100", "010", "001", "000"]);
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH],
+            freedoms: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+            velocities: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+            speeds: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+        }
+    };
 
     /// The home configuration.
     /// 6-vector. Independent of Q. Operations: none.

@@ -73,6 +73,15 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
         .bias_gradient("x00");
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+            freedoms: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+            velocities: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+            speeds: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+        }
+    };
 
     /// The home configuration.
     /// 3-vector. Zero. Operations: none.

@@ -66,6 +66,15 @@ impl Joint<1, 1, 1, 0> for Prismatic {
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
     ];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::LENGTH],
+            freedoms: &[Unit::LENGTH],
+            velocities: &[Unit::LENGTH],
+            speeds: &[Unit::LENGTH],
+        }
+    };
 
     /// The home configuration.
     /// 1-vector. Zero. Operations: none.

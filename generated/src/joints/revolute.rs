@@ -64,6 +64,15 @@ impl Joint<1, 1, 1, 0> for Revolute {
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
     ];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::ANGLE],
+            freedoms: &[Unit::ANGLE],
+            velocities: &[Unit::ANGLE],
+            speeds: &[Unit::ANGLE],
+        }
+    };
 
     /// The home configuration.
     /// 1-vector. Zero. Operations: none.

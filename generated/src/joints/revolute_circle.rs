@@ -71,6 +71,15 @@ impl Joint<2, 1, 1, 0> for RevoluteCircle {
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
     ];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::NUMBER, Unit::NUMBER],
+            freedoms: &[Unit::ANGLE],
+            velocities: &[Unit::ANGLE],
+            speeds: &[Unit::ANGLE],
+        }
+    };
 
     /// The home configuration.
     /// 2-vector. Independent of Q. Operations: none.

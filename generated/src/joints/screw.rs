@@ -72,6 +72,15 @@ impl Joint<1, 1, 1, 0> for Screw {
     const PATTERNS: Patterns<1, 1> = Patterns::new(["xx0", "xx0", "001"], "00x", ["0", "0", "1", "0", "0", "x"]);
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::ANGLE],
+            freedoms: &[Unit::ANGLE],
+            velocities: &[Unit::ANGLE],
+            speeds: &[Unit::ANGLE],
+        }
+    };
     const PORTS: &'static [::hamel_runtime::joint::Port] = &[
         ::hamel_runtime::joint::Port {
             name: "travel",

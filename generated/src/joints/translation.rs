@@ -66,6 +66,15 @@ impl Joint<3, 3, 3, 0> for Translation {
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
     ];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::LENGTH, Unit::LENGTH, Unit::LENGTH],
+            freedoms: &[Unit::LENGTH, Unit::LENGTH, Unit::LENGTH],
+            velocities: &[Unit::LENGTH, Unit::LENGTH, Unit::LENGTH],
+            speeds: &[Unit::LENGTH, Unit::LENGTH, Unit::LENGTH],
+        }
+    };
 
     /// The home configuration.
     /// 3-vector. Zero. Operations: none.

@@ -73,6 +73,15 @@ impl Joint<2, 2, 2, 0> for Universal {
         .bias_gradient("0x");
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[[1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::ANGLE, Unit::ANGLE],
+            freedoms: &[Unit::ANGLE, Unit::ANGLE],
+            velocities: &[Unit::ANGLE, Unit::ANGLE],
+            speeds: &[Unit::ANGLE, Unit::ANGLE],
+        }
+    };
 
     /// The home configuration.
     /// 2-vector. Zero. Operations: none.

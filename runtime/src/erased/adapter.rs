@@ -3,7 +3,7 @@
 use super::kernels::{kernels, passed_on};
 use super::slices::{Store, array, array_mut, nan, vector};
 use super::{AnyJoint, FiniteMapError, Layout, Shared, Sizes};
-use crate::joint::{Entry, Joint, Pin, Port, PortLaw, Products, Structures, VelocityFrame};
+use crate::joint::{Entry, Joint, Pin, Port, PortLaw, Products, Structures, Units, VelocityFrame};
 use crate::scalar::{Extended, Native, Scalar};
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
 use crate::steps::{
@@ -83,6 +83,10 @@ where
 
     fn relation_units(&self) -> &'static [&'static str] {
         J::RELATION_UNITS
+    }
+
+    fn units(&self) -> Units {
+        self.0.units()
     }
 
     fn ports(&self) -> &'static [Port] {

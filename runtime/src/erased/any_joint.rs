@@ -4,7 +4,7 @@ use super::kernels::{declared, kernels};
 use super::{FiniteMapError, Layout, Shared};
 #[cfg(doc)]
 use crate::joint::{Joint, Products};
-use crate::joint::{Pin, Port, PortLaw, Structures, VelocityFrame};
+use crate::joint::{Pin, Port, PortLaw, Structures, Units, VelocityFrame};
 use crate::scalar::{Extended, Native, Scalar};
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
 use crate::steps::{ChartDerivatives, Motion, Pivot, PivotFailure, Placement, Variation};
@@ -45,6 +45,8 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     fn relations(&self) -> &'static [&'static str];
     /// Their units, [`Joint::RELATION_UNITS`].
     fn relation_units(&self) -> &'static [&'static str];
+    /// What everything is measured in, [`Joint::units`].
+    fn units(&self) -> Units;
     /// The ports, [`Joint::ports`].
     fn ports(&self) -> &'static [Port];
     /// The pins, [`Joint::PINS`].

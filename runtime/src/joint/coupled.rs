@@ -20,7 +20,7 @@ mod link;
 
 pub use link::{Link, LinkFault, LinkMotion, MOST_LINKS};
 
-use super::{Joint, Patterns, Port, Structure, Structures, VelocityFrame};
+use super::{Joint, Patterns, Port, Structure, Structures, Unit, Units, VelocityFrame};
 use crate::erased::{Shared, erase};
 use crate::scalar::Scalar;
 use crate::spatial::{Pose, bracket_product};
@@ -172,6 +172,23 @@ const fn coordinates<const K: usize>() -> [&'static str; K] {
     names
 }
 
+/// All combinations of angles and lengths: coordinate k of combination n is a length where bit k of n is 1.
+const UNITS: [[Unit; MOST_COORDINATES]; 1 << MOST_COORDINATES] = {
+    let mut all = [[Unit::ANGLE; MOST_COORDINATES]; 1 << MOST_COORDINATES];
+    let mut n = 0;
+    while n < all.len() {
+        let mut k = 0;
+        while k < MOST_COORDINATES {
+            if n >> k & 1 == 1 {
+                all[n][k] = Unit::LENGTH;
+            }
+            k += 1;
+        }
+        n += 1;
+    }
+    all
+};
+
 impl<const K: usize> Joint<K, K, K, 0> for Coupled<K> {
     const NAME: &'static str = "coupled";
     const COORDINATES: [&'static str; K] = coordinates();
@@ -190,6 +207,20 @@ impl<const K: usize> Joint<K, K, K, 0> for Coupled<K> {
     const PATTERNS: Patterns<K, K> = Patterns::DENSE;
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
+
+    /// A coordinate is what the first link that follows it is moved by.
+    fn units(&self) -> Units {
+        let is_length = |k: usize| {
+            let mut links = self.links.iter();
+            let first = links.find(|link| link.coordinate == k);
+            first.is_some_and(|link| link.motion == LinkMotion::Slide)
+        };
+        let combination = (0..K)
+            .map(|k| usize::from(is_length(k)) << k)
+            .sum::<usize>();
+        let units = const { &UNITS }.get(combination);
+        Units::of_rates(units.and_then(|units| units.get(..K)).unwrap_or_default())
+    }
 
     fn ports(&self) -> &'static [Port] {
         self.ports

@@ -5,7 +5,7 @@
 //! [`Carries`] adds the others, and [`Member`] makes a [`Joint`] of each of them. Condition (23) on the rank of X holds for all X_b below
 //! one another, not for each.
 
-use super::{Joint, Patterns, Pin, Port, Structures, VelocityFrame};
+use super::{Joint, Patterns, Pin, Port, Structures, Units, VelocityFrame};
 use crate::erased::Shared;
 use crate::scalar::Scalar;
 use crate::spatial::Pose;
@@ -77,6 +77,7 @@ where
     const SINGULARITIES: &'static [&'static str] = J::SINGULARITIES;
     const RELATIONS: &'static [&'static str] = J::RELATIONS;
     const RELATION_UNITS: &'static [&'static str] = J::RELATION_UNITS;
+    const UNITS: Units = J::UNITS;
     const PORTS: &'static [Port] = J::PORTS;
     const PINS: &'static [Pin] = J::PINS;
     const BODIES: &'static [&'static str] = J::BODIES;

@@ -174,7 +174,7 @@ pub(super) fn freedoms(derived: &Derived, notation: &Notation) -> Vec<FreedomRow
                 name: freedom.name.clone(),
                 local: notation.symbol(local),
                 velocity: notation.symbol(velocity),
-                unit: unit.to_owned(),
+                unit,
                 rate_unit,
             },
         )

@@ -1,127 +1,85 @@
-//! Units of the freedoms: angles or lengths, as far as the spec determines them.
+//! Units of degrees of freedom, velocities and speeds, as the spec determines them.
 
 use crate::derived::{Derived, KernelKind};
-use crate::expr::{Expr, budget};
-use crate::manifold::Kind;
-use crate::matrix::Matrix;
-use crate::model::{Freedom, VelocityFrame};
+use crate::units::Dimension;
 
-/// Most term operations to find out whether the columns of a twist map have length 1. Squares of entries with a thousand terms take a minute;
-/// a joint with such entries turns or slides along no fixed axis.
-const UNIT_WORK: u64 = 10_000;
-
-/// The unit of each local coordinate: `rad` or `m`; empty where it is neither for certain.
-pub fn of_freedoms(derived: &Derived) -> Vec<&'static str> {
-    let freedoms = derived.spec.freedoms.value.iter().enumerate();
-    freedoms
-        .map(|(k, freedom)| unit(derived, k, freedom))
-        .collect()
+/// The unit of each stored scalar of Q; empty where the spec does not determine it.
+pub fn of_coordinates(derived: &Derived) -> Vec<String> {
+    let units = derived.spec.units.coordinates.iter();
+    units.map(|unit| told(unit.as_ref())).collect()
 }
 
-/// The unit of each v: that of ϕ̇, or, where a declared X makes it something else, that of a unit twist; empty where neither tells.
+/// The unit of each local coordinate; empty where the spec does not determine it.
+pub fn of_freedoms(derived: &Derived) -> Vec<String> {
+    let units = derived.spec.units.freedoms.iter();
+    units.map(|unit| told(unit.as_ref())).collect()
+}
+
+/// The unit of each ϕ̇, in the same way.
+pub fn of_local_rates(derived: &Derived) -> Vec<String> {
+    rates(&derived.spec.units.freedoms)
+}
+
+/// The unit of each v, in the same way.
 pub fn of_velocities(derived: &Derived) -> Vec<String> {
-    let spec = &derived.spec;
-    let is_declared = spec.twist_map.is_some() && spec.velocity.value == VelocityFrame::Rates;
-    let of_freedoms = of_freedoms(derived).into_iter().enumerate();
-    of_freedoms
-        .map(|(k, unit)| match is_declared && !is_rate(derived, k) {
-            true => per_second(of_twist(derived, twist_map(derived), k)),
-            false => per_second(unit),
-        })
-        .collect()
+    rates(&derived.spec.units.velocities)
 }
 
-/// X^c.
-fn twist_map(derived: &Derived) -> Option<&Matrix> {
-    let kernel = derived.kernel(KernelKind::TwistMapChild);
-    kernel.and_then(|kernel| kernel.outputs.first())
+/// The unit of each effort, which does work at a v, in the same way.
+pub fn of_efforts(derived: &Derived) -> Vec<String> {
+    let units = derived.spec.units.velocities.iter();
+    let efforts = units.map(|unit| unit.as_ref().map(Dimension::effort));
+    efforts.map(Option::unwrap_or_default).collect()
 }
 
-/// The unit of a rate; empty where that of what changes is.
-pub fn per_second(unit: &str) -> String {
-    match unit {
-        "" => String::new(),
-        unit => format!("{unit}/s"),
+/// The unit of each speed, in the same way.
+pub fn of_speed_rates(derived: &Derived) -> Vec<String> {
+    rates(&of_speeds(derived))
+}
+
+/// What each speed is the rate of. Where S̄ is derived, a speed is that of a v of which it is a number of times.
+pub fn of_speeds(derived: &Derived) -> Vec<Option<Dimension>> {
+    let units = &derived.spec.units;
+    if !units.speeds.is_empty() {
+        return units.speeds.clone();
     }
+    let kernel = derived.kernel(KernelKind::SpeedBasis);
+    let Some(basis) = kernel.and_then(|kernel| kernel.outputs.first()) else {
+        return units.velocities.clone();
+    };
+    let is_number = |i: usize, j: usize| {
+        let entry = basis.at(i, j);
+        !entry.is_zero() && entry.as_rational().is_some()
+    };
+    let unit = |j: usize| {
+        let own = (0..basis.rows()).find(|i| is_number(*i, j))?;
+        units.velocities.get(own).cloned().flatten()
+    };
+    (0..basis.columns()).map(unit).collect()
 }
 
-/// Whether v_k is the rate of ϕ_k: row k of S₀ is that of the identity.
-fn is_rate(derived: &Derived, k: usize) -> bool {
-    let velocity_map = derived.kernel(KernelKind::VelocityMap);
-    let Some(s) = velocity_map.and_then(|kernel| kernel.outputs.first()) else {
-        return false;
-    };
-    let mut columns = 0..s.columns();
-    columns.all(|j| match j == k {
-        true => s.at(k, j).is_one(),
-        false => s.at(k, j).is_zero(),
-    })
+fn told(unit: Option<&Dimension>) -> String {
+    unit.map(Dimension::in_units).unwrap_or_default()
 }
 
-fn unit(derived: &Derived, k: usize, freedom: &Freedom) -> &'static str {
-    let Some(factor) = derived.space.manifold.factors().get(freedom.factor) else {
-        return "";
-    };
-    let turns = |count: usize| {
-        freedom
-            .generator
-            .iter()
-            .take(count)
-            .any(|entry| !entry.is_zero())
-    };
-    let angle_if = |angle: bool| if angle { "rad" } else { "m" };
-    match factor.kind {
-        // A degree of freedom of `local` is what Φ makes of it.
-        _ if freedom.generator.is_empty() => of_twists(derived, k),
-        Kind::S1 | Kind::So2 | Kind::So3 | Kind::S3 | Kind::S2 => "rad",
-        Kind::Se2 => angle_if(turns(1)),
-        Kind::Se3 => angle_if(turns(3)),
-        Kind::Real(_) => of_twists(derived, k),
-    }
-}
-
-/// Of a coordinate by the first of the bodies whose twist tells.
-fn of_twists(derived: &Derived, k: usize) -> &'static str {
-    let bodies = derived.bodies();
-    let mut units = bodies.map(|body| of_twist(body, Some(&body.local_twist_map), k));
-    units.find(|unit| !unit.is_empty()).unwrap_or_default()
-}
-
-/// A coordinate is an angle or a length, and a velocity its rate, where its twist is a unit rotation or a unit translation.
-fn of_twist(derived: &Derived, twist_map: Option<&Matrix>, k: usize) -> &'static str {
-    let Some(twist_map) = twist_map else {
-        return "";
-    };
-    if twist_map.columns() <= k {
-        return "";
-    }
-    let column = twist_map.column(k);
-    let ideal = derived.space.manifold.ideal();
-    let is_unit = |part: &[Expr]| {
-        let square = || -> Expr { part.iter().map(Expr::square).sum() };
-        let unit = budget::scope(UNIT_WORK, || ideal.normal_form(&square()).is_one());
-        unit.unwrap_or(false)
-    };
-    let (angular, linear) = column.split_at(3);
-    match (
-        is_unit(angular),
-        angular.iter().all(Expr::is_zero) && is_unit(linear),
-    ) {
-        (true, _) => "rad",
-        (_, true) => "m",
-        _ => "",
-    }
+fn rates(units: &[Option<Dimension>]) -> Vec<String> {
+    let rates = units.iter().map(|unit| unit.as_ref().map(Dimension::rate));
+    rates.map(Option::unwrap_or_default).collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{UNIT_WORK, of_freedoms, of_velocities};
+    use super::{of_freedoms, of_speed_rates, of_velocities};
     use crate::derive;
-    use crate::expr::budget;
+    use crate::derived::Derived;
 
-    fn units(declared: &str) -> (Vec<&'static str>, Vec<String>) {
-        let source = format!("hamel = 1; joint test {{ {declared} }}");
-        let joint = derive(&source, "test").unwrap_or_else(|errors| panic!("{errors}"));
+    fn joint(declared: &str) -> Derived {
+        let source = format!("hamel = 1; joint test{declared}");
+        derive(&source, "test").unwrap_or_else(|errors| panic!("{errors}"))
+    }
+
+    fn units(declared: &str) -> (Vec<String>, Vec<String>) {
+        let joint = joint(&format!(" {{ {declared} }}"));
         (of_freedoms(&joint), of_velocities(&joint))
     }
 
@@ -146,31 +104,31 @@ mod tests {
             "config a: R1, b: R1; H = rot_z(a) * trans_z(b); X = [O(2, 2); 0, 1; O(2, 2); 1, 0];";
         assert_eq!(units(own).0, ["rad", "m"]);
         assert_eq!(units(own).1, ["m/s", "rad/s"]);
+        // Half of a rate is a rate.
         let double = "config a: R1; H = rot_z(a); X = [0; 0; 2; 0; 0; 0];";
-        assert_eq!(units(double).0, ["rad"]);
-        assert_eq!(units(double).1, [""]);
+        assert_eq!(units(double).1, ["rad/s"]);
     }
 
     #[test]
-    fn a_coordinate_of_neither_kind_has_no_unit() {
-        assert_eq!(
-            units("config a: R1; H = trans_z(a * a * a + a);"),
-            (vec![""], vec![String::new()])
-        );
+    fn a_coordinate_without_angle_or_length_is_a_number() {
+        let spiral = "(length: m > 0) { config t: R1; H = trans([length * t, length * t * t, length * pow(t, 3)]); }";
+        assert_eq!(of_freedoms(&joint(spiral)), ["1"]);
+        assert_eq!(of_velocities(&joint(spiral)), ["1/s"]);
     }
 
-    /// The column of X^c has 210 terms in an entry: its square would take more work than finding the unit is worth.
+    /// v of a linkage along the cross product of its relations, in metres, is a rate of turn over an area.
     #[test]
-    fn a_long_twist_is_no_unit_and_takes_little_work() {
-        let source = "hamel = 1;
-            joint bend(a: m, b: m, c: m, d: m) {
-                config q: R1;
-                H = trans([pow(a + b + c + d + q, 7), 0, q]);
-            }";
-        let derived = derive(source, "bend.joint").unwrap_or_else(|errors| panic!("{errors}"));
-        let (units, work) = budget::measured(|| of_freedoms(&derived));
-        assert_eq!(units, [""]);
-        // One test of length each for the angular and the linear part.
-        assert!(work <= 2 * UNIT_WORK, "{work} term operations");
+    fn a_velocity_along_relations_has_the_unit_of_its_scale() {
+        let four_bar = include_str!("../../../../joint-specs/four_bar.joint");
+        let four_bar = derive(four_bar, "four_bar").unwrap_or_else(|errors| panic!("{errors}"));
+        assert_eq!(of_velocities(&four_bar), ["1/(m^2 s)"]);
+    }
+
+    #[test]
+    fn speeds_of_a_derived_basis_have_the_units_of_their_velocities() {
+        let cart = "config Q: SE2; basis turn, forward, sideways of se2; velocity in child;
+            H = pose(rot_z(Q), [Q.x, Q.y, 0]); A = [0; 0; 1]; speeds turn, forward;";
+        let cart = joint(&format!(" {{ {cart} }}"));
+        assert_eq!(of_speed_rates(&cart), ["rad/s", "m/s"]);
     }
 }

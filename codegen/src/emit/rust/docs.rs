@@ -195,8 +195,6 @@ fn shape_of(derived: &Derived, kernel: &Kernel) -> String {
 }
 
 fn units_of(derived: &Derived, kind: KernelKind) -> String {
-    let owned = |unit: &str| unit.to_owned();
-    let of_freedoms = units::of_freedoms(derived);
     match kind {
         KernelKind::TwistMap | KernelKind::TwistMapChild => {
             let columns = match listed(&units::of_velocities(derived)).as_str() {
@@ -205,11 +203,8 @@ fn units_of(derived: &Derived, kind: KernelKind) -> String {
             };
             format!("rows rad/s (angular) and m/s (linear), {columns}")
         }
-        KernelKind::Local => listed(&of_freedoms.into_iter().map(owned).collect::<Vec<_>>()),
-        KernelKind::RetractDifferentialInverse => {
-            let rates = of_freedoms.into_iter().map(units::per_second);
-            listed(&rates.collect::<Vec<_>>())
-        }
+        KernelKind::Local => listed(&units::of_freedoms(derived)),
+        KernelKind::RetractDifferentialInverse => listed(&units::of_local_rates(derived)),
         KernelKind::BiasAcceleration => "rad/s² (angular) and m/s² (linear)".into(),
         KernelKind::PortValues => {
             let ports = derived.spec.ports.iter();

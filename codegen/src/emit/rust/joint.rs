@@ -12,9 +12,11 @@ use super::type_ident;
 use crate::derived::{Derived, Kernel, KernelKind, Structure};
 use crate::emit::method::{Method, absent, shared};
 use crate::emit::report::summary;
+use crate::emit::report::units;
 use crate::expr::Rational;
 use crate::model::VelocityFrame;
 use crate::text::inline;
+use crate::units::Dimension;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -26,6 +28,7 @@ pub fn tokens(derived: &Derived) -> TokenStream {
     let constants = constants(derived);
     let bodies = bodies::names(derived);
     let ports = ports(derived);
+    let units = units(derived);
     let relations = relations(derived);
     let pins = pins::constant(derived);
     let functions = shared::functions(derived);
@@ -50,6 +53,7 @@ pub fn tokens(derived: &Derived) -> TokenStream {
         #own
         impl Joint<#n, #k, #s, #c> for #name {
             #constants
+            #units
             #bodies
             #ports
             #relations
@@ -130,11 +134,46 @@ fn relations(derived: &Derived) -> Option<TokenStream> {
     derived.spec.implicit.as_ref()?;
     let relations = derived.spec.manifold.value.declared().iter();
     let texts = relations.map(|relation| format!("{relation} = 0"));
-    let units = &derived.spec.relation_units;
+    let units = derived.spec.units.relations.iter();
+    let units = units.map(|unit| unit.as_ref().map_or_else(String::new, Dimension::in_units));
     Some(quote! {
         const RELATIONS: &'static [&'static str] = &[#(#texts),*];
         const RELATION_UNITS: &'static [&'static str] = &[#(#units),*];
     })
+}
+
+/// The constant `UNITS`.
+fn units(derived: &Derived) -> TokenStream {
+    let listed = |units: Vec<Option<Dimension>>| {
+        let units = units.iter().map(|unit| self::unit(unit.as_ref()));
+        let units: Vec<TokenStream> = units.collect();
+        quote! { &[#(#units),*] }
+    };
+    let units = &derived.spec.units;
+    let coordinates = listed(units.coordinates.clone());
+    let freedoms = listed(units.freedoms.clone());
+    let velocities = listed(units.velocities.clone());
+    let speeds = listed(units::of_speeds(derived));
+    quote! {
+        const UNITS: ::hamel::joint::Units = {
+            use ::hamel::joint::{Unit, Units};
+            Units { coordinates: #coordinates, freedoms: #freedoms, velocities: #velocities, speeds: #speeds }
+        };
+    }
+}
+
+fn unit(unit: Option<&Dimension>) -> TokenStream {
+    let texts = unit.map(|unit| (unit.in_units(), unit.rate(), unit.effort()));
+    match texts.as_ref().map(|(name, ..)| name.as_str()) {
+        None => quote! { Unit::UNKNOWN },
+        Some("rad") => quote! { Unit::ANGLE },
+        Some("m") => quote! { Unit::LENGTH },
+        Some("1") => quote! { Unit::NUMBER },
+        Some(_) => {
+            let (name, rate, effort) = texts.unwrap_or_default();
+            quote! { Unit::new(#name, #rate, #effort) }
+        }
+    }
 }
 
 /// The constant `PORTS`; the trait's default where there are none. The runtime's type is written with its path: a joint may have its name.

@@ -215,7 +215,7 @@ fn filled(lines: &mut Vec<String>, i: usize) {
         return;
     };
     let level = indent(&lines[i]) + LEVEL;
-    let is_word = |c: char| c.is_alphanumeric() || "_.-\"".contains(c);
+    let is_word = |c: char| c.is_alphanumeric() || "_.:-\"".contains(c);
     let is_entry = |line: &str| {
         let entry = line.trim().strip_suffix(',');
         indent(line) == level && entry.is_some_and(|entry| entry.chars().all(is_word))

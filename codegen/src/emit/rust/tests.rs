@@ -22,7 +22,7 @@ joint ball {
 
 const CRANK: &str = "hamel = 1;
 /// Crank.
-joint crank(/** Radius. */ outer: m, inner: m) {
+joint crank(/** Radius. */ outer: m, inner: 1) {
     config q: R1;
     H = rot_z(q) * trans_x(outer) * trans_z(q / inner);
 }";
@@ -245,7 +245,7 @@ fn ranges_and_requirements_are_checked() {
     assert_contains(
         &emitted(&crank),
         &[
-            "ParameterInfo::new(\"outer\", \"m\", \"Radius.\"), ParameterInfo::new(\"inner\", \"m\", \"\")",
+            "ParameterInfo::new(\"outer\", \"m\", \"Radius.\"), ParameterInfo::new(\"inner\", \"1\", \"\")",
             "if outer == 0.0 {",
             "if inner == 0.0 {",
             "In m. It is other than 0.",
@@ -264,7 +264,7 @@ fn ranges_and_requirements_are_checked() {
     assert_contains(
         &text,
         &[
-            "ParameterInfo::new(\"inner\", \"m\", \"\").above(0.0).at_most(2.5)",
+            "ParameterInfo::new(\"inner\", \"1\", \"\").above(0.0).at_most(2.5)",
             "It is greater than 0 and at most 2.5.",
             "They must meet `outer > 2 * inner`.",
             "type T = f64;",

@@ -2,8 +2,11 @@
 
 use super::spline::falling;
 use super::{Curve, Outside};
-use crate::expr::{Function, Number, Rational};
+use crate::expr::{Expr, Function, Monomial, Number, Rational};
 use num_traits::Zero;
+
+/// Longest number that takes the place of a value, in bits.
+const LONGEST: u64 = 128;
 
 /// An arithmetic of numbers that are compared.
 pub trait Ordered: Number {
@@ -52,6 +55,62 @@ impl Curve {
             _ => self.on_piece(&argument, order),
         };
         self.in_unit_of_values(value, order)
+    }
+
+    /// The derivative of an order at an argument without symbols: exactly, where it has one value there that is no long number.
+    pub(super) fn at_number(&self, argument: &Expr, order: u8) -> Option<Expr> {
+        if !argument.symbols().is_empty() {
+            return None;
+        }
+        let definition = self.definition();
+        let per_degree = Expr::pi().scaled(&Rational::new(1.into(), 180.into()), &Monomial::one());
+        let degrees = per_degree.recip()?;
+        let argument = match definition.of_degrees {
+            true => argument * &degrees,
+            false => argument.clone(),
+        };
+        let value = self.exact(&argument.as_rational()?, order)?;
+        let mut value = Expr::rational(Some(value).filter(|value| value.bits() <= LONGEST)?);
+        if definition.of_degrees {
+            value = &value * &degrees.pow(order.into());
+        }
+        Some(match definition.in_degrees {
+            true => &value * &per_degree,
+            false => value,
+        })
+    }
+
+    /// The derivative of an order at a number in the unit of the knots; `None` where it jumps or is not defined.
+    fn exact(&self, x: &Rational, order: u8) -> Option<Rational> {
+        let definition = self.definition();
+        let (first, last) = self.ends();
+        let mut x = x.clone();
+        if definition.outside == Outside::Periodic {
+            let period = last - first;
+            let periods = floor(&((&x - first) / &period));
+            x = x - periods * &period;
+        }
+        let (below, above) = (x < *first, x > *last);
+        match definition.outside {
+            Outside::Undefined if below || above => return None,
+            Outside::Straight if below || above => {
+                let [value, slope] = self.at_end(above);
+                let end = if above { last } else { first };
+                return Some(match order {
+                    0 => value + slope * (&x - end),
+                    1 => slope,
+                    _ => Rational::zero(),
+                });
+            }
+            _ if order > self.smoothness() && definition.knots.contains(&x) => return None,
+            _ => {}
+        }
+        let inner = &definition.knots[1..definition.knots.len() - 1];
+        let piece = inner.partition_point(|knot| *knot <= x);
+        let t = &x - &definition.knots[piece];
+        let slopes = self.slopes(piece, order);
+        let powers = slopes.iter().rev();
+        Some(powers.fold(Rational::zero(), |sum, coefficient| sum * &t + coefficient))
     }
 
     /// The argument in the unit of the knots.
@@ -127,6 +186,15 @@ impl Curve {
         powers
             .map(|(power, coefficient)| coefficient * &falling(power, order))
             .collect()
+    }
+}
+
+/// The largest integer that is not above the number.
+fn floor(number: &Rational) -> Rational {
+    let towards_zero = Rational::from_integer(number.to_integer());
+    match towards_zero > *number {
+        true => towards_zero - Rational::from(1),
+        false => towards_zero,
     }
 }
 

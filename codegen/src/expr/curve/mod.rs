@@ -65,6 +65,8 @@ struct Interned {
     hash: u64,
     /// The numbers of kernels.
     table: Table,
+    /// The highest power that a polynomial has: derivatives of a higher order are 0.
+    highest: u8,
 }
 
 impl Curve {
@@ -74,10 +76,16 @@ impl Curve {
         definition.hash(&mut hasher);
         let hash = hasher.finish();
         let table = Table::new(&definition);
+        let powers = definition.pieces.iter().filter_map(|coefficients| {
+            let highest = coefficients.iter().rposition(|own| !own.is_zero())?;
+            u8::try_from(highest).ok()
+        });
+        let highest = powers.max().unwrap_or(0);
         Self(intern::object(Interned {
             definition,
             hash,
             table,
+            highest,
         }))
     }
 
@@ -130,12 +138,13 @@ impl Curve {
         }
     }
 
-    /// The derivative of this order at an argument; that of order 0 is the value.
+    /// The derivative of this order at an argument; that of order 0 is the value. A number where that is a short one.
     pub fn at(&self, argument: &Expr, order: u8) -> Expr {
-        match order <= self.definition().kind.degree() {
-            true => apply(Function::Curve(*self, order), vec![argument.clone()]),
-            false => Expr::zero(),
+        if order > self.0.highest {
+            return Expr::zero();
         }
+        let number = self.at_number(argument, order);
+        number.unwrap_or_else(|| apply(Function::Curve(*self, order), vec![argument.clone()]))
     }
 
     /// Its kind, its number of knots, and what it is beyond its ends.

@@ -72,7 +72,9 @@ impl Enclosed {
         let inside = self.between_ends(&hull(ends)?)?;
         match (self.curve.definition().outside, self.order) {
             (Outside::Undefined | Outside::Periodic, _) => Some(inside),
-            (Outside::Straight, 1..) => hull([inside, self.number(&Rational::zero())]),
+            // The slopes beyond the ends are those at the ends.
+            (Outside::Straight, 1) => Some(inside),
+            (Outside::Straight, 2..) => hull([inside, self.number(&Rational::zero())]),
             _ => None,
         }
     }

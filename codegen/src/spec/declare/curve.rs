@@ -71,6 +71,7 @@ pub(super) fn curve(
     match sound {
         Some(curve) => Ok(DeclaredCurve {
             curve,
+            units: units.map(|unit| unit::in_si(&unit.text).to_owned()),
             span: statement.span.clone(),
             file,
         }),

@@ -4,7 +4,6 @@ mod basis;
 mod bodies;
 mod config;
 mod curve;
-mod dimension;
 mod division;
 mod equation;
 mod freedoms;
@@ -31,12 +30,13 @@ use self::once::Once;
 use self::scope::Scope;
 use super::ast::File;
 use super::evaluate::Evaluator;
-use super::{code, limits};
+use super::{code, limits, units};
 use crate::diagnostic::Diagnostic;
 use crate::expr::budget;
 use crate::expr::curve::Curve;
 use crate::manifold::Manifold;
 use crate::model::{Declared, JointSpec, VelocityFrame, Worded};
+use crate::units::Units;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -121,7 +121,7 @@ fn declare(
     scope.factors(statements.config, manifold.value.factors());
     scope.lets(&statements.lets);
     let names = scope.names();
-    let manifold = relations::constrained(statements, manifold, scope.evaluator);
+    let (manifold, relation_spans) = relations::constrained(statements, manifold, scope.evaluator);
     let context = Context {
         file,
         statements,
@@ -142,9 +142,8 @@ fn declare(
         .as_ref()
         .and_then(|freedoms| retract::retract(&context, freedoms, evaluator));
     let bodies = bodies::bodies(source, file, statements, evaluator);
-    let ports = ports::ports(&context, source, &parameters, evaluator);
+    let ports = ports::ports(&context, source, evaluator);
     let pins = pins::pins(source, statements, evaluator);
-    let relation_units = dimension::of_relations(&parameters, &manifold.value);
     let matrices = match &freedoms {
         Some(freedoms) => Some(matrices::matrices(&context, &freedoms.names(), evaluator)),
         None => {
@@ -160,7 +159,7 @@ fn declare(
     };
     let Bodies { names, poses } = bodies?;
     let mut poses = poses.into_iter();
-    let spec = JointSpec {
+    let mut spec = JointSpec {
         name: Declared {
             value: file.name.text.clone(),
             span: file.name.span.clone(),
@@ -170,7 +169,8 @@ fn declare(
         parameters,
         requirements,
         manifold,
-        relation_units,
+        relation_spans,
+        units: Units::default(),
         loci,
         home_is_guess: home.is_guess,
         home: home.declared,
@@ -190,10 +190,18 @@ fn declare(
         worded,
         unproved: unproved::unproved(&statements.unproved, evaluator),
         curves,
+        calls: std::mem::take(&mut evaluator.calls),
     };
     evaluator
         .errors
         .extend(division::errors(&spec, statements.relations_span()));
+    // Values that are made beyond the budget are zero.
+    if !budget::is_exhausted() {
+        match units::of_spec(&spec) {
+            Ok(units) => spec.units = units,
+            Err(errors) => evaluator.errors.extend(errors),
+        }
+    }
     Some(spec)
 }
 

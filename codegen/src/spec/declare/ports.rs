@@ -7,16 +7,18 @@ use super::super::limits::MOST_PORTS;
 use super::super::value::Value;
 use super::super::{code, names};
 use super::once::{At, Once, line};
-use super::{Context, dimension, equation};
+use super::{Context, equation};
 use crate::diagnostic::Diagnostic;
 use crate::manifold::{Ideal, Kind};
-use crate::model::{self, Declared, Parameter, PortValue};
+use crate::model::{self, Declared, PortValue};
+
+/// Units that a port may have.
+const OF_PORTS: &[&str] = &["rad", "m"];
 
 /// All ports; those that are wrong are reported and left out.
 pub(super) fn ports(
     context: &Context<'_>,
     source: &str,
-    parameters: &[Parameter],
     evaluator: &mut Evaluator<'_>,
 ) -> Vec<Declared<model::Port>> {
     let statements = &context.statements.ports;
@@ -27,8 +29,7 @@ pub(super) fn ports(
         let port = at.value;
         let value = evaluator.bounded("port", at.span, |evaluator| {
             let value = value(port, evaluator)?;
-            let wrong = still(port, &value, manifold.ideal())
-                .or_else(|| dimension::error(port, &value, parameters, manifold));
+            let wrong = still(port, &value, manifold.ideal()).or_else(|| wrong_unit(port, &value));
             match wrong {
                 None => Some(value),
                 Some(error) => {
@@ -99,6 +100,27 @@ fn value(port: &Port, evaluator: &mut Evaluator<'_>) -> Option<PortValue> {
         return None;
     };
     Some(PortValue::Angle { cos, sin })
+}
+
+/// The error that the declared unit is none of a port, or not that of an angle.
+fn wrong_unit(port: &Port, value: &PortValue) -> Option<Diagnostic> {
+    let (name, unit) = (&port.name.text, &port.unit);
+    if !OF_PORTS.contains(&unit.text.as_str()) {
+        let message = format!("port `{name}` is in `{}`", unit.text);
+        let error = Diagnostic::new(code::UNIT, unit.span.clone(), message);
+        let error = error.label("no unit of a port");
+        return Some(error.help("a port is an angle in `rad` or a length in `m`"));
+    }
+    let is_angle = matches!(value, PortValue::Angle { .. });
+    (is_angle && unit.text != "rad").then(|| {
+        let message = format!(
+            "port `{name}` is an angle, and is declared in {}",
+            unit.text
+        );
+        Diagnostic::new(code::PORT, port.value.span.clone(), message)
+            .label("an angle")
+            .help("declare it in `rad`")
+    })
 }
 
 /// The error that the value does not depend on Q, if it does not.

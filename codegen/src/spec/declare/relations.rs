@@ -11,15 +11,18 @@ use crate::manifold::Manifold;
 use crate::model::Declared;
 use std::ops::Range;
 
-/// The part of the manifold where all relations hold; the manifold itself where some are wrong, which was reported.
+/// The part of the manifold where all relations hold, and where each of them stands; the manifold itself where some are wrong, which was
+/// reported.
 pub(super) fn constrained(
     statements: &Once<'_>,
     manifold: &Declared<Manifold>,
     evaluator: &mut Evaluator<'_>,
-) -> Declared<Manifold> {
-    let mut relations = vec![];
+) -> (Declared<Manifold>, Vec<Range<usize>>) {
+    let (mut relations, mut spans) = (vec![], vec![]);
     for at in &statements.relations {
-        relations.extend(relation(*at, manifold, evaluator).unwrap_or_default());
+        let own = relation(*at, manifold, evaluator).unwrap_or_default();
+        spans.extend(own.iter().map(|_| at.value.span()));
+        relations.extend(own);
     }
     let constrained = match statements.relations_span() {
         Some(span) if !relations.is_empty() => {
@@ -29,10 +32,11 @@ pub(super) fn constrained(
         }
         _ => None,
     };
-    Declared {
+    let constrained = Declared {
         value: constrained.unwrap_or_else(|| manifold.value.clone()),
         span: manifold.span.clone(),
-    }
+    };
+    (constrained, spans)
 }
 
 /// The polynomials of one statement, each once.

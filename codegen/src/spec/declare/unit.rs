@@ -57,6 +57,15 @@ pub(super) fn of_curve(unit: &Name) -> Fallible<Written> {
     Ok(Written { factor, degrees })
 }
 
+/// The unit in which the values of a curve are whose knots are in `unit`.
+pub(super) fn in_si(unit: &str) -> &str {
+    match unit {
+        "mm" => "m",
+        "deg" => "rad",
+        other => other,
+    }
+}
+
 /// The error that this is no unit, if it is none.
 pub(super) fn error(unit: &Name) -> Option<Diagnostic> {
     let unknown = unit

@@ -9,6 +9,7 @@ use super::function::Call;
 use crate::diagnostic::Diagnostic;
 use crate::expr::Expr;
 use crate::expr::curve::{Curve, Outside};
+use crate::model::Declared;
 use num_traits::ToPrimitive;
 use std::ops::Range;
 
@@ -27,8 +28,7 @@ impl Evaluator<'_> {
         if name.text != "derivative" {
             let known = self.curves.get(&name.text).copied().flatten();
             let values = self.values(arguments)?;
-            let value = value(&call, known?, &values, &[]);
-            return self.settle(value);
+            return self.called(&call, known?, &values, &[]);
         }
         let Some((first, rest)) = arguments.split_first() else {
             self.report(*call.refuse("a curve and an argument", &[]));
@@ -46,8 +46,26 @@ impl Evaluator<'_> {
         };
         let values = self.values(rest)?;
         let (argument, order) = values.split_at(values.len().min(1));
-        let value = value(&call, known?, argument, order);
-        self.settle(value)
+        self.called(&call, known?, argument, order)
+    }
+
+    /// The value of a call, which is kept.
+    fn called(
+        &mut self,
+        call: &Call<'_>,
+        curve: Curve,
+        arguments: &[Value],
+        order: &[Value],
+    ) -> Option<Value> {
+        let value = value(call, curve, arguments, order);
+        let value = self.settle(value)?;
+        if let [Value::Scalar(argument)] = arguments {
+            self.calls.push(Declared {
+                value: (curve, argument.clone()),
+                span: call.span.clone(),
+            });
+        }
+        Some(value)
     }
 }
 

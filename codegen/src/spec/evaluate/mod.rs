@@ -20,6 +20,7 @@ use super::{Fallible, code, limits, names};
 use crate::diagnostic::Diagnostic;
 use crate::expr::curve::Curve;
 use crate::expr::{Expr, budget};
+use crate::model::Declared;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
@@ -36,6 +37,8 @@ pub(super) struct Evaluator<'a> {
     pub lenient: bool,
     /// Curves by name; `None` for one that is wrong.
     pub curves: BTreeMap<String, Option<Curve>>,
+    /// Where curves are called, with which argument.
+    pub calls: Vec<Declared<(Curve, Expr)>>,
     /// The names that values get, where the declarations are wanted in names.
     pub words: Option<Words>,
 }
@@ -49,6 +52,7 @@ impl<'a> Evaluator<'a> {
             locals: None,
             lenient: false,
             curves: BTreeMap::new(),
+            calls: vec![],
             words: None,
         }
     }

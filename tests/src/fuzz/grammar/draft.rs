@@ -75,12 +75,12 @@ impl Draft {
     /// A parameter with a range in which it is positive.
     pub fn parameter(&mut self, random: &mut ChaCha8Rng) -> String {
         const RANGES: [(&str, f64); 6] = [
-            ("m > 0", 0.75),
-            ("m >= 1", 1.5),
+            ("1 > 0", 0.75),
+            ("1 >= 1", 1.5),
             ("1 > 0 <= 5", 2.5),
             ("1 in 1..8", 3.5),
-            ("m > 0.5", 0.75),
-            ("rad > 0 < 1.5", 0.5),
+            ("1 > 0.5", 0.75),
+            ("1 > 0 < 1.5", 0.5),
         ];
         let name = ["a", "b", "c", "d"][self.parameters.len() % 4].to_owned();
         let (range, value) = RANGES[random.random_range(0..RANGES.len())];

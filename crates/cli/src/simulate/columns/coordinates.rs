@@ -4,8 +4,8 @@
 //! pattern; that the joint's projection scales them back to their group makes sure of it.
 
 use super::super::sample::{quaternion, unit_quaternion};
-use super::units::Unit;
 use hamel::erased::AnyJoint;
+use hamel::joint::Unit;
 use nalgebra::Matrix3;
 
 /// A part of Q.
@@ -85,21 +85,28 @@ impl Kind {
 
     /// Names and units of the quantities that it is told in; those of a scalar are the joint's.
     pub const fn quantities(self) -> &'static [(&'static str, Unit)] {
-        use Unit::{Angle, Length, None};
+        const ANGLE: Unit = Unit::ANGLE;
+        const LENGTH: Unit = Unit::LENGTH;
+        const NUMBER: Unit = Unit::NUMBER;
         match self {
             Self::Scalar => &[],
-            Self::S1 | Self::So2 => &[("angle", Angle)],
-            Self::Se2 => &[("angle", Angle), ("x", Length), ("y", Length)],
-            Self::S2 => &[("x", None), ("y", None), ("z", None)],
-            Self::S3 | Self::So3 => &[("qx", None), ("qy", None), ("qz", None), ("qw", None)],
+            Self::S1 | Self::So2 => &[("angle", ANGLE)],
+            Self::Se2 => &[("angle", ANGLE), ("x", LENGTH), ("y", LENGTH)],
+            Self::S2 => &[("x", NUMBER), ("y", NUMBER), ("z", NUMBER)],
+            Self::S3 | Self::So3 => &[
+                ("qx", NUMBER),
+                ("qy", NUMBER),
+                ("qz", NUMBER),
+                ("qw", NUMBER),
+            ],
             Self::Se3 => &[
-                ("x", Length),
-                ("y", Length),
-                ("z", Length),
-                ("qx", None),
-                ("qy", None),
-                ("qz", None),
-                ("qw", None),
+                ("x", LENGTH),
+                ("y", LENGTH),
+                ("z", LENGTH),
+                ("qx", NUMBER),
+                ("qy", NUMBER),
+                ("qz", NUMBER),
+                ("qw", NUMBER),
             ],
         }
     }
@@ -173,8 +180,8 @@ fn stem<'n>(names: &[&'n str], ends: &[&str]) -> Option<&'n str> {
 #[cfg(test)]
 mod tests {
     use super::{Factor, Kind};
-    use crate::simulate::columns::units::{Unit, Units};
     use hamel::erased::AnyJoint;
+    use hamel::joint::Unit;
     use std::sync::Arc;
 
     /// A joint of the library; parameters from 0.2 to 1.2 are tried until they meet its requirements.
@@ -221,30 +228,31 @@ mod tests {
 
     #[test]
     fn units_are_those_of_the_pages() {
-        let units = |name: &str| Units::of(&*joint(name));
-        let (angle, length) = (Unit::Angle, Unit::Length);
+        let units = |name: &str| joint(name).units();
+        let (angle, length) = (Unit::ANGLE, Unit::LENGTH);
         assert_eq!(units("ellipse").freedoms, [angle]);
         assert_eq!(units("screw").velocities, [angle]);
-        assert_eq!(units("cylindrical").scalars, [angle, length]);
+        assert_eq!(units("cylindrical").coordinates, [angle, length]);
         assert_eq!(units("cart").speeds, [angle, length]);
         assert_eq!(units("falling_disk").speeds, [angle; 3]);
+        assert_eq!(units("rail").coordinates, [length]);
+        assert_eq!(units("rail").speeds, [length]);
+        // v moves the links by products of two lengths.
+        let four_bar = Unit::new("1/m^2", "1/(m^2 s)", "N m^3");
+        assert_eq!(units("four_bar").velocities, [four_bar]);
         let wheel = units("upright_wheel");
         assert_eq!(wheel.freedoms, [angle, length, length, angle]);
-        assert_eq!(wheel.speeds, [angle; 2]);
-        assert_eq!(units("car").freedoms[3..], [angle; 5]);
-        // Its v runs along the cross product of its relations, which has a scale of its own.
-        assert_eq!(units("four_bar").velocities, [Unit::None]);
-        let joints = hamel_joints::registry();
-        // Nor is the rail's x the length of its track.
-        let without = ["four_bar", "rail"];
-        for entry in joints
-            .entries()
-            .filter(|entry| !without.contains(&entry.name))
-        {
+        assert_eq!(wheel.speeds, [angle, angle]);
+        for entry in hamel_joints::registry().entries() {
             let found = units(entry.name);
-            let all = found.freedoms.iter().chain(&found.speeds);
-            let all: Vec<_> = all.chain(&found.velocities).collect();
-            assert!(!all.contains(&&Unit::None), "{}: {found:?}", entry.name);
+            let all = [
+                found.coordinates,
+                found.freedoms,
+                found.velocities,
+                found.speeds,
+            ];
+            let all = all.concat();
+            assert!(!all.contains(&Unit::UNKNOWN), "{}: {found:?}", entry.name);
         }
     }
 }

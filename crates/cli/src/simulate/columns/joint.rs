@@ -2,16 +2,15 @@
 
 use super::coordinates::{Factor, Kind};
 use super::turns::{Angle, Turn, port_rate, velocity};
-use super::units::{Unit, Units};
 use super::{Columns, Ending, List};
-use hamel::joint::Port;
+use hamel::joint::{Port, Unit, Units};
 use hamel::mechanism::{Body, Mechanism};
 
 impl<'a> Columns<'a> {
     /// Coordinates and speeds of all joints.
     pub(super) fn joints(&mut self, mechanism: &'a Mechanism, tells_forces: bool) {
         for (index, body) in mechanism.joints() {
-            let units = Units::of(body.joint());
+            let units = body.joint().units();
             self.enter(Some(List::Joints), body.joint_name());
             self.coordinates(index, body, &units);
             let speeds = body.ranges().speeds.clone();
@@ -38,7 +37,7 @@ impl<'a> Columns<'a> {
         }));
         let values = ports.iter().map(|port| Ending {
             name: format!("port.{}", port.name),
-            unit: unit(port).coordinate(),
+            unit: port.unit,
             meaning: String::from(match port.wraps {
                 true => "angle of the port, not reduced to a turn",
                 false => "value of the port",
@@ -55,7 +54,7 @@ impl<'a> Columns<'a> {
         });
         let rates = ports.iter().map(|port| Ending {
             name: format!("rate.{}", port.name),
-            unit: unit(port).rate(),
+            unit: unit(port).rate,
             meaning: String::from("rate of the port"),
         });
         let speeds = body.ranges().speeds.clone();
@@ -69,7 +68,7 @@ impl<'a> Columns<'a> {
     /// τ of all joints.
     pub(super) fn efforts(&mut self, mechanism: &'a Mechanism) {
         for (_, body) in mechanism.joints() {
-            let units = Units::of(body.joint());
+            let units = body.joint().units();
             self.enter(Some(List::Efforts), body.joint_name());
             let freedoms = body.ranges().freedoms.clone();
             self.add("tau", effort_endings(body, &units), move |moment, row| {
@@ -104,9 +103,9 @@ impl<'a> Columns<'a> {
 
 fn unit(port: &Port) -> Unit {
     match port.unit {
-        "rad" => Unit::Angle,
-        "m" => Unit::Length,
-        _ => Unit::None,
+        "rad" => Unit::ANGLE,
+        "m" => Unit::LENGTH,
+        _ => Unit::UNKNOWN,
     }
 }
 
@@ -116,7 +115,7 @@ fn coordinate_endings(factors: &[Factor], units: &Units) -> Vec<Ending> {
         let stem = factor.stem.trim_end_matches('_');
         let quantities = factor.kind.quantities();
         let scalar = || {
-            let unit = units.scalars[factor.first];
+            let unit = units.coordinate(factor.first);
             vec![ending("q", factor.stem.clone(), unit, meaning(unit))]
         };
         match quantities {
@@ -133,7 +132,7 @@ fn coordinate_endings(factors: &[Factor], units: &Units) -> Vec<Ending> {
                     };
                     let meaning = match (factor.kind, unit) {
                         (Kind::S2, _) => "unit vector in Q",
-                        (_, Unit::None) => {
+                        (_, &Unit::NUMBER) => {
                             "attitude in Q as unit quaternion, scalar last and not negative"
                         }
                         (_, unit) => meaning(*unit),
@@ -148,29 +147,29 @@ fn coordinate_endings(factors: &[Factor], units: &Units) -> Vec<Ending> {
 }
 
 /// Of a coordinate.
-const fn meaning(unit: Unit) -> &'static str {
+fn meaning(unit: Unit) -> &'static str {
     match unit {
-        Unit::Angle => "angle of the joint, not reduced to a turn",
-        Unit::Length => "displacement of the joint",
-        Unit::None => "stored scalar of Q",
+        Unit::ANGLE => "angle of the joint, not reduced to a turn",
+        Unit::LENGTH => "displacement of the joint",
+        _ => "stored scalar of Q",
     }
 }
 
 fn speed_endings(body: &Body, units: &Units) -> Vec<Ending> {
-    let speeds = body.joint().speeds().iter().zip(&units.speeds);
-    let endings = speeds.map(|(name, unit)| Ending {
+    let speeds = body.joint().speeds().iter().enumerate();
+    let endings = speeds.map(|(place, name)| Ending {
         name: format!("v.{name}"),
-        unit: unit.rate(),
+        unit: units.speed(place).rate,
         meaning: String::from("speed of the joint"),
     });
     endings.collect()
 }
 
 fn effort_endings(body: &Body, units: &Units) -> Vec<Ending> {
-    let freedoms = body.joint().freedoms().iter().zip(&units.velocities);
-    let endings = freedoms.map(|(name, unit)| Ending {
+    let freedoms = body.joint().freedoms().iter().enumerate();
+    let endings = freedoms.map(|(place, name)| Ending {
         name: format!("tau.{name}"),
-        unit: unit.effort(),
+        unit: units.velocity(place).effort,
         meaning: String::from("effort of the controller"),
     });
     endings.collect()
@@ -179,10 +178,7 @@ fn effort_endings(body: &Body, units: &Units) -> Vec<Ending> {
 fn ending(key: &str, name: String, unit: Unit, meaning: &str) -> Ending {
     Ending {
         name: format!("{key}.{name}"),
-        unit: match unit {
-            Unit::None if meaning != self::meaning(Unit::None) => "1",
-            unit => unit.coordinate(),
-        },
+        unit: unit.name,
         meaning: meaning.to_owned(),
     }
 }

@@ -7,13 +7,11 @@ mod joint;
 mod parts;
 mod sample;
 mod turns;
-mod units;
 
 pub use header::are_columns;
 pub use parts::BODY;
 pub use sample::JsonSample;
 pub use turns::Turns;
-pub use units::Units;
 
 use super::plan::Plan;
 use forces::Notes;
@@ -30,7 +28,7 @@ use turns::Turn;
 pub struct Column {
     /// Its name in CSV and Parquet, with the unit.
     pub name: String,
-    /// SI unit; `1` for a number without one, empty where the joint's coordinate is neither an angle nor a length.
+    /// SI unit; `1` for a number without one, empty where the joint's spec does not determine it.
     pub unit: &'static str,
     /// What it is, in which axes.
     pub meaning: String,
@@ -278,10 +276,14 @@ impl<'a> Columns<'a> {
     }
 }
 
-/// A unit at the end of a name: `_m_per_s`.
+/// A unit at the end of a name: `_m_per_s`, `_per_m2_s`.
 fn suffix(unit: &str) -> String {
     match unit {
         "" | "1" => String::new(),
-        unit => format!("_{}", unit.replace('/', "_per_").replace(' ', "_")),
+        unit => {
+            let plain = unit.replace(['(', ')', '^'], "").replace(' ', "_");
+            let written = plain.replace('/', "_per_");
+            format!("_{}", written.strip_prefix("1_").unwrap_or(&written))
+        }
     }
 }

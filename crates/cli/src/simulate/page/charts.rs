@@ -1,8 +1,8 @@
 //! What the page plots: which columns there are, what they are called, and their values at a time.
 
-use super::super::columns::Units;
 use super::super::plan::Plan;
 use super::unwrapped::Unwrapped;
+use hamel::erased::AnyJoint;
 use hamel::integrate::Step;
 use hamel::mechanism::{Body, Kinematics, Mechanism};
 use hamel::spatial::split;
@@ -171,25 +171,34 @@ fn described(plan: &Plan, next: &mut usize) -> Vec<Chart> {
         plain(&about("the centre of mass"), "kg m²/s", &["x", "y", "z"]),
     ];
     let joints = |names: fn(&Body) -> &[&'static str],
-                  units: fn(&Units) -> Vec<&'static str>,
+                  units: fn(&dyn AnyJoint) -> Vec<&'static str>,
                   next: &mut usize| {
         let variants = mechanism.joints().map(|(index, body)| {
             let columns = numbered(names(body).iter().copied(), next);
-            let unit = distinct(units(&Units::of(body.joint())));
+            let unit = distinct(units(body.joint()));
             variant(body.joint_name(), &unit, Some(index), columns)
         });
         variants.collect::<Vec<_>>()
     };
-    let rates = |units: &Units| units.speeds.iter().map(|unit| unit.rate()).collect();
-    let lengths = |units: &Units| {
-        units
-            .freedoms
-            .iter()
-            .map(|unit| unit.coordinate())
+    let rates = |joint: &dyn AnyJoint| {
+        let speeds = 0..joint.layout().speeds;
+        speeds
+            .map(|place| joint.units().speed(place).rate)
             .collect()
     };
-    let forces = |units: &Units| units.velocities.iter().map(|unit| unit.effort()).collect();
-    let coordinates = joints(|body| body.joint().freedoms(), lengths, next);
+    let coordinates = |joint: &dyn AnyJoint| {
+        let freedoms = 0..joint.layout().freedoms;
+        freedoms
+            .map(|place| joint.units().freedom(place).name)
+            .collect()
+    };
+    let forces = |joint: &dyn AnyJoint| {
+        let freedoms = 0..joint.layout().freedoms;
+        freedoms
+            .map(|place| joint.units().velocity(place).effort)
+            .collect()
+    };
+    let coordinates = joints(|body| body.joint().freedoms(), coordinates, next);
     let speeds = joints(|body| body.joint().speeds(), rates, next);
     let efforts = match plan.control.is_some() {
         true => joints(|body| body.joint().freedoms(), forces, next),

@@ -2,8 +2,7 @@
 
 use crate::model::Model;
 use hamel_codegen::derived::Derived;
-use hamel_codegen::emit::report::units::{of_freedoms, of_velocities};
-use hamel_codegen::manifold::Kind;
+use hamel_codegen::emit::report::units::{of_coordinates, of_efforts, of_speed_rates};
 use hamel_codegen::model::VelocityFrame;
 use hamel_codegen::text::one_line;
 use serde::Serialize;
@@ -72,55 +71,29 @@ fn axes(derived: &Derived) -> &'static str {
     }
 }
 
-/// Stored scalars with their units: entries of matrices, quaternions and unit vectors have none.
+/// Stored scalars with their units: those of matrices, quaternions and unit vectors, which are numbers, stand without.
 fn stored(derived: &Derived) -> Vec<String> {
-    let (freedoms, units) = (freedoms(derived), of_freedoms(derived));
-    let unit_of = |name: &str| {
-        let own = freedoms.iter().position(|freedom| *freedom == name);
-        own.map_or("", |own| units[own])
-    };
-    let factors = derived.space.manifold.factors().iter();
-    let named = factors.flat_map(|factor| {
-        let scalars = factor.coordinates.iter().enumerate();
-        scalars.map(|(place, symbol)| {
-            let unit = match factor.kind {
-                Kind::Real(_) => unit_of(&symbol.name),
-                // The last column of a motion's matrix is a displacement.
-                Kind::Se2 if place % 3 == 2 => "m",
-                Kind::Se3 if place % 4 == 3 => "m",
-                _ => "",
-            };
-            named(&symbol.name, unit)
-        })
-    });
-    named.collect()
-}
-
-fn freedoms(derived: &Derived) -> Vec<&str> {
-    let freedoms = derived.spec.freedoms.value.iter();
-    freedoms.map(|freedom| freedom.name.as_str()).collect()
+    let coordinates = derived.space.manifold.coordinates();
+    let units = of_coordinates(derived).into_iter();
+    let units = units.map(|unit| if unit == "1" { String::new() } else { unit });
+    let scalars = coordinates.iter().zip(units);
+    scalars
+        .map(|(symbol, unit)| named(&symbol.name, &unit))
+        .collect()
 }
 
 /// Efforts do work with velocities.
 fn efforts(derived: &Derived) -> Vec<String> {
-    let units = of_velocities(derived).into_iter();
-    let units = units.map(|unit| match unit.as_str() {
-        "rad/s" => "N m",
-        "m/s" => "N",
-        _ => "",
-    });
-    let freedoms = freedoms(derived).into_iter().zip(units);
-    freedoms.map(|(name, unit)| named(name, unit)).collect()
+    let freedoms = derived.spec.freedoms.value.iter();
+    let freedoms = freedoms.zip(of_efforts(derived));
+    freedoms
+        .map(|(freedom, unit)| named(&freedom.name, &unit))
+        .collect()
 }
 
-/// A speed that is called after a degree of freedom is its velocity.
 fn speeds(derived: &Derived) -> Vec<String> {
-    let (freedoms, units) = (freedoms(derived), of_velocities(derived));
-    let speeds = derived.speed_names.iter().map(|name| {
-        let own = freedoms.iter().position(|freedom| freedom == name);
-        named(name, own.map_or("", |own| &units[own]))
-    });
-    speeds.collect()
+    let speeds = derived.speed_names.iter().zip(of_speed_rates(derived));
+    speeds.map(|(name, unit)| named(name, &unit)).collect()
 }
 
 /// `turn (rad/s)`.

@@ -1,0 +1,316 @@
+//! Units of a joint: the exponents of metre, kilogram and second of everything that its spec declares, by linear equations between them.
+//!
+//! Parameters, curves and ports have the unit that is declared; entries of rotations, and of factors that are rotations, are numbers; displacements of H
+//! and of motions, and points of pins, are lengths. Terms of a sum are alike, arguments of sine and cosine are angles, and an angle is a number.
+//! What real coordinates, ϕ, v and speeds are follows by elimination.
+//!
+//! Numbers, and parameters of unit 1, are without unit where that fits. A number may also stand for a quantity: then it has the unit that is missing, as in
+//! `trans_z(0.3 * cos(a))`, unless every term of its sum holds a declared length. A product without number and without declared quantity counts as one with
+//! the number 1 before it, as in `trans([x, x * x, 0])`. Equations of such terms are tried last, and those that do not fit are let go.
+
+mod declarations;
+mod message;
+mod quantities;
+mod system;
+
+use self::system::{Form, System};
+use crate::diagnostic::Diagnostic;
+use crate::expr::curve::Curve;
+use crate::expr::{self, Expr, Rational, Symbol};
+use crate::model::JointSpec;
+use crate::units::{ANGLE, COMPARED, Dimension, Units};
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
+/// The units of what the spec declares.
+///
+/// # Errors
+/// Each statement whose terms have other units than they should, with the first of its contradictions.
+pub(super) fn of_spec(spec: &JointSpec) -> Result<Units, Vec<Diagnostic>> {
+    let mut analysis = Analysis::new(spec);
+    let asked = analysis.declarations();
+    let (system, errors) = analysis.solved();
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    let angles = analysis.angles();
+    let tell = |units: &[Form]| -> Vec<Option<Dimension>> {
+        units
+            .iter()
+            .map(|unit| told(&system, &angles, unit))
+            .collect()
+    };
+    Ok(Units {
+        coordinates: tell(&asked.coordinates),
+        freedoms: tell(&asked.freedoms),
+        velocities: tell(&asked.velocities),
+        speeds: tell(&asked.speeds),
+        relations: tell(&asked.relations),
+    })
+}
+
+/// A unit by both systems: that of angles only counts where it is whole.
+fn told(system: &System, angles: &System, unit: &Form) -> Option<Dimension> {
+    let (_, mut dimension) = system.value(unit)?.split();
+    if let Some(angle) = angles.value(unit) {
+        let (power, _) = angle.split();
+        let is_angle = dimension.vanishes(&COMPARED) && power == Rational::from(1);
+        if is_angle {
+            dimension = Dimension::angle();
+        }
+    }
+    Some(dimension)
+}
+
+/// The units that [`Units`] tells.
+struct Asked {
+    coordinates: Vec<Form>,
+    freedoms: Vec<Form>,
+    velocities: Vec<Form>,
+    speeds: Vec<Form>,
+    relations: Vec<Form>,
+}
+
+/// What an equation says of, for its message.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Blame {
+    /// `port `a``, `H of `rod``.
+    element: String,
+    /// The function that takes the terms.
+    within: Option<&'static str>,
+    role: Role,
+    span: Range<usize>,
+}
+
+/// What a coordinate that stands alone in an equation counts as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Role {
+    /// An angle, because it is the argument of a sine.
+    Angle,
+    /// A length, because H moves by it.
+    Length,
+    /// What is declared.
+    Declared,
+    /// What a condition compares, where numbers may have units.
+    Condition,
+}
+
+impl Blame {
+    fn new(element: impl Into<String>, span: &Range<usize>) -> Self {
+        Self {
+            element: element.into(),
+            within: None,
+            role: Role::Declared,
+            span: span.clone(),
+        }
+    }
+
+    fn of(self, role: Role) -> Self {
+        Self { role, ..self }
+    }
+
+    /// The argument of a function in it.
+    fn within(&self, function: &'static str) -> Self {
+        Self {
+            within: Some(function),
+            ..self.clone()
+        }
+    }
+}
+
+/// The unit that a term should have.
+enum Wanted {
+    Unit(Form),
+    /// That of another term, with its text.
+    LikeTerm(Form, String),
+}
+
+/// A unit that is 1.
+struct Equation {
+    unit: Form,
+    /// Whether it compares other things than angles and numbers.
+    of_lengths: bool,
+    /// Whether a spec in which it is not is wrong.
+    is_strict: bool,
+    blame: Blame,
+    wanted: Wanted,
+    /// The term that it is about.
+    term: String,
+    /// The coordinate that this is, in some direction.
+    alone: Option<Symbol>,
+}
+
+/// What is known of units, and what is said of them.
+struct Analysis<'s> {
+    spec: &'s JointSpec,
+    symbols: BTreeMap<Symbol, Form>,
+    /// Parameters with a unit.
+    declared: BTreeSet<Symbol>,
+    /// Real coordinates, displacements and ϕ.
+    quantities: BTreeSet<Symbol>,
+    /// Units of sums inside functions.
+    sums: BTreeMap<Expr, Form>,
+    unknowns: usize,
+    equations: Vec<Equation>,
+}
+
+impl<'s> Analysis<'s> {
+    fn new(spec: &'s JointSpec) -> Self {
+        let mut analysis = Self {
+            spec,
+            symbols: BTreeMap::new(),
+            declared: BTreeSet::new(),
+            quantities: BTreeSet::new(),
+            sums: BTreeMap::new(),
+            unknowns: 0,
+            equations: vec![],
+        };
+        for parameter in &spec.parameters {
+            let unit = Form::known(Dimension::parsed(&parameter.unit));
+            analysis.symbols.insert(parameter.symbol.clone(), unit);
+            // One without unit is a number that the scene writes.
+            if parameter.unit != "1" {
+                analysis.declared.insert(parameter.symbol.clone());
+            }
+        }
+        analysis
+    }
+
+    /// A coordinate, or a ϕ.
+    fn quantity(&mut self, symbol: &Symbol, unit: Form) {
+        self.quantities.insert(symbol.clone());
+        self.symbols.insert(symbol.clone(), unit);
+    }
+
+    fn new_unknown(&mut self) -> Form {
+        self.unknowns += 1;
+        Form::unknown(self.unknowns)
+    }
+
+    /// That of a curve's derivative of this order.
+    fn curve(&self, curve: Curve, order: u8) -> Form {
+        let mut declared = self.spec.curves.iter();
+        let Some(declared) = declared.find(|declared| declared.curve == curve) else {
+            return Form::default();
+        };
+        let [argument, mut unit] = declared
+            .units
+            .each_ref()
+            .map(|unit| Dimension::parsed(unit));
+        unit.add(&argument, &Rational::from(-i64::from(order)));
+        Form::known(unit)
+    }
+
+    /// All equations together: those that must hold, then those that may; and the errors of those that must and do not.
+    fn solved(&self) -> (System, Vec<Diagnostic>) {
+        let mut system = System::new(COMPARED);
+        let mut errors: Vec<Diagnostic> = vec![];
+        let numbers = self.numbers();
+        let is_strict = |equation: &&Equation| {
+            let is_number =
+                |symbol: &Symbol| numbers.contains(symbol) || symbol.role == expr::Role::Local;
+            let is_number = equation.alone.as_ref().is_some_and(is_number);
+            equation.is_strict && !(is_number && equation.blame.role != Role::Declared)
+        };
+        let (strict, others): (Vec<_>, Vec<_>) = self.equations.iter().partition(is_strict);
+        for equation in strict {
+            if let Err(excess) = system.say(&equation.unit)
+                && errors.iter().all(|error| error.span != equation.blame.span)
+            {
+                errors.push(message::error(equation, &excess, &system));
+            }
+        }
+        for equation in others {
+            // One that does not fit has a number with a unit in it.
+            _ = system.say(&equation.unit);
+        }
+        (system, errors)
+    }
+
+    /// Coordinates that stand alone both as an angle and as a length, as in `trans([x, sin(x), 0])`: they are numbers, of radians and of metres.
+    fn numbers(&self) -> BTreeSet<&Symbol> {
+        let of = |role| -> BTreeSet<&Symbol> {
+            let own = self
+                .equations
+                .iter()
+                .filter(|equation| equation.blame.role == role);
+            own.filter_map(|equation| equation.alone.as_ref()).collect()
+        };
+        of(Role::Angle)
+            .intersection(&of(Role::Length))
+            .copied()
+            .collect()
+    }
+
+    /// Which of the quantities are angles: by equations between angles and numbers first, because a length may be that of an angle as well as of a number.
+    fn angles(&self) -> System {
+        let mut system = System::new(ANGLE);
+        let mut equations: Vec<&Equation> = self.equations.iter().collect();
+        equations.sort_by_key(|equation| (equation.of_lengths, !equation.unit.has_known(&ANGLE)));
+        for equation in equations {
+            // An angle is a number: nothing is wrong where it counts as both.
+            _ = system.say(&equation.unit);
+        }
+        system
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::spec::parse;
+    use crate::units::Dimension;
+
+    /// Units of Q; `?` where they are not determined.
+    fn coordinates(declared: &str) -> Vec<String> {
+        let source = format!("hamel = 1; joint test{declared}");
+        let spec = parse(&source, "test").unwrap_or_else(|errors| panic!("{errors}"));
+        let units = spec.units.coordinates.iter();
+        let told = units.map(|unit| unit.as_ref().map(Dimension::in_units));
+        told.map(|unit| unit.unwrap_or_else(|| "?".into()))
+            .collect()
+    }
+
+    #[test]
+    fn what_the_spec_does_not_determine_has_no_unit() {
+        let steered = " { config q: R1, steer: R1; H = trans_z(q); }";
+        assert_eq!(coordinates(steered), ["m", "?"]);
+    }
+
+    #[test]
+    fn numbers_have_the_unit_that_is_missing() {
+        for (declared, units) in [
+            (" { config q: R1; H = trans_z(0.3 * cos(q)); }", "rad"),
+            (" { config x: R1; H = trans([x, x * x, 0]); }", "m"),
+            (" { config x: R1; H = trans([x, sin(x), 0]); }", "m"),
+            (" { config q: R1; H = rot_z(q) * trans_z(q); }", "rad"),
+            (
+                "(a: 1) { config q: R1; H = rot_z(q) * trans_z(a * q); }",
+                "rad",
+            ),
+            (
+                "(l: m) { config q: R1; H = rot_z(q) * trans_x(l + 0.3); }",
+                "rad",
+            ),
+            (
+                "(l: m) { config x: R1; H = trans([x, l * sin(x / l), 0]); }",
+                "m",
+            ),
+        ] {
+            assert_eq!(coordinates(declared), [units], "{declared}");
+        }
+    }
+
+    #[test]
+    fn units_go_through_relations_and_curves() {
+        let through = "(l: m) {
+            curve f(mm): deg = cubic natural through [0, 0], [10, 30], [20, 90];
+            config  x: R1, y: R1, q: R1;
+            relation x = 2 * y;
+            relation q * l = x;
+            home    = 0, 0, 0;
+            basis   along of r1(y);
+            H = rot_z(f(x));
+        }";
+        assert_eq!(coordinates(through), ["m", "m", "1"]);
+    }
+}
