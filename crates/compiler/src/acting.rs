@@ -10,6 +10,15 @@ use hamel_runtime::mechanism::CONFIGURATION_TOLERANCE;
 use hamel_scene::{BodyDescription, Position, SpringEnergy};
 use nalgebra::{DMatrix, DVector, Matrix3};
 
+/// The index of a joint's port.
+pub fn port_of(body: &BodyDescription, joint: &JointType, name: &str) -> Option<usize> {
+    let mut known = joint.derived.spec.ports.iter();
+    match &body.joint.coupling {
+        Some(coupling) => coupling.port(name),
+        None => known.position(|port| port.value.name == name),
+    }
+}
+
 /// A joint of a scene whose type and parameters are known.
 pub struct Held<'a> {
     /// What of it is asked for, in messages.
@@ -74,14 +83,9 @@ impl Held<'_> {
     pub fn add_ports(&self, elements: &mut Elements) -> Result<(), Vec<String>> {
         let (mut reasons, body) = (vec![], self.index);
         let (joint, kind) = (&self.body.joint.name.value, &self.body.joint.kind.value);
-        let known = &self.joint.derived.spec.ports;
         for forces in &self.body.forces.ports {
             let name = &forces.name.value;
-            let port = match &self.body.joint.coupling {
-                Some(coupling) => coupling.port(name),
-                None => known.iter().position(|port| port.value.name == *name),
-            };
-            let Some(port) = port else {
+            let Some(port) = port_of(self.body, self.joint, name) else {
                 reasons.push(format!(
                     "joint `{joint}`: its type `{kind}` has no port `{name}`"
                 ));
@@ -99,13 +103,15 @@ impl Held<'_> {
             }
             if forces.spring.is_some() || forces.damping > 0.0 {
                 let spring = forces.spring.unwrap_or_default();
+                let rest = spring.rest.map_or_else(|| self.home_value(port), Ok);
+                let rest = rest.map_err(|reason| reasons.push(reason));
                 elements.port_springs.push(PortSpring {
                     name: forces.element("spring", joint),
                     body,
                     port,
                     stiffness: spring.stiffness,
                     damping: forces.damping,
-                    rest: spring.rest,
+                    rest: rest.unwrap_or_default(),
                 });
             }
         }
@@ -113,6 +119,16 @@ impl Held<'_> {
             true => Ok(()),
             false => Err(reasons),
         }
+    }
+
+    /// The value of a port at home.
+    fn home_value(&self, port: usize) -> Result<f64, String> {
+        let home = self.rest(&Position::Home)?;
+        let values = self.numbers(self.at(&home, |joint| joint.port_values()))?;
+        values
+            .get(port)
+            .copied()
+            .ok_or_else(|| self.refused("it is not finite"))
     }
 
     fn refused(&self, reason: &str) -> String {

@@ -53,6 +53,8 @@ pub struct PortForces {
     pub spring: Option<PortSpringDescription>,
     /// Viscous damping c: the effort −c w; 0 without.
     pub damping: f64,
+    /// Inertia of what turns or slides with it, kg m² or kg; 0 without.
+    pub armature: f64,
 }
 
 impl PortForces {
@@ -67,8 +69,8 @@ impl PortForces {
 pub struct PortSpringDescription {
     /// N m/rad or N/m.
     pub stiffness: f64,
-    /// The value of the port at which it is at rest, rad or m.
-    pub rest: f64,
+    /// The value of the port at which it is at rest, rad or m; that at the joint's home without.
+    pub rest: Option<f64>,
 }
 
 /// Coulomb's friction at a joint with one degree of freedom, N m or N.

@@ -21,6 +21,7 @@ pub use body::{BodySpring, BodyWrench, WrenchAxes};
 pub use constraint::PointConstraint;
 pub use drive::Drive;
 pub use error::ElementError;
+pub(crate) use error::values;
 pub use joint::{JointDamper, JointEffort};
 pub use limit::{JointLimit, is_one_coordinate};
 pub use port::{PortEffort, PortSpring};

@@ -73,7 +73,7 @@ fn refusal(initial: &str, ports: &str) -> String {
 
 const ALL: &str = "ports.crank = { effort = 0.9, damping = 0.2 }
 ports.knee = { spring = { stiffness = 3.0, rest = 2.0 }, damping = 0.1 }
-ports.lift = { spring = { stiffness = 40.0, rest = 0.3 }, effort = -2.0 }";
+ports.lift = { spring = { stiffness = 40.0 }, effort = -2.0, armature = 0.7 }";
 
 /// States along a motion, the first and the last among them.
 fn run(scene: &Scene, form: Form, t_end: f64) -> Vec<State> {
@@ -292,7 +292,7 @@ fn scenes_with_ports_are_written_as_they_were_read() {
     let forces = |scene: &SceneDescription| scene.bodies[0].forces.ports.clone();
     let bare = |scene: &SceneDescription| {
         let named = forces(scene).into_iter();
-        let named = named.map(|own| (own.name.value, own.effort, own.spring, own.damping));
+        let named = named.map(|own| (own.name.value, own.effort, own.spring, own.damping, own.armature));
         named.collect::<Vec<_>>()
     };
     assert_eq!(bare(&first), bare(&again));
@@ -408,7 +408,6 @@ t_end = 2.0
 #[test]
 fn what_belongs_to_degrees_of_freedom_is_refused_at_ports() {
     for (key, value) in [
-        ("armature", "0.1"),
         ("friction", "0.2"),
         ("limit", "{ upper = 1.0 }"),
         ("motion", "{ speeds = [1.0] }"),

@@ -158,22 +158,6 @@ impl Tree<'_> {
         squares.sum::<Sym>() * Sym::from(0.5 * limit.stiffness)
     }
 
-    /// `Σ_k γ_k v_k (a v)` of the rotors at a body's joint, one per freedom: what their turning takes where velocities do not commute.
-    pub(super) fn rotor_forces(&self, index: usize) -> Vec<Sym> {
-        // Rotors of a nonholonomic joint turn with the rates of their own coordinates, and have no such forces.
-        let is_nonholonomic = self.model.bodies[index].joint.derived.shape.constraints > 0;
-        if !self.has_armature(index) || is_nonholonomic {
-            return vec![];
-        }
-        let speeds = &self.bodies[index].speeds;
-        let armature = &self.model.bodies[index].armature;
-        let momenta = armature.iter().zip(speeds);
-        let momenta: Vec<Sym> = momenta.map(|(&a, &v)| Sym::from(a) * v).collect();
-        let joint = self.joint_at(index, &[]);
-        let force = |row: &Vec<Sym>| row.iter().zip(&momenta).map(|(&g, &p)| g * p).sum();
-        joint.gamma(speeds).iter().map(force).collect()
-    }
-
     /// `Ẋ̄ᵀ h` of a body's joint, one per speed.
     pub(super) fn bias_momentum(&self, index: usize, momentum: &Wrench) -> Vec<Sym> {
         let speeds = &self.bodies[index].speeds;

@@ -17,7 +17,8 @@ impl Tree<'_> {
         let springs = elements.port_springs.iter();
         let springs = springs.filter(|spring| spring.body == index);
         let springs = springs.map(|own| (own.port, about(&own.name, || self.port_effort(own))));
-        let all: Vec<(usize, Sym)> = constant.chain(springs).collect();
+        let rotors = self.port_rotor_efforts(index);
+        let all: Vec<(usize, Sym)> = constant.chain(springs).chain(rotors).collect();
         if all.is_empty() {
             return vec![];
         }
@@ -66,12 +67,8 @@ impl Tree<'_> {
 
     /// `w = P S̄ v̄` of one port.
     fn port_rate(&self, body: usize, port: usize) -> Sym {
-        let own = &self.bodies[body];
-        let row = &self.joint_at(body, &[]).port_map()[port];
-        let rates = row.iter().zip(&own.basis).map(|(&p, basis)| {
-            let velocity = basis.iter().zip(&own.speeds).map(|(&s, &v)| s * v);
-            p * velocity.sum::<Sym>()
-        });
-        rates.sum()
+        let row = self.speed_row(body, port);
+        let terms = row.iter().zip(&self.bodies[body].speeds);
+        terms.map(|(&p, &v)| p * v).sum()
     }
 }

@@ -9,6 +9,7 @@ use hamel_runtime::elements::{
     JointSpring, JointStop, PointConstraint, PortEffort, PortSpring, RotationSpring, TimedEffort,
     TimedWrench,
 };
+use hamel_runtime::erased::AnyJoint;
 use hamel_runtime::mechanism::{Mechanism, MechanismErrors, NamedFrame};
 use hamel_runtime::time_function::TimeFunction;
 use std::sync::Arc;
@@ -25,6 +26,10 @@ pub(super) fn equip(
         if !acting.armature.is_empty() {
             let with_rotor = mechanism.with_armature(body, &acting.armature);
             mechanism = with_rotor?;
+        }
+        let rotors = acting.port_armature(mechanism.bodies()[body].joint().ports().len());
+        if rotors.iter().any(|inertia| *inertia > 0.0) {
+            mechanism = mechanism.with_port_armature(body, &rotors)?;
         }
     }
     let frames = description.frames.iter().map(|frame| NamedFrame {
@@ -121,7 +126,9 @@ fn at_joint(
         }));
     }
     for (port, forces) in &acting.ports {
-        at_port((body, *port), joint, forces, elements);
+        let joint_type = mechanism.bodies()[body].joint();
+        let home = joint_type.port_value(&home(joint_type), *port);
+        at_port((body, *port), joint, (forces, home), elements);
     }
     for limit in acting.limit.iter().chain(&acting.further_limits) {
         let LimitKind::Compliant { stiffness, damping } = limit.kind else {
@@ -141,7 +148,7 @@ fn at_joint(
 fn at_port(
     (body, port): (usize, usize),
     joint: &str,
-    forces: &PortForces,
+    (forces, home): (&PortForces, f64),
     elements: &mut Vec<Arc<dyn Element>>,
 ) {
     let name = |what: &str| forces.element(what, joint);
@@ -161,9 +168,16 @@ fn at_port(
             port,
             stiffness: spring.stiffness,
             damping: forces.damping,
-            rest: spring.rest,
+            rest: spring.rest.unwrap_or(home),
         }));
     }
+}
+
+/// The Q of a joint from which its spec starts.
+fn home(joint: &dyn AnyJoint) -> Vec<f64> {
+    let mut home = vec![0.0; joint.layout().configuration];
+    joint.home(&mut home);
+    home
 }
 
 /// The efforts of a joint, if none of them changes with time.

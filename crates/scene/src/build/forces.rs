@@ -38,6 +38,17 @@ pub(crate) struct Acting {
     pub(crate) ports: Vec<(usize, PortForces)>,
 }
 
+impl Acting {
+    /// Inertias of rotors at the ports, of which the joint has so many.
+    pub(crate) fn port_armature(&self, ports: usize) -> Vec<f64> {
+        let mut inertias = vec![0.0; ports];
+        for (port, forces) in &self.ports {
+            inertias[*port] = forces.armature;
+        }
+        inertias
+    }
+}
+
 /// A spring at a joint.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Spring {

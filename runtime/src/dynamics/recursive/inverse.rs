@@ -131,6 +131,7 @@ impl Recursive {
             let mut carried = [0.0; MOST_FREEDOMS];
             let carried = &mut carried[..ranges.freedoms.len()];
             self.joint_effort(index, q, carried);
+            self.add_rotor_efforts(index, q, carried);
             let applied = match self.links[index].driven {
                 // They begin with its accelerations, and no effort of its own has a part along A.
                 true => &[],
