@@ -114,6 +114,8 @@ impl Held<'_> {
                     rest: rest.unwrap_or_default(),
                 });
             }
+            let limit = forces.compliant_limit(joint, (body, port));
+            elements.limits.extend(limit);
         }
         match reasons.is_empty() {
             true => Ok(()),
@@ -123,6 +125,13 @@ impl Held<'_> {
 
     /// The value of a port at home.
     fn home_value(&self, port: usize) -> Result<f64, String> {
+        let home = self.joint.derived.kernel(KernelKind::Home);
+        if home.is_some_and(|home| home.method != Method::Formula) {
+            let (joint, kind) = (&self.body.joint.name.value, &self.body.joint.kind.value);
+            return Err(format!(
+                "joint `{joint}`: home of `{kind}` is found by Newton's method, and what ports are there is not compiled: give the `rest` of springs at ports"
+            ));
+        }
         let home = self.rest(&Position::Home)?;
         let values = self.numbers(self.at(&home, |joint| joint.port_values()))?;
         values

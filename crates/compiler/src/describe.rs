@@ -189,6 +189,7 @@ fn limits((index, body): (usize, &BodyDescription)) -> impl Iterator<Item = Join
         Some(JointLimit {
             name: format!("limit of joint `{}`", body.joint.name.value),
             body: index,
+            port: None,
             lower: limit.value.lower,
             upper: limit.value.upper,
             stiffness,

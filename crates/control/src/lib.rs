@@ -24,6 +24,7 @@ mod feedback;
 mod path;
 #[cfg(feature = "predictive")]
 mod predictive;
+mod port_reference;
 mod reference;
 mod regulator;
 pub mod riccati;
@@ -38,6 +39,7 @@ pub use feedback::Feedback;
 pub use path::{Curve, PathFollower, PathGains};
 #[cfg(feature = "predictive")]
 pub use predictive::PredictiveRegulator;
+pub use port_reference::PortReference;
 pub use reference::Reference;
 pub use regulator::{Equilibrium, Regulator, Weights};
 pub use stabilizability::Motion;

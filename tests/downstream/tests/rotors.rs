@@ -24,9 +24,9 @@ name = "linkage"
 parent = "world"
 joint = { type = "crank_rocker", ground = 0.9, crank = 0.3, coupler = 1.0, rocker = 0.8 }
 initial = { phi = [0.4], speeds = [3.0] }
-bodies.crank = { mass = 1.3, com = [0.05, 0.0, 0.0], inertia = [[0.02, 0.0, 0.0], [0.0, 0.04, 0.0], [0.0, 0.0, {crank}]] }
+bodies.crank = { mass = 1.3, com = [0.05, 0.0, 0.0], inertia = [[0.3, 0.0, 0.0], [0.0, 0.3, 0.0], [0.0, 0.0, {crank}]] }
 bodies.coupler = { mass = 0.8, com = [0.46, 0.1, 0.0], inertia = [[0.01, 0.0, 0.0], [0.0, 0.095, 0.0], [0.0, 0.0, 0.101]] }
-bodies.rocker = { mass = 1.1, com = [0.4, 0.0, 0.0], inertia = [[0.01, 0.0, 0.0], [0.0, 0.06, 0.0], [0.0, 0.0, {rocker}]] }
+bodies.rocker = { mass = 1.1, com = [0.4, 0.0, 0.0], inertia = [[0.3, 0.0, 0.0], [0.0, 0.3, 0.0], [0.0, 0.0, {rocker}]] }
 {forces}
 
 [[body]]
@@ -61,7 +61,7 @@ ports.motor = { armature = 30.0 }
 const ALL: &str = "ports.crank = { armature = 0.03 }
 ports.rocker = { armature = 0.2 }
 ports.knee = { armature = 0.11, effort = 0.4 }
-ports.lift = { armature = 0.7, spring = { stiffness = 30.0 } }";
+ports.lift = { armature = 0.7, spring = { stiffness = 30.0, rest = 0.4 } }";
 
 const AT_CRANK: &str = "ports.crank.armature = 0.17";
 const AT_ROCKER: &str = "ports.rocker.armature = 0.17";

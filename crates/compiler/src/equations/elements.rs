@@ -32,7 +32,7 @@ impl Tree<'_> {
             .map(|spring| about(&spring.name, || self.joint_spring(spring)))
             .chain(turned.map(|spring| about(&spring.name, || self.rotation_spring(spring))));
         let limits = elements.limits.iter();
-        let limits = limits.filter(|limit| own.contains(&limit.body));
+        let limits = limits.filter(|limit| limit.port.is_none() && own.contains(&limit.body));
         let limits = limits.map(|limit| about(&limit.name, || vec![self.limit_effort(limit)]));
         let each = each.chain(limits);
         let add =
@@ -130,15 +130,29 @@ impl Tree<'_> {
 
     /// How far the joint is beyond each of its limits, negative within, with the sign of the effort there.
     fn beyond(&self, limit: &JointLimit) -> Vec<(Sym, f64)> {
-        let q = self.coordinates(limit.body)[0];
-        let upper = limit.upper.map(|upper| (q - Sym::from(upper), -1.0));
-        let lower = limit.lower.map(|lower| (Sym::from(lower) - q, 1.0));
+        let from = |rest: f64| match limit.port {
+            Some(port) => self.deflection(limit.body, port, rest),
+            None => self.coordinates(limit.body)[0] - Sym::from(rest),
+        };
+        let wraps = |port| self.joint_at(limit.body, &[]).port_wraps(port);
+        if let (Some(lower), Some(upper), true) =
+            (limit.lower, limit.upper, limit.port.is_some_and(wraps))
+        {
+            let half = 0.5 * (upper - lower);
+            let (way, half) = (from(lower + half), Sym::from(half));
+            return vec![(way - half, -1.0), (-way - half, 1.0)];
+        }
+        let upper = limit.upper.map(|upper| (from(upper), -1.0));
+        let lower = limit.lower.map(|lower| (-from(lower), 1.0));
         upper.into_iter().chain(lower).collect()
     }
 
     /// `−k x max(0, 1 + d ẋ)` beyond the upper limit by x, and the opposite beyond the lower one.
-    fn limit_effort(&self, limit: &JointLimit) -> Sym {
-        let rate = self.bodies[limit.body].speeds[0];
+    pub(super) fn limit_effort(&self, limit: &JointLimit) -> Sym {
+        let rate = match limit.port {
+            Some(port) => self.port_rate(limit.body, port),
+            None => self.bodies[limit.body].speeds[0],
+        };
         let sides = self.beyond(limit).into_iter();
         let efforts = sides.map(|(by, sign)| {
             let press = Sym::from(sign * limit.stiffness) * positive(by);

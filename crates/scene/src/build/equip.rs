@@ -137,6 +137,7 @@ fn at_joint(
         elements.push(Arc::new(JointLimit {
             name: format!("limit of joint `{joint}`"),
             body,
+            port: None,
             lower: limit.lower,
             upper: limit.upper,
             stiffness,
@@ -170,6 +171,9 @@ fn at_port(
             damping: forces.damping,
             rest: spring.rest.unwrap_or(home),
         }));
+    }
+    if let Some(limit) = forces.compliant_limit(joint, (body, port)) {
+        elements.push(Arc::new(limit));
     }
 }
 
@@ -271,11 +275,19 @@ fn drives(description: &SceneDescription, acting: &[Acting]) -> Vec<Drive> {
 
 fn frictions(description: &SceneDescription, acting: &[Acting]) -> Vec<JointFriction> {
     let joints = description.bodies.iter().zip(acting).enumerate();
-    let frictions = joints.filter_map(|(body, (owner, acting))| {
-        let friction = acting.friction?;
-        Some(JointFriction {
-            name: format!("friction of joint `{}`", owner.joint.name.value),
+    let frictions = joints.flat_map(|(body, (owner, acting))| {
+        let joint = &owner.joint.name.value;
+        let own = acting.friction.iter();
+        let own = own.map(|own| (None, format!("friction of joint `{joint}`"), *own));
+        let at_ports = acting.ports.iter().filter_map(|(port, forces)| {
+            let friction = forces.friction.as_ref()?.value;
+            Some((Some(*port), forces.element("friction", joint), friction))
+        });
+        let all: Vec<_> = own.chain(at_ports).collect();
+        all.into_iter().map(move |(port, name, friction)| JointFriction {
+            name,
             body,
+            port,
             sliding: friction.sliding,
             sticking: friction.sticking,
         })

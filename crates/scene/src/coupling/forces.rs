@@ -90,6 +90,8 @@ impl Owner<'_> {
             spring,
             damping,
             armature: 0.0,
+            friction: None,
+            limit: None,
         }))
     }
 

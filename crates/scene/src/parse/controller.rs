@@ -3,8 +3,8 @@
 use super::forces::{per_freedom, speed};
 use super::initial;
 use crate::control::{
-    ControllerDescription, GoalDescription, LawDescription, PortDescription, ReferenceDescription,
-    RegulatorDescription,
+    ControllerDescription, GoalDescription, LawDescription, PortDescription,
+    PortReferenceDescription, ReferenceDescription, ReferenceMotion, RegulatorDescription,
 };
 use crate::description::Position;
 use crate::diagnostics::Diagnostic;
@@ -94,7 +94,23 @@ fn reference(
     sink: &mut Sink,
 ) -> Option<ReferenceDescription> {
     let joint = joint(fields, joints, sink);
-    let speeds = required(fields, "speeds", laws, sink);
+    let motion = match fields.exactly_one(&["speeds", "ports"], sink) {
+        Some((0, speeds)) => speeds_and_start(&speeds, fields, sink),
+        Some((_, ports)) => port_references(&ports, sink).map(ReferenceMotion::Ports),
+        None => None,
+    };
+    Some(ReferenceDescription {
+        joint: joint?,
+        motion: motion?,
+    })
+}
+
+fn speeds_and_start(
+    speeds: &Value<'_>,
+    fields: &mut Fields<'_>,
+    sink: &mut Sink,
+) -> Option<ReferenceMotion> {
+    let speeds = laws(speeds, sink);
     let start = match fields.optional("start") {
         Some(value) => value.table(sink).and_then(|mut start| {
             let position = initial::position(&mut start, sink);
@@ -103,10 +119,43 @@ fn reference(
         }),
         None => Some(None),
     };
-    Some(ReferenceDescription {
-        joint: joint?,
+    Some(ReferenceMotion::Speeds {
         speeds: speeds?,
         start: start?,
+    })
+}
+
+/// Where the ports of a joint are wanted, each under its name.
+fn port_references(value: &Value<'_>, sink: &mut Sink) -> Option<Vec<PortReferenceDescription>> {
+    let named = value.table(sink)?.unclaimed().into_iter();
+    let each = named.map(|(name, value)| {
+        let mut fields = value.table(sink)?;
+        let start = match fields.optional("start") {
+            Some(start) => start.number(sink).map(|start| Some(start.value)),
+            None => Some(None),
+        };
+        let law = law(&mut fields, sink);
+        fields.finish(sink);
+        Some(PortReferenceDescription {
+            name,
+            start: start?,
+            law: law?,
+        })
+    });
+    let all: Vec<_> = each.collect();
+    all.into_iter().collect()
+}
+
+/// A law by its numbers; what is absent is 0.
+fn law(fields: &mut Fields<'_>, sink: &mut Sink) -> Option<Law> {
+    let mut number = |key| or(fields, key, 0.0, number, sink);
+    let [rate, amplitude, frequency, phase] =
+        ["rate", "amplitude", "frequency", "phase"].map(&mut number);
+    Some(Law {
+        rate: rate?,
+        amplitude: amplitude?,
+        frequency: frequency?,
+        phase: phase?,
     })
 }
 
@@ -169,6 +218,10 @@ fn port(
     sink: &mut Sink,
 ) -> Option<PortDescription> {
     let joint = joint(fields, joints, sink);
+    let named = match fields.optional("port") {
+        Some(port) => port.text(sink).map(Some),
+        None => Some(None),
+    };
     let stiffness = or(fields, "stiffness", 0.0, not_negative, sink);
     let kind = match fields.optional("kind") {
         Some(kind) => kind.choice(&["log", "trace"], sink),
@@ -178,6 +231,7 @@ fn port(
     let limit = or(fields, "limit", f64::INFINITY, positive, sink);
     Some(PortDescription {
         joint: joint?,
+        port: named?,
         spring: match kind? {
             "trace" => PortSpring::Trace(stiffness?),
             _ => PortSpring::Log(stiffness?),
@@ -214,17 +268,10 @@ fn path(
 /// Constant part and law of one coordinate.
 fn coordinate(value: &Value<'_>, sink: &mut Sink) -> Option<(f64, Law)> {
     let mut fields = value.table(sink)?;
-    let mut number = |key| or(&mut fields, key, 0.0, number, sink);
-    let [start, rate, amplitude, frequency, phase] =
-        ["start", "rate", "amplitude", "frequency", "phase"].map(&mut number);
+    let start = or(&mut fields, "start", 0.0, number, sink);
+    let law = law(&mut fields, sink);
     fields.finish(sink);
-    let law = Law {
-        rate: rate?,
-        amplitude: amplitude?,
-        frequency: frequency?,
-        phase: phase?,
-    };
-    Some((start?, law))
+    Some((start?, law?))
 }
 
 fn mpc(

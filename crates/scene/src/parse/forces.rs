@@ -135,16 +135,6 @@ const NOT_AT_PORTS: &str = "nothing of this kind acts at a port";
 /// What acts at degrees of freedom and not at ports, and what to do.
 const OF_FREEDOMS: &[(&str, &str, &str)] = &[
     (
-        "friction",
-        NOT_AT_PORTS,
-        "friction acts at degrees of freedom: name the direction of the port by `basis` in the joint's spec, so that it is one; a port has `damping`",
-    ),
-    (
-        "limit",
-        NOT_AT_PORTS,
-        "limits are those of degrees of freedom: name the direction of the port by `basis` in the joint's spec, so that it is one",
-    ),
-    (
         "motion",
         NOT_AT_PORTS,
         "motions are prescribed at degrees of freedom: name the direction of the port by `basis` in the joint's spec, so that it is one",
@@ -167,6 +157,8 @@ fn port(name: Located<String>, value: &Value<'_>, sink: &mut Sink) -> Option<Por
     let spring = optional(&mut fields, "spring", port_spring, sink);
     let damping = not_negative(&mut fields, "damping", sink);
     let armature = not_negative(&mut fields, "armature", sink);
+    let friction = optional(&mut fields, "friction", friction, sink);
+    let limit = optional(&mut fields, "limit", port_limit, sink);
     fields.finish_but(OF_FREEDOMS, sink);
     Some(PortForces {
         name,
@@ -174,7 +166,24 @@ fn port(name: Located<String>, value: &Value<'_>, sink: &mut Sink) -> Option<Por
         spring: spring?,
         damping: damping?,
         armature: armature?,
+        friction: friction?,
+        limit: limit?,
     })
+}
+
+/// A stop that gives way: an impact is that of a joint's own coordinate.
+fn port_limit(value: &Value<'_>, sink: &mut Sink) -> Option<Located<LimitDescription>> {
+    let limit = limit(value, sink)?;
+    if let LimitKind::Compliant { .. } = limit.value.kind {
+        return Some(limit);
+    }
+    let message = format!(
+        "{}: a port hits no limit by impacts",
+        value.path()
+    );
+    let error = Diagnostic::new(limit.span, message);
+    sink.push(error.help("give `stiffness` instead of `restitution`: a stop that gives way"));
+    None
 }
 
 /// A number that is 0 where it is absent.

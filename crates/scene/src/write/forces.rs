@@ -60,6 +60,12 @@ fn port(forces: &PortForces) -> String {
     if forces.armature > 0.0 {
         entries.push(("armature", number(forces.armature)));
     }
+    if let Some(own) = &forces.friction {
+        entries.push(("friction", friction(&own.value)));
+    }
+    if let Some(own) = &forces.limit {
+        entries.push(("limit", limit(&own.value)));
+    }
     table(&entries)
 }
 
