@@ -102,9 +102,12 @@ impl Held<'_> {
                 elements.port_efforts.extend(constant);
             }
             if forces.spring.is_some() || forces.damping > 0.0 {
-                let spring = forces.spring.unwrap_or_default();
-                let rest = spring.rest.map_or_else(|| self.home_value(port), Ok);
+                let rest = match forces.spring {
+                    Some(spring) => spring.rest.map_or_else(|| self.home_value(port), Ok),
+                    None => Ok(0.0),
+                };
                 let rest = rest.map_err(|reason| reasons.push(reason));
+                let spring = forces.spring.unwrap_or_default();
                 elements.port_springs.push(PortSpring {
                     name: forces.element("spring", joint),
                     body,

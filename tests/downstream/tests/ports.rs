@@ -287,7 +287,8 @@ fn unknown_ports_are_refused_by_name() {
 
 #[test]
 fn scenes_with_ports_are_written_as_they_were_read() {
-    let all = format!("{ALL}\n{}", "ports.crank.friction = { sliding = 0.1, sticking = 0.2 }");
+    let friction = "damping = 0.2, friction = { sliding = 0.1, sticking = 0.2 } }";
+    let all = ALL.replace("damping = 0.2 }", friction);
     let first = described("rates = { crank = 2.0 }", &all);
     let again = Scene::from_toml(&first.to_toml(&[], |_| vec![]), "again.toml");
     let again = again.unwrap_or_else(|errors| panic!("{errors}"));
