@@ -1,8 +1,8 @@
 //! Computed torque: inverse dynamics at the accelerations of a reference, corrected by the error.
 
 use super::error::{positive, require};
-use super::state::{check_state, deviation, largest, store_measures};
 use super::port_reference::OfJoint;
+use super::state::{check_state, deviation, largest, store_measures};
 use super::{ControlError, Controller, DEVIATIONS, Measure, PortReference, Reference};
 use alloc::sync::Arc;
 use alloc::vec;
@@ -101,11 +101,19 @@ impl ComputedTorque {
     }
 
     /// The largest deviations of ports, and of their rates.
-    fn port_deviations(&self, time: f64, q: &[f64], speeds: &[f64]) -> Result<[f64; 2], ControlError> {
+    fn port_deviations(
+        &self,
+        time: f64,
+        q: &[f64],
+        speeds: &[f64],
+    ) -> Result<[f64; 2], ControlError> {
         let mut most = [0.0; 2];
         for own in &self.at_ports {
             let owner = self.reference.mechanism().body(own.body)?;
-            let state = (owner.configuration(q), &speeds[owner.ranges().speeds.clone()]);
+            let state = (
+                owner.configuration(q),
+                &speeds[owner.ranges().speeds.clone()],
+            );
             for port in &own.ports {
                 let found = port.deviation(owner, time, state);
                 most = [largest(&[most[0], found[0]]), largest(&[most[1], found[1]])];
@@ -181,7 +189,13 @@ impl Controller for ComputedTorque {
             *slot = speed - wanted;
         }
         for own in &self.at_ports {
-            let range = self.reference.mechanism().body(own.body)?.ranges().speeds.clone();
+            let range = self
+                .reference
+                .mechanism()
+                .body(own.body)?
+                .ranges()
+                .speeds
+                .clone();
             self.accelerations[range].fill(0.0);
         }
         let [way, rate] = self.port_deviations(time, q, speeds)?;

@@ -9,7 +9,9 @@ use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 use hamel_runtime::dynamics::{Dynamics, Recursive};
-use hamel_runtime::elements::{self, Action, Element, JointSpring, MotionList, RotationSpring, View};
+use hamel_runtime::elements::{
+    self, Action, Element, JointSpring, MotionList, RotationSpring, View,
+};
 use hamel_runtime::joint::MOST_FREEDOMS;
 use hamel_runtime::mechanism::Mechanism;
 
@@ -89,7 +91,7 @@ impl EnergyShaping {
             if !seen.insert((port.body, port.port)) {
                 return Err(ControlError::Joint {
                     joint: mechanism.body(port.body)?.joint_name().into(),
-                    reason: "has two ports: the limit of one would cut off what the other does",
+                    reason: "is given twice, as a whole or with the same port: the limit of one would cut off what the other does",
                 });
             }
         }
@@ -151,7 +153,10 @@ impl EnergyShaping {
                 continue;
             }
             self.exerted.fill(0.0);
-            spring.act(&view, &mut Action::new(&mut self.wrenches, &mut self.exerted));
+            spring.act(
+                &view,
+                &mut Action::new(&mut self.wrenches, &mut self.exerted),
+            );
             let mut buffer = [0.0; MOST_FREEDOMS];
             let output = view.joint_velocity(port.body, &mut buffer);
             let own = self.mechanism.bodies()[port.body].ranges().freedoms.clone();

@@ -22,9 +22,9 @@ mod energy;
 mod error;
 mod feedback;
 mod path;
+mod port_reference;
 #[cfg(feature = "predictive")]
 mod predictive;
-mod port_reference;
 mod reference;
 mod regulator;
 pub mod riccati;
@@ -37,9 +37,9 @@ pub use energy::{EnergyShaping, Port, PortSpring, Pump};
 pub use error::ControlError;
 pub use feedback::Feedback;
 pub use path::{Curve, PathFollower, PathGains};
+pub use port_reference::PortReference;
 #[cfg(feature = "predictive")]
 pub use predictive::PredictiveRegulator;
-pub use port_reference::PortReference;
 pub use reference::Reference;
 pub use regulator::{Equilibrium, Regulator, Weights};
 pub use stabilizability::Motion;

@@ -141,7 +141,8 @@ impl OfJoint {
         let largest = map.view((0, 0), (size, size)).amax();
         let factors = map.full_piv_lu();
         let pivots = factors.u();
-        let least = (0..MOST_FREEDOMS).fold(f64::INFINITY, |least, i| least.min(pivots[(i, i)].abs()));
+        let least =
+            (0..MOST_FREEDOMS).fold(f64::INFINITY, |least, i| least.min(pivots[(i, i)].abs()));
         let solved = factors.solve(&right);
         let Some(found) = solved.filter(|_| least > INDEPENDENT * largest.min(1.0)) else {
             return Err(ControlError::Joint {

@@ -62,7 +62,15 @@ impl Watch {
     pub(super) fn new(mechanism: &Mechanism) -> Self {
         let joints = mechanism.joints();
         let watched = joints.filter(|(_, body)| !body.joint().singularities().is_empty());
-        let far = |(index, body): (usize, &Body)| (index, Approach { most: 0.0, ..approach(body, f64::INFINITY, 0.0) });
+        let far = |(index, body): (usize, &Body)| {
+            (
+                index,
+                Approach {
+                    most: 0.0,
+                    ..approach(body, f64::INFINITY, 0.0)
+                },
+            )
+        };
         Self {
             nearest: watched.map(far).collect(),
         }

@@ -230,7 +230,11 @@ impl Correction {
             let own = body.ranges().speeds.clone();
             let carried = &self.composites[flow.mechanism.carried(index)];
             let bodies = &flow.mechanism.bodies()[flow.mechanism.carried(index)];
-            let momenta = (&step_state.next_y[own.clone()], carried, &speeds[own.clone()]);
+            let momenta = (
+                &step_state.next_y[own.clone()],
+                carried,
+                &speeds[own.clone()],
+            );
             let (faster, out) = (&self.faster[own.clone()], &mut self.moved.y[own]);
             let rotors = flow.mechanism.port_armature(index);
             let structure = self

@@ -1,7 +1,7 @@
 //! The vector field in (ϕ, y) around a base point, for both forms.
 
-use super::hybrid::Sliding;
 use super::StepFailure;
+use super::hybrid::Sliding;
 use super::step_state::add;
 use super::{Form, InputBends, Inputs};
 use alloc::boxed::Box;

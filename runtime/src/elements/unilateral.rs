@@ -86,7 +86,9 @@ impl JointStop {
         let owner = body(name, mechanism, self.body)?;
         let fits = match is_one_coordinate(owner.joint()) {
             true => Ok(()),
-            false => Err("is not one of a single coordinate whose rate is its speed, as a revolute, a prismatic or a screw joint is"),
+            false => Err(
+                "is not one of a single coordinate whose rate is its speed, as a revolute, a prismatic or a screw joint is",
+            ),
         };
         let owner = check_joint(name, mechanism, self.body, fits)?;
         if self.lower.is_none() && self.upper.is_none() {

@@ -7,7 +7,9 @@ use crate::joint::{Joint, Products};
 use crate::joint::{Pin, Port, PortLaw, Structures, VelocityFrame};
 use crate::scalar::{Extended, Native, Scalar};
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
-use crate::steps::{ChartDerivatives, Motion, Pivot, PivotFailure, Placement, RotorTerm, Variation};
+use crate::steps::{
+    ChartDerivatives, Motion, Pivot, PivotFailure, Placement, RotorTerm, Variation,
+};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::fmt::Debug;

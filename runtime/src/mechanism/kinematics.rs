@@ -209,7 +209,8 @@ impl Body {
             return 0.0;
         }
         let q = self.configuration(q);
-        let rates = self.port_map(q) * (self.speed_basis(q) * DVectorView::from_slice(speeds, speeds.len()));
+        let rates = self.port_map(q)
+            * (self.speed_basis(q) * DVectorView::from_slice(speeds, speeds.len()));
         let terms = inertias.iter().zip(&rates);
         terms.map(|(a, w)| 0.5 * a * w * w).sum()
     }

@@ -77,18 +77,23 @@ fn rocker(mechanism: &Mechanism, state: &State) -> f64 {
 #[test]
 fn a_limit_gives_way_and_turns_back() {
     let limit = 2.0;
-    let forces =
-        format!("ports.rocker = {{ limit = {{ upper = {limit:?}, stiffness = 400.0 }} }}");
+    let forces = format!("ports.rocker = {{ limit = {{ upper = {limit:?}, stiffness = 400.0 }} }}");
     let scene = scene("phi = [0.3], speeds = [4.0]", &forces);
     let mechanism = &scene.mechanism;
     assert!(rocker(mechanism, &scene.start()) < limit);
     let first = energy(mechanism, &scene.start());
     for form in [Form::Lagrangian, Form::Hamiltonian] {
         let solution = run(&scene, form, (2.0, 400));
-        let angles = solution.samples.iter().map(|state| rocker(mechanism, state));
+        let angles = solution
+            .samples
+            .iter()
+            .map(|state| rocker(mechanism, state));
         let most = angles.fold(f64::NEG_INFINITY, f64::max);
         // ½ k x² is at most all of the energy.
-        assert!(most > limit && most < limit + (2.0 * first / 400.0).sqrt(), "{most}");
+        assert!(
+            most > limit && most < limit + (2.0 * first / 400.0).sqrt(),
+            "{most}"
+        );
         let backwards = solution.samples.iter().any(|state| state.speeds[0] < -1.0);
         assert!(backwards, "it is turned round");
         for state in &solution.samples {
@@ -163,10 +168,13 @@ fn springs_rest_at_home() {
     assert_eq!(one.state.speeds, other.state.speeds);
     // Home is found by iteration, which the scene compiler has not.
     let described = Scene::from_toml(&text("", &spring("")), "linkage.toml");
-    let compiled = scene_of("linkage", described.unwrap_or_else(|errors| panic!("{errors}")))
-        .specs(Path::new(env!("CARGO_MANIFEST_DIR")).join("joints"))
-        .library(hamel_joints::specs())
-        .model();
+    let compiled = scene_of(
+        "linkage",
+        described.unwrap_or_else(|errors| panic!("{errors}")),
+    )
+    .specs(Path::new(env!("CARGO_MANIFEST_DIR")).join("joints"))
+    .library(hamel_joints::specs())
+    .model();
     let message = compiled.expect_err("it is refused").to_string();
     let expected = "joint `linkage`: home of `crank_rocker` is found by Newton's method, and what ports are there is not compiled: give the `rest` of springs at ports";
     assert!(message.contains(expected), "{message}");

@@ -1,6 +1,8 @@
 //! Controllers at ports of linkages: led along references, and shaped in energy with a largest effort.
 
-use hamel::control::{ComputedTorque, ControlError, Controller, ErrorDynamics, PortReference, Reference};
+use hamel::control::{
+    ComputedTorque, ControlError, Controller, ErrorDynamics, PortReference, Reference,
+};
 use hamel::dynamics::Recursive;
 use hamel::integrate::{Form, Method, Options, State, Step, integrate};
 use hamel::mechanism::Mechanism;
@@ -73,7 +75,9 @@ fn watch(scene: &Scene, t_end: f64, mut tell: impl FnMut(f64, &[f64], &[f64], &[
     let control = scene.control.as_ref().expect("a controller");
     let made = control.controller(&scene.mechanism, t_end);
     let mut law = made.expect("it was tried");
-    let mut other = control.controller(&scene.mechanism, t_end).expect("it was tried");
+    let mut other = control
+        .controller(&scene.mechanism, t_end)
+        .expect("it was tried");
     let options = Options {
         form: Form::Lagrangian,
         method: Method::dormand_prince(1e-11),
@@ -86,7 +90,8 @@ fn watch(scene: &Scene, t_end: f64, mut tell: impl FnMut(f64, &[f64], &[f64], &[
         &scene.start(),
         &options,
         &mut |t, q, v, tau: &mut [f64]| {
-            law.efforts(t, q, v, tau).unwrap_or_else(|error| panic!("{error}"));
+            law.efforts(t, q, v, tau)
+                .unwrap_or_else(|error| panic!("{error}"));
         },
         &mut |step: &Step<'_>| {
             let (q, v) = (step.configuration, step.speeds);
@@ -129,7 +134,10 @@ ports.rocker = { start = 1.9, amplitude = 0.15, frequency = 2.0, phase = 0.4 }
         assert!((rate - law(t)[1] - faster).abs() < 1e-8, "{t}: {rate}");
         seen += 1;
     });
-    assert!(begin[0].abs() > 0.05 && seen > 20, "{begin:?}, {seen} steps");
+    assert!(
+        begin[0].abs() > 0.05 && seen > 20,
+        "{begin:?}, {seen} steps"
+    );
 }
 
 /// A spring and a damper at the rocker bring the linkage to rest where port and gravity balance, with an effort that is never larger than it may be.
@@ -163,7 +171,11 @@ phi = [1.2]
     });
     assert!(most > 8.9, "the limit is reached: {most}");
     // The slowest mode fades within a second, thirty times over.
-    assert!(end.speeds.iter().all(|v| v.abs() < 1e-8), "{:?}", end.speeds);
+    assert!(
+        end.speeds.iter().all(|v| v.abs() < 1e-8),
+        "{:?}",
+        end.speeds
+    );
 }
 
 #[test]
@@ -191,11 +203,18 @@ fn dead_points_are_told_by_name() {
         damping_ratio: 1.0,
     };
     let law = ComputedTorque::new(reference.expect("at rest"), errors);
-    let mut law = law.and_then(|law| law.at_ports(&references)).expect("a port");
+    let mut law = law
+        .and_then(|law| law.at_ports(&references))
+        .expect("a port");
     let failed = law.efforts(0.0, &q, &[1.0, 0.0], &mut [0.0; 2]);
     let failed = failed.expect_err("the rocker does not tell how the crank moves");
     assert!(matches!(failed, ControlError::Joint { .. }), "{failed}");
-    assert!(failed.to_string().contains("joint `linkage` stands where the ports"), "{failed}");
+    assert!(
+        failed
+            .to_string()
+            .contains("joint `linkage` stands where the ports"),
+        "{failed}"
+    );
 }
 
 #[test]
@@ -203,19 +222,27 @@ fn mistakes_are_refused_by_name() {
     let torque = "kind = \"computed_torque\"\nfrequency = 6.0\n[[controller.reference]]\njoint = \"linkage\"\n";
     let shaping = "kind = \"energy_shaping\"\n[[controller.port]]\njoint = \"linkage\"\n";
     let cases = [
-        (format!("{torque}ports.rocke = {{}}"), "did you mean `rocker`?"),
+        (
+            format!("{torque}ports.rocke = {{}}"),
+            "did you mean `rocker`?",
+        ),
         (
             format!("{torque}ports.rocker = {{}}\nports.lift = {{}}"),
             "joint `linkage` must have as many references at ports as it has degrees of freedom",
         ),
-        (format!("{torque}ports.rocker = {{}}\nspeeds = [1.0]"), "exclude each other"),
+        (
+            format!("{torque}ports.rocker = {{}}\nspeeds = [1.0]"),
+            "exclude each other",
+        ),
         (format!("{shaping}port = \"lif\""), "did you mean `lift`?"),
         (
             format!("{shaping}port = \"lift\"\nkind = \"trace\""),
             "has a spring of kind \"trace\" at a port, which is no rotation",
         ),
         (
-            format!("{shaping}port = \"lift\"\n[[controller.port]]\njoint = \"linkage\"\nport = \"lift\""),
+            format!(
+                "{shaping}port = \"lift\"\n[[controller.port]]\njoint = \"linkage\"\nport = \"lift\""
+            ),
             "port `lift` of joint `linkage` is named twice",
         ),
     ];

@@ -298,7 +298,14 @@ fn scenes_with_ports_are_written_as_they_were_read() {
         let named = named.map(|own| {
             let friction = own.friction.map(|own| own.value);
             let limit = own.limit.map(|own| own.value);
-            (own.name.value, own.effort, own.spring, [own.damping, own.armature], friction, limit)
+            (
+                own.name.value,
+                own.effort,
+                own.spring,
+                [own.damping, own.armature],
+                friction,
+                limit,
+            )
         });
         named.collect::<Vec<_>>()
     };
@@ -414,9 +421,7 @@ t_end = 2.0
 
 #[test]
 fn what_belongs_to_degrees_of_freedom_is_refused_at_ports() {
-    for (key, value) in [
-        ("motion", "{ speeds = [1.0] }"),
-    ] {
+    for (key, value) in [("motion", "{ speeds = [1.0] }")] {
         let text = text("", &format!("ports.crank.{key} = {value}"));
         let refused = Scene::from_toml(&text, "linkage.toml").expect_err("it is refused");
         let message = refused.to_string();

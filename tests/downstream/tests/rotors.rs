@@ -1,9 +1,7 @@
 //! Rotors at ports of linkages: as bodies of the joint that turn with the port, and in all forms of the dynamics.
 
 use hamel::dynamics::{Dynamics, Recursive, Reference, Refined};
-use hamel::integrate::{
-    Form, Integration, Method, Options, Scheme, Solution, State,
-};
+use hamel::integrate::{Form, Integration, Method, Options, Scheme, Solution, State};
 use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
 use hamel_compiler::scene_of;
@@ -153,7 +151,10 @@ fn all_of(dynamics: &mut dyn Dynamics, state: &State) -> Vec<f64> {
 fn agrees(found: &[f64], expected: &[f64], bound: f64) {
     for (n, (found, expected)) in found.iter().zip(expected).enumerate() {
         let error = (found - expected).abs() / expected.abs().max(1.0);
-        assert!(error < bound, "entry {n}: {found} and {expected}, {error:e}");
+        assert!(
+            error < bound,
+            "entry {n}: {found} and {expected}, {error:e}"
+        );
     }
 }
 
@@ -221,8 +222,16 @@ fn forms_agree() {
             let mechanism = || Arc::clone(&scene.mechanism);
             let expected = all_of(&mut Reference::new(mechanism()), &state);
             // Rounding times the condition of M̄, some hundreds.
-            agrees(&all_of(&mut Recursive::new(mechanism()), &state), &expected, 1e-11);
-            agrees(&all_of(&mut Refined::new(mechanism()), &state), &expected, 1e-11);
+            agrees(
+                &all_of(&mut Recursive::new(mechanism()), &state),
+                &expected,
+                1e-11,
+            );
+            agrees(
+                &all_of(&mut Refined::new(mechanism()), &state),
+                &expected,
+                1e-11,
+            );
         }
     }
 }
@@ -234,7 +243,13 @@ fn energy_is_kept() {
     for scene in [built(&text(OWN, &still)), built(CAR)] {
         let mechanism = &scene.mechanism;
         let first = energy(mechanism, &scene.start());
-        let scale = scene.start().speeds.iter().map(|v| v * v).sum::<f64>().max(first.abs());
+        let scale = scene
+            .start()
+            .speeds
+            .iter()
+            .map(|v| v * v)
+            .sum::<f64>()
+            .max(first.abs());
         let gain = |states: &[State]| {
             let each = states.iter().map(|state| energy(mechanism, state) - first);
             each.fold(0.0, |most: f64, own| most.max(own.abs())) / scale
@@ -257,8 +272,7 @@ fn energy_is_kept() {
 #[test]
 fn forms_move_alike() {
     for scene in [built(&text(OWN, ALL)), built(CAR)] {
-        let [one, other] =
-            [Form::Lagrangian, Form::Hamiltonian].map(|form| run(&scene, form, 1.0));
+        let [one, other] = [Form::Lagrangian, Form::Hamiltonian].map(|form| run(&scene, form, 1.0));
         for (one, other) in one.iter().zip(&other) {
             // Some hundred steps with a tolerance of 1e-11 each, on motions that do not part fast.
             agrees(&one.configuration, &other.configuration, 1e-7);

@@ -166,8 +166,7 @@ impl Tree<'_> {
             let moved = self.bias_momentum(index, &momenta[index]);
             let rotors = self.port_rotor_rates(index);
             for (j, place) in body.share.speeds.clone().enumerate() {
-                rates[place] +=
-                    efforts[j] + body.columns[j].dot(&turned) + moved[j] + rotors[j];
+                rates[place] += efforts[j] + body.columns[j].dot(&turned) + moved[j] + rotors[j];
             }
             if let Some(parent) = body.parent {
                 let [momentum, wrench] = [&momenta[index], &wrenches[index]]

@@ -24,7 +24,9 @@ impl Tree<'_> {
             .map(|(&rotor, row)| row[j] * row[k] * Sym::from(rotor))
             .sum();
         let rotors = self.rotors_at_ports(index);
-        let at_ports = rotors.iter().map(|rotor| rotor.inertia * rotor.row[j] * rotor.row[k]);
+        let at_ports = rotors
+            .iter()
+            .map(|rotor| rotor.inertia * rotor.row[j] * rotor.row[k]);
         own + at_ports.sum::<Sym>()
     }
 
@@ -118,7 +120,9 @@ impl Tree<'_> {
             let size = body.speeds.len();
             let entries = (0..size * size).map(|n| {
                 let (j, k) = (n / size, n % size);
-                let each = rotors.iter().map(|rotor| rotor.inertia * rotor.row[j] * rotor.row[k]);
+                let each = rotors
+                    .iter()
+                    .map(|rotor| rotor.inertia * rotor.row[j] * rotor.row[k]);
                 each.sum()
             });
             let slopes = Slopes::new(entries.collect());

@@ -292,7 +292,10 @@ fn ports_are_distinct(ports: &[PortDescription], sink: &mut Sink) -> bool {
         sound = false;
         let joint = &port.joint.value;
         let (what, span) = match &port.port {
-            Some(name) => (format!("port `{}` of joint `{joint}`", name.value), &name.span),
+            Some(name) => (
+                format!("port `{}` of joint `{joint}`", name.value),
+                &name.span,
+            ),
             None => (format!("joint `{joint}`"), &port.joint.span),
         };
         let message = format!("controller: {what} is named twice");

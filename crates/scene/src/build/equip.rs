@@ -284,13 +284,14 @@ fn frictions(description: &SceneDescription, acting: &[Acting]) -> Vec<JointFric
             Some((Some(*port), forces.element("friction", joint), friction))
         });
         let all: Vec<_> = own.chain(at_ports).collect();
-        all.into_iter().map(move |(port, name, friction)| JointFriction {
-            name,
-            body,
-            port,
-            sliding: friction.sliding,
-            sticking: friction.sticking,
-        })
+        all.into_iter()
+            .map(move |(port, name, friction)| JointFriction {
+                name,
+                body,
+                port,
+                sliding: friction.sliding,
+                sticking: friction.sticking,
+            })
     });
     frictions.collect()
 }

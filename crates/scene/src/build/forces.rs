@@ -205,7 +205,11 @@ fn of_one_freedom<T: Copy>(
     let message = format!(
         "joint `{name}`: {what} needs a single degree of freedom, and `{kind}` has {}{}",
         layout.freedoms,
-        if layout.constraints > 0 { ", with constraints" } else { "" }
+        if layout.constraints > 0 {
+            ", with constraints"
+        } else {
+            ""
+        }
     );
     let error = Diagnostic::new(found.span.clone(), message);
     Err(error.help("give `damping`"))

@@ -1,17 +1,19 @@
 //! The `[controller]` table.
 
+mod at_ports;
+
 use super::forces::{per_freedom, speed};
 use super::initial;
 use crate::control::{
-    ControllerDescription, GoalDescription, LawDescription, PortDescription,
-    PortReferenceDescription, ReferenceDescription, ReferenceMotion, RegulatorDescription,
+    ControllerDescription, GoalDescription, LawDescription, ReferenceDescription, ReferenceMotion,
+    RegulatorDescription,
 };
 use crate::description::Position;
 use crate::diagnostics::Diagnostic;
 use crate::forces::PerFreedom;
 use crate::read::{Fields, Sink, Value};
 use crate::source::Located;
-use hamel_control::{Curve, ErrorDynamics, PathGains, PortSpring};
+use hamel_control::{Curve, ErrorDynamics, PathGains};
 use hamel_runtime::time_function::Law;
 use std::collections::HashSet;
 
@@ -96,7 +98,7 @@ fn reference(
     let joint = joint(fields, joints, sink);
     let motion = match fields.exactly_one(&["speeds", "ports"], sink) {
         Some((0, speeds)) => speeds_and_start(&speeds, fields, sink),
-        Some((_, ports)) => port_references(&ports, sink).map(ReferenceMotion::Ports),
+        Some((_, ports)) => at_ports::references(&ports, sink).map(ReferenceMotion::Ports),
         None => None,
     };
     Some(ReferenceDescription {
@@ -123,27 +125,6 @@ fn speeds_and_start(
         speeds: speeds?,
         start: start?,
     })
-}
-
-/// Where the ports of a joint are wanted, each under its name.
-fn port_references(value: &Value<'_>, sink: &mut Sink) -> Option<Vec<PortReferenceDescription>> {
-    let named = value.table(sink)?.unclaimed().into_iter();
-    let each = named.map(|(name, value)| {
-        let mut fields = value.table(sink)?;
-        let start = match fields.optional("start") {
-            Some(start) => start.number(sink).map(|start| Some(start.value)),
-            None => Some(None),
-        };
-        let law = law(&mut fields, sink);
-        fields.finish(sink);
-        Some(PortReferenceDescription {
-            name,
-            start: start?,
-            law: law?,
-        })
-    });
-    let all: Vec<_> = each.collect();
-    all.into_iter().collect()
 }
 
 /// A law by its numbers; what is absent is 0.
@@ -197,7 +178,7 @@ fn energy_shaping(
     joints: Option<&Joints<'_>>,
     sink: &mut Sink,
 ) -> Option<LawDescription> {
-    let ports = list(table, "port", |f, s| port(f, joints, s), sink);
+    let ports = list(table, "port", |f, s| at_ports::port(f, joints, s), sink);
     if ports.as_ref().is_some_and(Vec::is_empty) {
         let message = "the controller has no port";
         let error = Diagnostic::new(table.span(), message);
@@ -209,35 +190,6 @@ fn energy_shaping(
         ports: ports?,
         goals: goals?,
         pump: pump?,
-    })
-}
-
-fn port(
-    fields: &mut Fields<'_>,
-    joints: Option<&Joints<'_>>,
-    sink: &mut Sink,
-) -> Option<PortDescription> {
-    let joint = joint(fields, joints, sink);
-    let named = match fields.optional("port") {
-        Some(port) => port.text(sink).map(Some),
-        None => Some(None),
-    };
-    let stiffness = or(fields, "stiffness", 0.0, not_negative, sink);
-    let kind = match fields.optional("kind") {
-        Some(kind) => kind.choice(&["log", "trace"], sink),
-        None => Some("log"),
-    };
-    let damping = or(fields, "damping", 0.0, not_negative, sink);
-    let limit = or(fields, "limit", f64::INFINITY, positive, sink);
-    Some(PortDescription {
-        joint: joint?,
-        port: named?,
-        spring: match kind? {
-            "trace" => PortSpring::Trace(stiffness?),
-            _ => PortSpring::Log(stiffness?),
-        },
-        damping: damping?,
-        limit: limit?,
     })
 }
 

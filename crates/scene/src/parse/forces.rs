@@ -133,13 +133,11 @@ fn motion(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Vec<TimeFunction
 const NOT_AT_PORTS: &str = "nothing of this kind acts at a port";
 
 /// What acts at degrees of freedom and not at ports, and what to do.
-const OF_FREEDOMS: &[(&str, &str, &str)] = &[
-    (
-        "motion",
-        NOT_AT_PORTS,
-        "motions are prescribed at degrees of freedom: name the direction of the port by `basis` in the joint's spec, so that it is one",
-    ),
-];
+const OF_FREEDOMS: &[(&str, &str, &str)] = &[(
+    "motion",
+    NOT_AT_PORTS,
+    "motions are prescribed at degrees of freedom: name the direction of the port by `basis` in the joint's spec, so that it is one",
+)];
 
 /// What acts at the ports of a joint, each under its name.
 fn ports(value: &Value<'_>, sink: &mut Sink) -> Option<Vec<PortForces>> {
@@ -177,10 +175,7 @@ fn port_limit(value: &Value<'_>, sink: &mut Sink) -> Option<Located<LimitDescrip
     if let LimitKind::Compliant { .. } = limit.value.kind {
         return Some(limit);
     }
-    let message = format!(
-        "{}: a port hits no limit by impacts",
-        value.path()
-    );
+    let message = format!("{}: a port hits no limit by impacts", value.path());
     let error = Diagnostic::new(limit.span, message);
     sink.push(error.help("give `stiffness` instead of `restitution`: a stop that gives way"));
     None

@@ -80,7 +80,7 @@ impl Recursive {
 
     /// `X^cᵀF = τ + Aλ` of every joint into `efforts` (one entry per degree of freedom), as of the last
     /// [`Recursive::inverse_dynamics`] at `q`, or [`Recursive::coupling_force`] where constraints couple joints: also what it takes to move a
-    /// joint whose motion is prescribed.
+    /// joint whose motion is prescribed. What rotors take comes on top.
     ///
     /// # Errors
     /// When a vector has the wrong size, or is not finite.

@@ -199,7 +199,13 @@ impl Recursive {
     }
 
     /// What elements and rotors exert at one port, as of the last inverse dynamics.
-    pub(super) fn effort_at_port(&self, body: usize, port: usize, q: &[f64], speeds: &[f64]) -> f64 {
+    pub(super) fn effort_at_port(
+        &self,
+        body: usize,
+        port: usize,
+        q: &[f64],
+        speeds: &[f64],
+    ) -> f64 {
         let bodies = self.mechanism.carried(body);
         let elements = self.over_elements(q, speeds, |element, view| {
             let effort = element.port_effort(view);

@@ -225,7 +225,10 @@ impl Recursive {
     ) -> (Square, Square) {
         let link = &self.links[rotor.body];
         let (size, freedoms) = (rotor.speeds.len(), link.freedoms.len());
-        let mut slopes = ([0.0; MOST_FREEDOMS * MOST_FREEDOMS], [0.0; MOST_FREEDOMS * MOST_FREEDOMS]);
+        let mut slopes = (
+            [0.0; MOST_FREEDOMS * MOST_FREEDOMS],
+            [0.0; MOST_FREEDOMS * MOST_FREEDOMS],
+        );
         let state = (
             &q[link.configuration.clone()],
             &speeds[rotor.speeds.clone()],

@@ -80,7 +80,12 @@ impl Residual {
     /// Of the mechanism of `tree`.
     pub(super) fn new(tree: &Recursive) -> Self {
         let layout = tree.mechanism.layout();
-        let bodies: Vec<Body> = tree.links.iter().enumerate().map(|own| Body::new(own, tree)).collect();
+        let bodies: Vec<Body> = tree
+            .links
+            .iter()
+            .enumerate()
+            .map(|own| Body::new(own, tree))
+            .collect();
         let resting = |rate: Vector3<f64>| Motion {
             placement: Placement::world(),
             twist: Vector6::zeros(),
