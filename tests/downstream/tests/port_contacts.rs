@@ -179,3 +179,28 @@ fn springs_rest_at_home() {
     let expected = "joint `linkage`: home of `crank_rocker` is found by Newton's method, and what ports are there is not compiled: give the `rest` of springs at ports";
     assert!(message.contains(expected), "{message}");
 }
+
+/// What moves in several ways has no friction that sticks, at its ports neither.
+#[test]
+fn friction_of_several_degrees_of_freedom_is_refused_by_name() {
+    let wheels = ["front_left", "front_right", "rear_left", "rear_right"];
+    let body = |name: &str| {
+        format!(
+            "bodies.{name} = {{ mass = 1.0, inertia = [[0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1]] }}\n"
+        )
+    };
+    let bodies: String = wheels
+        .iter()
+        .chain(&["chassis"])
+        .map(|name| body(name))
+        .collect();
+    let text = format!(
+        "hamel = 1\ngravity = [0.0, 0.0, -9.81]\n[[body]]\nname = \"car\"\nparent = \"world\"\n\
+         joint = {{ type = \"car_wheels\", base = 2.5, half = 0.7, radius = 0.3 }}\n{bodies}ports.motor.friction = 0.3\n"
+    );
+    let refused = Scene::parse(&text, "car.toml", &registry()).expect_err("it is refused");
+    let message = refused.to_string();
+    let expected = "joint `car`: friction at port `motor` needs a single degree of freedom, and `car_wheels` has 8, with constraints";
+    assert!(message.contains(expected), "{message}");
+    assert!(message.contains("give `damping`"), "{message}");
+}

@@ -86,7 +86,7 @@ pub(super) fn acting(
     let further = forces.further_limits.iter().map(|own| own.value);
     let ports = forces.ports.iter().filter_map(|own| {
         let port = stand.port(&own.name).map_err(&mut noted).ok()?;
-        let what = own.element("friction", &stand.name);
+        let what = format!("friction at port `{}`", own.name.value);
         let friction = of_one_freedom(stand, &what, own.friction.as_ref());
         friction.map_err(&mut noted).ok()?;
         Some((port, own.clone()))
