@@ -200,6 +200,22 @@ fn pair(seed: u64, coordinates: usize) -> Pair {
 }
 
 impl Pair {
+    /// With a rotor at every link of the coupling.
+    fn geared(self) -> Self {
+        let inertias = [0.3, 0.0, 1.1, 0.7, 0.2];
+        let coupled = Mechanism::clone(&self.coupled).with_port_armature(FIRST, &inertias);
+        let mut tree = Mechanism::clone(&self.tree);
+        for (number, inertia) in inertias.into_iter().enumerate() {
+            let geared = tree.with_armature(FIRST + number, &[inertia]);
+            tree = geared.expect("it fits");
+        }
+        Self {
+            coupled: Arc::new(coupled.expect("it fits")),
+            tree: Arc::new(tree),
+            ..self
+        }
+    }
+
     /// The tree's configuration.
     fn apart(&self, q: &[f64]) -> Vec<f64> {
         let ball = 9;
@@ -212,8 +228,15 @@ impl Pair {
     }
 }
 
+/// Every other pair with rotors at the ports, which are those of the joints of the tree.
 fn all() -> impl Iterator<Item = (u64, Pair)> {
-    (0..8).map(|seed| (seed, pair(seed, 1 + seed as usize % 2)))
+    (0..8).map(|seed| {
+        let pair = pair(seed, 1 + seed as usize % 2);
+        match (seed / 2) % 2 {
+            0 => (seed, pair),
+            _ => (seed, pair.geared()),
+        }
+    })
 }
 
 #[track_caller]
@@ -372,4 +395,26 @@ fn links_that_make_no_joint_are_refused() {
     let other = Coupled::<3>::new(&sound, &PORTS).expect_err("two coordinates");
     assert_eq!(other, LinkFault::Coordinates { found: 2, most: 3 });
     assert!(Coupled::<2>::new(&sound, &PORTS).is_ok_and(|joint| joint.member(5).is_none()));
+}
+
+#[test]
+fn rotors_that_do_not_fit_are_refused_by_name() {
+    let (_, pair) = all().next().expect("a pair");
+    let refused = |body: usize, inertia: &[f64]| {
+        let mechanism = Mechanism::clone(&pair.coupled);
+        let found = mechanism.with_port_armature(body, inertia);
+        found.expect_err("it is refused").to_string()
+    };
+    assert_eq!(
+        refused(99, &[]),
+        "armature at ports of body 99: there is no body of index 99, the mechanism has 8"
+    );
+    assert_eq!(
+        refused(FIRST, &[0.1; 3]),
+        "armature at ports of joint `coupling`: inertia has 3 entries, it must have 5"
+    );
+    assert_eq!(
+        refused(FIRST, &[0.1, 0.1, -0.5, 0.1, 0.1]),
+        "armature at ports of joint `coupling`: inertia is -0.5, it must be finite and not negative"
+    );
 }

@@ -10,6 +10,15 @@ use hamel_runtime::mechanism::CONFIGURATION_TOLERANCE;
 use hamel_scene::{BodyDescription, Position, SpringEnergy};
 use nalgebra::{DMatrix, DVector, Matrix3};
 
+/// The index of a joint's port.
+pub fn port_of(body: &BodyDescription, joint: &JointType, name: &str) -> Option<usize> {
+    let mut known = joint.derived.spec.ports.iter();
+    match &body.joint.coupling {
+        Some(coupling) => coupling.port(name),
+        None => known.position(|port| port.value.name == name),
+    }
+}
+
 /// A joint of a scene whose type and parameters are known.
 pub struct Held<'a> {
     /// What of it is asked for, in messages.
@@ -74,14 +83,9 @@ impl Held<'_> {
     pub fn add_ports(&self, elements: &mut Elements) -> Result<(), Vec<String>> {
         let (mut reasons, body) = (vec![], self.index);
         let (joint, kind) = (&self.body.joint.name.value, &self.body.joint.kind.value);
-        let known = &self.joint.derived.spec.ports;
         for forces in &self.body.forces.ports {
             let name = &forces.name.value;
-            let port = match &self.body.joint.coupling {
-                Some(coupling) => coupling.port(name),
-                None => known.iter().position(|port| port.value.name == *name),
-            };
-            let Some(port) = port else {
+            let Some(port) = port_of(self.body, self.joint, name) else {
                 reasons.push(format!(
                     "joint `{joint}`: its type `{kind}` has no port `{name}`"
                 ));
@@ -98,6 +102,11 @@ impl Held<'_> {
                 elements.port_efforts.extend(constant);
             }
             if forces.spring.is_some() || forces.damping > 0.0 {
+                let rest = match forces.spring {
+                    Some(spring) => spring.rest.map_or_else(|| self.home_value(port), Ok),
+                    None => Ok(0.0),
+                };
+                let rest = rest.map_err(|reason| reasons.push(reason));
                 let spring = forces.spring.unwrap_or_default();
                 elements.port_springs.push(PortSpring {
                     name: forces.element("spring", joint),
@@ -105,14 +114,33 @@ impl Held<'_> {
                     port,
                     stiffness: spring.stiffness,
                     damping: forces.damping,
-                    rest: spring.rest,
+                    rest: rest.unwrap_or_default(),
                 });
             }
+            let limit = forces.compliant_limit(joint, (body, port));
+            elements.limits.extend(limit);
         }
         match reasons.is_empty() {
             true => Ok(()),
             false => Err(reasons),
         }
+    }
+
+    /// The value of a port at home.
+    fn home_value(&self, port: usize) -> Result<f64, String> {
+        let home = self.joint.derived.kernel(KernelKind::Home);
+        if home.is_some_and(|home| home.method != Method::Formula) {
+            let (joint, kind) = (&self.body.joint.name.value, &self.body.joint.kind.value);
+            return Err(format!(
+                "joint `{joint}`: home of `{kind}` is found by Newton's method, and what ports are there is not compiled: give the `rest` of springs at ports"
+            ));
+        }
+        let home = self.rest(&Position::Home)?;
+        let values = self.numbers(self.at(&home, |joint| joint.port_values()))?;
+        values
+            .get(port)
+            .copied()
+            .ok_or_else(|| self.refused("it is not finite"))
     }
 
     fn refused(&self, reason: &str) -> String {

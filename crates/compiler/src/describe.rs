@@ -1,6 +1,6 @@
 //! From what a scene file says to what is compiled, with all that cannot be compiled named at once.
 
-use super::acting::Held;
+use super::acting::{Held, port_of};
 use super::check;
 use super::coupled::{self, Types};
 use super::model::{Body, Coupling, Elements, Model};
@@ -189,12 +189,26 @@ fn limits((index, body): (usize, &BodyDescription)) -> impl Iterator<Item = Join
         Some(JointLimit {
             name: format!("limit of joint `{}`", body.joint.name.value),
             body: index,
+            port: None,
             lower: limit.value.lower,
             upper: limit.value.upper,
             stiffness,
             damping,
         })
     })
+}
+
+/// Inertias of rotors at ports, one a port, if there are any. Of ports that are not there it is said elsewhere.
+fn port_armature(body: &BodyDescription, joint: &JointType) -> Vec<f64> {
+    let rotors = body.forces.ports.iter().filter(|own| own.armature > 0.0);
+    let mut inertias = vec![];
+    for own in rotors {
+        if let Some(port) = port_of(body, joint, &own.name.value) {
+            inertias.resize(inertias.len().max(port + 1), 0.0);
+            inertias[port] = own.armature;
+        }
+    }
+    inertias
 }
 
 fn compiled(body: &BodyDescription, joint: Rc<JointType>) -> Result<Body, Vec<String>> {
@@ -216,6 +230,7 @@ fn compiled(body: &BodyDescription, joint: Rc<JointType>) -> Result<Body, Vec<St
         "armature",
         forces.armature.as_ref().map(|found| &found.value),
     );
+    let port_armature = port_armature(body, &joint);
     // Efforts that change with time come in with τ.
     let effort = forces.constant_effort().unwrap_or_default();
     let shape = joint.derived.shape;
@@ -253,6 +268,7 @@ fn compiled(body: &BodyDescription, joint: Rc<JointType>) -> Result<Body, Vec<St
             child_placement: body.body_at,
             mass: body.mass,
             armature,
+            port_armature,
             damping,
             effort,
             driven: forces.motion.is_some(),

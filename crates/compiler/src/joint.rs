@@ -184,18 +184,19 @@ impl<'a> Joint<'a> {
         rows.map(<[Sym]>::to_vec).collect()
     }
 
+    /// `Q̇(Q, v)`.
+    pub fn configuration_rate(&self, velocity: &[Sym]) -> Vec<Sym> {
+        let given = [(self.joint.derived.arguments.velocity.as_slice(), velocity)];
+        self.entries_with(KernelKind::ConfigurationRate, &given)
+    }
+
     /// How the stored scalars of Q change with each ϕ, at ϕ = 0: `Q̇(Q, S₀ e)`.
     pub fn configuration_slopes(&self) -> Vec<Vec<Sym>> {
         let freedoms = self.joint.derived.shape.freedoms;
         let map = self.entries(KernelKind::VelocityMap);
         let column = |k: usize| -> Vec<Sym> {
             let velocity = map.iter().skip(k).step_by(freedoms).copied();
-            let velocity: Vec<Sym> = velocity.collect();
-            let given = [(
-                self.joint.derived.arguments.velocity.as_slice(),
-                &velocity[..],
-            )];
-            self.entries_with(KernelKind::ConfigurationRate, &given)
+            self.configuration_rate(&velocity.collect::<Vec<_>>())
         };
         (0..freedoms).map(column).collect()
     }

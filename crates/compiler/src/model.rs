@@ -77,6 +77,8 @@ pub struct Body {
     pub mass: MassProperties,
     /// What is added to the diagonal of the joint's own block of M, one per degree of freedom; none for further bodies of a joint.
     pub armature: Vec<f64>,
+    /// Inertias of rotors at the joint's ports, one per port; none where there are none, and for further bodies of a joint.
+    pub port_armature: Vec<f64>,
     /// Viscous damping, one per degree of freedom; none for further bodies of a joint.
     pub damping: Vec<f64>,
     /// Constant efforts, one per degree of freedom; none for further bodies of a joint.

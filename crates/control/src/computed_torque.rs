@@ -1,8 +1,9 @@
 //! Computed torque: inverse dynamics at the accelerations of a reference, corrected by the error.
 
 use super::error::{positive, require};
+use super::port_reference::OfJoint;
 use super::state::{check_state, deviation, largest, store_measures};
-use super::{ControlError, Controller, DEVIATIONS, Measure, Reference};
+use super::{ControlError, Controller, DEVIATIONS, Measure, PortReference, Reference};
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -31,6 +32,8 @@ pub struct ComputedTorque {
     error_dynamics: ErrorDynamics,
     wanted: Vec<f64>,
     error: Vec<f64>,
+    /// Joints that are led by their ports instead.
+    at_ports: Vec<OfJoint>,
     accelerations: Vec<f64>,
     /// S₀ of one joint.
     map: Vec<f64>,
@@ -53,16 +56,70 @@ impl ComputedTorque {
             error_dynamics,
             wanted: vec![0.0; layout.configuration],
             error: vec![0.0; layout.freedoms],
+            at_ports: Vec::new(),
             accelerations: vec![0.0; layout.speeds],
             map: vec![0.0; MOST_FREEDOMS * MOST_FREEDOMS],
         })
     }
 
-    /// e into `self.error`.
+    /// The law that leads some joints by the values of their ports, each by as many as it has degrees of freedom: `ÿ* = ÿ_ref + 2ζω (ẏ_ref − ẏ) − ω² (y − y_ref)`
+    /// with `P v̇* = ÿ* − Ṗ v`, so that the errors of the ports obey their linear equation exactly. What the reference says of these joints is not followed.
+    ///
+    /// # Errors
+    /// A body or a port that is not there, or named twice; numbers that are not finite; a joint with more or fewer references than degrees of freedom.
+    pub fn at_ports(mut self, references: &[PortReference]) -> Result<Self, ControlError> {
+        self.at_ports = OfJoint::all(self.reference.mechanism(), references)?;
+        Ok(self)
+    }
+
+    /// e into `self.error`; 0 for joints that are led by their ports.
     fn compare(&mut self, time: f64, q: &[f64]) -> Result<(), ControlError> {
         self.reference.configuration(time, &mut self.wanted)?;
         let mechanism = self.reference.mechanism();
+        for own in &self.at_ports {
+            let range = mechanism.body(own.body)?.ranges().configuration.clone();
+            self.wanted[range.clone()].copy_from_slice(&q[range]);
+        }
         Ok(deviation(mechanism, &self.wanted, q, &mut self.error)?)
+    }
+
+    /// v̇* of joints that are led by their ports, into `self.accelerations`.
+    fn lead_ports(&mut self, time: f64, q: &[f64], speeds: &[f64]) -> Result<(), ControlError> {
+        let ErrorDynamics {
+            frequency,
+            damping_ratio,
+        } = self.error_dynamics;
+        let (spring, damper) = (frequency * frequency, 2.0 * damping_ratio * frequency);
+        for own in &self.at_ports {
+            let owner = self.reference.mechanism().body(own.body)?;
+            let range = owner.ranges().speeds.clone();
+            let state = (owner.configuration(q), &speeds[range.clone()]);
+            let wanted = |[way, faster]: [f64; 2]| -spring * way - damper * faster;
+            own.accelerations(owner, time, state, wanted, &mut self.accelerations[range])?;
+        }
+        Ok(())
+    }
+
+    /// The largest deviations of ports, and of their rates.
+    fn port_deviations(
+        &self,
+        time: f64,
+        q: &[f64],
+        speeds: &[f64],
+    ) -> Result<[f64; 2], ControlError> {
+        let mut most = [0.0; 2];
+        for own in &self.at_ports {
+            let owner = self.reference.mechanism().body(own.body)?;
+            let state = (
+                owner.configuration(q),
+                &speeds[owner.ranges().speeds.clone()],
+            );
+            for port in &own.ports {
+                let found = port.deviation(owner, time, state);
+                most = [largest(&[most[0], found[0]]), largest(&[most[1], found[1]])];
+            }
+        }
+        Ok(most)
     }
 
     /// v̇* into `self.accelerations`.
@@ -103,6 +160,7 @@ impl Controller for ComputedTorque {
         check_state(self.reference.mechanism(), q, speeds, efforts)?;
         self.compare(time, q)?;
         self.correct(time, q, speeds);
+        self.lead_ports(time, q, speeds)?;
         // Where all joints are holonomic, `S̄ᵀτ` is τ.
         Ok(self
             .dynamics
@@ -130,7 +188,21 @@ impl Controller for ComputedTorque {
         {
             *slot = speed - wanted;
         }
-        let found = [largest(&self.error), largest(&self.accelerations)];
+        for own in &self.at_ports {
+            let range = self
+                .reference
+                .mechanism()
+                .body(own.body)?
+                .ranges()
+                .speeds
+                .clone();
+            self.accelerations[range].fill(0.0);
+        }
+        let [way, rate] = self.port_deviations(time, q, speeds)?;
+        let found = [
+            largest(&self.error).max(way),
+            largest(&self.accelerations).max(rate),
+        ];
         store_measures(&found, values)
     }
 }

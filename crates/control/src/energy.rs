@@ -9,24 +9,29 @@ use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 use hamel_runtime::dynamics::{Dynamics, Recursive};
-use hamel_runtime::elements::{Action, Element, JointSpring, MotionList, RotationSpring, View};
+use hamel_runtime::elements::{
+    self, Action, Element, JointSpring, MotionList, RotationSpring, View,
+};
 use hamel_runtime::joint::MOST_FREEDOMS;
 use hamel_runtime::mechanism::Mechanism;
 
 /// The energy that a port adds to the mechanism's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PortSpring {
-    /// `½ k |ϕ|²` with ϕ the local coordinates from the goal, k in N m/rad² or N/m: as strong at half a turn as it can be, and discontinuous there.
+    /// `½ k |ϕ|²` with ϕ the local coordinates from the goal, or at a port how far it is from its value there, k in N m/rad² or N/m: as strong at half a turn
+    /// as it can be, and discontinuous there.
     Log(f64),
     /// `k (3 − tr R)/2` with R the rotation from the goal, k in N m: smooth everywhere, and at rest at half a turn too.
     Trace(f64),
 }
 
-/// A joint by whose port energy goes in and out: u = its τ, y = ∂H/∂p = its v.
+/// A joint by which energy goes in and out: u = its τ, y = ∂H/∂p = its v; or a port of the joint: u an effort there, y its rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Port {
     /// The body that the joint carries.
     pub body: usize,
+    /// Index of the port among those of the joint; `None` for all of its τ.
+    pub port: Option<usize>,
     /// What it adds to the energy.
     pub spring: PortSpring,
     /// `d` of the injected damping `−d y`, N m s/rad or N s/m; not negative.
@@ -60,6 +65,10 @@ pub struct EnergyShaping {
     /// H_d*, J.
     level: f64,
     momenta: Vec<f64>,
+    /// u of each port.
+    inputs: Vec<[f64; MOST_FREEDOMS]>,
+    /// What springs at joints exert.
+    exerted: Vec<f64>,
     /// What springs would do to bodies: nothing, as they are at joints.
     wrenches: Vec<nalgebra::Vector6<f64>>,
     motions: MotionList,
@@ -69,7 +78,7 @@ impl EnergyShaping {
     /// The law that has its least energy at the configuration `goal`, as far as `ports` see to it.
     ///
     /// # Errors
-    /// No such body; numbers out of range; a wrong size; a joint whose motion is prescribed, or that has two ports.
+    /// No such body or port; numbers out of range; a wrong size; a joint whose motion is prescribed, or that is given twice as a whole or with the same port.
     pub fn new(
         mechanism: Arc<Mechanism>,
         goal: &[f64],
@@ -79,10 +88,10 @@ impl EnergyShaping {
         mechanism.check_configuration(goal)?;
         let mut seen = BTreeSet::new();
         for port in &ports {
-            if !seen.insert(port.body) {
+            if !seen.insert((port.body, port.port)) {
                 return Err(ControlError::Joint {
                     joint: mechanism.body(port.body)?.joint_name().into(),
-                    reason: "has two ports: the limit of one would cut off what the other does",
+                    reason: "is given twice, as a whole or with the same port: the limit of one would cut off what the other does",
                 });
             }
         }
@@ -100,6 +109,8 @@ impl EnergyShaping {
         let layout = *mechanism.layout();
         let mut shaping = Self {
             dynamics: Recursive::new(Arc::clone(&mechanism)),
+            inputs: vec![[0.0; MOST_FREEDOMS]; ports.len()],
+            exerted: vec![0.0; layout.freedoms],
             ports,
             springs: springs?,
             pump,
@@ -125,29 +136,58 @@ impl EnergyShaping {
         Ok(energy + springs.sum::<f64>())
     }
 
-    /// u of all ports without their limits, into `efforts`.
-    fn inject(
-        &mut self,
-        q: &[f64],
-        speeds: &[f64],
-        efforts: &mut [f64],
-    ) -> Result<(), ControlError> {
+    /// u of all ports without their limits.
+    fn inject(&mut self, q: &[f64], speeds: &[f64]) -> Result<(), ControlError> {
         let surplus = match self.pump.gain {
             0.0 => 0.0,
             gain => gain * (self.energy(q, speeds)? - self.level),
         };
-        efforts.fill(0.0);
         let view = View::new(&self.mechanism, q, speeds, &self.motions);
-        for (port, spring) in self.ports.iter().zip(&self.springs) {
-            spring.act(&view, &mut Action::new(&mut self.wrenches, efforts));
+        let all = self.ports.iter().zip(&self.springs).zip(&mut self.inputs);
+        for ((port, spring), input) in all {
+            let damping = port.damping + surplus;
+            if let Some(index) = port.port {
+                let (.., pull) = spring.port_effort(&view).unwrap_or((0, 0, f64::NAN));
+                let (_, rate) = view.port(port.body, index);
+                input[0] = pull - damping * rate;
+                continue;
+            }
+            self.exerted.fill(0.0);
+            spring.act(
+                &view,
+                &mut Action::new(&mut self.wrenches, &mut self.exerted),
+            );
             let mut buffer = [0.0; MOST_FREEDOMS];
             let output = view.joint_velocity(port.body, &mut buffer);
             let own = self.mechanism.bodies()[port.body].ranges().freedoms.clone();
-            for (u, y) in efforts[own].iter_mut().zip(output) {
-                *u -= (port.damping + surplus) * y;
+            for ((u, y), pull) in input.iter_mut().zip(output).zip(&self.exerted[own]) {
+                *u = pull - damping * y;
             }
         }
         Ok(())
+    }
+
+    /// How many entries u of a port has.
+    fn size(&self, port: &Port) -> usize {
+        let own = &self.mechanism.bodies()[port.body];
+        port.port.map_or(own.ranges().freedoms.len(), |_| 1)
+    }
+
+    /// Adds u of a port, with its limit, to τ.
+    fn add(&self, index: usize, q: &[f64], efforts: &mut [f64]) {
+        let (port, mut input) = (&self.ports[index], self.inputs[index]);
+        shorten(port.limit, &mut input[..self.size(port)]);
+        let owner = &self.mechanism.bodies()[port.body];
+        let own = efforts[owner.ranges().freedoms.clone()].iter_mut();
+        let mut row = [1.0; MOST_FREEDOMS];
+        if let Some(index) = port.port {
+            let row = &mut row[..own.len()];
+            owner.joint().port_row(owner.configuration(q), index, row);
+            input = [input[0]; MOST_FREEDOMS];
+        }
+        for ((sum, u), weight) in own.zip(input).zip(row) {
+            *sum += weight * u;
+        }
     }
 
     /// H_d*: the energy of the goal at rest, J.
@@ -186,8 +226,32 @@ fn spring(
     }
     let name = format!("port of joint `{joint}`");
     let rest = body.configuration(goal);
-    let spring: Arc<dyn Element> = match port.spring {
-        PortSpring::Log(stiffness) => {
+    let spring: Arc<dyn Element> = match (port.spring, port.port) {
+        (PortSpring::Log(stiffness), Some(index)) => {
+            require(
+                "stiffness of a port",
+                stiffness,
+                stiffness >= 0.0,
+                "at least 0 and finite",
+            )?;
+            // Of a port that is not there the check tells.
+            let value = body.joint().port_value(rest, index);
+            Arc::new(elements::PortSpring {
+                name,
+                body: port.body,
+                port: index,
+                stiffness,
+                damping: 0.0,
+                rest: if value.is_finite() { value } else { 0.0 },
+            })
+        }
+        (PortSpring::Trace(_), Some(_)) => {
+            return Err(ControlError::Joint {
+                joint: joint.into(),
+                reason: "has a spring of kind \"trace\" at a port, which is no rotation: give one of kind \"log\"",
+            });
+        }
+        (PortSpring::Log(stiffness), None) => {
             require(
                 "stiffness of a port",
                 stiffness,
@@ -209,7 +273,7 @@ fn spring(
                 rest: rest.to_vec(),
             })
         }
-        PortSpring::Trace(stiffness) => Arc::new(RotationSpring {
+        (PortSpring::Trace(stiffness), None) => Arc::new(RotationSpring {
             name,
             body: port.body,
             stiffness,
@@ -229,10 +293,10 @@ impl Controller for EnergyShaping {
         efforts: &mut [f64],
     ) -> Result<(), ControlError> {
         check_state(&self.mechanism, q, speeds, efforts)?;
-        self.inject(q, speeds, efforts)?;
-        for port in &self.ports {
-            let own = self.mechanism.bodies()[port.body].ranges().freedoms.clone();
-            shorten(port.limit, &mut efforts[own]);
+        self.inject(q, speeds)?;
+        efforts.fill(0.0);
+        for index in 0..self.ports.len() {
+            self.add(index, q, efforts);
         }
         Ok(())
     }
@@ -247,12 +311,10 @@ impl Controller for EnergyShaping {
         if self.ports.iter().all(|port| port.limit.is_infinite()) {
             return Ok(());
         }
-        let mut efforts = vec![0.0; self.mechanism.layout().freedoms];
-        check_state(&self.mechanism, q, speeds, &efforts)?;
-        self.inject(q, speeds, &mut efforts)?;
-        for port in &self.ports {
-            let own = self.mechanism.bodies()[port.body].ranges().freedoms.clone();
-            bends.push(1.0 - length(&efforts[own]) / port.limit);
+        check_state(&self.mechanism, q, speeds, &self.exerted)?;
+        self.inject(q, speeds)?;
+        for (port, input) in self.ports.iter().zip(&self.inputs) {
+            bends.push(1.0 - length(&input[..self.size(port)]) / port.limit);
         }
         Ok(())
     }

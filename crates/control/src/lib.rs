@@ -22,6 +22,7 @@ mod energy;
 mod error;
 mod feedback;
 mod path;
+mod port_reference;
 #[cfg(feature = "predictive")]
 mod predictive;
 mod reference;
@@ -36,6 +37,7 @@ pub use energy::{EnergyShaping, Port, PortSpring, Pump};
 pub use error::ControlError;
 pub use feedback::Feedback;
 pub use path::{Curve, PathFollower, PathGains};
+pub use port_reference::PortReference;
 #[cfg(feature = "predictive")]
 pub use predictive::PredictiveRegulator;
 pub use reference::Reference;

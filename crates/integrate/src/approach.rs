@@ -17,14 +17,16 @@ pub struct Approach {
     pub value: f64,
     /// When, s.
     pub time: f64,
+    /// Their largest absolute value there: what the least is small beside.
+    pub most: f64,
 }
 
 impl Display for Approach {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        let (joint, value, time) = (&self.joint, self.value, Number(self.time));
+        let (joint, value, time, most) = (&self.joint, self.value, Number(self.time), self.most);
         write!(
             f,
-            "joint `{joint}`: {} comes to {value:e} at {time} s",
+            "joint `{joint}`: {} comes to {value:.3e} at {time} s, and is {most:.3e} at most",
             self.loci
         )
     }
@@ -60,7 +62,15 @@ impl Watch {
     pub(super) fn new(mechanism: &Mechanism) -> Self {
         let joints = mechanism.joints();
         let watched = joints.filter(|(_, body)| !body.joint().singularities().is_empty());
-        let far = |(index, body): (usize, &Body)| (index, approach(body, f64::INFINITY, 0.0));
+        let far = |(index, body): (usize, &Body)| {
+            (
+                index,
+                Approach {
+                    most: 0.0,
+                    ..approach(body, f64::INFINITY, 0.0)
+                },
+            )
+        };
         Self {
             nearest: watched.map(far).collect(),
         }
@@ -70,6 +80,7 @@ impl Watch {
     pub(super) fn see(&mut self, mechanism: &Mechanism, time: f64, q: &[f64]) {
         for (index, nearest) in &mut self.nearest {
             let value = value_at(&mechanism.bodies()[*index], q);
+            nearest.most = nearest.most.max(value);
             if value < nearest.value {
                 (nearest.value, nearest.time) = (value, time);
             }
@@ -103,5 +114,6 @@ fn approach(body: &Body, value: f64, time: f64) -> Approach {
         loci: Loci(body.joint().singularities()),
         value,
         time,
+        most: value,
     }
 }

@@ -164,7 +164,7 @@ impl Correction {
         if self.is_in_force {
             self.adjust(step_state, flow, turned)?;
         }
-        self.move_by_structure(step_state, flow, span.step);
+        self.move_by_structure(step_state, flow, span.step, &rates.speeds);
         add(&mut rates.phi, self.lambda, &self.moved.phi);
         add(&mut rates.y, self.lambda, &self.moved.y);
         Ok(())
@@ -217,18 +217,29 @@ impl Correction {
     }
 
     /// `(T, J̄22) M̄⁻¹Δp̄` and `−p̄/h`.
-    fn move_by_structure(&mut self, step_state: &StepState, flow: &mut Flow<'_>, step: f64) {
+    fn move_by_structure(
+        &mut self,
+        step_state: &StepState,
+        flow: &mut Flow<'_>,
+        step: f64,
+        speeds: &[f64],
+    ) {
         let (base, phi) = (&step_state.base, &step_state.phi);
         flow.local_rates(base, phi, &self.faster, &mut self.moved.phi);
         for (index, body) in flow.mechanism.joints() {
             let own = body.ranges().speeds.clone();
             let carried = &self.composites[flow.mechanism.carried(index)];
             let bodies = &flow.mechanism.bodies()[flow.mechanism.carried(index)];
-            let momenta = (&step_state.next_y[own.clone()], carried);
+            let momenta = (
+                &step_state.next_y[own.clone()],
+                carried,
+                &speeds[own.clone()],
+            );
             let (faster, out) = (&self.faster[own.clone()], &mut self.moved.y[own]);
+            let rotors = flow.mechanism.port_armature(index);
             let structure = self
                 .matrices
-                .structure((body, bodies), &self.middle, momenta);
+                .structure((body, bodies), &self.middle, momenta, rotors);
             multiply(structure, faster, out);
         }
         add(&mut self.moved.y, -1.0 / step, &step_state.next_y);
@@ -237,12 +248,13 @@ impl Correction {
 
 impl Matrices {
     /// J̄22 of one joint, S×S, of its own p̄ and the momenta of all that hangs on each of its bodies, which a joint with constraints feels in full:
-    /// the sum over the bodies of `X̄ᵀ ad*_{X̄} h + E T − TᵀEᵀ` with `E = ∂(X̄ᵀh)/∂ϕ` and `T = S₀⁻¹S̄`.
+    /// the sum over the bodies of `X̄ᵀ ad*_{X̄} h + E T − TᵀEᵀ` with `E = ∂(X̄ᵀh)/∂ϕ` and `T = S₀⁻¹S̄`; of a rotor with the momentum a w at a port, `E = ∂(p̄ᵀ a w)/∂ϕ`.
     fn structure(
         &mut self,
         (body, carried): (&Body, &[Body]),
         q: &[f64],
-        (momenta, composites): (&[f64], &[Vector6<f64>]),
+        (momenta, composites, velocity): (&[f64], &[Vector6<f64>], &[f64]),
+        rotors: &[f64],
     ) -> &[f64] {
         let (joint, q) = (body.joint(), body.configuration(q));
         let (freedoms, speeds) = (body.ranges().freedoms.len(), body.ranges().speeds.len());
@@ -278,6 +290,24 @@ impl Matrices {
                 for (a, other) in columns().enumerate() {
                     out[b * speeds + a] += moved[a] + twist(other).dot(&turned);
                     out[a * speeds + b] -= moved[a];
+                }
+            }
+        }
+        for (port, &inertia) in rotors.iter().enumerate() {
+            let mut row = [0.0; MOST_FREEDOMS];
+            let row = &mut row[..freedoms];
+            joint.port_row(q, port, row);
+            let rate = |own: &[f64]| own.iter().zip(&*row).map(|(s, p)| s * p).sum::<f64>();
+            let turning: f64 = columns().zip(velocity).map(|(own, v)| rate(own) * v).sum();
+            for b in 0..speeds {
+                let (mut unit, mut moved) = ([0.0; MOST_FREEDOMS], [0.0; MOST_FREEDOMS]);
+                unit[b] = 1.0;
+                let (unit, moved) = (&unit[..speeds], &mut moved[..speeds]);
+                joint.port_row_rate(q, unit, port, moved);
+                for a in 0..speeds {
+                    let entry = inertia * turning * moved[a];
+                    out[b * speeds + a] += entry;
+                    out[a * speeds + b] -= entry;
                 }
             }
         }

@@ -1,6 +1,7 @@
 //! The vector field in (ϕ, y) around a base point, for both forms.
 
 use super::StepFailure;
+use super::hybrid::Sliding;
 use super::step_state::add;
 use super::{Form, InputBends, Inputs};
 use alloc::boxed::Box;
@@ -119,8 +120,8 @@ pub(super) struct Flow<'a> {
     efforts: Vec<f64>,
     /// The inputs of the last [`Flow::hold`], which stand until the next; `None` where inputs follow the state.
     held: Option<Vec<f64>>,
-    /// Efforts of friction at the joints that slide, by their freedoms: they are added to the inputs.
-    friction: Vec<(usize, f64)>,
+    /// Efforts of friction at the joints that slide: they are added to the inputs.
+    friction: Vec<Sliding>,
     /// A time within the piece of all functions of time that the present step is in.
     pub(super) within: f64,
 }
@@ -210,7 +211,7 @@ impl<'a> Flow<'a> {
     }
 
     /// From now on these efforts of friction.
-    pub(super) fn set_friction(&mut self, friction: Vec<(usize, f64)>) {
+    pub(super) fn set_friction(&mut self, friction: Vec<Sliding>) {
         self.friction = friction;
     }
 
@@ -361,7 +362,7 @@ impl<'a> Flow<'a> {
     ) {
         let (held, moment) = (self.held.as_deref(), self.moment(time));
         fill(&mut self.inputs, held, time, q, speeds, efforts);
-        add_friction(&self.friction, efforts);
+        add_friction(&self.friction, q, efforts);
         self.mechanism.add_timed_efforts(moment, efforts);
         self.dynamics.set_moment(moment);
     }
@@ -415,7 +416,7 @@ impl<'a> Flow<'a> {
         let mut fill = |speeds: &[f64], efforts: &mut [f64]| {
             let held = held.as_deref();
             fill(inputs, held, time, configuration, speeds, efforts);
-            add_friction(friction, efforts);
+            add_friction(friction, configuration, efforts);
             mechanism.add_timed_efforts(moment, efforts);
             mechanism.prescribe_accelerations(moment, efforts);
         };
@@ -472,9 +473,9 @@ fn fill(
     }
 }
 
-fn add_friction(friction: &[(usize, f64)], efforts: &mut [f64]) {
-    for &(freedom, effort) in friction {
-        efforts[freedom] += effort;
+fn add_friction(friction: &[Sliding], q: &[f64], efforts: &mut [f64]) {
+    for own in friction {
+        own.add(q, efforts);
     }
 }
 

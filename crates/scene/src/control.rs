@@ -10,7 +10,7 @@ use crate::scene::{Scene, read_file};
 use crate::source::{Located, Span};
 use hamel_control::{
     ComputedTorque, ControlError, Controller, Curve, EnergyShaping, Equilibrium, ErrorDynamics,
-    PathFollower, PathGains, Port, PortSpring, Pump, Reference, Regulator, Weights,
+    PathFollower, PathGains, Port, PortReference, PortSpring, Pump, Reference, Regulator, Weights,
 };
 use hamel_runtime::mechanism::Mechanism;
 use hamel_runtime::time_function::Law;
@@ -91,10 +91,33 @@ impl LawDescription {
 pub struct ReferenceDescription {
     /// The joint.
     pub joint: Located<String>,
-    /// Its speeds.
-    pub speeds: Located<Vec<Law>>,
-    /// Where the reference begins; `None` for where the joint itself begins.
-    pub start: Option<Position>,
+    /// How it moves.
+    pub motion: ReferenceMotion,
+}
+
+/// How a joint is wanted to move.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ReferenceMotion {
+    /// By its own speeds.
+    Speeds {
+        /// Its speeds.
+        speeds: Located<Vec<Law>>,
+        /// Where the reference begins; `None` for where the joint itself begins.
+        start: Option<Position>,
+    },
+    /// By the values of its ports.
+    Ports(Vec<PortReferenceDescription>),
+}
+
+/// Where one port is wanted over time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PortReferenceDescription {
+    /// The port.
+    pub name: Located<String>,
+    /// Its value at time 0, rad or m; `None` for where it is then.
+    pub start: Option<f64>,
+    /// How it goes on.
+    pub law: Law,
 }
 
 /// Where one joint is wanted.
@@ -111,6 +134,8 @@ pub struct GoalDescription {
 pub struct PortDescription {
     /// The joint.
     pub joint: Located<String>,
+    /// A port of it; `None` for the joint as a whole.
+    pub port: Option<Located<String>>,
     /// What it adds to the energy.
     pub spring: PortSpring,
     /// Injected damping.
@@ -146,6 +171,7 @@ pub(crate) enum ControlLaw {
     ComputedTorque {
         start: Vec<f64>,
         laws: Vec<Law>,
+        ports: Vec<PortReference>,
         error_dynamics: ErrorDynamics,
     },
     Lqr(Goal),
@@ -226,10 +252,11 @@ impl Control {
             ControlLaw::ComputedTorque {
                 start,
                 laws,
+                ports,
                 error_dynamics,
             } => {
                 let reference = Reference::new(mechanism, start, laws.clone(), t_end)?;
-                Box::new(ComputedTorque::new(reference, *error_dynamics)?)
+                Box::new(ComputedTorque::new(reference, *error_dynamics)?.at_ports(ports)?)
             }
             ControlLaw::Lqr(goal) => {
                 let equilibrium = goal.equilibrium(mechanism)?;

@@ -53,12 +53,39 @@ pub struct PortForces {
     pub spring: Option<PortSpringDescription>,
     /// Viscous damping c: the effort −c w; 0 without.
     pub damping: f64,
+    /// Inertia of what turns or slides with it, kg m² or kg; 0 without.
+    pub armature: f64,
+    /// Dry friction.
+    pub friction: Option<Located<FrictionDescription>>,
+    /// Where its range ends, by stops that give way.
+    pub limit: Option<Located<LimitDescription>>,
 }
 
 impl PortForces {
     /// What messages call its effort or spring, of the joint of that name.
     pub fn element(&self, what: &str, joint: &str) -> String {
         format!("{what} at port `{}` of joint `{joint}`", self.name.value)
+    }
+
+    /// Its limit as an element, at a port of the joint of that name under a body; both by index.
+    pub fn compliant_limit(
+        &self,
+        joint: &str,
+        (body, port): (usize, usize),
+    ) -> Option<hamel_runtime::elements::JointLimit> {
+        let limit = self.limit.as_ref()?.value;
+        let LimitKind::Compliant { stiffness, damping } = limit.kind else {
+            return None;
+        };
+        Some(hamel_runtime::elements::JointLimit {
+            name: self.element("limit", joint),
+            body,
+            port: Some(port),
+            lower: limit.lower,
+            upper: limit.upper,
+            stiffness,
+            damping,
+        })
     }
 }
 
@@ -67,8 +94,8 @@ impl PortForces {
 pub struct PortSpringDescription {
     /// N m/rad or N/m.
     pub stiffness: f64,
-    /// The value of the port at which it is at rest, rad or m.
-    pub rest: f64,
+    /// The value of the port at which it is at rest, rad or m; that at the joint's home without.
+    pub rest: Option<f64>,
 }
 
 /// Coulomb's friction at a joint with one degree of freedom, N m or N.

@@ -119,7 +119,7 @@ pub(super) fn body<'a>(
 }
 
 /// Whether a slice has the size that it must have, and every value is finite and, where asked, not negative.
-pub(super) fn values(
+pub(crate) fn values(
     element: &str,
     quantity: &'static str,
     values: &[f64],

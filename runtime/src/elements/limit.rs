@@ -1,23 +1,27 @@
-//! Compliant limits of a joint's coordinate.
+//! Compliant limits of a joint's coordinate or port.
 
 use super::error::{body, values};
+use super::port::{add_slopes, known};
 use super::{Action, Element, ElementError, Slope, Slopes, View};
 use crate::erased::AnyJoint;
-use crate::joint::MOST_FREEDOMS;
+use crate::joint::{Port, PortLaw};
 use crate::mechanism::Mechanism;
 use alloc::string::String;
+use core::f64::consts::TAU;
 
 /// A stop on either side of a joint's coordinate, which gives way: beyond it by x the effort towards the inside is `k x max(0, 1 + d ẋ)`
 /// (K. H. Hunt and F. R. E. Crossley, *Coefficient of restitution interpreted as damping in vibroimpact*, 1975).
 ///
-/// The effort is continuous and never pulls. It stores `½ k x²`. For joints whose Q is one coordinate q with `v = q̇`; one that turns counts its
-/// turns.
+/// The effort is continuous and never pulls. It stores `½ k x²`. For joints whose Q is one coordinate q with `v = q̇`, where one that turns counts its
+/// turns, and for ports of any joint.
 #[derive(Clone, Debug)]
 pub struct JointLimit {
     /// Name, for messages.
     pub name: String,
     /// The body whose joint it limits.
     pub body: usize,
+    /// Index of the port among those of the joint that it limits; `None` for its only coordinate.
+    pub port: Option<usize>,
     /// The least q that is free, rad or m.
     pub lower: Option<f64>,
     /// The largest q that is free, rad or m.
@@ -39,27 +43,50 @@ struct Beyond {
 }
 
 impl JointLimit {
-    /// NaN of a body that is not there.
+    /// How far a value is beyond the lower and the upper limit, negative within; −∞ where there is none. At a port that wraps by the shortest way round from
+    /// the middle of the range, or from the only limit.
+    fn excess(&self, value: f64, port: Option<&Port>) -> [f64; 2] {
+        let from = |rest: f64| port.map_or(value - rest, |port| port.deflection(value, rest));
+        if let (Some(lower), Some(upper), true) =
+            (self.lower, self.upper, port.is_some_and(|port| port.wraps))
+        {
+            let half = 0.5 * (upper - lower);
+            let way = from(lower + half);
+            return [-way - half, way - half];
+        }
+        let none = f64::NEG_INFINITY;
+        [
+            self.lower.map_or(none, |lower| -from(lower)),
+            self.upper.map_or(none, from),
+        ]
+    }
+
+    /// The port that it limits.
+    fn port_of(&self, joint: &dyn AnyJoint) -> Option<&'static Port> {
+        joint.ports().get(self.port?)
+    }
+
+    /// `None` within the range; NaN of a body or port that is not there.
     fn beyond(&self, view: &View<'_>) -> Option<Beyond> {
-        let mut velocity = [0.0; MOST_FREEDOMS];
-        let velocity = view.joint_velocity(self.body, &mut velocity);
-        let (q, v) = match (view.joint_configuration(self.body), velocity) {
-            (&[q], &[v]) => (q, v),
-            _ => (f64::NAN, f64::NAN),
-        };
-        let over = self.upper.map_or(f64::NEG_INFINITY, |upper| q - upper);
-        let under = self.lower.map_or(f64::NEG_INFINITY, |lower| lower - q);
+        let (value, rate) = view.axis(self.body, self.port);
+        let port = view.joint(self.body).and_then(|joint| self.port_of(joint));
+        let [under, over] = self.excess(value, port);
         let side = match over >= under {
             true => 1.0,
             false => -1.0,
         };
         let by = over.max(under);
-        let is_free = by <= 0.0 && !q.is_nan();
+        let is_free = by <= 0.0 && !value.is_nan();
         (!is_free).then_some(Beyond {
             side,
-            by: by + 0.0 * q,
-            rate: side * v,
+            by: by + 0.0 * value,
+            rate: side * rate,
         })
+    }
+
+    /// The effort at a place beyond.
+    fn effort(&self, beyond: &Beyond) -> f64 {
+        -beyond.side * self.stiffness * beyond.by * self.factor(beyond)
     }
 
     /// `max(0, 1 + d ẋ)`.
@@ -86,6 +113,23 @@ pub fn is_one_coordinate(joint: &dyn AnyJoint) -> bool {
     })
 }
 
+impl JointLimit {
+    /// Whether the range of an angle up to whole turns is less than a turn.
+    fn check_turns(&self, port: &Port) -> Result<(), ElementError> {
+        match (self.lower, self.upper) {
+            (Some(lower), Some(upper)) if port.wraps && upper - lower >= TAU => {
+                Err(ElementError::Value {
+                    element: self.name.clone(),
+                    quantity: "upper limit",
+                    value: upper,
+                    requirement: "less than a turn above the lower limit, at a port whose value is an angle up to whole turns",
+                })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
 impl Element for JointLimit {
     fn name(&self) -> &str {
         &self.name
@@ -93,7 +137,10 @@ impl Element for JointLimit {
 
     fn check(&self, mechanism: &Mechanism) -> Result<(), ElementError> {
         let body = body(&self.name, mechanism, self.body)?;
-        if !is_one_coordinate(body.joint()) {
+        if let Some(port) = self.port {
+            let port = known(&self.name, mechanism, self.body, port)?;
+            self.check_turns(port)?;
+        } else if !is_one_coordinate(body.joint()) {
             return Err(ElementError::Joint {
                 element: self.name.clone(),
                 joint: body.joint_name().into(),
@@ -119,8 +166,11 @@ impl Element for JointLimit {
 
     fn act(&self, view: &View<'_>, action: &mut Action<'_>) {
         if let Some(beyond) = self.beyond(view) {
-            let push = self.stiffness * beyond.by * self.factor(&beyond);
-            action.add_effort(view, self.body, &[-beyond.side * push]);
+            let effort = self.effort(&beyond);
+            match self.port {
+                Some(port) => action.add_port_effort(view, self.body, port, effort),
+                None => action.add_effort(view, self.body, &[effort]),
+            }
         }
     }
 
@@ -138,13 +188,22 @@ impl Element for JointLimit {
     }
 
     fn bends(&self, mechanism: &Mechanism, q: &[f64]) -> [f64; 2] {
-        let body = mechanism.bodies().get(self.body);
-        let own = body.and_then(|body| body.configuration(q).first());
-        let beyond = |limit: Option<f64>, side: f64| match (own, limit) {
-            (Some(own), Some(limit)) => side * (own - limit),
+        let Some(body) = mechanism.bodies().get(self.body) else {
+            return [f64::NAN; 2];
+        };
+        let (joint, own) = (body.joint(), body.configuration(q));
+        let value = match (self.port, own) {
+            (Some(port), own) => joint.port_value(own, port),
+            (None, &[value]) => value,
             _ => f64::NAN,
         };
-        [beyond(self.lower, -1.0), beyond(self.upper, 1.0)]
+        let excess = self.excess(value, self.port_of(joint));
+        excess.map(|own| if own.is_finite() { own } else { f64::NAN })
+    }
+
+    fn port_effort(&self, view: &View<'_>) -> Option<(usize, usize, f64)> {
+        let effort = self.beyond(view).map_or(0.0, |beyond| self.effort(&beyond));
+        self.port.map(|port| (self.body, port, effort))
     }
 
     fn slope(&self) -> Option<&dyn Slope> {
@@ -162,6 +221,17 @@ impl Slope for JointLimit {
             true => self.stiffness * beyond.by * self.damping,
             false => 0.0,
         };
-        slopes.add_effort(view, self.body, &[-self.stiffness * factor], &[-by_rate]);
+        let by_value = self.stiffness * factor;
+        match self.port {
+            None => slopes.add_effort(view, self.body, &[-by_value], &[-by_rate]),
+            Some(port) => {
+                let law = PortLaw {
+                    effort: self.effort(&beyond),
+                    stiffness: by_value,
+                    damping: by_rate,
+                };
+                add_slopes((self.body, port), &law, view, slopes);
+            }
+        }
     }
 }

@@ -21,6 +21,7 @@ pub use body::{BodySpring, BodyWrench, WrenchAxes};
 pub use constraint::PointConstraint;
 pub use drive::Drive;
 pub use error::ElementError;
+pub(crate) use error::values;
 pub use joint::{JointDamper, JointEffort};
 pub use limit::{JointLimit, is_one_coordinate};
 pub use port::{PortEffort, PortSpring};
@@ -29,7 +30,7 @@ pub(crate) use slopes::Target;
 pub use slopes::{End, PointForce, Slope, Slopes};
 pub use spring::{JointSpring, RotationSpring};
 pub use timed::{TimedEffort, TimedWrench};
-pub use unilateral::{JointFriction, JointStop};
+pub use unilateral::{JointFriction, JointStop, has_one_freedom};
 pub use view::MotionList;
 pub use view::{Action, Motions, View};
 

@@ -43,7 +43,7 @@ pub struct PortSpring {
 }
 
 /// The port, if the joint under a body has one of that index.
-fn known(
+pub(super) fn known(
     element: &str,
     mechanism: &Mechanism,
     index: usize,
@@ -174,7 +174,7 @@ impl Slope for PortSpring {
 }
 
 /// Adds the slopes of `τ = Pᵀ f`.
-fn add_slopes(
+pub(super) fn add_slopes(
     (body, port): (usize, usize),
     law: &PortLaw<f64>,
     view: &View<'_>,

@@ -6,18 +6,23 @@
 use super::ElementError;
 use super::error::body;
 use super::is_one_coordinate;
+use super::port::known as known_port;
+use crate::erased::AnyJoint;
 use crate::mechanism::{Body, Mechanism};
 use alloc::string::String;
 
-/// Coulomb's dry friction at a joint with one degree of freedom.
+/// Coulomb's dry friction at a joint with one degree of freedom, or at one of its ports.
 ///
-/// While the joint moves, an effort of the size `sliding` acts against its speed. At rest the joint takes whatever effort holds it, up to `sticking`.
+/// While the joint moves, an effort of the size `sliding` acts against its speed, or against the rate of the port. At rest the joint takes whatever effort holds
+/// it, up to `sticking` there: at a port with the rate P v this is `|P|` times as much on v.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointFriction {
     /// Name, for messages.
     pub name: String,
     /// The body whose joint it is.
     pub body: usize,
+    /// Index of the port among those of the joint; `None` for its degree of freedom.
+    pub port: Option<usize>,
     /// Effort of friction in motion, N m or N.
     pub sliding: f64,
     /// Largest effort of friction at rest, N m or N; not less than `sliding`.
@@ -43,10 +48,18 @@ impl JointFriction {
     /// Whether the friction fits the mechanism.
     ///
     /// # Errors
-    /// A body that is not there; a joint of another kind, or one whose motion is prescribed; efforts out of range.
+    /// A body or a port that is not there; a joint with more than one degree of freedom, or one whose motion is prescribed; efforts out of range.
     pub fn check(&self, mechanism: &Mechanism) -> Result<(), ElementError> {
         let name = &self.name;
-        check_joint(name, mechanism, self.body)?;
+        let owner = body(name, mechanism, self.body)?;
+        let fits = match has_one_freedom(owner.joint()) {
+            true => Ok(()),
+            false => Err("has not a single degree of freedom: give dampers"),
+        };
+        check_joint(name, mechanism, self.body, fits)?;
+        if let Some(port) = self.port {
+            known_port(name, mechanism, self.body, port)?;
+        }
         let sliding = self.sliding;
         let allowed = sliding.is_finite() && sliding >= 0.0;
         require(name, "sliding", sliding, allowed, "finite and not negative")?;
@@ -70,7 +83,14 @@ impl JointStop {
     /// none; a restitution out of range.
     pub fn check(&self, mechanism: &Mechanism) -> Result<(), ElementError> {
         let name = &self.name;
-        let owner = check_joint(name, mechanism, self.body)?;
+        let owner = body(name, mechanism, self.body)?;
+        let fits = match is_one_coordinate(owner.joint()) {
+            true => Ok(()),
+            false => Err(
+                "is not one of a single coordinate whose rate is its speed, as a revolute, a prismatic or a screw joint is",
+            ),
+        };
+        let owner = check_joint(name, mechanism, self.body, fits)?;
         if self.lower.is_none() && self.upper.is_none() {
             return Err(ElementError::Joint {
                 element: name.clone(),
@@ -90,15 +110,22 @@ impl JointStop {
     }
 }
 
-/// The body, if its joint has one coordinate whose rate is its speed, and moves freely.
+/// Whether a joint moves in one way, and nothing forbids it.
+pub fn has_one_freedom(joint: &dyn AnyJoint) -> bool {
+    let layout = joint.layout();
+    (layout.freedoms, layout.speeds, layout.constraints) == (1, 1, 0)
+}
+
+/// The body, if its joint `fits` and moves freely.
 fn check_joint<'a>(
     element: &str,
     mechanism: &'a Mechanism,
     index: usize,
+    fits: Result<(), &'static str>,
 ) -> Result<&'a Body, ElementError> {
     let owner = body(element, mechanism, index)?;
-    let reason = if !is_one_coordinate(owner.joint()) {
-        "is not one of a single coordinate whose rate is its speed, as a revolute, a prismatic or a screw joint is"
+    let reason = if let Err(reason) = fits {
+        reason
     } else if mechanism.is_driven(index) {
         "has a prescribed motion, which neither friction nor limits can change"
     } else if mechanism

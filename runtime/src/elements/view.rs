@@ -148,6 +148,19 @@ impl<'a> View<'a> {
         (joint.port_value(q, port), rate)
     }
 
+    /// The value and the rate of a port of the joint under a body, or of the only coordinate of its Q and its v; NaN where there is none.
+    pub fn axis(&self, body: usize, port: Option<usize>) -> (f64, f64) {
+        if let Some(port) = port {
+            return self.port(body, port);
+        }
+        let mut velocity = [0.0; MOST_FREEDOMS];
+        let velocity = self.joint_velocity(body, &mut velocity);
+        match (self.joint_configuration(body), velocity) {
+            (&[q], &[v]) => (q, v),
+            _ => (f64::NAN, f64::NAN),
+        }
+    }
+
     /// The body frame in the world; the world itself for `None`.
     pub fn pose(&self, body: Option<usize>) -> Pose<f64> {
         let Some(body) = body else {

@@ -7,7 +7,8 @@ use crate::joint::{Entry, Joint, Pin, Port, PortLaw, Products, Structures, Units
 use crate::scalar::{Extended, Native, Scalar};
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
 use crate::steps::{
-    ChartDerivatives, Field, Motion, Pivot, PivotFailure, Placement, Steps, Variation,
+    AtPort, ChartDerivatives, Field, Motion, Pivot, PivotFailure, Placement, RotorTerm, Steps,
+    Variation,
 };
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -214,6 +215,39 @@ where
         Steps(&self.0)
             .port_slope((&vector(q), &vector(velocity)), port, law)
             .store(out);
+    }
+
+    fn port_row_rate(&self, q: &[T], speeds: &[T], port: usize, out: &mut [T])
+    where
+        T: Native,
+    {
+        let [_, rate] = Steps(&self.0).port_row_motion(&vector(q), &vector(speeds), port);
+        rate.store(out);
+    }
+
+    fn port_row_gradient(&self, q: &[T], port: usize, out: &mut [T])
+    where
+        T: Native,
+    {
+        Steps(&self.0)
+            .port_row_gradient(&vector(q), port)
+            .store(out);
+    }
+
+    fn rotor_term_slopes(
+        &self,
+        (q, speeds, x): (&[T], &[T], &[T]),
+        port: usize,
+        term: RotorTerm,
+        by_local: &mut [T],
+        by_speeds: &mut [T],
+    ) where
+        T: Native,
+    {
+        let state = (&vector(q), &vector(speeds), &vector(x));
+        let slopes = Steps(&self.0).rotor_term_slopes(state, AtPort { port, term });
+        slopes.0.store(by_local);
+        slopes.1.store(by_speeds);
     }
 
     fn differentiate(&self, base: &[T], phi: &[T], speeds: &[T], out: &mut ChartDerivatives<'_, T>)

@@ -7,7 +7,9 @@ use crate::joint::{Joint, Products};
 use crate::joint::{Pin, Port, PortLaw, Structures, Units, VelocityFrame};
 use crate::scalar::{Extended, Native, Scalar};
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
-use crate::steps::{ChartDerivatives, Motion, Pivot, PivotFailure, Placement, Variation};
+use crate::steps::{
+    ChartDerivatives, Motion, Pivot, PivotFailure, Placement, RotorTerm, Variation,
+};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::fmt::Debug;
@@ -90,6 +92,24 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     fn port_value(&self, q: &[T], port: usize) -> T;
     /// The row of P of one port into `out` (K); NaN of a port that is not there.
     fn port_row(&self, q: &[T], port: usize, out: &mut [T]);
+    /// How the row p̄ = P S̄ of one port changes with time at v̄, into `out` (S); NaN of a port that is not there.
+    fn port_row_rate(&self, q: &[T], speeds: &[T], port: usize, out: &mut [T])
+    where
+        T: Native;
+    /// How the row of P of one port changes with ϕ, into `out` (K×K: column k is its derivative along ϕ_k).
+    fn port_row_gradient(&self, q: &[T], port: usize, out: &mut [T])
+    where
+        T: Native;
+    /// The derivatives in ϕ (S×K) and in v̄ (S×S), at fixed x, of what a rotor of unit inertia at a port amounts to at the `state` (q, v̄, x).
+    fn rotor_term_slopes(
+        &self,
+        state: (&[T], &[T], &[T]),
+        port: usize,
+        term: RotorTerm,
+        by_local: &mut [T],
+        by_speeds: &mut [T],
+    ) where
+        T: Native;
     /// Point and axes of one pin, [`Joint::pins`]; NaN of a pin that is not there.
     fn pin_place(&self, q: &[T], pin: usize) -> [T; 9];
     /// What one relation forbids the body, [`Joint::relation_twists`]; NaN of a relation that is not there.

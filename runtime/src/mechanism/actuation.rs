@@ -1,7 +1,7 @@
 //! What a mechanism carries besides its bodies: elements, rotor inertias, drives, constraints that couple joints.
 
+use super::armature::Armature;
 use super::check::Space;
-use super::rotor::speed_of_rotor;
 use super::{Mechanism, MechanismError, MechanismErrors, StateError};
 use crate::dynamics::Recursive;
 use crate::elements::{
@@ -18,10 +18,7 @@ use nalgebra::DMatrix;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Actuation {
     pub(super) elements: Vec<Arc<dyn Element>>,
-    /// One entry a degree of freedom; empty where there is none.
-    armature: Vec<f64>,
-    /// The same with one entry a speed, the rate of the rotors.
-    speed_armature: Vec<f64>,
+    pub(super) armature: Armature,
     pub(super) drives: Vec<Drive>,
     /// Whether the joint under each body is driven; empty where there are no drives.
     driven: Vec<bool>,
@@ -57,67 +54,6 @@ impl Mechanism {
             .filter_map(|element| element.check(&self).err());
         refuse(failures)?;
         self.actuation.elements = elements;
-        Ok(self)
-    }
-
-    /// The mechanism with `inertia` (kg m² or kg, one entry per degree of freedom) added to that which the joint under `body` feels: a rotor behind a
-    /// gear. Kinetic energy grows by `½ Σ a v²`, and with γ ≠ 0 the equations by `Σ_k γ_k v_k (a v)`, as (16) has it.
-    ///
-    /// # Errors
-    /// No such body; a wrong size; a negative inertia; at a nonholonomic joint, a degree of freedom whose rate is not one of the speeds at every
-    /// configuration, [`speed_of_rotor`].
-    pub fn with_armature(mut self, body: usize, inertia: &[f64]) -> Result<Self, MechanismError> {
-        let element = || format!("armature of body {body}");
-        let Some(owner) = self.bodies.get(body) else {
-            return Err(MechanismError::Element(ElementError::UnknownBody {
-                element: element(),
-                index: body,
-                count: self.bodies.len(),
-            }));
-        };
-        let element = || format!("armature of joint `{}`", owner.joint_name());
-        let freedoms = owner.ranges.freedoms.clone();
-        if inertia.len() != freedoms.len() {
-            return Err(MechanismError::Element(ElementError::Size {
-                element: element(),
-                quantity: "inertia",
-                expected: freedoms.len(),
-                found: inertia.len(),
-            }));
-        }
-        if let Some(&value) = inertia.iter().find(|a| !(a.is_finite() && **a >= 0.0)) {
-            return Err(MechanismError::Element(ElementError::Value {
-                element: element(),
-                quantity: "inertia",
-                value,
-                requirement: "finite and not negative",
-            }));
-        }
-        let is_holonomic = owner.joint().structures().speed_basis.is_identity();
-        let speed = |k: usize| match is_holonomic {
-            true => Some(k),
-            false => speed_of_rotor(owner.joint(), k),
-        };
-        let speeds = owner.ranges.speeds.clone();
-        let mut felt = vec![0.0; speeds.len()];
-        let mut rotors = inertia.iter().enumerate().filter(|(_, a)| **a > 0.0);
-        let is_felt_alike = rotors.all(|(k, a)| {
-            let entry = speed(k).and_then(|speed| felt.get_mut(speed));
-            entry.map(|entry| *entry += a).is_some()
-        });
-        if !is_felt_alike {
-            return Err(MechanismError::Element(ElementError::Joint {
-                element: element(),
-                joint: owner.joint_name().into(),
-                reason: "is nonholonomic: an armature goes with degrees of freedom whose rate is one of the speeds",
-            }));
-        }
-        if self.actuation.armature.is_empty() {
-            self.actuation.armature = vec![0.0; self.layout.freedoms];
-            self.actuation.speed_armature = vec![0.0; self.layout.speeds];
-        }
-        self.actuation.speed_armature[speeds].copy_from_slice(&felt);
-        self.actuation.armature[freedoms].copy_from_slice(inertia);
         Ok(self)
     }
 
@@ -259,27 +195,6 @@ impl Mechanism {
     /// What acts on the mechanism besides gravity and inputs.
     pub fn elements(&self) -> &[Arc<dyn Element>] {
         &self.actuation.elements
-    }
-
-    /// Rotor inertias of the joint that `body` stands for, one entry per degree of freedom; empty where it has none, for further bodies of a joint, and
-    /// where there is no such body.
-    pub fn armature(&self, body: usize) -> &[f64] {
-        let leader = self.bodies.get(body).filter(|own| own.leads());
-        let freedoms = leader.map(|own| own.ranges.freedoms.clone());
-        let own = freedoms.and_then(|freedoms| self.actuation.armature.get(freedoms));
-        let own = own.unwrap_or(&[]);
-        match own.iter().all(|a| *a == 0.0) {
-            true => &[],
-            false => own,
-        }
-    }
-
-    /// The same for each speed, with which rotors turn; empty where there are none.
-    pub fn speed_armature(&self, body: usize) -> &[f64] {
-        let speeds = self.bodies.get(body).map(|own| own.ranges.speeds.clone());
-        let own = speeds.and_then(|speeds| self.actuation.speed_armature.get(speeds));
-        own.filter(|_| !self.armature(body).is_empty())
-            .unwrap_or(&[])
     }
 
     /// Joints whose motion is prescribed.

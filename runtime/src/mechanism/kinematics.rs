@@ -84,7 +84,7 @@ pub struct Kinematics {
     pub center_of_mass: Vector3<f64>,
     /// Energy stored in springs and other elements, J.
     pub element_energy: f64,
-    /// Kinetic energy of rotors, `½ Σ a v²`, J.
+    /// Kinetic energy of rotors, `½ Σ a v²` and at ports `½ Σ a w²`, J.
     pub rotor_energy: f64,
 }
 
@@ -137,7 +137,7 @@ impl Mechanism {
             mass,
             center_of_mass,
             element_energy: self.element_energy(q, speeds, &bodies),
-            rotor_energy: self.rotor_energy(speeds),
+            rotor_energy: self.rotor_energy(q, speeds),
             bodies,
         })
     }
@@ -169,11 +169,12 @@ impl Mechanism {
         })
     }
 
-    fn rotor_energy(&self, speeds: &[f64]) -> f64 {
+    fn rotor_energy(&self, q: &[f64], speeds: &[f64]) -> f64 {
         let joints = self.joints().map(|(index, body)| {
             let own = &speeds[body.ranges.speeds.clone()];
             let terms = self.speed_armature(index).iter().zip(own);
-            terms.map(|(a, v)| 0.5 * a * v * v).sum::<f64>()
+            let at_speeds: f64 = terms.map(|(a, v)| 0.5 * a * v * v).sum();
+            at_speeds + body.port_rotor_energy(self.port_armature(index), q, own)
         });
         joints.sum()
     }
@@ -203,6 +204,17 @@ impl Mechanism {
 }
 
 impl Body {
+    fn port_rotor_energy(&self, inertias: &[f64], q: &[f64], speeds: &[f64]) -> f64 {
+        if inertias.is_empty() {
+            return 0.0;
+        }
+        let q = self.configuration(q);
+        let rates = self.port_map(q)
+            * (self.speed_basis(q) * DVectorView::from_slice(speeds, speeds.len()));
+        let terms = inertias.iter().zip(&rates);
+        terms.map(|(a, w)| 0.5 * a * w * w).sum()
+    }
+
     /// Pose of the body frame in the parent's body frame, and twist relative to the parent in body axes.
     fn relative_motion(&self, q: &[f64], speeds: &[f64]) -> (Pose<f64>, Vector6<f64>) {
         let q = self.configuration(q);

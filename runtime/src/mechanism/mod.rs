@@ -4,6 +4,7 @@
 //! momenta p̄. [`Body::ranges`] tells where a joint's share lies.
 
 mod actuation;
+mod armature;
 mod body;
 mod build;
 mod check;

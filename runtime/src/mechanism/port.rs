@@ -14,7 +14,7 @@ const DETERMINED: f64 = 1e-9;
 
 impl Body {
     /// P at this joint's Q.
-    fn port_map(&self, q: &[f64]) -> DMatrix<f64> {
+    pub(super) fn port_map(&self, q: &[f64]) -> DMatrix<f64> {
         let (joint, freedoms) = (self.joint(), self.ranges.freedoms.len());
         let mut transposed = DMatrix::zeros(freedoms, joint.ports().len());
         for (port, mut column) in transposed.column_iter_mut().enumerate() {

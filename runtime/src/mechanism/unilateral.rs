@@ -15,14 +15,15 @@ impl Mechanism {
     /// The equations of motion do not contain it: motions of `hamel_integrate` do, which switch between joints that stick and joints that slide.
     ///
     /// # Errors
-    /// Everything that does not fit; friction given twice at one joint.
+    /// Everything that does not fit; friction given twice at one joint or port.
     pub fn with_frictions(
         mut self,
         frictions: Vec<JointFriction>,
     ) -> Result<Self, MechanismErrors> {
-        let mut taken = vec![false; self.bodies.len()];
+        let mut taken = Vec::new();
         let failures = frictions.iter().filter_map(|friction| {
-            let twice = self.twice(&mut taken, friction.body, &friction.name);
+            let place = (friction.body, friction.port);
+            let twice = self.twice(&mut taken, place, &friction.name);
             friction.check(&self).err().or(twice)
         });
         refuse(failures)?;
@@ -37,9 +38,9 @@ impl Mechanism {
     /// # Errors
     /// Everything that does not fit; limits given twice at one joint.
     pub fn with_stops(mut self, stops: Vec<JointStop>) -> Result<Self, MechanismErrors> {
-        let mut taken = vec![false; self.bodies.len()];
+        let mut taken = Vec::new();
         let failures = stops.iter().filter_map(|stop| {
-            let twice = self.twice(&mut taken, stop.body, &stop.name);
+            let twice = self.twice(&mut taken, (stop.body, None), &stop.name);
             stop.check(&self).err().or(twice)
         });
         refuse(failures)?;
@@ -47,11 +48,19 @@ impl Mechanism {
         Ok(self)
     }
 
-    fn twice(&self, taken: &mut [bool], body: usize, element: &str) -> Option<ElementError> {
-        let before = taken
-            .get_mut(self.leader(body))
-            .map(|taken| core::mem::replace(taken, true));
-        let owner = self.bodies.get(body).filter(|_| before == Some(true))?;
+    /// That a joint, or a port of it, has what it has already.
+    fn twice(
+        &self,
+        taken: &mut Vec<(usize, Option<usize>)>,
+        (body, port): (usize, Option<usize>),
+        element: &str,
+    ) -> Option<ElementError> {
+        let owner = self.bodies.get(body)?;
+        let place = (self.leader(body), port);
+        if !taken.contains(&place) {
+            taken.push(place);
+            return None;
+        }
         Some(ElementError::Joint {
             element: element.into(),
             joint: owner.joint_name().into(),

@@ -13,6 +13,7 @@ mod articulate;
 mod chart;
 mod directions;
 mod place;
+mod rotors;
 mod slopes;
 mod vary;
 
@@ -21,6 +22,8 @@ pub use articulate::{Pivot, PivotFailure};
 pub use chart::ChartDerivatives;
 pub(crate) use chart::Field;
 pub use place::Placement;
+pub(crate) use rotors::AtPort;
+pub use rotors::RotorTerm;
 pub use vary::Variation;
 
 use crate::erased::nan;

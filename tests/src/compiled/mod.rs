@@ -85,7 +85,7 @@ pub fn model_on(
                 body(
                     owner,
                     &first,
-                    mechanism.armature(index),
+                    [mechanism.armature(index), mechanism.port_armature(index)],
                     mechanism.is_driven(index),
                 )
             })
@@ -98,7 +98,7 @@ pub fn model_on(
     }
 }
 
-fn body(body: &TreeBody, first: &Rc<JointType>, armature: &[f64], driven: bool) -> Body {
+fn body(body: &TreeBody, first: &Rc<JointType>, rotors: [&[f64]; 2], driven: bool) -> Body {
     let mut parameters = vec![];
     body.joint()
         .parameters(&mut |_, value| parameters.push(value));
@@ -114,7 +114,8 @@ fn body(body: &TreeBody, first: &Rc<JointType>, armature: &[f64], driven: bool) 
         placement: *body.placement(),
         child_placement: *body.child_placement(),
         mass: *body.mass(),
-        armature: armature.to_vec(),
+        armature: rotors[0].to_vec(),
+        port_armature: rotors[1].to_vec(),
         damping: vec![],
         effort: vec![],
         driven,
@@ -275,6 +276,11 @@ pub fn geared(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Mechanism {
             let rotors = random::numbers(random, layout.freedoms);
             let rotors: Vec<f64> = rotors.into_iter().map(f64::abs).collect();
             let with = geared.with_armature(body, &rotors);
+            geared = with.unwrap_or_else(|error| panic!("{error}"));
+        }
+        let ports = owner.joint().ports().len();
+        if ports > 0 && body % 2 == 0 {
+            let with = geared.with_port_armature(body, &vec![0.4; ports]);
             geared = with.unwrap_or_else(|error| panic!("{error}"));
         }
     }

@@ -1,8 +1,6 @@
 //! One law a derivative, over any cases.
 
-use super::{
-    Actuation, BOUND, DualForm, Equipped, Expected, constants, derivatives, matrix, relative,
-};
+use super::{BOUND, DualForm, Equipped, Expected, constants, derivatives, matrix, relative};
 use crate::figures::{Largest, difference, size};
 use hamel::dynamics::{ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives, Recursive};
 use hamel::nalgebra::{DMatrix, DVector};
@@ -116,7 +114,7 @@ pub fn energies(all: impl IntoIterator<Item = Equipped>) {
     let mut worst = ["∂V/∂ϕ", "∂K/∂ϕ"].map(Largest::new);
     for equipped in all {
         let case = &equipped.case;
-        let form = DualForm::of(&case.mechanism, Actuation::default(), equipped.lookup);
+        let form = DualForm::of(&case.mechanism, equipped.actuation.clone(), equipped.lookup);
         let freedoms = case.mechanism.layout().freedoms;
         let mut found = [vec![0.0; freedoms], vec![0.0; freedoms]];
         let [potential, kinetic] = &mut found;

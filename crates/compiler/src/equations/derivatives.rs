@@ -48,6 +48,7 @@ impl Tree<'_> {
     /// The derivatives of what v̄̇ takes beside the efforts of the argument and what acts on the mechanism.
     pub(super) fn needed_slopes(&self, rates: &[Sym], efforts: Option<Argument>) -> Rows {
         let mut rows = self.rigid_slopes(rates);
+        self.add_rotor_slopes(rates, &mut rows);
         let exerted = Slopes::new(self.exerted(efforts));
         for (place, column) in self.along_state(&exerted).into_iter().enumerate() {
             for (row, entry) in rows.iter_mut().zip(column) {

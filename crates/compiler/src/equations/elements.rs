@@ -32,7 +32,7 @@ impl Tree<'_> {
             .map(|spring| about(&spring.name, || self.joint_spring(spring)))
             .chain(turned.map(|spring| about(&spring.name, || self.rotation_spring(spring))));
         let limits = elements.limits.iter();
-        let limits = limits.filter(|limit| own.contains(&limit.body));
+        let limits = limits.filter(|limit| limit.port.is_none() && own.contains(&limit.body));
         let limits = limits.map(|limit| about(&limit.name, || vec![self.limit_effort(limit)]));
         let each = each.chain(limits);
         let add =
@@ -130,15 +130,29 @@ impl Tree<'_> {
 
     /// How far the joint is beyond each of its limits, negative within, with the sign of the effort there.
     fn beyond(&self, limit: &JointLimit) -> Vec<(Sym, f64)> {
-        let q = self.coordinates(limit.body)[0];
-        let upper = limit.upper.map(|upper| (q - Sym::from(upper), -1.0));
-        let lower = limit.lower.map(|lower| (Sym::from(lower) - q, 1.0));
+        let from = |rest: f64| match limit.port {
+            Some(port) => self.deflection(limit.body, port, rest),
+            None => self.coordinates(limit.body)[0] - Sym::from(rest),
+        };
+        let wraps = |port| self.joint_at(limit.body, &[]).port_wraps(port);
+        if let (Some(lower), Some(upper), true) =
+            (limit.lower, limit.upper, limit.port.is_some_and(wraps))
+        {
+            let half = 0.5 * (upper - lower);
+            let (way, half) = (from(lower + half), Sym::from(half));
+            return vec![(way - half, -1.0), (-way - half, 1.0)];
+        }
+        let upper = limit.upper.map(|upper| (from(upper), -1.0));
+        let lower = limit.lower.map(|lower| (-from(lower), 1.0));
         upper.into_iter().chain(lower).collect()
     }
 
     /// `−k x max(0, 1 + d ẋ)` beyond the upper limit by x, and the opposite beyond the lower one.
-    fn limit_effort(&self, limit: &JointLimit) -> Sym {
-        let rate = self.bodies[limit.body].speeds[0];
+    pub(super) fn limit_effort(&self, limit: &JointLimit) -> Sym {
+        let rate = match limit.port {
+            Some(port) => self.port_rate(limit.body, port),
+            None => self.bodies[limit.body].speeds[0],
+        };
         let sides = self.beyond(limit).into_iter();
         let efforts = sides.map(|(by, sign)| {
             let press = Sym::from(sign * limit.stiffness) * positive(by);
@@ -156,22 +170,6 @@ impl Tree<'_> {
         let sides = self.beyond(limit).into_iter();
         let squares = sides.map(|(by, _)| positive(by) * positive(by));
         squares.sum::<Sym>() * Sym::from(0.5 * limit.stiffness)
-    }
-
-    /// `Σ_k γ_k v_k (a v)` of the rotors at a body's joint, one per freedom: what their turning takes where velocities do not commute.
-    pub(super) fn rotor_forces(&self, index: usize) -> Vec<Sym> {
-        // Rotors of a nonholonomic joint turn with the rates of their own coordinates, and have no such forces.
-        let is_nonholonomic = self.model.bodies[index].joint.derived.shape.constraints > 0;
-        if !self.has_armature(index) || is_nonholonomic {
-            return vec![];
-        }
-        let speeds = &self.bodies[index].speeds;
-        let armature = &self.model.bodies[index].armature;
-        let momenta = armature.iter().zip(speeds);
-        let momenta: Vec<Sym> = momenta.map(|(&a, &v)| Sym::from(a) * v).collect();
-        let joint = self.joint_at(index, &[]);
-        let force = |row: &Vec<Sym>| row.iter().zip(&momenta).map(|(&g, &p)| g * p).sum();
-        joint.gamma(speeds).iter().map(force).collect()
     }
 
     /// `Ẋ̄ᵀ h` of a body's joint, one per speed.

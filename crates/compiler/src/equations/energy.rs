@@ -164,8 +164,9 @@ impl Tree<'_> {
             section(number(index), "momentum rate");
             let turned = wrenches[index].plus(&twists[index].bracket_dual(&momenta[index]));
             let moved = self.bias_momentum(index, &momenta[index]);
+            let rotors = self.port_rotor_rates(index);
             for (j, place) in body.share.speeds.clone().enumerate() {
-                rates[place] += efforts[j] + body.columns[j].dot(&turned) + moved[j];
+                rates[place] += efforts[j] + body.columns[j].dot(&turned) + moved[j] + rotors[j];
             }
             if let Some(parent) = body.parent {
                 let [momentum, wrench] = [&momenta[index], &wrenches[index]]

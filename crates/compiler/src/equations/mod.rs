@@ -20,6 +20,7 @@ mod forward_derivatives;
 mod kinematics;
 mod newton_euler;
 mod ports;
+mod rotors;
 mod solve;
 mod variation;
 
@@ -223,22 +224,6 @@ impl<'a> Tree<'a> {
                 name.map_or("", String::as_str)
             )
         })
-    }
-
-    /// `S̄ᵀ diag(armature) S̄` of the joint that a body stands for; 0 for further bodies of a joint.
-    fn armature(&self, index: usize, j: usize, k: usize) -> Sym {
-        let body = &self.model.bodies[index];
-        let rows = body.armature.iter().zip(&self.bodies[index].basis);
-        rows.map(|(&rotor, row)| row[j] * row[k] * Sym::from(rotor))
-            .sum()
-    }
-
-    /// Whether the joint that a body stands for has armature.
-    fn has_armature(&self, index: usize) -> bool {
-        self.model.bodies[index]
-            .armature
-            .iter()
-            .any(|&rotor| rotor != 0.0)
     }
 }
 

@@ -17,7 +17,14 @@ impl Tree<'_> {
         let springs = elements.port_springs.iter();
         let springs = springs.filter(|spring| spring.body == index);
         let springs = springs.map(|own| (own.port, about(&own.name, || self.port_effort(own))));
-        let all: Vec<(usize, Sym)> = constant.chain(springs).collect();
+        let limits = elements.limits.iter().filter(|limit| limit.body == index);
+        let limits = limits.filter_map(|own| {
+            let effort = |port| (port, about(&own.name, || self.limit_effort(own)));
+            own.port.map(effort)
+        });
+        let springs = springs.chain(limits);
+        let rotors = self.port_rotor_efforts(index);
+        let all: Vec<(usize, Sym)> = constant.chain(springs).chain(rotors).collect();
         if all.is_empty() {
             return vec![];
         }
@@ -34,7 +41,8 @@ impl Tree<'_> {
     fn port_effort(&self, spring: &PortSpring) -> Sym {
         let mut effort = Sym::zero();
         if spring.stiffness != 0.0 {
-            effort -= Sym::from(spring.stiffness) * self.deflection(spring);
+            let way = self.deflection(spring.body, spring.port, spring.rest);
+            effort -= Sym::from(spring.stiffness) * way;
         }
         if spring.damping != 0.0 {
             effort -= Sym::from(spring.damping) * self.port_rate(spring.body, spring.port);
@@ -47,15 +55,15 @@ impl Tree<'_> {
         if spring.stiffness == 0.0 {
             return Sym::zero();
         }
-        let way = self.deflection(spring);
+        let way = self.deflection(spring.body, spring.port, spring.rest);
         way * way * Sym::from(0.5 * spring.stiffness)
     }
 
-    /// How far a port is from the rest of a spring: the shortest way round where it wraps.
-    fn deflection(&self, spring: &PortSpring) -> Sym {
-        let joint = self.joint_at(spring.body, &[]);
-        let way = joint.port_values()[spring.port] - Sym::from(spring.rest);
-        match joint.port_wraps(spring.port) {
+    /// How far a port is from a value: the shortest way round where it wraps.
+    pub(super) fn deflection(&self, body: usize, port: usize, rest: f64) -> Sym {
+        let joint = self.joint_at(body, &[]);
+        let way = joint.port_values()[port] - Sym::from(rest);
+        match joint.port_wraps(port) {
             true => {
                 let (sin, cos) = sin_cos(way);
                 call_two(Function::Atan2, sin, cos)
@@ -65,13 +73,9 @@ impl Tree<'_> {
     }
 
     /// `w = P S̄ v̄` of one port.
-    fn port_rate(&self, body: usize, port: usize) -> Sym {
-        let own = &self.bodies[body];
-        let row = &self.joint_at(body, &[]).port_map()[port];
-        let rates = row.iter().zip(&own.basis).map(|(&p, basis)| {
-            let velocity = basis.iter().zip(&own.speeds).map(|(&s, &v)| s * v);
-            p * velocity.sum::<Sym>()
-        });
-        rates.sum()
+    pub(super) fn port_rate(&self, body: usize, port: usize) -> Sym {
+        let row = self.speed_row(body, port);
+        let terms = row.iter().zip(&self.bodies[body].speeds);
+        terms.map(|(&p, &v)| p * v).sum()
     }
 }

@@ -57,6 +57,7 @@ fn controllers() -> Vec<Box<dyn Controller>> {
     let reference = follow(Law::default(), 1.0).expect("at rest");
     let computed = ComputedTorque::new(reference, SLOW).expect("gains");
     let port = Port {
+        port: None,
         body: 0,
         spring: PortSpring::Log(1.0),
         damping: 0.1,
@@ -162,6 +163,7 @@ fn laws_of_any_numbers_are_made_or_refused() {
             &[index],
         ));
         let port = Port {
+            port: None,
             body: index,
             spring: PortSpring::Log(1.0),
             damping: 0.1,

@@ -1,7 +1,10 @@
 //! The joints whose motion goes by pieces, and what each of them does in a piece.
 
 use alloc::string::String;
+use alloc::sync::Arc;
 use alloc::vec::Vec;
+use core::ops::Range;
+use hamel_runtime::erased::AnyJoint;
 use hamel_runtime::mechanism::Mechanism;
 
 /// One end of a joint's range.
@@ -61,17 +64,65 @@ pub(crate) struct Contact {
     pub(super) freedom: usize,
     pub(super) speed: usize,
     pub(super) joint: String,
-    pub(super) friction: Option<Friction>,
+    /// At the joint's degree of freedom, and at its ports.
+    pub(super) frictions: Vec<Friction>,
     lower: Option<f64>,
     upper: Option<f64>,
     pub(super) restitution: f64,
 }
 
 /// Efforts of friction.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Friction {
-    pub(super) sliding: f64,
-    pub(super) sticking: f64,
+    sliding: f64,
+    sticking: f64,
+    place: Place,
+}
+
+/// Where an effort of friction acts.
+#[derive(Clone, Debug)]
+enum Place {
+    /// At the joint's only degree of freedom.
+    Freedom,
+    /// At a port of the joint, whose Q stands there among all.
+    Port {
+        joint: Arc<dyn AnyJoint>,
+        configuration: Range<usize>,
+        port: usize,
+    },
+}
+
+impl Place {
+    /// By what an effort of one unit against the motion acts on v: `|P|`.
+    fn weight(&self, q: &[f64]) -> f64 {
+        match self {
+            Self::Freedom => 1.0,
+            Self::Port {
+                joint,
+                configuration,
+                port,
+            } => {
+                let mut row = [f64::NAN];
+                joint.port_row(&q[configuration.clone()], *port, &mut row);
+                row[0].abs()
+            }
+        }
+    }
+}
+
+/// An effort of friction at a joint that slides.
+#[derive(Clone, Debug)]
+pub(crate) struct Sliding {
+    freedom: usize,
+    effort: f64,
+    place: Place,
+}
+
+impl Sliding {
+    /// Adds it to τ at the configuration of all joints.
+    pub(crate) fn add(&self, q: &[f64], efforts: &mut [f64]) {
+        efforts[self.freedom] += self.effort * self.place.weight(q);
+    }
 }
 
 impl Contact {
@@ -82,25 +133,30 @@ impl Contact {
             let own = |at: usize| mechanism.leader(at) == index;
             let frictions = mechanism.frictions().iter();
             // Friction that holds nothing is none.
-            let friction = frictions
+            let ranges = body.ranges();
+            let frictions: Vec<Friction> = frictions
                 .filter(|friction| own(friction.body) && friction.sticking > 0.0)
                 .map(|friction| Friction {
                     sliding: friction.sliding,
                     sticking: friction.sticking,
+                    place: friction.port.map_or(Place::Freedom, |port| Place::Port {
+                        joint: body.shared_joint(),
+                        configuration: ranges.configuration.clone(),
+                        port,
+                    }),
                 })
-                .next();
+                .collect();
             let stop = mechanism.stops().iter().find(|stop| own(stop.body));
-            if friction.is_none() && stop.is_none() {
+            if frictions.is_empty() && stop.is_none() {
                 return None;
             }
-            let ranges = body.ranges();
             Some(Self {
                 body: index,
                 coordinate: ranges.configuration.start,
                 freedom: ranges.freedoms.start,
                 speed: ranges.speeds.start,
                 joint: body.joint_name().into(),
-                friction,
+                frictions,
                 lower: stop.and_then(|stop| stop.lower),
                 upper: stop.and_then(|stop| stop.upper),
                 restitution: stop.map_or(0.0, |stop| stop.restitution),
@@ -118,7 +174,7 @@ impl Contact {
             freedom: index,
             speed: index,
             joint: String::from("joint"),
-            friction: None,
+            frictions: Vec::new(),
             lower: Some(0.0),
             upper: None,
             restitution,
@@ -138,22 +194,35 @@ impl Contact {
         Side::BOTH.into_iter().find(is_there)
     }
 
-    /// Efforts that may act on it at rest, where friction holds up to `most`.
-    pub(super) fn bounds(&self, at: Option<Side>, is_slipping: bool) -> (f64, f64) {
-        let most = self.friction.map_or(0.0, |friction| match is_slipping {
-            true => friction.sliding,
-            false => friction.sticking,
+    /// Whether friction acts on it.
+    pub(super) const fn has_friction(&self) -> bool {
+        !self.frictions.is_empty()
+    }
+
+    /// Efforts on v that may act on it at rest at the configuration `q` of all joints, by friction and limits.
+    pub(super) fn bounds(&self, q: &[f64], is_slipping: bool) -> (f64, f64) {
+        let each = self.frictions.iter().map(|friction| {
+            let effort = match is_slipping {
+                true => friction.sliding,
+                false => friction.sticking,
+            };
+            effort * friction.place.weight(q)
         });
-        match at {
+        let most: f64 = each.sum();
+        match self.at(q) {
             None => (-most, most),
             Some(Side::Lower) => (-most, f64::INFINITY),
             Some(Side::Upper) => (f64::NEG_INFINITY, most),
         }
     }
 
-    /// The effort of its friction in motion.
-    pub(super) fn sliding_effort(&self, forward: bool) -> f64 {
-        let size = self.friction.map_or(0.0, |friction| friction.sliding);
-        if forward { -size } else { size }
+    /// The efforts of its friction in motion.
+    pub(super) fn sliding_efforts(&self, forward: bool) -> impl Iterator<Item = Sliding> {
+        let sign = if forward { -1.0 } else { 1.0 };
+        self.frictions.iter().map(move |friction| Sliding {
+            freedom: self.freedom,
+            effort: sign * friction.sliding,
+            place: friction.place.clone(),
+        })
     }
 }

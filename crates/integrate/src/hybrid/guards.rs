@@ -63,7 +63,7 @@ impl Guards {
                 });
             }
             if phase.is_held() {
-                let bounds = contact.bounds(contact.at(q), false);
+                let bounds = contact.bounds(q, false);
                 releases(index, bounds, efforts[contact.speed], &mut list);
                 continue;
             }

@@ -20,6 +20,7 @@ mod release;
 pub(super) mod resolution;
 mod transition;
 
+pub(super) use contact::Sliding;
 pub(super) use guards::{Guard, Guards};
 pub(super) use notes::Note;
 

@@ -36,7 +36,7 @@ impl Resting<'_> {
             }
             let bounds = self.members.iter().zip(&slips).map(|(&index, &slips)| {
                 let contact = &self.contacts[index];
-                contact.bounds(contact.at(self.q), slips)
+                contact.bounds(self.q, slips)
             });
             let problem = Problem {
                 matrix: self.matrix.clone(),
@@ -77,9 +77,9 @@ impl Resting<'_> {
                 Place::AtLower => true,
                 Place::AtUpper => false,
             };
-            match contact.friction {
-                Some(_) => Phase::Slides { forward },
-                None => Phase::Free,
+            match contact.has_friction() {
+                true => Phase::Slides { forward },
+                false => Phase::Free,
             }
         });
         phases.collect()

@@ -1,7 +1,7 @@
 //! From the end of one piece to the beginning of the next.
 
 use super::complementarity::Place;
-use super::contact::{Contact, Phase, Side};
+use super::contact::{Contact, Phase, Side, Sliding};
 use super::fault::Fault;
 use super::guards::{Guard, Guards};
 use super::holding::Holding;
@@ -119,7 +119,7 @@ impl<'a> Hybrid<'a> {
             let speed = &mut speeds[contact.speed];
             let is_at_rest = speed.abs() <= AT_REST * largest;
             let stops = ends(reverses(true)) || ends(reverses(false));
-            if contact.friction.is_some() && (stops || is_at_rest) {
+            if contact.has_friction() && (stops || is_at_rest) {
                 *speed = 0.0;
             }
         }
@@ -167,7 +167,7 @@ impl<'a> Hybrid<'a> {
             .collect();
         let all = self.contacts.iter().enumerate();
         let is_at_rest = |contact: &Contact| {
-            speeds[contact.speed] == 0.0 && (contact.friction.is_some() || contact.at(q).is_some())
+            speeds[contact.speed] == 0.0 && (contact.has_friction() || contact.at(q).is_some())
         };
         let members = all.filter(|(_, contact)| is_at_rest(contact));
         let members: Vec<usize> = members.map(|(index, _)| index).collect();
@@ -231,13 +231,13 @@ impl<'a> Hybrid<'a> {
         Ok(DVector::from_iterator(members.len(), own))
     }
 
-    fn sliding_efforts(&self, phases: &[Phase]) -> Vec<(usize, f64)> {
+    fn sliding_efforts(&self, phases: &[Phase]) -> Vec<Sliding> {
         let pairs = self.contacts.iter().zip(phases);
         let sliding = pairs.filter_map(|(contact, phase)| match *phase {
-            Phase::Slides { forward } => Some((contact.freedom, contact.sliding_effort(forward))),
+            Phase::Slides { forward } => Some(contact.sliding_efforts(forward)),
             _ => None,
         });
-        sliding.collect()
+        sliding.flatten().collect()
     }
 
     /// Gives `flow` the equations of the next piece.
@@ -277,7 +277,7 @@ impl<'a> Hybrid<'a> {
         for &index in &held {
             let contact = &self.contacts[index];
             let effort = holding.effort(contact);
-            let (lower, upper) = contact.bounds(contact.at(q), false);
+            let (lower, upper) = contact.bounds(q, false);
             let size =
                 [lower, upper].map(|bound| if bound.is_finite() { bound.abs() } else { 0.0 });
             let room = AGREEMENT * size[0].max(size[1]).max(effort.abs()).max(1.0);
@@ -294,7 +294,7 @@ impl<'a> Hybrid<'a> {
     }
 
     fn undecided(&self, members: &[usize], reason: String) -> Fault {
-        let is_friction = |&index: &usize| self.contacts[index].friction.is_some();
+        let is_friction = |&index: &usize| self.contacts[index].has_friction();
         Fault::Undecided {
             what: match members.iter().any(is_friction) {
                 true => "friction",
@@ -308,8 +308,8 @@ impl<'a> Hybrid<'a> {
 
 /// What a joint does that moves with this speed, or begins to.
 fn moving(contact: &Contact, speed: f64) -> Phase {
-    match contact.friction {
-        Some(_) if speed != 0.0 => Phase::Slides {
+    match contact.has_friction() {
+        true if speed != 0.0 => Phase::Slides {
             forward: speed > 0.0,
         },
         _ => Phase::Free,

@@ -135,6 +135,7 @@ fn the_choice_is_looked_at_again_on_the_way() {
         efforts: vec![-9.81],
     });
     let stop: Arc<dyn Element> = Arc::new(JointLimit {
+        port: None,
         name: "stop".into(),
         body: 0,
         lower: Some(0.0),

@@ -4,14 +4,14 @@ use super::by_joint;
 use super::state::Stand;
 use crate::control::{
     Control, ControlLaw, ControllerDescription, Goal, GoalDescription, LawDescription,
-    PortDescription, ReferenceDescription, RegulatorDescription,
+    PortDescription, ReferenceDescription, ReferenceMotion, RegulatorDescription,
 };
 use crate::description::Position;
 use crate::diagnostics::Diagnostic;
 use crate::forces::PerFreedom;
 use crate::read::Sink;
 use crate::source::{Located, Span};
-use hamel_control::{Port, Pump, Weights};
+use hamel_control::{Port, PortReference, Pump, Weights};
 use hamel_runtime::mechanism::Mechanism;
 use hamel_runtime::time_function::Law;
 use std::collections::HashMap;
@@ -59,17 +59,19 @@ impl Fit<'_> {
                 references,
             } => {
                 let (start, laws) = self.reference(references, sink)?;
+                let ports = self.port_references(references, sink)?;
                 ControlLaw::ComputedTorque {
                     start,
                     laws,
+                    ports,
                     error_dynamics: *error_dynamics,
                 }
             }
             LawDescription::Lqr(regulator) => ControlLaw::Lqr(self.goal(regulator, sink)?),
             LawDescription::EnergyShaping { ports, goals, pump } => {
                 let goal = self.configuration(goals, sink);
-                let sound = unique(ports.iter().map(|port| &port.joint), sink);
-                let ports: Vec<_> = ports.iter().map(|port| self.port(port)).collect();
+                let sound = ports_are_distinct(ports, sink);
+                let ports: Vec<_> = ports.iter().map(|port| self.port(port, sink)).collect();
                 let ports: Option<Vec<Port>> = ports.into_iter().collect();
                 let ports = ports.filter(|_| sound);
                 ControlLaw::EnergyShaping {
@@ -141,13 +143,20 @@ impl Fit<'_> {
                 continue;
             };
             let ranges = self.mechanism.bodies()[body].ranges();
-            if let Some(position) = &reference.start {
+            let ReferenceMotion::Speeds {
+                speeds: given,
+                start: begin,
+            } = &reference.motion
+            else {
+                continue;
+            };
+            if let Some(position) = begin {
                 match self.position(body, position, &reference.joint.span, sink) {
                     Some(q) => start[ranges.configuration.clone()].copy_from_slice(&q),
                     None => sound = false,
                 }
             }
-            let (own, given) = (&mut laws[ranges.speeds.clone()], &reference.speeds);
+            let own = &mut laws[ranges.speeds.clone()];
             if own.len() == given.value.len() {
                 own.copy_from_slice(&given.value);
             } else {
@@ -181,9 +190,50 @@ impl Fit<'_> {
         sound.then_some(q)
     }
 
-    fn port(&self, port: &PortDescription) -> Option<Port> {
+    /// The index of a port of the joint under `body`.
+    fn port_index(&self, body: usize, name: &Located<String>, sink: &mut Sink) -> Option<usize> {
+        let owner = &self.mechanism.bodies()[body];
+        let stand = Stand::of(owner.joint_name(), owner.shared_joint(), &name.span);
+        let found = stand.and_then(|stand| stand.port(name));
+        found.map_err(|error| sink.push(error)).ok()
+    }
+
+    /// Where ports are wanted; those without a start where they begin.
+    fn port_references(
+        &self,
+        references: &[ReferenceDescription],
+        sink: &mut Sink,
+    ) -> Option<Vec<PortReference>> {
+        let mut found = vec![];
+        for reference in references {
+            let ReferenceMotion::Ports(ports) = &reference.motion else {
+                continue;
+            };
+            let body = self.find(&reference.joint)?;
+            let owner = &self.mechanism.bodies()[body];
+            for own in ports {
+                let port = self.port_index(body, &own.name, sink);
+                found.push(port.map(|port| PortReference {
+                    body,
+                    port,
+                    start: own.start.unwrap_or_else(|| {
+                        let q = owner.configuration(self.q);
+                        owner.joint().port_value(q, port)
+                    }),
+                    law: own.law,
+                }));
+            }
+        }
+        found.into_iter().collect()
+    }
+
+    fn port(&self, port: &PortDescription, sink: &mut Sink) -> Option<Port> {
+        let body = self.find(&port.joint)?;
+        let named = port.port.as_ref();
+        let index = named.map(|name| self.port_index(body, name, sink).ok_or(()));
         Some(Port {
-            body: self.find(&port.joint)?,
+            body,
+            port: index.transpose().ok()?,
             spring: port.spring,
             damping: port.damping,
             limit: port.limit,
@@ -226,6 +276,33 @@ impl Fit<'_> {
             },
         })
     }
+}
+
+/// Whether no joint, and no port of one, is named twice.
+fn ports_are_distinct(ports: &[PortDescription], sink: &mut Sink) -> bool {
+    let mut sound = true;
+    for (n, port) in ports.iter().enumerate() {
+        let is_same = |other: &&PortDescription| {
+            let names = [port, *other].map(|own| own.port.as_ref().map(|name| &name.value));
+            port.joint.value == other.joint.value && names[0] == names[1]
+        };
+        let Some(before) = ports[..n].iter().find(is_same) else {
+            continue;
+        };
+        sound = false;
+        let joint = &port.joint.value;
+        let (what, span) = match &port.port {
+            Some(name) => (
+                format!("port `{}` of joint `{joint}`", name.value),
+                &name.span,
+            ),
+            None => (format!("joint `{joint}`"), &port.joint.span),
+        };
+        let message = format!("controller: {what} is named twice");
+        let place = before.port.as_ref().unwrap_or(&before.joint).span.clone();
+        sink.push(Diagnostic::new(span.clone(), message).context(place, "here"));
+    }
+    sound
 }
 
 /// Whether no joint is named twice.

@@ -9,6 +9,7 @@ use hamel_runtime::elements::{
     JointSpring, JointStop, PointConstraint, PortEffort, PortSpring, RotationSpring, TimedEffort,
     TimedWrench,
 };
+use hamel_runtime::erased::AnyJoint;
 use hamel_runtime::mechanism::{Mechanism, MechanismErrors, NamedFrame};
 use hamel_runtime::time_function::TimeFunction;
 use std::sync::Arc;
@@ -25,6 +26,10 @@ pub(super) fn equip(
         if !acting.armature.is_empty() {
             let with_rotor = mechanism.with_armature(body, &acting.armature);
             mechanism = with_rotor?;
+        }
+        let rotors = acting.port_armature(mechanism.bodies()[body].joint().ports().len());
+        if rotors.iter().any(|inertia| *inertia > 0.0) {
+            mechanism = mechanism.with_port_armature(body, &rotors)?;
         }
     }
     let frames = description.frames.iter().map(|frame| NamedFrame {
@@ -121,7 +126,9 @@ fn at_joint(
         }));
     }
     for (port, forces) in &acting.ports {
-        at_port((body, *port), joint, forces, elements);
+        let joint_type = mechanism.bodies()[body].joint();
+        let home = joint_type.port_value(&home(joint_type), *port);
+        at_port((body, *port), joint, (forces, home), elements);
     }
     for limit in acting.limit.iter().chain(&acting.further_limits) {
         let LimitKind::Compliant { stiffness, damping } = limit.kind else {
@@ -130,6 +137,7 @@ fn at_joint(
         elements.push(Arc::new(JointLimit {
             name: format!("limit of joint `{joint}`"),
             body,
+            port: None,
             lower: limit.lower,
             upper: limit.upper,
             stiffness,
@@ -141,7 +149,7 @@ fn at_joint(
 fn at_port(
     (body, port): (usize, usize),
     joint: &str,
-    forces: &PortForces,
+    (forces, home): (&PortForces, f64),
     elements: &mut Vec<Arc<dyn Element>>,
 ) {
     let name = |what: &str| forces.element(what, joint);
@@ -161,9 +169,19 @@ fn at_port(
             port,
             stiffness: spring.stiffness,
             damping: forces.damping,
-            rest: spring.rest,
+            rest: spring.rest.unwrap_or(home),
         }));
     }
+    if let Some(limit) = forces.compliant_limit(joint, (body, port)) {
+        elements.push(Arc::new(limit));
+    }
+}
+
+/// The Q of a joint from which its spec starts.
+fn home(joint: &dyn AnyJoint) -> Vec<f64> {
+    let mut home = vec![0.0; joint.layout().configuration];
+    joint.home(&mut home);
+    home
 }
 
 /// The efforts of a joint, if none of them changes with time.
@@ -257,14 +275,23 @@ fn drives(description: &SceneDescription, acting: &[Acting]) -> Vec<Drive> {
 
 fn frictions(description: &SceneDescription, acting: &[Acting]) -> Vec<JointFriction> {
     let joints = description.bodies.iter().zip(acting).enumerate();
-    let frictions = joints.filter_map(|(body, (owner, acting))| {
-        let friction = acting.friction?;
-        Some(JointFriction {
-            name: format!("friction of joint `{}`", owner.joint.name.value),
-            body,
-            sliding: friction.sliding,
-            sticking: friction.sticking,
-        })
+    let frictions = joints.flat_map(|(body, (owner, acting))| {
+        let joint = &owner.joint.name.value;
+        let own = acting.friction.iter();
+        let own = own.map(|own| (None, format!("friction of joint `{joint}`"), *own));
+        let at_ports = acting.ports.iter().filter_map(|(port, forces)| {
+            let friction = forces.friction.as_ref()?.value;
+            Some((Some(*port), forces.element("friction", joint), friction))
+        });
+        let all: Vec<_> = own.chain(at_ports).collect();
+        all.into_iter()
+            .map(move |(port, name, friction)| JointFriction {
+                name,
+                body,
+                port,
+                sliding: friction.sliding,
+                sticking: friction.sticking,
+            })
     });
     frictions.collect()
 }

@@ -9,7 +9,7 @@ use crate::forces::{
 };
 use crate::read::Sink;
 use crate::source::{Located, Span};
-use hamel_runtime::elements::is_one_coordinate;
+use hamel_runtime::elements::{has_one_freedom, is_one_coordinate};
 use hamel_runtime::mechanism::{CONFIGURATION_TOLERANCE, speed_of_rotor};
 use hamel_runtime::shown::Number;
 use hamel_runtime::time_function::TimeFunction;
@@ -36,6 +36,17 @@ pub(crate) struct Acting {
     pub(crate) further_limits: Vec<LimitDescription>,
     /// What acts at its ports, by their indices.
     pub(crate) ports: Vec<(usize, PortForces)>,
+}
+
+impl Acting {
+    /// Inertias of rotors at the ports, of which the joint has so many.
+    pub(crate) fn port_armature(&self, ports: usize) -> Vec<f64> {
+        let mut inertias = vec![0.0; ports];
+        for (port, forces) in &self.ports {
+            inertias[*port] = forces.armature;
+        }
+        inertias
+    }
 }
 
 /// A spring at a joint.
@@ -70,11 +81,14 @@ pub(super) fn acting(
     let effort = effort(stand, forces.effort.as_ref());
     let spring = forces.spring.as_ref().map(|found| spring(stand, found));
     let motion = motion(stand, initial, forces.motion.as_ref());
-    let friction = of_one_coordinate(stand, "friction", forces.friction.as_ref());
+    let friction = of_one_freedom(stand, "friction", forces.friction.as_ref());
     let limit = of_one_coordinate(stand, "a limit", forces.limit.as_ref());
     let further = forces.further_limits.iter().map(|own| own.value);
     let ports = forces.ports.iter().filter_map(|own| {
         let port = stand.port(&own.name).map_err(&mut noted).ok()?;
+        let what = format!("friction at port `{}`", own.name.value);
+        let friction = of_one_freedom(stand, &what, own.friction.as_ref());
+        friction.map_err(&mut noted).ok()?;
         Some((port, own.clone()))
     });
     let ports = ports.collect();
@@ -176,6 +190,29 @@ fn spring(stand: &Stand, spring: &Located<JointSpring>) -> Result<Spring, Diagno
         rest: stand.configuration(&spring.value.rest)?,
         stiffness,
     })
+}
+
+/// What joints with a single degree of freedom alone can have.
+fn of_one_freedom<T: Copy>(
+    stand: &Stand,
+    what: &str,
+    found: Option<&Located<T>>,
+) -> Result<Option<T>, Diagnostic> {
+    let Some(found) = found.filter(|_| !has_one_freedom(&*stand.joint)) else {
+        return Ok(found.map(|found| found.value));
+    };
+    let (name, kind, layout) = (&stand.name, stand.joint.name(), stand.joint.layout());
+    let message = format!(
+        "joint `{name}`: {what} needs a single degree of freedom, and `{kind}` has {}{}",
+        layout.freedoms,
+        if layout.constraints > 0 {
+            ", with constraints"
+        } else {
+            ""
+        }
+    );
+    let error = Diagnostic::new(found.span.clone(), message);
+    Err(error.help("give `damping`"))
 }
 
 /// What joints with a single coordinate alone can have.

@@ -89,6 +89,9 @@ impl Owner<'_> {
             effort,
             spring,
             damping,
+            armature: 0.0,
+            friction: None,
+            limit: None,
         }))
     }
 
@@ -117,7 +120,7 @@ impl Owner<'_> {
         let rest = initial::position(self.name, self.movement, &spring.value.rest)?;
         Ok(Some(PortSpringDescription {
             stiffness,
-            rest: rest.map_or(0.0, |(rest, _)| rest),
+            rest: Some(rest.map_or(0.0, |(rest, _)| rest)),
         }))
     }
 }

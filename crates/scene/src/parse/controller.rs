@@ -1,9 +1,11 @@
 //! The `[controller]` table.
 
+mod at_ports;
+
 use super::forces::{per_freedom, speed};
 use super::initial;
 use crate::control::{
-    ControllerDescription, GoalDescription, LawDescription, PortDescription, ReferenceDescription,
+    ControllerDescription, GoalDescription, LawDescription, ReferenceDescription, ReferenceMotion,
     RegulatorDescription,
 };
 use crate::description::Position;
@@ -11,7 +13,7 @@ use crate::diagnostics::Diagnostic;
 use crate::forces::PerFreedom;
 use crate::read::{Fields, Sink, Value};
 use crate::source::Located;
-use hamel_control::{Curve, ErrorDynamics, PathGains, PortSpring};
+use hamel_control::{Curve, ErrorDynamics, PathGains};
 use hamel_runtime::time_function::Law;
 use std::collections::HashSet;
 
@@ -94,7 +96,23 @@ fn reference(
     sink: &mut Sink,
 ) -> Option<ReferenceDescription> {
     let joint = joint(fields, joints, sink);
-    let speeds = required(fields, "speeds", laws, sink);
+    let motion = match fields.exactly_one(&["speeds", "ports"], sink) {
+        Some((0, speeds)) => speeds_and_start(&speeds, fields, sink),
+        Some((_, ports)) => at_ports::references(&ports, sink).map(ReferenceMotion::Ports),
+        None => None,
+    };
+    Some(ReferenceDescription {
+        joint: joint?,
+        motion: motion?,
+    })
+}
+
+fn speeds_and_start(
+    speeds: &Value<'_>,
+    fields: &mut Fields<'_>,
+    sink: &mut Sink,
+) -> Option<ReferenceMotion> {
+    let speeds = laws(speeds, sink);
     let start = match fields.optional("start") {
         Some(value) => value.table(sink).and_then(|mut start| {
             let position = initial::position(&mut start, sink);
@@ -103,10 +121,22 @@ fn reference(
         }),
         None => Some(None),
     };
-    Some(ReferenceDescription {
-        joint: joint?,
+    Some(ReferenceMotion::Speeds {
         speeds: speeds?,
         start: start?,
+    })
+}
+
+/// A law by its numbers; what is absent is 0.
+fn law(fields: &mut Fields<'_>, sink: &mut Sink) -> Option<Law> {
+    let mut number = |key| or(fields, key, 0.0, number, sink);
+    let [rate, amplitude, frequency, phase] =
+        ["rate", "amplitude", "frequency", "phase"].map(&mut number);
+    Some(Law {
+        rate: rate?,
+        amplitude: amplitude?,
+        frequency: frequency?,
+        phase: phase?,
     })
 }
 
@@ -148,7 +178,7 @@ fn energy_shaping(
     joints: Option<&Joints<'_>>,
     sink: &mut Sink,
 ) -> Option<LawDescription> {
-    let ports = list(table, "port", |f, s| port(f, joints, s), sink);
+    let ports = list(table, "port", |f, s| at_ports::port(f, joints, s), sink);
     if ports.as_ref().is_some_and(Vec::is_empty) {
         let message = "the controller has no port";
         let error = Diagnostic::new(table.span(), message);
@@ -160,30 +190,6 @@ fn energy_shaping(
         ports: ports?,
         goals: goals?,
         pump: pump?,
-    })
-}
-
-fn port(
-    fields: &mut Fields<'_>,
-    joints: Option<&Joints<'_>>,
-    sink: &mut Sink,
-) -> Option<PortDescription> {
-    let joint = joint(fields, joints, sink);
-    let stiffness = or(fields, "stiffness", 0.0, not_negative, sink);
-    let kind = match fields.optional("kind") {
-        Some(kind) => kind.choice(&["log", "trace"], sink),
-        None => Some("log"),
-    };
-    let damping = or(fields, "damping", 0.0, not_negative, sink);
-    let limit = or(fields, "limit", f64::INFINITY, positive, sink);
-    Some(PortDescription {
-        joint: joint?,
-        spring: match kind? {
-            "trace" => PortSpring::Trace(stiffness?),
-            _ => PortSpring::Log(stiffness?),
-        },
-        damping: damping?,
-        limit: limit?,
     })
 }
 
@@ -214,17 +220,10 @@ fn path(
 /// Constant part and law of one coordinate.
 fn coordinate(value: &Value<'_>, sink: &mut Sink) -> Option<(f64, Law)> {
     let mut fields = value.table(sink)?;
-    let mut number = |key| or(&mut fields, key, 0.0, number, sink);
-    let [start, rate, amplitude, frequency, phase] =
-        ["start", "rate", "amplitude", "frequency", "phase"].map(&mut number);
+    let start = or(&mut fields, "start", 0.0, number, sink);
+    let law = law(&mut fields, sink);
     fields.finish(sink);
-    let law = Law {
-        rate: rate?,
-        amplitude: amplitude?,
-        frequency: frequency?,
-        phase: phase?,
-    };
-    Some((start?, law))
+    Some((start?, law?))
 }
 
 fn mpc(

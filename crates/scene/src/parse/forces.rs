@@ -133,28 +133,11 @@ fn motion(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Vec<TimeFunction
 const NOT_AT_PORTS: &str = "nothing of this kind acts at a port";
 
 /// What acts at degrees of freedom and not at ports, and what to do.
-const OF_FREEDOMS: &[(&str, &str, &str)] = &[
-    (
-        "armature",
-        NOT_AT_PORTS,
-        "let the joint's spec name a body that turns with the port, and give it the inertia of the rotor",
-    ),
-    (
-        "friction",
-        NOT_AT_PORTS,
-        "friction acts at degrees of freedom: name the direction of the port by `basis` in the joint's spec, so that it is one; a port has `damping`",
-    ),
-    (
-        "limit",
-        NOT_AT_PORTS,
-        "limits are those of degrees of freedom: name the direction of the port by `basis` in the joint's spec, so that it is one",
-    ),
-    (
-        "motion",
-        NOT_AT_PORTS,
-        "motions are prescribed at degrees of freedom: name the direction of the port by `basis` in the joint's spec, so that it is one",
-    ),
-];
+const OF_FREEDOMS: &[(&str, &str, &str)] = &[(
+    "motion",
+    NOT_AT_PORTS,
+    "motions are prescribed at degrees of freedom: name the direction of the port by `basis` in the joint's spec, so that it is one",
+)];
 
 /// What acts at the ports of a joint, each under its name.
 fn ports(value: &Value<'_>, sink: &mut Sink) -> Option<Vec<PortForces>> {
@@ -170,29 +153,51 @@ fn port(name: Located<String>, value: &Value<'_>, sink: &mut Sink) -> Option<Por
     let mut fields = value.table(sink)?;
     let effort = optional(&mut fields, "effort", time::function, sink);
     let spring = optional(&mut fields, "spring", port_spring, sink);
-    let damping = match fields.optional("damping") {
-        Some(damping) => damping.not_negative(sink).map(|damping| damping.value),
-        None => Some(0.0),
-    };
+    let damping = not_negative(&mut fields, "damping", sink);
+    let armature = not_negative(&mut fields, "armature", sink);
+    let friction = optional(&mut fields, "friction", friction, sink);
+    let limit = optional(&mut fields, "limit", port_limit, sink);
     fields.finish_but(OF_FREEDOMS, sink);
     Some(PortForces {
         name,
         effort: effort?,
         spring: spring?,
         damping: damping?,
+        armature: armature?,
+        friction: friction?,
+        limit: limit?,
     })
+}
+
+/// A stop that gives way: an impact is that of a joint's own coordinate.
+fn port_limit(value: &Value<'_>, sink: &mut Sink) -> Option<Located<LimitDescription>> {
+    let limit = limit(value, sink)?;
+    if let LimitKind::Compliant { .. } = limit.value.kind {
+        return Some(limit);
+    }
+    let message = format!("{}: a port hits no limit by impacts", value.path());
+    let error = Diagnostic::new(limit.span, message);
+    sink.push(error.help("give `stiffness` instead of `restitution`: a stop that gives way"));
+    None
+}
+
+/// A number that is 0 where it is absent.
+fn not_negative(fields: &mut Fields<'_>, key: &'static str, sink: &mut Sink) -> Option<f64> {
+    match fields.optional(key) {
+        Some(found) => found.not_negative(sink).map(|found| found.value),
+        None => Some(0.0),
+    }
 }
 
 fn port_spring(value: &Value<'_>, sink: &mut Sink) -> Option<PortSpringDescription> {
     let mut fields = value.table(sink)?;
     let stiffness = fields.required("stiffness", sink);
-    let rest = fields.required("rest", sink);
+    let rest = optional(&mut fields, "rest", |value, sink| value.number(sink), sink);
     fields.finish(sink);
     let stiffness = stiffness?.not_negative(sink);
-    let rest = rest?.number(sink);
     Some(PortSpringDescription {
         stiffness: stiffness?.value,
-        rest: rest?.value,
+        rest: rest?.map(|rest| rest.value),
     })
 }
 
@@ -263,10 +268,7 @@ fn limit_kind(fields: &mut Fields<'_>, sink: &mut Sink) -> Option<LimitKind> {
         return Some(LimitKind::Impact { restitution });
     }
     let stiffness = value.not_negative(sink);
-    let damping = match fields.optional("damping") {
-        Some(damping) => damping.not_negative(sink).map(|damping| damping.value),
-        None => Some(0.0),
-    };
+    let damping = not_negative(fields, "damping", sink);
     Some(LimitKind::Compliant {
         stiffness: stiffness?.value,
         damping: damping?,

@@ -3,10 +3,10 @@
 use super::body::position;
 use super::entry;
 use super::forces::{per_freedom, speed};
-use super::value::{number, table, text};
+use super::value::{key, number, table, text};
 use crate::control::{
     ControllerDescription, GoalDescription, LawDescription, PortDescription, ReferenceDescription,
-    RegulatorDescription,
+    ReferenceMotion, RegulatorDescription,
 };
 use hamel_control::PortSpring;
 use hamel_runtime::time_function::Law;
@@ -40,7 +40,7 @@ pub(super) fn controller(out: &mut String, controller: &ControllerDescription) {
         } => {
             entry(out, "joint", &text(&joint.value));
             for (key, place) in [("x", 0), ("y", 1)] {
-                let value = coordinate(curve.start[place], &curve.laws[place]);
+                let value = coordinate(Some(curve.start[place]), &curve.laws[place]);
                 entry(out, key, &value);
             }
             entry(out, "distance", &number(gains.distance));
@@ -61,9 +61,19 @@ pub(super) fn controller(out: &mut String, controller: &ControllerDescription) {
 fn reference(out: &mut String, reference: &ReferenceDescription) {
     out.push_str("\n[[controller.reference]]\n");
     entry(out, "joint", &text(&reference.joint.value));
-    let speeds: Vec<String> = reference.speeds.value.iter().map(speed).collect();
+    let (speeds, start) = match &reference.motion {
+        ReferenceMotion::Speeds { speeds, start } => (speeds, start),
+        ReferenceMotion::Ports(ports) => {
+            for port in ports {
+                let name = format!("ports.{}", key(&port.name.value));
+                entry(out, &name, &coordinate(port.start, &port.law));
+            }
+            return;
+        }
+    };
+    let speeds: Vec<String> = speeds.value.iter().map(speed).collect();
     entry(out, "speeds", &format!("[{}]", speeds.join(", ")));
-    if let Some(start) = &reference.start {
+    if let Some(start) = start {
         let entries: Vec<_> = position(start).into_iter().collect();
         let value = match entries.is_empty() {
             true => String::from("{}"),
@@ -100,6 +110,9 @@ fn goal(out: &mut String, goal: &GoalDescription) {
 fn port(out: &mut String, port: &PortDescription) {
     out.push_str("\n[[controller.port]]\n");
     entry(out, "joint", &text(&port.joint.value));
+    if let Some(name) = &port.port {
+        entry(out, "port", &text(&name.value));
+    }
     let (stiffness, kind) = match port.spring {
         PortSpring::Log(stiffness) => (stiffness, "log"),
         PortSpring::Trace(stiffness) => (stiffness, "trace"),
@@ -112,12 +125,15 @@ fn port(out: &mut String, port: &PortDescription) {
     }
 }
 
-fn coordinate(start: f64, law: &Law) -> String {
-    table(&[
-        ("start", number(start)),
+fn coordinate(start: Option<f64>, law: &Law) -> String {
+    let mut entries = vec![
         ("rate", number(law.rate)),
         ("amplitude", number(law.amplitude)),
         ("frequency", number(law.frequency)),
         ("phase", number(law.phase)),
-    ])
+    ];
+    if let Some(start) = start {
+        entries.insert(0, ("start", number(start)));
+    }
+    table(&entries)
 }

@@ -50,12 +50,21 @@ fn port(forces: &PortForces) -> String {
         entries.push(("effort", time::function(effort)));
     }
     if let Some(spring) = forces.spring {
-        let (stiffness, rest) = (number(spring.stiffness), number(spring.rest));
-        let spring = table(&[("stiffness", stiffness), ("rest", rest)]);
-        entries.push(("spring", spring));
+        let mut own = vec![("stiffness", number(spring.stiffness))];
+        own.extend(spring.rest.map(|rest| ("rest", number(rest))));
+        entries.push(("spring", table(&own)));
     }
     if forces.damping > 0.0 {
         entries.push(("damping", number(forces.damping)));
+    }
+    if forces.armature > 0.0 {
+        entries.push(("armature", number(forces.armature)));
+    }
+    if let Some(own) = &forces.friction {
+        entries.push(("friction", friction(&own.value)));
+    }
+    if let Some(own) = &forces.limit {
+        entries.push(("limit", limit(&own.value)));
     }
     table(&entries)
 }

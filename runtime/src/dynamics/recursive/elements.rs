@@ -64,6 +64,7 @@ impl Recursive {
         self.reduce_efforts(q, &all);
         self.combined = all;
         self.add_rotor_forces(q, speeds);
+        self.add_port_rotor_forces(q, speeds);
     }
 
     /// `−Σ_k γ_k v_k (a v)` of rotors whose v are not the rates of coordinates.
@@ -131,17 +132,6 @@ impl Recursive {
     pub(super) fn copy_driven(&self, from: &[f64], to: &mut [f64]) {
         for link in self.links.iter().filter(|link| link.driven) {
             to[link.speeds.clone()].copy_from_slice(&from[link.speeds.clone()]);
-        }
-    }
-
-    /// `out += a x`, with the rotor inertias a.
-    pub(super) fn add_armature(&self, x: &[f64], out: &mut [f64]) {
-        for link in &self.links {
-            let own = link.speeds.clone();
-            let terms = link.armature.iter().zip(&x[own.clone()]);
-            for (out, (a, x)) in out[own].iter_mut().zip(terms) {
-                *out += a * x;
-            }
         }
     }
 }

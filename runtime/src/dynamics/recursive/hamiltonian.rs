@@ -47,6 +47,7 @@ impl Recursive {
         for (rate, force) in rates.iter_mut().zip(&self.forces) {
             *rate += force;
         }
+        self.add_port_rotor_rates(speeds, rates);
     }
 
     /// [`Recursive::gather_rates`] without inputs, with one entry for each body and each speed of its joint.
@@ -115,14 +116,7 @@ impl Recursive {
                 0.5 * node.motion.twist.dot(&momentum)
             })
             .sum();
-        let rotors: f64 = self
-            .links
-            .iter()
-            .map(|link| {
-                let own = link.armature.iter().zip(&speeds[link.speeds.clone()]);
-                own.map(|(a, v)| 0.5 * a * v * v).sum::<f64>()
-            })
-            .sum();
+        let rotors = self.rotor_energy(speeds);
         bodies + rotors + self.potential_energy_here() + self.element_energy_here(q, speeds)
     }
 

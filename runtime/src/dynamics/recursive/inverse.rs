@@ -80,7 +80,7 @@ impl Recursive {
 
     /// `X^cᵀF = τ + Aλ` of every joint into `efforts` (one entry per degree of freedom), as of the last
     /// [`Recursive::inverse_dynamics`] at `q`, or [`Recursive::coupling_force`] where constraints couple joints: also what it takes to move a
-    /// joint whose motion is prescribed.
+    /// joint whose motion is prescribed. What rotors take comes on top.
     ///
     /// # Errors
     /// When a vector has the wrong size, or is not finite.
@@ -131,6 +131,7 @@ impl Recursive {
             let mut carried = [0.0; MOST_FREEDOMS];
             let carried = &mut carried[..ranges.freedoms.len()];
             self.joint_effort(index, q, carried);
+            self.add_rotor_efforts(index, q, carried);
             let applied = match self.links[index].driven {
                 // They begin with its accelerations, and no effort of its own has a part along A.
                 true => &[],

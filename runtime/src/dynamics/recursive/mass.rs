@@ -163,11 +163,7 @@ impl Recursive {
     /// M̄ of the tree, after [`Recursive::compose`].
     pub(super) fn fill_mass_matrix(&mut self, mass: &mut MassMatrix) {
         self.fill_mass(&mut mass.rows);
-        for link in &self.links {
-            for (speed, armature) in link.speeds.clone().zip(&link.armature) {
-                mass.rows[speed * mass.size + speed] += armature;
-            }
-        }
+        self.load_mass(mass.size, &mut mass.rows);
     }
 
     /// Inward, after [`Recursive::stand`]: the rigid inertia N of each body and of all that hangs on it, and N X̄.

@@ -26,6 +26,7 @@ mod operational;
 mod pins;
 mod readings;
 mod refined;
+mod rotors;
 mod rows;
 mod several;
 mod slender;
@@ -52,6 +53,7 @@ use alloc::vec::Vec;
 use coupling::Coupling;
 use link::{Link, Node, Rung};
 use nalgebra::Vector6;
+use rotors::Rotor;
 use rows::Climb;
 use several::Group;
 use slender::Slender;
@@ -76,7 +78,9 @@ pub struct Recursive {
     /// Composite momenta of the columns.
     momenta: Vec<Vector6<f64>>,
     slender: Vec<Slender>,
-    /// Joints that carry several bodies.
+    /// Rotors at ports.
+    rotors: Vec<Rotor>,
+    /// Joints that carry several bodies, or rotors at ports.
     groups: Vec<Group>,
     /// Room for entries with one for each body and each speed of its joint.
     unfolded: Vec<f64>,
@@ -115,6 +119,7 @@ impl Recursive {
             plain: false,
             acted_on: false,
             slender: Slender::all(&links),
+            rotors: Rotor::all(&mechanism),
             groups: Group::all(&mechanism),
             unfolded: vec![0.0; columns],
             links,
@@ -142,8 +147,9 @@ impl Recursive {
 
     /// What the sweeps can leave out.
     fn classified(mut self) -> Self {
-        self.acted_on =
-            !self.mechanism.elements().is_empty() || self.links.iter().any(Link::turns_rotors);
+        self.acted_on = !self.mechanism.elements().is_empty()
+            || !self.rotors.is_empty()
+            || self.links.iter().any(Link::turns_rotors);
         self.plain = self.holonomic
             && !self.acted_on
             && self.coupling.is_none()

@@ -51,17 +51,13 @@ impl Recursive {
 
     /// The power of what acts at the ports of a joint along what one of its relations forbids.
     fn port_power(&self, body: usize, relation: usize, q: &[f64], speeds: &[f64]) -> f64 {
-        let joints = self.mechanism.carried(body);
-        self.over_elements(q, speeds, |element, view| {
-            let effort = element.port_effort(view);
-            effort.filter(|(index, ..)| joints.contains(index)).map_or(
-                0.0,
-                |(index, port, effort)| {
-                    let link = &self.links[index];
-                    let own = &q[link.configuration.clone()];
-                    effort * link.joint.relation_port(own, relation, port)
-                },
-            )
-        })
+        let link = &self.links[self.mechanism.leader(body)];
+        let own = &q[link.configuration.clone()];
+        let ports = 0..link.joint.ports().len();
+        let powers = ports.map(|port| {
+            let effort = self.effort_at_port(body, port, q, speeds);
+            effort * link.joint.relation_port(own, relation, port)
+        });
+        powers.sum()
     }
 }

@@ -198,13 +198,21 @@ impl Recursive {
         }
     }
 
-    fn effort_at_port(&self, body: usize, port: usize, q: &[f64], speeds: &[f64]) -> f64 {
+    /// What elements and rotors exert at one port, as of the last inverse dynamics.
+    pub(super) fn effort_at_port(
+        &self,
+        body: usize,
+        port: usize,
+        q: &[f64],
+        speeds: &[f64],
+    ) -> f64 {
         let bodies = self.mechanism.carried(body);
-        self.over_elements(q, speeds, |element, view| {
+        let elements = self.over_elements(q, speeds, |element, view| {
             let effort = element.port_effort(view);
             let own = effort.filter(|(index, other, _)| bodies.contains(index) && *other == port);
             own.map_or(0.0, |(.., effort)| effort)
-        })
+        });
+        elements + self.rotor_effort(bodies.start, port)
     }
 
     /// The first effort that acts at no pin, in words.

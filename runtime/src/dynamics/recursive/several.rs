@@ -1,4 +1,4 @@
-//! Joints that carry several bodies, in the recursion over articulated inertias.
+//! Joints that carry several bodies, and those with rotors at ports, in the recursion over articulated inertias.
 //!
 //! All at the origin of the parent's frame: with `U_i = A_i X̄_i` of body i, whose articulated inertia is A_i, the degrees of freedom of the
 //! joint are eliminated together,
@@ -25,15 +25,15 @@ use alloc::vec::Vec;
 use core::ops::Range;
 use nalgebra::{Matrix6, Vector3, Vector6};
 
-/// The bodies of each joint that carries several.
+/// The bodies of each joint that carries several, or has rotors at ports: all whose rows of M̄ are found together.
 pub(super) fn groups(mechanism: &Mechanism) -> impl Iterator<Item = Range<usize>> {
     let bodies = mechanism
         .joints()
         .map(|(index, _)| mechanism.carried(index));
-    bodies.filter(|bodies| bodies.len() > 1)
+    bodies.filter(|bodies| bodies.len() > 1 || !mechanism.port_armature(bodies.start).is_empty())
 }
 
-/// A joint that carries several bodies, and the factors of its elimination.
+/// A joint that carries several bodies or has rotors at ports, and the factors of its elimination.
 #[derive(Clone, Debug)]
 pub(super) struct Group {
     pub(super) bodies: Range<usize>,
@@ -244,9 +244,13 @@ impl Recursive {
             return Ok(());
         }
         if !own.driven {
-            let added = |i: usize, j: usize| match i == j {
-                true => load(i, j) + link.armature.get(i).copied().unwrap_or(0.0),
-                false => load(i, j),
+            let added = |i: usize, j: usize| {
+                let rotors = self.rotors.iter().filter(|rotor| rotor.body == index);
+                let rotors = load(i, j) + rotors.map(|rotor| rotor.load(i, j)).sum::<f64>();
+                match i == j {
+                    true => rotors + link.armature.get(i).copied().unwrap_or(0.0),
+                    false => rotors,
+                }
             };
             own.factorize(added, limits)
                 .map_err(|failure| self.mechanism.singular(index, &failure))?;

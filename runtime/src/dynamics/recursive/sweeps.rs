@@ -39,6 +39,7 @@ impl Recursive {
             let columns = &mut self.columns[link.columns.clone()];
             link.joint.stand(q, &link.frame, from, to, columns);
         }
+        self.stand_rotors(q);
     }
 
     /// [`Recursive::stand`], and each body's own inertia; no wrench.
@@ -86,6 +87,7 @@ impl Recursive {
         if let (Some(link), Some(node)) = (self.links.last(), self.nodes.last_mut()) {
             link.load(node);
         }
+        self.stand_rotors(q);
         if !self.slender.is_empty() {
             self.advance_slender(q, speeds, accelerations);
         }

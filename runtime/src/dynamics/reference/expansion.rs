@@ -66,6 +66,7 @@ impl Expansion {
         let tree = Tree::new(mechanism, q, &expansion.velocity_map);
         expansion.add_bodies(mechanism, &tree);
         expansion.add_armature(mechanism);
+        expansion.add_port_armature(mechanism, q);
         expansion.couple(mechanism, &tree);
         Ok(expansion)
     }
@@ -107,6 +108,31 @@ impl Expansion {
             let freedoms = body.ranges().freedoms.clone();
             for (k, inertia) in freedoms.zip(mechanism.armature(index)) {
                 self.mass_matrix[(k, k)] += inertia;
+            }
+        }
+    }
+
+    /// Rotors at ports: `a PᵀP` in M, and `a (∂PᵀP + Pᵀ∂P)` in ∂M/∂ϕ.
+    fn add_port_armature(&mut self, mechanism: &Mechanism, q: &[f64]) {
+        for (index, body) in mechanism.joints() {
+            let (own, joint) = (body.ranges().freedoms.clone(), body.joint());
+            let (size, q) = (own.len(), body.configuration(q));
+            let mut row = DVector::zeros(size);
+            let mut slopes = DMatrix::zeros(size, size);
+            for (port, &inertia) in mechanism.port_armature(index).iter().enumerate() {
+                joint.port_row(q, port, row.as_mut_slice());
+                joint.port_row_gradient(q, port, slopes.as_mut_slice());
+                let corner = ((own.start, own.start), (size, size));
+                let mut mass = self.mass_matrix.view_mut(corner.0, corner.1);
+                mass += &row * row.transpose() * inertia;
+                for (gradient, slope) in self.mass_matrix_gradient[own.clone()]
+                    .iter_mut()
+                    .zip(slopes.column_iter())
+                {
+                    let half = slope * row.transpose() * inertia;
+                    let mut gradient = gradient.view_mut(corner.0, corner.1);
+                    gradient += &half + half.transpose();
+                }
             }
         }
     }

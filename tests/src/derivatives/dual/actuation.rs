@@ -13,6 +13,7 @@ use hamel::nalgebra::{Matrix3, Vector3, Vector6};
 use hamel::scalar::Dual;
 use hamel::spatial::{Pose, join, so3, split, vee};
 use rand::{RngExt, SeedableRng};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// What a mechanism carries besides its bodies; nothing by default.
@@ -28,10 +29,25 @@ pub struct Actuation {
     wrenches: Vec<BodyWrench>,
     /// One entry a speed.
     armature: Vec<f64>,
+    /// Rotors at ports.
+    port_rotors: Vec<Rotor>,
+}
+
+/// A rotor at a port.
+#[derive(Clone, Debug)]
+struct Rotor {
+    body: usize,
+    port: usize,
+    inertia: f64,
 }
 
 fn vector(random: &mut ChaCha8Rng) -> Vector3<f64> {
     Vector3::from_fn(|_, _| random.random_range(-1.0..1.0))
+}
+
+fn product(a: &[D], b: &[D]) -> D {
+    let terms = a.iter().zip(b);
+    terms.fold(Dual::constant(0.0), |sum, (a, b)| sum + *a * *b)
 }
 
 /// `H Hᵀ` of a random H, by rows.
@@ -132,6 +148,11 @@ impl Actuation {
                     damping: random.random_range(0.0..1.0),
                     rest: value + random.random_range(-1.0..1.0),
                 });
+                all.port_rotors.push(Rotor {
+                    body,
+                    port,
+                    inertia: 0.3 + 0.2 * port as f64,
+                });
             }
             let holonomic = owner.joint().structures().speed_basis.is_identity();
             let inertia = numbers(&mut random, ranges.speeds.len());
@@ -168,12 +189,61 @@ impl Actuation {
             if let Some(own) = own.filter(|_| holonomic) {
                 equipped = equipped.with_armature(body, own).expect("it fits");
             }
+            let rotors = self.port_rotors.iter().filter(|rotor| rotor.body == body);
+            let inertias: Vec<f64> = rotors.map(|rotor| rotor.inertia).collect();
+            if !inertias.is_empty() {
+                let geared = equipped.with_port_armature(body, &inertias);
+                equipped = geared.expect("it fits");
+            }
         }
         Arc::new(equipped)
     }
 
-    /// Adds `a v̄̇` to inverse dynamics.
-    pub fn add_rotors(&self, accelerations: &[D], efforts: &mut [D]) {
+    /// p̄ and p̄̇ of each rotor at a port, with its inertia and the speeds of its joint.
+    fn at_ports<'a>(
+        &'a self,
+        form: &'a DualForm,
+        q: &'a [D],
+        speeds: &'a [D],
+    ) -> impl Iterator<Item = ([Vec<D>; 2], D, Range<usize>)> + 'a {
+        self.port_rotors.iter().map(move |rotor| {
+            let body = &form.bodies[rotor.body];
+            let own = &speeds[body.speeds.clone()];
+            let q = &q[body.configuration.clone()];
+            let motion = body.joint.port_motion(q, own, rotor.port);
+            (motion, Dual::constant(rotor.inertia), body.speeds.clone())
+        })
+    }
+
+    /// Kinetic energy of rotors at ports.
+    pub fn rotor_energy(&self, form: &DualForm, q: &[D], speeds: &[D]) -> D {
+        let half = Dual::constant(0.5);
+        let each = self.at_ports(form, q, speeds);
+        each.fold(Dual::constant(0.0), |sum, ([row, _], inertia, own)| {
+            let rate = product(&row, &speeds[own]);
+            sum + half * inertia * rate * rate
+        })
+    }
+
+    /// How the momenta of rotors at ports change while v̄ stays, onto rates of momenta.
+    pub fn add_rotor_rates(&self, form: &DualForm, (q, speeds): (&[D], &[D]), rates: &mut [D]) {
+        for ([row, rate], inertia, own) in self.at_ports(form, q, speeds) {
+            let v = &speeds[own.clone()];
+            let (speed, turned) = (product(&row, v), product(&rate, v));
+            for ((sum, row), rate) in rates[own].iter_mut().zip(row).zip(rate) {
+                *sum += inertia * (rate * speed + row * turned);
+            }
+        }
+    }
+
+    /// Adds `a v̄̇`, and of rotors at ports `a p̄ᵀ p̄ v̄̇`, to inverse dynamics.
+    pub fn add_rotors(&self, form: &DualForm, q: &[D], accelerations: &[D], efforts: &mut [D]) {
+        for ([row, _], inertia, own) in self.at_ports(form, q, accelerations) {
+            let along = product(&row, &accelerations[own.clone()]);
+            for (effort, entry) in efforts[own].iter_mut().zip(row) {
+                *effort += inertia * entry * along;
+            }
+        }
         let terms = constants(&self.armature);
         let terms = terms.iter().zip(accelerations).map(|(a, x)| *a * *x);
         for (effort, term) in efforts.iter_mut().zip(terms) {
@@ -184,6 +254,12 @@ impl Actuation {
     /// Generalised forces, one per speed.
     pub fn forces(&self, form: &DualForm, q: &[D], speeds: &[D]) -> Vec<D> {
         let mut forces = form.reduced(q, &self.efforts(form, q, speeds));
+        for ([row, rate], inertia, own) in self.at_ports(form, q, speeds) {
+            let turned = product(&rate, &speeds[own.clone()]);
+            for (force, entry) in forces[own].iter_mut().zip(row) {
+                *force -= inertia * entry * turned;
+            }
+        }
         let poses = form.poses(q);
         let wrenches = form.gathered(&poses, self.on_bodies(form, &poses, q, speeds));
         for (body, wrench) in form.bodies.iter().zip(&wrenches) {

@@ -31,6 +31,8 @@ pub trait Kernels {
     fn moment(&self, q: &[D], moment: &Vector3<D>) -> Vec<D>;
     /// How far a port is from `rest`, and its row of P.
     fn port(&self, q: &[D], port: usize, rest: f64) -> (D, Vec<D>);
+    /// p̄ = P S̄ of a port, and how it changes with time at v̄.
+    fn port_motion(&self, q: &[D], speeds: &[D], port: usize) -> [Vec<D>; 2];
     /// `Σ_k γ_k v_k (a v)`.
     fn rotors(&self, q: &[D], speeds: &[D], inertia: &[f64]) -> Vec<D>;
 }
@@ -117,6 +119,19 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
             way = sin.atan2(cos);
         }
         (way, map.as_ref()[port].to_vec())
+    }
+
+    fn port_motion(&self, q: &[D], speeds: &[D], port: usize) -> [Vec<D>; 2] {
+        let q = vector::<N>(q);
+        let velocity = self.0.speed_basis(&q) * vector::<S>(speeds);
+        let rate = self.0.configuration_rate(&q, &velocity);
+        let moving = SVector::<Dual<D>, N>::from_fn(|i, _| Dual::new(q[i], rate[i]));
+        let row = SVector::<Dual<D>, K>::from(self.0.port_map(&moving).as_ref()[port]);
+        let row = self.0.speed_basis(&moving).tr_mul(&row);
+        [
+            row.iter().map(|entry| entry.value).collect(),
+            row.iter().map(Dual::derivative).collect(),
+        ]
     }
 
     fn rotors(&self, q: &[D], speeds: &[D], inertia: &[f64]) -> Vec<D> {

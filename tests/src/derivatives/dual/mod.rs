@@ -144,7 +144,8 @@ impl DualForm {
                 *effort += column.dot(wrench);
             }
         }
-        self.actuation.add_rotors(accelerations, &mut efforts);
+        self.actuation
+            .add_rotors(self, q, accelerations, &mut efforts);
         if falls {
             let acting = self.actuation.forces(self, q, speeds);
             for (effort, force) in efforts.iter_mut().zip(acting) {
@@ -227,6 +228,8 @@ impl DualForm {
         for (rate, force) in rates.iter_mut().zip(self.actuation.forces(self, q, speeds)) {
             *rate += force;
         }
+        self.actuation
+            .add_rotor_rates(self, (q, speeds), &mut rates);
         rates
     }
 
@@ -267,7 +270,10 @@ impl DualForm {
             let moment = pose.rotation * inertia.first_moment + pose.translation * inertia.mass;
             potential -= self.gravity.dot(&moment);
         }
-        (kinetic, potential)
+        (
+            kinetic + self.actuation.rotor_energy(self, q, speeds),
+            potential,
+        )
     }
 
     /// The pose of a frame that is fixed in the child frame of the joint under `body`, and the frame's twist in its own axes.

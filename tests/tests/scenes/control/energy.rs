@@ -19,6 +19,7 @@ fn shaped(form: Form, spring: PortSpring) -> (Scene, EnergyShaping, f64) {
     let (goal, damping) = (scene.mechanism.home(), 1.5);
     let port = Port {
         body: 0,
+        port: None,
         spring,
         damping,
         limit: f64::INFINITY,

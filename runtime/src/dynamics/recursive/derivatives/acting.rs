@@ -11,7 +11,7 @@ use crate::dynamics::recursive::elements::Seen;
 use crate::dynamics::recursive::inverse::MOST_FREEDOMS;
 use crate::elements::{Slopes, Target, View};
 use crate::mechanism::Mechanism;
-use crate::steps::Variation;
+use crate::steps::{RotorTerm, Variation};
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -67,8 +67,14 @@ pub(super) fn add_response(inverse: &Sensitivity, slopes: &Sensitivity, out: &mu
 }
 
 impl Recursive {
-    /// After [`Recursive::advance`] at (q, v̄): the wrenches of elements off what the bodies need, and G into `out`.
-    pub(super) fn act_and_vary(&mut self, q: &[f64], speeds: &[f64], out: &mut Acting) {
+    /// After [`Recursive::advance`] at (q, v̄): the wrenches of elements off what the bodies need, and G into `out`, with what rotors at ports
+    /// exert at v̄̇; where none is given, with the rates of their momenta instead.
+    pub(super) fn act_and_vary(
+        &mut self,
+        (q, speeds): (&[f64], &[f64]),
+        accelerations: Option<&[f64]>,
+        out: &mut Acting,
+    ) {
         self.act(q, speeds, None);
         self.relieve();
         out.by_local.clear();
@@ -82,6 +88,16 @@ impl Recursive {
             self.add_effort_slopes(index, (q, &self.efforts), 1.0, &mut out.by_local);
             self.add_rotor_slopes(index, q, speeds, out);
         }
+        let Acting {
+            by_local,
+            by_speeds,
+            ..
+        } = out;
+        let (term, x, weight) = match accelerations {
+            Some(accelerations) => (RotorTerm::Needed, accelerations, -1.0),
+            None => (RotorTerm::Turning, speeds, 1.0),
+        };
+        self.add_rotor_term((q, speeds, x), (term, weight), by_local, Some(by_speeds));
     }
 
     fn add_element_slopes(&self, q: &[f64], speeds: &[f64], out: &mut Acting) {

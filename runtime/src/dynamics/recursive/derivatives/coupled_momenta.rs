@@ -155,7 +155,7 @@ impl Recursive {
         }
         self.advance(q, &out.speeds, None);
         if self.acted_on {
-            self.act_and_vary(q, &out.speeds, &mut out.acting);
+            self.act_and_vary((q, &out.speeds), None, &mut out.acting);
         }
         self.act(q, &out.speeds, Some(efforts));
         self.coupled_rates(q, &out.speeds, &mut work.rates, coupling);

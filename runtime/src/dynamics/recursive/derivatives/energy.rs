@@ -37,6 +37,7 @@ impl Recursive {
                 kinetic[freedom] += variation.drift.dot(&node.wrench);
             }
         }
+        self.add_rotor_energy_gradient(q, speeds, kinetic);
         Ok(())
     }
 

@@ -6,13 +6,13 @@
 use super::Sensitivity;
 use crate::dynamics::recursive::Recursive;
 use crate::dynamics::recursive::link::Link;
+use crate::dynamics::recursive::several::groups;
 use crate::mechanism::Mechanism;
 use core::ops::Range;
 
-/// Whether any joint of `mechanism` carries several bodies.
+/// Whether any joint of `mechanism` carries several bodies, or has rotors at ports.
 pub(super) fn is_folded(mechanism: &Mechanism) -> bool {
-    mechanism.columns() > mechanism.layout().speeds
-        || mechanism.variations() > mechanism.layout().freedoms
+    groups(mechanism).next().is_some()
 }
 
 /// Room for derivatives in ϕ and in v̄ with a row for each body and each speed of its joint; `None` where each joint carries one body.

@@ -206,7 +206,7 @@ impl Recursive {
             return Ok(());
         }
         if self.acted_on {
-            self.act_and_vary(q, speeds, &mut out.acting);
+            self.act_and_vary((q, speeds), Some(&out.rates), &mut out.acting);
         }
         self.drag(&mut out.responses);
         for index in 0..self.links.len() {

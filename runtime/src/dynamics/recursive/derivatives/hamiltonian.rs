@@ -23,7 +23,7 @@ use crate::dynamics::recursive::inverse::MOST_FREEDOMS;
 use crate::dynamics::{Dynamics, DynamicsError};
 use crate::mechanism::Mechanism;
 use crate::spatial::bracket_dual_product;
-use crate::steps::Variation;
+use crate::steps::{RotorTerm, Variation};
 use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::Vector6;
@@ -168,7 +168,7 @@ impl Recursive {
         }
         self.advance(q, &out.speeds, None);
         if self.acted_on {
-            self.act_and_vary(q, &out.speeds, &mut out.acting);
+            self.act_and_vary((q, &out.speeds), None, &mut out.acting);
         }
         self.sum_momenta(self.acted_on);
         self.vary_momenta(q, out);
@@ -234,6 +234,10 @@ impl Recursive {
                 self.fold_locals(&needed, own);
             }
             out.unfolded = Some((both, needed));
+        }
+        if let Some(needed) = &mut out.needed {
+            let state = (q, &*out.speeds, &*out.speeds);
+            self.add_rotor_term(state, (RotorTerm::Momentum, 1.0), needed, None);
         }
         if self.acted_on {
             out.rates_by_local.add_all(&out.acting.by_local);

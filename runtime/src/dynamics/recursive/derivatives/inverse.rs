@@ -144,7 +144,7 @@ impl Recursive {
         out: &mut InverseDerivatives,
     ) {
         if self.acted_on {
-            self.act_and_vary(q, speeds, &mut out.acting);
+            self.act_and_vary((q, speeds), Some(accelerations), &mut out.acting);
             // Elements between bodies reach from branch to branch, where no joint meets another.
             out.by_local.clear();
             out.by_speeds.clear();

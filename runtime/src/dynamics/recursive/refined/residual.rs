@@ -3,6 +3,7 @@
 use super::super::Recursive;
 use super::super::inverse::MOST_FREEDOMS;
 use super::super::link::Link;
+use super::super::rotors::speed_row;
 use crate::erased::AnyJoint;
 use crate::scalar::Extended;
 use crate::spatial::{Pose, SpatialInertia, Symmetric3, join, nearest_rotation, shift_wrench};
@@ -26,6 +27,8 @@ struct Body {
     frame: Pose<E>,
     inertia: SpatialInertia<E>,
     armature: Vec<f64>,
+    /// Ports with rotors, and their inertias.
+    rotors: Vec<(usize, f64)>,
 }
 
 /// The residual of one mechanism's equations, with its workspace.
@@ -47,8 +50,10 @@ pub(super) struct Residual {
 }
 
 impl Body {
-    fn new(link: &Link) -> Self {
+    fn new((index, link): (usize, &Link), tree: &Recursive) -> Self {
         let (frame, inertia) = (&link.frame, &link.inertia);
+        let rotors = tree.rotors.iter().filter(|rotor| rotor.body == index);
+        let rotors = rotors.map(|rotor| (rotor.port, rotor.inertia)).collect();
         Self {
             joint: Arc::clone(&link.joint).extended(),
             parent: link.parent,
@@ -66,6 +71,7 @@ impl Body {
                 inertia: Symmetric3::from_matrix(&inertia.inertia.matrix().map(E::from)),
             },
             armature: link.armature.clone(),
+            rotors,
         }
     }
 }
@@ -74,7 +80,12 @@ impl Residual {
     /// Of the mechanism of `tree`.
     pub(super) fn new(tree: &Recursive) -> Self {
         let layout = tree.mechanism.layout();
-        let bodies: Vec<Body> = tree.links.iter().map(Body::new).collect();
+        let bodies: Vec<Body> = tree
+            .links
+            .iter()
+            .enumerate()
+            .map(|own| Body::new(own, tree))
+            .collect();
         let resting = |rate: Vector3<f64>| Motion {
             placement: Placement::world(),
             twist: Vector6::zeros(),
@@ -186,6 +197,17 @@ impl Residual {
                 .zip(body.armature.iter().zip(&rates[own.clone()]))
             {
                 *taken += E::from(inertia) * rate;
+            }
+            for &(port, inertia) in &body.rotors {
+                let q = &self.configuration[body.configuration.clone()];
+                let mut row = [E::from(0.0); MOST_FREEDOMS];
+                let row = &mut row[..own.len()];
+                speed_row(&*body.joint, q, port, row);
+                let along = row.iter().zip(&rates[own.clone()]);
+                let along = along.fold(E::from(0.0), |sum, (&p, &x)| sum + p * x);
+                for (taken, entry) in taken.iter_mut().zip(row) {
+                    *taken += E::from(inertia) * along * *entry;
+                }
             }
             for (out, taken) in self.gathered[own].iter_mut().zip(taken) {
                 *out += *taken;

@@ -1,0 +1,156 @@
+//! Where joints are wanted by the values of their ports.
+
+use super::ControlError;
+use super::error::require;
+use alloc::vec::Vec;
+use hamel_runtime::joint::MOST_FREEDOMS;
+use hamel_runtime::mechanism::{Body, Mechanism};
+use hamel_runtime::time_function::Law;
+use nalgebra::{SMatrix, SVector};
+use num_traits::Float;
+
+/// How small a pivot of the ports' rows may be next to the largest for the ports to move the joint: with less, half of the digits are gone.
+const INDEPENDENT: f64 = 1e-8;
+
+/// The value of one port over time: `start` and what the law leads to from there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PortReference {
+    /// The body whose joint it is.
+    pub body: usize,
+    /// Index of the port among those of the joint.
+    pub port: usize,
+    /// The value at time 0, rad or m.
+    pub start: f64,
+    /// How it goes on.
+    pub law: Law,
+}
+
+impl PortReference {
+    /// The value at time `t`.
+    fn value(&self, t: f64) -> f64 {
+        let Law {
+            rate,
+            amplitude,
+            frequency,
+            phase,
+        } = self.law;
+        let swing = Float::sin(frequency * t + phase) - Float::sin(phase);
+        self.start + rate * t + amplitude * swing
+    }
+
+    /// How far the port is from its value at time `t`, and by how much it is too fast.
+    pub(super) fn deviation(&self, body: &Body, t: f64, (q, v): (&[f64], &[f64])) -> [f64; 2] {
+        let joint = body.joint();
+        let mut row = [0.0; MOST_FREEDOMS];
+        let row = &mut row[..v.len()];
+        joint.port_row(q, self.port, row);
+        let rate: f64 = row.iter().zip(v).map(|(p, v)| p * v).sum();
+        let value = joint.port_value(q, self.port);
+        let port = joint.ports().get(self.port);
+        let way = port.map_or(f64::NAN, |port| port.deflection(value, self.value(t)));
+        [way, rate - self.law.velocity(t)]
+    }
+}
+
+/// The references at the ports of one joint: as many as it has degrees of freedom.
+#[derive(Clone, Debug)]
+pub(super) struct OfJoint {
+    pub(super) body: usize,
+    pub(super) ports: Vec<PortReference>,
+}
+
+impl OfJoint {
+    /// By joint, in the order in which they are named first.
+    ///
+    /// # Errors
+    /// A body or a port that is not there, or named twice; a number that is not finite; fewer or more than the joint has degrees of freedom.
+    pub(super) fn all(
+        mechanism: &Mechanism,
+        references: &[PortReference],
+    ) -> Result<Vec<Self>, ControlError> {
+        let mut joints: Vec<Self> = Vec::new();
+        for reference in references {
+            let owner = mechanism.body(reference.body)?;
+            let refused = |reason| ControlError::Joint {
+                joint: owner.joint_name().into(),
+                reason,
+            };
+            if reference.port >= owner.joint().ports().len() {
+                return Err(refused("has no port of the index of a reference"));
+            }
+            let Law {
+                rate,
+                amplitude,
+                frequency,
+                phase,
+            } = reference.law;
+            for number in [reference.start, rate, amplitude, frequency, phase] {
+                require("a number of the reference", number, true, "finite")?;
+            }
+            let body = mechanism.leader(reference.body);
+            match joints.iter_mut().find(|own| own.body == body) {
+                Some(own) if own.ports.iter().any(|port| port.port == reference.port) => {
+                    return Err(refused("has two references at one port"));
+                }
+                Some(own) => own.ports.push(*reference),
+                None => joints.push(Self {
+                    body,
+                    ports: alloc::vec![*reference],
+                }),
+            }
+        }
+        for own in &joints {
+            let owner = mechanism.body(own.body)?;
+            if own.ports.len() != owner.ranges().freedoms.len() {
+                return Err(ControlError::Joint {
+                    joint: owner.joint_name().into(),
+                    reason: "must have as many references at ports as it has degrees of freedom",
+                });
+            }
+        }
+        Ok(joints)
+    }
+
+    /// v̇* at which each port has `wanted` of its deviation as its acceleration beside that of its law: of `P v̇* = ẅ* − Ṗ v`.
+    ///
+    /// # Errors
+    /// Ports that do not move the joint in all its ways here.
+    pub(super) fn accelerations(
+        &self,
+        owner: &Body,
+        t: f64,
+        (q, v): (&[f64], &[f64]),
+        wanted: impl Fn([f64; 2]) -> f64,
+        out: &mut [f64],
+    ) -> Result<(), ControlError> {
+        let (joint, size) = (owner.joint(), v.len());
+        // The rest is that of the identity.
+        let mut map = SMatrix::<f64, MOST_FREEDOMS, MOST_FREEDOMS>::identity();
+        let mut right = SVector::<f64, MOST_FREEDOMS>::zeros();
+        for (i, reference) in self.ports.iter().enumerate() {
+            let (mut row, mut rate) = ([0.0; MOST_FREEDOMS], [0.0; MOST_FREEDOMS]);
+            joint.port_row(q, reference.port, &mut row[..size]);
+            joint.port_row_rate(q, v, reference.port, &mut rate[..size]);
+            let turned: f64 = rate.iter().zip(v).map(|(p, v)| p * v).sum();
+            let deviation = reference.deviation(owner, t, (q, v));
+            right[i] = reference.law.acceleration(t) + wanted(deviation) - turned;
+            for (j, entry) in row[..size].iter().enumerate() {
+                map[(i, j)] = *entry;
+            }
+        }
+        let largest = map.view((0, 0), (size, size)).amax();
+        let factors = map.full_piv_lu();
+        let pivots = factors.u();
+        let least =
+            (0..MOST_FREEDOMS).fold(f64::INFINITY, |least, i| least.min(pivots[(i, i)].abs()));
+        let solved = factors.solve(&right);
+        let Some(found) = solved.filter(|_| least > INDEPENDENT * largest.min(1.0)) else {
+            return Err(ControlError::Joint {
+                joint: owner.joint_name().into(),
+                reason: "stands where the ports of its reference do not tell how it moves, as at a dead point",
+            });
+        };
+        out.copy_from_slice(&found.as_slice()[..size]);
+        Ok(())
+    }
+}
