@@ -204,6 +204,15 @@ impl Joint<1, 1, 1, 0> for CamFollower {
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
     ];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::ANGLE],
+            freedoms: &[Unit::ANGLE],
+            velocities: &[Unit::ANGLE],
+            speeds: &[Unit::ANGLE],
+        }
+    };
     const BODIES: &'static [&'static str] = &["cam", "follower"];
 
     fn more(&self, visit: &mut dyn FnMut(::hamel_runtime::erased::Shared)) {
@@ -310,7 +319,7 @@ impl ::hamel_runtime::joint::Carries<1, 1, 1, 1, 0> for CamFollower {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 function call.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 1 function call.
     /// From line 16 `H.follower = trans_y(base + lift(theta));`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let theta = q[0];
@@ -319,7 +328,7 @@ impl ::hamel_runtime::joint::Carries<1, 1, 1, 1, 0> for CamFollower {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 function call.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 1 function call.
     /// From line 16 `H.follower = trans_y(base + lift(theta));`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let theta = q[0];

@@ -245,6 +245,17 @@ impl Joint<8, 2, 2, 0> for FiveBar {
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
     ];
     const SINGULARITIES: &'static [&'static str] = &["b.c * d.s - b.s * d.c = 0"];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[
+                Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER,
+            ],
+            freedoms: &[Unit::ANGLE, Unit::ANGLE],
+            velocities: &[Unit::ANGLE, Unit::ANGLE],
+            speeds: &[Unit::ANGLE, Unit::ANGLE],
+        }
+    };
     const BODIES: &'static [&'static str] = &["left_crank", "left_rod", "right_crank", "right_rod"];
 
     fn more(&self, visit: &mut dyn FnMut(::hamel_runtime::erased::Shared)) {
@@ -406,7 +417,8 @@ impl Joint<8, 2, 2, 0> for FiveBar {
     /// A scalar. Operations: 6 additions, 6 multiplications (6 of each fused), 1 function call.
     /// From line 19 `config a: S1, b: S1, c: S1, d: S1;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 8>) -> T {
-        let sum = self.relations(q).iter().fold(T::zero(), |sum, &relation| relation.mul_add(relation, sum));
+        let relations: [T; 6] = self.relations(q).into();
+        let sum = relations.into_iter().fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
         sum.sqrt()
     }
 
@@ -448,7 +460,7 @@ impl ::hamel_runtime::joint::Carries<1, 8, 2, 2, 0> for FiveBar {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 6 multiplications and those of `first_derivatives`.
+    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 1 addition, 6 multiplications and those of `first_derivatives`.
     /// From line 26 `basis`, line 27 `basis`, line 29 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 8>) -> SMatrix<T, 6, 2> {
         let left_crank = T::from_f64(self.left_crank);
@@ -470,7 +482,7 @@ impl ::hamel_runtime::joint::Carries<1, 8, 2, 2, 0> for FiveBar {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v. Operations: 2 additions, 6 multiplications (1 of each fused) and those of `first_derivatives`.
+    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 2 additions, 6 multiplications (1 of each fused) and those of `first_derivatives`.
     /// From line 26 `basis`, line 27 `basis`, line 29 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 8>) -> SMatrix<T, 6, 2> {
         let left_crank = T::from_f64(self.left_crank);
@@ -570,7 +582,7 @@ impl ::hamel_runtime::joint::Carries<2, 8, 2, 2, 0> for FiveBar {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v. Independent of Q. Operations: none.
+    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
     /// From line 26 `basis`, line 27 `basis`, line 30 `H`.
     fn twist_map<T: Scalar>(&self, _q: &SVector<T, 8>) -> SMatrix<T, 6, 2> {
         let ground = T::from_f64(self.ground);
@@ -580,7 +592,7 @@ impl ::hamel_runtime::joint::Carries<2, 8, 2, 2, 0> for FiveBar {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v. Independent of Q. Operations: none.
+    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
     /// From line 26 `basis`, line 27 `basis`, line 30 `H`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 8>) -> SMatrix<T, 6, 2> {
         let zero = T::zero();
@@ -639,7 +651,7 @@ impl ::hamel_runtime::joint::Carries<3, 8, 2, 2, 0> for FiveBar {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v. Operations: 3 additions, 6 multiplications (1 of each fused) and those of `first_derivatives`.
+    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 3 additions, 6 multiplications (1 of each fused) and those of `first_derivatives`.
     /// From line 26 `basis`, line 27 `basis`, line 31 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 8>) -> SMatrix<T, 6, 2> {
         let ground = T::from_f64(self.ground);
@@ -662,7 +674,7 @@ impl ::hamel_runtime::joint::Carries<3, 8, 2, 2, 0> for FiveBar {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v. Operations: 2 additions, 6 multiplications (1 of each fused) and those of `first_derivatives`.
+    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 2 additions, 6 multiplications (1 of each fused) and those of `first_derivatives`.
     /// From line 26 `basis`, line 27 `basis`, line 31 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 8>) -> SMatrix<T, 6, 2> {
         let right_crank = T::from_f64(self.right_crank);

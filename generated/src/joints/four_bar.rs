@@ -6,7 +6,7 @@
 //! turns about the origin, the rocker about a point at `ground` along x. Frames: those of crank and rocker in their fixed pins, that of the coupler at the end of the crank; x along each link.
 //!
 //! - Configuration: a ∈ S1, b ∈ S1, c ∈ S1, stored as a.c, a.s, b.c, b.s, c.c, c.s.
-//! - Degrees of freedom: `along` (ϕ).
+//! - Degrees of freedom: `along` (ϕ, 1/m^2).
 //! - Velocity v: read as the rates of the local coordinates.
 //! - The identity, and not written: S₀, S₀⁻¹, S̄.
 //! - Zero, and not written: γ, J22, A, ∂S̄/∂ϕ.
@@ -230,6 +230,15 @@ impl Joint<6, 1, 1, 0> for FourBar {
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
     ];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER],
+            freedoms: &[Unit::new("1/m^2", "1/(m^2 s)", "N m^3")],
+            velocities: &[Unit::new("1/m^2", "1/(m^2 s)", "N m^3")],
+            speeds: &[Unit::new("1/m^2", "1/(m^2 s)", "N m^3")],
+        }
+    };
     const BODIES: &'static [&'static str] = &["crank", "coupler", "rocker"];
 
     fn more(&self, visit: &mut dyn FnMut(::hamel_runtime::erased::Shared)) {
@@ -339,7 +348,7 @@ impl Joint<6, 1, 1, 0> for FourBar {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: none and those of `first_derivatives`.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in 1/(m^2 s). Operations: none and those of `first_derivatives`.
     /// From line 30 `H.crank = rot_z(a);`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 1> {
         let zero = T::zero();
@@ -348,7 +357,7 @@ impl Joint<6, 1, 1, 0> for FourBar {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: none and those of `first_derivatives`.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in 1/(m^2 s). Operations: none and those of `first_derivatives`.
     /// From line 30 `H.crank = rot_z(a);`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 1> {
         let zero = T::zero();
@@ -470,7 +479,7 @@ impl Joint<6, 1, 1, 0> for FourBar {
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    /// 1-vector. The part along B of the displacement from Q to Q′, by a solve with [B, N].
+    /// 1-vector, 1/m^2. The part along B of the displacement from Q to Q′, by a solve with [B, N].
     /// From line 25 `config a: S1, b: S1, c: S1;`.
     fn local<T: Scalar>(&self, q: &SVector<T, 6>, target: &SVector<T, 6>) -> SVector<T, 1> {
         ::hamel_runtime::finite::along_tangent(&self.displacement(q, target), (self.tangent_basis(q), self.normal_basis(q)))
@@ -488,7 +497,7 @@ impl Joint<6, 1, 1, 0> for FourBar {
     }
 
     /// ϕ̇ at finite ϕ from `rate` = S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ), for |ϕ| < 2π.
-    /// 1-vector. From B at Q′ = Φ(Q, ϕ), by a solve with [B, N] at Q; the displacement from Q to Q′ is the shortest.
+    /// 1-vector, 1/(m^2 s). From B at Q′ = Φ(Q, ϕ), by a solve with [B, N] at Q; the displacement from Q to Q′ is the shortest.
     /// From line 25 `config a: S1, b: S1, c: S1;`.
     fn retract_differential_inverse<T: Scalar>(
         &self,
@@ -564,7 +573,8 @@ impl Joint<6, 1, 1, 0> for FourBar {
     /// A scalar. Operations: 5 additions, 5 multiplications (5 of each fused), 1 function call.
     /// From line 25 `config a: S1, b: S1, c: S1;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 6>) -> T {
-        let sum = self.relations(q).iter().fold(T::zero(), |sum, &relation| relation.mul_add(relation, sum));
+        let relations: [T; 5] = self.relations(q).into();
+        let sum = relations.into_iter().fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
         sum.sqrt()
     }
 }
@@ -596,7 +606,7 @@ impl ::hamel_runtime::joint::Carries<1, 6, 1, 1, 0> for FourBar {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 3 multiplications and those of `first_derivatives`.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in 1/(m^2 s). Operations: 1 addition, 3 multiplications and those of `first_derivatives`.
     /// From line 31 `H.coupler = pose(rot_z(b), [crank * a.c, crank * a.s, 0]);`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 1> {
         let crank = T::from_f64(self.crank);
@@ -608,7 +618,7 @@ impl ::hamel_runtime::joint::Carries<1, 6, 1, 1, 0> for FourBar {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 2 additions, 7 multiplications (1 of each fused) and those of `first_derivatives`.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in 1/(m^2 s). Operations: 2 additions, 7 multiplications (1 of each fused) and those of `first_derivatives`.
     /// From line 31 `H.coupler = pose(rot_z(b), [crank * a.c, crank * a.s, 0]);`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 1> {
         let crank = T::from_f64(self.crank);
@@ -696,7 +706,7 @@ impl ::hamel_runtime::joint::Carries<2, 6, 1, 1, 0> for FourBar {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 multiplication and those of `first_derivatives`.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in 1/(m^2 s). Operations: 1 multiplication and those of `first_derivatives`.
     /// From line 32 `H.rocker = pose(rot_z(c), [ground, 0, 0]);`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 1> {
         let ground = T::from_f64(self.ground);
@@ -706,7 +716,7 @@ impl ::hamel_runtime::joint::Carries<2, 6, 1, 1, 0> for FourBar {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: none and those of `first_derivatives`.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in 1/(m^2 s). Operations: none and those of `first_derivatives`.
     /// From line 32 `H.rocker = pose(rot_z(c), [ground, 0, 0]);`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 6>) -> SMatrix<T, 6, 1> {
         let zero = T::zero();

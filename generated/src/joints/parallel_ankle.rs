@@ -399,6 +399,17 @@ impl Joint<8, 2, 2, 0> for ParallelAnkle {
     const SINGULARITIES: &'static [&'static str] = &[
         "of_left[2] * dot(about, of_right) - of_right[2] * dot(about, of_left) = 0",
     ];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[
+                Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER,
+            ],
+            freedoms: &[Unit::ANGLE, Unit::ANGLE],
+            velocities: &[Unit::ANGLE, Unit::ANGLE],
+            speeds: &[Unit::ANGLE, Unit::ANGLE],
+        }
+    };
     const BODIES: &'static [&'static str] = &["left", "right", "foot"];
 
     fn more(&self, visit: &mut dyn FnMut(::hamel_runtime::erased::Shared)) {
@@ -611,7 +622,8 @@ impl Joint<8, 2, 2, 0> for ParallelAnkle {
     /// A scalar. Operations: 6 additions, 6 multiplications (6 of each fused), 1 function call.
     /// From line 18 `config a: S1, b: S1, pitch: S1, roll: S1;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 8>) -> T {
-        let sum = self.relations(q).iter().fold(T::zero(), |sum, &relation| relation.mul_add(relation, sum));
+        let relations: [T; 6] = self.relations(q).into();
+        let sum = relations.into_iter().fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
         sum.sqrt()
     }
 
@@ -671,7 +683,7 @@ impl ::hamel_runtime::joint::Carries<1, 8, 2, 2, 0> for ParallelAnkle {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v. Independent of Q. Operations: none.
+    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
     /// From line 33 `basis`, line 34 `basis`, line 36 `H`.
     fn twist_map<T: Scalar>(&self, _q: &SVector<T, 8>) -> SMatrix<T, 6, 2> {
         let height = T::from_f64(self.height);
@@ -681,7 +693,7 @@ impl ::hamel_runtime::joint::Carries<1, 8, 2, 2, 0> for ParallelAnkle {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v. Independent of Q. Operations: none.
+    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Independent of Q. Operations: none.
     /// From line 33 `basis`, line 34 `basis`, line 36 `H`.
     fn twist_map_child<T: Scalar>(&self, _q: &SVector<T, 8>) -> SMatrix<T, 6, 2> {
         let zero = T::zero();
@@ -741,7 +753,7 @@ impl ::hamel_runtime::joint::Carries<2, 8, 2, 2, 0> for ParallelAnkle {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v. Operations: 4 multiplications and those of `first_derivatives`.
+    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 4 multiplications and those of `first_derivatives`.
     /// From line 20 `let`, line 33 `basis`, line 34 `basis`, line 37 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 8>) -> SMatrix<T, 6, 2> {
         let (pitch_c, pitch_s) = (q[4], q[5]);
@@ -758,7 +770,7 @@ impl ::hamel_runtime::joint::Carries<2, 8, 2, 2, 0> for ParallelAnkle {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v. Operations: 10 additions, 25 multiplications (4 of each fused) and those of `first_derivatives`.
+    /// 6×2, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 10 additions, 25 multiplications (4 of each fused) and those of `first_derivatives`.
     /// From line 20 `let`, line 33 `basis`, line 34 `basis`, line 37 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 8>) -> SMatrix<T, 6, 2> {
         let [_, _, _, _, pitch_c, pitch_s, roll_c, roll_s]: [T; 8] = (*q).into();

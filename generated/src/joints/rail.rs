@@ -5,7 +5,7 @@
 //! the tangent, its y axis is level. Four derivatives of both curves are continuous. For another track, copy the spec and write its knots.
 //!
 //! - Configuration: x ∈ R1, stored as x.
-//! - Degrees of freedom: `x` (ϕ).
+//! - Degrees of freedom: `x` (ϕ, m).
 //! - Velocity v: read as the rates of the local coordinates.
 //! - The identity, and not written: S₀, S₀⁻¹, S̄, D, D⁻¹, the projection.
 //! - Zero, and not written: ∂S/∂ϕ, γ, J22, A, ∂S̄/∂ϕ, the residual.
@@ -292,6 +292,15 @@ impl Joint<1, 1, 1, 0> for Rail {
         .twist_map_child_gradient(&[(0, ["x", "x", "x", "x", "0", "0"])]);
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::LENGTH],
+            freedoms: &[Unit::LENGTH],
+            velocities: &[Unit::LENGTH],
+            speeds: &[Unit::LENGTH],
+        }
+    };
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
         [("length", self.length), ("width", self.width), ("height", self.height)].into_iter()
@@ -327,7 +336,7 @@ impl Joint<1, 1, 1, 0> for Rail {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 22 additions, 38 multiplications (12 of each fused), 9 divisions, 4 function calls and those of `first_derivatives`.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in m/s. Operations: 22 additions, 38 multiplications (12 of each fused), 9 divisions, 4 function calls and those of `first_derivatives`.
     /// From line 18 `let`, line 19 `let`, line 20 `let`, line 21 `let`, line 22 `let`, line 23 `let`, line 24 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let length = T::from_f64(self.length);
@@ -373,7 +382,7 @@ impl Joint<1, 1, 1, 0> for Rail {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 9 additions, 15 multiplications (5 of each fused), 3 divisions and those of `first_derivatives`.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in m/s. Operations: 9 additions, 15 multiplications (5 of each fused), 3 divisions and those of `first_derivatives`.
     /// From line 18 `let`, line 19 `let`, line 20 `let`, line 21 `let`, line 22 `let`, line 23 `let`, line 24 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 1>) -> SMatrix<T, 6, 1> {
         let zero = T::zero();
@@ -461,7 +470,7 @@ impl Joint<1, 1, 1, 0> for Rail {
     }
 
     /// The ϕ with Φ(Q, ϕ) = `target`, on the principal branch.
-    /// 1-vector. Operations: 1 addition.
+    /// 1-vector, m. Operations: 1 addition.
     /// From line 17 `config x: R1;`.
     fn local<T: Scalar>(&self, q: &SVector<T, 1>, target: &SVector<T, 1>) -> SVector<T, 1> {
         target - q

@@ -209,6 +209,15 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
         [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
     ];
     const SINGULARITIES: &'static [&'static str] = &["b.c = 0"];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH],
+            freedoms: &[Unit::ANGLE],
+            velocities: &[Unit::ANGLE],
+            speeds: &[Unit::ANGLE],
+        }
+    };
     const BODIES: &'static [&'static str] = &["crank", "rod", "slider"];
 
     fn more(&self, visit: &mut dyn FnMut(::hamel_runtime::erased::Shared)) {
@@ -398,7 +407,8 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
     /// A scalar. Operations: 4 additions, 4 multiplications (4 of each fused), 1 function call.
     /// From line 17 `config a: S1, b: S1, s: R1;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 5>) -> T {
-        let sum = self.relations(q).iter().fold(T::zero(), |sum, &relation| relation.mul_add(relation, sum));
+        let relations: [T; 4] = self.relations(q).into();
+        let sum = relations.into_iter().fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
         sum.sqrt()
     }
 
@@ -440,7 +450,7 @@ impl ::hamel_runtime::joint::Carries<1, 5, 1, 1, 0> for SliderCrank {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 addition, 3 multiplications and those of `first_derivatives`.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 1 addition, 3 multiplications and those of `first_derivatives`.
     /// From line 24 `basis`, line 26 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 6, 1> {
         let crank = T::from_f64(self.crank);
@@ -453,7 +463,7 @@ impl ::hamel_runtime::joint::Carries<1, 5, 1, 1, 0> for SliderCrank {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 2 additions, 6 multiplications (1 of each fused) and those of `first_derivatives`.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 2 additions, 6 multiplications (1 of each fused) and those of `first_derivatives`.
     /// From line 24 `basis`, line 26 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 6, 1> {
         let crank = T::from_f64(self.crank);
@@ -544,7 +554,7 @@ impl ::hamel_runtime::joint::Carries<2, 5, 1, 1, 0> for SliderCrank {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: none and those of `first_derivatives`.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: none and those of `first_derivatives`.
     /// From line 24 `basis`, line 27 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 6, 1> {
         let zero = T::zero();
@@ -553,7 +563,7 @@ impl ::hamel_runtime::joint::Carries<2, 5, 1, 1, 0> for SliderCrank {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: none and those of `first_derivatives`.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: none and those of `first_derivatives`.
     /// From line 24 `basis`, line 27 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 5>) -> SMatrix<T, 6, 1> {
         let zero = T::zero();

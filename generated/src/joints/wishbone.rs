@@ -341,6 +341,18 @@ impl Joint<13, 1, 1, 0> for Wishbone {
         [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0],
     ];
     const SINGULARITIES: &'static [&'static str] = &["along[3] * b.c - along[2] * b.s = 0", "dot(R * [0, 1, 0], track) = 0"];
+    const UNITS: ::hamel_runtime::joint::Units = {
+        use ::hamel_runtime::joint::{Unit, Units};
+        Units {
+            coordinates: &[
+                Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER,
+                Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER,
+            ],
+            freedoms: &[Unit::ANGLE],
+            velocities: &[Unit::ANGLE],
+            speeds: &[Unit::ANGLE],
+        }
+    };
     const BODIES: &'static [&'static str] = &["lower", "upper", "upright"];
 
     fn more(&self, visit: &mut dyn FnMut(::hamel_runtime::erased::Shared)) {
@@ -556,7 +568,8 @@ impl Joint<13, 1, 1, 0> for Wishbone {
     /// A scalar. Operations: 13 additions, 13 multiplications (13 of each fused), 1 function call.
     /// From line 21 `config a: S1, b: S1, R: SO3;`.
     fn residual<T: Scalar>(&self, q: &SVector<T, 13>) -> T {
-        let sum = self.relations(q).iter().fold(T::zero(), |sum, &relation| relation.mul_add(relation, sum));
+        let relations: [T; 13] = self.relations(q).into();
+        let sum = relations.into_iter().fold(T::zero(), |sum, relation| relation.mul_add(relation, sum));
         sum.sqrt()
     }
 
@@ -609,7 +622,7 @@ impl ::hamel_runtime::joint::Carries<1, 13, 1, 1, 0> for Wishbone {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 1 multiplication and those of `first_derivatives`.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 1 multiplication and those of `first_derivatives`.
     /// From line 33 `basis`, line 35 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 13>) -> SMatrix<T, 6, 1> {
         let height = T::from_f64(self.height);
@@ -619,7 +632,7 @@ impl ::hamel_runtime::joint::Carries<1, 13, 1, 1, 0> for Wishbone {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: none and those of `first_derivatives`.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: none and those of `first_derivatives`.
     /// From line 33 `basis`, line 35 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 13>) -> SMatrix<T, 6, 1> {
         let zero = T::zero();
@@ -687,7 +700,7 @@ impl ::hamel_runtime::joint::Carries<2, 13, 1, 1, 0> for Wishbone {
     }
 
     /// X(Q): v to the twist of the child relative to the parent, in the parent frame (Definition 1).
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 8 additions, 15 multiplications (6 of each fused) and those of `first_derivatives`.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 8 additions, 15 multiplications (6 of each fused) and those of `first_derivatives`.
     /// From line 23 `let`, line 33 `basis`, line 36 `H`.
     fn twist_map<T: Scalar>(&self, q: &SVector<T, 13>) -> SMatrix<T, 6, 1> {
         let lower = T::from_f64(self.lower);
@@ -705,7 +718,7 @@ impl ::hamel_runtime::joint::Carries<2, 13, 1, 1, 0> for Wishbone {
     }
 
     /// X^c(Q) = Ad_H⁻¹ X: v to the same twist, in the child frame.
-    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v. Operations: 3 additions, 8 multiplications and those of `first_derivatives`.
+    /// 6×1, rows rad/s (angular) and m/s (linear), columns by v in rad/s. Operations: 3 additions, 8 multiplications and those of `first_derivatives`.
     /// From line 23 `let`, line 33 `basis`, line 36 `H`.
     fn twist_map_child<T: Scalar>(&self, q: &SVector<T, 13>) -> SMatrix<T, 6, 1> {
         let lower = T::from_f64(self.lower);

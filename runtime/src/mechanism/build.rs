@@ -5,9 +5,12 @@ use super::check::CONFIGURATION_TOLERANCE;
 use super::rigid::{RigidBody, check_bodies};
 use super::several;
 use super::{Body, BodySpec, Loci, MechanismError, Ranges};
-use crate::erased::Layout;
+use crate::erased::{AnyJoint, Layout};
 use crate::joint::MOST_FREEDOMS;
+use crate::shown::Number;
 use crate::spatial::{Pose, SpatialInertia};
+use alloc::format;
+use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, Vector3};
@@ -32,6 +35,13 @@ pub(super) fn check(gravity: &Vector3<f64>, bodies: &[BodySpec]) -> Vec<Mechanis
     errors
 }
 
+/// `ground = 1, crank = 0.2`.
+fn parameters(joint: &dyn AnyJoint) -> String {
+    let mut all = vec![];
+    joint.parameters(&mut |name, value| all.push(format!("{name} = {}", Number(value))));
+    all.join(", ")
+}
+
 /// What is wrong with the joint that carries these bodies.
 fn check_joint(bodies: &[BodySpec], errors: &mut Vec<MechanismError>) {
     let Some(body) = bodies.first() else { return };
@@ -49,6 +59,13 @@ fn check_joint(bodies: &[BodySpec], errors: &mut Vec<MechanismError>) {
     joint.home(&mut home);
     let residual = joint.residual(&home);
     let finite = home.iter().all(|value| value.is_finite()) && residual.is_finite();
+    if !finite && !joint.relations().is_empty() {
+        errors.push(MechanismError::Assembly {
+            joint: body.joint_name.clone(),
+            parameters: parameters(&**joint),
+        });
+        return;
+    }
     if !finite || residual > CONFIGURATION_TOLERANCE {
         errors.push(MechanismError::Home {
             joint: body.joint_name.clone(),

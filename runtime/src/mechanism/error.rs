@@ -127,6 +127,16 @@ pub enum MechanismError {
         /// Largest residual allowed.
         limit: f64,
     },
+    /// A linkage has no home: near the guess of its spec no configuration meets its relations.
+    #[error(
+        "joint `{joint}`: near the guess `home near` of its spec no configuration meets its relations: it cannot be put together with {parameters}"
+    )]
+    Assembly {
+        /// The joint.
+        joint: String,
+        /// Its parameters with their values.
+        parameters: String,
+    },
     /// The joint is singular at home.
     #[error(
         "joint `{joint}`: it is singular where {loci} is 0, and at home the least of these is {value}", value = Number(*.value))]

@@ -1,5 +1,6 @@
 //! Scene files and robots: what is read, what is refused, and the motions that come of it.
 
+mod branches;
 mod control;
 mod coupled_scenes;
 mod elastic;

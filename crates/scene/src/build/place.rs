@@ -37,6 +37,7 @@ impl<'a> Places<'a> {
         let span = match error {
             MechanismError::DependentConstraint { constraint, .. } => self.constraint(constraint),
             MechanismError::Element(ElementError::Joint { joint, .. })
+            | MechanismError::Assembly { joint, .. }
             | MechanismError::Home { joint, .. }
             | MechanismError::Layout { joint, .. }
             | MechanismError::Singular { joint, .. }

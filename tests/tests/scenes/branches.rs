@@ -1,0 +1,94 @@
+//! Linkages stay on the branch on which they begin, and begin on that of their spec's guess, or say that they cannot.
+
+use hamel::dynamics::Recursive;
+use hamel::integrate::{Form, Method, Options, Scheme, integrate, no_inputs, no_observer};
+use hamel_scene::Scene;
+use std::fmt::Write;
+use std::sync::Arc;
+
+/// A linkage of the library with bodies of 1 kg.
+fn linkage(joint: &str, bodies: &[&str], motion: &str) -> Result<Scene, String> {
+    let mut text = format!(
+        "hamel = 1\n[[body]]\nname = \"linkage\"\nparent = \"world\"\njoint = {{ {joint} }}\n{motion}\n"
+    );
+    for body in bodies {
+        let mass = "{ mass = 1.0, inertia = [[0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1]] }";
+        writeln!(text, "bodies.{body} = {mass}").expect("text");
+    }
+    let scene = Scene::parse(&text, "linkage.toml", &hamel_joints::registry());
+    scene.map_err(|diagnostics| diagnostics.to_string())
+}
+
+/// A rod that is hardly longer than the crank stands nearly across the slide twice a turn: a step that Φ takes to the other side moves the slider to the other side of the axis.
+#[test]
+fn a_slider_stays_on_its_side() {
+    let joint = "type = \"slider_crank\", crank = 0.12, rod = 0.121, offset = 0.0";
+    let bodies = ["crank", "rod", "slider"];
+    let mut motions = 0;
+    for speed in [1.0, 30.0, 100.0, 300.0] {
+        let motion = format!("motion = {{ speeds = [{speed:?}] }}");
+        let scene = linkage(joint, &bodies, &motion).expect("it loads");
+        for scheme in [Scheme::DormandPrince, Scheme::Rk4, Scheme::Verner9] {
+            for dt in [1e-4, 1e-3, 4e-3, 1e-2] {
+                let options = Options {
+                    method: Method::Fixed { scheme, dt },
+                    t_end: 0.5,
+                    samples: (1..=500).map(|n| 1e-3 * f64::from(n)).collect(),
+                    form: Form::Lagrangian,
+                };
+                let mut dynamics = Recursive::new(Arc::clone(&scene.mechanism));
+                let start = scene.start();
+                let solution = integrate(
+                    &mut dynamics,
+                    &start,
+                    &options,
+                    &mut no_inputs,
+                    &mut no_observer,
+                );
+                // Where steps are too long it stops, and says so.
+                let Ok(solution) = solution else { continue };
+                motions += 1;
+                for state in &solution.samples {
+                    let [_, _, cos_rod, ..] = state.configuration[..] else {
+                        panic!("directions of crank and rod");
+                    };
+                    assert!(
+                        cos_rod > 0.0,
+                        "{speed} rad/s, {} of {dt} s: {cos_rod} at {} s",
+                        scheme.name(),
+                        state.time
+                    );
+                }
+            }
+        }
+    }
+    // Steps of 0.1 ms, at the least.
+    assert!(motions >= 9, "{motions} motions");
+}
+
+#[test]
+fn a_linkage_begins_on_the_branch_of_its_guess() {
+    let bodies = ["left_crank", "left_rod", "right_crank", "right_rod"];
+    let mut assembled = 0;
+    for ground in (1..40).map(|n| 0.1 * f64::from(n)) {
+        let joint = format!(
+            "type = \"five_bar\", ground = {ground:?}, left_crank = 0.5, left_rod = 0.8, right_crank = 0.6, right_rod = 0.7"
+        );
+        match linkage(&joint, &bodies, "") {
+            Ok(scene) => {
+                assembled += 1;
+                let [_, _, b_c, b_s, _, _, d_c, d_s] = scene.configuration[..] else {
+                    panic!("four directions");
+                };
+                // Of the guess, [0.8, 0.6] and [−0.8, 0.6], it is 0.96.
+                assert!(b_c * d_s - b_s * d_c > 0.0, "ground {ground}");
+            }
+            Err(message) => {
+                let told = "no configuration meets its relations: it cannot be put together with ground = ";
+                assert!(message.contains(told), "{message}");
+            }
+        }
+    }
+    // Cranks and rods together are 2.6 m long.
+    assert!((20..=26).contains(&assembled), "{assembled} lengths");
+}
