@@ -127,5 +127,6 @@ fn linear_steps_of_equipped_trees() {
 
 #[test]
 fn linear_steps_of_coupled_trees() {
-    linear_step::constrained(cases(&without_knots(), 5, TREES), 20, FINE);
+    // One of the cases bends more when constrained: 7e-8 is left of h⁶ f⁽⁷⁾ with the finer step, and 4⁶ times less with a quarter of it.
+    linear_step::constrained(cases(&without_knots(), 5, TREES), 20, FINE / 4.0);
 }

@@ -91,7 +91,7 @@ pub fn along_the_motion(kinds: &[Arc<dyn AnyJoint>]) {
         let local_rate = point.expansion.local_rate(&point.v);
         let rates = point.accelerations();
         // The path is wanted over a time in which speeds change by a part of 1.
-        let step = differences::STEP / rates.amax().max(1.0);
+        let step = differences::FINE / rates.amax().max(1.0);
         let found = differences::derivative(step, |t| {
             DMatrix::from_element(1, 1, energy(&point, &local_rate, &rates, t))
         });

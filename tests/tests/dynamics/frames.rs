@@ -43,13 +43,12 @@ fn framed(case: Case) -> Case {
     Case { mechanism, ..case }
 }
 
-fn all() -> impl Iterator<Item = Case> {
+fn all() -> Vec<Case> {
     on(&library())
 }
 
-fn on(kinds: &[Arc<dyn AnyJoint>]) -> impl Iterator<Item = Case> {
-    let all: Vec<Case> = cases(kinds, 20, 60).collect();
-    all.into_iter().map(framed)
+fn on(kinds: &[Arc<dyn AnyJoint>]) -> Vec<Case> {
+    cases(kinds, 20, 60).map(framed).collect()
 }
 
 fn place(case: &Case) -> String {
@@ -302,7 +301,7 @@ fn a_turning_point_accelerates_to_its_axis() {
 
 #[test]
 fn frames_that_cannot_move_in_all_ways_are_refused_by_name() {
-    for case in all().take(30) {
+    for case in all().into_iter().take(30) {
         let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
         let refused = dynamics.operational_inertia(&case.q, 1, Frame::World);
         let error = refused.expect_err("a frame of the world");

@@ -190,7 +190,7 @@ impl<'a> Path<'a> {
             .map(|body| body.angular_velocity_body().norm());
         let moves = self.rates.iter().chain(self.local_rate.iter());
         let pace = turns.chain(moves.map(|rate| rate.abs()));
-        differences::STEP / pace.fold(1.0, f64::max)
+        differences::FINE / pace.fold(1.0, f64::max)
     }
 }
 
