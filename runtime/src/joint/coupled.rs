@@ -344,3 +344,39 @@ impl<const K: usize> Joint<K, K, K, 0> for Coupled<K> {
         target - q
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Link, LinkMotion, coupled};
+    use crate::joint::{Port, Unit};
+    use crate::spatial::Pose;
+
+    const PORTS: [Port; 3] = [Port {
+        name: "y",
+        unit: "rad",
+        wraps: false,
+    }; 3];
+
+    /// A turn, a slide, and a turn that follows the slide.
+    #[test]
+    fn a_coordinate_is_measured_as_what_follows_it_first() {
+        let link = |motion, coordinate| Link {
+            before: None,
+            frame: Pose::identity(),
+            motion,
+            coordinate,
+            ratio: 1.0,
+            offset: 0.0,
+        };
+        let links = [
+            link(LinkMotion::Turn, 0),
+            link(LinkMotion::Slide, 1),
+            link(LinkMotion::Turn, 1),
+        ];
+        let joint = coupled(&links, &PORTS).expect("links of a joint");
+        let units = joint.units();
+        assert_eq!(units.coordinates, [Unit::ANGLE, Unit::LENGTH]);
+        assert_eq!(units.speed(1), Unit::LENGTH);
+        assert_eq!(units.speed(2), Unit::UNKNOWN);
+    }
+}

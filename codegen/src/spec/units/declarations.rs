@@ -94,7 +94,13 @@ impl Analysis<'_> {
                 format!("the argument of the curve `{}`", curve.name()),
                 &call.span,
             );
+            let before = self.equations.len();
             self.fixed(&blame, argument, &unit);
+            if declared.units[0] == "1" {
+                // As a number that the spec writes, it may stand for a quantity.
+                let own = self.equations.iter_mut().skip(before);
+                own.for_each(|equation| equation.is_strict = false);
+            }
         }
     }
 

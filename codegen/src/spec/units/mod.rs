@@ -4,7 +4,7 @@
 //! and of motions, and points of pins, are lengths. Terms of a sum are alike, arguments of sine and cosine are angles, and an angle is a number.
 //! What real coordinates, ϕ, v and speeds are follows by elimination.
 //!
-//! Numbers, and parameters of unit 1, are without unit where that fits. A number may also stand for a quantity: then it has the unit that is missing, as in
+//! Numbers, and parameters and curves of unit 1, are without unit where that fits. A number may also stand for a quantity: then it has the unit that is missing, as in
 //! `trans_z(0.3 * cos(a))`, unless every term of its sum holds a declared length. A product without number and without declared quantity counts as one with
 //! the number 1 before it, as in `trans([x, x * x, 0])`. Equations of such terms are tried last, and those that do not fit are let go.
 
@@ -187,6 +187,16 @@ impl<'s> Analysis<'s> {
         Form::unknown(self.unknowns)
     }
 
+    /// Whether a curve's derivative of this order has a unit.
+    fn has_unit(&self, curve: Curve, order: u8) -> bool {
+        let mut declared = self.spec.curves.iter();
+        let declared = declared.find(|declared| declared.curve == curve);
+        declared.is_some_and(|declared| {
+            let [argument, value] = &declared.units;
+            value != "1" || order > 0 && argument != "1"
+        })
+    }
+
     /// That of a curve's derivative of this order.
     fn curve(&self, curve: Curve, order: u8) -> Form {
         let mut declared = self.spec.curves.iter();
@@ -233,7 +243,7 @@ impl<'s> Analysis<'s> {
             let own = self
                 .equations
                 .iter()
-                .filter(|equation| equation.blame.role == role);
+                .filter(|equation| equation.is_strict && equation.blame.role == role);
             own.filter_map(|equation| equation.alone.as_ref()).collect()
         };
         of(Role::Angle)
@@ -283,6 +293,14 @@ mod tests {
             (" { config x: R1; H = trans([x, x * x, 0]); }", "m"),
             (" { config x: R1; H = trans([x, sin(x), 0]); }", "m"),
             (" { config q: R1; H = rot_z(q) * trans_z(q); }", "rad"),
+            (
+                " { config q: R1; bodies rack, gear; H.rack = trans_x(0.02 * q); H.gear = rot_z(q); }",
+                "rad",
+            ),
+            (
+                " { curve f(1): 1 = cubic natural through [0, 0], [1, 2], [2, 0]; config x: R1; H = trans([x, f(x), 0]); }",
+                "m",
+            ),
             (
                 "(a: 1) { config q: R1; H = rot_z(q) * trans_z(a * q); }",
                 "rad",

@@ -172,9 +172,13 @@ impl Analysis<'_> {
         }
     }
 
-    /// Whether this is π, or a parameter without unit.
+    /// Whether this is π, or a parameter or curve without unit.
     fn is_number(&self, atom: &Atom) -> bool {
-        atom.is_unit() && !self.declares(atom)
+        let is_curve = match atom {
+            Atom::Apply(application) => matches!(application.function, Function::Curve(..)),
+            Atom::Symbol(_) => false,
+        };
+        (atom.is_unit() || is_curve) && !self.declares(atom)
     }
 
     /// Whether its unit is declared in the spec.
@@ -182,7 +186,7 @@ impl Analysis<'_> {
         match atom {
             Atom::Symbol(symbol) => self.declared.contains(symbol),
             Atom::Apply(application) => match application.function {
-                Function::Curve(..) => true,
+                Function::Curve(curve, order) => self.has_unit(curve, order),
                 Function::Group | Function::Recip | Function::Sqrt => {
                     let arguments = application.arguments.iter();
                     let mut atoms = arguments.flat_map(Expr::atoms);
