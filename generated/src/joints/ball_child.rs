@@ -73,15 +73,15 @@ impl Joint<9, 3, 3, 0> for BallChild {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[
+        Units::new(
+            &[
                 Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER,
                 Unit::NUMBER,
             ],
-            freedoms: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
-            velocities: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
-            speeds: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
-        }
+            &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+            &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+            &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+        )
     };
 
     /// The home configuration.

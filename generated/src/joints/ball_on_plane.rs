@@ -109,15 +109,15 @@ impl Joint<11, 5, 3, 2> for BallOnPlane {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[
+        Units::new(
+            &[
                 Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER,
                 Unit::NUMBER, Unit::LENGTH, Unit::LENGTH,
             ],
-            freedoms: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
-            velocities: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
-            speeds: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
-        }
+            &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+            &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+            &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+        )
     };
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {

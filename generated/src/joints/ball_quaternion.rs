@@ -82,12 +82,12 @@ impl Joint<4, 3, 3, 0> for BallQuaternion {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER],
-            freedoms: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
-            velocities: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
-            speeds: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
-        }
+        Units::new(
+            &[Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER],
+            &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+            &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+            &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+        )
     };
 
     /// The home configuration.

@@ -162,19 +162,15 @@ impl Joint<11, 8, 2, 6> for Car {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[
+        Units::new(
+            &[
                 Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::ANGLE, Unit::ANGLE,
                 Unit::ANGLE, Unit::ANGLE, Unit::ANGLE,
             ],
-            freedoms: &[
-                Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::ANGLE,
-            ],
-            velocities: &[
-                Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::ANGLE,
-            ],
-            speeds: &[Unit::LENGTH, Unit::ANGLE],
-        }
+            &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+            &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+            &[Unit::LENGTH, Unit::ANGLE],
+        )
     };
     const BODIES: &'static [&'static str] = &["chassis", "front_left", "front_right", "rear_left", "rear_right"];
 

@@ -85,12 +85,12 @@ impl Joint<6, 3, 2, 1> for Cart {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH],
-            freedoms: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
-            velocities: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
-            speeds: &[Unit::ANGLE, Unit::LENGTH],
-        }
+        Units::new(
+            &[Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH],
+            &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+            &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+            &[Unit::ANGLE, Unit::LENGTH],
+        )
     };
 
     /// The home configuration.

@@ -61,12 +61,7 @@ impl Joint<2, 2, 2, 0> for Cylindrical {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[Unit::ANGLE, Unit::LENGTH],
-            freedoms: &[Unit::ANGLE, Unit::LENGTH],
-            velocities: &[Unit::ANGLE, Unit::LENGTH],
-            speeds: &[Unit::ANGLE, Unit::LENGTH],
-        }
+        Units::of_rates(&[Unit::ANGLE, Unit::LENGTH])
     };
 
     /// The home configuration.

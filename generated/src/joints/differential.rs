@@ -118,12 +118,7 @@ impl Joint<2, 2, 2, 0> for Differential {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[Unit::ANGLE, Unit::ANGLE],
-            freedoms: &[Unit::ANGLE, Unit::ANGLE],
-            velocities: &[Unit::ANGLE, Unit::ANGLE],
-            speeds: &[Unit::ANGLE, Unit::ANGLE],
-        }
+        Units::of_rates(&[Unit::ANGLE, Unit::ANGLE])
     };
     const BODIES: &'static [&'static str] = &["left", "right", "cage", "pinion"];
 

@@ -126,14 +126,12 @@ impl Joint<8, 5, 2, 3> for DifferentialDrive {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[
-                Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::ANGLE, Unit::ANGLE,
-            ],
-            freedoms: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::ANGLE, Unit::ANGLE],
-            velocities: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::ANGLE, Unit::ANGLE],
-            speeds: &[Unit::ANGLE, Unit::ANGLE],
-        }
+        Units::new(
+            &[Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::ANGLE, Unit::ANGLE],
+            &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::ANGLE, Unit::ANGLE],
+            &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::ANGLE, Unit::ANGLE],
+            &[Unit::ANGLE, Unit::ANGLE],
+        )
     };
     const BODIES: &'static [&'static str] = &["chassis", "left", "right"];
 

@@ -99,12 +99,7 @@ impl Joint<2, 1, 1, 0> for Ellipse {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[Unit::NUMBER, Unit::NUMBER],
-            freedoms: &[Unit::ANGLE],
-            velocities: &[Unit::ANGLE],
-            speeds: &[Unit::ANGLE],
-        }
+        Units::new(&[Unit::NUMBER, Unit::NUMBER], &[Unit::ANGLE], &[Unit::ANGLE], &[Unit::ANGLE])
     };
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {

@@ -247,14 +247,12 @@ impl Joint<8, 2, 2, 0> for FiveBar {
     const SINGULARITIES: &'static [&'static str] = &["b.c * d.s - b.s * d.c = 0"];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[
-                Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER,
-            ],
-            freedoms: &[Unit::ANGLE, Unit::ANGLE],
-            velocities: &[Unit::ANGLE, Unit::ANGLE],
-            speeds: &[Unit::ANGLE, Unit::ANGLE],
-        }
+        Units::new(
+            &[Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER],
+            &[Unit::ANGLE, Unit::ANGLE],
+            &[Unit::ANGLE, Unit::ANGLE],
+            &[Unit::ANGLE, Unit::ANGLE],
+        )
     };
     const BODIES: &'static [&'static str] = &["left_crank", "left_rod", "right_crank", "right_rod"];
 

@@ -232,12 +232,12 @@ impl Joint<6, 1, 1, 0> for FourBar {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER],
-            freedoms: &[Unit::new("1/m^2", "1/(m^2 s)", "N m^3")],
-            velocities: &[Unit::new("1/m^2", "1/(m^2 s)", "N m^3")],
-            speeds: &[Unit::new("1/m^2", "1/(m^2 s)", "N m^3")],
-        }
+        Units::new(
+            &[Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER],
+            &[Unit::new("1/m^2", "1/(m^2 s)", "N m^3")],
+            &[Unit::new("1/m^2", "1/(m^2 s)", "N m^3")],
+            &[Unit::new("1/m^2", "1/(m^2 s)", "N m^3")],
+        )
     };
     const BODIES: &'static [&'static str] = &["crank", "coupler", "rocker"];
 

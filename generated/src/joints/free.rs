@@ -90,15 +90,15 @@ impl Joint<12, 6, 6, 0> for Free {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[
+        Units::new(
+            &[
                 Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH,
                 Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH,
             ],
-            freedoms: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::LENGTH],
-            velocities: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::LENGTH],
-            speeds: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::LENGTH],
-        }
+            &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::LENGTH],
+            &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::LENGTH],
+            &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::LENGTH],
+        )
     };
 
     /// The home configuration.

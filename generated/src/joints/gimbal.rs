@@ -76,12 +76,7 @@ impl Joint<3, 3, 3, 0> for Gimbal {
     const SINGULARITIES: &'static [&'static str] = &["cos(pitch) = 0"];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
-            freedoms: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
-            velocities: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
-            speeds: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
-        }
+        Units::of_rates(&[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE])
     };
 
     /// The home configuration.

@@ -78,12 +78,12 @@ impl Joint<3, 3, 2, 1> for KnifeEdge {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
-            freedoms: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
-            velocities: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
-            speeds: &[Unit::ANGLE, Unit::LENGTH],
-        }
+        Units::new(
+            &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+            &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+            &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+            &[Unit::ANGLE, Unit::LENGTH],
+        )
     };
 
     /// The home configuration.

@@ -93,12 +93,12 @@ impl Joint<6, 3, 2, 1> for OffsetSleigh {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH],
-            freedoms: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
-            velocities: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
-            speeds: &[Unit::ANGLE, Unit::LENGTH],
-        }
+        Units::new(
+            &[Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH],
+            &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+            &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
+            &[Unit::ANGLE, Unit::LENGTH],
+        )
     };
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {

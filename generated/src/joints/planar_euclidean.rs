@@ -75,12 +75,7 @@ impl Joint<3, 3, 3, 0> for PlanarEuclidean {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
-            freedoms: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
-            velocities: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
-            speeds: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH],
-        }
+        Units::of_rates(&[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH])
     };
 
     /// The home configuration.

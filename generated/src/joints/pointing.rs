@@ -79,15 +79,15 @@ impl Joint<9, 3, 2, 1> for Pointing {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[
+        Units::new(
+            &[
                 Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER,
                 Unit::NUMBER,
             ],
-            freedoms: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
-            velocities: &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
-            speeds: &[Unit::ANGLE, Unit::ANGLE],
-        }
+            &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+            &[Unit::ANGLE, Unit::ANGLE, Unit::ANGLE],
+            &[Unit::ANGLE, Unit::ANGLE],
+        )
     };
 
     /// The home configuration.

@@ -294,12 +294,7 @@ impl Joint<1, 1, 1, 0> for Rail {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[Unit::LENGTH],
-            freedoms: &[Unit::LENGTH],
-            velocities: &[Unit::LENGTH],
-            speeds: &[Unit::LENGTH],
-        }
+        Units::of_rates(&[Unit::LENGTH])
     };
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {

@@ -108,12 +108,7 @@ impl Joint<1, 1, 1, 0> for Scissor {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[Unit::ANGLE],
-            freedoms: &[Unit::ANGLE],
-            velocities: &[Unit::ANGLE],
-            speeds: &[Unit::ANGLE],
-        }
+        Units::of_rates(&[Unit::ANGLE])
     };
     const BODIES: &'static [&'static str] = &["first", "second", "platform"];
 

@@ -74,12 +74,7 @@ impl Joint<1, 1, 1, 0> for Screw {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[Unit::ANGLE],
-            freedoms: &[Unit::ANGLE],
-            velocities: &[Unit::ANGLE],
-            speeds: &[Unit::ANGLE],
-        }
+        Units::of_rates(&[Unit::ANGLE])
     };
     const PORTS: &'static [::hamel_runtime::joint::Port] = &[
         ::hamel_runtime::joint::Port {

@@ -211,12 +211,12 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
     const SINGULARITIES: &'static [&'static str] = &["b.c = 0"];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH],
-            freedoms: &[Unit::ANGLE],
-            velocities: &[Unit::ANGLE],
-            speeds: &[Unit::ANGLE],
-        }
+        Units::new(
+            &[Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH],
+            &[Unit::ANGLE],
+            &[Unit::ANGLE],
+            &[Unit::ANGLE],
+        )
     };
     const BODIES: &'static [&'static str] = &["crank", "rod", "slider"];
 

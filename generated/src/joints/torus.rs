@@ -90,12 +90,12 @@ impl Joint<4, 2, 2, 0> for Torus {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER],
-            freedoms: &[Unit::ANGLE, Unit::ANGLE],
-            velocities: &[Unit::ANGLE, Unit::ANGLE],
-            speeds: &[Unit::ANGLE, Unit::ANGLE],
-        }
+        Units::new(
+            &[Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER],
+            &[Unit::ANGLE, Unit::ANGLE],
+            &[Unit::ANGLE, Unit::ANGLE],
+            &[Unit::ANGLE, Unit::ANGLE],
+        )
     };
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {

@@ -68,12 +68,7 @@ impl Joint<3, 3, 3, 0> for Translation {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[Unit::LENGTH, Unit::LENGTH, Unit::LENGTH],
-            freedoms: &[Unit::LENGTH, Unit::LENGTH, Unit::LENGTH],
-            velocities: &[Unit::LENGTH, Unit::LENGTH, Unit::LENGTH],
-            speeds: &[Unit::LENGTH, Unit::LENGTH, Unit::LENGTH],
-        }
+        Units::of_rates(&[Unit::LENGTH, Unit::LENGTH, Unit::LENGTH])
     };
 
     /// The home configuration.

@@ -100,12 +100,12 @@ impl Joint<7, 4, 2, 2> for UprightWheel {
     const SINGULARITIES: &'static [&'static str] = &[];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::ANGLE],
-            freedoms: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::ANGLE],
-            velocities: &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::ANGLE],
-            speeds: &[Unit::ANGLE, Unit::ANGLE],
-        }
+        Units::new(
+            &[Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::NUMBER, Unit::NUMBER, Unit::LENGTH, Unit::ANGLE],
+            &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::ANGLE],
+            &[Unit::ANGLE, Unit::LENGTH, Unit::LENGTH, Unit::ANGLE],
+            &[Unit::ANGLE, Unit::ANGLE],
+        )
     };
 
     fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {

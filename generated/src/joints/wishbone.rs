@@ -343,15 +343,15 @@ impl Joint<13, 1, 1, 0> for Wishbone {
     const SINGULARITIES: &'static [&'static str] = &["along[3] * b.c - along[2] * b.s = 0", "dot(R * [0, 1, 0], track) = 0"];
     const UNITS: ::hamel_runtime::joint::Units = {
         use ::hamel_runtime::joint::{Unit, Units};
-        Units {
-            coordinates: &[
+        Units::new(
+            &[
                 Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER,
                 Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER, Unit::NUMBER,
             ],
-            freedoms: &[Unit::ANGLE],
-            velocities: &[Unit::ANGLE],
-            speeds: &[Unit::ANGLE],
-        }
+            &[Unit::ANGLE],
+            &[Unit::ANGLE],
+            &[Unit::ANGLE],
+        )
     };
     const BODIES: &'static [&'static str] = &["lower", "upper", "upright"];
 

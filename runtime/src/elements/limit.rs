@@ -114,7 +114,7 @@ pub fn is_one_coordinate(joint: &dyn AnyJoint) -> bool {
 }
 
 impl JointLimit {
-    /// Whether the range of an angle up to whole turns is less than a turn.
+    /// Whether the range of an angle up to whole turns has two ends and is less than a turn: beyond one end alone the effort would jump half a turn from it.
     fn check_turns(&self, port: &Port) -> Result<(), ElementError> {
         match (self.lower, self.upper) {
             (Some(lower), Some(upper)) if port.wraps && upper - lower >= TAU => {
@@ -125,6 +125,12 @@ impl JointLimit {
                     requirement: "less than a turn above the lower limit, at a port whose value is an angle up to whole turns",
                 })
             }
+            (Some(value), None) | (None, Some(value)) if port.wraps => Err(ElementError::Value {
+                element: self.name.clone(),
+                quantity: "limit",
+                value,
+                requirement: "one of two, lower and upper, at a port whose value is an angle up to whole turns",
+            }),
             _ => Ok(()),
         }
     }

@@ -54,6 +54,21 @@ impl Units {
         }
     }
 
+    /// Those of the stored scalars of Q, of ϕ, of what v are the rates of, and of what v̄ are.
+    pub const fn new(
+        coordinates: &'static [Unit],
+        freedoms: &'static [Unit],
+        velocities: &'static [Unit],
+        speeds: &'static [Unit],
+    ) -> Self {
+        Self {
+            coordinates,
+            freedoms,
+            velocities,
+            speeds,
+        }
+    }
+
     /// That of a stored scalar of Q.
     pub fn coordinate(&self, place: usize) -> Unit {
         of(self.coordinates, place)

@@ -77,7 +77,9 @@ fn rocker(mechanism: &Mechanism, state: &State) -> f64 {
 #[test]
 fn a_limit_gives_way_and_turns_back() {
     let limit = 2.0;
-    let forces = format!("ports.rocker = {{ limit = {{ upper = {limit:?}, stiffness = 400.0 }} }}");
+    let forces = format!(
+        "ports.rocker = {{ limit = {{ lower = 0.0, upper = {limit:?}, stiffness = 400.0 }} }}"
+    );
     let scene = scene("phi = [0.3], speeds = [4.0]", &forces);
     let mechanism = &scene.mechanism;
     assert!(rocker(mechanism, &scene.start()) < limit);

@@ -72,7 +72,7 @@ fn refusal(initial: &str, ports: &str) -> String {
 }
 
 const ALL: &str = "ports.crank = { effort = 0.9, damping = 0.2 }
-ports.rocker = { limit = { upper = 2.2, stiffness = 30.0 } }
+ports.rocker = { limit = { lower = -0.5, upper = 2.2, stiffness = 30.0 } }
 ports.knee = { spring = { stiffness = 3.0, rest = 2.0 }, damping = 0.1, limit = { lower = 1.2, upper = 1.9, stiffness = 20.0, damping = 0.3 } }
 ports.lift = { spring = { stiffness = 40.0, rest = 0.3 }, effort = -2.0, armature = 0.7 }";
 

@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// A linkage of the library with bodies of 1 kg.
 fn linkage(joint: &str, bodies: &[&str], motion: &str) -> Result<Scene, String> {
     let mut text = format!(
-        "hamel = 1\n[[body]]\nname = \"linkage\"\nparent = \"world\"\njoint = {{ {joint} }}\n{motion}\n"
+        "hamel = 1\ngravity = [0.0, 0.0, 0.0]\n[[body]]\nname = \"linkage\"\nparent = \"world\"\njoint = {{ {joint} }}\n{motion}\n"
     );
     for body in bodies {
         let mass = "{ mass = 1.0, inertia = [[0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1]] }";

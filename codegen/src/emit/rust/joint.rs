@@ -154,10 +154,15 @@ fn units(derived: &Derived) -> TokenStream {
     let freedoms = listed(units.freedoms.clone());
     let velocities = listed(units.velocities.clone());
     let speeds = listed(units::of_speeds(derived));
+    let all = [&freedoms, &velocities, &speeds].map(ToString::to_string);
+    let units = match all.iter().all(|units| *units == coordinates.to_string()) {
+        true => quote! { Units::of_rates(#coordinates) },
+        false => quote! { Units::new(#coordinates, #freedoms, #velocities, #speeds) },
+    };
     quote! {
         const UNITS: ::hamel::joint::Units = {
             use ::hamel::joint::{Unit, Units};
-            Units { coordinates: #coordinates, freedoms: #freedoms, velocities: #velocities, speeds: #speeds }
+            #units
         };
     }
 }

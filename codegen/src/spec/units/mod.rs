@@ -6,14 +6,17 @@
 //!
 //! Numbers, and parameters and curves of unit 1, are without unit where that fits. A number may also stand for a quantity: then it has the unit that is missing, as in
 //! `trans_z(0.3 * cos(a))`, unless every term of its sum holds a declared length. A product without number and without declared quantity counts as one with
-//! the number 1 before it, as in `trans([x, x * x, 0])`. Equations of such terms are tried last, and those that do not fit are let go.
+//! the number 1 before it, as in `trans([x, x * x, 0])`. Equations of such terms are tried last, and those that do not fit are let go; so are those of statements in which a number
+//! stands as a term, an entry or a decimal: it may be a quantity, and what is multiplied out does not tell.
 
 mod declarations;
 mod message;
 mod quantities;
 mod system;
+mod written;
 
 use self::system::{Form, System};
+use self::written::Statements;
 use crate::diagnostic::Diagnostic;
 use crate::expr::curve::Curve;
 use crate::expr::{self, Expr, Rational, Symbol};
@@ -215,12 +218,14 @@ impl<'s> Analysis<'s> {
     fn solved(&self) -> (System, Vec<Diagnostic>) {
         let mut system = System::new(COMPARED);
         let mut errors: Vec<Diagnostic> = vec![];
-        let numbers = self.numbers();
+        let (numbers, statements) = (self.numbers(), Statements::new(&self.spec.source));
         let is_strict = |equation: &&Equation| {
             let is_number =
                 |symbol: &Symbol| numbers.contains(symbol) || symbol.role == expr::Role::Local;
             let is_number = equation.alone.as_ref().is_some_and(is_number);
-            equation.is_strict && !(is_number && equation.blame.role != Role::Declared)
+            let is_let_go = is_number && equation.blame.role != Role::Declared
+                || statements.has_quantity(&equation.blame.span);
+            equation.is_strict && !is_let_go
         };
         let (strict, others): (Vec<_>, Vec<_>) = self.equations.iter().partition(is_strict);
         for equation in strict {

@@ -166,6 +166,20 @@ impl Analysis<'_> {
                 self.fixed(&blame, x, &Form::known(Dimension::angle()));
                 Form::default()
             }
+            (
+                Function::Exp
+                | Function::Ln
+                | Function::Sinh
+                | Function::Cosh
+                | Function::Sech
+                | Function::Tanh
+                | Function::LnCosh,
+                [x],
+            ) => {
+                let blame = blame.within("an exponential or logarithm");
+                self.fixed(&blame.of(Role::Angle), x, &Form::default());
+                Form::default()
+            }
             // Its argument is that of a call.
             (Function::Curve(curve, order), _) => self.curve(curve, order),
             _ => Form::default(),
