@@ -12,20 +12,27 @@ pub(super) struct Statements {
 impl Statements {
     /// Those of a source.
     pub(super) fn new(source: &str) -> Self {
-        let (mut all, mut start) = (vec![], 0);
+        let (mut all, mut start, mut depth) = (vec![], 0, 0_usize);
         let text = without_comments(source);
-        for (at, _) in text.match_indices([';', '{', '}']) {
-            all.push((start, text[start..at].to_owned()));
-            start = at + 1;
+        for (at, sign) in text.match_indices(|c| ";{}()[]".contains(c)) {
+            match sign {
+                "(" | "[" => depth += 1,
+                ")" | "]" => depth = depth.saturating_sub(1),
+                // Rows of matrices end with a semicolon as well.
+                _ if depth > 0 => {}
+                _ => {
+                    all.push((start, text[start..at].to_owned()));
+                    start = at + 1;
+                }
+            }
         }
         Self { all }
     }
 
     /// Whether the statement at this place, or a `let` that it names, has a number that may be a quantity.
     pub(super) fn has_quantity(&self, span: &Range<usize>) -> bool {
-        let here = |(start, text): &&(usize, String)| {
-            *start <= span.end && span.start <= start + text.len()
-        };
+        let here =
+            |(start, text): &&(usize, String)| *start < span.end && span.start < start + text.len();
         let mut open: Vec<&str> = self
             .all
             .iter()
