@@ -1,9 +1,11 @@
 //! Limits and dry friction at ports of linkages, and springs there that rest at home.
 
+mod common;
+
+use common::registry;
 use hamel::dynamics::Recursive;
 use hamel::integrate::{Form, Integration, Method, Options, Solution, State};
 use hamel::mechanism::Mechanism;
-use hamel::registry::JointRegistry;
 use hamel_compiler::scene_of;
 use hamel_scene::Scene;
 use std::path::Path;
@@ -27,14 +29,6 @@ bodies.rocker = { mass = 1.1, com = [0.4, 0.0, 0.0], inertia = [[0.01, 0.0, 0.0]
 "#;
 
 const ROCKER: usize = 1;
-
-fn registry() -> JointRegistry {
-    let mut registry = hamel_joints::registry();
-    registry
-        .extend(hamel_downstream::joints::ENTRIES.iter().copied())
-        .expect("distinct names");
-    registry
-}
 
 fn text(initial: &str, forces: &str) -> String {
     LINKAGE

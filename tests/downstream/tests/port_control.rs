@@ -1,12 +1,14 @@
 //! Controllers at ports of linkages: led along references, and shaped in energy with a largest effort.
 
+mod common;
+
+use common::registry;
 use hamel::control::{
     ComputedTorque, ControlError, Controller, ErrorDynamics, PortReference, Reference,
 };
 use hamel::dynamics::Recursive;
 use hamel::integrate::{Form, Method, Options, State, Step, integrate};
 use hamel::mechanism::Mechanism;
-use hamel::registry::JointRegistry;
 use hamel::time_function::Law;
 use hamel_scene::Scene;
 use std::ops::ControlFlow;
@@ -41,14 +43,6 @@ joint = { type = "revolute" }
 "#;
 
 const ROCKER: usize = 1;
-
-fn registry() -> JointRegistry {
-    let mut registry = hamel_joints::registry();
-    registry
-        .extend(hamel_downstream::joints::ENTRIES.iter().copied())
-        .expect("distinct names");
-    registry
-}
 
 fn parsed(initial: &str, controller: &str) -> Result<Scene, String> {
     let text = LINKAGE

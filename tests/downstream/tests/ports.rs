@@ -1,11 +1,13 @@
 //! Ports of linkages: their rates, what efforts at them do, scenes that name them, and compiled scenes.
 
+mod common;
+
+use common::registry;
 use hamel::dynamics::{Dynamics, Recursive, Reference};
 use hamel::integrate::{
     Form, Integration, Method, Options, State, integrate, no_inputs, no_observer,
 };
 use hamel::mechanism::Mechanism;
-use hamel::registry::JointRegistry;
 use hamel_compiler::model::Model;
 use hamel_compiler::{Error, scene_of};
 use hamel_scene::{Scene, SceneDescription};
@@ -38,14 +40,6 @@ com = [0.0, -0.2, 0.0]
 inertia = [[0.01, 0.0, 0.0], [0.0, 0.005, 0.0], [0.0, 0.0, 0.01]]
 joint = { type = "revolute" }
 "#;
-
-fn registry() -> JointRegistry {
-    let mut registry = hamel_joints::registry();
-    registry
-        .extend(hamel_downstream::joints::ENTRIES.iter().copied())
-        .expect("distinct names");
-    registry
-}
 
 fn text(initial: &str, ports: &str) -> String {
     LINKAGE

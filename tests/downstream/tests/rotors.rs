@@ -1,9 +1,11 @@
 //! Rotors at ports of linkages: as bodies of the joint that turn with the port, and in all forms of the dynamics.
 
+mod common;
+
+use common::registry;
 use hamel::dynamics::{Dynamics, Recursive, Reference, Refined};
 use hamel::integrate::{Form, Integration, Method, Options, Scheme, Solution, State};
 use hamel::mechanism::Mechanism;
-use hamel::registry::JointRegistry;
 use hamel_compiler::scene_of;
 use hamel_scene::{Scene, SceneDescription};
 use hamel_tests::c99::agree;
@@ -66,14 +68,6 @@ const AT_ROCKER: &str = "ports.rocker.armature = 0.17";
 /// The inertias of crank and rocker without and with the rotor in them.
 const OWN: [f64; 2] = [0.055, 0.064];
 const ROTOR: f64 = 0.17;
-
-fn registry() -> JointRegistry {
-    let mut registry = hamel_joints::registry();
-    registry
-        .extend(hamel_downstream::joints::ENTRIES.iter().copied())
-        .expect("distinct names");
-    registry
-}
 
 fn text([crank, rocker]: [f64; 2], forces: &str) -> String {
     LINKAGE
