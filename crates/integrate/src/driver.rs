@@ -157,14 +157,14 @@ impl<'a> Driver<'a> {
         let (step_state, outputs) = begun.map_err(|cause| IntegrateError::AtState {
             time,
             cause: Box::new(cause),
-            near: watch.nearest_at(&flow.mechanism, time, &initial.configuration),
+            near: watch.nearest_at(&flow.mechanism, (time, &initial.configuration)),
         })?;
         let tolerance = options.method.control().map(|control| control.tolerance);
         let bends = Bends::new(&mut flow, &step_state, time);
         let bends = bends.map_err(|cause| IntegrateError::AtState {
             time,
             cause: Box::new(cause),
-            near: watch.nearest_at(&flow.mechanism, time, &initial.configuration),
+            near: watch.nearest_at(&flow.mechanism, (time, &initial.configuration)),
         })?;
         Ok(Self {
             watch,
@@ -399,12 +399,13 @@ impl<'a> Driver<'a> {
 
     /// Ends the integration where no smaller step can help.
     fn refuse(&self, pacing: &Pacing, step: f64, cause: StepFailure) -> Result<(), IntegrateError> {
-        let (time, cause, near) = (self.clock.time(), Box::new(cause), self.near());
+        let cause = cause.of_relations(&self.flow.mechanism);
+        let (time, near) = (self.clock.time(), self.near());
         if matches!(self.options.method, Method::Fixed { .. }) {
             return Err(IntegrateError::Step {
                 time,
                 step,
-                cause,
+                cause: Box::new(cause),
                 near,
             });
         }
@@ -414,12 +415,17 @@ impl<'a> Driver<'a> {
         if pacing.step > limit {
             return Ok(());
         }
+        if let StepFailure::NotClosed { joint } = &cause
+            && let Some(end) = self.watch.end_of(&self.flow.mechanism, joint, self.at())
+        {
+            return Err(IntegrateError::Excluded(end));
+        }
         let advice = other_method(&self.flow, self.options, &self.state());
         Err(IntegrateError::StepUnderflow {
             time,
             step: pacing.step,
             limit,
-            cause,
+            cause: Box::new(cause),
             near,
             advice: advice.map_or_else(String::new, |advice| format!("; {advice}")),
         })
@@ -512,16 +518,21 @@ impl<'a> Driver<'a> {
 
     /// The joint that is nearest to a singular set of its own.
     fn near(&self) -> Near {
-        let q = &self.step_state.configuration;
-        self.watch
-            .nearest_at(&self.flow.mechanism, self.clock.time(), q)
+        self.watch.nearest_at(&self.flow.mechanism, self.at())
+    }
+
+    /// The time and Q of the state.
+    fn at(&self) -> (f64, &[f64]) {
+        (self.clock.time(), &self.step_state.configuration)
     }
 
     /// Records the samples that fall on this time and shows the state; whether to stop.
     fn report(&mut self, observer: &mut Observer<'_>) -> Result<bool, IntegrateError> {
         let time = self.clock.time();
-        self.watch
-            .see(&self.flow.mechanism, time, &self.step_state.configuration);
+        let q = &self.step_state.configuration;
+        if let Some(end) = self.watch.see(&self.flow.mechanism, time, q) {
+            return Err(IntegrateError::Excluded(end));
+        }
         let at = (&*self.step_state.configuration, self.step_state.speeds());
         self.waypoints.see(self.statistics.steps, time, at);
         let mut sample = None;
@@ -535,7 +546,7 @@ impl<'a> Driver<'a> {
         let carried = carried.map_err(|cause| IntegrateError::AtState {
             time,
             cause: Box::new(cause),
-            near: (self.watch).nearest_at(&self.flow.mechanism, time, at.0),
+            near: (self.watch).nearest_at(&self.flow.mechanism, (time, at.0)),
         })?;
         let step = Step {
             time: self.clock.time(),

@@ -1,10 +1,10 @@
 //! Why an integration ends before its time.
 
-use super::Near;
+use super::{Approach, Near};
 use alloc::boxed::Box;
 use alloc::string::String;
 use hamel_runtime::dynamics::DynamicsError;
-use hamel_runtime::mechanism::StateError;
+use hamel_runtime::mechanism::{Mechanism, StateError};
 use hamel_runtime::shown::Number;
 use hamel_runtime::time_function::KinkError;
 
@@ -52,6 +52,14 @@ pub enum StepFailure {
         /// The joint.
         joint: String,
     },
+    /// The relations of a joint have no solution at a point of the step, or none on the branch on which it begins.
+    #[error(
+        "the relations of joint `{joint}` have no solution within the step, on the branch on which it begins"
+    )]
+    NotClosed {
+        /// The joint.
+        joint: String,
+    },
     /// The function of an event is NaN or infinite.
     #[error("the function of event `{event}` is {value}: it must be finite", value = Number(*.value))]
     Event {
@@ -86,12 +94,36 @@ impl From<DynamicsError> for StepFailure {
     }
 }
 
+impl StepFailure {
+    /// The same cause, with a configuration that is not finite as that what it is where relations determine it.
+    pub(crate) fn of_relations(self, mechanism: &Mechanism) -> Self {
+        let Self::State(StateError::NotFinite {
+            joint,
+            quantity: "configuration",
+            ..
+        }) = &self
+        else {
+            return self;
+        };
+        let mut joints = mechanism.joints();
+        let closes = joints
+            .any(|(_, body)| body.joint_name() == joint && !body.joint().relations().is_empty());
+        match closes {
+            true => Self::NotClosed {
+                joint: joint.clone(),
+            },
+            false => self,
+        }
+    }
+}
+
 /// What to do about a step of fixed size, where its length can be the reason.
 fn advice(cause: &StepFailure) -> &'static str {
     match cause {
         StepFailure::Turn { .. }
         | StepFailure::NoConvergence { .. }
         | StepFailure::SingularIteration { .. }
+        | StepFailure::NotClosed { .. }
         | StepFailure::State(_) => "; take a smaller dt",
         StepFailure::Length { .. }
         | StepFailure::Inaccurate { .. }
@@ -181,6 +213,12 @@ pub enum IntegrateError {
         /// When, s.
         time: f64,
     },
+    /// A joint has come to a configuration that its spec excludes, where its relations do not determine how the motion goes on.
+    #[error(
+        "at {} s: joint `{}` comes to a configuration that its spec excludes, where {} is 0 (it is {:.1e} here and was {:.1e}): its relations do not say there how it moves on; other independent coordinates, `basis` of the spec, may pass it",
+        Number(.0.time), .0.joint, .0.loci, .0.value, .0.most
+    )]
+    Excluded(Approach),
     /// What friction or limits do that is not determined.
     #[error("at {} s: {what} of joints {joints}: {reason}", Number(*.time))]
     Undecided {

@@ -54,6 +54,7 @@ mod outputs;
 mod phi;
 mod pieces;
 mod prospect;
+mod rates_of_loops;
 mod reconsider;
 mod root;
 mod rounding;

@@ -6,6 +6,7 @@
 
 use super::StepFailure;
 use super::flow::{Flow, Rates};
+use super::rates_of_loops::{has_ends, rounding_of};
 use super::step_state::StepState;
 use alloc::string::String;
 use alloc::vec;
@@ -149,7 +150,7 @@ impl Rounding {
 }
 
 impl Room {
-    /// Differences of the rates at the state, and at one that differs from it by a rounding in each of its numbers: ϕ̇, then ẏ.
+    /// Differences of the rates at the state, and at one that differs from it by a rounding in each of its numbers, in Q too where relations determine it: ϕ̇, then ẏ.
     fn scatter(
         &mut self,
         step_state: &StepState,
@@ -158,6 +159,16 @@ impl Room {
     ) -> Result<(), StepFailure> {
         beside(&step_state.offset, &mut self.phi);
         beside(&step_state.y, &mut self.y);
+        let mechanism = &flow.mechanism;
+        for (_, body) in mechanism
+            .joints()
+            .filter(|(_, body)| has_ends(body.joint()))
+        {
+            let freedoms = body.ranges().freedoms.clone();
+            for (own, phi) in self.phi[freedoms].iter_mut().enumerate() {
+                *phi += rounding_of(body, own, &step_state.configuration);
+            }
+        }
         flow.evaluate(
             time,
             &step_state.base,

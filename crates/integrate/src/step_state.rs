@@ -5,6 +5,7 @@ use super::compensation::{Compensation, add_exactly};
 use super::dense::Instant;
 use super::flow::{Flow, Rates, RatesMut, retract};
 use super::nearby::{Nearby, Place};
+use super::rates_of_loops::{RatesOfLoops, has_ends};
 use super::turns::Turns;
 use alloc::sync::Arc;
 use alloc::vec;
@@ -21,12 +22,11 @@ const NEARER: f64 = 0.2;
 
 /// Whether a joint at `configuration`, which is Φ(`base`, `phi`), gets a new base point.
 fn is_far(joint: &dyn AnyJoint, base: &[f64], configuration: &[f64], phi: &[f64]) -> bool {
-    let has_ends = !joint.relations().is_empty() && !joint.singularities().is_empty();
     let is_nearer = || {
         let there = joint.singularity(base);
         (joint.singularity(configuration) - there).abs() > NEARER * there
     };
-    phi.iter().any(|entry| entry.abs() > FAR) || has_ends && is_nearer()
+    phi.iter().any(|entry| entry.abs() > FAR) || has_ends(joint) && is_nearer()
 }
 
 /// The state at the last accepted step, and the end of the one being tried.
@@ -52,6 +52,8 @@ pub(super) struct StepState {
     /// Estimated errors of ϕ and y, and what they amount to in v̄.
     errors: Rates,
     nearby: Nearby,
+    /// What errors of a loop's ϕ and v̄ make of its dependent coordinates.
+    loops: RatesOfLoops,
     /// What of an estimated error of ϕ is the rounding of v̄ = M̄⁻¹ p̄, over the length of a step, 1/s; 0 in the Lagrangian form, which has v̄ itself.
     scatter: Vec<f64>,
     /// How far each joint turns from its base point.
@@ -85,6 +87,7 @@ impl StepState {
             next_compensation: Compensation::new(&flow.mechanism),
             errors: flow.new_rates(),
             nearby: Nearby::new(flow),
+            loops: RatesOfLoops::new(&flow.mechanism),
             scatter: vec![0.0; freedoms],
             turns: Turns::new(&flow.mechanism),
             moves: 0,
@@ -229,7 +232,8 @@ impl StepState {
     /// the step, if the scheme has them.
     ///
     /// Errors of ϕ and p̄ count as what both do to v̄ as well: on a heavy body that carries a light one, the same p̄ is much more, and on a body that turns
-    /// fast the same ϕ.
+    /// fast the same ϕ. Where relations alone give a joint's Φ, errors of its dependent coordinates count too: near an end of its motion they are many times those of ϕ
+    /// and v̄.
     pub(super) fn largest_error(
         &mut self,
         flow: &mut Flow<'_>,
@@ -240,13 +244,14 @@ impl StepState {
         }
         self.change_speeds(flow)?;
         let Self {
-            phi, rates, errors, ..
+            phi,
+            rates,
+            errors,
+            loops,
+            configuration,
+            ..
         } = self;
         let last = last.unwrap_or(&rates.speeds);
-        let part = |error: f64, size: f64| match error.abs() / size.max(1.0) {
-            part if part.is_nan() => f64::INFINITY,
-            part => part,
-        };
         let mut worst = (0.0, 0);
         for (index, body) in flow.mechanism.joints() {
             let (freedoms, speeds) = (body.ranges().freedoms.clone(), body.ranges().speeds.clone());
@@ -259,7 +264,14 @@ impl StepState {
                 worst = (error, index);
             }
         }
-        Ok(worst)
+        let speeds = (&*errors.speeds, &*rates.speeds, last);
+        let worst_of_loops =
+            loops.largest_error(&flow.mechanism, configuration, &errors.phi, speeds);
+        Ok(if worst_of_loops.0 > worst.0 {
+            worst_of_loops
+        } else {
+            worst
+        })
     }
 
     /// Makes the point that the step has come to the state; joints whose ϕ has grown get a new base point. `last` are ẏ and v̄ there, if the
@@ -356,6 +368,14 @@ impl StepState {
         let others = accelerations.iter().zip(&rates.speeds);
         let others = others.map(|(rate, speed)| rate.abs() / speed.abs().max(1.0));
         Ok(local.chain(others).fold(0.0, f64::max))
+    }
+}
+
+/// An error as a part of a size, or of 1 where that is more; infinite where it is not a number.
+pub(super) fn part(error: f64, size: f64) -> f64 {
+    match error.abs() / size.max(1.0) {
+        part if part.is_nan() => f64::INFINITY,
+        part => part,
     }
 }
 

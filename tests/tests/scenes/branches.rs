@@ -1,9 +1,13 @@
 //! Linkages stay on the branch on which they begin, and begin on that of their spec's guess, or say that they cannot.
 
 use hamel::dynamics::Recursive;
-use hamel::integrate::{Form, Method, Options, Scheme, integrate, no_inputs, no_observer};
+use hamel::integrate::{
+    Form, IntegrateError, Method, Options, Scheme, Step, StepControl, integrate, no_inputs,
+    no_observer,
+};
 use hamel_scene::Scene;
 use std::fmt::Write;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// A linkage of the library with bodies of 1 kg.
@@ -91,4 +95,69 @@ fn a_linkage_begins_on_the_branch_of_its_guess() {
     }
     // Cranks and rods together are 2.6 m long.
     assert!((20..=26).contains(&assembled), "{assembled} lengths");
+}
+
+/// A double wishbone that moves at 40 rad/s has its upper arm in line with the upright after 98 ms. There the lower arm, whose rate is v, turns back, and its equations do not say how.
+/// At loose tolerances steps went on from there with ten times the energy, at tight ones they shrank without an end.
+#[test]
+fn a_linkage_stops_where_its_motion_ends() {
+    let joint = "type = \"wishbone\", lower = 0.35, upper = 0.28, height = 0.2, upright = 0.2, rod = 0.35, behind = 0.1";
+    let motion = "motion = { speeds = [40.0] }";
+    let scene = linkage(joint, &["lower", "upper", "upright"], motion).expect("it loads");
+    for (scheme, tolerance) in [
+        (Scheme::DormandPrince, 0.1),
+        (Scheme::DormandPrince, 1e-2),
+        (Scheme::DormandPrince, 1e-8),
+        (Scheme::Dop853, 1e-12),
+        (Scheme::Verner9, 1e-10),
+        (Scheme::Verner9, 1e-14),
+        (Scheme::Radau5, 1e-3),
+    ] {
+        for form in [Form::Lagrangian, Form::Hamiltonian] {
+            let control = StepControl {
+                tolerance,
+                max_step: f64::INFINITY,
+                first_step: None,
+            };
+            let options = Options {
+                method: Method::Controlled { scheme, control },
+                t_end: 1.0,
+                samples: (1..=500).map(|n| 2e-3 * f64::from(n)).collect(),
+                form,
+            };
+            let mut dynamics = Recursive::new(Arc::clone(&scene.mechanism));
+            let mut checked = Recursive::new(Arc::clone(&scene.mechanism));
+            let mut energies = Vec::new();
+            let mut observer = |step: &Step<'_>| {
+                let energy = checked.kinetic_energy(step.configuration, step.speeds);
+                energies.push(energy.expect("it is finite"));
+                assert!(energies.len() < 5000, "{} steps", energies.len());
+                ControlFlow::Continue(())
+            };
+            let start = scene.start();
+            let ended = integrate(
+                &mut dynamics,
+                &start,
+                &options,
+                &mut no_inputs,
+                &mut observer,
+            );
+            let setting = format!("{}, {tolerance:e}, {form:?}", scheme.name());
+            let Err(IntegrateError::Excluded(end)) = ended else {
+                panic!("{setting}: {ended:?}");
+            };
+            assert_eq!(end.joint, "linkage", "{setting}");
+            assert!(
+                (0.09..0.11).contains(&end.time),
+                "{setting}: {} s",
+                end.time
+            );
+            // Nothing acts. The last steps are within rounding of the end, as `IntegrateError::Excluded` says.
+            let told = energies.len() - 20;
+            for energy in &energies[..told] {
+                let drift = (energy / energies[0] - 1.0).abs();
+                assert!(drift <= tolerance, "{setting}: {drift:e}");
+            }
+        }
+    }
 }
