@@ -271,6 +271,13 @@ impl<'a> Domain<'a> {
             return Some(Certificate::Constant(unit.clone()));
         }
         let functions = all.len();
+        // The least work: what follows may take more than it is given.
+        if all.iter().any(|e| self.is_product_of_loci(e)) {
+            return Some(Certificate::NoCommonZero {
+                functions,
+                except: true,
+            });
+        }
         if self.are_parallel_nowhere(expressions) {
             return Some(Certificate::Parallel { functions });
         }
@@ -302,7 +309,7 @@ impl<'a> Domain<'a> {
         let written: Vec<Expr> = self.loci.iter().map(normal).collect();
         let never_there = || self.loci.iter().chain(&written);
         let beside_loci = |e: &Expr| factors::without(e, never_there());
-        let is_beside_loci = |e: &Expr| never_zero(&&beside_loci(e)) || self.is_product_of_loci(e);
+        let is_beside_loci = |e: &Expr| never_zero(&&beside_loci(e));
         if generators.iter().any(is_beside_loci) {
             return Some(Certificate::NoCommonZero {
                 functions,

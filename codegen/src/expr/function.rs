@@ -199,9 +199,9 @@ fn recip_of_atom(atom: &Atom) -> Expr {
     }
 }
 
-/// Cosine and sine of one term: known at multiples of a quarter turn, expanded at integer multiples.
+/// Cosine and sine of one term: known at some parts of a turn, expanded at integer multiples.
 fn cos_sin_of_term(monomial: &Monomial, coefficient: &Rational) -> (Expr, Expr) {
-    if let Some(exact) = quarter_turns(monomial, coefficient) {
+    if let Some(exact) = exact_turns(monomial, coefficient) {
         return exact;
     }
     let negative = coefficient.is_negative();
@@ -227,20 +227,33 @@ fn cos_sin_of_term(monomial: &Monomial, coefficient: &Rational) -> (Expr, Expr) 
     }
 }
 
-fn quarter_turns(monomial: &Monomial, coefficient: &Rational) -> Option<(Expr, Expr)> {
+/// At multiples of a sixth and of a quarter of π, whose cosines and sines are halves of roots.
+fn exact_turns(monomial: &Monomial, coefficient: &Rational) -> Option<(Expr, Expr)> {
     let is_pi = Expr::term(Rational::one(), monomial.clone()) == Expr::pi();
-    let quarters = coefficient * Rational::from_integer(2.into());
-    if !is_pi || !quarters.is_integer() {
+    let twelfths = coefficient * Rational::from_integer(12.into());
+    if !is_pi || !twelfths.is_integer() {
         return None;
     }
-    let four = BigInt::from(4);
-    let quarter = ((quarters.to_integer() % &four) + &four) % &four;
-    Some(match quarter.to_i64()? {
+    let turn = BigInt::from(24);
+    let twelfths = (((twelfths.to_integer() % &turn) + &turn) % &turn).to_i64()?;
+    let half_root = |n: i64| Expr::integer(n).sqrt().scaled(&half(), &Monomial::one());
+    let (c, s) = match twelfths % 6 {
         0 => (Expr::one(), Expr::zero()),
-        1 => (Expr::zero(), Expr::one()),
-        2 => (Expr::integer(-1), Expr::zero()),
-        _ => (Expr::zero(), Expr::integer(-1)),
+        2 => (half_root(3), half_root(1)),
+        3 => (half_root(2), half_root(2)),
+        4 => (half_root(1), half_root(3)),
+        _ => return None,
+    };
+    Some(match twelfths / 6 {
+        0 => (c, s),
+        1 => (-s, c),
+        2 => (-c, -s),
+        _ => (s, -c),
     })
+}
+
+fn half() -> Rational {
+    Rational::new(BigInt::one(), BigInt::from(2))
 }
 
 pub(super) fn factorial(n: u32) -> BigInt {

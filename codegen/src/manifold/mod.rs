@@ -18,6 +18,7 @@ pub use quotients::cleared_by_squares;
 
 use crate::expr::{Expr, Role, Symbol};
 use std::collections::BTreeSet;
+use std::slice;
 
 /// A product of known manifolds, or the part of it where declared relations hold, with the ideal of all relations.
 #[derive(Clone, Debug)]
@@ -27,6 +28,21 @@ pub struct Manifold {
     /// Whether the declared relations are those of a coset, derived from a basis.
     is_coset: bool,
     ideal: Ideal,
+}
+
+/// What holds of the roots, sines and cosines of numbers in expressions, each once.
+fn of_numbers(expressions: &[Expr]) -> Vec<Expr> {
+    let relations = expressions.iter().flat_map(Expr::atom_relations);
+    let found: BTreeSet<Expr> = relations.filter(|e| e.symbols().is_empty()).collect();
+    found.into_iter().collect()
+}
+
+/// The expression with `sqrt(3) * sqrt(3)` as 3, and its like.
+pub(crate) fn with_powers_of_numbers(expression: &Expr) -> Expr {
+    match of_numbers(slice::from_ref(expression)) {
+        none if none.is_empty() => expression.clone(),
+        known => Ideal::new(&known).normal_form(expression),
+    }
 }
 
 impl Manifold {
@@ -46,6 +62,7 @@ impl Manifold {
     pub fn constrained(self, declared: Vec<Expr>) -> Self {
         let mut all = self.relations();
         all.extend_from_slice(&declared);
+        all.extend(of_numbers(&declared));
         Self {
             ideal: Ideal::new(&all),
             declared: [self.declared, declared].concat(),
@@ -57,7 +74,7 @@ impl Manifold {
     /// The same where a basis of all relations would take too long: equality is that modulo the relations of the factors alone.
     #[must_use]
     pub fn constrained_in_part(self, declared: Vec<Expr>) -> Self {
-        let known = self.relations();
+        let known = [self.relations(), of_numbers(&declared)].concat();
         let all = [&known[..], &declared].concat();
         Self {
             ideal: Ideal::incomplete(&known, &all),

@@ -118,13 +118,19 @@ impl<'a> Sampler<'a> {
     }
 
     /// The point with its stored scalars moved onto the manifold by Newton's method, the parameters as they are; `None` where that fails,
-    /// and where its relations are not met to the rounding of their terms, however small these are.
+    /// and where its relations are not met to the rounding of their terms, however small these are, or of the stored scalars: an entry of R that is 0
+    /// leaves terms that are rounding alone.
     pub fn settled(&self, point: &Point) -> Option<Point> {
         let mut settled = point.clone();
         let coordinates = self.space.manifold.coordinates();
         to_zero(&mut settled, &coordinates, &self.relations)?;
-        let holds = |(relation, _): &Sloped| {
+        let near = |symbol: &Symbol| settled.value(symbol).to_f64();
+        let holds = |(relation, slopes): &Sloped| {
             let (value, scale) = settled.evaluate_with_scale(relation);
+            let slopes = slopes.iter().zip(&coordinates);
+            let of_scalars =
+                slopes.map(|(slope, q)| slope.evaluate(&0.0, &near).abs() * near(q).abs().max(1.0));
+            let scale = of_scalars.fold(scale, f64::max);
             value.is_zero() || scale.is_normal() && is_small(&value, scale, settled.bits())
         };
         self.relations.iter().all(holds).then_some(settled)

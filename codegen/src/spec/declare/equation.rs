@@ -5,8 +5,9 @@ use super::super::code;
 use super::super::evaluate::Evaluator;
 use crate::diagnostic::Diagnostic;
 use crate::expr::{Application, Atom, Expr, Function, Role};
+use crate::manifold::with_powers_of_numbers;
 
-/// Left side minus right side, entry by entry.
+/// Left side minus right side, entry by entry; squares of roots of numbers are taken.
 pub(super) fn difference(equation: &Equation, evaluator: &mut Evaluator<'_>) -> Option<Vec<Expr>> {
     let left = evaluator.value(&equation.left);
     let right = evaluator.value(&equation.right);
@@ -21,7 +22,7 @@ pub(super) fn difference(equation: &Equation, evaluator: &mut Evaluator<'_>) -> 
                 .help("both sides are scalars, or matrices of one shape"),
         );
     }
-    difference
+    Some(difference?.iter().map(with_powers_of_numbers).collect())
 }
 
 /// The difference of two scalars.
@@ -44,6 +45,21 @@ pub(super) fn scalar(equation: &Equation, evaluator: &mut Evaluator<'_>) -> Opti
 pub(super) fn of_configuration(expression: &Expr) -> bool {
     let symbols = expression.symbols();
     symbols.iter().any(|symbol| symbol.role == Role::Coordinate)
+}
+
+/// As [`function_in`], but for roots, sines and cosines of numbers, as `sqrt(3)`: they are numbers too.
+pub(super) fn function_beside_numbers(expression: &Expr) -> Option<Application> {
+    let is_number = |application: &Application| {
+        let algebraic = [Function::Sqrt, Function::Cos, Function::Sin, Function::Pi];
+        let of_number = |argument: &Expr| {
+            argument.symbols().is_empty() && function_beside_numbers(argument).is_none()
+        };
+        algebraic.contains(&application.function) && application.arguments.iter().all(of_number)
+    };
+    expression.atoms().into_iter().find_map(|atom| match atom {
+        Atom::Apply(application) if !is_number(&application) => Some((*application).clone()),
+        _ => None,
+    })
 }
 
 /// A function in the expression, if it is no polynomial in its symbols; quotients by parameters count as polynomial.

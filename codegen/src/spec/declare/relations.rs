@@ -55,7 +55,7 @@ fn relation(
             distinct.push(entry);
         }
     }
-    let error = match distinct.iter().find_map(equation::function_in) {
+    let error = match distinct.iter().find_map(equation::function_beside_numbers) {
         Some(function) => Some(not_polynomial(at, function.function)),
         None => says_nothing(at, &distinct, &manifold.value),
     };
@@ -140,10 +140,12 @@ fn basis(
         })
         .ok(),
     }?;
+    // What holds of roots and sines of numbers is no constraint.
     let constrains_parameters = |e: &Expr| {
-        e.symbols()
-            .iter()
-            .all(|symbol| symbol.role == Role::Parameter)
+        e.related_functions().is_empty()
+            && e.symbols()
+                .iter()
+                .all(|symbol| symbol.role == Role::Parameter)
     };
     if !found.ideal().is_contradictory() && !found.ideal().basis().iter().any(constrains_parameters)
     {
