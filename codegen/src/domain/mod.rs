@@ -271,8 +271,11 @@ impl<'a> Domain<'a> {
             return Some(Certificate::Constant(unit.clone()));
         }
         let functions = all.len();
+        let written: Vec<Expr> = self.loci.iter().map(normal).collect();
+        let beside_loci = |e: &Expr| factors::without(e, self.loci.iter().chain(&written));
         // The least work: what follows may take more than it is given.
-        if all.iter().any(|e| self.is_product_of_loci(e)) {
+        let is_of_loci = |e: &Expr| self.is_unit(&beside_loci(e)) || self.is_product_of_loci(e);
+        if !self.loci.is_empty() && all.iter().any(is_of_loci) {
             return Some(Certificate::NoCommonZero {
                 functions,
                 except: true,
@@ -306,9 +309,6 @@ impl<'a> Domain<'a> {
         if let Some(found) = generators.iter().position(|e| never_zero(&e)) {
             return Some(Certificate::Positive(all[found].clone()));
         }
-        let written: Vec<Expr> = self.loci.iter().map(normal).collect();
-        let never_there = || self.loci.iter().chain(&written);
-        let beside_loci = |e: &Expr| factors::without(e, never_there());
         let is_beside_loci = |e: &Expr| never_zero(&&beside_loci(e));
         if generators.iter().any(is_beside_loci) {
             return Some(Certificate::NoCommonZero {

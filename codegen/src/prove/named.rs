@@ -6,6 +6,7 @@ use super::{Attempt, Prover};
 use crate::expand::{Flow, Motion, RelationDirections, Systems};
 use crate::expr::{Expr, Role, Symbol};
 use crate::kernel::Word;
+use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -42,7 +43,7 @@ impl Prover<'_> {
         };
         let residuals = [
             relations.definitions(systems),
-            relations.solutions(systems),
+            relations.solutions(systems, self.ideal),
             relations.rates(),
             relations.rate_along(systems),
         ];
@@ -119,8 +120,9 @@ impl Relations<'_> {
         entries.chain(bends).collect()
     }
 
-    /// Both systems with the values of B and of λ, by Cramer's rule: entries and second derivatives are known by their names alone.
-    fn solutions(&self, systems: &Systems) -> Vec<Expr> {
+    /// Both systems with the values of B and of λ, by Cramer's rule: entries and second derivatives are known by their names alone, but for those of λ that
+    /// follow from a constant entry of B.
+    fn solutions(&self, systems: &Systems, ideal: &Ideal) -> Vec<Expr> {
         let bends = systems.bends.iter().flatten().flatten();
         let given: BTreeSet<Symbol> = systems
             .gradient
@@ -152,7 +154,11 @@ impl Relations<'_> {
         let second = self.places().into_iter().map(|(r, i, j)| {
             let back = &self.flow.corrections[i][j];
             let system = &systems.bends[i][j][r] + &product(&systems.gradient, r, back);
-            written_out(&system, &of_second)
+            let plain = written_out(&system, &of_second);
+            match ideal.vanishes(&plain) {
+                true => Expr::zero(),
+                false => written_out(&system, &systems.words),
+            }
         });
         let first = first.map(|system| written_out(&system, &solved));
         first.chain(second).collect()

@@ -63,19 +63,23 @@ pub fn expand(
     };
     let dependent = solver.dependent(&gradient, (chosen, normal));
     let tangent = chosen.plus(&normal.times(&dependent));
-    let (bends, corrections) = solver.corrections(directions, &tangent);
     let brackets = brackets(joint, &tangent);
     let left = upper(chosen, normal);
     let half = Expr::fraction(1, 2);
     let slope = |bracket: &Matrix| left.times(bracket).scale(&-&half);
     let slopes: Vec<Matrix> = brackets.iter().map(slope).collect();
-    let (mut words, mut known) = (solver.names.words, BTreeMap::new());
     let turned = brackets.iter().zip(&slopes);
     let turned = turned.map(|(bracket, slope)| {
         let whole = bracket.scale(&half).plus(&tangent.times(slope));
         normal.transpose().times(&whole)
     });
     let turned: Vec<Matrix> = turned.collect();
+    let known = Known {
+        dependent: &dependent,
+        turned: &turned,
+    };
+    let (bends, corrections) = solver.corrections(directions, &tangent, &known);
+    let (mut words, mut known) = (solver.names.words, BTreeMap::new());
     let columns = (0..tangent.columns()).map(|i| dependent.column(i));
     for (i, column) in columns.enumerate() {
         for (n, entry) in column.iter().enumerate() {
@@ -181,15 +185,23 @@ impl Solver<'_> {
         for i in 0..chosen.columns() {
             let along = Matrix::column_vector(chosen.column(i));
             let freedom = self.labels.freedoms[i].clone();
-            columns.push(self.solved(gradient.times(&along).entries(), &freedom));
+            columns.push(self.solved(gradient.times(&along).entries(), &freedom, &|_| None));
         }
         Matrix::from_columns(normal.columns(), &columns)
     }
 
-    /// The opposite of the inverse times the right side, entry by entry under a name.
-    fn solved(&mut self, right: &[Expr], by: &str) -> Vec<Expr> {
+    /// The opposite of the inverse times the right side, entry by entry under a name, where the entry is not `known`.
+    fn solved(
+        &mut self,
+        right: &[Expr],
+        by: &str,
+        known: &dyn Fn(usize) -> Option<Expr>,
+    ) -> Vec<Expr> {
         let values = self.inverse.times(right);
         let entry = |(n, value): (usize, &Expr)| {
+            if let Some(known) = known(n) {
+                return known;
+            }
             let value = -self.ideal.simplest(value);
             if value.is_constant() {
                 return value;
@@ -201,7 +213,12 @@ impl Solver<'_> {
     }
 
     /// `½ (L_i L_j + L_j L_i) φ` and λ_ij, by i and j.
-    fn corrections(&mut self, directions: &Directions<'_>, tangent: &Matrix) -> (ByPairs, ByPairs) {
+    fn corrections(
+        &mut self,
+        directions: &Directions<'_>,
+        tangent: &Matrix,
+        known: &Known<'_>,
+    ) -> (ByPairs, ByPairs) {
         let count = tangent.columns();
         let mut bends = vec![vec![vec![]; count]; count];
         let mut solved = bends.clone();
@@ -215,12 +232,32 @@ impl Solver<'_> {
                     self.names.if_long(&name, &value, LONGEST_BEND)
                 };
                 bends[i][j] = relations.map(bend).collect();
-                solved[i][j] = self.solved(&bends[i][j].clone(), &by);
+                solved[i][j] =
+                    self.solved(&bends[i][j].clone(), &by, &|n| known.correction(n, i, j));
                 bends[j][i] = bends[i][j].clone();
                 solved[j][i] = solved[i][j].clone();
             }
         }
         (bends, solved)
+    }
+}
+
+/// What is known of λ without its system.
+struct Known<'a> {
+    /// b.
+    dependent: &'a Matrix,
+    /// `λ_li − ∂b_i/∂ϕ_l`, by l.
+    turned: &'a [Matrix],
+}
+
+impl Known<'_> {
+    /// Entry n of λ_ij where that of b_i or b_j is constant, so that its derivative is 0.
+    fn correction(&self, n: usize, i: usize, j: usize) -> Option<Expr> {
+        let of_constant = |i: usize, l: usize| {
+            let is_constant = self.dependent.at(n, i).is_constant();
+            is_constant.then(|| self.turned[l].at(n, i).clone())
+        };
+        of_constant(i, j).or_else(|| of_constant(j, i))
     }
 }
 
