@@ -325,7 +325,7 @@ impl Joint<11, 8, 2, 6> for Car {
 
     /// S̄(Q): speeds v̄ to v (Definition 2, (15)).
     /// 8×2. Operations: 4 additions, 6 multiplications, 2 divisions, 1 function call.
-    /// From line 21 `let`, line 22 `let`, line 36 `S_bar`.
+    /// From line 21 `let`, line 22 `let`, line 33 `S_bar`.
     fn speed_basis<T: Scalar>(&self, q: &SVector<T, 11>) -> SMatrix<T, 8, 2> {
         let base = T::from_f64(self.base);
         let half_parameter = T::from_f64(self.half);
@@ -352,7 +352,7 @@ impl Joint<11, 8, 2, 6> for Car {
 
     /// ∂S̄/∂ϕ at ϕ = 0; slice k is the derivative along ϕ_k.
     /// 8 slices of 8×2. Operations: 3 additions, 5 multiplications (1 of each fused), 4 divisions, 1 function call.
-    /// From line 18 `basis`, line 21 `let`, line 22 `let`, line 36 `S_bar`.
+    /// From line 18 `basis`, line 21 `let`, line 22 `let`, line 33 `S_bar`.
     fn speed_basis_gradient<T: Scalar>(&self, q: &SVector<T, 11>) -> [SMatrix<T, 8, 2>; 8] {
         let base = T::from_f64(self.base);
         let half_parameter = T::from_f64(self.half);
@@ -485,7 +485,7 @@ impl Joint<11, 8, 2, 6> for Car {
 
     /// c(Q, v̄) = d/dt(X^c S̄) v̄: velocity product term of the recursive forms, in the child frame.
     /// 6-vector, rad/s² (angular) and m/s² (linear). Operations: 3 multiplications, 1 division, 1 function call, instead of 66 operations by products.
-    /// From line 18 `basis`, line 19 `velocity`, line 20 `let`, line 21 `let`, line 22 `let`, line 23 `H`, line 36 `S_bar`.
+    /// From line 18 `basis`, line 19 `velocity`, line 20 `let`, line 21 `let`, line 22 `let`, line 23 `H`, line 33 `S_bar`.
     fn bias_acceleration<T: Scalar>(&self, q: &SVector<T, 11>, speeds: &SVector<T, 2>) -> SVector<T, 6> {
         let base = T::from_f64(self.base);
         let steer = q[6];
@@ -498,7 +498,7 @@ impl Joint<11, 8, 2, 6> for Car {
 
     /// (d/dt(X^c S̄))ᵀ h for a momentum h (moment; linear) in the child frame.
     /// 2-vector. Operations: 1 addition, 3 multiplications (1 of each fused), 1 division, 1 function call, instead of 56 operations by products.
-    /// From line 18 `basis`, line 19 `velocity`, line 20 `let`, line 21 `let`, line 22 `let`, line 23 `H`, line 36 `S_bar`.
+    /// From line 18 `basis`, line 19 `velocity`, line 20 `let`, line 21 `let`, line 22 `let`, line 23 `H`, line 33 `S_bar`.
     fn bias_momentum<T: Scalar>(&self, q: &SVector<T, 11>, speeds: &SVector<T, 2>, h: &SVector<T, 6>) -> SVector<T, 2> {
         let base = T::from_f64(self.base);
         let steer = q[6];
@@ -1031,10 +1031,7 @@ joint car(
          0, -s,       -c,                  -c,                   -1,     -1;
          1, 0,        -s,                  -s,                   0,      0;
          0, 0,        0,                   0,                    0,      0;
-         0, 0,        radius,              0,                    0,      0;
-         0, 0,        0,                   radius,               0,      0;
-         0, 0,        0,                   0,                    radius, 0;
-         0, 0,        0,                   0,                    0,      radius];
+         O(4, 2), radius * I(4)];
     S_bar = [s / base, 0; c, 0; 0, 0; 0, 1;
              (1 - half * s * c / base) / radius, 0;
              (1 + half * s * c / base) / radius, 0;
