@@ -29,6 +29,19 @@ fn angles_written_differently_agree() {
     assert_eq!((&x + &Expr::pi()).sin(), -x.sin());
 }
 
+#[test]
+fn cosines_of_parts_of_a_turn_are_exact() {
+    for twelfths in (-30..=30).filter(|n| n % 2 == 0 || n % 3 == 0) {
+        let angle = &Expr::fraction(twelfths, 12) * &Expr::pi();
+        let at = |e: &Expr| e.evaluate(&0.0, &|_| f64::NAN);
+        let (sin, cos) = (twelfths as f64 * std::f64::consts::PI / 12.0).sin_cos();
+        assert!((at(&angle.cos()) - cos).abs() < 1e-14, "{twelfths} π/12");
+        assert!((at(&angle.sin()) - sin).abs() < 1e-14, "{twelfths} π/12");
+        let functions = angle.cos().related_functions();
+        assert!(!format!("{functions:?}").contains("Cos"), "{twelfths} π/12");
+    }
+}
+
 /// Central differences with step 1e-5 of functions with third derivatives below 100: error below 2e-9.
 #[test]
 fn derivatives_agree_with_differences() {
