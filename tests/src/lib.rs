@@ -10,6 +10,7 @@ pub mod enclosure;
 pub mod extended;
 pub mod figures;
 pub mod fuzz;
+pub mod gauss;
 pub mod laws;
 pub mod linear_step;
 pub mod motion;
