@@ -68,6 +68,7 @@
 //! - `velocity_map_inverse`: S₀ S₀⁻¹ = I (normal form)
 //! - `twist_map_child`: X^c = Ad_{H⁻¹} X (normal form)
 //! - `twist_map_rank`: rank X = k (shown for X^c = Ad_{H⁻¹} X) where b.c ≠ 0 (certificate)
+//! - `port_rates`: P S₀ = ∂y/∂ϕ, y the values of the ports where b.c ≠ 0 (normal form)
 //! - `pins_meet`: both points of each pin are one where b.c ≠ 0 (normal form)
 //! - `pins_hold`: bodies turn and slide at each pin as it says where b.c ≠ 0 (normal form)
 //! - `fibres`: one pose has one Q; the poses of all bodies count as one (certificate)
@@ -224,6 +225,13 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
         visit(::hamel_runtime::erased::erase(::hamel_runtime::joint::Member::<_, 1>(*self)));
         visit(::hamel_runtime::erased::erase(::hamel_runtime::joint::Member::<_, 2>(*self)));
     }
+    const PORTS: &'static [::hamel_runtime::joint::Port] = &[
+        ::hamel_runtime::joint::Port {
+            name: "slider",
+            unit: "m",
+            wraps: false,
+        },
+    ];
     const RELATIONS: &'static [&'static str] = &["-s + rod*b.c + crank*a.c = 0", "rod*b.s + crank*a.s - offset = 0"];
     const RELATION_UNITS: &'static [&'static str] = &["m", "m"];
     const PINS: &'static [::hamel_runtime::joint::Pin] = &[
@@ -259,7 +267,13 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
             bodies: [Some(2), None],
             turning: ::hamel_runtime::joint::Turning::Not,
             slides: true,
-            drives: &[],
+            drives: &[
+                ::hamel_runtime::joint::PinDrive {
+                    source: ::hamel_runtime::joint::DriveSource::Port(0),
+                    turns: false,
+                    reversed: false,
+                },
+            ],
         },
     ];
 
@@ -316,9 +330,25 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
         from_rows([[zero], [zero], [one], [zero], [zero], [zero]])
     }
 
+    /// P(Q), a row for each port: v to its rate.
+    /// 1×1. Operations: none and those of `first_derivatives`.
+    /// From line 24 `basis`, line 25 `H`, line 29 `port`.
+    fn port_map<T: Scalar>(&self, q: &SVector<T, 5>) -> impl AsRef<[[T; 1]]> {
+        let [_, s_by_turn] = self.first_derivatives(q);
+        [[s_by_turn]]
+    }
+
+    /// The values of the ports; an angle that does not count turns is between −π and π.
+    /// 1 scalars, m. Operations: none.
+    /// From line 29 `port slider: m = s;`.
+    fn port_values<T: Scalar>(&self, q: &SVector<T, 5>) -> impl AsRef<[T]> {
+        let s = q[4];
+        [s]
+    }
+
     /// For each pin its point, the axis about which the first body turns and that along which it slides, in the parent frame; 0 for an axis that it does not have.
     /// 4×9. Operations: 2 multiplications.
-    /// From line 25 `H`, line 29 `pin`, line 31 `pin`, line 33 `pin`, line 35 `pin`.
+    /// From line 25 `H`, line 31 `pin`, line 33 `pin`, line 35 `pin`, line 37 `pin`.
     fn pins<T: Scalar>(&self, q: &SVector<T, 5>) -> impl AsRef<[[T; 9]]> {
         let crank = T::from_f64(self.crank);
         let offset = T::from_f64(self.offset);
@@ -381,6 +411,20 @@ impl Joint<5, 1, 1, 0> for SliderCrank {
         };
         let twists: [[T; 6]; 2] = (along * self.relation_displacements(q)).into();
         twists
+    }
+
+    /// The rates of the ports at the displacement rate of each relation: those of the first relation, then of the next.
+    /// 2 scalars. By a product with `relation_displacements`.
+    /// From line 17 `config`, line 24 `basis`, line 29 `port`.
+    fn relation_ports<T: Scalar>(&self, q: &SVector<T, 5>) -> impl AsRef<[T]> {
+        let along: SMatrix<T, 1, 3> = {
+            let zero = T::zero();
+            let one = T::one();
+            from_rows([[zero, zero, one]])
+        };
+        let rates = along * self.relation_displacements(q);
+        let rates: [T; 2] = ::core::array::from_fn(|n| rates[n]);
+        rates
     }
 
     /// The configuration on the manifold that is nearest to `q`.
@@ -656,6 +700,8 @@ joint slider_crank(
     H.crank  = rot_z(a);
     H.rod    = pose(rot_z(b), [crank * a.c, crank * a.s, 0]);
     H.slider = trans([s, offset, 0]);
+    /// The slider along its slide.
+    port slider: m = s;
     /// The crank in the frame.
     pin main:      crank at [0, 0, 0] = parent at [0, 0, 0] about z;
     /// The rod on the crank.
