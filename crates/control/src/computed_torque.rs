@@ -90,7 +90,7 @@ impl ComputedTorque {
             damping_ratio,
         } = self.error_dynamics;
         let (spring, damper) = (frequency * frequency, 2.0 * damping_ratio * frequency);
-        for own in &self.at_ports {
+        for own in &mut self.at_ports {
             let owner = self.reference.mechanism().body(own.body)?;
             let range = owner.ranges().speeds.clone();
             let state = (owner.configuration(q), &speeds[range.clone()]);

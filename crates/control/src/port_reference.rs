@@ -12,6 +12,10 @@ use num_traits::Float;
 /// How small a pivot of the ports' rows may be next to the largest for the ports to move the joint: with less, half of the digits are gone.
 const INDEPENDENT: f64 = 1e-8;
 
+/// The part of the largest smallest pivot so far from which on ports stand as good as still: a slider that is led to its end comes to within 1e-8 of the crank's length of it, and the crank
+/// turns ten thousand times as fast as elsewhere.
+const STANDING: f64 = 1e-4;
+
 /// The value of one port over time: `start` and what the law leads to from there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PortReference {
@@ -57,6 +61,8 @@ impl PortReference {
 pub(super) struct OfJoint {
     pub(super) body: usize,
     pub(super) ports: Vec<PortReference>,
+    /// The largest that the smallest pivot of the ports' rows has been.
+    least_pivot: f64,
 }
 
 impl OfJoint {
@@ -96,6 +102,7 @@ impl OfJoint {
                 None => joints.push(Self {
                     body,
                     ports: alloc::vec![*reference],
+                    least_pivot: 0.0,
                 }),
             }
         }
@@ -116,7 +123,7 @@ impl OfJoint {
     /// # Errors
     /// Ports that do not move the joint in all its ways here.
     pub(super) fn accelerations(
-        &self,
+        &mut self,
         owner: &Body,
         t: f64,
         (q, v): (&[f64], &[f64]),
@@ -144,7 +151,9 @@ impl OfJoint {
         let least =
             (0..MOST_FREEDOMS).fold(f64::INFINITY, |least, i| least.min(pivots[(i, i)].abs()));
         let solved = factors.solve(&right);
-        let Some(found) = solved.filter(|_| least > INDEPENDENT * largest.min(1.0)) else {
+        self.least_pivot = least.max(self.least_pivot);
+        let limit = f64::max(INDEPENDENT * largest.min(1.0), STANDING * self.least_pivot);
+        let Some(found) = solved.filter(|_| least > limit) else {
             return Err(ControlError::Joint {
                 joint: owner.joint_name().into(),
                 reason: "stands where the ports of its reference do not tell how it moves, as at a dead point",

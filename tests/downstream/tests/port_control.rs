@@ -7,7 +7,7 @@ use hamel::control::{
     ComputedTorque, ControlError, Controller, ErrorDynamics, PortReference, Reference,
 };
 use hamel::dynamics::Recursive;
-use hamel::integrate::{Form, Method, Options, State, Step, integrate};
+use hamel::integrate::{Form, Method, Options, State, Step, integrate, no_observer};
 use hamel::mechanism::Mechanism;
 use hamel::time_function::Law;
 use hamel_scene::Scene;
@@ -209,6 +209,49 @@ fn dead_points_are_told_by_name() {
             .contains("joint `linkage` stands where the ports"),
         "{failed}"
     );
+}
+
+/// A rocker that is led on beyond where it turns back: steps shrank without an end there, before the name was told.
+#[test]
+fn a_port_that_is_led_beyond_its_end_is_told_by_name() {
+    let controller = r#"
+kind = "computed_torque"
+frequency = 20.0
+[[controller.reference]]
+joint = "linkage"
+ports.rocker = { rate = 0.5 }
+"#;
+    let scene = scene("phi = [0.9]", controller);
+    let control = scene.control.as_ref().expect("a controller");
+    for tolerance in [1e-3, 1e-6, 1e-11] {
+        let mut law = control
+            .controller(&scene.mechanism, 10.0)
+            .expect("it was tried");
+        let mut failure = None;
+        let options = Options {
+            form: Form::Lagrangian,
+            method: Method::dormand_prince(tolerance),
+            t_end: 10.0,
+            samples: vec![],
+        };
+        let stopped = integrate(
+            &mut Recursive::new(Arc::clone(&scene.mechanism)),
+            &scene.start(),
+            &options,
+            &mut |t, q, v, tau: &mut [f64]| {
+                if let Err(error) = law.efforts(t, q, v, tau) {
+                    failure.get_or_insert(error);
+                    tau.fill(f64::NAN);
+                }
+            },
+            &mut no_observer,
+        );
+        stopped.expect_err("the rocker turns back");
+        let failure = failure.expect("a controller that fails").to_string();
+        let told =
+            "joint `linkage` stands where the ports of its reference do not tell how it moves";
+        assert!(failure.contains(told), "{failure}");
+    }
 }
 
 #[test]
