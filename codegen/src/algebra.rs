@@ -1,6 +1,6 @@
 //! Lie algebras of the known groups: standard bases, coordinates, brackets, structure constants, and exp in closed form.
 
-use crate::expr::{Expr, Rational};
+use crate::expr::{Expr, Rational, Symbol};
 use crate::manifold::{Factor, Ideal, Kind};
 use crate::matrix::{Matrix, combinations};
 use num_traits::One;
@@ -191,9 +191,39 @@ pub fn exp_by(xi: &Matrix, mut coefficient: impl FnMut(u8, &Expr) -> Expr) -> Op
     })
 }
 
-/// `exp(xi)` in closed form.
+/// `exp(xi)` in closed form: by sine and cosine about a fixed axis, else by Stumpff functions.
 pub fn exp(xi: &Matrix) -> Option<Matrix> {
-    exp_by(xi, |order, s| s.stumpff(order))
+    about_fixed_axis(xi).or_else(|| exp_by(xi, |order, s| s.stumpff(order)))
+}
+
+/// `exp(r u)` where the angle r is a polynomial that divides all entries of `xi`: `s = r²`, by its terms or, for a single symbol, by the laws of the functions in s.
+fn about_fixed_axis(xi: &Matrix) -> Option<Matrix> {
+    let identity = Matrix::identity(xi.rows());
+    let found = closure(xi)?;
+    let (Closure::Circle(s) | Closure::Rotation(s) | Closure::Screw(s)) = &found else {
+        return None;
+    };
+    let ideal = Ideal::default();
+    let mut symbols = xi.entries().iter().flat_map(Expr::symbols);
+    let is_root = |symbol: &Symbol| ideal.vanishes(&(s - &Expr::symbol(symbol).square()));
+    let of_terms = ideal.normal_form(s).polynomial_root();
+    let r = match of_terms {
+        Some(root) => root,
+        None => Expr::symbol(&symbols.find(is_root)?),
+    };
+    let entries = xi.entries().iter();
+    let entries: Option<Vec<Expr>> = entries.map(|entry| entry.exact_quotient(&r)).collect();
+    let u = Matrix::from_entries(xi.rows(), xi.columns(), entries?)?;
+    let (cos, sin) = (r.cos(), r.sin());
+    let turned = u.times(&u).scale(&(&Expr::one() - &cos));
+    Some(match found {
+        Closure::Circle(_) => identity.scale(&cos).plus(&u.scale(&sin)),
+        Closure::Rotation(_) => identity.plus(&u.scale(&sin)).plus(&turned),
+        _ => {
+            let cube = u.times(&u).times(&u).scale(&(&r - &sin));
+            identity.plus(xi).plus(&turned).plus(&cube)
+        }
+    })
 }
 
 /// `exp(xi)` to second order: `I + ξ + ½ ξ²`.
@@ -275,6 +305,48 @@ mod tests {
                     (got - expected).abs() < 1e-14,
                     "{}: {got} against {expected}",
                     kind.name()
+                );
+            }
+        }
+    }
+
+    /// Turns and screws about fixed axes, of numbers of which the squares are no squares of numbers too.
+    #[test]
+    fn turns_about_fixed_axes_need_sines_alone() {
+        let angle = Expr::symbol(&Symbol::new(Role::Local, 0, "x1"));
+        let along = |number: i64| &angle * &Expr::fraction(number, 5);
+        let root = Expr::integer(2).sqrt();
+        let by_root = &angle * &root.recip().expect("not 0");
+        let zero = Expr::zero;
+        for (kind, x) in [
+            (Kind::So2, vec![along(7)]),
+            (Kind::So3, vec![along(3), along(4), zero()]),
+            (Kind::So3, vec![by_root.clone(), zero(), by_root]),
+            (Kind::S3, vec![along(3), zero(), along(-4)]),
+            (Kind::Se2, vec![along(2), along(3), along(1)]),
+            (
+                Kind::Se3,
+                vec![along(3), along(4), zero(), along(1), along(2), along(6)],
+            ),
+        ] {
+            let xi = hat(kind, &x);
+            let closed = exp(&xi).expect("a closed form");
+            let functions: Vec<String> = closed
+                .entries()
+                .iter()
+                .flat_map(Expr::related_functions)
+                .map(|function| format!("{function:?}"))
+                .collect();
+            assert!(
+                !functions.iter().any(|name| name.contains("Stumpff")),
+                "{kind:?}"
+            );
+            for (entry, expected) in closed.entries().iter().zip(exp_by_series(&xi)) {
+                let got = evaluate_f64(entry, &value);
+                // As above.
+                assert!(
+                    (got - expected).abs() < 1e-14,
+                    "{kind:?}: {got} against {expected}"
                 );
             }
         }

@@ -3,9 +3,10 @@
 use hamel::joint::Member;
 use hamel_downstream::joints::{
     BallCayley, BallTurns, Bead, CamCircle, CarWheels, Catenary, CatenaryLength, CrankCoupler,
-    CrankRocker, Delta, DirectionSensor, ENTRIES, FiveBarRods, FourBarThrough, GearedRotor,
-    MeasuredRocker, PlanarTurns, PowerGuide, Press, RollingBallCayley, Scara, SkateHeading,
-    SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint, Stewart, ThreeRrr, Unpinned, Valley,
+    CrankRocker, Delta, DirectionSensor, ENTRIES, FiveBarRods, FixedAxis, FourBarThrough,
+    GearedRotor, MeasuredRocker, PlanarTurns, PowerGuide, Press, RollingBallCayley, Scara,
+    SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint, Stewart, ThreeRrr,
+    Unpinned, Valley,
 };
 use hamel_tests::laws::Reach::{self, Around, Entries, HalfTurn};
 use hamel_tests::laws::check_within;
@@ -54,6 +55,7 @@ law_tests! {
     catenary: Catenary::new(0.7), HalfTurn;
     catenary_length: CatenaryLength::new(0.7), HalfTurn;
     direction_sensor: DirectionSensor::new(0.7), Entries(1.0);
+    fixed_axis: FixedAxis::new(0.6, 0.7), HalfTurn;
     measured_rocker: MeasuredRocker, Entries(1.0);
     planar_turns: PlanarTurns, HalfTurn;
     power_guide: PowerGuide::new(0.7), Entries(1.0);
