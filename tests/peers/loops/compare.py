@@ -6,7 +6,7 @@ usage: compare.py FOLDER LABEL=COMMAND ... [--reps 21] [--ms 8] [--models a,b]
 A program speaks the protocol at the head of program/src/main.rs. Ratios are to the label `hamel compiled`.
 """
 
-import argparse, glob, json, os, select, statistics, subprocess, sys
+import argparse, glob, json, os, re, select, statistics, subprocess, sys
 
 parser = argparse.ArgumentParser()
 parser.add_argument('folder')
@@ -81,10 +81,12 @@ def measure(name):
     return rows, left_out
 
 
-names = sorted(os.path.basename(path)[:-5] for path in glob.glob(os.path.join(given.folder, '*.json')))
+names = [os.path.basename(path)[:-5] for path in glob.glob(os.path.join(given.folder, '*.json'))]
+names.sort(key=lambda name: [int(part) if part.isdigit() else part for part in re.split(r'(\d+)', name)])
 if given.models:
     names = [name for name in given.models.split(',') if name in names]
 figures, notes, labels = {}, [], []
+places = [program.split('=', 1)[0] for program in given.programs]
 for name in names:
     rows, left_out = measure(name)
     figures[name] = {label: rest for label, *rest in rows}
@@ -92,6 +94,7 @@ for name in names:
     notes += left_out
     print(f'# {name}', file=sys.stderr, flush=True)
 
+labels.sort(key=lambda label: places.index(label.split(',')[0]))
 print(f'Nanoseconds a call, median of {given.reps} interleaved repetitions of {given.ms:g} ms; in brackets times that of `{BASE}`, then the largest relative error.\n')
 print('| mechanism | ' + ' | '.join(labels) + ' |\n|---|' + '---|' * len(labels))
 for name in names:

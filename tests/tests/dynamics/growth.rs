@@ -142,11 +142,11 @@ fn instructions_of_the_tree_grow_with_the_number_of_joints() {
         for name in JOINTS {
             for shape in SHAPES {
                 let counts = [8, 32, 256, 512].map(|count| {
-                    let [few, many] = [10, 30].map(|calls| {
+                    let [few, many] = [2, 6].map(|calls| {
                         let asked = format!("{form} {name} {shape:?} {count} {calls}");
                         of_test("growth::calls", VARIABLE, &asked)
                     });
-                    (count, (many - few) / 20.0)
+                    (count, (many - few) / 4.0)
                 });
                 let small = slope([counts[0], counts[1]]);
                 let large = slope([counts[2], counts[3]]);

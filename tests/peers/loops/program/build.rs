@@ -35,13 +35,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let find = "/// The equations of a scene, or why there are none.\npub fn find(name: &str) -> Result<&'static hamel::compiled::Equations, &'static str> {\n    match name {\n";
     let rest = "        _ => Err(\"not among the scenes that were compiled\"),\n    }\n}\n";
-    std::fs::write(out.join("scenes.rs"), format!("{modules}\n{find}{arms}{rest}"))?;
+    std::fs::write(
+        out.join("scenes.rs"),
+        format!("{modules}\n{find}{arms}{rest}"),
+    )?;
     Ok(())
 }
 
 fn module(scene: &Path, joints: &Path, name: &str) -> Result<String, hamel_compiler::Error> {
     let build = hamel_compiler::scene(scene).specs(joints);
-    let build = build.library(hamel_joints::specs()).functions([Kind::ForwardDynamics]);
+    let build = build
+        .library(hamel_joints::specs())
+        .functions([Kind::ForwardDynamics]);
     Ok(build.module(&format!("{name}.toml"))?.text)
 }
 

@@ -132,7 +132,9 @@ impl Loaded {
         match &mut self.way {
             Way::Tree(dynamics) => dynamics.forward_dynamics(q, v, tau, &mut self.rates)?,
             Way::Compiled(equations) => {
-                let run = equations.forward_dynamics.ok_or("it has no forward dynamics")?;
+                let run = equations
+                    .forward_dynamics
+                    .ok_or("it has no forward dynamics")?;
                 run(q, v, tau, &mut self.rates);
             }
         }
