@@ -15,7 +15,7 @@ mod compiled {
 }
 
 /// Joints that the library does not have.
-#[allow(dead_code, reason = "they are found by name")]
+#[allow(dead_code, unused_imports, reason = "they are found by name")]
 mod joints {
     include!(concat!(env!("OUT_DIR"), "/joints.rs"));
 }
