@@ -17,8 +17,7 @@ using namespace pinocchio;
 #define FLAGS "?"
 #endif
 
-// What ProximalSettings has. A loop in a plane says nothing across it, so that the equations are singular without mu; with smaller mu or more iterations than these no digits are
-// gained on the mechanisms of models.py.
+// What ProximalSettings has. A loop in a plane says nothing across it, so that the equations are singular without mu. README.md tells what other settings do.
 static double setting(const char* name, double otherwise) { const char* given = std::getenv(name); return given ? std::atof(given) : otherwise; }
 
 struct Loops : Bench {
