@@ -17,7 +17,7 @@ for part in "$@"; do
   base)
     need=""; for p in clang-19 libeigen3-dev g++; do dpkg -s $p >/dev/null 2>&1 || need="$need $p"; done
     [ -n "$need" ] && { log "apt-get install$need"; apt-get update -q >"$W/apt.log" 2>&1; apt-get install -y -q $need >>"$W/apt.log" 2>&1 || log "apt failed, see $W/apt.log"; }
-    pip_into venv pin==4.1.0 example-robot-data==6.0.0 casadi==3.8.2 mujoco==4.0.0 numpy scipy ;;
+    pip_into venv pin==4.1.0 example-robot-data==6.0.0 casadi==3.8.2 mujoco==4.0.0 numpy scipy gmpy2 ;;
   cppad) pip_into venv_cppad cmeel-cppad==20230000.0 cmeel-cppadcodegen==2.4.3 ;;
   drake) pip_into venv_drake drake==1.51.1 numpy ;; # its own environment: its versions need not be those of the others
   *) log "nothing is called $part"; exit 2 ;;

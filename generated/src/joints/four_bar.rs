@@ -2,7 +2,7 @@
 //! A four-bar linkage with all its moving links as bodies, of any lengths that close and cannot fold flat: crank-rockers, double cranks and triple rockers.
 //!
 //! Q: directions of crank, coupler and rocker, unit vectors in the x–y plane; v: the motion along the generalised cross product of the relations, by which the rate of
-//! the crank is v times coupler · rocker · sin(rocker − coupler): it passes dead points of every link. Rates, efforts and readings of links are those of the ports. The crank
+//! the crank is v times coupler · rocker · sin(coupler − rocker): it passes dead points of every link. Rates, efforts and readings of links are those of the ports. The crank
 //! turns about the origin, the rocker about a point at `ground` along x. Frames: those of crank and rocker in their fixed pins, that of the coupler at the end of the crank; x along each link.
 //!
 //! - Configuration: a ∈ S1, b ∈ S1, c ∈ S1, stored as a.c, a.s, b.c, b.s, c.c, c.s.
@@ -843,7 +843,7 @@ pub const SPEC: &str = r#"hamel = 1;
 /// A four-bar linkage with all its moving links as bodies, of any lengths that close and cannot fold flat: crank-rockers, double cranks and triple rockers.
 ///
 /// Q: directions of crank, coupler and rocker, unit vectors in the x–y plane; v: the motion along the generalised cross product of the relations, by which the rate of
-/// the crank is v times coupler · rocker · sin(rocker − coupler): it passes dead points of every link. Rates, efforts and readings of links are those of the ports. The crank
+/// the crank is v times coupler · rocker · sin(coupler − rocker): it passes dead points of every link. Rates, efforts and readings of links are those of the ports. The crank
 /// turns about the origin, the rocker about a point at `ground` along x. Frames: those of crank and rocker in their fixed pins, that of the coupler at the end of the crank; x along each link.
 joint four_bar(
     /// Distance of the fixed pins.

@@ -1,4 +1,4 @@
-//! A random chain, ready to be timed.
+//! A random chain or tree, ready to be timed.
 
 use crate::Timed;
 use chacha20::ChaCha8Rng;
@@ -22,13 +22,15 @@ struct State {
 pub enum Task {
     /// v̄̇.
     Forward,
+    /// v̄ and p̄̇.
+    MomentumRates,
     /// Derivatives of inverse dynamics.
     InverseDerivatives,
     /// Derivatives of forward dynamics.
     ForwardDerivatives,
 }
 
-/// A chain with states of its own.
+/// A chain or tree of joints of one type, with states of its own.
 pub struct Chain {
     task: Task,
     inverse: InverseDerivatives,
@@ -36,16 +38,21 @@ pub struct Chain {
     dynamics: Recursive,
     states: Vec<State>,
     rates: Vec<f64>,
+    momentum_rates: Vec<f64>,
+    joints: usize,
 }
 
 impl Chain {
-    /// `count` bodies on joints of a type of the library.
-    pub fn new(task: Task, joint: &str, count: usize) -> Self {
+    /// `count` joints of a type of the library, each on the one before it, or with `branches` on any before it.
+    pub fn new(task: Task, joint: &str, count: usize, branches: bool) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(count as u64);
-        let registry = hamel_joints::registry();
-        let entry = registry.get(joint).expect("a joint of the library");
-        let joint = (entry.build)(&[]).expect("it has no parameters");
-        let mechanism = random::chain(&mut random, &joint, count);
+        let mut joints = random::library().into_iter();
+        let joint = joints.find(|known| known.name() == joint);
+        let joint = joint.expect("a joint of the library");
+        let mechanism = match branches {
+            true => random::tree(&mut random, &vec![joint; count]),
+            false => random::chain(&mut random, &joint, count),
+        };
         let layout = *mechanism.layout();
         let states = (0..STATES).map(|_| State {
             q: random::configuration(&mut random, &mechanism),
@@ -58,6 +65,8 @@ impl Chain {
             forward: ForwardDerivatives::new(&mechanism),
             states: states.collect(),
             rates: vec![0.0; layout.speeds],
+            momentum_rates: vec![0.0; layout.speeds],
+            joints: count,
             dynamics: Recursive::new(mechanism),
         }
     }
@@ -66,7 +75,7 @@ impl Chain {
 impl Timed for Chain {
     fn units(&self) -> usize {
         match self.task {
-            Task::Forward => self.dynamics.mechanism().bodies().len(),
+            Task::Forward | Task::MomentumRates => self.joints,
             _ => self.rates.len() * self.rates.len(),
         }
     }
@@ -78,6 +87,13 @@ impl Timed for Chain {
             let dynamics = &mut self.dynamics;
             let solved = match self.task {
                 Task::Forward => dynamics.forward_dynamics(q, speeds, efforts, &mut self.rates),
+                Task::MomentumRates => dynamics.momentum_rates(
+                    q,
+                    speeds,
+                    &mut |_, out| out.copy_from_slice(efforts),
+                    &mut self.rates,
+                    &mut self.momentum_rates,
+                ),
                 Task::InverseDerivatives => {
                     dynamics.inverse_dynamics_derivatives(q, speeds, speeds, &mut self.inverse)
                 }

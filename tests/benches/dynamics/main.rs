@@ -1,5 +1,5 @@
-//! How the time of forward dynamics and of implicit steps, a body, and that of the derivatives of forward and of inverse dynamics, an entry, grow with
-//! the number of bodies, on chains of revolute and of ball joints.
+//! How the time of forward dynamics in both forms, a joint, of implicit steps, a body, and of the derivatives of forward and of inverse dynamics, an entry,
+//! grow with the number of joints: chains of revolute and of ball joints, and chains and trees of joints that carry several bodies.
 //!
 //! `cargo bench --package hamel-tests --bench dynamics`. Time is CPU time of the thread. Every repetition visits all chains, so that a machine that
 //! changes speed changes it for all; ratios are taken within a repetition.
@@ -13,6 +13,9 @@ use implicit::Implicit;
 
 const LENGTHS: [usize; 7] = [8, 16, 32, 64, 128, 256, 512];
 
+/// A gear, a loop of one freedom, and two loops of two.
+const SEVERAL_BODIES: [&str; 3] = ["geared_revolute", "four_bar", "parallel_ankle"];
+
 /// The length that others are compared with, and what is asked of the longest.
 const UNIT: usize = 32;
 const LIMIT: f64 = 1.25;
@@ -25,7 +28,7 @@ const BATCH: f64 = 20e6;
 
 /// Something whose time grows with its size.
 trait Timed {
-    /// How many bodies there are, or entries of one matrix.
+    /// How many joints or bodies there are, or entries of one matrix.
     fn units(&self) -> usize;
 
     /// Nanoseconds of one call, over `calls` of them.
@@ -35,6 +38,19 @@ trait Timed {
 fn main() {
     let forward =
         ["revolute", "ball", "ball_child"].map(|joint| (Task::Forward, joint, &LENGTHS[..]));
+    for joint in SEVERAL_BODIES {
+        for (task, form) in [
+            (Task::Forward, "forward dynamics"),
+            (Task::MomentumRates, "momentum rates"),
+        ] {
+            for (branches, shape) in [(false, "chains"), (true, "trees")] {
+                let name = format!("{form} of {shape} of `{joint}`");
+                report(&name, "joint", LIMIT, &LENGTHS, |n| {
+                    Chain::new(task, joint, n, branches)
+                });
+            }
+        }
+    }
     let (inverse_slopes, slopes) = (Task::InverseDerivatives, Task::ForwardDerivatives);
     let derivatives = [inverse_slopes, slopes].map(|task| {
         let balls = (task, "ball_child", &LENGTHS[..5]);
@@ -42,12 +58,15 @@ fn main() {
     });
     for (task, joint, lengths) in forward.into_iter().chain(derivatives.into_iter().flatten()) {
         let (name, unit) = match task {
-            Task::Forward => ("forward dynamics", "body"),
+            Task::Forward => ("forward dynamics", "joint"),
+            Task::MomentumRates => ("momentum rates", "joint"),
             Task::InverseDerivatives => ("derivatives of inverse dynamics", "entry"),
             Task::ForwardDerivatives => ("derivatives of forward dynamics", "entry"),
         };
         let name = format!("{name} of chains of `{joint}`");
-        report(&name, unit, LIMIT, lengths, |n| Chain::new(task, joint, n));
+        report(&name, unit, LIMIT, lengths, |n| {
+            Chain::new(task, joint, n, false)
+        });
     }
     for scheme in [Scheme::Radau5, Scheme::Midpoint] {
         let name = format!("steps of {} of stiff chains of `ball_child`", scheme.name());
@@ -89,7 +108,7 @@ fn report<T: Timed>(
 
     println!("\n{name}, {REPETITIONS} interleaved repetitions");
     println!(
-        "| bodies | ns a {unit_name}, least | median | of the time at {UNIT} bodies, least | median |"
+        "| joints | ns a {unit_name}, least | median | of the time at {UNIT} joints, least | median |"
     );
     println!("|---|---|---|---|---|");
     for (i, length) in lengths.iter().enumerate() {
@@ -113,7 +132,7 @@ fn report<T: Timed>(
     );
     let verdict = if ratio <= limit { "holds" } else { "fails" };
     println!(
-        "{} bodies against {UNIT}: {ratio:.3}, at most {limit}: {verdict}",
+        "{} joints against {UNIT}: {ratio:.3}, at most {limit}: {verdict}",
         lengths[last]
     );
 }

@@ -82,14 +82,14 @@ fn calls() {
     }
 }
 
-/// Instructions of the whole program.
-fn instructions(name: &str, which: &str, count: usize) -> f64 {
+/// Instructions of this program under valgrind, running one test with a variable set to `value`.
+pub fn of_test(test: &str, variable: &str, value: &str) -> f64 {
     let own = std::env::current_exe().expect("a path");
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
         .arg(own)
-        .args(["--exact", "instructions::calls", "--test-threads=1"])
-        .env(VARIABLE, format!("{name} {which} {count}"))
+        .args(["--exact", test, "--test-threads=1"])
+        .env(variable, value)
         .output()
         .expect("valgrind, which counts instructions");
     let told = String::from_utf8_lossy(&output.stderr);
@@ -98,6 +98,15 @@ fn instructions(name: &str, which: &str, count: usize) -> f64 {
         .find_map(|line| line.split_once("Collected : "));
     let (_, number) = collected.unwrap_or_else(|| panic!("no count: {told}"));
     number.trim().parse().expect("a number")
+}
+
+/// Instructions of the whole program.
+fn instructions(name: &str, which: &str, count: usize) -> f64 {
+    of_test(
+        "instructions::calls",
+        VARIABLE,
+        &format!("{name} {which} {count}"),
+    )
 }
 
 #[test]

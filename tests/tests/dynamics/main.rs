@@ -10,6 +10,7 @@ mod emitted;
 mod errata;
 mod euler_lagrange;
 mod frames;
+mod growth;
 mod instructions;
 mod linear_step;
 mod newton_euler;
