@@ -40,7 +40,7 @@ mod structure;
 mod units;
 
 /// Most degrees of freedom of a joint.
-pub const MOST_FREEDOMS: usize = 8;
+pub const MOST_FREEDOMS: usize = 16;
 
 #[cfg(feature = "alloc")]
 pub use coupled::{Coupled, Link, LinkFault, LinkMotion, MOST_COORDINATES, MOST_LINKS, coupled};

@@ -24,7 +24,7 @@ fn folders() -> [PathBuf; 2] {
 /// Mass properties of the n-th body, without symmetry.
 fn inertia(n: usize) -> Inertia {
     let n = n as f64;
-    let centre = Vector3::new(0.05 + 0.02 * n, 0.03, -0.01 * n);
+    let centre = Vector3::new(0.05 + 0.02 * n, 0.03, -0.01 * n % 0.05);
     let about = Matrix3::new(
         0.02,
         1e-3,
@@ -34,7 +34,7 @@ fn inertia(n: usize) -> Inertia {
         -2e-3,
         5e-4,
         -2e-3,
-        0.025 + 0.003 * n,
+        0.025 + 0.003 * (n % 5.0),
     );
     (0.8 + 0.3 * n, centre, about)
 }
@@ -197,6 +197,7 @@ tests! {
     geared_revolute: [5.5], 0.5;
     parallel_ankle: [0.25, 0.04, 0.05, 0.06, 0.25], 0.2;
     rail: [2.0, 0.3, 0.2], 0.3;
+    rollers: [0.3], 0.5;
     scissor: [0.4], 0.2;
     slider_crank: [0.12, 0.35, 0.05], 0.5;
     stewart: [0.7, 0.4], 0.2;

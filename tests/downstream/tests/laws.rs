@@ -4,7 +4,7 @@ use hamel::joint::Member;
 use hamel_downstream::joints::{
     BallCayley, BallTurns, Bead, CamCircle, CarWheels, Catenary, CatenaryLength, CrankCoupler,
     CrankRocker, Delta, DirectionSensor, ENTRIES, FiveBarRods, FixedAxis, FourBarThrough,
-    GearedRotor, MeasuredRocker, PlanarTurns, PowerGuide, Press, RollingBallCayley, Scara,
+    GearedRotor, MeasuredRocker, PlanarTurns, PowerGuide, Press, Rollers, RollingBallCayley, Scara,
     SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint, Stewart, ThreeRrr,
     Unpinned, Valley,
 };
@@ -111,6 +111,7 @@ laws_of_bodies! {
     press: Press::new(0.4, 1.1), Entries(0.5), [1, 2];
     stewart: Stewart::new(0.7, 0.4), Around(0.2), [];
     three_rrr: ThreeRrr::new(0.9, 0.3, 0.5, 0.3), Around(0.05), [1, 2, 3];
+    rollers: Rollers::new(0.3), Entries(0.5), [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
     slider_crank_links: SliderCrankLinks::new(1.1, 0.4, 0.2), Entries(0.5), [1, 2];
     unpinned: Unpinned::new(0.7), Entries(0.5), [1];
 }

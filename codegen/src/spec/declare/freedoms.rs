@@ -14,7 +14,7 @@ use crate::model::{Declared, Freedom, Implicit, VelocityFrame};
 use std::ops::Range;
 
 /// Most freedoms: those of a free body.
-const MOST_FREEDOMS: usize = 8;
+const MOST_FREEDOMS: usize = 16;
 
 /// The degrees of freedom of a joint.
 pub(super) struct Freedoms {
