@@ -43,7 +43,10 @@ mod units;
 pub const MOST_FREEDOMS: usize = 16;
 
 #[cfg(feature = "alloc")]
-pub use coupled::{Coupled, Link, LinkFault, LinkMotion, MOST_COORDINATES, MOST_LINKS, coupled};
+pub use coupled::{
+    CLOSED_SIZES, Coupled, Link, LinkFault, LinkMotion, MOST_COORDINATES, MOST_LINKS,
+    MOST_RELATIONS, Relation, Row, Tie, closed, coupled,
+};
 pub use patterns::{Entry, Patterns};
 pub use pin::{DriveSource, Pin, PinDrive, Turning};
 pub use port::{Port, PortLaw};

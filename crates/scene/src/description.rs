@@ -23,6 +23,10 @@ pub struct SceneDescription {
     pub gravity: Vector3<f64>,
     /// The bodies, each after its parent; those that mimic joints couple follow each other.
     pub bodies: Vec<BodyDescription>,
+    /// Loops that joints between bodies of the tree close.
+    pub loops: Vec<LoopDescription>,
+    /// Sums of positions of joints that are proportional.
+    pub couplings: Vec<CouplingDescription>,
     /// Named frames.
     pub frames: Vec<FrameDescription>,
     /// Springs between points.
@@ -50,6 +54,8 @@ impl SceneDescription {
             description: String::new(),
             gravity: Vector3::zeros(),
             bodies: Vec::new(),
+            loops: Vec::new(),
+            couplings: Vec::new(),
             frames: Vec::new(),
             springs: Vec::new(),
             wrenches: Vec::new(),
@@ -106,6 +112,98 @@ pub struct MimicDescription {
     pub multiplier: f64,
     /// rad or m.
     pub offset: f64,
+}
+
+/// A loop: two bodies of the tree that a joint holds together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoopDescription {
+    /// Name, unique among loops and couplings.
+    pub name: Located<String>,
+    /// The joint.
+    pub closing: Closing,
+    /// What it holds together: the frames of the joint on the predecessor and on the successor.
+    pub ends: [LoopEnd; 2],
+    /// Names of joints of the loop that move independently; where there are fewer than its degrees of freedom, others are chosen.
+    pub independent: Vec<Located<String>>,
+}
+
+/// Where the joint of a loop holds a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopEnd {
+    /// Index of the body; `None` is the world.
+    pub body: Option<usize>,
+    /// The frame of the joint in that of the body.
+    pub at: Pose<f64>,
+}
+
+/// The joint that closes a loop, by how the second frame moves in the first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Closing {
+    /// It turns about the common z axis.
+    Revolute,
+    /// It slides along the common z axis.
+    Prismatic,
+    /// It turns about the common z axis and slides along it.
+    Cylindrical,
+    /// It turns about z and slides across it.
+    Planar,
+    /// It turns about the common origin.
+    Spherical,
+    /// It turns about the z axes of both frames, which are at right angles and meet.
+    Universal,
+    /// Not at all.
+    Fixed,
+}
+
+impl Closing {
+    /// Names, as scenes write them.
+    pub const NAMES: [&'static str; 7] = [
+        "revolute",
+        "prismatic",
+        "cylindrical",
+        "planar",
+        "spherical",
+        "universal",
+        "fixed",
+    ];
+
+    /// By its name.
+    pub fn of(name: &str) -> Option<Self> {
+        let all = [
+            Self::Revolute,
+            Self::Prismatic,
+            Self::Cylindrical,
+            Self::Planar,
+            Self::Spherical,
+            Self::Universal,
+            Self::Fixed,
+        ];
+        let place = Self::NAMES.iter().position(|known| *known == name)?;
+        all.get(place).copied()
+    }
+
+    /// As scenes write it.
+    pub fn name(self) -> &'static str {
+        let mut names = Self::NAMES.into_iter();
+        names
+            .find(|name| Self::of(name) == Some(self))
+            .unwrap_or("")
+    }
+}
+
+/// `Σ y = ratio · Σ y + offset`: of the joints on the way to the successor, and to the predecessor, from the last body that carries both.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CouplingDescription {
+    /// Name, unique among loops and couplings.
+    pub name: Located<String>,
+    /// Indices of predecessor and successor; `None` is the world.
+    pub ends: [Option<usize>; 2],
+    /// Not 0.
+    pub ratio: f64,
+    /// rad or m.
+    pub offset: f64,
+    /// Names of joints on the ways that move independently; where there are fewer than its degrees of freedom, others are chosen.
+    pub independent: Vec<Located<String>>,
 }
 
 /// One of several bodies of a joint. They follow each other, in the order of the file.

@@ -35,8 +35,9 @@ pub use control::{
 };
 pub use coupling::Coupling;
 pub use description::{
-    BodyDescription, InitialDescription, JointDescription, MimicDescription, Motion, Part,
-    PortRate, Position, SceneDescription, TwistDescription, TwistFrame,
+    BodyDescription, Closing, CouplingDescription, InitialDescription, JointDescription,
+    LoopDescription, LoopEnd, MimicDescription, Motion, Part, PortRate, Position, SceneDescription,
+    TwistDescription, TwistFrame,
 };
 pub use diagnostics::{Diagnostic, Diagnostics};
 pub use event::{EventDescription, PointAlong, PortOf, Quantity, QuantityDescription, SceneEvent};

@@ -2,10 +2,12 @@
 
 use crate::build;
 use crate::control::Control;
-use crate::description::{BodyDescription, SceneDescription, Source};
+use crate::description::{
+    BodyDescription, CouplingDescription, LoopDescription, SceneDescription, Source,
+};
 use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::event::SceneEvent;
-use crate::notice::Notice;
+use crate::notice::{Notice, Notices};
 use crate::parse::{self, BodyDraft, Draft, Tree};
 use crate::read::Sink;
 use crate::settings::Settings;
@@ -155,10 +157,15 @@ impl SceneDescription {
     /// Unknown joint types or parameters, initial states that a joint cannot take, and whatever the mechanism refuses; all
     /// at once.
     pub fn build(&self, registry: &JointRegistry) -> Result<Scene, Diagnostics> {
-        let coupled = self.coupled()?;
+        let mut notices = Notices::default();
+        let coupled = self.coupled_with(&mut notices)?;
         let mut sink = Sink::default();
         let states = build::states(&coupled.bodies, registry, &mut sink);
         let scene = states.and_then(|states| build::scene(&coupled, states, &mut sink));
+        let scene = scene.map(|scene| Scene {
+            notices: notices.into_vec(),
+            ..scene
+        });
         scene.ok_or_else(|| self.refuse(sink))
     }
 
@@ -186,11 +193,13 @@ fn describe(
 ) -> Result<SceneDescription, Diagnostics> {
     let complete = draft.and_then(complete);
     match complete {
-        Some((draft, bodies)) if sink.len() == 0 => Ok(SceneDescription {
+        Some((draft, bodies, (loops, couplings))) if sink.len() == 0 => Ok(SceneDescription {
             name: draft.name.unwrap_or_else(|| stem(&source.name)),
             description: draft.description,
             gravity: draft.gravity,
             bodies,
+            loops,
+            couplings,
             frames: draft.elements.frames,
             springs: draft.elements.springs,
             wrenches: draft.elements.wrenches,
@@ -212,9 +221,17 @@ pub(crate) fn stem(source_name: &str) -> String {
     text::visible_line(&stem)
 }
 
+type Ties = (Vec<LoopDescription>, Vec<CouplingDescription>);
+
 /// The bodies in the order of the tree; `None` if a part of one could not be read.
-fn complete(mut draft: Draft) -> Option<(Draft, Vec<BodyDescription>)> {
+fn complete(mut draft: Draft) -> Option<(Draft, Vec<BodyDescription>, Ties)> {
     let Tree { order, parents, .. } = draft.tree.take()?;
+    let mut rank = vec![0; order.len()];
+    order
+        .iter()
+        .enumerate()
+        .for_each(|(own, &place)| rank[place] = own);
+    let ties = std::mem::take(&mut draft.ties).ranked(|place| rank[place]);
     let mut drafts: Vec<Option<BodyDraft>> = draft.bodies.drain(..).map(Some).collect();
     let bodies = order.iter().zip(parents).map(|(&place, parent)| {
         let body = drafts.get_mut(place)?.take()?;
@@ -232,5 +249,5 @@ fn complete(mut draft: Draft) -> Option<(Draft, Vec<BodyDescription>)> {
         })
     });
     let bodies: Option<Vec<_>> = bodies.collect();
-    Some((draft, bodies?))
+    Some((draft, bodies?, ties))
 }

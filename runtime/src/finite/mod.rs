@@ -15,7 +15,7 @@ mod tests;
 pub use implicit::{RETRACT_ITERATIONS, along_tangent, retract};
 pub use invert::{LOCAL_ITERATIONS, differential, differential_inverse, local};
 pub use project::{PROJECT_ITERATIONS, assemble, project, project_by_displacements};
-pub use solve::{inverse, least_squares};
+pub use solve::{determinant, inverse, least_squares};
 
 use crate::scalar::{Dual, Scalar};
 use nalgebra::{SMatrix, SVector};

@@ -9,6 +9,13 @@ pub fn inverse<T: Scalar, const K: usize>(matrix: &SMatrix<T, K, K>) -> SMatrix<
     least_squares(matrix, &SMatrix::identity())
 }
 
+/// The determinant of a square matrix.
+pub fn determinant<T: Scalar, const K: usize>(matrix: &SMatrix<T, K, K>) -> T {
+    let (triangle, _) = triangular(*matrix, SMatrix::<T, K, 1>::zeros());
+    // Each of the K reflections turns the sign.
+    (0..K).fold(T::one(), |product, k| -product * triangle[(k, k)])
+}
+
 /// For each column r of `side` (N×M) the x (K) with the least ‖F x − r‖₂, for an F (`matrix`) of N rows and rank K.
 ///
 /// Backward stable, as normal equations are not. Infinite or NaN where F has dependent columns.

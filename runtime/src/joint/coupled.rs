@@ -1,49 +1,59 @@
-//! Joints that follow one another: [`Coupled`], one joint of several bodies, each of whose turns and slides is an affine function of one of K
-//! coordinates.
+//! Links that move together: [`Coupled`], one joint of several bodies, each of which turns or slides by an affine function of one of N
+//! coordinates, and what else holds them together.
 //!
-//! A gripper whose fingers close together, a finger whose phalanges curl by one tendon, the mimic joints of URDF: joint angles and displacements
-//! y = ratio · q + offset. Each [`Link`] is a turn about, or a slide along, the z axis of a joint frame, which is fixed on the joint's parent or on a
-//! link before it. The pose of a body is the product of what lies between it and the parent,
+//! A gripper whose fingers close together, a finger whose phalanges curl by one tendon, the mimic joints of URDF, and linkages whose loops are
+//! closed: joint angles and displacements y = ratio · q + offset. Each [`Link`] is a turn about, or a slide along, the z axis of a joint frame,
+//! which is fixed on the joint's parent or on a link before it. The pose of a body is the product of what lies between it and the parent,
 //!
 //! ```text
 //! H_b = E_1(y_1) F_2 E_2(y_2) … F_n E_n(y_n),   y_i = ratio_i q_{k(i)} + offset_i,   E_i = exp(y_i z),
 //! ```
 //!
-//! with F_i the [`Link::frame`]s. The coordinates are real and v = q̇, so that S is the identity and Φ(Q, ϕ) = Q + ϕ. With `a_i = ratio_i Ad z`
-//! the twist of link i at unit rate of its coordinate, in the frame of the body, X^c is the sum of the a_i in the columns k(i), and
-//! `∂a_i/∂ϕ_l = Σ [a_i, a_j]` over the links j behind i that follow q_l. Nothing else has to be derived: the dynamics of several bodies in
-//! one joint have the inertia and the efforts of every one of them, without multipliers.
+//! with F_i the [`Link::frame`]s. With `a_i = ratio_i Ad z` the twist of link i at unit rate of its coordinate, in the frame of the body, the map
+//! X̂^c of the rates q̇ is the sum of the a_i in the columns k(i), and `∂a_i/∂q_l = Σ [a_i, a_j]` over the links j behind i that follow q_l.
 //!
-//! Each y_i is a [port](crate::joint::Port): springs, dampers and efforts act there, and its rate is `ratio_i v_{k(i)}`.
+//! Where nothing else holds them, v = q̇: S is the identity and Φ(Q, ϕ) = Q + ϕ. [`Tie`]s are C relations g(q) = 0. The first K coordinates are then
+//! independent, the others follow: `q̇ = B v` with `B = [I; −(∂g_d)⁻¹ ∂g_i]`, X^c = X̂^c B, and Φ moves along B and comes back along the
+//! dependent coordinates, by [`finite::retract`](crate::finite::retract). The coordinates are real, so that S is the identity here as well. Along a direction d the relations bend by
+//! `∂B/∂d = [0; −(∂g_d)⁻¹ (∂²g d) B]`, which is all that ∂X^c/∂ϕ and c need beyond the brackets. Where `det ∂g_d = 0` the joint ends: rounding ε of the relations is
+//! ε/det³ in the second derivatives of the dependent coordinates, so that Φ has no value where that takes half of their digits.
+//!
+//! Nothing else has to be derived: the dynamics of several bodies in one joint have the inertia and the efforts of every one of them. Each y_i is
+//! a [port](crate::joint::Port): springs, dampers and efforts act there, and its rate is ratio_i times that of its coordinate.
 
+mod closed;
+mod filled;
 mod link;
+mod names;
+mod tie;
 
+pub use closed::{CLOSED_SIZES, MOST_RELATIONS, closed};
 pub use link::{Link, LinkFault, LinkMotion, MOST_LINKS};
+pub use tie::{Relation, Row, Tie};
 
-use super::{Joint, Patterns, Port, Structure, Structures, Unit, Units, VelocityFrame};
+use super::{Joint, Patterns, Port, Structure, Structures, Units, VelocityFrame};
 use crate::erased::{Shared, erase};
+use crate::finite;
 use crate::scalar::Scalar;
 use crate::spatial::{Pose, bracket_product};
 use alloc::sync::Arc;
+use closed::{Ties, dependent, split};
 use core::iter::successors;
+use filled::Filled;
 use nalgebra::{SMatrix, SVector, Vector6};
+use names::{BODIES, coordinates};
 
-/// Most coordinates of a [`Coupled`] joint.
+/// Most independent coordinates of a [`Coupled`] joint.
 pub const MOST_COORDINATES: usize = 4;
 
-/// Links that follow K coordinates, as one of their bodies sees them; the joint itself is that of the first.
+/// Links that follow N coordinates, of which C relations leave K independent, as one of their bodies sees them; the joint itself is that of the first.
 #[derive(Clone, Debug)]
-pub struct Coupled<const K: usize> {
+pub struct Coupled<const N: usize, const K: usize, const C: usize> {
     links: Arc<[Link]>,
     ports: &'static [Port],
+    ties: Arc<Ties>,
     body: usize,
 }
-
-/// Names of bodies.
-const BODIES: [&str; MOST_LINKS] = [
-    "link_1", "link_2", "link_3", "link_4", "link_5", "link_6", "link_7", "link_8", "link_9",
-    "link_10", "link_11", "link_12", "link_13", "link_14", "link_15", "link_16",
-];
 
 /// A joint of these links, of as many coordinates as they follow, whose bodies are `link_1`, `link_2` …; `ports` names their y, in their order. These names
 /// live as long as the program, as those of other joints.
@@ -52,30 +62,33 @@ const BODIES: [&str; MOST_LINKS] = [
 /// Links that no joint can have, the first of them by its number.
 pub fn coupled(links: &[Link], ports: &'static [Port]) -> Result<Shared, LinkFault> {
     Ok(match link::check(links, ports)? {
-        1 => erase(Coupled::<1>::of(links, ports)),
-        2 => erase(Coupled::<2>::of(links, ports)),
-        3 => erase(Coupled::<3>::of(links, ports)),
-        _ => erase(Coupled::<4>::of(links, ports)),
+        1 => erase(Coupled::<1, 1, 0>::of(links, ports, Ties::NONE)),
+        2 => erase(Coupled::<2, 2, 0>::of(links, ports, Ties::NONE)),
+        3 => erase(Coupled::<3, 3, 0>::of(links, ports, Ties::NONE)),
+        _ => erase(Coupled::<4, 4, 0>::of(links, ports, Ties::NONE)),
     })
 }
 
-impl<const K: usize> Coupled<K> {
+impl<const K: usize> Coupled<K, K, 0> {
     /// The joint of these links, which follow K coordinates.
     ///
     /// # Errors
     /// Those of [`coupled`], and another number of coordinates than K.
     pub fn new(links: &[Link], ports: &'static [Port]) -> Result<Self, LinkFault> {
         match link::check(links, ports)? {
-            found if found == K => Ok(Self::of(links, ports)),
+            found if found == K => Ok(Self::of(links, ports, Ties::NONE)),
             found => Err(LinkFault::Coordinates { found, most: K }),
         }
     }
+}
 
-    /// Of links that have been checked.
-    fn of(links: &[Link], ports: &'static [Port]) -> Self {
+impl<const N: usize, const K: usize, const C: usize> Coupled<N, K, C> {
+    /// Of links and ties that have been checked.
+    fn of(links: &[Link], ports: &'static [Port], ties: Ties) -> Self {
         Self {
             links: links.into(),
             ports,
+            ties: Arc::new(ties),
             body: 0,
         }
     }
@@ -95,7 +108,7 @@ impl<const K: usize> Coupled<K> {
     }
 
     /// For this body's link, and those that it hangs on, the coordinate that it follows and its twist at unit rate of that, in the child frame.
-    fn twists<T: Scalar>(&self, q: &SVector<T, K>) -> Filled<(usize, Vector6<T>)> {
+    fn twists<T: Scalar>(&self, q: &SVector<T, N>) -> Filled<(usize, Vector6<T>)> {
         let mut twists = Filled::new((0, Vector6::zeros()));
         let mut below = Pose::identity();
         for link in self.upwards() {
@@ -109,48 +122,34 @@ impl<const K: usize> Coupled<K> {
         twists
     }
 
-    /// For each link from this body's upwards, its coordinate and `[a_i, w_i]`, with w_i the twist of what is behind it at v: the rate of a_i.
+    /// For each link from this body's upwards, its coordinate and `[a_i, w_i]`, with w_i the twist of what is behind it at rates of the coordinates: the rate of a_i.
     fn twist_rates<T: Scalar>(
         &self,
-        q: &SVector<T, K>,
-        v: &SVector<T, K>,
+        q: &SVector<T, N>,
+        rates: &SVector<T, N>,
     ) -> Filled<(usize, Vector6<T>)> {
-        let mut rates = Filled::new((0, Vector6::zeros()));
+        let mut changes = Filled::new((0, Vector6::zeros()));
         let mut behind = Vector6::zeros();
         for (k, twist) in self.twists(q).as_ref() {
-            rates.push((*k, bracket_product(twist, &behind)));
-            behind += twist * v[*k];
+            changes.push((*k, bracket_product(twist, &behind)));
+            behind += twist * rates[*k];
         }
-        rates
+        changes
+    }
+
+    /// X̂^c: rates of the coordinates to the twist of the body, in its own frame.
+    fn coordinate_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, N> {
+        summed(&self.twists(q))
     }
 }
 
-/// As many entries as a joint has links, without allocation.
-struct Filled<E> {
-    entries: [E; MOST_LINKS],
-    count: usize,
-}
-
-impl<E: Copy> Filled<E> {
-    fn new(empty: E) -> Self {
-        Self {
-            entries: [empty; MOST_LINKS],
-            count: 0,
-        }
+/// Twists by coordinates.
+fn summed<T: Scalar, const N: usize>(twists: &Filled<(usize, Vector6<T>)>) -> SMatrix<T, 6, N> {
+    let mut map = SMatrix::<T, 6, N>::zeros();
+    for (k, twist) in twists.as_ref() {
+        add(&mut map, *k, twist);
     }
-
-    fn push(&mut self, entry: E) {
-        if let Some(place) = self.entries.get_mut(self.count) {
-            *place = entry;
-            self.count += 1;
-        }
-    }
-}
-
-impl<E> AsRef<[E]> for Filled<E> {
-    fn as_ref(&self) -> &[E] {
-        &self.entries[..self.count]
-    }
+    map
 }
 
 /// Adds to a column.
@@ -160,40 +159,11 @@ fn add<T: Scalar, const K: usize>(map: &mut SMatrix<T, 6, K>, k: usize, twist: &
     }
 }
 
-/// Names of coordinates: `q` of one.
-const fn coordinates<const K: usize>() -> [&'static str; K] {
-    let known = ["q_1", "q_2", "q_3", "q_4"];
-    let mut names = ["q"; K];
-    let mut k = 0;
-    while K > 1 && k < K {
-        names[k] = known[k];
-        k += 1;
-    }
-    names
-}
-
-/// All combinations of angles and lengths: coordinate k of combination n is a length where bit k of n is 1.
-const UNITS: [[Unit; MOST_COORDINATES]; 1 << MOST_COORDINATES] = {
-    let mut all = [[Unit::ANGLE; MOST_COORDINATES]; 1 << MOST_COORDINATES];
-    let mut n = 0;
-    while n < all.len() {
-        let mut k = 0;
-        while k < MOST_COORDINATES {
-            if n >> k & 1 == 1 {
-                all[n][k] = Unit::LENGTH;
-            }
-            k += 1;
-        }
-        n += 1;
-    }
-    all
-};
-
-impl<const K: usize> Joint<K, K, K, 0> for Coupled<K> {
-    const NAME: &'static str = "coupled";
-    const COORDINATES: [&'static str; K] = coordinates();
-    const FREEDOMS: [&'static str; K] = coordinates();
-    const SPEEDS: [&'static str; K] = coordinates();
+impl<const N: usize, const K: usize, const C: usize> Joint<N, K, K, 0> for Coupled<N, K, C> {
+    const NAME: &'static str = if C == 0 { "coupled" } else { "linkage" };
+    const COORDINATES: [&'static str; N] = coordinates::<N, K>();
+    const FREEDOMS: [&'static str; K] = coordinates::<K, K>();
+    const SPEEDS: [&'static str; K] = coordinates::<K, K>();
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Declared;
     const STRUCTURES: Structures = Structures {
         twist_map: Structure::General,
@@ -202,24 +172,25 @@ impl<const K: usize> Joint<K, K, K, 0> for Coupled<K> {
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
         speed_map: Structure::General,
+        project: if C == 0 {
+            Structure::Identity
+        } else {
+            Structure::General
+        },
+        residual: if C == 0 {
+            Structure::Zero
+        } else {
+            Structure::General
+        },
         ..Structures::TRIVIAL
     };
     const PATTERNS: Patterns<K, K> = Patterns::DENSE;
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[];
-    const SINGULARITIES: &'static [&'static str] = &[];
+    const SINGULARITIES: &'static [&'static str] = closed::singularities(C);
+    const RELATIONS: &'static [&'static str] = closed::relations(C);
 
-    /// A coordinate is what the first link that follows it is moved by.
     fn units(&self) -> Units {
-        let is_length = |k: usize| {
-            let mut links = self.links.iter();
-            let first = links.find(|link| link.coordinate == k);
-            first.is_some_and(|link| link.motion == LinkMotion::Slide)
-        };
-        let combination = (0..K)
-            .map(|k| usize::from(is_length(k)) << k)
-            .sum::<usize>();
-        let units = const { &UNITS }.get(combination);
-        Units::of_rates(units.and_then(|units| units.get(..K)).unwrap_or_default())
+        names::units::<N, K>(&self.links)
     }
 
     fn ports(&self) -> &'static [Port] {
@@ -245,75 +216,96 @@ impl<const K: usize> Joint<K, K, K, 0> for Coupled<K> {
         links.flat_map(|link| [("ratio", link.ratio), ("offset", link.offset)])
     }
 
-    fn home<T: Scalar>(&self) -> SVector<T, K> {
-        SVector::zeros()
+    fn home<T: Scalar>(&self) -> SVector<T, N> {
+        match C {
+            0 => SVector::zeros(),
+            _ => self.project(&self.ties.start()),
+        }
     }
 
-    fn pose<T: Scalar>(&self, q: &SVector<T, K>) -> Pose<T> {
+    fn pose<T: Scalar>(&self, q: &SVector<T, N>) -> Pose<T> {
         let mut poses = self.upwards().map(|link| link.pose(q[link.coordinate]));
         let own = poses.next().unwrap_or_else(Pose::identity);
         poses.fold(own, |below, pose| pose * below)
     }
 
-    fn twist_map<T: Scalar>(&self, q: &SVector<T, K>) -> SMatrix<T, 6, K> {
+    fn twist_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K> {
         self.pose(q).act_twist_columns(&self.twist_map_child(q))
     }
 
-    fn twist_map_child<T: Scalar>(&self, q: &SVector<T, K>) -> SMatrix<T, 6, K> {
-        let mut map = SMatrix::<T, 6, K>::zeros();
-        for (k, twist) in self.twists(q).as_ref() {
-            add(&mut map, *k, twist);
-        }
-        map
+    fn twist_map_child<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K> {
+        self.tangent(q).along(&self.coordinate_map(q))
     }
 
-    fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, K>) -> [SMatrix<T, 6, K>; K] {
-        let mut slices = [SMatrix::<T, 6, K>::zeros(); K];
-        let twists = self.twists(q);
-        for (n, (k, above)) in twists.as_ref().iter().enumerate() {
-            for (l, below) in &twists.as_ref()[..n] {
-                add(&mut slices[*l], *k, &bracket_product(above, below));
-            }
-        }
-        slices
+    fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, N>) -> [SMatrix<T, 6, K>; K] {
+        let tangent = self.tangent(q);
+        let map = match C {
+            0 => SMatrix::zeros(),
+            _ => self.coordinate_map(q),
+        };
+        core::array::from_fn(|l| {
+            let direction = tangent.direction(l);
+            let turned = tangent.along(&summed(&self.twist_rates(q, &direction)));
+            turned + tangent.bent(&map, &self.bend(q, &direction, &tangent))
+        })
     }
 
     fn bias_acceleration<T: Scalar>(
         &self,
-        q: &SVector<T, K>,
+        q: &SVector<T, N>,
         speeds: &SVector<T, K>,
     ) -> SVector<T, 6> {
-        let rates = self.twist_rates(q, speeds);
-        let parts = rates.as_ref().iter();
-        parts.fold(SVector::zeros(), |sum, (k, rate)| sum + rate * speeds[*k])
+        let tangent = self.tangent(q);
+        let rates = tangent.rates(speeds);
+        let changes = self.twist_rates(q, &rates);
+        let parts = changes.as_ref().iter();
+        let turned = parts.fold(SVector::zeros(), |sum, (k, change)| {
+            sum + change * rates[*k]
+        });
+        match C {
+            0 => turned,
+            _ => {
+                let bend = self.bend(q, &rates, &tangent);
+                turned + tangent.bent(&self.coordinate_map(q), &bend) * speeds
+            }
+        }
     }
 
     fn bias_momentum<T: Scalar>(
         &self,
-        q: &SVector<T, K>,
+        q: &SVector<T, N>,
         speeds: &SVector<T, K>,
         h: &SVector<T, 6>,
     ) -> SVector<T, K> {
-        let mut out = SVector::zeros();
-        for (k, rate) in self.twist_rates(q, speeds).as_ref() {
+        let tangent = self.tangent(q);
+        let rates = tangent.rates(speeds);
+        let mut all = SMatrix::<T, 1, N>::zeros();
+        for (k, change) in self.twist_rates(q, &rates).as_ref() {
             for i in 0..6 {
-                out[*k] = rate[i].mul_add(h[i], out[*k]);
+                all[*k] = change[i].mul_add(h[i], all[*k]);
             }
         }
-        out
+        let turned = tangent.along(&all).transpose();
+        match C {
+            0 => turned,
+            _ => {
+                let bend = self.bend(q, &rates, &tangent);
+                turned + tangent.bent(&self.coordinate_map(q), &bend).tr_mul(h)
+            }
+        }
     }
 
-    fn port_map<T: Scalar>(&self, _q: &SVector<T, K>) -> impl AsRef<[[T; K]]> {
+    fn port_map<T: Scalar>(&self, q: &SVector<T, N>) -> impl AsRef<[[T; K]]> {
+        let tangent = self.tangent(q);
         let mut rows = Filled::new([T::zero(); K]);
         for link in self.links.iter() {
-            let mut row = [T::zero(); K];
-            row[link.coordinate] = T::from_f64(link.ratio);
-            rows.push(row);
+            let ratio = T::from_f64(link.ratio);
+            rows.push(tangent.row(link.coordinate).map(|entry| ratio * entry));
         }
         rows
     }
 
-    fn port_values<T: Scalar>(&self, q: &SVector<T, K>) -> impl AsRef<[T]> {
+    fn port_values<T: Scalar>(&self, q: &SVector<T, N>) -> impl AsRef<[T]> {
         let mut values = Filled::new(T::zero());
         for (link, port) in self.links.iter().zip(self.ports) {
             let value = link.value(q[link.coordinate]);
@@ -328,55 +320,69 @@ impl<const K: usize> Joint<K, K, K, 0> for Coupled<K> {
         values
     }
 
-    fn configuration_rate<T: Scalar>(
-        &self,
-        _q: &SVector<T, K>,
-        v: &SVector<T, K>,
-    ) -> SVector<T, K> {
-        *v
+    fn relation_twists<T: Scalar>(&self, q: &SVector<T, N>) -> impl AsRef<[[T; 6]]> {
+        let twists: [[T; 6]; C] = (self.coordinate_map(q) * self.relation_displacements(q)).into();
+        twists
     }
 
-    fn retract<T: Scalar>(&self, q: &SVector<T, K>, phi: &SVector<T, K>) -> SVector<T, K> {
-        q + phi
+    fn relation_ports<T: Scalar>(&self, q: &SVector<T, N>) -> impl AsRef<[T]> {
+        let along = self.relation_displacements(q);
+        let mut rates = alloc::vec::Vec::with_capacity(C * self.links.len());
+        for relation in 0..C {
+            let rate = |link: &Link| along[(link.coordinate, relation)] * T::from_f64(link.ratio);
+            rates.extend(self.links.iter().map(rate));
+        }
+        rates
     }
 
-    fn local<T: Scalar>(&self, q: &SVector<T, K>, target: &SVector<T, K>) -> SVector<T, K> {
-        target - q
+    fn configuration_rate<T: Scalar>(&self, q: &SVector<T, N>, v: &SVector<T, K>) -> SVector<T, N> {
+        self.tangent(q).rates(v)
     }
-}
 
-#[cfg(test)]
-mod tests {
-    use super::{Link, LinkMotion, coupled};
-    use crate::joint::{Port, Unit};
-    use crate::spatial::Pose;
+    fn retract<T: Scalar>(&self, q: &SVector<T, N>, phi: &SVector<T, K>) -> SVector<T, N> {
+        let tangent = self.tangent(q);
+        match C {
+            0 => q + tangent.rates(phi),
+            _ => {
+                let moved = finite::retract(
+                    phi,
+                    (tangent.0, dependent()),
+                    |xi| q + xi,
+                    |q, _| self.relations(q),
+                );
+                let is_on = T::from_f64(self.ties.end()).less(self.singularity(&moved));
+                moved.map(|entry| T::select(is_on, entry, T::from_f64(f64::NAN)))
+            }
+        }
+    }
 
-    const PORTS: [Port; 3] = [Port {
-        name: "y",
-        unit: "rad",
-        wraps: false,
-    }; 3];
+    fn local<T: Scalar>(&self, q: &SVector<T, N>, target: &SVector<T, N>) -> SVector<T, K> {
+        // The dependent coordinates are those along which Φ comes back.
+        SVector::from_fn(|k, _| target[k] - q[k])
+    }
 
-    /// A turn, a slide, and a turn that follows the slide.
-    #[test]
-    fn a_coordinate_is_measured_as_what_follows_it_first() {
-        let link = |motion, coordinate| Link {
-            before: None,
-            frame: Pose::identity(),
-            motion,
-            coordinate,
-            ratio: 1.0,
-            offset: 0.0,
-        };
-        let links = [
-            link(LinkMotion::Turn, 0),
-            link(LinkMotion::Slide, 1),
-            link(LinkMotion::Turn, 1),
-        ];
-        let joint = coupled(&links, &PORTS).expect("links of a joint");
-        let units = joint.units();
-        assert_eq!(units.coordinates, [Unit::ANGLE, Unit::LENGTH]);
-        assert_eq!(units.speed(1), Unit::LENGTH);
-        assert_eq!(units.speed(2), Unit::UNKNOWN);
+    fn project<T: Scalar>(&self, q: &SVector<T, N>) -> SVector<T, N> {
+        match C {
+            0 => *q,
+            _ => finite::project_by_displacements(q, |q, xi| q + xi, |q| self.relations(q)),
+        }
+    }
+
+    fn residual<T: Scalar>(&self, q: &SVector<T, N>) -> T {
+        match C {
+            0 => T::zero(),
+            _ => self.ties.residual(&self.links, q.as_slice()),
+        }
+    }
+
+    fn singularity<T: Scalar>(&self, q: &SVector<T, N>) -> T {
+        match C {
+            0 => finite::least_absolute([]),
+            _ => {
+                let (_, own) = split::<T, N, K, C>(&self.relations(q).1);
+                let determinant = finite::determinant(&own);
+                finite::least_absolute([determinant * T::from_f64(self.ties.scale())])
+            }
+        }
     }
 }

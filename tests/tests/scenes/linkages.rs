@@ -34,7 +34,7 @@ fn with_frames(scene: &Scene) -> Arc<Mechanism> {
 }
 
 /// Angular acceleration in body axes and acceleration of the centre of mass in world axes, of each body, under the rates of a form.
-fn accelerations(scene: &Scene, dynamics: &mut dyn Dynamics) -> Vec<[Vector3<f64>; 2]> {
+pub(super) fn accelerations(scene: &Scene, dynamics: &mut dyn Dynamics) -> Vec<[Vector3<f64>; 2]> {
     let mechanism = with_frames(scene);
     let layout = *mechanism.layout();
     let (q, v) = (&scene.configuration, &scene.speeds);

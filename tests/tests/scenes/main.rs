@@ -11,6 +11,7 @@ mod fuzz_scenes;
 mod humanoid;
 mod limits;
 mod linkages;
+mod loops;
 mod methods;
 mod mimic;
 mod motions;

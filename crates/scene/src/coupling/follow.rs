@@ -124,8 +124,10 @@ fn circle(nodes: &[Node<'_>], path: &[usize]) -> Diagnostic {
         .collect();
     let message = format!("joints mimic each other in a circle: {}", names.join(" → "));
     let first = path.first().and_then(|&node| nodes[node].mimic);
-    let span = first.map_or(0..0, |mimic| mimic.value.joint.span.clone());
-    Diagnostic::new(span, message).help("one of them must mimic none")
+    let joint = path.first().and_then(|&node| nodes[node].joint);
+    let span = first.map(|mimic| mimic.value.joint.span.clone());
+    let span = span.or_else(|| joint.map(|joint| joint.span.clone()));
+    Diagnostic::new(span.unwrap_or(0..0), message).help("one of them must mimic none")
 }
 
 fn out_of_range(nodes: &[Node<'_>], node: usize, law: &Law) -> Diagnostic {
@@ -135,6 +137,7 @@ fn out_of_range(nodes: &[Node<'_>], node: usize, law: &Law) -> Diagnostic {
         Number(law.ratio),
         Number(law.offset)
     );
-    let span = nodes[node].mimic.map_or(0..0, |mimic| mimic.span.clone());
-    Diagnostic::new(span, message)
+    let joint = nodes[node].joint.map(|joint| joint.span.clone());
+    let span = nodes[node].mimic.map(|mimic| mimic.span.clone());
+    Diagnostic::new(span.or(joint).unwrap_or(0..0), message)
 }

@@ -6,7 +6,8 @@ use super::{initial, limit};
 use crate::description::{BodyDescription, Motion};
 use crate::diagnostics::Diagnostic;
 use crate::forces::{
-    FrictionDescription, JointForces, PerFreedom, PortForces, PortSpringDescription, SpringEnergy,
+    FrictionDescription, JointForces, LimitDescription, LimitKind, PerFreedom, PortForces,
+    PortSpringDescription, SpringEnergy,
 };
 use crate::read::Sink;
 use crate::source::{Located, Span};
@@ -23,6 +24,8 @@ pub(super) struct Owner<'a> {
     pub(super) movement: Movement<'a>,
     /// Whether it follows another.
     pub(super) follows: bool,
+    /// Whether ties hold what it is coupled with: everything acts at its port then.
+    pub(super) closed: bool,
     /// What it follows, and by which ratio.
     pub(super) link: Link,
 }
@@ -71,28 +74,59 @@ impl Owner<'_> {
         Diagnostic::new(span.clone(), message)
     }
 
+    /// Whether efforts and damping act at its port, as they do where it is not independent, or may not be.
+    fn at_its_port(&self) -> bool {
+        self.follows || self.closed
+    }
+
     /// What acts at the port of this joint.
     fn at_port(&self) -> Result<Option<PortForces>, Diagnostic> {
         let forces = &self.body.forces;
         let effort = match &forces.effort {
-            Some(effort) if self.follows => Some(self.only("effort", effort)?.clone()),
+            Some(effort) if self.at_its_port() => Some(self.only("effort", effort)?.clone()),
             _ => None,
         };
-        let damping = match self.follows {
+        let damping = match self.at_its_port() {
             true => self.one("damping", forces.damping.as_ref())?,
             false => 0.0,
         };
-        let spring = self.spring()?;
-        let acts = effort.is_some() || damping > 0.0 || spring.is_some();
-        Ok(acts.then(|| PortForces {
+        let own = PortForces {
             name: self.body.joint.name.clone(),
             effort,
-            spring,
+            spring: self.spring()?,
             damping,
-            armature: 0.0,
-            friction: None,
-            limit: None,
-        }))
+            armature: match self.closed {
+                true => self.one("armature", forces.armature.as_ref())?,
+                false => 0.0,
+            },
+            friction: forces.friction.clone().filter(|_| self.closed),
+            limit: match self.closed {
+                true => self.stops()?,
+                false => None,
+            },
+        };
+        let acts = own.effort.is_some()
+            || own.damping > 0.0
+            || own.spring.is_some()
+            || own.armature > 0.0
+            || own.friction.is_some()
+            || own.limit.is_some();
+        Ok(acts.then_some(own))
+    }
+
+    /// Where its range ends, by stops that give way.
+    fn stops(&self) -> Result<Option<Located<LimitDescription>>, Diagnostic> {
+        let limit = self.body.forces.limit.as_ref();
+        if let Some(limit) = limit.filter(|own| matches!(own.value.kind, LimitKind::Impact { .. }))
+        {
+            let message = format!(
+                "joint `{}`: it is part of a loop, and its limit is one of impacts",
+                self.name
+            );
+            let error = Diagnostic::new(limit.span.clone(), message);
+            return Err(error.help("give `stiffness` and `damping` in place of `restitution`"));
+        }
+        Ok(limit.cloned())
     }
 
     fn spring(&self) -> Result<Option<PortSpringDescription>, Diagnostic> {
@@ -133,6 +167,11 @@ pub(super) fn joined(owners: &[Owner<'_>], coordinates: usize, sink: &mut Sink) 
             Ok(own) => forces.ports.extend(own),
             Err(error) => sink.push(error),
         }
+    }
+    if owners.iter().any(|owner| owner.closed) {
+        let driven = linkage_motion(owners, coordinates, &mut forces);
+        driven.unwrap_or_else(|error| sink.push(error));
+        return forces;
     }
     type Part = fn(&[Owner<'_>], usize, &mut JointForces) -> Added;
     let parts: [Part; 6] = [damping, armature, efforts, motion, friction, limit::add];
@@ -239,6 +278,58 @@ fn motion(owners: &[Owner<'_>], coordinates: usize, forces: &mut JointForces) ->
         return Err(Diagnostic::new(motion.span.clone(), message));
     }
     forces.motion = all;
+    Ok(())
+}
+
+/// Motion is prescribed of all joints of a loop that move independently, or of none.
+fn linkage_motion(owners: &[Owner<'_>], coordinates: usize, forces: &mut JointForces) -> Added {
+    let driven = |owner: &&Owner<'_>| owner.body.forces.motion.is_some();
+    let all: Vec<&Owner<'_>> = owners.iter().filter(driven).collect();
+    let mut speeds = vec![None; coordinates];
+    for owner in &all {
+        let Some(motion) = &owner.body.forces.motion else {
+            continue;
+        };
+        let refuse = |what: &str| {
+            let message = format!("joint `{}`: {what}", owner.name);
+            Diagnostic::new(motion.span.clone(), message)
+        };
+        if owner.body.initial.motion != Motion::Rest {
+            return Err(refuse(
+                "its motion is prescribed, and so are its speeds at time 0: leave them out of its `initial`",
+            ));
+        }
+        match speeds.get_mut(owner.link.coordinate) {
+            Some(speed) if !owner.follows => {
+                *speed = Some(owner.only("motion.speeds", motion)?.clone());
+            }
+            _ => {
+                let error = refuse(
+                    "its motion is prescribed, and in its loop it follows from other joints",
+                );
+                return Err(error.help("name it among the `independent` joints of the loop"));
+            }
+        }
+    }
+    let (Some(first), Some(motion)) = (
+        all.first(),
+        all.first()
+            .and_then(|owner| owner.body.forces.motion.as_ref()),
+    ) else {
+        return Ok(());
+    };
+    let given = speeds.iter().flatten().count();
+    let speeds: Option<Vec<TimeFunction>> = speeds.into_iter().collect();
+    match speeds {
+        Some(speeds) => forces.motion = Some(Located::new(speeds, motion.span.clone())),
+        None => {
+            let message = format!(
+                "joint `{}`: motion is prescribed of {given} of the {coordinates} joints that move independently in its loop: it must be of all or of none",
+                first.name
+            );
+            return Err(Diagnostic::new(motion.span.clone(), message));
+        }
+    }
     Ok(())
 }
 

@@ -1,8 +1,10 @@
 //! The bodies as the tree that they are: what moves between joints that follow each other.
 
 use super::graph::{Group, Law, Movement, Node, name};
+use super::tie::Tie;
 use crate::diagnostics::Diagnostic;
 use crate::read::Sink;
+use crate::source::Span;
 use crate::suggest::all_of;
 use hamel_runtime::joint::{MOST_COORDINATES, MOST_LINKS};
 use std::collections::{HashMap, HashSet};
@@ -16,15 +18,28 @@ struct Set {
     moving: usize,
 }
 
+/// What begins a set of nodes that move together.
+#[derive(Clone, Debug)]
+pub(super) enum Seed {
+    /// A node and what it follows.
+    Follower(usize, usize),
+    /// A tie, by its place, and the nodes on the ways to its ends.
+    Tie(usize, Vec<usize>),
+}
+
+/// The nodes on the ways from the last node that carries both ends of a tie to these, that one not among them.
+pub(super) type Ways = [Vec<usize>; 2];
+
 /// The nodes as the tree that they are.
 pub(super) struct Forest<'n, 'a> {
     nodes: &'n [Node<'a>],
+    ties: &'n [Tie<'a>],
     depths: Vec<usize>,
 }
 
 impl<'n, 'a> Forest<'n, 'a> {
     /// The nodes with their depths.
-    pub(super) fn new(nodes: &'n [Node<'a>]) -> Self {
+    pub(super) fn new(nodes: &'n [Node<'a>], ties: &'n [Tie<'a>]) -> Self {
         let mut depths: Vec<Option<usize>> = vec![None; nodes.len()];
         for start in 0..nodes.len() {
             let (mut path, mut at) = (vec![], Some(start));
@@ -42,8 +57,22 @@ impl<'n, 'a> Forest<'n, 'a> {
         let depths = depths.into_iter().map(|depth| depth.unwrap_or(0));
         Self {
             nodes,
+            ties,
             depths: depths.collect(),
         }
+    }
+
+    /// The ways to the ends of a tie.
+    pub(super) fn ways(&self, tie: &Tie<'_>) -> Ways {
+        let (mut ends, mut ways) = (tie.ends, Ways::default());
+        let depth = |node: Option<usize>| node.map_or(0, |node| self.depths[node] + 1);
+        while ends[0] != ends[1] {
+            let deeper = usize::from(depth(ends[0]) < depth(ends[1]));
+            let Some(passed) = ends[deeper] else { break };
+            ways[deeper].push(passed);
+            ends[deeper] = self.nodes[passed].parent;
+        }
+        ways
     }
 
     fn moves(&self, node: usize) -> bool {
@@ -51,13 +80,14 @@ impl<'n, 'a> Forest<'n, 'a> {
     }
 
     /// Sets of nodes that move together. Of one that is too large the first nodes are named, and nothing else is looked at.
-    pub(super) fn gathered(&self, laws: &[Law], sink: &mut Sink) -> Option<Vec<Vec<usize>>> {
-        let followers = laws.iter().enumerate();
-        let followers = followers.filter(|(node, law)| law.leader != *node);
+    pub(super) fn gathered(&self, seeds: &[Seed], sink: &mut Sink) -> Option<Vec<Vec<usize>>> {
         let mut sets: Vec<Set> = Vec::new();
         let mut of: HashMap<usize, usize> = HashMap::new();
-        for (node, law) in followers {
-            let mut waiting = vec![node, law.leader];
+        for seed in seeds {
+            let mut waiting = match seed {
+                Seed::Follower(node, leader) => vec![*node, *leader],
+                Seed::Tie(_, nodes) => nodes.clone(),
+            };
             let mut set = Set::default();
             // What is met of other sets becomes part of this one, and what stands between comes in.
             while let Some(next) = waiting.pop() {
@@ -67,12 +97,12 @@ impl<'n, 'a> Forest<'n, 'a> {
                     waiting.extend(other.nodes);
                 }
                 if !self.take(&mut set, next) {
-                    sink.push(self.too_many(node, law));
+                    sink.push(self.too_many(seed));
                     return None;
                 }
                 if waiting.is_empty() {
                     let Some(between) = self.between(&set) else {
-                        sink.push(self.too_many(node, law));
+                        sink.push(self.too_many(seed));
                         return None;
                     };
                     waiting = between.nodes;
@@ -116,15 +146,35 @@ impl<'n, 'a> Forest<'n, 'a> {
         Some(more)
     }
 
-    fn too_many(&self, node: usize, law: &Law) -> Diagnostic {
-        let (own, leader) = (name(self.nodes, node), name(self.nodes, law.leader));
-        let message = format!(
-            "joint `{own}`: more than {MOST_LINKS} joints are coupled with it, which follows `{leader}`, and move between them"
-        );
-        let span = self.nodes[node]
-            .mimic
-            .map_or(0..0, |mimic| mimic.span.clone());
+    fn too_many(&self, seed: &Seed) -> Diagnostic {
+        let (span, message) = match seed {
+            Seed::Follower(node, leader) => {
+                let (own, leader) = (name(self.nodes, *node), name(self.nodes, *leader));
+                let message = format!(
+                    "joint `{own}`: more than {MOST_LINKS} joints are coupled with it, which follows `{leader}`, and move between them"
+                );
+                (self.cause(*node), message)
+            }
+            Seed::Tie(tie, _) => {
+                let tie = &self.ties[*tie];
+                let message = format!(
+                    "{}: more than {MOST_LINKS} joints move in it and in what shares joints with it",
+                    tie.called()
+                );
+                (tie.name.span.clone(), message)
+            }
+        };
         Diagnostic::new(span, message).help(format!("a coupling is of at most {MOST_LINKS} joints"))
+    }
+
+    /// Where the file says that a node follows another.
+    fn cause(&self, node: usize) -> Span {
+        let mimic = self.nodes[node].mimic.map(|mimic| mimic.span.clone());
+        let of_node = |tie: &&Tie<'_>| tie.law.is_some() && tie.ends.contains(&Some(node));
+        let tie = || self.ties.iter().find(of_node);
+        mimic
+            .or_else(|| Some(tie()?.name.span.clone()))
+            .unwrap_or(0..0)
     }
 
     /// A set in order, with the laws of what moves.
@@ -136,27 +186,19 @@ impl<'n, 'a> Forest<'n, 'a> {
         Group {
             base,
             members: members.into_iter().map(|node| (node, law(node))).collect(),
+            ties: Vec::new(),
         }
     }
 
     /// Whether one joint can be all of them.
     pub(super) fn check(&self, group: &Group, sink: &mut Sink) {
-        let mut followers = group.members.iter();
-        let follower = followers
-            .find_map(|&(node, law)| Some((node, law?)).filter(|(node, law)| law.leader != *node));
-        let Some((follower, law)) = follower else {
+        let Some((span, owner)) = self.owner(group) else {
             return;
         };
-        let (own, leader) = (name(self.nodes, follower), name(self.nodes, law.leader));
-        let span = self.nodes[follower]
-            .mimic
-            .map_or(0..0, |mimic| mimic.span.clone());
         for &(node, _) in &group.members {
             if let Movement::Other(kind) = self.nodes[node].movement {
                 let between = name(self.nodes, node);
-                let message = format!(
-                    "joint `{own}`: between it and `{leader}`, which it follows, moves joint `{between}` of type `{kind}`"
-                );
+                let message = format!("{owner}, moves joint `{between}` of type `{kind}`");
                 sink.push(
                     Diagnostic::new(span.clone(), message)
                         .help("what moves between must turn about an axis or slide along one"),
@@ -164,10 +206,11 @@ impl<'n, 'a> Forest<'n, 'a> {
             }
         }
         let leaders = group.leaders();
-        if leaders.len() > MOST_COORDINATES {
+        if group.ties.is_empty() && leaders.len() > MOST_COORDINATES {
             let names = leaders.iter().map(|&node| name(self.nodes, node));
+            let between = owner.replacen("between it and", "with", 1);
             let message = format!(
-                "joint `{own}`: with `{leader}`, which it follows, and what moves between, {} joints move independently: {}",
+                "{between}, and what moves between, {} joints move independently: {}",
                 leaders.len(),
                 all_of(names)
             );
@@ -176,5 +219,24 @@ impl<'n, 'a> Forest<'n, 'a> {
                     .help(format!("a coupling has at most {MOST_COORDINATES} of them")),
             );
         }
+    }
+
+    /// Where a group begins in the file, and what messages about what moves in it begin with.
+    fn owner(&self, group: &Group) -> Option<(Span, String)> {
+        let mut members = group.members.iter();
+        let follower = members
+            .find_map(|&(node, law)| Some((node, law?)).filter(|(node, law)| law.leader != *node));
+        if let Some((follower, law)) = follower {
+            let (own, leader) = (name(self.nodes, follower), name(self.nodes, law.leader));
+            let owner = format!("joint `{own}`: between it and `{leader}`, which it follows");
+            return Some((self.cause(follower), owner));
+        }
+        let (tie, _) = group.ties.first()?;
+        let tie = &self.ties[*tie];
+        let owner = format!(
+            "{}: between its joints and those that share some with it",
+            tie.called()
+        );
+        Some((tie.name.span.clone(), owner))
     }
 }

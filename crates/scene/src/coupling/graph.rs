@@ -1,7 +1,8 @@
-//! Who follows whom, and what moves between: the groups of bodies that move as one joint.
+//! Who follows whom, which loops are closed, and what moves between: the groups of bodies that move as one joint.
 
 use super::follow::{composed, direct};
-use super::forest::Forest;
+use super::forest::{Forest, Seed};
+use super::tie::{Tie, followed};
 use crate::description::MimicDescription;
 use crate::read::Sink;
 use crate::source::Located;
@@ -73,6 +74,8 @@ pub(crate) struct Group {
     pub(crate) base: Option<usize>,
     /// The nodes, each after what it hangs on, with the laws of those that move.
     pub(crate) members: Vec<(usize, Option<Law>)>,
+    /// The ties that hold them together, but for those that laws express, by place and name.
+    pub(crate) ties: Vec<(usize, String)>,
 }
 
 impl Group {
@@ -83,27 +86,60 @@ impl Group {
         own.map(|(node, _)| *node).collect()
     }
 
-    /// The name of its joint: that of its leader, or those of all, with a plus between.
+    /// The name of its joint: that of its leader, or those of all, with a plus between; of loops, theirs.
     pub(crate) fn name(&self, joint: impl Fn(usize) -> String) -> String {
-        let names: Vec<String> = self.leaders().into_iter().map(joint).collect();
+        let names: Vec<String> = match self.ties.is_empty() {
+            true => self.leaders().into_iter().map(joint).collect(),
+            false => self.ties.iter().map(|(_, name)| name.clone()).collect(),
+        };
         names.join("+")
+    }
+
+    /// Whether all of its joints follow one.
+    pub(crate) fn is_of_one(&self) -> bool {
+        self.ties.is_empty() && self.leaders().len() <= 1
     }
 }
 
-/// The groups that followers make with what they follow; none without followers. `None` where there is an error, which is noted.
-pub(crate) fn groups(nodes: &[Node<'_>], elements: &str, sink: &mut Sink) -> Option<Vec<Group>> {
-    if nodes.iter().all(|node| node.mimic.is_none()) {
+/// The groups that followers make with what they follow, and loops of what they close; none without both. `None` where there is an error, which is noted.
+pub(crate) fn groups(
+    nodes: &[Node<'_>],
+    ties: &[Tie<'_>],
+    elements: &str,
+    sink: &mut Sink,
+) -> Option<Vec<Group>> {
+    if nodes.iter().all(|node| node.mimic.is_none()) && ties.is_empty() {
         return Some(Vec::new());
     }
     let errors_before = sink.len();
-    let direct = direct(nodes, elements, sink);
+    let mut direct = direct(nodes, elements, sink);
+    let tree = Forest::new(nodes, ties);
+    let ways: Vec<_> = ties.iter().map(|tie| tree.ways(tie)).collect();
+    let open = followed(nodes, ties, &ways, &mut direct, sink);
+    if sink.len() > errors_before {
+        return None;
+    }
     let laws = composed(nodes, &direct, sink);
     if sink.len() > errors_before {
         return None;
     }
-    let tree = Forest::new(nodes);
-    let found = tree.gathered(&laws, sink)?;
-    let groups = found.into_iter().map(|members| tree.group(&members, &laws));
+    let followers = laws.iter().enumerate();
+    let followers = followers.filter(|(node, law)| law.leader != *node);
+    let followers = followers.map(|(node, law)| Seed::Follower(node, law.leader));
+    let closed = open.iter().map(|&tie| Seed::Tie(tie, ways[tie].concat()));
+    let seeds: Vec<Seed> = followers.chain(closed).collect();
+    let found = tree.gathered(&seeds, sink)?;
+    let groups = found.into_iter().map(|members| {
+        let mut group = tree.group(&members, &laws);
+        let own = open.iter().filter(|tie| {
+            let mut moved = ways[**tie].iter().flatten();
+            moved.next().is_some_and(|node| members.contains(node))
+        });
+        group.ties = own
+            .map(|&tie| (tie, ties[tie].name.value.clone()))
+            .collect();
+        group
+    });
     let groups: Vec<Group> = groups.collect();
     for group in &groups {
         tree.check(group, sink);

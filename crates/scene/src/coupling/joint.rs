@@ -2,7 +2,7 @@
 
 use super::Movement;
 use hamel_runtime::erased::Shared;
-use hamel_runtime::joint::{Link, LinkFault, Port, coupled};
+use hamel_runtime::joint::{Link, LinkFault, Port, Tie, closed, coupled};
 use std::collections::HashSet;
 use std::sync::{LazyLock, Mutex, PoisonError};
 
@@ -13,6 +13,10 @@ pub struct Coupling {
     pub links: Vec<Link>,
     /// For each link its port, which has the name of the joint that the scene gives.
     pub ports: &'static [Port],
+    /// What else holds the links together.
+    pub ties: Vec<Tie>,
+    /// A configuration on the ties; empty without them.
+    pub start: Vec<f64>,
 }
 
 impl Coupling {
@@ -21,7 +25,10 @@ impl Coupling {
     /// # Errors
     /// Links that no joint can have.
     pub fn joint(&self) -> Result<Shared, LinkFault> {
-        coupled(&self.links, self.ports)
+        match self.ties.is_empty() {
+            true => coupled(&self.links, self.ports),
+            false => closed(&self.links, &self.ties, &self.start, self.ports),
+        }
     }
 
     /// The number of the port of that name.
@@ -29,7 +36,7 @@ impl Coupling {
         self.ports.iter().position(|port| port.name == name)
     }
 
-    /// How many coordinates the links follow.
+    /// How many coordinates the links follow, those that depend on others by the ties among them.
     pub fn coordinates(&self) -> usize {
         let last = self.links.iter().map(|link| link.coordinate).max();
         last.map_or(0, |last| last + 1)

@@ -1,13 +1,16 @@
 //! The joint of several bodies that a coupling is, in the place of the joints of the scene.
 
+use super::closing::Plan;
 use super::forces::{self, Owner};
 use super::graph::{Group, Law, Movement, Node, groups};
 use super::initial::{self, Given};
 use super::joint::{self, Coupling};
+use super::{linkage, tie::Tie};
 use crate::description::{
     BodyDescription, InitialDescription, JointDescription, Motion, Part, Position, SceneDescription,
 };
 use crate::diagnostics::Diagnostic;
+use crate::notice::Notices;
 use crate::read::Sink;
 use crate::source::Located;
 use hamel_runtime::joint::{Link, LinkMotion};
@@ -20,39 +23,72 @@ use std::f64::consts::TAU;
 /// What messages call the type of such joints.
 const KIND: &str = "coupled";
 
-/// The scene with its couplings as joints.
-pub(super) fn lower(scene: &SceneDescription, sink: &mut Sink) -> Option<SceneDescription> {
+/// And of those that loops close.
+const CLOSED_KIND: &str = "linkage";
+
+/// The scene with its couplings and loops as joints.
+pub(super) fn lower(
+    scene: &SceneDescription,
+    notices: &mut Notices,
+    sink: &mut Sink,
+) -> Option<SceneDescription> {
     let nodes: Vec<Node<'_>> = scene.bodies.iter().map(Node::of).collect();
-    let found = groups(&nodes, "scene", sink)?;
+    let loops = scene.loops.iter().map(Tie::of_loop);
+    let ties: Vec<Tie<'_>> = loops
+        .chain(scene.couplings.iter().map(Tie::of_coupling))
+        .collect();
+    let found = groups(&nodes, &ties, "scene", sink)?;
     let mut lowered = scene.clone();
     let names = scene.bodies.iter().map(|body| &*body.joint.name.value);
     let names: HashSet<&str> = names.collect();
     for group in &found {
-        let coupling = Lowering { scene, group };
+        let coupling = Lowering {
+            scene,
+            ties: &ties,
+            group,
+        };
         coupling.refuse_name(&names, sink)?;
-        for (place, body) in coupling.bodies(sink)? {
+        for (place, body) in coupling.bodies(notices, sink)? {
             *lowered.bodies.get_mut(place)? = body;
         }
     }
+    (lowered.loops, lowered.couplings) = (Vec::new(), Vec::new());
     (sink.len() == 0).then_some(lowered)
 }
 
-struct Lowering<'a> {
-    scene: &'a SceneDescription,
-    group: &'a Group,
+/// A group of a scene.
+pub(super) struct Lowering<'a> {
+    pub(super) scene: &'a SceneDescription,
+    /// Loops, then couplings.
+    pub(super) ties: &'a [Tie<'a>],
+    pub(super) group: &'a Group,
 }
 
 impl<'a> Lowering<'a> {
     /// The bodies of the coupling with their places.
-    fn bodies(&self, sink: &mut Sink) -> Option<Vec<(usize, BodyDescription)>> {
+    fn bodies(
+        &self,
+        notices: &mut Notices,
+        sink: &mut Sink,
+    ) -> Option<Vec<(usize, BodyDescription)>> {
         let members = self.members();
         self.refuse_order(&members, sink)?;
-        let owners = self.owners(&members);
-        let coordinates = self.group.leaders().len();
-        let initial = state(&owners, coordinates).map_err(|error| sink.push(error));
+        let mut owners = self.owners(&members);
+        let (joint, initial, coordinates) = match self.group.ties.is_empty() {
+            true => {
+                let coordinates = self.group.leaders().len();
+                let initial = state(&owners, coordinates).map_err(|error| sink.push(error));
+                (self.joint(&owners, None), initial.ok(), coordinates)
+            }
+            false => {
+                let made = linkage::made(self, &mut owners, notices);
+                let (plan, initial) = made.map_err(|error| sink.push(error)).ok()?;
+                let independent = plan.independent;
+                (self.joint(&owners, Some(plan)), Some(initial), independent)
+            }
+        };
         let acting = forces::joined(&owners, coordinates, sink);
-        let (mut initial, mut acting) = (Some(initial.ok()?), Some(acting));
-        let joint = self.joint(&owners);
+        let (mut initial, mut acting) = (Some(initial?), Some(acting));
         let bodies = owners.iter().zip(&members).enumerate();
         let bodies = bodies.map(|(number, (owner, (place, _)))| {
             let name = format!("link_{}", number + 1);
@@ -63,7 +99,11 @@ impl<'a> Lowering<'a> {
                     name: Located::new(name, owner.body.name.span.clone()),
                     number,
                 }),
-                at: self.root(*place).at,
+                // The links of a loop stand in one frame, that of the base.
+                at: match owner.closed {
+                    true => Pose::identity(),
+                    false => self.root(*place).at,
+                },
                 initial: initial.take().unwrap_or_default(),
                 forces: acting.take().unwrap_or_default(),
                 mimic: None,
@@ -96,12 +136,15 @@ impl<'a> Lowering<'a> {
         let of = |place: usize| &self.scene.bodies[place].joint.name;
         let name = self.group.name(|place| of(place).value.clone());
         let span = of(*leaders.first()?).span.clone();
-        if leaders.len() == 1 || !names.contains(name.as_str()) {
+        if self.group.ties.is_empty() && leaders.len() == 1 || !names.contains(name.as_str()) {
             return Some(());
         }
-        let message = format!(
-            "joint `{name}`: so are called the joints that are coupled and move independently"
-        );
+        let message = match self.group.ties.is_empty() {
+            true => format!(
+                "joint `{name}`: so are called the joints that are coupled and move independently"
+            ),
+            false => format!("joint `{name}`: so is called the joint that a loop makes"),
+        };
         sink.push(Diagnostic::new(span, message).help("give another name to one of them"));
         None
     }
@@ -114,7 +157,7 @@ impl<'a> Lowering<'a> {
     }
 
     /// The number of a body among those of the coupling.
-    fn number(&self, place: usize) -> Option<usize> {
+    pub(super) fn number(&self, place: usize) -> Option<usize> {
         self.group.members.iter().position(|(own, _)| *own == place)
     }
 
@@ -131,6 +174,7 @@ impl<'a> Lowering<'a> {
 
     fn owners(&self, members: &[(usize, Law)]) -> Vec<Owner<'a>> {
         let leaders = self.group.leaders();
+        let closed = !self.group.ties.is_empty();
         let owners = members.iter().map(|(place, law)| {
             let body = &self.scene.bodies[*place];
             let movement = Movement::of(&body.joint.kind.value);
@@ -145,9 +189,14 @@ impl<'a> Lowering<'a> {
                 body,
                 movement,
                 follows: law.leader != *place,
+                closed,
                 link: Link {
                     before,
-                    frame: hangs_on.map_or_else(Pose::identity, |parent| parent.body_at * body.at),
+                    frame: match hangs_on {
+                        Some(parent) => parent.body_at * body.at,
+                        None if closed => body.at,
+                        None => Pose::identity(),
+                    },
                     motion: match movement {
                         Movement::Slide => LinkMotion::Slide,
                         _ => LinkMotion::Turn,
@@ -162,7 +211,7 @@ impl<'a> Lowering<'a> {
         owners.collect()
     }
 
-    fn joint(&self, owners: &[Owner<'_>]) -> JointDescription {
+    fn joint(&self, owners: &[Owner<'_>], plan: Option<Plan>) -> JointDescription {
         let of = |place: usize| &self.scene.bodies[place].joint;
         let leader = self.group.leaders().first().map_or(0, |leader| *leader);
         let span = of(leader).span.clone();
@@ -170,13 +219,17 @@ impl<'a> Lowering<'a> {
         let ports = owners
             .iter()
             .map(|owner| joint::port(owner.name, owner.movement));
+        let kind = if plan.is_some() { CLOSED_KIND } else { KIND };
+        let (ties, start) = plan.map_or_else(Default::default, |plan| (plan.ties, plan.start));
         JointDescription {
             name: Located::new(name, of(leader).name.span.clone()),
-            kind: Located::new(KIND.to_owned(), span.clone()),
+            kind: Located::new(kind.to_owned(), span.clone()),
             parameters: Vec::new(),
             coupling: Some(Coupling {
                 links: owners.iter().map(|owner| owner.link).collect(),
                 ports: joint::list(ports.collect()),
+                ties,
+                start,
             }),
             span,
         }

@@ -53,6 +53,7 @@ mod tests {
         let group = Group {
             base: Some(0),
             members: vec![(1, None), (4, None)],
+            ties: Vec::new(),
         };
         assert_eq!(order(&parents, &[group]), [0, 1, 4, 2, 3]);
         assert_eq!(order(&parents, &[]), [0, 1, 3, 4, 2]);

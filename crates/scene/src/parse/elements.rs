@@ -49,7 +49,7 @@ pub(super) fn elements(
 }
 
 /// The tables under `key` that could be read.
-fn each<T>(
+pub(super) fn each<T>(
     fields: &mut Fields<'_>,
     key: &'static str,
     read: impl Fn(&mut Fields<'_>, &mut Sink) -> Option<T>,

@@ -14,10 +14,12 @@ pub(crate) mod rotation;
 mod shape;
 mod simulation;
 mod syntax;
+mod ties;
 mod time;
 mod tree;
 
 pub(crate) use body::WORLD;
+pub(crate) use ties::{TieDrafts, no_ratio};
 pub(crate) use tree::{cycles, order};
 
 use crate::control::ControllerDescription;
@@ -49,6 +51,8 @@ pub(crate) struct Draft {
     pub(crate) bodies: Vec<BodyDraft>,
     /// Order in which every body follows its parent, and the parents; `None` if there is no such order.
     pub(crate) tree: Option<Tree>,
+    /// Loops and couplings, with bodies as places in the file.
+    pub(crate) ties: TieDrafts,
     pub(crate) elements: Elements,
     pub(crate) controller: Option<ControllerDescription>,
     pub(crate) settings: Settings,
@@ -174,7 +178,8 @@ fn scene(fields: &mut Fields<'_>, sink: &mut Sink) -> Draft {
     let description = fields.optional("description");
     let gravity = gravity(fields, sink);
     let bodies = elastic::expand(bodies(fields, sink), sink);
-    let tree = tree::tree(&bodies, sink);
+    let mut ties = ties::ties(fields, sink);
+    let tree = tree::tree(&bodies, &mut ties, sink);
     let groups = tree.as_ref().map_or(&[][..], |tree| &tree.groups);
     let names = joints(&bodies, groups);
     let names = names.as_ref().map(|names| names.iter().map(String::as_str));
@@ -188,6 +193,7 @@ fn scene(fields: &mut Fields<'_>, sink: &mut Sink) -> Draft {
             .map_or_else(String::new, |text| text.value),
         gravity: gravity.unwrap_or_else(Vector3::zeros),
         tree,
+        ties,
         elements,
         controller,
         bodies,

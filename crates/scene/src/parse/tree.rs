@@ -1,6 +1,7 @@
 //! The bodies as a tree: names that are unique, parents that exist, no cycle; bodies stand in the file in any order.
 
 use super::body::WORLD;
+use super::ties::TieDrafts;
 use super::{BodyDraft, Tree};
 use crate::coupling::{self, Group, Node, groups};
 use crate::diagnostics::Diagnostic;
@@ -14,7 +15,7 @@ use std::collections::{BinaryHeap, HashMap};
 const MOST_SHOWN: usize = 12;
 
 /// Orders the bodies, parents first and otherwise as the file has them.
-pub(super) fn tree(bodies: &[BodyDraft], sink: &mut Sink) -> Option<Tree> {
+pub(super) fn tree(bodies: &[BodyDraft], ties: &mut TieDrafts, sink: &mut Sink) -> Option<Tree> {
     let errors_before = sink.len();
     let places = unique(bodies.iter().map(|body| body.name.as_ref()), "bodies", sink);
     let joints = bodies.iter().enumerate().map(|(place, body)| {
@@ -34,7 +35,12 @@ pub(super) fn tree(bodies: &[BodyDraft], sink: &mut Sink) -> Option<Tree> {
     if sink.len() > errors_before {
         return None;
     }
-    let groups = coupled(bodies, &parents, sink)?;
+    let names = bodies
+        .iter()
+        .filter_map(|body| Some(&*body.name.as_ref()?.value));
+    let known: Vec<&str> = names.chain([WORLD]).collect();
+    ties.found(|name| places.get(name).copied(), &known, sink)?;
+    let groups = coupled(bodies, &parents, ties, sink)?;
     if !groups.is_empty() {
         order = coupling::order(&last, &groups);
     }
@@ -50,14 +56,19 @@ pub(super) fn tree(bodies: &[BodyDraft], sink: &mut Sink) -> Option<Tree> {
     })
 }
 
-/// What mimic joints couple; nothing where a joint could not be read.
-fn coupled(bodies: &[BodyDraft], parents: &[Option<usize>], sink: &mut Sink) -> Option<Vec<Group>> {
+/// What mimic joints, loops and couplings make one; nothing where a joint could not be read.
+fn coupled(
+    bodies: &[BodyDraft],
+    parents: &[Option<usize>],
+    ties: &TieDrafts,
+    sink: &mut Sink,
+) -> Option<Vec<Group>> {
     if bodies.iter().any(|body| body.joint.is_none()) {
         return Some(Vec::new());
     }
     let nodes = bodies.iter().zip(parents);
     let nodes: Vec<Node<'_>> = nodes.map(|(body, parent)| body.node(*parent)).collect();
-    groups(&nodes, "scene", sink)
+    groups(&nodes, &ties.ties(), "scene", sink)
 }
 
 /// Where each name stands first; every repetition is an error.

@@ -2,7 +2,7 @@
 //! the same tree.
 
 use super::document::{finite, parse, tag};
-use super::schema::{Attribute, Child, Element, Kind, NOT_READ, Need, REFUSED, SHOWN};
+use super::schema::{Attribute, Child, Element, Kind, NOT_READ, Need, SHOWN, STRICT};
 use crate::diagnostics::Diagnostic;
 use crate::notice::Notices;
 use crate::read::LONGEST_NAME;
@@ -101,14 +101,6 @@ impl Audit<'_> {
         if SHOWN.contains(&name) {
             return;
         }
-        if let Some((_, why, advice)) = REFUSED.iter().find(|(known, ..)| *known == name)
-            && schema.name == "robot"
-        {
-            let message = format!("{}: <{name}> {why}", named(node, place));
-            return self
-                .sink
-                .push(Diagnostic::new(tag(node), message).help(*advice));
-        }
         let element = match owner {
             "" => named(node, place),
             owner => owner.trim_end_matches(": ").to_owned(),
@@ -126,7 +118,14 @@ impl Audit<'_> {
             visible_line(name),
             schema.name
         );
-        self.notices.add(message, element);
+        match STRICT.contains(&schema.name) {
+            true => {
+                let error = Diagnostic::new(tag(node), format!("{owner}{message}"));
+                self.sink
+                    .push(error.help("without it this would be another mechanism"));
+            }
+            false => self.notices.add(message, element),
+        }
     }
 
     fn unknown_attributes(&mut self, node: Node<'_, '_>, schema: &Element, owner: &str) {
@@ -226,10 +225,12 @@ impl Audit<'_> {
     }
 }
 
-/// Links and joints begin the messages about what is in them.
+/// Links, joints, loops and couplings begin the messages about what is in them.
 fn owner_of(node: Node<'_, '_>, place: usize, owner: &str) -> String {
     match node.tag_name().name() {
-        "link" | "joint" if owner.is_empty() => format!("{}: ", named(node, place)),
+        "link" | "joint" | "loop" | "coupling" if owner.is_empty() => {
+            format!("{}: ", named(node, place))
+        }
         _ => owner.to_owned(),
     }
 }

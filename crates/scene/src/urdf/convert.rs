@@ -44,6 +44,7 @@ pub(super) fn convert(
     for &link in links.order.iter().skip(1) {
         converter.link(link, &links, (&facts, options.limits));
     }
+    let anchors = std::mem::take(&mut converter.anchors);
     let Converter {
         mut bodies,
         frames,
@@ -54,8 +55,16 @@ pub(super) fn convert(
     // A mass that was refused is missing on what moves.
     let complete = sink.len() == errors_before_masses;
     masses::settle(robot, &mut bodies, &parts, &mut notices, sink);
+    let anchored = |link: usize| anchors.get(link).copied().flatten();
+    let joined = links.closed().map(|links| {
+        let bodies = links.into_iter().filter_map(|link| anchored(link)?.body);
+        bodies.collect()
+    });
+    let joined: Vec<Vec<usize>> = joined.collect();
+    let on_body = |link: usize| anchored(link).map(|anchor| (anchor.body, anchor.pose));
+    let (loops, couplings) = links.ties.placed(version, on_body, sink);
     if complete {
-        masses::refuse_massless(&bodies, sink);
+        masses::refuse_massless(&bodies, &joined, sink);
     }
     if bodies.is_empty() && sink.len() == errors_before {
         let error = Diagnostic::new(tag(robot.links[0].node), "no joint of the robot moves");
@@ -72,6 +81,8 @@ pub(super) fn convert(
             name: robot.name.map_or_else(|| stem(&source.name), str::to_owned),
             gravity: options.gravity,
             bodies,
+            loops,
+            couplings,
             frames,
             shapes,
             settings: Settings::default(),
@@ -104,12 +115,12 @@ fn facts(robot: &Robot<'_, '_>, version: (u32, u32), sink: &mut Sink) -> Vec<Joi
 }
 
 /// What the joint of a link has of its coupling.
-fn coupled(link: usize, links: &Links) -> joint::Coupled {
+fn coupled(link: usize, links: &Links<'_, '_>) -> joint::Coupled {
     let group = links.group(link);
     let own = group.and_then(|group| group.members.iter().find(|(own, _)| *own == link));
     joint::Coupled {
         home: own.and_then(|(_, law)| *law).map_or(0.0, |law| law.offset),
-        by_one: group.is_none_or(|group| group.leaders().len() <= 1),
+        by_one: group.is_none_or(|group| group.is_of_one() || !group.ties.is_empty()),
     }
 }
 
@@ -157,7 +168,7 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
     }
 
     /// The root link, which hangs on no joint of the file.
-    fn root(&mut self, links: &Links, options: &Options) {
+    fn root(&mut self, links: &Links<'_, '_>, options: &Options) {
         let Some(&root) = links.order.first() else {
             return;
         };
@@ -183,7 +194,12 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
     }
 
     /// A link that hangs on a joint.
-    fn link(&mut self, link: usize, links: &Links, (facts, stops): (&[JointFacts], Option<Stops>)) {
+    fn link(
+        &mut self,
+        link: usize,
+        links: &Links<'_, '_>,
+        (facts, stops): (&[JointFacts], Option<Stops>),
+    ) {
         let Some((index, parent)) = links.parents[link] else {
             return;
         };

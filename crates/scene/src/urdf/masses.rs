@@ -66,13 +66,19 @@ fn tell_odd(robot: &Robot<'_, '_>, parts: &[Part], notices: &mut Notices) {
 }
 
 /// Refuses bodies that move without mass on them or on what hangs on them: M would be singular.
-pub(super) fn refuse_massless(bodies: &[BodyDescription], sink: &mut Sink) {
+///
+/// Those of a loop move together: mass on one of `joined` is enough.
+pub(super) fn refuse_massless(bodies: &[BodyDescription], joined: &[Vec<usize>], sink: &mut Sink) {
     let massive = bodies.iter().map(|body| !is_nothing(&body.mass));
     let mut massive: Vec<bool> = massive.collect();
     for (index, body) in bodies.iter().enumerate().rev() {
         if let Some(parent) = body.parent.filter(|_| massive[index]) {
             massive[parent] = true;
         }
+    }
+    for own in joined {
+        let any = own.iter().any(|&body| massive[body]);
+        own.iter().for_each(|&body| massive[body] |= any);
     }
     for (body, _) in bodies.iter().zip(massive).filter(|(_, massive)| !massive) {
         let (name, joint) = (&body.name.value, &body.joint.name.value);

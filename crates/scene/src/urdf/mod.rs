@@ -12,6 +12,7 @@
 //! | `<limit lower upper>` of `revolute` and `prismatic` | compliant limits, if [`Options::limits`] gives their numbers |
 //! | `<dynamics damping friction>` | damping; dry friction of `revolute` and `prismatic` |
 //! | `<mimic>` | `mimic`: the joint follows the other exactly, and both are one joint of several bodies |
+//! | `<loop>`, `<coupling>`, `independent` of `<joint>` (URDF+, arXiv 2411.19753) | `[[loop]]`, `[[coupling]]`: the joints of a loop are one joint of several bodies |
 //! | other limits, safety controllers, transmissions, collision shapes, unknown elements | not simulated, and told as [`Notice`]s |
 //!
 //! A state is not part of a URDF: every joint is at home (angles, displacements 0) and at rest.
@@ -26,6 +27,7 @@ mod masses;
 mod robot;
 mod schema;
 mod shapes;
+mod ties;
 mod tree;
 
 pub use joint::{JointFacts, Limits};

@@ -14,6 +14,10 @@ pub(super) struct Robot<'a, 'i> {
     pub(super) links: Vec<Link<'a, 'i>>,
     /// Its joints, in the order of the file.
     pub(super) joints: Vec<Joint<'a, 'i>>,
+    /// Its `<loop>` elements, in the order of the file.
+    pub(super) loops: Vec<Node<'a, 'i>>,
+    /// Its `<coupling>` elements, in the order of the file.
+    pub(super) couplings: Vec<Node<'a, 'i>>,
     /// The names of the joints.
     pub(super) joint_names: HashSet<&'a str>,
     /// The elements of its materials by their names, the first of each name.
@@ -79,6 +83,8 @@ impl<'a, 'i> Robot<'a, 'i> {
         Some(Self {
             name: root.attribute("name"),
             links: named("link").map(Link::read).collect::<Option<_>>()?,
+            loops: named("loop").collect(),
+            couplings: named("coupling").collect(),
             joint_names: joints.iter().map(|joint| joint.name).collect(),
             joints,
             materials,

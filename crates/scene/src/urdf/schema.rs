@@ -1,6 +1,7 @@
 //! The part of URDF that decides how a robot moves: its elements, their attributes, and which of them must be there.
 
 use super::robot::JointType;
+use super::ties::ClosingType;
 
 /// An element that is read.
 #[derive(Debug)]
@@ -68,19 +69,8 @@ pub(super) const NOT_READ: [(&str, &str); 3] = [
     ("gazebo", "settings for Gazebo are not read"),
 ];
 
-/// Elements of a robot in URDF+ (arXiv 2411.19753) that close loops and couple joints, why they are refused, and what to do: without them the robot is another mechanism.
-pub(super) const REFUSED: [(&str, &str, &str); 2] = [
-    (
-        "loop",
-        "closes a kinematic loop, and links are read as a tree",
-        "write the loop as a joint of several bodies, and the robot as a scene: docs/loops.md",
-    ),
-    (
-        "coupling",
-        "couples joints by a ratio, and is not read",
-        "give the joint that follows a <mimic> with the joint, multiplier and offset that it follows",
-    ),
-];
+/// Elements in which nothing may be passed over: what they say decides which mechanism the robot is.
+pub(super) const STRICT: [&str; 4] = ["loop", "coupling", "predecessor", "successor"];
 
 /// Elements of URDF that pictures show: `shapes` reads them.
 pub(super) const SHOWN: [&str; 2] = ["visual", "material"];
@@ -92,7 +82,7 @@ pub(super) static ROBOT: Element = Element {
         optional("name", Kind::Name),
         optional("version", Kind::Name),
     ],
-    children: &[any(&LINK), any(&JOINT)],
+    children: &[any(&LINK), any(&JOINT), any(&LOOP), any(&COUPLING)],
 };
 
 static LINK: Element = Element {
@@ -141,6 +131,11 @@ static JOINT: Element = Element {
     attributes: &[
         required("name", Kind::Name),
         required("type", Kind::Choice(&JointType::NAMES)),
+        // Of URDF+.
+        optional(
+            "independent",
+            Kind::Choice(&["true", "false", "True", "False"]),
+        ),
     ],
     children: &[
         one(&PARENT),
@@ -153,6 +148,40 @@ static JOINT: Element = Element {
         at_most_one(&SAFETY_CONTROLLER),
         at_most_one(&CALIBRATION),
     ],
+};
+
+/// Closes a loop; of URDF+ (arXiv 2411.19753), as are the elements below.
+static LOOP: Element = Element {
+    name: "loop",
+    attributes: &[
+        required("name", Kind::Name),
+        required("type", Kind::Choice(&ClosingType::NAMES)),
+    ],
+    children: &[one(&PREDECESSOR), one(&SUCCESSOR), at_most_one(&AXIS)],
+};
+
+static COUPLING: Element = Element {
+    name: "coupling",
+    attributes: &[required("name", Kind::Name), optional("type", Kind::Name)],
+    children: &[one(&PREDECESSOR), one(&SUCCESSOR), one(&RATIO)],
+};
+
+static PREDECESSOR: Element = Element {
+    name: "predecessor",
+    attributes: &[required("link", Kind::Name)],
+    children: &[at_most_one(&ORIGIN)],
+};
+
+static SUCCESSOR: Element = Element {
+    name: "successor",
+    attributes: &[required("link", Kind::Name)],
+    children: &[at_most_one(&ORIGIN)],
+};
+
+static RATIO: Element = Element {
+    name: "ratio",
+    attributes: &[required("value", Kind::Number)],
+    children: &[],
 };
 
 static PARENT: Element = Element {

@@ -2,6 +2,7 @@
 
 use super::document::{place, tag};
 use super::robot::{Joint, Robot};
+use super::ties::{Ties, ties};
 use crate::coupling::{self, Group, Movement, Node as Member, groups};
 use crate::description::MimicDescription;
 use crate::diagnostics::Diagnostic;
@@ -13,19 +14,26 @@ use roxmltree::Node;
 use std::collections::HashMap;
 
 /// The links in order.
-#[derive(Debug)]
-pub(super) struct Links {
+pub(super) struct Links<'a, 'i> {
     /// Links, parents first and otherwise as in the file. The first is the root.
     pub(super) order: Vec<usize>,
     /// For each link of the file its joint and its parent link; `None` for the root.
     pub(super) parents: Vec<Option<(usize, usize)>>,
-    /// The links that mimic joints couple.
+    /// What closes loops and couples joints.
+    pub(super) ties: Ties<'a, 'i>,
+    /// The links that mimic joints couple, and that loops close.
     groups: Vec<Group>,
     /// For each link of the file the group that it is in.
     places: Vec<Option<usize>>,
 }
 
-impl Links {
+impl Links<'_, '_> {
+    /// The links of each group that ties hold.
+    pub(super) fn closed(&self) -> impl Iterator<Item = Vec<usize>> {
+        let closed = self.groups.iter().filter(|group| !group.ties.is_empty());
+        closed.map(|group| group.members.iter().map(|(link, _)| *link).collect())
+    }
+
     /// What couples a link with others, if something does.
     pub(super) fn group(&self, link: usize) -> Option<&Group> {
         self.groups.get((*self.places.get(link)?)?)
@@ -33,11 +41,11 @@ impl Links {
 }
 
 /// Orders the links; `mimics` are those of the joints.
-pub(super) fn links(
-    robot: &Robot<'_, '_>,
+pub(super) fn links<'a, 'i>(
+    robot: &Robot<'a, 'i>,
     mimics: &[Option<Located<MimicDescription>>],
     sink: &mut Sink,
-) -> Option<Links> {
+) -> Option<Links<'a, 'i>> {
     let errors_before = sink.len();
     let named = robot.links.iter().map(|link| (link.name, link.node));
     let names = unique("links", named, sink);
@@ -56,6 +64,11 @@ pub(super) fn links(
     if sink.len() > errors_before {
         return None;
     }
+    let ties = ties(robot, &names, &parents, sink)?;
+    let elements = ties
+        .nodes()
+        .map(|node| (node.attribute("name").unwrap_or(""), node));
+    unique("loops or couplings", elements, sink);
     let names: Vec<Option<Located<String>>> = names_of_joints(robot, &parents);
     let members = parents.iter().zip(&names).map(|(hangs_on, name)| Member {
         joint: name.as_ref(),
@@ -65,7 +78,7 @@ pub(super) fn links(
         motor: None,
     });
     let members: Vec<Member<'_>> = members.collect();
-    let groups = groups(&members, "robot", sink)?;
+    let groups = groups(&members, &ties.of_links(), "robot", sink)?;
     if !groups.is_empty() {
         order = coupling::order(&links, &groups);
     }
@@ -79,6 +92,7 @@ pub(super) fn links(
     Some(Links {
         order,
         parents,
+        ties,
         groups,
         places,
     })
@@ -192,7 +206,7 @@ fn second_parent(robot: &Robot<'_, '_>, link: usize, joint: usize, other: usize)
     Diagnostic::new(span(joint), message)
         .label("the second one")
         .context(span(other), "the first one")
-        .help("the links of a URDF are a tree: it cannot say that a loop is closed")
+        .help("the links of a URDF are a tree: what closes a loop is a <loop>, with predecessor and successor")
 }
 
 fn cycle_error(

@@ -5,6 +5,7 @@ mod controller;
 mod forces;
 mod pose;
 mod shape;
+mod ties;
 mod time;
 mod value;
 
@@ -34,6 +35,7 @@ impl SceneDescription {
             comments(&mut out, &beside(&first.joint.name.value));
             body::bodies(&mut out, first, group, &self.bodies);
         }
+        ties::ties(&mut out, self);
         forces::elements(&mut out, self);
         shape::shapes(&mut out, self);
         if let Some(found) = &self.controller {

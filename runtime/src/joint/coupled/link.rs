@@ -5,6 +5,7 @@ use crate::joint::Port;
 use crate::scalar::Scalar;
 use crate::shown::Number;
 use crate::spatial::{Pose, PoseError};
+use core::ops::RangeInclusive;
 use nalgebra::Vector6;
 
 /// Most links of a joint, each with a body.
@@ -43,7 +44,7 @@ pub enum LinkFault {
     /// No link, too many, or another number of ports.
     #[error("coupled links: {found} {what}, not {limit}")]
     Count {
-        /// `links` or `ports`.
+        /// `links`, `ports` or what they have.
         what: &'static str,
         /// How many there are.
         found: usize,
@@ -82,6 +83,43 @@ pub enum LinkFault {
         /// The number.
         value: f64,
     },
+    /// A tie of a link that is not there.
+    #[error("coupled links: tie {tie} is of link {link}, and there are {links}")]
+    Tie {
+        /// Its number.
+        tie: usize,
+        /// That of the link.
+        link: usize,
+        /// How many links there are.
+        links: usize,
+    },
+    /// A tie with a number that is not finite, a frame that is no pose, or an axis other than 0, 1, 2.
+    #[error(
+        "coupled links: tie {tie}: its numbers must be finite, its frames poses, and its axes 0, 1 or 2"
+    )]
+    Unsound {
+        /// Its number.
+        tie: usize,
+    },
+    /// A number of relations that joints of so many independent coordinates do not have.
+    #[error(
+        "coupled links: {relations} relations leave {independent} coordinates independent: possible are 1 to 6 relations for one, 1 to 4 or 6 for two, 1, 2 or 4 for three, 1 or 2 for four"
+    )]
+    Sizes {
+        /// How many coordinates are independent.
+        independent: usize,
+        /// How many relations there are.
+        relations: usize,
+    },
+    /// A start that is not on the ties.
+    #[error("coupled links: at the start the ties are {residual} off, in m and numbers: at most 1e-9 is possible", residual = Number(*.residual))]
+    Open {
+        /// Root of the sum of squares of the relations.
+        residual: f64,
+    },
+    /// At the start the dependent coordinates do not follow from the others.
+    #[error("coupled links: at the start the dependent coordinates do not follow from the others")]
+    Dependent,
     /// A frame that is no pose.
     #[error("coupled link {link}: its frame: {error}")]
     Frame {
@@ -124,6 +162,16 @@ impl Link {
         frame
     }
 
+    /// The pose of a link's child frame in the joint's parent, at coordinates `q`; that of the parent itself of no link.
+    pub fn stands<T: Scalar>(links: &[Self], q: &[T], mut at: Option<usize>) -> Pose<T> {
+        let mut pose = Pose::identity();
+        while let Some(link) = at.and_then(|at| links.get(at)) {
+            pose = link.pose(q[link.coordinate]) * pose;
+            at = link.before;
+        }
+        pose
+    }
+
     /// Its twist at unit rate of y, in its own child frame.
     pub(super) fn axis<T: Scalar>(&self) -> Vector6<T> {
         let mut axis = Vector6::zeros();
@@ -135,27 +183,49 @@ impl Link {
     }
 }
 
-/// The number of coordinates that links follow.
+/// The number of coordinates that links follow, all independent.
 pub(super) fn check(links: &[Link], ports: &[Port]) -> Result<usize, LinkFault> {
-    let count = |what, found, holds, limit| match holds {
-        true => Ok(()),
-        false => Err(LinkFault::Count { what, found, limit }),
-    };
+    let found = check_links(links, ports)?;
+    match found > MOST_COORDINATES {
+        true => Err(LinkFault::Coordinates {
+            found,
+            most: MOST_COORDINATES,
+        }),
+        false => Ok(found),
+    }
+}
+
+/// The number of coordinates that links follow.
+pub(super) fn check_links(links: &[Link], ports: &[Port]) -> Result<usize, LinkFault> {
     let size = links.len();
-    count("links", size, (1..=MOST_LINKS).contains(&size), "1 to 16")?;
-    count("ports", ports.len(), ports.len() == size, "one a link")?;
+    check_count("links", size, 1..=MOST_LINKS, "1 to 16")?;
+    check_count("ports", ports.len(), size..=size, "one a link")?;
     for (number, link) in links.iter().enumerate() {
         check_link(number, link)?;
     }
     let found = links.iter().map(|link| link.coordinate).max().unwrap_or(0) + 1;
-    if found > MOST_COORDINATES {
-        let most = MOST_COORDINATES;
-        return Err(LinkFault::Coordinates { found, most });
-    }
+    let most = found.min(MOST_LINKS);
     let follows = |k: usize| links.iter().any(|link| link.coordinate == k);
-    match (0..found).find(|&k| !follows(k)) {
-        Some(coordinate) => Err(LinkFault::Unused { coordinate }),
+    match (0..most).find(|&k| !follows(k)) {
+        Some(coordinate) if found <= MOST_COORDINATES => Err(LinkFault::Unused { coordinate }),
+        Some(_) => Err(LinkFault::Coordinates {
+            found,
+            most: MOST_COORDINATES,
+        }),
         None => Ok(found),
+    }
+}
+
+/// The error unless there are as many as there may be.
+pub(super) fn check_count(
+    what: &'static str,
+    found: usize,
+    limits: RangeInclusive<usize>,
+    limit: &'static str,
+) -> Result<(), LinkFault> {
+    match limits.contains(&found) {
+        true => Ok(()),
+        false => Err(LinkFault::Count { what, found, limit }),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::oracle::{Held, Linkage};
 use hamel::nalgebra::{Matrix3, Vector3};
 
-fn about(axis: usize, [c, s]: [f64; 2]) -> Matrix3<f64> {
+pub(super) fn about(axis: usize, [c, s]: [f64; 2]) -> Matrix3<f64> {
     match axis {
         0 => Matrix3::new(1.0, 0.0, 0.0, 0.0, c, -s, 0.0, s, c),
         1 => Matrix3::new(c, 0.0, s, 0.0, 1.0, 0.0, -s, 0.0, c),
@@ -16,7 +16,7 @@ fn pair(q: &[f64], n: usize) -> [f64; 2] {
 }
 
 /// A pin that a body turns about: the points at both ends of a piece of the axis.
-fn hinge(
+pub(super) fn hinge(
     first: Option<usize>,
     at: [f64; 3],
     second: Option<usize>,

@@ -4,6 +4,7 @@
 
 mod linkages;
 mod oracle;
+mod robots;
 
 use hamel::dynamics::{Dynamics, Recursive, Reference};
 use hamel::erased::AnyJoint;
@@ -14,7 +15,17 @@ use hamel::spatial::{MassProperties, Pose};
 use hamel_tests::compiled::{self, Point};
 use linkages::{five_bar, parallel_ankle, wishbone};
 use oracle::{Linkage, inertia, with_multipliers};
+use robots::{ankle, rssr};
 use std::sync::Arc;
+
+/// Linkages of the library, and robots whose loops are closed by `<loop>`.
+fn all() -> Vec<(Linkage, Arc<Mechanism>)> {
+    let library = [five_bar(), parallel_ankle(), wishbone()].map(|linkage| {
+        let mechanism = mechanism(&linkage);
+        (linkage, mechanism)
+    });
+    library.into_iter().chain([rssr(), ankle()]).collect()
+}
 
 fn mechanism(linkage: &Linkage) -> Arc<Mechanism> {
     let registry = hamel_joints::registry();
@@ -64,8 +75,7 @@ fn run(linkage: &Linkage, mechanism: &Arc<Mechanism>, form: Form, t_end: f64) ->
 
 #[test]
 fn accelerations_are_those_with_multipliers() {
-    for linkage in [five_bar(), parallel_ankle(), wishbone()] {
-        let mechanism = mechanism(&linkage);
+    for (linkage, mechanism) in all() {
         let mut recursive = Recursive::new(Arc::clone(&mechanism));
         let mut reference = Reference::new(Arc::clone(&mechanism));
         for state in run(&linkage, &mechanism, Form::Lagrangian, 2.0) {
@@ -95,8 +105,7 @@ fn accelerations_are_those_with_multipliers() {
 
 #[test]
 fn energy_and_relations_are_kept() {
-    for linkage in [five_bar(), parallel_ankle(), wishbone()] {
-        let mechanism = mechanism(&linkage);
+    for (linkage, mechanism) in all() {
         let energy = |state: &State| {
             let kinematics = mechanism.kinematics(&state.configuration, &state.speeds);
             kinematics.expect("sizes fit").energy()

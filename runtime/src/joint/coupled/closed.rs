@@ -1,0 +1,358 @@
+//! Links that [`Tie`]s hold: their relations, how the dependent coordinates follow, and the joint that they make.
+
+use super::link::{check_count, check_links};
+use super::{Coupled, Link, LinkFault, LinkMotion, MOST_COORDINATES, MOST_LINKS, Tie};
+use crate::erased::{Shared, erase};
+use crate::finite;
+use crate::joint::{Joint, Port};
+use crate::scalar::{Dual, Scalar};
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+use nalgebra::{SMatrix, SVector};
+
+/// Most relations of a joint.
+pub const MOST_RELATIONS: usize = 6;
+
+/// Residual of its relations that a start may have, m and numbers: it is projected on them.
+const CLOSED: f64 = 1e-9;
+
+/// Part of the determinant at the start at which a joint ends, ε^(1/6): rounding ε of the relations is ε/det³ in the second derivatives of the dependent coordinates, which keep half of their digits there.
+const LOST: f64 = 2.5e-3;
+
+/// Ties with the configuration that says on which branch of the linkage they hold.
+#[derive(Clone, Debug)]
+pub(super) struct Ties {
+    ties: Vec<Tie>,
+    start: Vec<f64>,
+    /// What makes a number of the determinant of the dependent columns.
+    scale: f64,
+    /// The determinant, as a number, at which the joint ends.
+    end: f64,
+}
+
+/// B: rates of the independent coordinates to those of all.
+pub(super) struct Tangent<T, const N: usize, const K: usize>(pub(super) SMatrix<T, N, K>);
+
+/// The names of the sets that a joint of so many relations must stay away from.
+pub(super) const fn singularities(relations: usize) -> &'static [&'static str] {
+    match relations {
+        0 => &[],
+        _ => &["det ∂g/∂y of the dependent coordinates = 0"],
+    }
+}
+
+/// Names of so many relations.
+pub(super) const fn relations(count: usize) -> &'static [&'static str] {
+    const NAMES: [&str; MOST_RELATIONS] = [
+        "g_1 = 0", "g_2 = 0", "g_3 = 0", "g_4 = 0", "g_5 = 0", "g_6 = 0",
+    ];
+    match NAMES.split_at_checked(count) {
+        Some((names, _)) => names,
+        None => &[],
+    }
+}
+
+/// N: the directions of the dependent coordinates, which are the last.
+pub(super) fn dependent<T: Scalar, const N: usize, const C: usize>() -> SMatrix<T, N, C> {
+    SMatrix::from_fn(|i, j| match i + C == N + j {
+        true => T::one(),
+        false => T::zero(),
+    })
+}
+
+/// The columns of the independent coordinates, and of the dependent ones.
+pub(super) fn split<T: Scalar, const N: usize, const K: usize, const C: usize>(
+    slopes: &SMatrix<T, C, N>,
+) -> (SMatrix<T, C, K>, SMatrix<T, C, C>) {
+    (
+        SMatrix::from_fn(|i, j| slopes[(i, j)]),
+        SMatrix::from_fn(|i, j| slopes[(i, K + j)]),
+    )
+}
+
+/// A joint of these links, which ties hold together, whose bodies are `link_1`, `link_2` …. With C relations the last C of the coordinates depend on the others; `start` is
+/// a configuration on the ties, and chooses the branch of the linkage. `ports` are those of [`coupled`](super::coupled).
+///
+/// # Errors
+/// Links and ties that no joint can have: numbers of independent coordinates and relations other than [`CLOSED_SIZES`], a start that is off the ties, or where the last coordinates do not follow from the others.
+pub fn closed(
+    links: &[Link],
+    ties: &[Tie],
+    start: &[f64],
+    ports: &'static [Port],
+) -> Result<Shared, LinkFault> {
+    let (coordinates, count) = sizes(links, ties, ports)?;
+    let independent = coordinates.saturating_sub(count);
+    match (independent, count) {
+        (1, 1) => Coupled::<2, 1, 1>::closed(links, ties, start, ports).map(erase),
+        (1, 2) => Coupled::<3, 1, 2>::closed(links, ties, start, ports).map(erase),
+        (1, 3) => Coupled::<4, 1, 3>::closed(links, ties, start, ports).map(erase),
+        (1, 4) => Coupled::<5, 1, 4>::closed(links, ties, start, ports).map(erase),
+        (1, 5) => Coupled::<6, 1, 5>::closed(links, ties, start, ports).map(erase),
+        (1, 6) => Coupled::<7, 1, 6>::closed(links, ties, start, ports).map(erase),
+        (2, 1) => Coupled::<3, 2, 1>::closed(links, ties, start, ports).map(erase),
+        (2, 2) => Coupled::<4, 2, 2>::closed(links, ties, start, ports).map(erase),
+        (2, 3) => Coupled::<5, 2, 3>::closed(links, ties, start, ports).map(erase),
+        (2, 4) => Coupled::<6, 2, 4>::closed(links, ties, start, ports).map(erase),
+        (2, 6) => Coupled::<8, 2, 6>::closed(links, ties, start, ports).map(erase),
+        (3, 1) => Coupled::<4, 3, 1>::closed(links, ties, start, ports).map(erase),
+        (3, 2) => Coupled::<5, 3, 2>::closed(links, ties, start, ports).map(erase),
+        (3, 4) => Coupled::<7, 3, 4>::closed(links, ties, start, ports).map(erase),
+        (4, 1) => Coupled::<5, 4, 1>::closed(links, ties, start, ports).map(erase),
+        (4, 2) => Coupled::<6, 4, 2>::closed(links, ties, start, ports).map(erase),
+        _ => Err(LinkFault::Sizes {
+            independent,
+            relations: count,
+        }),
+    }
+}
+
+/// The sizes that there are: for each number of independent coordinates the numbers of relations. Each is a type of its own, and takes its time to compile.
+pub const CLOSED_SIZES: [(usize, &[usize]); MOST_COORDINATES] = [
+    (1, &[1, 2, 3, 4, 5, 6]),
+    (2, &[1, 2, 3, 4, 6]),
+    (3, &[1, 2, 4]),
+    (4, &[1, 2]),
+];
+
+/// The numbers of coordinates and of relations.
+fn sizes(links: &[Link], ties: &[Tie], ports: &[Port]) -> Result<(usize, usize), LinkFault> {
+    Ok((check_links(links, ports)?, check_ties(ties, links.len())?))
+}
+
+fn check_ties(ties: &[Tie], links: usize) -> Result<usize, LinkFault> {
+    for (number, tie) in ties.iter().enumerate() {
+        let of: Vec<usize> = match tie {
+            Tie::Sum { terms, .. } => terms.iter().map(|(link, _)| *link).collect(),
+            Tie::Closure { links, .. } => links.iter().copied().flatten().collect(),
+        };
+        if let Some(link) = of.into_iter().find(|link| *link >= links) {
+            return Err(LinkFault::Tie {
+                tie: number,
+                link,
+                links,
+            });
+        }
+        let sound = match tie {
+            Tie::Sum { terms, constant } => {
+                constant.is_finite() && terms.iter().all(|(_, weight)| weight.is_finite())
+            }
+            Tie::Closure {
+                frames,
+                relations,
+                implied,
+                ..
+            } => {
+                frames.iter().all(|frame| frame.check().is_ok())
+                    && relations
+                        .iter()
+                        .chain(implied)
+                        .all(|relation| relation.is_of_axes())
+            }
+        };
+        if !sound {
+            return Err(LinkFault::Unsound { tie: number });
+        }
+    }
+    Ok(ties.iter().map(Tie::count).sum())
+}
+
+/// Divides the rows of lengths by a length of the linkage, and takes it into the columns of lengths: what is left has no unit.
+fn scale(links: &[Link], ties: &[Tie], independent: usize) -> f64 {
+    let own = links.iter().map(|link| link.frame.translation.norm());
+    let frames = ties.iter().flat_map(|tie| match tie {
+        Tie::Closure { frames, .. } => frames.each_ref().map(|frame| frame.translation.norm()),
+        Tie::Sum { .. } => [0.0; 2],
+    });
+    let length = own.chain(frames).fold(0.0, f64::max);
+    let length = if length > 0.0 { length } else { 1.0 };
+    let slides = |coordinate: usize| {
+        let mut own = links.iter();
+        let first = own.find(|link| link.coordinate == coordinate);
+        first.is_some_and(|link| link.motion == LinkMotion::Slide)
+    };
+    let rows = ties.iter().map(|tie| tie.lengths(links)).sum::<usize>();
+    let all = links
+        .iter()
+        .map(|link| link.coordinate + 1)
+        .max()
+        .unwrap_or(0);
+    let columns = (independent..all).filter(|k| slides(*k)).count();
+    (columns..rows).fold(1.0, |scale, _| scale / length)
+        * (rows..columns).fold(1.0, |scale, _| scale * length)
+}
+
+impl Ties {
+    /// None.
+    pub(super) const NONE: Self = Self {
+        ties: Vec::new(),
+        start: Vec::new(),
+        scale: 1.0,
+        end: 0.0,
+    };
+
+    pub(super) fn start<T: Scalar, const N: usize>(&self) -> SVector<T, N> {
+        SVector::from_fn(|i, _| self.start.get(i).map_or(T::zero(), |q| T::from_f64(*q)))
+    }
+
+    pub(super) fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    pub(super) fn end(&self) -> f64 {
+        self.end
+    }
+
+    /// Root of the sum of squares of all relations, those that follow from others among them.
+    pub(super) fn residual<T: Scalar>(&self, links: &[Link], q: &[T]) -> T {
+        let mut square = T::zero();
+        for tie in &self.ties {
+            tie.relations(links, q, |(value, _)| square = value.mul_add(value, square));
+            tie.implied(links, q, |value| square = value.mul_add(value, square));
+        }
+        square.sqrt()
+    }
+}
+
+impl<const N: usize, const K: usize, const C: usize> Coupled<N, K, C> {
+    /// The joint of these links and ties.
+    ///
+    /// # Errors
+    /// Those of [`closed`](fn@closed), and other numbers of coordinates and relations than N and C.
+    pub fn closed(
+        links: &[Link],
+        ties: &[Tie],
+        start: &[f64],
+        ports: &'static [Port],
+    ) -> Result<Self, LinkFault> {
+        let (coordinates, count) = sizes(links, ties, ports)?;
+        if (coordinates, count) != (N, C) || N != K + C {
+            return Err(LinkFault::Sizes {
+                independent: coordinates.saturating_sub(count),
+                relations: count,
+            });
+        }
+        check_count(
+            "coordinates of the start",
+            start.len(),
+            coordinates..=coordinates,
+            "one a coordinate",
+        )?;
+        let ties = Ties {
+            ties: ties.to_vec(),
+            start: start.to_vec(),
+            scale: scale(links, ties, K),
+            end: 0.0,
+        };
+        let mut joint = Self::of(links, ports, ties);
+        let start = joint.ties.start::<f64, N>();
+        let (residual, determinant) = (joint.residual(&start), joint.singularity(&start));
+        match residual <= CLOSED {
+            false => Err(LinkFault::Open { residual }),
+            true if determinant > 0.0 => {
+                Arc::make_mut(&mut joint.ties).end = LOST * determinant;
+                Ok(joint)
+            }
+            true => Err(LinkFault::Dependent),
+        }
+    }
+
+    /// g(q), and its derivatives along the coordinates.
+    pub(super) fn relations<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+    ) -> (SVector<T, C>, SMatrix<T, C, N>) {
+        let (mut values, mut slopes) = (SVector::zeros(), SMatrix::zeros());
+        let mut i = 0;
+        for tie in &self.ties.ties {
+            tie.relations(&self.links, q.as_slice(), |(value, row)| {
+                if i < C {
+                    values[i] = value;
+                    (0..N).for_each(|k| slopes[(i, k)] = row[k]);
+                }
+                i += 1;
+            });
+        }
+        (values, slopes)
+    }
+
+    pub(super) fn tangent<T: Scalar>(&self, q: &SVector<T, N>) -> Tangent<T, N, K> {
+        if C == 0 {
+            return Tangent(SMatrix::identity());
+        }
+        let (independent, dependent) = split(&self.relations(q).1);
+        let follow: SMatrix<T, C, K> = -finite::least_squares(&dependent, &independent);
+        Tangent(SMatrix::from_fn(|i, j| match i {
+            _ if i >= K => follow[(i - K, j)],
+            _ if i == j => T::one(),
+            _ => T::zero(),
+        }))
+    }
+
+    /// The dependent rows of ∂B along a direction of the coordinates: `−(∂g_d)⁻¹ (∂²g d) B`.
+    pub(super) fn bend<T: Scalar>(
+        &self,
+        q: &SVector<T, N>,
+        direction: &SVector<T, N>,
+        tangent: &Tangent<T, N, K>,
+    ) -> SMatrix<T, C, K> {
+        if C == 0 {
+            return SMatrix::zeros();
+        }
+        let moved = q.zip_map(direction, Dual::new);
+        let slopes = self.relations(&moved).1;
+        let (_, dependent) = split::<T, N, K, C>(&slopes.map(|entry| entry.value));
+        let change = slopes.map(|entry| entry.derivative()) * tangent.0;
+        -finite::least_squares(&dependent, &change)
+    }
+
+    /// For each relation the displacement of the dependent coordinates at which it changes at unit rate, and no other.
+    pub(super) fn relation_displacements<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, N, C> {
+        let (_, own) = split::<T, N, K, C>(&self.relations(q).1);
+        dependent::<T, N, C>() * finite::inverse(&own)
+    }
+}
+
+impl<T: Scalar, const N: usize, const K: usize> Tangent<T, N, K> {
+    /// What is given for rates of all coordinates, for those of the independent ones.
+    pub(super) fn along<const R: usize>(&self, map: &SMatrix<T, R, N>) -> SMatrix<T, R, K> {
+        SMatrix::from_fn(|i, k| {
+            (K..N).fold(map[(i, k)], |sum, d| {
+                map[(i, d)].mul_add(self.0[(d, k)], sum)
+            })
+        })
+    }
+
+    /// What changes as the dependent coordinates bend.
+    pub(super) fn bent<const R: usize, const C: usize>(
+        &self,
+        map: &SMatrix<T, R, N>,
+        bend: &SMatrix<T, C, K>,
+    ) -> SMatrix<T, R, K> {
+        SMatrix::from_fn(|i, k| {
+            (0..C).fold(T::zero(), |sum, d| {
+                map[(i, K + d)].mul_add(bend[(d, k)], sum)
+            })
+        })
+    }
+
+    /// The rates of all coordinates.
+    pub(super) fn rates(&self, v: &SVector<T, K>) -> SVector<T, N> {
+        SVector::from_fn(|i, _| match i < K {
+            true => v[i],
+            false => (0..K).fold(T::zero(), |sum, k| self.0[(i, k)].mul_add(v[k], sum)),
+        })
+    }
+
+    /// The rates of all coordinates at unit rate of one.
+    pub(super) fn direction(&self, k: usize) -> SVector<T, N> {
+        SVector::from_fn(|i, _| self.0[(i, k)])
+    }
+
+    /// The rate of a coordinate by those of the independent ones.
+    pub(super) fn row(&self, coordinate: usize) -> [T; K] {
+        core::array::from_fn(|k| self.0[(coordinate, k)])
+    }
+}
+
+const _: () = assert!(MOST_COORDINATES + MOST_RELATIONS <= MOST_LINKS);
