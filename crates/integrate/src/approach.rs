@@ -1,5 +1,6 @@
 //! How near a motion comes to the singular configurations of a joint.
 
+use super::rates_of_loops::has_ends;
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt::{Display, Formatter, Result};
@@ -90,7 +91,7 @@ impl Watch {
             if value < nearest.value {
                 (nearest.value, nearest.time) = (value, time);
             }
-            if value <= AT_END * nearest.most && !body.joint().relations().is_empty() {
+            if value <= AT_END * nearest.most && has_ends(body.joint()) {
                 end = Some(nearest.clone());
             }
         }

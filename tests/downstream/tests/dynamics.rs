@@ -9,7 +9,12 @@ use std::sync::Arc;
 fn kinds() -> Vec<Arc<dyn AnyJoint>> {
     let mut registry = JointRegistry::new();
     registry
-        .extend(hamel_downstream::joints::ENTRIES.iter().copied())
+        .extend(
+            hamel_downstream::joints::ENTRIES
+                .iter()
+                .copied()
+                .filter(|entry| !hamel_downstream::ALONE.contains(&entry.name)),
+        )
         .expect("distinct names");
     random::kinds(&registry)
 }

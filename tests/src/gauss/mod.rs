@@ -284,20 +284,21 @@ impl Body {
             *entry = &*entry - &Precise::from_f64(gravity[i], BITS);
         }
         let mut wrench = self.weighed(&free);
-        for i in 0..3 {
+        for (i, torque) in wrench[..3].iter_mut().enumerate() {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             let gyroscopic = &(&self.turn[j] * &spin[k]) - &(&self.turn[k] * &spin[j]);
-            wrench[i] = &wrench[i] + &gyroscopic;
+            *torque = &*torque + &gyroscopic;
         }
         let column =
             |n: usize| -> Vec<Precise> { self.jacobian.iter().map(|row| row[n].clone()).collect() };
-        for n in 0..count {
-            let weighed = self.weighed(&column(n));
-            for m in 0..count {
-                rows[m][n] = &rows[m][n] + &dot(&column(m), &weighed);
+        let columns: Vec<Vec<Precise>> = (0..count).map(column).collect();
+        for (row, own) in rows.iter_mut().zip(&columns) {
+            let weighed = self.weighed(own);
+            for (entry, other) in row.iter_mut().zip(&columns) {
+                *entry = &*entry + &dot(other, &weighed);
             }
-            let right = rows[n].last_mut().expect("a right side");
-            *right = &*right - &dot(&column(n), &wrench);
+            let right = row.last_mut().expect("a right side");
+            *right = &*right - &dot(own, &wrench);
         }
     }
 
