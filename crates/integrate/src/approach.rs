@@ -1,11 +1,14 @@
 //! How near a motion comes to the singular configurations of a joint.
 
+use super::StepFailure;
 use super::rates_of_loops::has_ends;
 use alloc::string::String;
+use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt::{Display, Formatter, Result};
 use hamel_runtime::mechanism::{Body, Loci, Mechanism};
 use hamel_runtime::shown::Number;
+use num_traits::Float;
 
 /// How near a joint comes to a set that it must stay away from.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +40,15 @@ impl Display for Approach {
 /// joint's Q determine its distance d from there with an error of ε/d, a hundredth of d at `10 √ε`.
 const AT_END: f64 = 10.0 * 1.490_116_119_384_765_6e-8;
 
+/// The part of what vanishes at a singular set at the start of a step that must be left within it. A longer step could pass the set unseen, and would lose most digits of what grows there.
+const LEFT: f64 = 0.25;
+
+/// How many rad or m a joint may move in a step, as a part of the distance from its singular set, without a look at what lies between.
+const UNSEEN: f64 = 0.125;
+
+/// Most looks within a step.
+const MOST_LOOKS: f64 = 32.0;
+
 /// Where a failed step began, of the joints that have singular sets: nothing, or the one that is nearest to its own.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Near(pub Option<Approach>);
@@ -61,6 +73,11 @@ impl Display for Near {
 pub(super) struct Watch {
     /// Index of the body, and its joint's nearest approach so far.
     nearest: Vec<(usize, Approach)>,
+    /// What vanishes, at the last state seen.
+    now: Vec<f64>,
+    /// ϕ and Q of one joint.
+    phi: Vec<f64>,
+    configuration: Vec<f64>,
 }
 
 impl Watch {
@@ -76,17 +93,22 @@ impl Watch {
                 },
             )
         };
+        let nearest: Vec<(usize, Approach)> = watched.map(far).collect();
         Self {
-            nearest: watched.map(far).collect(),
+            now: vec![f64::INFINITY; nearest.len()],
+            nearest,
+            phi: vec![],
+            configuration: vec![],
         }
     }
 
     /// Takes note of a configuration, and tells the joint that is where its motion ends: where its relations, which alone give its Q, do not determine how it goes on.
     pub(super) fn see(&mut self, mechanism: &Mechanism, time: f64, q: &[f64]) -> Option<Approach> {
         let mut end = None;
-        for (index, nearest) in &mut self.nearest {
+        for ((index, nearest), now) in self.nearest.iter_mut().zip(&mut self.now) {
             let body = &mechanism.bodies()[*index];
             let value = value_at(body, q);
+            *now = value;
             nearest.most = nearest.most.max(value);
             if value < nearest.value {
                 (nearest.value, nearest.time) = (value, time);
@@ -96,6 +118,47 @@ impl Watch {
             }
         }
         end
+    }
+
+    /// Refuses a step from one ϕ to another, around base points, within which a joint comes much nearer to its singular set than it is at the start. Between steps it may cross the set,
+    /// where its equations have no value, without being there at the end of one.
+    pub(super) fn check(
+        &mut self,
+        mechanism: &Mechanism,
+        base: &[f64],
+        (start, end): (&[f64], &[f64]),
+    ) -> core::result::Result<(), StepFailure> {
+        for ((index, nearest), &now) in self.nearest.iter().zip(&self.now) {
+            let body = &mechanism.bodies()[*index];
+            let freedoms = body.ranges().freedoms.clone();
+            let (start, end) = (&start[freedoms.clone()], &end[freedoms]);
+            let way = start.iter().zip(end);
+            let way = way.fold(0.0_f64, |most, (start, end)| most.max((end - start).abs()));
+            let distance = now / nearest.most;
+            if way <= UNSEEN * distance {
+                continue;
+            }
+            let looks = Float::ceil((4.0 * way / distance).clamp(4.0, MOST_LOOKS)) as u32;
+            for look in 1..=looks {
+                let part = f64::from(look) / f64::from(looks);
+                self.phi.clear();
+                let between = start.iter().zip(end);
+                self.phi
+                    .extend(between.map(|(start, end)| start + part * (end - start)));
+                let base = body.configuration(base);
+                self.configuration.resize(base.len(), 0.0);
+                body.joint()
+                    .retract(base, &self.phi, &mut self.configuration);
+                let value = body.joint().singularity(&self.configuration);
+                if value.is_nan() || value < LEFT * now {
+                    return Err(StepFailure::Excluded {
+                        joint: nearest.joint.clone(),
+                        loci: nearest.loci,
+                    });
+                }
+            }
+        }
+        Ok(())
     }
 
     /// The joint that is nearest to its singular set at a time and Q.

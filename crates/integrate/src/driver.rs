@@ -348,9 +348,13 @@ impl<'a> Driver<'a> {
             stepper,
             step_state,
             flow,
+            watch,
             ..
         } = self;
-        let outcome = stepper.attempt(step_state, flow, span);
+        let outcome = stepper.attempt(step_state, flow, span).and_then(|()| {
+            let way = (&*step_state.offset, &*step_state.phi);
+            watch.check(&flow.mechanism, &step_state.base, way)
+        });
         let Some(StepControl {
             tolerance,
             max_step,

@@ -4,7 +4,7 @@ use super::{Approach, Near};
 use alloc::boxed::Box;
 use alloc::string::String;
 use hamel_runtime::dynamics::DynamicsError;
-use hamel_runtime::mechanism::{Mechanism, StateError};
+use hamel_runtime::mechanism::{Loci, Mechanism, StateError};
 use hamel_runtime::shown::Number;
 use hamel_runtime::time_function::KinkError;
 
@@ -59,6 +59,16 @@ pub enum StepFailure {
     NotClosed {
         /// The joint.
         joint: String,
+    },
+    /// A joint comes too near to a configuration that its spec excludes, or passes it.
+    #[error(
+        "within the step joint `{joint}` comes to or near where {loci} is 0, which its spec excludes"
+    )]
+    Excluded {
+        /// The joint.
+        joint: String,
+        /// The functions that vanish there, as the spec writes them.
+        loci: Loci,
     },
     /// The function of an event is NaN or infinite.
     #[error("the function of event `{event}` is {value}: it must be finite", value = Number(*.value))]
@@ -124,6 +134,7 @@ fn advice(cause: &StepFailure) -> &'static str {
         | StepFailure::NoConvergence { .. }
         | StepFailure::SingularIteration { .. }
         | StepFailure::NotClosed { .. }
+        | StepFailure::Excluded { .. }
         | StepFailure::State(_) => "; take a smaller dt",
         StepFailure::Length { .. }
         | StepFailure::Inaccurate { .. }
