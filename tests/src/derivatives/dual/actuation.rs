@@ -71,7 +71,10 @@ fn rest(owner: &Body, q: &[f64], mut near: Vec<f64>) -> Vec<f64> {
         near.iter_mut().for_each(|entry| *entry *= 0.5);
         if is_found {
             joint.retract(q, &near, &mut rest);
-            return rest;
+            // Newton's method may find a place and none half way to it.
+            if rest.iter().all(|entry| entry.is_finite()) {
+                return rest;
+            }
         }
     }
 }
