@@ -17,9 +17,12 @@ use crate::{prove, spec};
 use num_bigint::BigInt;
 use std::path::Path;
 
-/// Bound on symbolic work for one joint, in term operations: some three seconds. The largest joint of the library spends an eighth
-/// (`cargo run -p hamel-codegen --example phases -- joint-specs`), a platform on six legs most of it.
-pub const WORK_LIMIT: u64 = 10_000_000;
+/// Bound on symbolic work for one joint without relations, in term operations: less than a second, also on a machine that is busy. The largest joint of
+/// the library spends less than two thirds (`cargo run -p hamel-codegen --example phases -- joint-specs`).
+pub const WORK_LIMIT: u64 = 2_000_000;
+
+/// What each relation adds to it: their second derivatives are by pairs of degrees of freedom. A platform on six legs spends 8.7 million.
+const WORK_OF_RELATION: u64 = 1_500_000;
 
 /// Term operations that take as long as writing one term of a kernel.
 const WORK_OF_WRITTEN_TERM: u64 = 100;
@@ -47,7 +50,9 @@ pub fn derive_in(source: &str, file: &str, folder: Option<&Path>) -> Result<Deri
             errors,
         }
     };
-    match budget::scope(WORK_LIMIT, || derive_spec(spec.clone())) {
+    let relations = spec.manifold.value.declared().len() as u64;
+    let limit = WORK_LIMIT + WORK_OF_RELATION * relations;
+    match budget::scope(limit, || derive_spec(spec.clone())) {
         Ok(Ok(derived)) => match misnamed(&derived.spec, file) {
             None => Ok(derived),
             Some(error) => Err(failed(vec![error])),

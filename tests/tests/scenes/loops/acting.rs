@@ -149,7 +149,7 @@ fn a_parallelogram_stops_where_it_folds_flat() {
     let stopped = stopped.expect_err("it folds flat").to_string();
     assert!(
         stopped.contains(
-            "joint `closed` is singular where `det ∂g/∂y of the dependent coordinates = 0`"
+            "joint `closed` comes to a configuration that its spec excludes, where `det ∂g/∂y of the dependent coordinates = 0` is 0"
         ),
         "{stopped}"
     );
