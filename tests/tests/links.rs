@@ -103,7 +103,7 @@ fn every_picture_of_the_gallery_is_of_a_scene() {
             .into_owned()
     });
     let names: Vec<String> = names.collect();
-    assert_eq!(names.len(), 12);
+    assert_eq!(names.len(), 14);
     for name in names {
         assert!(gallery.contains(&format!("gallery/{name}.svg")), "{name}");
         assert!(gallery.contains(&format!("scenes/{name}.toml")), "{name}");
