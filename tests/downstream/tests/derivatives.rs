@@ -5,7 +5,7 @@ use hamel::joint::Member;
 use hamel::registry::JointRegistry;
 use hamel_downstream::joints::{
     BallCayley, BallTurns, Bead, CamCircle, CarWheels, Catenary, CatenaryLength, CrankCoupler,
-    CrankRocker, DirectionSensor, ENTRIES, FixedAxis, FourBarThrough, GearedRotor, MeasuredRocker,
+    CrankRocker, DirectionSensor, ENTRIES, FourBarThrough, GearedRotor, MeasuredRocker,
     PlanarTurns, PowerGuide, Press, RollingBallCayley, Scara, SkateHeading, SkewScrew,
     SliderCrankLinks, SliderCrankRod, SpherePoint, Unpinned, Valley,
 };
@@ -55,7 +55,6 @@ fn kernels(joint: &dyn AnyJoint) -> Box<dyn Kernels> {
         of(Catenary::new(0.7)),
         of(CatenaryLength::new(0.7)),
         of(DirectionSensor::new(0.7)),
-        of(FixedAxis::new(0.7, 0.85)),
         of(CrankCoupler::new(
             0.9,
             0.2,
