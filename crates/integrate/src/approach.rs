@@ -139,23 +139,23 @@ impl Watch {
                 continue;
             }
             let looks = Float::ceil((4.0 * way / distance).clamp(4.0, MOST_LOOKS)) as u32;
-            for look in 1..=looks {
-                let part = f64::from(look) / f64::from(looks);
+            let base = body.configuration(base);
+            self.configuration.resize(base.len(), 0.0);
+            let between = |part: f64| {
                 self.phi.clear();
-                let between = start.iter().zip(end);
-                self.phi
-                    .extend(between.map(|(start, end)| start + part * (end - start)));
-                let base = body.configuration(base);
-                self.configuration.resize(base.len(), 0.0);
-                body.joint()
-                    .retract(base, &self.phi, &mut self.configuration);
-                let value = body.joint().singularity(&self.configuration);
-                if value.is_nan() || value < LEFT * now {
-                    return Err(StepFailure::Excluded {
-                        joint: nearest.joint.clone(),
-                        loci: nearest.loci,
-                    });
-                }
+                let pairs = start.iter().zip(end);
+                (self.phi).extend(pairs.map(|(start, end)| start + part * (end - start)));
+                let joint = body.joint();
+                joint.retract(base, &self.phi, &mut self.configuration);
+                joint.singularity(&self.configuration)
+            };
+            let parts = (1..=looks).map(|look| f64::from(look) / f64::from(looks));
+            // What is not a number is no place away from the set.
+            if !parts.map(between).all(|value| value >= LEFT * now) {
+                return Err(StepFailure::Excluded {
+                    joint: nearest.joint.clone(),
+                    loci: nearest.loci,
+                });
             }
         }
         Ok(())

@@ -105,7 +105,7 @@ impl From<DynamicsError> for StepFailure {
 }
 
 impl StepFailure {
-    /// The same cause, with a configuration that is not finite as that what it is where relations determine it.
+    /// The same cause; a configuration that is not finite becomes [`StepFailure::NotClosed`] where relations determine it.
     pub(crate) fn of_relations(self, mechanism: &Mechanism) -> Self {
         let Self::State(StateError::NotFinite {
             joint,

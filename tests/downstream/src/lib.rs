@@ -1,5 +1,7 @@
 //! Joints of one's own, beside the library's: general Φ, declared manifolds, subgroups.
 
+use hamel::registry::JointEntry;
+
 /// The joints that the build script generated.
 pub mod joints {
     include!(concat!(env!("OUT_DIR"), "/joints.rs"));
@@ -10,7 +12,7 @@ pub const WITH_KNOTS: [&str; 3] = ["cam_circle", "measured_rocker", "valley"];
 
 /// Joints that random trees leave out: random parameters and displacements do not put these platforms together, one has more degrees of freedom than trees of them need, and one is a plain
 /// hinge. They have the law suite, most of them the test by Gauss's principle, with parameters of their own.
-pub const ALONE: [&str; 6] = [
+const ALONE: [&str; 6] = [
     "delta",
     "five_bar_rods",
     "fixed_axis",
@@ -18,6 +20,12 @@ pub const ALONE: [&str; 6] = [
     "stewart",
     "three_rrr",
 ];
+
+/// The joints of which random trees are made.
+pub fn of_trees() -> impl Iterator<Item = JointEntry> {
+    let entries = joints::ENTRIES.iter().copied();
+    entries.filter(|entry| !ALONE.contains(&entry.name))
+}
 
 /// Joints unlike those of the library, which the generator's own tests derive.
 pub mod held_out {

@@ -5,11 +5,11 @@ use hamel::joint::Member;
 use hamel::registry::JointRegistry;
 use hamel_downstream::joints::{
     BallCayley, BallTurns, Bead, CamCircle, CarWheels, Catenary, CatenaryLength, CrankCoupler,
-    CrankRocker, DirectionSensor, ENTRIES, FourBarThrough, GearedRotor, MeasuredRocker,
-    PlanarTurns, PowerGuide, Press, RollingBallCayley, Scara, SkateHeading, SkewScrew,
-    SliderCrankLinks, SliderCrankRod, SpherePoint, Unpinned, Valley,
+    CrankRocker, DirectionSensor, FourBarThrough, GearedRotor, MeasuredRocker, PlanarTurns,
+    PowerGuide, Press, RollingBallCayley, Scara, SkateHeading, SkewScrew, SliderCrankLinks,
+    SliderCrankRod, SpherePoint, Unpinned, Valley,
 };
-use hamel_downstream::{ALONE, WITH_KNOTS};
+use hamel_downstream::{WITH_KNOTS, of_trees};
 use hamel_tests::derivatives::{self, Equipped, Kernels, bare_and_equipped, behind, of};
 use hamel_tests::differences::FINE;
 use hamel_tests::linear_step;
@@ -21,14 +21,7 @@ const TREES: u64 = 60;
 
 fn kinds() -> Vec<Arc<dyn AnyJoint>> {
     let mut registry = JointRegistry::new();
-    registry
-        .extend(
-            ENTRIES
-                .iter()
-                .copied()
-                .filter(|entry| !ALONE.contains(&entry.name)),
-        )
-        .expect("distinct names");
+    registry.extend(of_trees()).expect("distinct names");
     random::kinds(&registry)
 }
 

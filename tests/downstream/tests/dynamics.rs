@@ -9,12 +9,7 @@ use std::sync::Arc;
 fn kinds() -> Vec<Arc<dyn AnyJoint>> {
     let mut registry = JointRegistry::new();
     registry
-        .extend(
-            hamel_downstream::joints::ENTRIES
-                .iter()
-                .copied()
-                .filter(|entry| !hamel_downstream::ALONE.contains(&entry.name)),
-        )
+        .extend(hamel_downstream::of_trees())
         .expect("distinct names");
     random::kinds(&registry)
 }

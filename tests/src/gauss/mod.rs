@@ -1,8 +1,14 @@
 //! Gauss's principle of least constraint in extended precision: an oracle for joints of several bodies and joints that relations give, from their specs alone.
 //!
-//! It takes of a spec what its author wrote: the poses H of the bodies and the relations between the stored scalars x of Q. Twists and accelerations of bodies follow by
-//! derivatives of H, and `Σ Jᵀ (M (J ẍ + J̇ ẋ) + bias) + Cᵀ λ = 0`, `C ẍ + Ċ ẋ = 0`, with C the derivatives of all relations, those of factors included. No tangent basis, no local
-//! coordinates, no recursion and no kernel of the generator is used. Redundant relations leave multipliers open, never ẍ along the manifold.
+//! It takes of a spec what its author wrote: the poses H of the bodies and the relations between the stored scalars x of Q. Twists and accelerations of bodies are derivatives of H. The
+//! equations are
+//!
+//! ```text
+//! Σ Jᵀ (M (J ẍ + J̇ ẋ) + bias) + Cᵀ λ = 0,   C ẍ + Ċ ẋ = 0,
+//! ```
+//!
+//! with C the derivatives of all relations, those of the factors of Q included. No tangent basis, no local coordinates, no recursion and no kernel of the generator is used. Where relations are
+//! redundant, multipliers are not determined, but ẍ is.
 
 mod solve;
 

@@ -25,19 +25,25 @@ fn parallelogram(at_crank: &str, at_rocker: &str) -> Scene {
     } else {
         ", speeds = [0.4]"
     };
-    let bodies = body(
-        "crank",
-        "world",
+    closed_parallelogram(
         &format!("initial = {{ phi = [0.8]{speed} }}\n{at_crank}"),
-    ) + &body(
-        "coupler",
-        "crank",
-        "at.position = [0.2, 0.0, 0.0]\ninitial = { phi = [-0.8] }",
-    ) + &body(
-        "rocker",
-        "world",
-        &format!("at.position = [0.3, 0.0, 0.0]\ninitial = {{ phi = [0.8] }}\n{at_rocker}"),
-    );
+        &format!("initial = {{ phi = [0.8] }}\n{at_rocker}"),
+    )
+}
+
+/// The parallelogram with these lines in the tables of its crank and its rocker.
+fn closed_parallelogram(crank: &str, rocker: &str) -> Scene {
+    let bodies = body("crank", "world", crank)
+        + &body(
+            "coupler",
+            "crank",
+            "at.position = [0.2, 0.0, 0.0]\ninitial = { phi = [-0.8] }",
+        )
+        + &body(
+            "rocker",
+            "world",
+            &format!("at.position = [0.3, 0.0, 0.0]\n{rocker}"),
+        );
     parsed(&format!(
         "{bodies}[[loop]]\nname = \"closed\"\ntype = \"revolute\"\nindependent = [\"crank\"]\n\
          predecessor = {{ body = \"coupler\", at.position = [0.3, 0.0, 0.0] }}\nsuccessor = {{ body = \"rocker\", at.position = [0.2, 0.0, 0.0] }}\n"
@@ -109,27 +115,10 @@ fn sums_of_positions_are_coupled() {
 /// A rate that is given where the joint is not independent says what the others are.
 #[test]
 fn rates_of_dependent_joints_give_speeds() {
-    let text = |keys: [&str; 2]| {
-        let [crank, rocker] = keys;
-        let bodies = body(
-            "crank",
-            "world",
-            &format!("initial = {{ phi = [0.8]{crank} }}"),
-        ) + &body(
-            "coupler",
-            "crank",
-            "at.position = [0.2, 0.0, 0.0]\ninitial = { phi = [-0.8] }",
-        ) + &body(
-            "rocker",
-            "world",
-            &format!("at.position = [0.3, 0.0, 0.0]\ninitial = {{ phi = [0.8]{rocker} }}"),
-        );
-        parsed(&format!(
-            "{bodies}[[loop]]\nname = \"closed\"\ntype = \"revolute\"\nindependent = [\"crank\"]\n\
-             predecessor = {{ body = \"coupler\", at.position = [0.3, 0.0, 0.0] }}\nsuccessor = {{ body = \"rocker\", at.position = [0.2, 0.0, 0.0] }}\n"
-        ))
-    };
-    let given = text(["", ", speeds = [0.7]"]);
+    let given = closed_parallelogram(
+        "initial = { phi = [0.8] }",
+        "initial = { phi = [0.8], speeds = [0.7] }",
+    );
     assert!((given.speeds[0] - 0.7).abs() < 1e-14, "{:?}", given.speeds);
 }
 
