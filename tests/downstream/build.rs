@@ -1,6 +1,7 @@
 //! Generates this crate's joints from `joints/*.joint`, those that the generator's tests hold out, joints with odd names and texts, and joints whose
-//! names and parameters are called like what emitted files use.
+//! names and parameters are called like what emitted files use; and compiles a five-bar, read by several of its links.
 
+use hamel_compiler::functions::Kind;
 use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -51,6 +52,52 @@ fn main() -> Result<(), Box<dyn Error>> {
     let specs = out.join("names");
     write_names(&specs)?;
     build().specs(&specs).out_dir(&specs).compile()?;
+    five_bars(&out)
+}
+
+/// Angles against the ground of left crank and rod and right crank and rod, and their rates, at the start of the motion in `data/five_bar.json`.
+const ANGLES: [f64; 4] = [2.0, 2.0 - 1.4070976776097384, 1.1, 1.1 + 1.4616854563133668];
+const RATES: [f64; 4] = [
+    1.5,
+    1.5 - 3.659324411620955,
+    -2.0,
+    -2.0 + 3.9745843642354277,
+];
+
+/// Five-bars, each with the two links whose rates are its speeds.
+const FIVE_BARS: [(&str, [usize; 2]); 3] = [
+    ("five_bar", [0, 2]),
+    ("five_bar_left", [0, 1]),
+    ("five_bar_rods", [1, 2]),
+];
+
+/// Scenes `by_….toml` of these joints, and their equations.
+fn five_bars(out: &Path) -> Result<(), Box<dyn Error>> {
+    let template = "data/five_bar.toml";
+    println!("cargo::rerun-if-changed={template}");
+    let template = fs::read_to_string(template)?;
+    let directions: Vec<f64> = ANGLES
+        .iter()
+        .flat_map(|angle| [angle.cos(), angle.sin()])
+        .collect();
+    for (joint, independent) in FIVE_BARS {
+        let speeds = independent.map(|link| RATES[link]);
+        let scene = template
+            .replace("JOINT", joint)
+            .replace("CONFIGURATION", &format!("{directions:?}"))
+            .replace("SPEEDS", &format!("{speeds:?}"));
+        let path = out.join(format!("by_{joint}.toml"));
+        write_if_new(&path, &scene)?;
+        hamel_compiler::scene(path)
+            .specs("joints")
+            .specs("../../joint-specs")
+            .functions([
+                Kind::ForwardDynamics,
+                Kind::MomentumRates,
+                Kind::Hamiltonian,
+            ])
+            .compile()?;
+    }
     Ok(())
 }
 

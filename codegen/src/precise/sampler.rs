@@ -37,6 +37,8 @@ pub struct Sampler<'a> {
     sides: Vec<Expr>,
     /// Whether points have a second configuration Q′.
     paired: bool,
+    /// Values of the parameters, where they are not drawn.
+    parameters: Option<Vec<f64>>,
     /// Of far points: the loci, beyond which the domain may have other components, and all relations.
     far: Option<(Vec<Sloped>, Vec<Sloped>)>,
 }
@@ -72,8 +74,16 @@ impl<'a> Sampler<'a> {
             relations: sloped(space, relations),
             sides: vec![],
             paired: true,
+            parameters: None,
             far: None,
         }
+    }
+
+    /// The same with these values of the parameters, in the order of the spec.
+    #[must_use]
+    pub fn with_parameters(self, values: Vec<f64>) -> Self {
+        let parameters = Some(values);
+        Self { parameters, ..self }
     }
 
     /// The same where these functions are positive.
@@ -141,8 +151,13 @@ impl<'a> Sampler<'a> {
             self.draw.reach = REACHES[self.index(REACHES.len())];
         }
         let mut point = Point::new(self.draw.random.next_u64(), self.draw.bits);
-        for parameter in &self.space.parameters {
-            point.bind(&parameter.symbol, self.draw.parameter(&parameter.range));
+        for (n, parameter) in self.space.parameters.iter().enumerate() {
+            let given = self.parameters.as_ref().and_then(|values| values.get(n));
+            let value = match given {
+                Some(&value) => Precise::from_f64(value, self.draw.bits),
+                None => self.draw.parameter(&parameter.range),
+            };
+            point.bind(&parameter.symbol, value);
         }
         let holds = |value: &Expr| point.evaluate(value).to_f64() > 0.0;
         if !self

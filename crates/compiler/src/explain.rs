@@ -60,9 +60,13 @@ fn of_body(model: &Model, body: &Body, [bare, framed, pruned]: [&Link; 3]) -> St
             .map_or("dropped at the world".to_owned(), |parent| {
                 format!("moved to `{}`", model.bodies[parent].name)
             });
+        let others = match body.leads() && body.joint.more.is_empty() {
+            true => "",
+            false => " and to the joint's other bodies",
+        };
         let _ = writeln!(
             text,
-            "  inertia that does not affect the joint: {} = 0, {to}",
+            "  inertia that does not affect the joint: {} = 0, {to}{others}",
             gone.join(", ")
         );
     }

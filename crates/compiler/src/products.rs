@@ -4,13 +4,14 @@
 //! The runtime forms the same products in numbers: `hamel_runtime::joint::Products`.
 
 use super::chain::Chain;
+use super::prune::Element;
 use hamel_codegen::WORK_LIMIT;
 use hamel_codegen::derived::{Derived, KernelKind, Step, Word};
 use hamel_codegen::expr::budget::{self, Exhausted};
 use hamel_codegen::expr::{Expr, Role, Symbol};
 use hamel_codegen::formula::Program;
 use hamel_codegen::matrix::Matrix;
-use std::cell::OnceCell;
+use std::cell::{OnceCell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
@@ -36,6 +37,8 @@ pub struct JointType {
     pub products: Products,
     /// The joint as each further body sees it, of the first.
     pub more: Vec<Rc<JointType>>,
+    /// Inertias that do not affect the joint, of all its bodies together, for the numbers that were asked for.
+    pub(crate) across: RefCell<BTreeMap<Vec<u64>, Option<Vec<Element>>>>,
     /// What the body hangs on within the joint, of a coupling of mimic joints.
     pub(crate) chain: Option<Chain>,
 }
@@ -52,6 +55,7 @@ impl JointType {
             more: more.collect::<Result<_, _>>()?,
             products: Products::new(&derived)?,
             derived,
+            across: RefCell::default(),
             chain: None,
         })
     }

@@ -4,10 +4,11 @@
 mod common;
 
 use hamel::dynamics::{Dynamics, Frame, MassMatrix, Recursive, Reference};
+use hamel::erased::AnyJoint;
 use hamel::mechanism::{BodySpec, Mechanism, NamedFrame};
 use hamel::spatial::{MassProperties, Pose};
 use hamel_tests::figures::Largest;
-use hamel_tests::gauss::{Acceleration, Gauss, Inertia};
+use hamel_tests::gauss::{Acceleration, Gauss, Ground, Inertia};
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, Vector3};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -97,14 +98,24 @@ fn condition(mechanism: &Arc<Mechanism>, q: &[f64]) -> f64 {
     recursive.mass_matrix(q, &mut mass).expect("sizes fit");
     let values = mass.matrix().singular_values();
     let joint = mechanism.bodies()[0].joint();
-    let freedoms = joint.layout().freedoms;
-    let mut basis = DMatrix::zeros(q.len(), freedoms);
+    let count = joint.layout().speeds;
+    let mut basis = DMatrix::zeros(q.len(), count);
     for (n, mut column) in basis.column_iter_mut().enumerate() {
-        let mut velocity = vec![0.0; freedoms];
-        velocity[n] = 1.0;
-        joint.configuration_rate(q, &velocity, column.as_mut_slice());
+        let mut speeds = vec![0.0; count];
+        speeds[n] = 1.0;
+        column.copy_from_slice(&rates(joint, q, &speeds));
     }
     values.max() / values.min() * basis.amax().max(1.0).powi(2)
+}
+
+/// Q̇ at these v̄, by v = S̄ v̄.
+fn rates(joint: &dyn AnyJoint, q: &[f64], speeds: &[f64]) -> Vec<f64> {
+    let mut basis = DMatrix::zeros(joint.layout().freedoms, speeds.len());
+    joint.speed_basis(q, basis.as_mut_slice());
+    let velocity = basis * DVector::from_column_slice(speeds);
+    let mut rates = vec![0.0; q.len()];
+    joint.configuration_rate(q, velocity.as_slice(), &mut rates);
+    rates
 }
 
 /// A number in [−1, 1) by its place.
@@ -114,17 +125,17 @@ fn random(seed: u64) -> f64 {
     (mixed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
-fn check(name: &str, parameters: &[f64], reach: f64) {
+fn check(name: &str, parameters: &[f64], reach: f64, ground: &[Ground]) {
     let folders = folders();
     let folder = folders
         .iter()
         .find(|folder| folder.join(format!("{name}.joint")).exists());
     let derived = hamel_tests::derived_in(folder.expect("a spec"), name);
-    let mut gauss = Gauss::new(&derived, parameters);
+    let mut gauss = Gauss::new(&derived, parameters, ground);
     let gravity = Vector3::new(0.7, -0.9, -9.7);
     let mechanism = mechanism(name, parameters, gravity);
     let joint = mechanism.bodies()[0].joint();
-    let freedoms = joint.layout().freedoms;
+    let (freedoms, count) = (joint.layout().freedoms, joint.layout().speeds);
     let inertias: Vec<Inertia> = (0..mechanism.bodies().len()).map(inertia).collect();
     let mut worst = [
         Largest::new("accelerations, tree"),
@@ -134,11 +145,10 @@ fn check(name: &str, parameters: &[f64], reach: f64) {
     for state in 0..STATES {
         let draw = |kind: u64, n: usize| random(1000 * state + 100 * kind + n as u64);
         let phi: Vec<f64> = (0..freedoms).map(|n| reach * draw(1, n)).collect();
-        let speeds: Vec<f64> = (0..freedoms).map(|n| 2.0 * draw(2, n)).collect();
+        let speeds: Vec<f64> = (0..count).map(|n| 2.0 * draw(2, n)).collect();
         let mut q = vec![0.0; mechanism.home().len()];
         joint.retract(&mechanism.home(), &phi, &mut q);
-        let mut moving = vec![0.0; q.len()];
-        joint.configuration_rate(&q, &speeds, &mut moving);
+        let moving = rates(joint, &q, &speeds);
         let expected = gauss.accelerations((&q, &moving), &inertias, &gravity);
         let size = expected
             .iter()
@@ -151,7 +161,7 @@ fn check(name: &str, parameters: &[f64], reach: f64) {
             Box::new(Reference::new(Arc::clone(&mechanism))),
         ];
         for (mut form, worst) in forms.into_iter().zip(&mut worst) {
-            let mut rates = vec![0.0; freedoms];
+            let mut rates = vec![0.0; count];
             let solved = form.forward_dynamics(&q, &speeds, &vec![0.0; freedoms], &mut rates);
             solved.unwrap_or_else(|error| panic!("{name}: {error}"));
             let found = accelerations(&mechanism, (&q, &speeds), &rates);
@@ -160,13 +170,15 @@ fn check(name: &str, parameters: &[f64], reach: f64) {
             worst.meet(error / unit, format!("state {state} of {name}"));
         }
         let mut tree = Recursive::new(Arc::clone(&mechanism));
-        let (mut rates, mut back) = (vec![0.0; freedoms], vec![0.0; freedoms]);
+        let (mut rates, mut back) = (vec![0.0; count], vec![0.0; count]);
         let efforts: Vec<f64> = (0..freedoms).map(|n| draw(3, n)).collect();
         tree.forward_dynamics(&q, &speeds, &efforts, &mut rates)
             .expect("regular");
         tree.inverse_dynamics(&q, &speeds, &rates, &mut back)
             .expect("sizes fit");
-        let error = efforts
+        let mut reduced = vec![0.0; count];
+        joint.reduce_efforts(&q, &efforts, &mut reduced);
+        let error = reduced
             .iter()
             .zip(&back)
             .map(|(a, b)| (a - b).abs())
@@ -181,7 +193,7 @@ macro_rules! tests {
     ($($name:ident: $parameters:expr, $reach:expr;)*) => {$(
         #[test]
         fn $name() {
-            check(stringify!($name), &$parameters, $reach);
+            check(stringify!($name), &$parameters, $reach, &[]);
         }
     )*};
 }
@@ -192,6 +204,7 @@ tests! {
     delta: [0.2, 0.35, 0.74], 0.1;
     differential: [2.0], 0.5;
     five_bar: [0.3, 0.2, 0.3, 0.22, 0.28], 0.1;
+    five_bar_left: [0.3, 0.2, 0.3, 0.22, 0.28], 0.1;
     five_bar_rods: [0.3, 0.2, 0.3, 0.22, 0.28], 0.1;
     four_bar: [0.9, 0.4, 1.1, 1.2], 0.5;
     geared_revolute: [5.5], 0.5;
@@ -203,4 +216,41 @@ tests! {
     stewart: [0.7, 0.4], 0.2;
     three_rrr: [0.9, 0.3, 0.5, 0.3], 0.1;
     wishbone: [0.35, 0.28, 0.2, 0.2, 0.35, 0.1], 0.2;
+}
+
+/// Bodies: chassis, wheels at the front left, front right, rear left and rear right.
+#[test]
+fn car() {
+    let rolls = |wheel| Ground::Rolls {
+        wheel,
+        radius: "radius",
+    };
+    let rear = Ground::Holds {
+        body: 0,
+        ahead: None,
+        axle: 0,
+    };
+    let front = Ground::Holds {
+        body: 0,
+        ahead: Some("base"),
+        axle: 1,
+    };
+    let ground = [rear, front, rolls(1), rolls(2), rolls(3), rolls(4)];
+    check("car", &[2.7, 0.8, 0.33], 0.5, &ground);
+}
+
+/// Bodies: chassis, left and right wheel.
+#[test]
+fn differential_drive() {
+    let rolls = |wheel| Ground::Rolls {
+        wheel,
+        radius: "radius",
+    };
+    let axle = Ground::Holds {
+        body: 0,
+        ahead: None,
+        axle: 0,
+    };
+    let ground = [axle, rolls(1), rolls(2)];
+    check("differential_drive", &[0.2, 0.08], 0.5, &ground);
 }

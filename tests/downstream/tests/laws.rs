@@ -3,10 +3,10 @@
 use hamel::joint::Member;
 use hamel_downstream::joints::{
     BallCayley, BallTurns, Bead, CamCircle, CarWheels, Catenary, CatenaryLength, CrankCoupler,
-    CrankRocker, Delta, DirectionSensor, ENTRIES, FiveBarRods, FixedAxis, FourBarThrough,
-    GearedRotor, MeasuredRocker, PlanarTurns, PowerGuide, Press, Rollers, RollingBallCayley, Scara,
-    SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod, SpherePoint, Stewart, ThreeRrr,
-    Unpinned, Valley,
+    CrankRocker, Delta, DirectionSensor, ENTRIES, FiveBarLeft, FiveBarRods, FixedAxis,
+    FourBarThrough, GearedRotor, MeasuredRocker, PlanarTurns, PowerGuide, Press, Rollers,
+    RollingBallCayley, Scara, SkateHeading, SkewScrew, SliderCrankLinks, SliderCrankRod,
+    SpherePoint, Stewart, ThreeRrr, Unpinned, Valley,
 };
 use hamel_tests::laws::Reach::{self, Around, Entries, HalfTurn};
 use hamel_tests::laws::check_within;
@@ -106,6 +106,8 @@ laws_of_bodies! {
     car_wheels: CarWheels::new(1.1, 0.7, 0.4), Entries(0.5), [1, 2, 3, 4];
     crank_rocker: CrankRocker::new(0.9, 0.4, 1.1, 1.2), Entries(0.5), [1, 2];
     delta: Delta::new(0.2, 0.35, 0.74), Around(0.05), [1, 2, 3];
+    five_bar_left: FiveBarLeft::new(0.3, 0.2, 0.3, 0.22, 0.28), Around(0.1), [1, 2, 3];
+    five_bar_left: FiveBarLeft::new(0.3, 0.2, 0.3, 0.22, 0.28), Around(0.1), [1, 2, 3];
     five_bar_rods: FiveBarRods::new(0.3, 0.2, 0.3, 0.22, 0.28), Around(0.1), [1, 2, 3];
     geared_rotor: GearedRotor::new(5.5), Entries(0.5), [1];
     press: Press::new(0.4, 1.1), Entries(0.5), [1, 2];

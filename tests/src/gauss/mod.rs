@@ -7,10 +7,13 @@
 //! Σ Jᵀ (M (J ẍ + J̇ ẋ) + bias) + Cᵀ λ = 0,   C ẍ + Ċ ẋ = 0,
 //! ```
 //!
-//! with C the derivatives of all relations, those of the factors of Q included. No tangent basis, no local coordinates, no recursion and no kernel of the generator is used. Where relations are
+//! with C the derivatives of all relations, those of the factors of Q included, and what wheels and axles keep of velocities ([`Ground`]). No tangent basis, no local coordinates, no recursion and no kernel of the generator is used. Where relations are
 //! redundant, multipliers are not determined, but ẍ is.
 
+mod ground;
 mod solve;
+
+pub use ground::Ground;
 
 use hamel::nalgebra::{Matrix3, Vector3};
 use hamel_codegen::derived::Derived;
@@ -41,6 +44,8 @@ pub type Acceleration = [Vector3<f64>; 2];
 pub struct Gauss {
     coordinates: Vec<Symbol>,
     relations: Vec<Smooth>,
+    /// Of each constraint on velocities what multiplies ẋ.
+    kept: Vec<Vec<Smooth>>,
     /// Of each body the nine entries of R row by row, and the three of p.
     poses: Vec<Vec<Smooth>>,
     point: Point,
@@ -55,11 +60,11 @@ struct Moving {
 }
 
 impl Gauss {
-    /// A joint with these parameters.
+    /// A joint with these parameters, on wheels and axles if it has some.
     ///
     /// # Panics
     /// Where no configuration of it is found.
-    pub fn new(derived: &Derived, parameters: &[f64]) -> Self {
+    pub fn new(derived: &Derived, parameters: &[f64], ground: &[Ground]) -> Self {
         let space = &derived.space;
         let coordinates = space.manifold.coordinates();
         let smooth = |e: &Expr| Smooth::new(e, &coordinates);
@@ -73,13 +78,12 @@ impl Gauss {
                 .map(smooth)
                 .collect()
         });
-        let found = Sampler::new(space, BITS).single().point();
-        let mut point = found.expect("a configuration");
-        for (parameter, &value) in space.parameters.iter().zip(parameters) {
-            point.bind(&parameter.symbol, Precise::from_f64(value, BITS));
-        }
+        let sampler = Sampler::new(space, BITS).single();
+        let found = sampler.with_parameters(parameters.to_vec()).point();
+        let point = found.expect("a configuration");
         Self {
             relations: relations.iter().map(smooth).collect(),
+            kept: ground.iter().map(|own| own.row(derived)).collect(),
             poses: poses.collect(),
             coordinates,
             point,
@@ -104,23 +108,28 @@ impl Gauss {
                 Body::new(&entries.collect::<Vec<_>>(), inertia)
             })
             .collect();
-        let constraints: Vec<Moving> = self
-            .relations
-            .iter()
-            .map(|relation| self.moving(relation, &rates))
-            .collect();
+        let relations = self.relations.iter().map(|relation| {
+            let Moving { slopes, bend, .. } = self.moving(relation, &rates);
+            (slopes, bend)
+        });
+        let kept = self.kept.iter().map(|row| {
+            let row: Vec<Moving> = row.iter().map(|own| self.moving(own, &rates)).collect();
+            let bend = total(row.iter().zip(&rates).map(|(own, rate)| &own.rate * rate));
+            (row.into_iter().map(|own| own.value).collect(), bend)
+        });
+        let constraints: Vec<(Vec<Precise>, Precise)> = relations.chain(kept).collect();
         let count = self.coordinates.len();
         let zero = Precise::integer(0, BITS);
         let mut rows = vec![vec![zero; count + constraints.len() + 1]; count + constraints.len()];
         for body in &bodies {
             body.add_to(&mut rows, count, gravity);
         }
-        for (n, constraint) in constraints.iter().enumerate() {
-            for (i, slope) in constraint.slopes.iter().enumerate() {
+        for (n, (slopes, bend)) in constraints.iter().enumerate() {
+            for (i, slope) in slopes.iter().enumerate() {
                 rows[count + n][i] = slope.clone();
                 rows[i][count + n] = slope.clone();
             }
-            *rows[count + n].last_mut().expect("a right side") = -&constraint.bend;
+            *rows[count + n].last_mut().expect("a right side") = -bend;
         }
         let solution = solve(rows);
         bodies
@@ -139,7 +148,7 @@ impl Gauss {
                 .relations
                 .iter()
                 .map(|relation| self.point.evaluate(&relation.value));
-            let step = self.across(values.collect());
+            let step = self.across(self.slopes(), values.collect());
             for (coordinate, change) in self.coordinates.clone().iter().zip(step) {
                 let moved = self.point.value(coordinate) - change;
                 self.point.bind(coordinate, moved);
@@ -147,14 +156,16 @@ impl Gauss {
         }
     }
 
-    /// Rates without what of them is across the manifold.
+    /// Rates without what of them leaves the relations, or what velocities keep.
     fn tangent(&self, rates: &[f64]) -> Vec<Precise> {
         let rates: Vec<Precise> = rates
             .iter()
             .map(|&rate| Precise::from_f64(rate, BITS))
             .collect();
-        let off = self.slopes().iter().map(|row| dot(row, &rates)).collect();
-        let back = self.across(off);
+        let kept = self.kept.iter().map(|row| self.values(row));
+        let rows: Vec<Vec<Precise>> = self.slopes().into_iter().chain(kept).collect();
+        let off = rows.iter().map(|row| dot(row, &rates)).collect();
+        let back = self.across(rows, off);
         rates
             .iter()
             .zip(&back)
@@ -162,9 +173,8 @@ impl Gauss {
             .collect()
     }
 
-    /// The shortest change of x that changes the relations by so much: Cᵀ μ with C Cᵀ μ = change.
-    fn across(&self, change: Vec<Precise>) -> Vec<Precise> {
-        let slopes = self.slopes();
+    /// The shortest change of x that changes what has these slopes C by so much: Cᵀ μ with C Cᵀ μ = change.
+    fn across(&self, slopes: Vec<Vec<Precise>>, change: Vec<Precise>) -> Vec<Precise> {
         let count = self.coordinates.len();
         if slopes.is_empty() {
             return vec![Precise::integer(0, BITS); count];
@@ -191,6 +201,12 @@ impl Gauss {
                 .collect()
         };
         self.relations.iter().map(row).collect()
+    }
+
+    fn values(&self, row: &[Smooth]) -> Vec<Precise> {
+        row.iter()
+            .map(|own| self.point.evaluate(&own.value))
+            .collect()
     }
 
     fn moving(&self, smooth: &Smooth, rates: &[Precise]) -> Moving {

@@ -12,6 +12,7 @@ mod euler_lagrange;
 mod frames;
 mod growth;
 mod instructions;
+mod left_out;
 mod linear_step;
 mod newton_euler;
 mod numbers;

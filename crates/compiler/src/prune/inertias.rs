@@ -1,109 +1,143 @@
 //! Inertias that do not affect a joint move to its parent, from the leaves to the root; what arrives at the world is dropped.
 //!
-//! N_X is spanned in the joint's child frame (`Derived::unidentifiable`). Subtracting its elements makes as many of the ten parameters of a
-//! body 0 as it has dimensions. N is constant also in the parent frame, so it may be read at home.
+//! N_X is spanned in the child frames of the joint's bodies ([`across`]). Subtracting its elements makes as many of the ten parameters of each
+//! body 0 as it has dimensions. What moves is constant in the parent frame, so it may be read at home.
 
-use super::{Fixed, Link, Placed};
+use super::{Fixed, Link, Placed, across};
 use crate::graph::{Sym, record};
 use crate::joint::Joint;
 use crate::model::{Body, Inertia, Model};
 use crate::spatial::{Mat3, Step, Vec3};
 use hamel_runtime::spatial::Pose;
 use nalgebra::{Matrix3, Vector3};
-use num_traits::ToPrimitive;
 
 /// Parameters that are made 0, those that cost most first; among equals the one with the largest entry. Of second moments squares come first: wherever an
 /// axis points, one of them has an entry of at least a third.
 const ORDER: [&[usize]; 4] = [&[0], &[3, 1, 2], &[6, 5, 4], &[9, 8, 7]];
 /// Elements of a basis below this are rounding of the turn that was made with it.
 const ROUNDING: f64 = 1e-14;
+/// Entries of a basis below this part of the largest are not divided by: the square of a gear's ratio of a thousand.
+const SMALL: f64 = 1e-6;
+/// A sum below this part of what was added and subtracted is rounding of some dozen terms.
+const SUM_ROUNDING: f64 = 4e-15;
+
+/// The parameters of all bodies of a joint, ten each.
+type Parameters = Vec<[f64; 10]>;
+
+/// One of them: the body, and its parameter.
+type Place = (usize, usize);
 
 /// The links with the inertias that are left to them.
 pub fn rootward(model: &Model, placed: &Placed<'_>, mut links: Vec<Link>) -> Vec<Link> {
-    for (index, body) in model.bodies.iter().enumerate().rev() {
-        let to_link = placed.moved(index).inverse();
-        let basis = reduced(basis(body, &to_link));
-        let (rest, moved) = taken(&links[index].inertia, &basis);
-        links[index].inertia = rest;
-        let placement = Fixed::pose(&links[index].placement);
-        let pose = placement
-            .compose(&home(body))
-            .compose(&Fixed::pose(&links[index].after));
-        let moved = moved.seen_from(&pose);
-        match body.parent {
-            Some(parent) => links[parent].inertia = links[parent].inertia.plus(&moved),
-            None => links[index].dropped = moved.first,
+    let joints: Vec<usize> = model.joints().map(|(first, _)| first).collect();
+    for first in joints.into_iter().rev() {
+        let bodies = model.carried(first);
+        let to_links: Vec<Pose<f64>> = bodies
+            .clone()
+            .map(|body| placed.moved(body).inverse())
+            .collect();
+        let basis = across::basis(model, first);
+        let in_links = basis.iter().map(|element| moved(element, &to_links));
+        let basis = reduced(in_links.collect());
+        let parts = taken(&mut links[bodies.clone()], &basis);
+        for (index, part) in bodies.zip(parts) {
+            let body = &model.bodies[index];
+            let placement = Fixed::pose(&links[index].placement);
+            let pose = placement
+                .compose(&home(body))
+                .compose(&Fixed::pose(&links[index].after));
+            let part = part.seen_from(&pose);
+            match body.parent {
+                Some(parent) => links[parent].inertia = links[parent].inertia.plus(&part),
+                None => links[index].dropped = part.first,
+            }
         }
     }
     links
 }
 
-/// A basis of N_X in the frame of the link, by parameters.
-fn basis(body: &Body, to_link: &Pose<f64>) -> Vec<[f64; 10]> {
-    let element = |element: &[hamel_codegen::expr::Rational; 10]| {
-        let parameters = std::array::from_fn(|i| element[i].to_f64().unwrap_or(0.0));
-        let moved = Inertia::from_moments_of_inertia(&parameters)
-            .seen_from(to_link)
-            .parameters();
-        moved.map(|entry| if entry.abs() <= ROUNDING { 0.0 } else { entry })
-    };
-    body.joint
-        .derived
-        .unidentifiable
-        .iter()
-        .map(element)
-        .collect()
+/// An element of N_X by its parameters in the frames of the links.
+fn moved(element: &across::Element, to_links: &[Pose<f64>]) -> Parameters {
+    let bodies = element.iter().zip(to_links);
+    let bodies = bodies.map(|(own, to_link)| own.seen_from(to_link).parameters());
+    let clean = |entry: f64| if entry.abs() <= ROUNDING { 0.0 } else { entry };
+    bodies.map(|own| own.map(clean)).collect()
 }
 
 /// The same space with a basis of which each element alone has 1 at a parameter of its own: element and parameter.
-fn reduced(mut basis: Vec<[f64; 10]>) -> Vec<(usize, [f64; 10])> {
-    let mut done: Vec<(usize, [f64; 10])> = vec![];
+fn reduced(mut basis: Vec<Parameters>) -> Vec<(Place, Parameters)> {
+    let mut done: Vec<(Place, Parameters)> = vec![];
     for parameters in ORDER {
-        while let Some((element, parameter)) = largest(&basis, parameters) {
-            let pivot = basis.swap_remove(element);
-            let pivot = pivot.map(|entry| entry / pivot[parameter]);
-            let others = basis
-                .iter_mut()
-                .chain(done.iter_mut().map(|(_, element)| element));
-            for other in others {
-                let factor = other[parameter];
-                for (entry, pivot) in other.iter_mut().zip(pivot) {
+        while let Some((element, place)) = largest(&basis, parameters) {
+            let mut pivot = basis.swap_remove(element);
+            let scale = pivot[place.0][place.1];
+            entries(&mut pivot).for_each(|entry| *entry /= scale);
+            let others = done.iter_mut().map(|(_, element)| element);
+            for other in basis.iter_mut().chain(others) {
+                let factor = other[place.0][place.1];
+                let pivot = pivot.as_flattened();
+                for (entry, pivot) in entries(other).zip(pivot) {
                     *entry -= factor * pivot;
                 }
-                other[parameter] = 0.0;
+                other[place.0][place.1] = 0.0;
             }
-            done.push((parameter, pivot));
+            done.push((place, pivot));
         }
     }
     done
 }
 
-/// Where the elements' largest entry at one of the parameters stands, unless all are 0: the first of equals.
-fn largest(basis: &[[f64; 10]], parameters: &[usize]) -> Option<(usize, usize)> {
-    let places = parameters
-        .iter()
-        .flat_map(|&parameter| (0..basis.len()).map(move |element| (element, parameter)));
-    let size = |&(element, parameter): &(usize, usize)| basis[element][parameter].abs();
-    let largest = places.reduce(|first, other| match size(&other) > size(&first) {
-        true => other,
-        false => first,
-    });
-    largest.filter(|place| size(place) != 0.0)
+fn entries(parameters: &mut Parameters) -> impl Iterator<Item = &mut f64> {
+    parameters.as_flattened_mut().iter_mut()
 }
 
-/// What is left of an inertia, with zeros at the parameters of the basis, and what was taken.
-fn taken(inertia: &Inertia, basis: &[(usize, [f64; 10])]) -> (Inertia, Inertia) {
-    let whole = inertia.parameters();
-    let moved = basis
-        .iter()
-        .fold(Inertia::zero(), |sum, (parameter, element)| {
-            sum.plus(&Inertia::from_parameters(element).times(whole[*parameter]))
-        });
-    let mut rest = inertia.plus(&moved.times(-1.0)).parameters();
-    for (parameter, _) in basis {
-        rest[*parameter] = 0.0;
+/// Where the elements' largest entry at one of the parameters stands, unless all are 0: of the last body that has one worth dividing by, so that what is left is left to the first, and of
+/// equals the first.
+fn largest(basis: &[Parameters], parameters: &[usize]) -> Option<(usize, Place)> {
+    let bodies = basis.first().map_or(0, Vec::len);
+    let size = |&(n, (body, parameter)): &(usize, Place)| basis[n][body][parameter].abs();
+    let of_body = |body: usize| {
+        let places = parameters
+            .iter()
+            .flat_map(move |&parameter| (0..basis.len()).map(move |n| (n, (body, parameter))));
+        places.reduce(|first, other| match size(&other) > size(&first) {
+            true => other,
+            false => first,
+        })
+    };
+    let places: Vec<(usize, Place)> = (0..bodies).filter_map(of_body).collect();
+    let most = places.iter().map(size).fold(0.0, f64::max);
+    let worth = |place: &&(usize, Place)| size(place) > SMALL * most;
+    places.iter().rev().find(worth).copied()
+}
+
+/// Leaves the links of a joint zeros at the parameters of the basis; what was taken off each.
+fn taken(links: &mut [Link], basis: &[(Place, Parameters)]) -> Vec<Inertia> {
+    let whole: Parameters = links.iter().map(|link| link.inertia.parameters()).collect();
+    let mut taken = vec![[0.0; 10]; links.len()];
+    // Sizes of what is added and subtracted, by which a sum of 0 is told.
+    let mut sizes: Parameters = whole.iter().map(|own| own.map(f64::abs)).collect();
+    for ((body, parameter), element) in basis {
+        let amount = whole[*body][*parameter];
+        let sums = taken.as_flattened_mut().iter_mut();
+        let sizes = sizes.as_flattened_mut().iter_mut();
+        for ((sum, size), own) in sums.zip(sizes).zip(element.as_flattened()) {
+            *sum += amount * own;
+            *size += (amount * own).abs();
+        }
     }
-    (Inertia::from_parameters(&rest), moved)
+    for (index, link) in links.iter_mut().enumerate() {
+        let rest = |n: usize| {
+            let rest = whole[index][n] - taken[index][n];
+            let by_basis = basis.iter().any(|(place, _)| *place == (index, n));
+            match by_basis || rest.abs() <= SUM_ROUNDING * sizes[index][n] {
+                true => 0.0,
+                false => rest,
+            }
+        };
+        link.inertia = Inertia::from_parameters(&std::array::from_fn(rest));
+    }
+    taken.iter().map(Inertia::from_parameters).collect()
 }
 
 /// The joint's pose at home.

@@ -3,10 +3,12 @@
 //! All of it is exact: M, the forces of (24) and (34), and the efforts stay what they are, to rounding. Joint reaction wrenches do not: who
 //! wants these takes them from the tree.
 
+mod across;
 mod frames;
 mod inertias;
 mod rotation;
 
+pub(crate) use across::Element;
 pub use frames::{Placed, clean};
 
 use super::model::{Inertia, Model};

@@ -1,0 +1,128 @@
+//! What the scene compiler leaves out of joints with several bodies: inertias that do not affect the joint, of all its bodies together.
+
+use hamel::mechanism::{BodySpec, Mechanism};
+use hamel::nalgebra::{Matrix3, Vector3};
+use hamel::spatial::{MassProperties, Pose};
+use hamel_compiler::functions::{Kind, Loops, compile_with};
+use hamel_compiler::model::Model;
+use hamel_compiler::prune::{Link, Pruning, prune};
+use hamel_tests::compiled;
+
+/// Mass properties of bodies of a plane linkage, with the centre of mass on the x axis.
+fn link(mass: f64, centre: f64) -> MassProperties {
+    let inertia = Matrix3::from_diagonal(&Vector3::new(0.02, 0.03, 0.04));
+    MassProperties::new(mass, Vector3::new(centre, 0.0, 0.0), inertia).expect("valid")
+}
+
+/// A joint with these bodies on the world, or on a body that moves freely.
+fn model(
+    name: &str,
+    parameters: &[f64],
+    masses: &[MassProperties],
+    gravity: f64,
+    on_world: bool,
+) -> Model {
+    let registry = hamel_joints::registry();
+    let built = |name: &str, parameters: &[f64]| {
+        let entry = registry.get(name).expect("a joint of the library");
+        (entry.build)(parameters).unwrap_or_else(|error| panic!("{name}: {error}"))
+    };
+    let body = |name: &str, joint, parent, mass| BodySpec {
+        name: format!("{name} {mass:?}"),
+        joint_name: name.into(),
+        parent,
+        joint,
+        placement: Pose::from_translation(Vector3::new(0.1, -0.2, 0.3)),
+        child_placement: Pose::identity(),
+        mass,
+    };
+    let parent = (!on_world).then_some(0);
+    let base = parent.map(|_| body("free", built("free", &[]), None, link(3.0, 0.1)));
+    let first = built(name, parameters);
+    let joints = std::iter::once(first.clone()).chain(first.more());
+    let bodies = joints
+        .zip(masses)
+        .map(|(joint, mass)| body(name, joint, parent, *mass));
+    let bodies = base.into_iter().chain(bodies).collect();
+    let gravity = Vector3::new(0.3, gravity, 0.7) * gravity.abs().min(1.0);
+    let mechanism = Mechanism::new(gravity, bodies).unwrap_or_else(|errors| panic!("{errors:?}"));
+    compiled::model("left_out", &mechanism)
+}
+
+fn operations(model: &Model, links: &[Link]) -> usize {
+    let chosen = compile_with(model, links, Kind::ForwardDynamics, Loops::default());
+    chosen.function.operations().flops()
+}
+
+/// Ground, crank, coupler and rocker.
+const LENGTHS: [f64; 4] = [1.0, 0.5, 1.0, 1.25];
+
+/// Crank, coupler and rocker whose common centre of mass does not move: a quarter of the coupler's 2 kg belongs to the end of the rocker, three quarters to that of the crank (Berkof and
+/// Lowen, 1969).
+fn balanced() -> [MassProperties; 3] {
+    [link(3.0, -0.25), link(2.0, 0.25), link(1.0, -0.625)]
+}
+
+#[test]
+fn gravity_is_left_out_of_a_balanced_four_bar() {
+    let of = |masses: &[MassProperties], gravity| {
+        let model = model("four_bar", &LENGTHS, masses, gravity, true);
+        operations(&model, &prune(&model, Pruning::ALL))
+    };
+    assert_eq!(of(&balanced(), -9.7), of(&balanced(), 0.0));
+    let mut other = balanced();
+    other[2] = link(1.0, -0.5);
+    assert!(of(&other, -9.7) > of(&other, 0.0));
+}
+
+/// Points of mass in the pins of the coupler belong to it as well as to its neighbours.
+#[test]
+fn a_coupler_leaves_its_mass_to_its_neighbours() {
+    let model = model("four_bar", &LENGTHS, &balanced(), -9.7, false);
+    let links = prune(&model, Pruning::ALL);
+    let massless = links[1..]
+        .iter()
+        .filter(|link| link.inertia.mass == 0.0)
+        .count();
+    assert_eq!(massless, 3, "{links:?}");
+    let framed = prune(
+        &model,
+        Pruning {
+            frames: true,
+            inertias: false,
+        },
+    );
+    assert!(operations(&model, &links) < operations(&model, &framed));
+}
+
+/// A rotor that nothing but its own gear turns is an inertia of the output.
+#[test]
+fn a_rotor_on_a_fixed_axis_is_left_out() {
+    let masses = [link(2.0, 0.25), link(1.0, 0.0)];
+    let model = model("geared_revolute", &[8.0], &masses, -9.7, true);
+    let links = prune(&model, Pruning::ALL);
+    let left: Vec<usize> = links
+        .iter()
+        .map(|link| {
+            link.inertia
+                .parameters()
+                .iter()
+                .filter(|own| **own != 0.0)
+                .count()
+        })
+        .collect();
+    // Of the output its centre of mass on the x axis, and one square for the moments of both about the axis.
+    assert_eq!(left[1], 0, "{links:?}");
+    assert_eq!(left[0], 2, "{links:?}");
+}
+
+/// On a body that moves, its turning is felt.
+#[test]
+fn a_rotor_on_a_moving_axis_keeps_its_moment() {
+    let masses = [link(2.0, 0.25), link(1.0, 0.0)];
+    let model = model("geared_revolute", &[8.0], &masses, -9.7, false);
+    let links = prune(&model, Pruning::ALL);
+    let rotor = links[2].inertia.parameters();
+    assert_ne!(rotor, [0.0; 10]);
+    assert_eq!(rotor[0], 0.0);
+}
