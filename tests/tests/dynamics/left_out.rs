@@ -1,12 +1,18 @@
 //! What the scene compiler leaves out of joints with several bodies: inertias that do not affect the joint, of all its bodies together.
 
+use chacha20::ChaCha8Rng;
 use hamel::mechanism::{BodySpec, Mechanism};
 use hamel::nalgebra::{Matrix3, Vector3};
 use hamel::spatial::{MassProperties, Pose};
+use hamel_compiler::emit::Function;
 use hamel_compiler::functions::{Kind, Loops, compile_with};
+use hamel_compiler::graph::Argument;
 use hamel_compiler::model::Model;
 use hamel_compiler::prune::{Link, Pruning, prune};
-use hamel_tests::compiled;
+use hamel_tests::figures::Largest;
+use hamel_tests::{compiled, random};
+use rand::SeedableRng;
+use std::sync::Arc;
 
 /// Mass properties of bodies of a plane linkage, with the centre of mass on the x axis.
 fn link(mass: f64, centre: f64) -> MassProperties {
@@ -125,4 +131,51 @@ fn a_rotor_on_a_moving_axis_keeps_its_moment() {
     let rotor = links[2].inertia.parameters();
     assert_ne!(rotor, [0.0; 10]);
     assert_eq!(rotor[0], 0.0);
+}
+
+/// Every joint of the library that carries several bodies, on the world and on a ball: efforts with what is left out are those with all of it, to some dozen roundings of their largest term.
+#[test]
+fn what_is_left_out_changes_no_effort() {
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    let all = random::library();
+    let named = |name: &str| {
+        all.iter()
+            .find(|joint| joint.name() == name)
+            .expect("in the library")
+    };
+    let several = all.iter().filter(|joint| joint.bodies().len() > 1);
+    let mut worst = Largest::new("efforts of what is left out");
+    for joint in several {
+        for on_world in [true, false] {
+            let base = (!on_world).then(|| Arc::clone(named("ball")));
+            let joints: Vec<_> = base.into_iter().chain([Arc::clone(joint)]).collect();
+            let mechanism = random::tree(&mut random, &joints);
+            let model = compiled::model(joint.name(), &mechanism);
+            let [pruned, bare] = [Pruning::ALL, Pruning::NONE].map(|pruning| {
+                let links = prune(&model, pruning);
+                compile_with(&model, &links, Kind::InverseDynamics, Loops::Never).function
+            });
+            for _ in 0..4 {
+                let q = random::configuration(&mut random, &mechanism);
+                let count = mechanism.layout().speeds;
+                let v = random::numbers(&mut random, count);
+                let a = random::numbers(&mut random, count);
+                let efforts = |function: &Function| {
+                    function.evaluate(|argument| match argument {
+                        Argument::Configuration => q.clone(),
+                        Argument::Speeds | Argument::Momenta => v.clone(),
+                        Argument::Efforts | Argument::Accelerations => a.clone(),
+                    })
+                };
+                let (found, expected) = (efforts(&pruned), efforts(&bare));
+                let largest = expected
+                    .iter()
+                    .fold(1.0_f64, |most, own| own.abs().max(most));
+                let errors = found.iter().zip(&expected).map(|(a, b)| (a - b).abs());
+                let error = errors.fold(0.0, f64::max) / largest;
+                worst.meet(error, format!("{}, on the world: {on_world}", joint.name()));
+            }
+        }
+    }
+    worst.assert_within(1e-12);
 }

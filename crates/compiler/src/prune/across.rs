@@ -24,12 +24,21 @@ use sample::Sample;
 
 /// Bits of the numbers.
 const BITS: usize = 128;
+/// What is below this part of the largest entry, as a power of two, is rounding.
+const ROUNDING: f64 = -64.0;
 /// Configurations at most; after two that say nothing new no more are asked for.
 const SAMPLES: usize = 16;
 const IN_VAIN: usize = 2;
 
-/// Inertias of the bodies of a joint, in their child frames.
-pub type Element = Vec<Inertia>;
+/// Inertias that do not affect a joint together.
+#[derive(Clone, Debug)]
+pub struct Element {
+    /// Of each body, in its child frame.
+    pub bodies: Vec<Inertia>,
+    /// Their sum in the joint's parent frame as its first body sees it, constant on the relations of the joint alone, if at all; on the world its first moment along gravity is. Where each body has its own
+    /// for itself, its part is constant in every pose.
+    pub sum: Option<Inertia>,
+}
 
 /// A basis of the inertias that do not affect the joint under its first body.
 pub(super) fn basis(model: &Model, first: usize) -> Vec<Element> {
@@ -50,7 +59,10 @@ fn of_each(bodies: &[Body]) -> Vec<Element> {
             let parameters = std::array::from_fn(|i| element[i].to_f64().unwrap_or(0.0));
             let mut all = vec![Inertia::zero(); bodies.len()];
             all[index] = Inertia::from_moments_of_inertia(&parameters);
-            all
+            Element {
+                bodies: all,
+                sum: None,
+            }
         };
         elements.map(element).collect::<Vec<_>>()
     };
@@ -105,7 +117,7 @@ impl Question {
         let sampler = Sampler::new(&bodies[0].joint.derived.space, BITS).single();
         let mut sampler = sampler.with_parameters(bodies[0].parameters.clone());
         let mut echelon = Echelon::new(10 * bodies.len());
-        let mut start: Option<Vec<Vec<Precise>>> = None;
+        let mut start: Option<(Vec<Vec<Precise>>, Vec<Sample>)> = None;
         let mut in_vain = 0;
         for _ in 0..SAMPLES {
             let point = sampler.point()?;
@@ -114,28 +126,49 @@ impl Question {
                 .map(|(body, placement)| Sample::new(body, placement, point.clone()))
                 .collect();
             let constant = constants(&samples, self.gravity.as_ref());
-            let start = start.get_or_insert_with(|| constant.clone());
-            let changes = constant.iter().zip(&*start).map(|(row, start)| {
-                let pairs = row.iter().zip(start);
+            let vanishing = vanishing(&samples, self.gravity.is_some());
+            // Units of length are about as large as bodies: rounding is told by the largest entry of all.
+            let size = constant.iter().chain(&vanishing).flatten().map(size);
+            let size = size.fold(f64::NEG_INFINITY, f64::max);
+            let (first, places) = start.get_or_insert_with(|| (constant.clone(), samples));
+            let changes = constant.iter().zip(&*first).map(|(row, first)| {
+                let pairs = row.iter().zip(first);
                 pairs.map(|(a, b)| a - b).collect()
             });
             let changes: Vec<Vec<Precise>> = changes.collect();
-            let vanishing = vanishing(&samples, self.gravity.is_some());
             let rows = changes.iter().chain(&vanishing);
-            let news = rows.filter(|row| echelon.add(row)).count();
+            let news = rows.filter(|row| echelon.add(row, size)).count();
             in_vain = if news == 0 { in_vain + 1 } else { 0 };
             if in_vain == IN_VAIN {
-                let basis = echelon.null_space();
-                return Some(basis.iter().map(|all| element(all)).collect());
+                let basis = echelon.null_space().into_iter();
+                return Some(basis.map(|own| element(&own, places)).collect());
             }
         }
         None
     }
 }
 
-fn element(parameters: &[f64]) -> Element {
-    let of_body = |own: &[f64]| Inertia::from_parameters(&std::array::from_fn(|i| own[i]));
-    parameters.chunks(10).map(of_body).collect()
+/// An element by the parameters of all bodies, with its sum at one configuration.
+fn element(parameters: &[Precise], places: &[Sample]) -> Element {
+    let of_parent = |row: usize| {
+        let row = columns(places, |sample, n| sample.in_parent(n)[row].clone());
+        let products = row.iter().zip(parameters).map(|(a, b)| a * b);
+        in_doubles(&products.fold(zero(), |sum, product| sum + product))
+    };
+    let of_body =
+        |own: &[Precise]| Inertia::from_parameters(&std::array::from_fn(|i| in_doubles(&own[i])));
+    Element {
+        bodies: parameters.chunks(10).map(of_body).collect(),
+        sum: Some(Inertia::from_parameters(&std::array::from_fn(of_parent))),
+    }
+}
+
+/// What is left of zeros is far below doubles.
+fn in_doubles(entry: &Precise) -> f64 {
+    match size(entry) < ROUNDING {
+        true => 0.0,
+        false => entry.to_f64(),
+    }
 }
 
 /// What must not depend on the configuration, by parameters: Σ N_b, or on the world the potential energy.
@@ -175,6 +208,14 @@ fn columns(samples: &[Sample], number: impl Fn(&Sample, usize) -> Precise) -> Ve
         .iter()
         .flat_map(|sample| (0..10).map(move |n| (sample, n)));
     entries.map(|(sample, n)| number(sample, n)).collect()
+}
+
+/// Its binary logarithm.
+fn size(entry: &Precise) -> f64 {
+    match entry.is_zero() {
+        true => f64::NEG_INFINITY,
+        false => entry.abs().log2(),
+    }
 }
 
 fn zero() -> Precise {

@@ -92,10 +92,17 @@ impl<'a> Placed<'a> {
     /// Placement of a body's joint between the frames of equations, without what turns on the child side.
     fn placement(&self, body: usize) -> Pose<f64> {
         let own = Pose::from_translation(self.moved[body].shift);
-        let placement = self.joints[body].compose(&own);
+        self.joint_frame(body).compose(&own)
+    }
+
+    /// The joint's parent frame, as this body sees it, in the frame of the parent's equations.
+    pub fn joint_frame(&self, body: usize) -> Pose<f64> {
         match self.model.bodies[body].parent {
-            Some(parent) => self.moved[parent].pose().inverse().compose(&placement),
-            None => placement,
+            Some(parent) => self.moved[parent]
+                .pose()
+                .inverse()
+                .compose(&self.joints[body]),
+            None => self.joints[body],
         }
     }
 

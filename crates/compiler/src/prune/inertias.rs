@@ -37,49 +37,71 @@ pub fn rootward(model: &Model, placed: &Placed<'_>, mut links: Vec<Link>) -> Vec
             .map(|body| placed.moved(body).inverse())
             .collect();
         let basis = across::basis(model, first);
-        let in_links = basis.iter().map(|element| moved(element, &to_links));
+        let in_links = basis.iter().map(|element| Moved::new(element, &to_links));
         let basis = reduced(in_links.collect());
-        let parts = taken(&mut links[bodies.clone()], &basis);
+        let (parts, sum) = taken(&mut links[bodies.clone()], &basis);
+        let mut whole = sum.seen_from(&placed.joint_frame(first));
         for (index, part) in bodies.zip(parts) {
-            let body = &model.bodies[index];
             let placement = Fixed::pose(&links[index].placement);
             let pose = placement
-                .compose(&home(body))
+                .compose(&home(&model.bodies[index]))
                 .compose(&Fixed::pose(&links[index].after));
-            let part = part.seen_from(&pose);
-            match body.parent {
-                Some(parent) => links[parent].inertia = links[parent].inertia.plus(&part),
-                None => links[index].dropped = part.first,
-            }
+            whole = whole.plus(&part.seen_from(&pose));
+        }
+        match model.bodies[first].parent {
+            Some(parent) => links[parent].inertia = links[parent].inertia.plus(&whole),
+            None => links[first].dropped = whole.first,
         }
     }
     links
 }
 
-/// An element of N_X by its parameters in the frames of the links.
-fn moved(element: &across::Element, to_links: &[Pose<f64>]) -> Parameters {
-    let bodies = element.iter().zip(to_links);
-    let bodies = bodies.map(|(own, to_link)| own.seen_from(to_link).parameters());
-    let clean = |entry: f64| if entry.abs() <= ROUNDING { 0.0 } else { entry };
-    bodies.map(|own| own.map(clean)).collect()
+/// An element of N_X by its parameters in the frames of the links, and what of it moves as a sum.
+#[derive(Clone)]
+struct Moved {
+    bodies: Parameters,
+    sum: Option<[f64; 10]>,
+}
+
+impl Moved {
+    fn new(element: &across::Element, to_links: &[Pose<f64>]) -> Self {
+        let bodies = element.bodies.iter().zip(to_links);
+        let bodies = bodies.map(|(own, to_link)| own.seen_from(to_link).parameters());
+        let clean = |entry: f64| if entry.abs() <= ROUNDING { 0.0 } else { entry };
+        Self {
+            bodies: bodies.map(|own| own.map(clean)).collect(),
+            sum: element.sum.map(|sum| sum.parameters()),
+        }
+    }
+
+    fn entries(&mut self) -> impl Iterator<Item = &mut f64> {
+        let bodies = self.bodies.as_flattened_mut().iter_mut();
+        bodies.chain(self.sum.iter_mut().flatten())
+    }
+
+    fn values(&self) -> impl Iterator<Item = &f64> {
+        self.bodies
+            .as_flattened()
+            .iter()
+            .chain(self.sum.iter().flatten())
+    }
 }
 
 /// The same space with a basis of which each element alone has 1 at a parameter of its own: element and parameter.
-fn reduced(mut basis: Vec<Parameters>) -> Vec<(Place, Parameters)> {
-    let mut done: Vec<(Place, Parameters)> = vec![];
+fn reduced(mut basis: Vec<Moved>) -> Vec<(Place, Moved)> {
+    let mut done: Vec<(Place, Moved)> = vec![];
     for parameters in ORDER {
         while let Some((element, place)) = largest(&basis, parameters) {
             let mut pivot = basis.swap_remove(element);
-            let scale = pivot[place.0][place.1];
-            entries(&mut pivot).for_each(|entry| *entry /= scale);
+            let scale = pivot.bodies[place.0][place.1];
+            pivot.entries().for_each(|entry| *entry /= scale);
             let others = done.iter_mut().map(|(_, element)| element);
             for other in basis.iter_mut().chain(others) {
-                let factor = other[place.0][place.1];
-                let pivot = pivot.as_flattened();
-                for (entry, pivot) in entries(other).zip(pivot) {
+                let factor = other.bodies[place.0][place.1];
+                for (entry, pivot) in other.entries().zip(pivot.values()) {
                     *entry -= factor * pivot;
                 }
-                other[place.0][place.1] = 0.0;
+                other.bodies[place.0][place.1] = 0.0;
             }
             done.push((place, pivot));
         }
@@ -87,15 +109,11 @@ fn reduced(mut basis: Vec<Parameters>) -> Vec<(Place, Parameters)> {
     done
 }
 
-fn entries(parameters: &mut Parameters) -> impl Iterator<Item = &mut f64> {
-    parameters.as_flattened_mut().iter_mut()
-}
-
 /// Where the elements' largest entry at one of the parameters stands, unless all are 0: of the last body that has one worth dividing by, so that what is left is left to the first, and of
 /// equals the first.
-fn largest(basis: &[Parameters], parameters: &[usize]) -> Option<(usize, Place)> {
-    let bodies = basis.first().map_or(0, Vec::len);
-    let size = |&(n, (body, parameter)): &(usize, Place)| basis[n][body][parameter].abs();
+fn largest(basis: &[Moved], parameters: &[usize]) -> Option<(usize, Place)> {
+    let bodies = basis.first().map_or(0, |element| element.bodies.len());
+    let size = |&(n, (body, parameter)): &(usize, Place)| basis[n].bodies[body][parameter].abs();
     let of_body = |body: usize| {
         let places = parameters
             .iter()
@@ -111,25 +129,35 @@ fn largest(basis: &[Parameters], parameters: &[usize]) -> Option<(usize, Place)>
     places.iter().rev().find(worth).copied()
 }
 
-/// Leaves the links of a joint zeros at the parameters of the basis; what was taken off each.
-fn taken(links: &mut [Link], basis: &[(Place, Parameters)]) -> Vec<Inertia> {
+/// Leaves the links of a joint zeros at the parameters of the basis; what was taken off each that is constant in every pose, and the sum of the rest in the joint's parent frame.
+fn taken(links: &mut [Link], basis: &[(Place, Moved)]) -> (Vec<Inertia>, Inertia) {
     let whole: Parameters = links.iter().map(|link| link.inertia.parameters()).collect();
-    let mut taken = vec![[0.0; 10]; links.len()];
+    let mut left = whole.clone();
     // Sizes of what is added and subtracted, by which a sum of 0 is told.
     let mut sizes: Parameters = whole.iter().map(|own| own.map(f64::abs)).collect();
+    let mut parts = vec![Inertia::zero(); links.len()];
+    let mut sum = Inertia::zero();
     for ((body, parameter), element) in basis {
         let amount = whole[*body][*parameter];
-        let sums = taken.as_flattened_mut().iter_mut();
+        let entries = left.as_flattened_mut().iter_mut();
         let sizes = sizes.as_flattened_mut().iter_mut();
-        for ((sum, size), own) in sums.zip(sizes).zip(element.as_flattened()) {
-            *sum += amount * own;
+        for ((entry, size), own) in entries.zip(sizes).zip(element.bodies.as_flattened()) {
+            *entry -= amount * own;
             *size += (amount * own).abs();
+        }
+        match &element.sum {
+            Some(own) => sum = sum.plus(&Inertia::from_parameters(own).times(amount)),
+            None => {
+                for (part, own) in parts.iter_mut().zip(&element.bodies) {
+                    *part = part.plus(&Inertia::from_parameters(own).times(amount));
+                }
+            }
         }
     }
     for (index, link) in links.iter_mut().enumerate() {
         let rest = |n: usize| {
-            let rest = whole[index][n] - taken[index][n];
             let by_basis = basis.iter().any(|(place, _)| *place == (index, n));
+            let rest = left[index][n];
             match by_basis || rest.abs() <= SUM_ROUNDING * sizes[index][n] {
                 true => 0.0,
                 false => rest,
@@ -137,7 +165,7 @@ fn taken(links: &mut [Link], basis: &[(Place, Parameters)]) -> Vec<Inertia> {
         };
         link.inertia = Inertia::from_parameters(&std::array::from_fn(rest));
     }
-    taken.iter().map(Inertia::from_parameters).collect()
+    (parts, sum)
 }
 
 /// The joint's pose at home.

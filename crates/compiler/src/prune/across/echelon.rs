@@ -1,10 +1,7 @@
 //! Rows of linear conditions in reduced echelon form, and what meets all of them.
 
-use super::{BITS, zero};
+use super::{BITS, ROUNDING, size, zero};
 use hamel_codegen::precise::Precise;
-
-/// Entries below this part of a row's largest, as powers of two, are rounding.
-const ROUNDING: f64 = -64.0;
 
 pub(super) struct Echelon {
     columns: usize,
@@ -18,16 +15,15 @@ impl Echelon {
         Self { columns, rows }
     }
 
-    /// Adds a condition; whether it says anything new.
-    pub(super) fn add(&mut self, row: &[Precise]) -> bool {
-        let Some((_, size)) = largest(row) else {
-            return false;
-        };
+    /// Adds a condition among others whose largest entry has this binary logarithm; whether it says anything new.
+    pub(super) fn add(&mut self, row: &[Precise], of_all: f64) -> bool {
         let mut row = row.to_vec();
         for (pivot, own) in &self.rows {
             subtract(&mut row, *pivot, own);
         }
-        let Some((place, _)) = largest(&row).filter(|(_, left)| left - size > ROUNDING) else {
+        let sizes = row.iter().map(size).enumerate();
+        let largest = sizes.reduce(|most, other| if other.1 > most.1 { other } else { most });
+        let Some((place, _)) = largest.filter(|(_, left)| left - of_all > ROUNDING) else {
             return false;
         };
         let one = Precise::integer(1, BITS);
@@ -41,20 +37,14 @@ impl Echelon {
     }
 
     /// A basis of what meets all conditions.
-    pub(super) fn null_space(&self) -> Vec<Vec<f64>> {
+    pub(super) fn null_space(&self) -> Vec<Vec<Precise>> {
         let is_pivot = |column: &usize| self.rows.iter().any(|(pivot, _)| pivot == column);
         let free = (0..self.columns).filter(|column| !is_pivot(column));
         free.map(|column| {
-            let mut solution = vec![0.0; self.columns];
-            solution[column] = 1.0;
+            let mut solution = vec![zero(); self.columns];
+            solution[column] = Precise::integer(1, BITS);
             for (pivot, row) in &self.rows {
-                // What is left of zeros is far below doubles.
-                let entry = -row[column].to_f64();
-                solution[*pivot] = if entry.abs() < f64::EPSILON.powi(2) {
-                    0.0
-                } else {
-                    entry
-                };
+                solution[*pivot] = -&row[column];
             }
             solution
         })
@@ -72,11 +62,4 @@ fn subtract(row: &mut [Precise], pivot: usize, own: &[Precise]) {
         *entry = &*entry - &(&factor * own);
     }
     row[pivot] = zero();
-}
-
-/// Place and binary logarithm of the largest entry, unless all are 0.
-fn largest(row: &[Precise]) -> Option<(usize, f64)> {
-    let sizes = row.iter().enumerate().filter(|(_, entry)| !entry.is_zero());
-    let sizes = sizes.map(|(place, entry)| (place, entry.abs().log2()));
-    sizes.reduce(|most, other| if other.1 > most.1 { other } else { most })
 }
