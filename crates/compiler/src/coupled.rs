@@ -1,11 +1,11 @@
-//! Joints that mimic joints couple: a spec says what belongs to their coordinates and ports, a [`Chain`] where each body stands.
+//! Joints of links that move together, as mimic joints, sums of coordinates and loops make them: a spec says what belongs to their coordinates and ports, a [`Linkage`] is their kernels.
 //!
-//! In the spec every link hangs on the joint's parent. What a body inherits of the links that it hangs on are products of their motions, which are
-//! written on the graph: expanded, as a spec is, they would have hundreds of terms.
+//! In the spec every link hangs on the joint's parent, and all coordinates move by themselves. What a body inherits of the links that it hangs on are products of their motions, and what ties ask for are systems of
+//! equations, which are written on the graph: expanded, as a spec is, they would have hundreds of terms.
 
-use super::chain::Chain;
+use super::linkage::{Linkage, Whole};
 use super::products::JointType;
-use hamel_runtime::joint::{Link, LinkMotion};
+use hamel_runtime::joint::{Link, LinkMotion, Tie};
 use hamel_scene::{Coupling, Located};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -40,10 +40,14 @@ impl Types {
                 joint
             }
         };
-        joint.hang(Chain::of(coupling, 0));
+        let runtime = coupling.joint().map_err(|fault| fault.to_string())?;
+        let mut home = vec![0.0; coupling.coordinates()];
+        runtime.home(&mut home);
+        let whole = Rc::new(Whole::new(coupling, home));
+        joint.hang(Linkage::new(coupling, 0, &whole));
         let more = joint.more.iter_mut().enumerate();
         more.for_each(|(index, own)| {
-            Rc::make_mut(own).hang(Chain::of(coupling, index + 1));
+            Rc::make_mut(own).hang(Linkage::new(coupling, index + 1, &whole));
         });
         Ok(Rc::new(joint))
     }
@@ -56,16 +60,16 @@ pub(super) fn spec(coupling: &Coupling) -> Spec {
     for (index, (link, port)) in coupling.links.iter().zip(coupling.ports).enumerate() {
         let number = index + 1;
         let value = writer.value(number, link, coupling);
-        _ = writeln!(motions, "    let y_{number} = {value};");
+        _ = writeln!(motions, "    let place_{number} = {value};");
         let motion = match link.motion {
             LinkMotion::Turn => "rot_z",
             LinkMotion::Slide => "trans_z",
         };
-        _ = writeln!(poses, "    H.link_{number} = {motion}(y_{number});");
+        _ = writeln!(poses, "    H.link_{number} = {motion}(place_{number});");
         let unit = port.unit;
         let value = match port.wraps {
-            true => format!("[cos(y_{number}), sin(y_{number})]"),
-            false => format!("y_{number}"),
+            true => format!("[cos(place_{number}), sin(place_{number})]"),
+            false => format!("place_{number}"),
         };
         _ = writeln!(
             ports,
@@ -89,9 +93,11 @@ pub(super) fn spec(coupling: &Coupling) -> Spec {
     }
 }
 
-/// What a coordinate is called.
+/// What a coordinate is called: as the runtime does it, y where it follows by ties.
 fn coordinate(k: usize, coupling: &Coupling) -> String {
-    match coupling.coordinates() {
+    let following: usize = coupling.ties.iter().map(Tie::count).sum();
+    match coupling.coordinates().saturating_sub(following) {
+        independent if k >= independent => format!("y_{}", k - independent + 1),
         1 => String::from("q"),
         _ => format!("q_{}", k + 1),
     }
