@@ -43,6 +43,8 @@ pub(super) struct At<'a> {
     linkage: &'a Linkage,
     q: Vec<Sym>,
     speeds: Vec<Sym>,
+    /// G_d by rows.
+    followed: Vec<Vec<Sym>>,
     /// The columns of B.
     columns: Vec<Vec<Sym>>,
 }
@@ -109,9 +111,10 @@ impl Linkage {
             linkage: self,
             q: q.to_vec(),
             speeds: speeds.to_vec(),
+            followed: vec![],
             columns: vec![],
         };
-        at.columns = at.tangent();
+        at.fill();
         at
     }
 }
@@ -121,29 +124,29 @@ impl At<'_> {
         self.linkage.freedoms()
     }
 
+    /// Finds G and B.
+    fn fill(&mut self) {
+        let (all, own) = (self.linkage.joint.coordinates(), self.freedoms());
+        let alone = |k: usize| -> Vec<Sym> { (0..all).map(|i| one_where(i == k)).collect() };
+        let matrix: Vec<Vec<Sym>> = (0..all).map(|k| self.ties(&alone(k), &[])).collect();
+        let row = |i: usize| matrix[own..].iter().map(|column| column[i]).collect();
+        self.followed = (own..all).map(|k| row(k - own)).collect();
+        let column = |k: usize| {
+            let follow = self.solved(&matrix[k]);
+            alone(k).into_iter().take(own).chain(follow).collect()
+        };
+        self.columns = (0..own).map(column).collect();
+    }
+
     /// The columns of B.
     pub(super) fn tangent(&self) -> Vec<Vec<Sym>> {
-        let (all, own) = (self.linkage.joint.coordinates(), self.freedoms());
-        let column = |k: usize| {
-            let alone: Vec<Sym> = (0..all).map(|i| one_where(i == k)).collect();
-            let follow = self.solved(&self.ties(&alone, &[]));
-            alone.into_iter().take(own).chain(follow).collect()
-        };
-        (0..own).map(column).collect()
+        self.columns.clone()
     }
 
     /// `−G_d⁻¹` times what is given, one entry per dependent coordinate.
     fn solved(&self, given: &[Sym]) -> Vec<Sym> {
-        let (all, own) = (self.linkage.joint.coordinates(), self.freedoms());
-        let column = |k: usize| {
-            let alone: Vec<Sym> = (0..all).map(|i| one_where(i == k)).collect();
-            self.ties(&alone, &[])
-        };
-        let columns: Vec<Vec<Sym>> = (own..all).map(column).collect();
-        let row = |i: usize| columns.iter().map(|column| column[i]).collect();
-        let matrix: Vec<Vec<Sym>> = (0..given.len()).map(row).collect();
         let right: Vec<Vec<Sym>> = given.iter().map(|&entry| vec![-entry]).collect();
-        square(&matrix, &right).concat()
+        square(&self.followed, &right).concat()
     }
 
     /// `G d`, and its derivatives.

@@ -8,9 +8,10 @@ use hamel::integrate::{Form, Integration, Method, Options, Scheme, StepControl};
 use hamel::scalar::F64x4;
 use hamel_compiler::functions::Kind;
 use hamel_compiler::{Build, scene};
-use hamel_scene::Scene;
+use hamel_scene::{Scene, urdf};
 use hamel_tests::emitted::{
-    ball_chain, crank_rocker, geodesic_springs, plate_cart_arm as module, snakeboard,
+    ankle as robot, ball_chain, crank_rocker, geodesic_springs, loops, plate_cart_arm as module,
+    snakeboard,
 };
 use hamel_tests::{random, scenes};
 use rand::SeedableRng;
@@ -138,6 +139,27 @@ fn integrators_take_compiled_equations() {
         moves_as_the_tree(&scenes::load("plate_cart_arm"), &module::EQUATIONS, form);
         moves_as_the_tree(&scenes::load("snakeboard"), &snakeboard::EQUATIONS, form);
         moves_as_the_tree(&springs, &geodesic_springs::EQUATIONS, form);
+    }
+}
+
+/// Loops that files of scenes and robots close.
+#[test]
+fn integrators_take_compiled_loops() {
+    let closed = Scene::load(
+        folder().join("data/scenes/loops.toml"),
+        &hamel_joints::registry(),
+    );
+    let closed = closed.unwrap_or_else(|errors| panic!("{errors}"));
+    let ankle = urdf::load(
+        folder().join("data/urdf/loops/ankle.urdf"),
+        &urdf::Options::default(),
+    );
+    let ankle = ankle.unwrap_or_else(|errors| panic!("{errors}"));
+    let ankle = ankle.scene.build(&hamel_joints::registry());
+    let ankle = ankle.unwrap_or_else(|errors| panic!("{errors}"));
+    for form in [Form::Lagrangian, Form::Hamiltonian] {
+        moves_as_the_tree(&closed, &loops::EQUATIONS, form);
+        moves_as_the_tree(&ankle, &robot::EQUATIONS, form);
     }
 }
 
