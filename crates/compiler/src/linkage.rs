@@ -46,7 +46,7 @@ pub(super) struct At<'a> {
     /// G_d by rows.
     followed: Vec<Vec<Sym>>,
     /// The columns of B.
-    columns: Vec<Vec<Sym>>,
+    columns: Vec<Direction>,
 }
 
 /// Rates of the coordinates, times a scalar: with one degree of freedom all are multiples of the one column of B.
@@ -133,14 +133,17 @@ impl At<'_> {
         self.followed = (own..all).map(|k| row(k - own)).collect();
         let column = |k: usize| {
             let follow = self.solved(&matrix[k]);
-            alone(k).into_iter().take(own).chain(follow).collect()
+            Direction {
+                rates: alone(k).into_iter().take(own).chain(follow).collect(),
+                times: Sym::one(),
+            }
         };
         self.columns = (0..own).map(column).collect();
     }
 
     /// The columns of B.
     pub(super) fn tangent(&self) -> Vec<Vec<Sym>> {
-        self.columns.clone()
+        self.columns.iter().map(Direction::whole).collect()
     }
 
     /// `−G_d⁻¹` times what is given, one entry per dependent coordinate.
@@ -162,24 +165,7 @@ impl At<'_> {
 
     /// `B x`.
     fn direction(&self, x: &[Sym]) -> Direction {
-        match (self.columns.as_slice(), x) {
-            ([column], [x]) => Direction {
-                rates: column.clone(),
-                times: *x,
-            },
-            _ => Direction {
-                rates: self.configuration_rate(x),
-                times: Sym::one(),
-            },
-        }
-    }
-
-    /// B_k.
-    fn unit(&self, k: usize) -> Direction {
-        Direction {
-            rates: self.columns[k].clone(),
-            times: Sym::one(),
-        }
+        sum(&self.columns, x)
     }
 
     /// D(d, e), or what else bends: dependent entries for what the relations ask for.
@@ -196,22 +182,38 @@ impl At<'_> {
         self.following(&self.ties(&d.rates, &[&e.rates]), d.times * e.times)
     }
 
+    /// `D(B x, B_l)`, of the D of all pairs of columns, which are symmetric.
+    fn bend_of_columns(&self, x: &[Sym], l: usize) -> Direction {
+        let columns = &self.columns;
+        let pair = |k: usize| self.bend(&columns[k.min(l)], &columns[k.max(l)]);
+        let bends: Vec<Direction> = (0..x.len()).map(pair).collect();
+        sum(&bends, x)
+    }
+
     /// `F(d; e) + F(D(d, e))`.
-    fn moved(&self, of: Linear<'_>, d: &Direction, e: &Direction) -> Vec<Sym> {
-        plus(value(of, d, &[e]), value(of, &self.bend(d, e), &[]))
+    fn moved(&self, d: &Direction, e: &Direction, bend: &Direction) -> Twist {
+        let of: Linear<'_> = &|d, along| self.twist(d, along);
+        to_twist(&plus(value(of, d, &[e]), value(of, bend, &[])))
     }
 
-    /// The four terms of the second derivative along e and f.
-    fn moved_again(&self, of: Linear<'_>, d: &Direction, [e, f]: [&Direction; 2]) -> Vec<Sym> {
-        let own = value(of, d, &[e, f]);
-        let turned = value(of, &self.bend(d, f), &[e]);
-        let along = value(of, d, &[&self.bend(e, f)]);
-        let bent = value(of, &self.bend(d, e), &[f]);
-        plus(plus(own, turned), plus(along, bent))
+    /// How column k of X^c changes along ϕ_l.
+    fn column_moved(&self, k: usize, l: usize) -> Twist {
+        let columns = &self.columns;
+        let bend = self.bend(&columns[k.min(l)], &columns[k.max(l)]);
+        self.moved(&columns[k], &columns[l], &bend)
     }
 
-    fn twists(&self, d: &Direction, e: &Direction) -> Twist {
-        to_twist(&self.moved(&|d, along| self.twist(d, along), d, e))
+    /// The four terms of the derivative of `F(d; d) + F(D(d, d))` along column l, with D(d, B_l) and D(d, d).
+    fn moved_again(
+        &self,
+        of: Linear<'_>,
+        [d, column]: [&Direction; 2],
+        [along_column, bend]: [&Direction; 2],
+    ) -> Vec<Sym> {
+        let own = value(of, d, &[d, column]);
+        let turned = value(of, along_column, &[d]);
+        let along = value(of, d, &[along_column]);
+        plus(plus(own, turned), plus(along, value(of, bend, &[column])))
     }
 
     /// H(Q) in factors.
@@ -228,7 +230,7 @@ impl At<'_> {
     pub(super) fn freedoms_in_child(&self) -> Vec<Twist> {
         let columns = self.columns.iter();
         columns
-            .map(|column| to_twist(&self.twist(column, &[])))
+            .map(|column| to_twist(&self.twist(&column.rates, &[])))
             .collect()
     }
 
@@ -255,14 +257,17 @@ impl At<'_> {
 
     /// ∂(X^c x)/∂ϕ, one column per degree of freedom.
     pub(super) fn gradient(&self, x: &[Sym]) -> Vec<Twist> {
-        let d = self.direction(x);
-        let along = |l| self.twists(&d, &self.unit(l));
+        let along = |l| {
+            let parts = x.iter().enumerate();
+            let parts = parts.map(|(k, &x)| self.column_moved(k, l).times(x));
+            parts.fold(Twist::zero(), |sum, part| sum.plus(&part))
+        };
         (0..self.freedoms()).map(along).collect()
     }
 
     /// ∂(X^cᵀ h)/∂ϕ by rows, one per degree of freedom.
     pub(super) fn effort_gradient(&self, wrench: &Wrench) -> Vec<Vec<Sym>> {
-        let entry = |k, l| self.twists(&self.unit(k), &self.unit(l)).dot(wrench);
+        let entry = |k, l| self.column_moved(k, l).dot(wrench);
         let row = |k| (0..self.freedoms()).map(|l| entry(k, l)).collect();
         (0..self.freedoms()).map(row).collect()
     }
@@ -270,22 +275,26 @@ impl At<'_> {
     /// `c = Ẋ^c v`.
     pub(super) fn bias(&self) -> Twist {
         let d = self.direction(&self.speeds);
-        self.twists(&d, &d)
+        self.moved(&d, &d, &self.bend(&d, &d))
     }
 
     /// `Ẋ^cᵀ h`, one per degree of freedom.
     pub(super) fn bias_momentum(&self, momentum: &Wrench) -> Vec<Sym> {
         let d = self.direction(&self.speeds);
-        let entry = |k| self.twists(&self.unit(k), &d).dot(momentum);
-        (0..self.freedoms()).map(entry).collect()
+        let columns = self.columns.iter();
+        let moved = columns.map(|column| self.moved(column, &d, &self.bend(column, &d)));
+        moved.map(|twist| twist.dot(momentum)).collect()
     }
 
     /// ∂c/∂v, one column per degree of freedom.
     pub(super) fn bias_slope(&self) -> Vec<Twist> {
-        let d = self.direction(&self.speeds);
         let column = |l| {
-            let unit = self.unit(l);
-            self.twists(&unit, &d).plus(&self.twists(&d, &unit))
+            let speeds = self.speeds.iter().enumerate();
+            let parts = speeds.map(|(k, &v)| {
+                let both = self.column_moved(k, l).plus(&self.column_moved(l, k));
+                both.times(v)
+            });
+            parts.fold(Twist::zero(), |sum, part| sum.plus(&part))
         };
         (0..self.freedoms()).map(column).collect()
     }
@@ -293,24 +302,26 @@ impl At<'_> {
     /// ∂c/∂ϕ, one column per degree of freedom.
     pub(super) fn bias_gradient(&self) -> Vec<Twist> {
         let d = self.direction(&self.speeds);
-        let column = |l| {
-            let pair = [&d, &self.unit(l)];
-            let asked = self.moved_again(&|d, along| self.ties(d, along), &d, pair);
+        let bends: Vec<Direction> = (0..self.freedoms())
+            .map(|l| self.bend_of_columns(&self.speeds, l))
+            .collect();
+        let bend = sum(&bends, &self.speeds);
+        let column = |(l, along_column): (usize, &Direction)| {
+            let (pair, bends) = ([&d, &self.columns[l]], [along_column, &bend]);
+            let asked = self.moved_again(&|d, along| self.ties(d, along), pair, bends);
             let bent = self.following(&asked, Sym::one());
-            let twist: Linear<'_> = &|d, along| self.twist(d, along);
-            let moved = self.moved_again(twist, &d, pair);
-            to_twist(&plus(moved, value(twist, &bent, &[])))
+            let of: Linear<'_> = &|d, along| self.twist(d, along);
+            to_twist(&plus(
+                self.moved_again(of, pair, bends),
+                value(of, &bent, &[]),
+            ))
         };
-        (0..self.freedoms()).map(column).collect()
+        bends.iter().enumerate().map(column).collect()
     }
 
     /// `Q̇ = B v`.
     pub(super) fn configuration_rate(&self, v: &[Sym]) -> Vec<Sym> {
-        let rate = |i: usize| {
-            let terms = self.columns.iter().zip(v);
-            terms.map(|(column, &v)| column[i] * v).sum()
-        };
-        (0..self.q.len()).map(rate).collect()
+        sum(&self.columns, v).whole()
     }
 
     /// Coordinates ϕ of a target: the dependent ones are those along which Φ comes back.
@@ -324,10 +335,34 @@ impl At<'_> {
         let row = |&(coordinate, ratio): &(usize, f64)| {
             let columns = self.columns.iter();
             columns
-                .map(|column| Sym::from(ratio) * column[coordinate])
+                .map(|column| Sym::from(ratio) * column.rates[coordinate])
                 .collect()
         };
         self.linkage.joint.ports.iter().map(row).collect()
+    }
+}
+
+impl Direction {
+    /// Its rates, with the scalar.
+    fn whole(&self) -> Vec<Sym> {
+        self.rates.iter().map(|&rate| rate * self.times).collect()
+    }
+}
+
+/// `Σ d_k x_k`: where there is one, that one, times its x.
+fn sum(directions: &[Direction], x: &[Sym]) -> Direction {
+    if let ([one], [x]) = (directions, x) {
+        return Direction {
+            times: one.times * *x,
+            ..one.clone()
+        };
+    }
+    let wholes: Vec<Vec<Sym>> = directions.iter().map(Direction::whole).collect();
+    let count = wholes.first().map_or(0, Vec::len);
+    let rate = |i: usize| wholes.iter().zip(x).map(|(whole, &x)| whole[i] * x).sum();
+    Direction {
+        rates: (0..count).map(rate).collect(),
+        times: Sym::one(),
     }
 }
 

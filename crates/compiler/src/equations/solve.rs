@@ -173,3 +173,51 @@ pub fn definite(mut matrix: Vec<Vec<Sym>>, mut x: Vec<Sym>) -> Vec<Sym> {
     }
     x
 }
+
+#[cfg(test)]
+mod tests {
+    use super::square;
+    use crate::graph::{Sym, record};
+    use nalgebra::{DMatrix, DVector};
+
+    /// As numbers, which are folded as they arise.
+    fn solved(matrix: &DMatrix<f64>, right: &DVector<f64>) -> DVector<f64> {
+        let rows = |of: &DMatrix<f64>| -> Vec<Vec<Sym>> {
+            let rows = of.row_iter();
+            rows.map(|row| row.iter().map(|&entry| Sym::from(entry)).collect())
+                .collect()
+        };
+        let right = DMatrix::from_columns(std::slice::from_ref(right));
+        let (solution, _) = record(|| square(&rows(matrix), &rows(&right)));
+        let numbers = solution.concat().into_iter().map(Sym::number);
+        DVector::from_vec(numbers.map(|number| number.expect("a number")).collect())
+    }
+
+    /// The system that a solution solves differs from the one that was given by a few roundings of its entries, however near to singular that is.
+    #[test]
+    fn solutions_are_those_of_a_system_nearby() {
+        for size in 1..=8 {
+            for near in [1.0, 1e-3, 1e-8] {
+                let entry = |i: usize, j: usize| {
+                    let x = (3 * i + 5 * j) as f64;
+                    (0.4 + 1.3 * x * x + 0.7 * j as f64).sin()
+                };
+                let mut matrix = DMatrix::from_fn(size, size, entry);
+                if size > 3 {
+                    // Two columns that nearly are one, and zeros where an elimination would divide first.
+                    let others = matrix.column(1) * near + matrix.column(2);
+                    matrix.set_column(1, &others);
+                    (0..size - 1).for_each(|i| matrix[(i, i)] = 0.0);
+                }
+                let right = DVector::from_fn(size, |i, _| (0.3 + i as f64).cos());
+                let found = solved(&matrix, &right);
+                let left = (&matrix * &found - &right).norm();
+                let terms = matrix.norm() * found.norm();
+                assert!(
+                    left < 10.0 * f64::EPSILON * terms,
+                    "{size}, {near:e}: {left:e}"
+                );
+            }
+        }
+    }
+}
