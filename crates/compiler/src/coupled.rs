@@ -33,7 +33,8 @@ impl Types {
         let mut joint = match self.0.get(&spec.text) {
             Some(known) => known.clone(),
             None => {
-                let derived = hamel_codegen::derive(&spec.text, "coupled.joint");
+                let derived =
+                    hamel_codegen::derive(&spec.text, &format!("{}.joint", name(coupling)));
                 let derived = derived.map_err(|errors| errors.to_string())?;
                 let joint = JointType::new(derived).map_err(|error| error.task.to_string())?;
                 self.0.insert(spec.text, joint.clone());
@@ -81,8 +82,9 @@ pub(super) fn spec(coupling: &Coupling) -> Spec {
     let coordinates: Vec<String> = coordinates.collect();
     let bodies = (1..=coupling.links.len()).map(|number| format!("link_{number}"));
     let bodies: Vec<String> = bodies.collect();
+    let name = name(coupling);
     let text = format!(
-        "hamel = 1;\n\n/// Links that follow one another.\njoint coupled({}) {{\n    config {};\n    bodies {};\n{motions}{poses}{ports}}}\n",
+        "hamel = 1;\n\n/// Links that follow one another.\njoint {name}({}) {{\n    config {};\n    bodies {};\n{motions}{poses}{ports}}}\n",
         writer.declared,
         coordinates.join(", "),
         bodies.join(", "),
@@ -90,6 +92,14 @@ pub(super) fn spec(coupling: &Coupling) -> Spec {
     Spec {
         text,
         parameters: writer.parameters,
+    }
+}
+
+/// What the joint's type is called, as by the runtime.
+fn name(coupling: &Coupling) -> &'static str {
+    match coupling.ties.is_empty() {
+        true => "coupled",
+        false => "linkage",
     }
 }
 
