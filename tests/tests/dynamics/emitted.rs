@@ -142,24 +142,55 @@ fn integrators_take_compiled_equations() {
     }
 }
 
-/// Loops that files of scenes and robots close.
-#[test]
-fn integrators_take_compiled_loops() {
-    let closed = Scene::load(
-        folder().join("data/scenes/loops.toml"),
-        &hamel_joints::registry(),
-    );
-    let closed = closed.unwrap_or_else(|errors| panic!("{errors}"));
+/// Loops that files of scenes and robots close: on a base that moves, and with six relations.
+fn closed() -> [(Scene, &'static Equations); 2] {
+    let registry = hamel_joints::registry();
+    let loaded = Scene::load(folder().join("data/scenes/loops.toml"), &registry);
     let ankle = urdf::load(
         folder().join("data/urdf/loops/ankle.urdf"),
         &urdf::Options::default(),
     );
     let ankle = ankle.unwrap_or_else(|errors| panic!("{errors}"));
-    let ankle = ankle.scene.build(&hamel_joints::registry());
-    let ankle = ankle.unwrap_or_else(|errors| panic!("{errors}"));
-    for form in [Form::Lagrangian, Form::Hamiltonian] {
-        moves_as_the_tree(&closed, &loops::EQUATIONS, form);
-        moves_as_the_tree(&ankle, &robot::EQUATIONS, form);
+    [
+        (loaded, &loops::EQUATIONS),
+        (ankle.scene.build(&registry), &robot::EQUATIONS),
+    ]
+    .map(|(scene, equations)| (scene.unwrap_or_else(|errors| panic!("{errors}")), equations))
+}
+
+#[test]
+fn integrators_take_compiled_loops() {
+    for (scene, equations) in closed() {
+        for form in [Form::Lagrangian, Form::Hamiltonian] {
+            moves_as_the_tree(&scene, equations, form);
+        }
+    }
+}
+
+/// Relative to the largest, or to gravity where that is larger: ten roundings for each unit of conditions of some 10.
+const OF_LOOPS: f64 = 1e2 * f64::EPSILON;
+
+#[test]
+fn accelerations_of_compiled_loops_are_those_of_the_tree() {
+    for (scene, equations) in closed() {
+        let forward = equations.forward_dynamics.expect("it is in the module");
+        let mut tree = Recursive::new(Arc::clone(&scene.mechanism));
+        let mut random = ChaCha8Rng::seed_from_u64(9);
+        let [mut found, mut expected] = [(); 2].map(|()| vec![0.0; equations.speeds]);
+        let errors = (0..1000).map(|_| {
+            let q = random::configuration(&mut random, &scene.mechanism);
+            let v = random::numbers(&mut random, equations.speeds);
+            let tau = random::numbers(&mut random, equations.freedoms);
+            tree.forward_dynamics(&q, &v, &tau, &mut expected)
+                .expect("the scene is sound");
+            forward(&q, &v, &tau, &mut found);
+            let largest = expected.iter().fold(10.0_f64, |most, a| most.max(a.abs()));
+            let pairs = found.iter().zip(&expected);
+            pairs.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs())) / largest
+        });
+        let worst = errors.fold(0.0, f64::max);
+        println!("{}: {worst:e}", equations.scene);
+        assert!(worst < OF_LOOPS, "{}: {worst:e}", equations.scene);
     }
 }
 
