@@ -132,7 +132,7 @@ impl At<'_> {
         let row = |i: usize| matrix[own..].iter().map(|column| column[i]).collect();
         self.followed = (own..all).map(|k| row(k - own)).collect();
         let column = |k: usize| {
-            let follow = self.solved(&matrix[k]);
+            let follow = self.solved(&matrix[k], "follows");
             Direction {
                 rates: alone(k).into_iter().take(own).chain(follow).collect(),
                 times: Sym::one(),
@@ -146,10 +146,11 @@ impl At<'_> {
         self.columns.iter().map(Direction::whole).collect()
     }
 
-    /// `−G_d⁻¹` times what is given, one entry per dependent coordinate.
-    fn solved(&self, given: &[Sym]) -> Vec<Sym> {
+    /// `−G_d⁻¹` times what is given, one entry per dependent coordinate, which are called so where they are written.
+    fn solved(&self, given: &[Sym], name: &str) -> Vec<Sym> {
         let right: Vec<Vec<Sym>> = given.iter().map(|&entry| vec![-entry]).collect();
-        square(&self.followed, &right).concat()
+        let solution = square(&self.followed, &right).into_iter().flatten();
+        solution.map(|entry| entry.named(name)).collect()
     }
 
     /// `G d`, and its derivatives.
@@ -172,7 +173,7 @@ impl At<'_> {
     fn following(&self, asked: &[Sym], times: Sym) -> Direction {
         let still = (0..self.freedoms()).map(|_| Sym::zero());
         Direction {
-            rates: still.chain(self.solved(asked)).collect(),
+            rates: still.chain(self.solved(asked, "bend")).collect(),
             times,
         }
     }
