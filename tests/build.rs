@@ -36,6 +36,27 @@ fn main() -> Result<(), Error> {
     )
     .compile()?;
     compiled(
+        "data/scenes/loops.toml",
+        [
+            Kind::ForwardDynamics,
+            Kind::InverseDynamics,
+            Kind::MomentumRates,
+            Kind::Hamiltonian,
+            Kind::ForwardDerivatives,
+        ],
+    )
+    .lanes()
+    .compile()?;
+    compiled(
+        "data/urdf/loops/ankle.urdf",
+        [
+            Kind::ForwardDynamics,
+            Kind::MomentumRates,
+            Kind::Hamiltonian,
+        ],
+    )
+    .compile()?;
+    compiled(
         "data/scenes/ball_chain.toml",
         [Kind::ForwardDynamics, Kind::InverseDynamics],
     )

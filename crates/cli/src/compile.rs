@@ -31,7 +31,7 @@ integrator takes. A module in C needs nothing but <math.h>, and its functions ta
 docs/compile.md says more.
 
 Not compiled, and refused with the element's name: springs in local coordinates that have no closed form, rests and states to be found from a
-pose, more than three speeds that constraints make depend on others such that they can only be found together.
+pose.
 
 Exit codes: 0 success; 1 a scene with mistakes or that cannot be compiled, a file that cannot be written; 2 wrong options; 130 interrupted.";
 

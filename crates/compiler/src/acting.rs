@@ -7,8 +7,12 @@ use super::products::JointType;
 use hamel_codegen::derived::{KernelKind, Method};
 use hamel_runtime::elements::{JointSpring, PortEffort, PortSpring, RotationSpring};
 use hamel_runtime::mechanism::CONFIGURATION_TOLERANCE;
-use hamel_scene::{BodyDescription, Position, SpringEnergy};
+use hamel_scene::{BodyDescription, Coupling, Position, SpringEnergy};
 use nalgebra::{DMatrix, DVector, Matrix3};
+
+/// Why a pose is no rest.
+const OF_POSE: &str =
+    "to find the configuration of a pose takes iterations: give `configuration` or `phi`";
 
 /// The index of a joint's port.
 pub fn port_of(body: &BodyDescription, joint: &JointType, name: &str) -> Option<usize> {
@@ -179,32 +183,68 @@ impl Held<'_> {
     /// # Errors
     /// Numbers that do not fit the joint; a pose.
     pub fn rest(&self, rest: &Position) -> Result<Vec<f64>, String> {
+        if let Some(coupling) = &self.body.joint.coupling {
+            return self.rest_of_links(coupling, rest);
+        }
         let home = || self.numbers(self.at(&[], |joint| joint.home()));
         match rest {
             Position::Home => home(),
             Position::Configuration(given) => self.projected(&given.value),
             Position::Phi(phi) => {
                 let size = self.joint.derived.shape.freedoms;
-                if phi.value.len() != size {
-                    return Err(self.refused(&format!("`phi` must have {size} number(s)")));
-                }
+                self.check_size("phi", size, phi.value.len())?;
                 let phi: Vec<Sym> = phi.value.iter().copied().map(Sym::from).collect();
                 self.numbers(self.at(&home()?, |joint| joint.retract(&phi)))
             }
-            Position::Pose(_) => Err(self.refused(
-                "to find the configuration of a pose takes iterations: give `configuration` or `phi`",
-            )),
+            Position::Pose(_) => Err(self.refused(OF_POSE)),
+        }
+    }
+
+    /// The same of a joint of links, as the tree has it.
+    fn rest_of_links(&self, coupling: &Coupling, rest: &Position) -> Result<Vec<f64>, String> {
+        let joint = coupling
+            .joint()
+            .map_err(|fault| self.refused(&fault.to_string()))?;
+        let mut home = vec![0.0; joint.layout().configuration];
+        joint.home(&mut home);
+        match rest {
+            Position::Home => Ok(home),
+            Position::Configuration(given) => {
+                self.check_size("configuration", home.len(), given.value.len())?;
+                let mut projected = given.value.clone();
+                let project = joint.project(&mut projected);
+                project.map_err(|error| self.refused(&error.to_string()))?;
+                self.near(&given.value, projected)
+            }
+            Position::Phi(phi) => {
+                let size = self.joint.derived.shape.freedoms;
+                self.check_size("phi", size, phi.value.len())?;
+                let mut moved = home.clone();
+                joint.retract(&home, &phi.value, &mut moved);
+                self.numbers(moved.into_iter().map(Sym::from).collect())
+            }
+            Position::Pose(_) => Err(self.refused(OF_POSE)),
+        }
+    }
+
+    fn check_size(&self, key: &str, size: usize, found: usize) -> Result<(), String> {
+        match found == size {
+            true => Ok(()),
+            false => Err(self.refused(&format!("`{key}` must have {size} number(s)"))),
         }
     }
 
     /// A configuration given outright, freed of its rounding.
     fn projected(&self, given: &[f64]) -> Result<Vec<f64>, String> {
         let size = self.joint.derived.shape.configuration;
-        if given.len() != size {
-            return Err(self.refused(&format!("`configuration` must have {size} number(s)")));
-        }
+        self.check_size("configuration", size, given.len())?;
         self.in_closed_form(KernelKind::Project)?;
         let projected = self.numbers(self.at(given, |joint| joint.project()))?;
+        self.near(given, projected)
+    }
+
+    /// The nearest point of the manifold, where what is given is on it but for rounding.
+    fn near(&self, given: &[f64], projected: Vec<f64>) -> Result<Vec<f64>, String> {
         let away = given.iter().zip(&projected).map(|(a, b)| (a - b).abs());
         match away.fold(0.0, f64::max) {
             away if away <= CONFIGURATION_TOLERANCE => Ok(projected),

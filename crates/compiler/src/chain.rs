@@ -1,62 +1,100 @@
-//! Kernels of a body that hangs on other links of its coupling, on the graph: products of the links' motions.
+//! A chain of links on the graph: where its last frame stands in its first, the twist of the one in the other, and how that twist changes.
 //!
-//! With a_i the twist of link i at unit rate of its coordinate k(i), in the frame of the body, X^c is their sum in the columns k(i). Along ϕ_l it changes by
-//! `∂a_i/∂ϕ_l = [a_i, b_il]`, where b_il is the sum of the a_j behind i that follow q_l.
+//! From link to link a twist is carried by the link's pose and takes up the link's own motion: at rates d of the coordinates `w_i(d) = X_i w_i−1(d) + z_i d_k`, with z_i the
+//! twist of link i at unit rate of its coordinate k, in its own frame. Along k, X_i w changes by the bracket `[X_i w, z_i]`. So the derivatives along directions e, f, … of the coordinates, d held, are
+//!
+//! ```text
+//! ∂_E w_i(d) = Σ_{F ⊆ E} ad_F (X_i ∂_{E∖F} w_i−1(d)),   ad_F x = [… [x, z_i] f_k, z_i] …
+//! ```
+//!
+//! over the sets of these directions.
 
 use super::graph::{Sym, sin_cos};
 use super::prune::Fixed;
-use super::spatial::{Mat3, Step, Twist, Vec3, Wrench, product, simplified};
-use hamel_runtime::joint::LinkMotion;
-use hamel_scene::Coupling;
+use super::spatial::{Mat3, Step, Twist, Vec3, product, simplified};
+use hamel_runtime::joint::{self, LinkMotion};
+use hamel_runtime::spatial::Pose;
 use num_traits::Zero;
 
-/// The links from the joint's parent to a body, in numbers.
+/// Links one after the other, in numbers, and what is fixed behind the last.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Chain {
     links: Vec<Link>,
-    coordinates: usize,
+    end: Vec<Fixed>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 struct Link {
-    frame: Vec<Fixed>,
+    before: Vec<Fixed>,
     motion: LinkMotion,
     coordinate: usize,
     ratio: f64,
     offset: f64,
 }
 
-/// A twist at unit rate of a coordinate.
-type Axis = (usize, Twist);
+/// A direction of the coordinates: rates of all of them.
+pub(super) type Direction<'a> = &'a [Sym];
 
 impl Chain {
-    /// That of a body of a coupling; `None` of one that hangs on the joint's parent.
-    pub(super) fn of(coupling: &Coupling, body: usize) -> Option<Self> {
-        let mut links = vec![];
-        let mut at = Some(body);
-        while let Some(link) = at.and_then(|at| coupling.links.get(at)) {
-            links.push(Link {
-                frame: Fixed::steps(&link.frame),
-                motion: link.motion,
-                coordinate: link.coordinate,
-                ratio: link.ratio,
-                offset: link.offset,
-            });
-            at = link.before;
+    /// From the joint's parent to the child frame of a link.
+    pub(super) fn of(links: &[joint::Link], body: usize) -> Self {
+        let way = way(links, Some(body)).into_iter().rev();
+        Self {
+            links: way
+                .map(|link| Link::outward(link, Fixed::steps(&link.frame)))
+                .collect(),
+            end: vec![],
         }
-        links.reverse();
-        (links.len() > 1).then(|| Self {
-            links,
-            coordinates: coupling.coordinates(),
-        })
     }
 
-    /// H(Q) in factors.
+    /// From the second of two frames, which are fixed in the child frames of links, or in the joint's parent, to the first: along the links that do not carry both.
+    pub(super) fn between(
+        links: &[joint::Link],
+        ends: [Option<usize>; 2],
+        frames: &[Pose<f64>; 2],
+    ) -> Self {
+        let [mut outward, mut inward] = ends.map(|end| way(links, end));
+        while let (Some(a), Some(b)) = (outward.last(), inward.last()) {
+            if !std::ptr::eq(*a, *b) {
+                break;
+            }
+            outward.pop();
+            inward.pop();
+        }
+        let mut fixed = inverse(&frames[1]);
+        let mut all = vec![];
+        for link in inward {
+            let own = Link::outward(link, fixed);
+            all.push(Link {
+                ratio: -own.ratio,
+                offset: -own.offset,
+                ..own
+            });
+            fixed = inverse(&link.frame);
+        }
+        for link in outward.into_iter().rev() {
+            fixed.extend(Fixed::steps(&link.frame));
+            all.push(Link::outward(link, std::mem::take(&mut fixed)));
+        }
+        fixed.extend(Fixed::steps(&frames[0]));
+        Self {
+            links: all,
+            end: fixed,
+        }
+    }
+
+    /// Whether it is one link alone.
+    pub(super) fn is_one_link(&self) -> bool {
+        self.links.len() == 1
+    }
+
+    /// The pose of its last frame in its first, in factors.
     pub(super) fn pose(&self, q: &[Sym]) -> Vec<Step> {
-        simplified(self.links.iter().flat_map(|link| link.steps(q)))
+        let links = self.links.iter().flat_map(|link| link.steps(q));
+        simplified(links.chain(self.end.iter().map(Fixed::step)))
     }
 
-    /// The rotation of H(Q).
+    /// The rotation of that.
     pub(super) fn rotation(&self, q: &[Sym]) -> Mat3 {
         let steps = self.pose(q);
         let matrix = |step: &Step| {
@@ -71,144 +109,79 @@ impl Chain {
         turns.fold(identity, |all, step| product(&all, &matrix(step)))
     }
 
-    /// The a_i, from the parent's side.
-    fn axes(&self, q: &[Sym]) -> Vec<Axis> {
-        let mut axes: Vec<Axis> = vec![];
+    /// The twist of its last frame in its first at rates `d`, in the axes of the last, differentiated along each of the directions.
+    pub(super) fn twist(&self, q: &[Sym], d: Direction<'_>, along: &[Direction<'_>]) -> Twist {
+        // By sets of directions, one bit each.
+        let mut twists = vec![Twist::zero(); 1 << along.len()];
         for link in &self.links {
             let steps = simplified(link.steps(q));
-            for (_, axis) in &mut axes {
-                *axis = steps
-                    .iter()
-                    .fold(axis.clone(), |twist, step| step.twist_to_child(&twist));
-            }
-            axes.push((link.coordinate, link.axis()));
-        }
-        axes
-    }
-
-    /// Sums of twists by coordinate.
-    fn columns(&self, parts: impl IntoIterator<Item = Axis>) -> Vec<Twist> {
-        let mut columns = vec![Twist::zero(); self.coordinates];
-        for (k, twist) in parts {
-            columns[k] = columns[k].plus(&twist);
-        }
-        columns
-    }
-
-    /// The columns of X^c, and of X^c S₀.
-    pub(super) fn twists(&self, q: &[Sym]) -> Vec<Twist> {
-        self.columns(self.axes(q))
-    }
-
-    /// The columns of X.
-    pub(super) fn twists_in_parent(&self, q: &[Sym]) -> Vec<Twist> {
-        let steps = self.pose(q);
-        let to_parent = |twist: Twist| {
-            steps.iter().rev().fold(twist, |twist, step| match step {
-                Step::Shift(by) => Twist {
-                    linear: twist.linear + super::spatial::cross(by, &twist.angular),
-                    angular: twist.angular,
-                },
-                _ => Twist {
-                    angular: step.to_parent(&twist.angular),
-                    linear: step.to_parent(&twist.linear),
-                },
-            })
-        };
-        self.twists(q).into_iter().map(to_parent).collect()
-    }
-
-    /// ∂(X^c x)/∂ϕ, one column per coordinate.
-    pub(super) fn gradient(&self, q: &[Sym], x: &[Sym]) -> Vec<Twist> {
-        let axes = self.axes(q);
-        let along = |l: usize| {
-            let parts = axes.iter().enumerate();
-            let parts = parts.map(|(i, (k, _))| along(&axes, i, l).times(x[*k]));
-            parts.fold(Twist::zero(), |sum, part| sum.plus(&part))
-        };
-        (0..self.coordinates).map(along).collect()
-    }
-
-    /// ∂(X^cᵀ h)/∂ϕ by rows, one per coordinate.
-    pub(super) fn effort_gradient(&self, q: &[Sym], wrench: &Wrench) -> Vec<Vec<Sym>> {
-        let axes = self.axes(q);
-        let entry = |k: usize, l: usize| {
-            let own = axes.iter().enumerate().filter(|(_, axis)| axis.0 == k);
-            own.map(|(i, _)| along(&axes, i, l).dot(wrench)).sum()
-        };
-        let row = |k: usize| (0..self.coordinates).map(|l| entry(k, l)).collect();
-        (0..self.coordinates).map(row).collect()
-    }
-
-    /// `c = Ẋ^c v`.
-    pub(super) fn bias(&self, q: &[Sym], v: &[Sym]) -> Twist {
-        let axes = self.axes(q);
-        let parts = axes.iter().enumerate();
-        let parts = parts.map(|(i, (k, axis))| axis.bracket(&carried(&axes, i, v)).times(v[*k]));
-        parts.fold(Twist::zero(), |sum, part| sum.plus(&part))
-    }
-
-    /// `Ẋ^cᵀ h`, one per coordinate.
-    pub(super) fn bias_momentum(&self, q: &[Sym], v: &[Sym], momentum: &Wrench) -> Vec<Sym> {
-        let axes = self.axes(q);
-        let mut all = vec![Sym::zero(); self.coordinates];
-        for (i, (k, axis)) in axes.iter().enumerate() {
-            all[*k] += axis.bracket(&carried(&axes, i, v)).dot(momentum);
-        }
-        all
-    }
-
-    /// ∂c/∂v, one column per coordinate.
-    pub(super) fn bias_slope(&self, q: &[Sym], v: &[Sym]) -> Vec<Twist> {
-        let axes = self.axes(q);
-        let mut parts = vec![];
-        for (i, (k, axis)) in axes.iter().enumerate() {
-            parts.push((*k, axis.bracket(&carried(&axes, i, v))));
-            for (l, behind) in &axes[i + 1..] {
-                parts.push((*l, axis.bracket(behind).times(v[*k])));
+            let carried: Vec<Twist> = twists.iter().map(|twist| carried(&steps, twist)).collect();
+            let (axis, k) = (link.axis(), link.coordinate);
+            for (set, twist) in twists.iter_mut().enumerate() {
+                let turned = |turning: &usize| {
+                    let directions = along.iter().enumerate();
+                    let turning = directions.filter(|(n, _)| turning >> n & 1 == 1);
+                    let still = turning.clone().fold(set, |set, (n, _)| set & !(1 << n));
+                    turning.fold(carried[still].clone(), |twist, (_, direction)| {
+                        twist.bracket(&axis).times(direction[k])
+                    })
+                };
+                let own = match set {
+                    0 => axis.times(d[k]),
+                    _ => Twist::zero(),
+                };
+                let parts = (0..=set).filter(|turning| turning & !set == 0);
+                *twist = parts.fold(own, |sum, turning| sum.plus(&turned(&turning)));
             }
         }
-        self.columns(parts)
-    }
-
-    /// ∂c/∂ϕ, one column per coordinate.
-    pub(super) fn bias_gradient(&self, q: &[Sym], v: &[Sym]) -> Vec<Twist> {
-        let axes = self.axes(q);
-        let column = |l: usize| {
-            let parts = axes.iter().enumerate().map(|(i, (k, axis))| {
-                let behind = axes.iter().enumerate().skip(i + 1);
-                let moved = behind.fold(Twist::zero(), |sum, (j, (k, _))| {
-                    sum.plus(&along(&axes, j, l).times(v[*k]))
-                });
-                let turned = along(&axes, i, l).bracket(&carried(&axes, i, v));
-                turned.plus(&axis.bracket(&moved)).times(v[*k])
-            });
-            parts.fold(Twist::zero(), |sum, part| sum.plus(&part))
-        };
-        (0..self.coordinates).map(column).collect()
+        let end: Vec<Step> = simplified(self.end.iter().map(Fixed::step));
+        twists
+            .pop()
+            .map_or_else(Twist::zero, |twist| carried(&end, &twist))
     }
 }
 
-/// ∂a_i/∂ϕ_l.
-fn along(axes: &[Axis], i: usize, l: usize) -> Twist {
-    let behind = axes[i + 1..].iter().filter(|(k, _)| *k == l);
-    let sum = behind.fold(Twist::zero(), |sum, (_, axis)| sum.plus(axis));
-    axes[i].1.bracket(&sum)
+/// A link and those that it hangs on, itself first.
+fn way(links: &[joint::Link], mut at: Option<usize>) -> Vec<&joint::Link> {
+    let mut way = vec![];
+    while let Some(link) = at.and_then(|at| links.get(at)) {
+        way.push(link);
+        at = link.before;
+    }
+    way
 }
 
-/// The twist of what is behind link i.
-fn carried(axes: &[Axis], i: usize, v: &[Sym]) -> Twist {
-    let behind = axes[i + 1..].iter();
-    behind.fold(Twist::zero(), |sum, (k, axis)| sum.plus(&axis.times(v[*k])))
+/// A twist, read at the first frame of a placement, at its last.
+fn carried(steps: &[Step], twist: &Twist) -> Twist {
+    steps
+        .iter()
+        .fold(twist.clone(), |twist, step| step.twist_to_child(&twist))
+}
+
+/// The factors of the inverse of a pose.
+fn inverse(pose: &Pose<f64>) -> Vec<Fixed> {
+    let steps = Fixed::steps(pose).into_iter().rev();
+    let inverse = |step| match step {
+        Fixed::Shift(by) => Fixed::Shift(-by),
+        Fixed::Turn(axis, cos, sin) => Fixed::Turn(axis, cos, -sin),
+    };
+    steps.map(inverse).collect()
 }
 
 impl Link {
-    /// From its child frame to that of what it hangs on, in factors.
+    /// A link of a joint, behind these fixed factors.
+    fn outward(link: &joint::Link, before: Vec<Fixed>) -> Self {
+        Self {
+            before,
+            motion: link.motion,
+            coordinate: link.coordinate,
+            ratio: link.ratio,
+            offset: link.offset,
+        }
+    }
+
+    /// From its own frame to that of what it hangs on, in factors.
     fn steps(&self, q: &[Sym]) -> Vec<Step> {
-        let fixed = self.frame.iter().map(|step| match *step {
-            Fixed::Shift(by) => Step::Shift(by.map(Sym::from)),
-            Fixed::Turn(axis, cos, sin) => Step::known_turn(axis, cos, sin),
-        });
         let y = Sym::from(self.ratio) * q[self.coordinate] + Sym::from(self.offset);
         let motion = match self.motion {
             LinkMotion::Slide => Step::Shift(Vec3::new(Sym::zero(), Sym::zero(), y)),
@@ -217,7 +190,8 @@ impl Link {
                 Step::Turn { axis: 2, cos, sin }
             }
         };
-        fixed.chain([motion]).collect()
+        let before = self.before.iter().map(Fixed::step);
+        before.chain([motion]).collect()
     }
 
     /// Its twist at unit rate of its coordinate, in its own frame.

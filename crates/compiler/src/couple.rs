@@ -15,7 +15,7 @@ impl Model {
     /// Adds the constraints that couple joints. The speeds that depend on the others are those that the mechanism itself chooses.
     ///
     /// # Errors
-    /// Constraints that depend on each other at time 0; more than three dependent speeds that can only be found together.
+    /// Constraints that depend on each other at time 0.
     pub(super) fn couple(&mut self, scene: &SceneDescription) -> Result<(), Vec<String>> {
         if scene.constraints.is_empty() {
             return Ok(());
@@ -37,22 +37,7 @@ impl Model {
             rows.map(|(row, _)| format!("constraint `{}` depends on the others", names[row].name))
                 .collect::<Vec<_>>()
         })?;
-        let links = prune(self, Pruning::NONE);
-        let (solved, _) = record(|| Tree::new(self, links).is_solved());
-        match solved {
-            true => Ok(()),
-            false => {
-                let names: Vec<&str> = names
-                    .iter()
-                    .map(|constraint| constraint.name.as_str())
-                    .collect();
-                Err(vec![format!(
-                    "constraints `{}`: more than three speeds depend on the others such that they can only be found together, \
-                     and these are not compiled",
-                    names.join("`, `")
-                )])
-            }
-        }
+        Ok(())
     }
 
     /// All Q at time 0.

@@ -1,11 +1,11 @@
-//! Joints that mimic joints couple: a spec says what belongs to their coordinates and ports, a [`Chain`] where each body stands.
+//! Joints of links that move together, as mimic joints, sums of coordinates and loops make them: a spec says what belongs to their coordinates and ports, a [`Linkage`] is their kernels.
 //!
-//! In the spec every link hangs on the joint's parent. What a body inherits of the links that it hangs on are products of their motions, which are
-//! written on the graph: expanded, as a spec is, they would have hundreds of terms.
+//! In the spec every link hangs on the joint's parent, and all coordinates move by themselves. What a body inherits of the links that it hangs on are products of their motions, and what ties ask for are systems of
+//! equations, which are written on the graph: expanded, as a spec is, they would have hundreds of terms.
 
-use super::chain::Chain;
+use super::linkage::{Linkage, Whole};
 use super::products::JointType;
-use hamel_runtime::joint::{Link, LinkMotion};
+use hamel_runtime::joint::{Link, LinkMotion, Tie};
 use hamel_scene::{Coupling, Located};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -33,17 +33,22 @@ impl Types {
         let mut joint = match self.0.get(&spec.text) {
             Some(known) => known.clone(),
             None => {
-                let derived = hamel_codegen::derive(&spec.text, "coupled.joint");
+                let derived =
+                    hamel_codegen::derive(&spec.text, &format!("{}.joint", name(coupling)));
                 let derived = derived.map_err(|errors| errors.to_string())?;
                 let joint = JointType::new(derived).map_err(|error| error.task.to_string())?;
                 self.0.insert(spec.text, joint.clone());
                 joint
             }
         };
-        joint.hang(Chain::of(coupling, 0));
+        let runtime = coupling.joint().map_err(|fault| fault.to_string())?;
+        let mut home = vec![0.0; coupling.coordinates()];
+        runtime.home(&mut home);
+        let whole = Rc::new(Whole::new(coupling, home));
+        joint.hang(Linkage::new(coupling, 0, &whole));
         let more = joint.more.iter_mut().enumerate();
         more.for_each(|(index, own)| {
-            Rc::make_mut(own).hang(Chain::of(coupling, index + 1));
+            Rc::make_mut(own).hang(Linkage::new(coupling, index + 1, &whole));
         });
         Ok(Rc::new(joint))
     }
@@ -56,16 +61,16 @@ pub(super) fn spec(coupling: &Coupling) -> Spec {
     for (index, (link, port)) in coupling.links.iter().zip(coupling.ports).enumerate() {
         let number = index + 1;
         let value = writer.value(number, link, coupling);
-        _ = writeln!(motions, "    let y_{number} = {value};");
+        _ = writeln!(motions, "    let place_{number} = {value};");
         let motion = match link.motion {
             LinkMotion::Turn => "rot_z",
             LinkMotion::Slide => "trans_z",
         };
-        _ = writeln!(poses, "    H.link_{number} = {motion}(y_{number});");
+        _ = writeln!(poses, "    H.link_{number} = {motion}(place_{number});");
         let unit = port.unit;
         let value = match port.wraps {
-            true => format!("[cos(y_{number}), sin(y_{number})]"),
-            false => format!("y_{number}"),
+            true => format!("[cos(place_{number}), sin(place_{number})]"),
+            false => format!("place_{number}"),
         };
         _ = writeln!(
             ports,
@@ -77,8 +82,9 @@ pub(super) fn spec(coupling: &Coupling) -> Spec {
     let coordinates: Vec<String> = coordinates.collect();
     let bodies = (1..=coupling.links.len()).map(|number| format!("link_{number}"));
     let bodies: Vec<String> = bodies.collect();
+    let name = name(coupling);
     let text = format!(
-        "hamel = 1;\n\n/// Links that follow one another.\njoint coupled({}) {{\n    config {};\n    bodies {};\n{motions}{poses}{ports}}}\n",
+        "hamel = 1;\n\n/// Links that follow one another.\njoint {name}({}) {{\n    config {};\n    bodies {};\n{motions}{poses}{ports}}}\n",
         writer.declared,
         coordinates.join(", "),
         bodies.join(", "),
@@ -89,9 +95,19 @@ pub(super) fn spec(coupling: &Coupling) -> Spec {
     }
 }
 
-/// What a coordinate is called.
+/// What the joint's type is called, as by the runtime.
+fn name(coupling: &Coupling) -> &'static str {
+    match coupling.ties.is_empty() {
+        true => "coupled",
+        false => "linkage",
+    }
+}
+
+/// What a coordinate is called: as the runtime does it, y where it follows by ties.
 fn coordinate(k: usize, coupling: &Coupling) -> String {
-    match coupling.coordinates() {
+    let following: usize = coupling.ties.iter().map(Tie::count).sum();
+    match coupling.coordinates().saturating_sub(following) {
+        independent if k >= independent => format!("y_{}", k - independent + 1),
         1 => String::from("q"),
         _ => format!("q_{}", k + 1),
     }

@@ -111,9 +111,6 @@ fn found(
 ) -> Result<Rc<JointType>, String> {
     let (name, kind) = (&joint.name.value, &joint.kind.value);
     match &joint.coupling {
-        Some(coupling) if !coupling.ties.is_empty() => Err(format!(
-            "joint `{name}`: the joint that a loop or a coupling of sums makes is not written in compiled scenes: simulate it on the tree, or write the linkage as a spec (docs/loops.md)"
-        )),
         Some(coupling) => types
             .borrow_mut()
             .of(coupling)

@@ -1,7 +1,7 @@
 //! The kernels of one joint of a scene, on the graph.
 
-use super::chain::Chain;
 use super::graph::{Sym, call, call_two, primitive, sin_cos};
+use super::linkage;
 use super::products::{JointType, Product};
 use super::spatial::{Mat3, Step, Twist, Vec3, Wrench, simplified};
 use hamel_codegen::derived::KernelKind;
@@ -14,15 +14,8 @@ use std::collections::BTreeMap;
 pub struct Joint<'a> {
     joint: &'a JointType,
     values: BTreeMap<Symbol, Sym>,
-    /// Where the body hangs on other links of its joint, these.
-    chain: Option<Chained<'a>>,
-}
-
-/// The links that a body hangs on, at one state.
-struct Chained<'a> {
-    links: &'a Chain,
-    q: Vec<Sym>,
-    speeds: Vec<Sym>,
+    /// Where it is a joint of links, these.
+    linkage: Option<linkage::At<'a>>,
 }
 
 impl<'a> Joint<'a> {
@@ -41,29 +34,29 @@ impl<'a> Joint<'a> {
                 .zip(q.iter().copied()),
         );
         values.extend(arguments.speeds.iter().cloned().zip(speeds.iter().copied()));
-        let chain = joint.chain.as_ref().map(|links| Chained {
-            links,
-            q: q.to_vec(),
-            speeds: speeds.to_vec(),
-        });
         // Home is asked for without Q.
-        let chain = chain.filter(|_| q.len() == derived.shape.configuration);
+        let linkage = joint.linkage.as_ref();
+        let linkage = linkage.filter(|_| q.len() == derived.shape.configuration);
+        let linkage = linkage.map(|linkage| linkage.at(q, speeds));
         Self {
             joint,
             values,
-            chain,
+            linkage,
         }
     }
 
     /// The stored scalars of the home configuration.
     pub fn home(&self) -> Vec<Sym> {
+        if let Some(linkage) = &self.joint.linkage {
+            return linkage.home();
+        }
         self.entries(KernelKind::Home)
     }
 
     /// H(Q), from child to parent.
     pub fn pose(&self) -> Vec<Step> {
-        if let Some(Chained { links, q, .. }) = &self.chain {
-            return links.pose(q);
+        if let Some(links) = &self.linkage {
+            return links.pose();
         }
         let entries = self.entries(KernelKind::Pose);
         let Some((rotation, translation)) = entries.split_at_checked(9) else {
@@ -78,8 +71,8 @@ impl<'a> Joint<'a> {
 
     /// The rotation of H(Q).
     pub fn rotation(&self) -> Mat3 {
-        if let Some(Chained { links, q, .. }) = &self.chain {
-            return links.rotation(q);
+        if let Some(links) = &self.linkage {
+            return links.rotation();
         }
         let entries = self.entries(KernelKind::Pose);
         Mat3::from_fn(|i, j| entries.get(3 * i + j).copied().unwrap_or(Sym::Number(0.0)))
@@ -87,8 +80,8 @@ impl<'a> Joint<'a> {
 
     /// The columns of X^c.
     pub fn freedoms(&self) -> Vec<Twist> {
-        if let Some(Chained { links, q, .. }) = &self.chain {
-            return links.twists(q);
+        if let Some(links) = &self.linkage {
+            return links.freedoms_in_child();
         }
         let entries = self.entries(KernelKind::TwistMapChild);
         columns(&entries, self.joint.derived.shape.freedoms)
@@ -111,8 +104,8 @@ impl<'a> Joint<'a> {
 
     /// `c = Ẋ̄^c v̄`.
     pub fn bias_acceleration(&self) -> Twist {
-        if let Some(Chained { links, q, speeds }) = &self.chain {
-            return links.bias(q, speeds);
+        if let Some(links) = &self.linkage {
+            return links.bias();
         }
         let entries = self.entries(KernelKind::BiasAcceleration);
         columns(&entries, 1).pop().unwrap_or_else(Twist::zero)
@@ -120,8 +113,8 @@ impl<'a> Joint<'a> {
 
     /// The columns of X.
     pub fn freedoms_in_parent(&self) -> Vec<Twist> {
-        if let Some(Chained { links, q, .. }) = &self.chain {
-            return links.twists_in_parent(q);
+        if let Some(links) = &self.linkage {
+            return links.freedoms_in_parent();
         }
         let entries = self.entries(KernelKind::TwistMap);
         columns(&entries, self.joint.derived.shape.freedoms)
@@ -129,6 +122,9 @@ impl<'a> Joint<'a> {
 
     /// S₀⁻¹ by columns.
     pub fn velocity_map_inverse(&self) -> Vec<Vec<Sym>> {
+        if self.linkage.is_some() {
+            return self.speed_basis();
+        }
         let freedoms = self.joint.derived.shape.freedoms;
         let entries = self.entries(KernelKind::VelocityMapInverse);
         let column = |j: usize| entries.iter().skip(j).step_by(freedoms).copied().collect();
@@ -137,8 +133,8 @@ impl<'a> Joint<'a> {
 
     /// The columns of X^c S₀: ϕ̇ to the twist in the child frame.
     pub fn local_twist_map(&self) -> Vec<Twist> {
-        if let Some(Chained { links, q, .. }) = &self.chain {
-            return links.twists(q);
+        if let Some(links) = &self.linkage {
+            return links.freedoms_in_child();
         }
         let entries = self.product(&self.joint.products.local_twist_map, &[]);
         columns(&entries, self.joint.derived.shape.freedoms)
@@ -146,8 +142,8 @@ impl<'a> Joint<'a> {
 
     /// ∂(X̄^c x)/∂ϕ, one column per degree of freedom.
     pub fn twist_gradient(&self, x: &[Sym]) -> Vec<Twist> {
-        if let Some(Chained { links, q, .. }) = &self.chain {
-            return links.gradient(q, x);
+        if let Some(links) = &self.linkage {
+            return links.gradient(x);
         }
         let given = [(self.joint.derived.arguments.speeds.as_slice(), x)];
         let entries = self.product(&self.joint.products.twist_gradient, &given);
@@ -156,8 +152,8 @@ impl<'a> Joint<'a> {
 
     /// ∂c/∂ϕ, one column per degree of freedom.
     pub fn bias_gradient(&self) -> Vec<Twist> {
-        if let Some(Chained { links, q, speeds }) = &self.chain {
-            return links.bias_gradient(q, speeds);
+        if let Some(links) = &self.linkage {
+            return links.bias_gradient();
         }
         let entries = self.product(&self.joint.products.bias_acceleration_gradient, &[]);
         columns(&entries, self.joint.derived.shape.freedoms)
@@ -165,8 +161,8 @@ impl<'a> Joint<'a> {
 
     /// ∂c/∂v̄, one column per speed.
     pub fn bias_slope(&self) -> Vec<Twist> {
-        if let Some(Chained { links, q, speeds }) = &self.chain {
-            return links.bias_slope(q, speeds);
+        if let Some(links) = &self.linkage {
+            return links.bias_slope();
         }
         let entries = self.product(&self.joint.products.bias_acceleration_slope, &[]);
         columns(&entries, self.joint.derived.shape.speeds)
@@ -174,8 +170,8 @@ impl<'a> Joint<'a> {
 
     /// ∂(X̄^cᵀ h)/∂ϕ by rows, one per speed; none where X̄^c is constant.
     pub fn effort_gradient(&self, wrench: &Wrench) -> Vec<Vec<Sym>> {
-        if let Some(Chained { links, q, .. }) = &self.chain {
-            return links.effort_gradient(q, wrench);
+        if let Some(links) = &self.linkage {
+            return links.effort_gradient(wrench);
         }
         let parts = parts_of(wrench);
         let given = [(self.joint.derived.arguments.wrench.as_slice(), &parts[..])];
@@ -186,12 +182,18 @@ impl<'a> Joint<'a> {
 
     /// `Q̇(Q, v)`.
     pub fn configuration_rate(&self, velocity: &[Sym]) -> Vec<Sym> {
+        if let Some(links) = &self.linkage {
+            return links.configuration_rate(velocity);
+        }
         let given = [(self.joint.derived.arguments.velocity.as_slice(), velocity)];
         self.entries_with(KernelKind::ConfigurationRate, &given)
     }
 
     /// How the stored scalars of Q change with each ϕ, at ϕ = 0: `Q̇(Q, S₀ e)`.
     pub fn configuration_slopes(&self) -> Vec<Vec<Sym>> {
+        if let Some(links) = &self.linkage {
+            return links.tangent();
+        }
         let freedoms = self.joint.derived.shape.freedoms;
         let map = self.entries(KernelKind::VelocityMap);
         let column = |k: usize| -> Vec<Sym> {
@@ -201,7 +203,7 @@ impl<'a> Joint<'a> {
         (0..freedoms).map(column).collect()
     }
 
-    /// Φ(Q, ϕ).
+    /// Φ(Q, ϕ); not of a joint of links.
     pub fn retract(&self, phi: &[Sym]) -> Vec<Sym> {
         let given = [(self.joint.derived.arguments.local.as_slice(), phi)];
         self.entries_with(KernelKind::Retract, &given)
@@ -209,12 +211,18 @@ impl<'a> Joint<'a> {
 
     /// ϕ with Φ(Q, ϕ) = Q′.
     pub fn local(&self, target: &[Sym]) -> Vec<Sym> {
+        if let Some(links) = &self.linkage {
+            return links.local(target);
+        }
         let given = [(self.joint.derived.arguments.target.as_slice(), target)];
         self.entries_with(KernelKind::Local, &given)
     }
 
     /// ϕ̇ at ϕ, from S₀(Q′)⁻¹ v at Q′ = Φ(Q, ϕ).
     pub fn retract_differential_inverse(&self, phi: &[Sym], rate: &[Sym]) -> Vec<Sym> {
+        if self.linkage.is_some() {
+            return rate.to_vec();
+        }
         let arguments = &self.joint.derived.arguments;
         let given = [
             (arguments.local.as_slice(), phi),
@@ -225,6 +233,9 @@ impl<'a> Joint<'a> {
 
     /// P by rows, one per port.
     pub fn port_map(&self) -> Vec<Vec<Sym>> {
+        if let Some(links) = &self.linkage {
+            return links.port_map();
+        }
         let entries = self.entries(KernelKind::PortMap);
         let rows = entries.chunks(self.joint.derived.shape.freedoms.max(1));
         rows.map(<[Sym]>::to_vec).collect()
@@ -241,8 +252,11 @@ impl<'a> Joint<'a> {
         ports.get(port).is_some_and(|port| port.value.wraps())
     }
 
-    /// Σ_k γ_k v_k by rows, at v.
+    /// Σ_k γ_k v_k by rows, at v; none where velocities commute because they are rates of coordinates.
     pub fn gamma(&self, velocity: &[Sym]) -> Vec<Vec<Sym>> {
+        if self.linkage.is_some() {
+            return vec![];
+        }
         let given = [(self.joint.derived.arguments.velocity.as_slice(), velocity)];
         let entries = self.entries_with(KernelKind::Gamma, &given);
         let rows = entries.chunks(velocity.len().max(1));
@@ -251,15 +265,15 @@ impl<'a> Joint<'a> {
 
     /// `Ẋ̄^cᵀ h` at v̄.
     pub fn bias_momentum(&self, momentum: &Wrench) -> Vec<Sym> {
-        if let Some(Chained { links, q, speeds }) = &self.chain {
-            return links.bias_momentum(q, speeds, momentum);
+        if let Some(links) = &self.linkage {
+            return links.bias_momentum(momentum);
         }
         let parts = parts_of(momentum);
         let given = [(self.joint.derived.arguments.wrench.as_slice(), &parts[..])];
         self.entries_with(KernelKind::BiasMomentum, &given)
     }
 
-    /// The nearest point of the manifold.
+    /// The nearest point of the manifold; not of a joint of links.
     pub fn project(&self) -> Vec<Sym> {
         self.entries(KernelKind::Project)
     }

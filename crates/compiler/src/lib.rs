@@ -35,10 +35,12 @@ mod explain;
 pub mod functions;
 pub mod graph;
 mod joint;
+mod linkage;
 pub mod model;
 mod products;
 pub mod prune;
 mod spatial;
+mod ties;
 
 pub use build::{Build, Error, Language, Module, scene, scene_of};
 pub use describe::Refused;

@@ -3,7 +3,7 @@
 //!
 //! The runtime forms the same products in numbers: `hamel_runtime::joint::Products`.
 
-use super::chain::Chain;
+use super::linkage::Linkage;
 use super::prune::Element;
 use hamel_codegen::WORK_LIMIT;
 use hamel_codegen::derived::{Derived, KernelKind, Step, Word};
@@ -39,8 +39,8 @@ pub struct JointType {
     pub more: Vec<Rc<JointType>>,
     /// Inertias that do not affect the joint, of all its bodies together, for the numbers that were asked for.
     pub(crate) across: RefCell<BTreeMap<Vec<u64>, Option<Vec<Element>>>>,
-    /// What the body hangs on within the joint, of a coupling of mimic joints.
-    pub(crate) chain: Option<Chain>,
+    /// The links of the joint of a coupling or a loop, as the body sees them: its kernels are theirs.
+    pub(crate) linkage: Option<Linkage>,
 }
 
 impl JointType {
@@ -56,17 +56,30 @@ impl JointType {
             products: Products::new(&derived)?,
             derived,
             across: RefCell::default(),
-            chain: None,
+            linkage: None,
         })
     }
 
-    /// Lets the body hang on other links of its coupling.
-    pub(crate) fn hang(&mut self, chain: Option<Chain>) {
-        // What it does not feel is not known then.
-        if chain.is_some() {
-            self.derived.unidentifiable.clear();
+    /// Gives the body its place among the links of a joint. What was derived is of coordinates that all move by themselves: those that follow by ties are no freedoms.
+    pub(crate) fn hang(&mut self, linkage: Linkage) {
+        let derived = &mut self.derived;
+        if !linkage.is_one_link() {
+            // What it does not feel is not known then.
+            derived.unidentifiable.clear();
         }
-        self.chain = chain;
+        let freedoms = linkage.freedoms();
+        (derived.shape.freedoms, derived.shape.speeds) = (freedoms, freedoms);
+        derived.spec.freedoms.value.truncate(freedoms);
+        derived.speed_names.truncate(freedoms);
+        let units = &mut derived.spec.units;
+        for units in [
+            &mut units.freedoms,
+            &mut units.velocities,
+            &mut units.speeds,
+        ] {
+            units.truncate(freedoms);
+        }
+        self.linkage = Some(linkage);
     }
 
     /// The formulas of one of its products, in its own names.

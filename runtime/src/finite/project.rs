@@ -83,7 +83,8 @@ pub fn project_by_displacements<T: Scalar, const N: usize, const G: usize, const
     for _ in 0..PROJECT_ITERATIONS {
         q = displaced(&q, &shortest(&q));
     }
-    unless_apart(&q, norm(&shortest(&q)), norm(&q))
+    // Displacements are measured by angles: coordinates may all be near 0.
+    unless_apart(&q, norm(&shortest(&q)), T::one() + norm(&q))
 }
 
 /// `direction_j · δ = −value_j`, one equation a relation, each scaled to a unit direction.

@@ -306,11 +306,11 @@ pub fn driven(random: &mut ChaCha8Rng, mechanism: &Mechanism) -> Mechanism {
     driven.unwrap_or_else(|errors| panic!("{errors:?}"))
 }
 
-/// The mechanism with up to three constraints on points of any of its bodies, where its joints leave that many speeds free at `q`.
+/// The mechanism with up to five constraints on points of any of its bodies, where its joints leave that many speeds free at `q`.
 pub fn coupled(random: &mut ChaCha8Rng, mechanism: Mechanism, q: &[f64]) -> Mechanism {
     let count = mechanism.bodies().len();
     let mut coupled = mechanism;
-    for _ in 0..3 {
+    for _ in 0..5 {
         let mut constraints = coupled.constraints().to_vec();
         constraints.push(PointConstraint {
             name: format!("constraint {}", constraints.len()),

@@ -1,6 +1,10 @@
 //! Compiled scenes as a user has them: modules that the build script writes, and two short ones that are committed to be read. The test `dynamics emitted`
 //! keeps those as they are written.
 
+/// Both forms of `tests/data/urdf/loops/ankle.urdf`: two loops with rods, which six relations close.
+pub mod ankle {
+    include!(concat!(env!("OUT_DIR"), "/ankle.rs"));
+}
 /// `tests/data/scenes/ball_chain.toml`: with loops over like links.
 pub mod ball_chain {
     include!(concat!(env!("OUT_DIR"), "/ball_chain.rs"));
@@ -20,6 +24,10 @@ pub mod geodesic_springs {
 /// Both forms of `scenes/humanoid.toml`: loops between hinges.
 pub mod humanoid {
     include!(concat!(env!("OUT_DIR"), "/humanoid.rs"));
+}
+/// `tests/data/scenes/loops.toml`, with lanes: loops that `[[loop]]` closes.
+pub mod loops {
+    include!(concat!(env!("OUT_DIR"), "/loops.rs"));
 }
 /// `tests/data/scenes/pendulum.toml`: one joint in general position.
 #[rustfmt::skip]

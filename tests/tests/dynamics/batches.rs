@@ -1,22 +1,58 @@
-//! Many states of a compiled scene at once (`hamel::compiled::Batch`), with the committed module.
+//! Many states of a compiled scene at once (`hamel::compiled::Batch`), with modules of the build script.
 
 use allocation_counter::measure;
 use chacha20::ChaCha8Rng;
 use hamel::compiled::{Batch, Equations, InLanes, Lanes, Level};
 use hamel::dynamics::{Dynamics, Recursive};
-use hamel_tests::emitted::plate_cart_arm as module;
+use hamel::mechanism::Mechanism;
+use hamel_scene::Scene;
+use hamel_tests::emitted::{loops, plate_cart_arm as module};
 use hamel_tests::{random, scenes};
 use rand::SeedableRng;
+use std::path::Path;
 use std::sync::Arc;
 
-/// The module as it would be without lanes.
-const ONE_BY_ONE: Equations = Equations {
-    in_lanes: InLanes {
-        forward_dynamics: None,
-        inverse_dynamics: None,
-    },
-    ..module::EQUATIONS
-};
+/// A module as it would be without lanes.
+const fn one_by_one(equations: Equations) -> Equations {
+    Equations {
+        in_lanes: InLanes {
+            forward_dynamics: None,
+            inverse_dynamics: None,
+        },
+        ..equations
+    }
+}
+
+/// A module, the same without lanes, and its scene.
+struct Subject {
+    equations: &'static Equations,
+    one_by_one: &'static Equations,
+    mechanism: Arc<Mechanism>,
+}
+
+/// A scene of the library's joints, and loops on a base that moves.
+fn subjects() -> [Subject; 2] {
+    static ONE_BY_ONE: [Equations; 2] =
+        [one_by_one(module::EQUATIONS), one_by_one(loops::EQUATIONS)];
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let closed = Scene::load(
+        folder.join("data/scenes/loops.toml"),
+        &hamel_joints::registry(),
+    );
+    let closed = closed.unwrap_or_else(|errors| panic!("{errors}"));
+    [
+        Subject {
+            equations: &module::EQUATIONS,
+            one_by_one: &ONE_BY_ONE[0],
+            mechanism: scenes::load("plate_cart_arm").mechanism,
+        },
+        Subject {
+            equations: &loops::EQUATIONS,
+            one_by_one: &ONE_BY_ONE[1],
+            mechanism: closed.mechanism,
+        },
+    ]
+}
 
 /// Roundings by which lanes may differ from single states, relative to the largest entry: some hundred operations of a well-conditioned
 /// system, fused or not.
@@ -24,6 +60,7 @@ const ROUNDINGS: f64 = 1e3 * f64::EPSILON;
 
 /// Random states, one after the other.
 struct States {
+    equations: &'static Equations,
     count: usize,
     q: Vec<f64>,
     v: Vec<f64>,
@@ -32,15 +69,25 @@ struct States {
 
 impl States {
     fn new(count: usize) -> Self {
-        let mechanism = scenes::load("plate_cart_arm").mechanism;
+        let [subject, _] = subjects();
+        Self::of(&subject, count)
+    }
+
+    fn of(subject: &Subject, count: usize) -> Self {
+        let Subject {
+            equations,
+            mechanism,
+            ..
+        } = subject;
         let mut random = ChaCha8Rng::seed_from_u64(count as u64);
-        let q = (0..count).flat_map(|_| random::configuration(&mut random, &mechanism));
+        let q = (0..count).flat_map(|_| random::configuration(&mut random, mechanism));
         let q = q.collect();
         Self {
+            equations,
             count,
             q,
-            v: random::numbers(&mut random, count * module::SPEEDS),
-            tau: random::numbers(&mut random, count * module::FREEDOMS),
+            v: random::numbers(&mut random, count * equations.speeds),
+            tau: random::numbers(&mut random, count * equations.freedoms),
         }
     }
 
@@ -61,10 +108,10 @@ impl States {
 
     /// The same of states that lie side by side.
     fn run_side_by_side(&self, batch: &Batch) -> [Vec<f64>; 2] {
-        let q = Lanes::side_by_side(&self.q, module::CONFIGURATION);
-        let v = Lanes::side_by_side(&self.v, module::SPEEDS);
-        let tau = Lanes::side_by_side(&self.tau, module::FREEDOMS);
-        let a = Lanes::side_by_side(self.accelerations(), module::SPEEDS);
+        let q = Lanes::side_by_side(&self.q, self.equations.configuration);
+        let v = Lanes::side_by_side(&self.v, self.equations.speeds);
+        let tau = Lanes::side_by_side(&self.tau, self.equations.freedoms);
+        let a = Lanes::side_by_side(self.accelerations(), self.equations.speeds);
         let (mut rates, mut efforts) = (v.clone(), v.clone());
         let counted = measure(|| {
             let done = batch.forward_dynamics(&q, &v, &tau, &mut rates);
@@ -73,7 +120,8 @@ impl States {
             done.expect("sizes fit");
         });
         assert_eq!(counted.count_total, 0);
-        [rates, efforts].map(|lanes| Lanes::apart(&lanes, module::SPEEDS)[..self.v.len()].to_vec())
+        [rates, efforts]
+            .map(|lanes| Lanes::apart(&lanes, self.equations.speeds)[..self.v.len()].to_vec())
     }
 }
 
@@ -86,16 +134,19 @@ fn assert_close(found: &[f64], expected: &[f64], bound: f64, what: &str) {
 
 #[test]
 fn a_batch_is_its_states_one_by_one_at_every_level() {
-    let states = States::new(77);
-    let expected = states.run(&Batch::new(&ONE_BY_ONE));
-    for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
-        let batch = Batch::at(&module::EQUATIONS, level).expect("it is available");
-        let found = states.run(&batch);
-        for (found, expected) in found.iter().zip(&expected) {
-            for state in 0..states.count {
-                let row = state * module::SPEEDS..(state + 1) * module::SPEEDS;
-                let what = format!("{level:?}, state {state}");
-                assert_close(&found[row.clone()], &expected[row], ROUNDINGS, &what);
+    for subject in subjects() {
+        let states = States::of(&subject, 77);
+        let expected = states.run(&Batch::new(subject.one_by_one));
+        for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+            let batch = Batch::at(subject.equations, level).expect("it is available");
+            let found = states.run(&batch);
+            for (found, expected) in found.iter().zip(&expected) {
+                for state in 0..states.count {
+                    let speeds = subject.equations.speeds;
+                    let row = state * speeds..(state + 1) * speeds;
+                    let what = format!("{}, {level:?}, state {state}", subject.equations.scene);
+                    assert_close(&found[row.clone()], &expected[row], ROUNDINGS, &what);
+                }
             }
         }
     }
@@ -103,31 +154,39 @@ fn a_batch_is_its_states_one_by_one_at_every_level() {
 
 #[test]
 fn states_side_by_side_have_the_numbers_of_states_in_rows() {
-    let states = States::new(29);
-    for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
-        let batch = Batch::at(&module::EQUATIONS, level).expect("it is available");
-        assert_eq!(states.run_side_by_side(&batch), states.run(&batch));
+    for subject in subjects() {
+        let states = States::of(&subject, 29);
+        for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+            let batch = Batch::at(subject.equations, level).expect("it is available");
+            assert_eq!(states.run_side_by_side(&batch), states.run(&batch));
+        }
     }
 }
 
 #[test]
 fn a_batch_is_what_the_tree_computes() {
-    let states = States::new(21);
-    let mut tree = Recursive::new(Arc::clone(&scenes::load("plate_cart_arm").mechanism));
-    let [rates, efforts] = states.run(&Batch::new(&module::EQUATIONS));
-    let mut expected = vec![0.0; module::SPEEDS];
-    let q = states.q.chunks(module::CONFIGURATION);
-    let tau = states.tau.chunks(module::FREEDOMS);
-    let rows = q.zip(states.v.chunks(module::SPEEDS)).zip(tau).enumerate();
-    for (state, ((q, v), tau)) in rows {
-        let row = state * module::SPEEDS..(state + 1) * module::SPEEDS;
-        let done = tree.forward_dynamics(q, v, tau, &mut expected);
-        done.expect("the scene is sound");
-        assert_close(&rates[row.clone()], &expected, ROUNDINGS, "rates");
-        let accelerations = &states.accelerations()[row.clone()];
-        let done = tree.inverse_dynamics(q, v, accelerations, &mut expected);
-        done.expect("the scene is sound");
-        assert_close(&efforts[row], &expected, ROUNDINGS, "efforts");
+    for subject in subjects() {
+        let states = States::of(&subject, 21);
+        let mut tree = Recursive::new(Arc::clone(&subject.mechanism));
+        let equations = subject.equations;
+        let [rates, efforts] = states.run(&Batch::new(equations));
+        let mut expected = vec![0.0; equations.speeds];
+        let q = states.q.chunks(equations.configuration);
+        let tau = states.tau.chunks(equations.freedoms);
+        let rows = q
+            .zip(states.v.chunks(equations.speeds))
+            .zip(tau)
+            .enumerate();
+        for (state, ((q, v), tau)) in rows {
+            let row = state * equations.speeds..(state + 1) * equations.speeds;
+            let done = tree.forward_dynamics(q, v, tau, &mut expected);
+            done.expect("the scene is sound");
+            assert_close(&rates[row.clone()], &expected, ROUNDINGS, equations.scene);
+            let accelerations = &states.accelerations()[row.clone()];
+            let done = tree.inverse_dynamics(q, v, accelerations, &mut expected);
+            done.expect("the scene is sound");
+            assert_close(&efforts[row], &expected, ROUNDINGS, equations.scene);
+        }
     }
 }
 
@@ -151,6 +210,7 @@ fn threads_and_the_number_of_states_do_not_show() {
     for count in [1, 7, 8, 9, 130] {
         let few = States {
             count,
+            equations: states.equations,
             q: states.q[..count * module::CONFIGURATION].to_vec(),
             v: states.v[..count * module::SPEEDS].to_vec(),
             tau: states.tau[..count * module::FREEDOMS].to_vec(),

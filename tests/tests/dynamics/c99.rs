@@ -1,6 +1,6 @@
 //! Compiled modules in C: every scene that is compiled, bit by bit as its lines are evaluated here and as Rust computes them, and against the tree.
 
-use super::compiled::{scene_files, several};
+use super::compiled::{closed, scene_files, several};
 use chacha20::ChaCha8Rng;
 use hamel::nalgebra::{Rotation3, Vector3};
 use hamel::scalar::Dual;
@@ -30,6 +30,14 @@ fn scenes_agree() {
         (scene.mechanism, model)
     });
     agree(&folder("scenes"), &scenes.collect::<Vec<_>>());
+}
+
+/// The same of loops that scenes and robots close.
+#[test]
+fn loops_agree() {
+    let scenes = closed::cases().into_iter();
+    let scenes = scenes.map(|case| (case.scene.mechanism, case.model));
+    agree(&folder("closed"), &scenes.collect::<Vec<_>>());
 }
 
 /// The same of two hinges as one joint that carries two bodies.

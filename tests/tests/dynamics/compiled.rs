@@ -1,6 +1,7 @@
 //! Compiled equations against the tree: every scene that is compiled, robots, and random trees of all joints; and that
 //! what a scene does not have costs nothing.
 
+pub mod closed;
 mod derivatives;
 mod loops;
 mod moments;

@@ -8,9 +8,10 @@ use hamel::integrate::{Form, Integration, Method, Options, Scheme, StepControl};
 use hamel::scalar::F64x4;
 use hamel_compiler::functions::Kind;
 use hamel_compiler::{Build, scene};
-use hamel_scene::Scene;
+use hamel_scene::{Scene, urdf};
 use hamel_tests::emitted::{
-    ball_chain, crank_rocker, geodesic_springs, plate_cart_arm as module, snakeboard,
+    ankle as robot, ball_chain, crank_rocker, geodesic_springs, loops, plate_cart_arm as module,
+    snakeboard,
 };
 use hamel_tests::{random, scenes};
 use rand::SeedableRng;
@@ -138,6 +139,58 @@ fn integrators_take_compiled_equations() {
         moves_as_the_tree(&scenes::load("plate_cart_arm"), &module::EQUATIONS, form);
         moves_as_the_tree(&scenes::load("snakeboard"), &snakeboard::EQUATIONS, form);
         moves_as_the_tree(&springs, &geodesic_springs::EQUATIONS, form);
+    }
+}
+
+/// Loops that files of scenes and robots close: on a base that moves, and with six relations.
+fn closed() -> [(Scene, &'static Equations); 2] {
+    let registry = hamel_joints::registry();
+    let loaded = Scene::load(folder().join("data/scenes/loops.toml"), &registry);
+    let ankle = urdf::load(
+        folder().join("data/urdf/loops/ankle.urdf"),
+        &urdf::Options::default(),
+    );
+    let ankle = ankle.unwrap_or_else(|errors| panic!("{errors}"));
+    [
+        (loaded, &loops::EQUATIONS),
+        (ankle.scene.build(&registry), &robot::EQUATIONS),
+    ]
+    .map(|(scene, equations)| (scene.unwrap_or_else(|errors| panic!("{errors}")), equations))
+}
+
+#[test]
+fn integrators_take_compiled_loops() {
+    for (scene, equations) in closed() {
+        for form in [Form::Lagrangian, Form::Hamiltonian] {
+            moves_as_the_tree(&scene, equations, form);
+        }
+    }
+}
+
+/// Relative to the largest, or to gravity where that is larger: ten roundings for each unit of conditions of some 10.
+const OF_LOOPS: f64 = 1e2 * f64::EPSILON;
+
+#[test]
+fn accelerations_of_compiled_loops_are_those_of_the_tree() {
+    for (scene, equations) in closed() {
+        let forward = equations.forward_dynamics.expect("it is in the module");
+        let mut tree = Recursive::new(Arc::clone(&scene.mechanism));
+        let mut random = ChaCha8Rng::seed_from_u64(9);
+        let [mut found, mut expected] = [(); 2].map(|()| vec![0.0; equations.speeds]);
+        let errors = (0..1000).map(|_| {
+            let q = random::configuration(&mut random, &scene.mechanism);
+            let v = random::numbers(&mut random, equations.speeds);
+            let tau = random::numbers(&mut random, equations.freedoms);
+            tree.forward_dynamics(&q, &v, &tau, &mut expected)
+                .expect("the scene is sound");
+            forward(&q, &v, &tau, &mut found);
+            let largest = expected.iter().fold(10.0_f64, |most, a| most.max(a.abs()));
+            let pairs = found.iter().zip(&expected);
+            pairs.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs())) / largest
+        });
+        let worst = errors.fold(0.0, f64::max);
+        println!("{}: {worst:e}", equations.scene);
+        assert!(worst < OF_LOOPS, "{}: {worst:e}", equations.scene);
     }
 }
 

@@ -1,6 +1,7 @@
 //! Work grows in proportion to the number of joints that carry several bodies: forward dynamics by the tree in both forms, counted in instructions, and
 //! compiled, counted in operations.
 
+use crate::compiled::closed;
 use crate::instructions::of_test;
 use chacha20::ChaCha8Rng;
 use hamel::dynamics::{Dynamics, Recursive};
@@ -72,6 +73,20 @@ fn operations_of_compiled_equations_grow_with_the_number_of_joints() {
                 assert!(large <= shape.allowed() * small, "{small} {large}");
             }
         }
+    }
+}
+
+/// Four-bars that `[[loop]]` closes, each on the rocker of the one before it.
+#[test]
+fn operations_of_compiled_loops_grow_with_their_number() {
+    for kind in [Kind::ForwardDynamics, Kind::MomentumRates] {
+        let counts = [8, 16, 32].map(|count| {
+            let chosen = compile(&closed::chain(count), kind, Loops::Never).expect("it is short");
+            (count, chosen.function.operations().flops() as f64)
+        });
+        let (small, large) = (slope([counts[0], counts[1]]), slope([counts[1], counts[2]]));
+        println!("{kind:?}: {counts:?}, {small}, {large}");
+        assert!(large <= Shape::Chain.allowed() * small, "{small} {large}");
     }
 }
 

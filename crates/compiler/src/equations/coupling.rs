@@ -112,16 +112,11 @@ impl Tree<'_> {
             *entry = -*entry;
         }
         Some(Coupling {
-            basis: square(&own, &others)?,
+            basis: square(&own, &others),
             rows,
             dependent,
             independent,
         })
-    }
-
-    /// Whether the dependent speeds can be found.
-    pub fn is_solved(&self) -> bool {
-        self.coupling().is_some()
     }
 
     /// v̄ with the dependent speeds that the others make, in place of the argument's.
@@ -200,7 +195,7 @@ impl Tree<'_> {
             })
             .collect();
         let own = Coupling::columns(&coupling.rows, &coupling.dependent);
-        let dependent = square(&own, &asked).unwrap_or_default();
+        let dependent = square(&own, &asked);
         for (&speed, rate) in coupling.dependent.iter().zip(&dependent) {
             known[speed] = rate[0];
         }
@@ -270,7 +265,7 @@ impl Tree<'_> {
             .iter()
             .map(|&speed| vec![momenta[speed]])
             .collect();
-        let multipliers = square(&transposed, &right).unwrap_or_default();
+        let multipliers = square(&transposed, &right);
         let each = multipliers.iter().enumerate();
         each.map(|(index, multiplier)| {
             let (body, wrench) = self.constraint(index);

@@ -21,7 +21,7 @@ mod kinematics;
 mod newton_euler;
 mod ports;
 mod rotors;
-mod solve;
+pub(crate) mod solve;
 mod variation;
 
 pub use articulated::Bias;

@@ -44,7 +44,7 @@ pub struct Element {
 pub(super) fn basis(model: &Model, first: usize) -> Vec<Element> {
     let bodies = &model.bodies[model.carried(first)];
     let alone = bodies.len() == 1 || !bodies[0].joint.derived.spec.curves.is_empty();
-    let hanging = bodies.iter().any(|body| body.joint.chain.is_some());
+    let hanging = bodies.iter().any(|body| body.joint.linkage.is_some());
     match alone || hanging {
         true => of_each(bodies),
         false => of_all(model, bodies).unwrap_or_else(|| of_each(bodies)),

@@ -339,17 +339,3 @@ fn what_is_left_open_is_told() {
         "{told:?}"
     );
 }
-
-#[test]
-fn compiled_scenes_refuse_loops_by_name() {
-    let scene = import("rssr", [0.0, 0.0, -9.81]).scene;
-    let refused = hamel_compiler::model::Model::new(&scene, hamel_tests::compiled::joint);
-    let Err(refused) = refused else {
-        panic!("it is refused");
-    };
-    let refused = refused.to_string();
-    assert!(
-        refused.contains("joint `ball`: the joint that a loop or a coupling of sums makes is not written in compiled scenes"),
-        "{refused}"
-    );
-}
