@@ -148,7 +148,13 @@ fn what_is_left_out_changes_no_effort() {
     for joint in several {
         for on_world in [true, false] {
             let base = (!on_world).then(|| Arc::clone(named("ball")));
-            let joints: Vec<_> = base.into_iter().chain([Arc::clone(joint)]).collect();
+            // What hangs on the joint moves frames, and leaves it inertia of its own.
+            let carried = ["revolute", "gimbal", "ball"].map(|name| Arc::clone(named(name)));
+            let joints: Vec<_> = base
+                .into_iter()
+                .chain([Arc::clone(joint)])
+                .chain(carried)
+                .collect();
             let mechanism = random::tree(&mut random, &joints);
             let model = compiled::model(joint.name(), &mechanism);
             let [pruned, bare] = [Pruning::ALL, Pruning::NONE].map(|pruning| {

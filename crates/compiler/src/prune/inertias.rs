@@ -14,7 +14,7 @@ use nalgebra::{Matrix3, Vector3};
 /// Parameters that are made 0, those that cost most first; among equals the one with the largest entry. Of second moments squares come first: wherever an
 /// axis points, one of them has an entry of at least a third.
 const ORDER: [&[usize]; 4] = [&[0], &[3, 1, 2], &[6, 5, 4], &[9, 8, 7]];
-/// Elements of a basis below this are rounding of the turn that was made with it.
+/// Entries of a basis below this are rounding: of the turn that was made with it, and below this part of what is subtracted, of the difference.
 const ROUNDING: f64 = 1e-14;
 /// Entries of a basis below this part of the largest are not divided by: the square of a gear's ratio of a thousand.
 const SMALL: f64 = 1e-6;
@@ -99,7 +99,11 @@ fn reduced(mut basis: Vec<Moved>) -> Vec<(Place, Moved)> {
             for other in basis.iter_mut().chain(others) {
                 let factor = other.bodies[place.0][place.1];
                 for (entry, pivot) in other.entries().zip(pivot.values()) {
-                    *entry -= factor * pivot;
+                    let (before, part) = (*entry, factor * pivot);
+                    *entry = before - part;
+                    if entry.abs() <= ROUNDING * (before.abs() + part.abs()) {
+                        *entry = 0.0;
+                    }
                 }
                 other.bodies[place.0][place.1] = 0.0;
             }
