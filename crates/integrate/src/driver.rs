@@ -13,6 +13,7 @@ use super::pieces::{FirstPiece, resolving};
 use super::prospect::{Prospect, other_method};
 use super::reconsider::Reconsideration;
 use super::rounding::Rounding;
+use super::search::Search;
 use super::step_control::StepController;
 use super::step_state::StepState;
 use super::stepper::{self, Span, Stepper};
@@ -106,6 +107,8 @@ pub(super) struct Pacing {
     step: f64,
     pub(super) controller: StepController,
     rounding: Rounding,
+    /// Where a step of fixed size has failed: shorter ones, up to its end.
+    search: Option<Search>,
 }
 
 impl<'a> Driver<'a> {
@@ -271,6 +274,7 @@ impl<'a> Driver<'a> {
             step,
             controller: StepController::new(order),
             rounding: Rounding::new(&self.flow),
+            search: None,
         })
     }
 
@@ -314,6 +318,9 @@ impl<'a> Driver<'a> {
                 Ok(taken) => {
                     let lands = lands && taken == step;
                     if self.accept(pacing, (taken, lands), observer)? {
+                        let search = pacing.search.as_ref();
+                        let next = search.map(|own| own.goes_on(self.clock.time(), taken));
+                        pacing.step = next.transpose()?.unwrap_or(pacing.step);
                         return Ok(());
                     }
                     self.statistics.rejected += 1;
@@ -352,8 +359,7 @@ impl<'a> Driver<'a> {
             ..
         } = self;
         let outcome = stepper.attempt(step_state, flow, span).and_then(|()| {
-            let way = (&*step_state.offset, &*step_state.phi);
-            watch.check(&flow.mechanism, &step_state.base, way)
+            watch.check(flow, step_state, span)
         });
         let Some(StepControl {
             tolerance,
@@ -402,37 +408,55 @@ impl<'a> Driver<'a> {
     }
 
     /// Ends the integration where no smaller step can help.
-    fn refuse(&self, pacing: &Pacing, step: f64, cause: StepFailure) -> Result<(), IntegrateError> {
+    fn refuse(
+        &self,
+        pacing: &mut Pacing,
+        step: f64,
+        cause: StepFailure,
+    ) -> Result<(), IntegrateError> {
         let cause = cause.of_relations(&self.flow.mechanism);
-        let (time, near) = (self.clock.time(), self.near());
-        if matches!(self.options.method, Method::Fixed { .. }) {
-            return Err(IntegrateError::Step {
+        let time = self.clock.time();
+        if let Method::Fixed { dt, .. } = self.options.method {
+            let failure = IntegrateError::Step {
                 time,
                 step,
-                cause: Box::new(cause),
-                near,
-            });
+                cause: Box::new(cause.clone()),
+                near: self.near(),
+            };
+            if !cause.is_of_length() || !self.watch.knows_ends(&self.flow.mechanism) {
+                return Err(failure);
+            }
+            pacing.step = 0.5 * step;
+            (pacing.search).get_or_insert_with(|| Search::new(time + step, dt, failure));
         }
         // From where time does not move on; at time 0, where it always does, by what is nothing of the span.
         let span = self.options.t_end - self.start;
         let limit = least_step(time, f64::EPSILON * span);
-        if pacing.step > limit {
-            return Ok(());
+        match pacing.step > limit {
+            true => Ok(()),
+            false => Err(self.underflow(pacing, limit, cause)),
         }
-        if let StepFailure::NotClosed { joint } = &cause
+    }
+
+    /// Why steps have become as short as they can be.
+    fn underflow(&self, pacing: &Pacing, limit: f64, cause: StepFailure) -> IntegrateError {
+        if let StepFailure::NotClosed { joint } | StepFailure::Excluded { joint, .. } = &cause
             && let Some(end) = self.watch.end_of(&self.flow.mechanism, joint, self.at())
         {
-            return Err(IntegrateError::Excluded(end));
+            return IntegrateError::Excluded(end);
+        }
+        if let Some(search) = &pacing.search {
+            return search.failure();
         }
         let advice = other_method(&self.flow, self.options, &self.state());
-        Err(IntegrateError::StepUnderflow {
-            time,
+        IntegrateError::StepUnderflow {
+            time: self.clock.time(),
             step: pacing.step,
             limit,
             cause: Box::new(cause),
-            near,
+            near: self.near(),
             advice: advice.map_or_else(String::new, |advice| format!("; {advice}")),
-        })
+        }
     }
 
     /// Takes the step just tried, up to the end of the piece if that lies within; whether it is not too long for that.
@@ -455,7 +479,7 @@ impl<'a> Driver<'a> {
         let accepted = self
             .stepper
             .accept(&mut self.step_state, &mut self.flow, time, span);
-        accepted.map_err(|cause| self.at_state(cause))?;
+        accepted.map_err(|cause| self.at_state(cause.of_relations(&self.flow.mechanism)))?;
         self.statistics.steps += 1;
         // Before the inputs change: what lies within the step moved under those that were held.
         let passed = self.pass(step, observer);

@@ -1,6 +1,7 @@
 //! Robots whose loops `<loop>` and `<coupling>` close: linkages of the library written so, energy, derivatives, and the files of others.
 
 mod acting;
+mod ends;
 mod library;
 
 use hamel::dynamics::{Dynamics, ForwardDerivatives, Recursive, Reference};
