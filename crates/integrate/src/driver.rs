@@ -393,7 +393,10 @@ impl<'a> Driver<'a> {
             return Err(self.inaccurate(joint, error));
         }
         pacing.rounding.accept(error, joint, tolerance);
-        let next = step * pacing.controller.accept(part);
+        let factor = pacing.controller.accept(part);
+        // Of rounding a shorter step has the same part of what is allowed: it would be followed by ever shorter ones.
+        let factor = if allowed > 1.0 { factor.max(1.0) } else { factor };
+        let next = step * factor;
         // A step that was cut short to land says nothing against the step that was meant.
         let cut = step < pacing.step;
         pacing.step = if cut { next.max(pacing.step) } else { next }.min(max_step);

@@ -164,20 +164,23 @@ fn check_ties(ties: &[Tie], links: usize) -> Result<usize, LinkFault> {
     Ok(ties.iter().map(Tie::count).sum())
 }
 
-/// The largest length in the linkage, m; 1 where there is none.
-fn length(links: &[Link], ties: &[Tie]) -> f64 {
+/// The length of a linkage below which it is none, m: what rounding leaves of positions within a metre, some thousand times. All axes of such a linkage meet.
+const NO_LENGTH: f64 = 1e-12;
+
+/// The largest length in a linkage, that of a frame from another, m; 1 where there is none but rounding.
+pub fn linkage_length(links: &[Link], ties: &[Tie]) -> f64 {
     let own = links.iter().map(|link| link.frame.translation.norm());
     let frames = ties.iter().flat_map(|tie| match tie {
         Tie::Closure { frames, .. } => frames.each_ref().map(|frame| frame.translation.norm()),
         Tie::Sum { .. } => [0.0; 2],
     });
     let length = own.chain(frames).fold(0.0, f64::max);
-    if length > 0.0 { length } else { 1.0 }
+    if length > NO_LENGTH { length } else { 1.0 }
 }
 
 /// Divides the rows of lengths by a length of the linkage, and takes it into the columns of lengths: what is left has no unit.
 fn scale(links: &[Link], ties: &[Tie], independent: usize) -> f64 {
-    let length = length(links, ties);
+    let length = linkage_length(links, ties);
     let slides = |coordinate: usize| {
         let mut own = links.iter();
         let first = own.find(|link| link.coordinate == coordinate);
@@ -275,7 +278,7 @@ impl<const N: usize, const K: usize, const C: usize> Coupled<N, K, C> {
     /// How far the linkage is from folding: the least sine of the angle between what one dependent coordinate does to the relations and what all others do, with lengths as parts of the largest.
     fn spread(&self, q: &SVector<f64, N>) -> f64 {
         let (_, mut own) = split::<f64, N, K, C>(&self.relations(q).1);
-        let length = length(&self.links, &self.ties.ties);
+        let length = linkage_length(&self.links, &self.ties.ties);
         let kinds = self.ties.ties.iter().flat_map(|tie| tie.lengths(&self.links));
         for (i, _) in kinds.enumerate().filter(|(_, is_length)| *is_length) {
             own.row_mut(i).scale_mut(1.0 / length);

@@ -138,9 +138,9 @@ fn steps_do_not_lead_back_from_an_end() {
                 _ => panic!("{form:?}, {method:?}: {error}"),
             };
             assert_eq!(joint, "first+second", "{form:?}, {method:?}");
-            // The longest step.
+            // The longest step but one: what is long is not accurate.
             let away = (time - exact.time).abs();
-            assert!(away < 3e-2, "{form:?}, {method:?}: {time} s");
+            assert!(away < 6e-2, "{form:?}, {method:?}: {time} s");
         }
     }
 }
