@@ -11,6 +11,7 @@ use super::options::{StepControl, least_step};
 use super::outputs::{Outputs, Passed};
 use super::pieces::{FirstPiece, resolving};
 use super::prospect::{Prospect, other_method};
+use super::rates_of_loops::has_ends;
 use super::reconsider::Reconsideration;
 use super::rounding::Rounding;
 use super::search::Search;
@@ -394,8 +395,12 @@ impl<'a> Driver<'a> {
         }
         pacing.rounding.accept(error, joint, tolerance);
         let factor = pacing.controller.accept(part);
-        // Of rounding a shorter step has the same part of what is allowed: it would be followed by ever shorter ones.
-        let factor = if allowed > 1.0 { factor.max(1.0) } else { factor };
+        // Of rounding a shorter step has the same part of what is allowed. Where relations make more of it than a look at it tells, as near an end of a joint, it would be followed by ever shorter ones.
+        let is_of_relations = has_ends(self.flow.mechanism.bodies()[joint].joint());
+        let factor = match allowed > 1.0 && is_of_relations {
+            true => factor.max(1.0),
+            false => factor,
+        };
         let next = step * factor;
         // A step that was cut short to land says nothing against the step that was meant.
         let cut = step < pacing.step;
@@ -482,7 +487,7 @@ impl<'a> Driver<'a> {
         let accepted = self
             .stepper
             .accept(&mut self.step_state, &mut self.flow, time, span);
-        accepted.map_err(|cause| self.at_state(cause.of_relations(&self.flow.mechanism)))?;
+        accepted.map_err(|cause| self.at_state(cause))?;
         self.statistics.steps += 1;
         // Before the inputs change: what lies within the step moved under those that were held.
         let passed = self.pass(step, observer);
@@ -542,7 +547,7 @@ impl<'a> Driver<'a> {
     pub(super) fn at_state(&self, cause: StepFailure) -> IntegrateError {
         IntegrateError::AtState {
             time: self.clock.time(),
-            cause: Box::new(cause),
+            cause: Box::new(cause.of_relations(&self.flow.mechanism)),
             near: self.near(),
         }
     }

@@ -126,6 +126,10 @@ impl Problem<'_> {
                 return Ok(found);
             }
         }
+        let others = match self.given.iter().any(|given| *given) {
+            true => String::new(),
+            false => format!(", nor from {} other postures", search::GUESSES),
+        };
         let candidate = self.candidates.iter().max_by(|a, b| {
             let [a, b] = [a, b].map(|own| self.gap(own, &nearest).iter().sum::<f64>());
             a.total_cmp(&b)
@@ -141,7 +145,7 @@ impl Problem<'_> {
             false => format!("{best} where they come nearest"),
         };
         let why =
-            format!("it does not close near the start: its ends are {there} off there, and {best}");
+            format!("it does not close near the start{others}: its ends are {there} off there, and {best}");
         let error = candidate.named.refuse(&why);
         Err(error.help(
             "give positions at time 0 near which it closes (`initial` of its bodies in a scene; `hamel import` makes a scene of a robot in URDF), and check the frames of its ends",

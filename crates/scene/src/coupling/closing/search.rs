@@ -5,7 +5,7 @@ use hamel_runtime::joint::MOST_LINKS;
 use std::f64::consts::PI;
 
 /// Guesses from which a loop is looked for. Nearer ones come first.
-const GUESSES: u32 = 128;
+pub(super) const GUESSES: u32 = 128;
 
 /// Multiples of the roots of primes fill a box evenly, as no sum of whole multiples of them is whole.
 const PRIMES: [f64; MOST_LINKS] = [
