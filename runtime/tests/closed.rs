@@ -389,7 +389,11 @@ fn a_linkage_ends_before_it_loses_half_of_its_digits() {
             joint.retract(&q, &[step], &mut moved);
             q = moved;
         }
-        assert_eq!(!moved[1].is_nan(), is_on, "from {angle} to {there}: {moved:?}");
+        assert_eq!(
+            !moved[1].is_nan(),
+            is_on,
+            "from {angle} to {there}: {moved:?}"
+        );
     }
     for angle in [1e-4, 1e-8, 0.0] {
         let fault = begin(angle).expect_err("it is folded").to_string();

@@ -32,7 +32,11 @@ pub fn vanishing_arguments(expression: &Expr) -> Expr {
     };
     match expression.single_term() {
         Some(_) => {
-            let values = expression.atoms().into_iter().filter_map(vanishing).collect();
+            let values = expression
+                .atoms()
+                .into_iter()
+                .filter_map(vanishing)
+                .collect();
             expression.replace_atoms(&values)
         }
         None => expression.clone(),

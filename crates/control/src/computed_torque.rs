@@ -108,7 +108,13 @@ impl ComputedTorque {
             let range = owner.ranges().speeds.clone();
             let state = (owner.configuration(q), &speeds[range.clone()]);
             let wanted = |[way, faster]: [f64; 2]| -spring * way - damper * faster;
-            own.accelerations(owner, (time, self.period), state, wanted, &mut self.accelerations[range])?;
+            own.accelerations(
+                owner,
+                (time, self.period),
+                state,
+                wanted,
+                &mut self.accelerations[range],
+            )?;
         }
         Ok(())
     }

@@ -173,8 +173,14 @@ impl OfJoint {
             ));
         }
         out.copy_from_slice(&found.as_slice()[..size]);
-        let is_led_past =
-            |period| self.passes(owner, period, (q, v), (&found.as_slice()[..size], is_positive));
+        let is_led_past = |period| {
+            self.passes(
+                owner,
+                period,
+                (q, v),
+                (&found.as_slice()[..size], is_positive),
+            )
+        };
         match period.is_some_and(is_led_past) {
             true => Err(refused(
                 "will pass a dead point, where the ports of its reference do not tell how it moves, before efforts are taken anew: the reference leads there, or the period is too long",
@@ -213,7 +219,11 @@ impl OfJoint {
             owner.joint().retract(q, &way, &mut there);
             let determinant = self.rows(owner, &there, v.len()).determinant();
             // What is not a number is on no side.
-            if is_positive { determinant > 0.0 } else { determinant < 0.0 }
+            if is_positive {
+                determinant > 0.0
+            } else {
+                determinant < 0.0
+            }
         };
         !(1..=LOOKS).all(&mut stays)
     }

@@ -359,9 +359,9 @@ impl<'a> Driver<'a> {
             watch,
             ..
         } = self;
-        let outcome = stepper.attempt(step_state, flow, span).and_then(|()| {
-            watch.check(flow, step_state, span)
-        });
+        let outcome = stepper
+            .attempt(step_state, flow, span)
+            .and_then(|()| watch.check(flow, step_state, span));
         let Some(StepControl {
             tolerance,
             max_step,

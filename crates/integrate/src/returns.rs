@@ -133,7 +133,8 @@ impl Returns {
         let rates = self.rate.of(body, q, &speeds[body.ranges().speeds.clone()]);
         let pairs = body.configuration(q).iter().zip(rates);
         self.away.clear();
-        self.away.extend(pairs.map(|(entry, rate)| entry + time * rate));
+        self.away
+            .extend(pairs.map(|(entry, rate)| entry + time * rate));
         let away = body.joint().singularity(&self.away);
         Tangent {
             value,

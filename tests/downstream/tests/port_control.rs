@@ -7,9 +7,7 @@ use hamel::control::{
     ComputedTorque, ControlError, Controller, ErrorDynamics, PortReference, Reference,
 };
 use hamel::dynamics::Recursive;
-use hamel::integrate::{
-    Form, Integration, Method, Options, State, Step, integrate, no_observer,
-};
+use hamel::integrate::{Form, Integration, Method, Options, State, Step, integrate, no_observer};
 use hamel::mechanism::Mechanism;
 use hamel::time_function::Law;
 use hamel_scene::Scene;

@@ -197,7 +197,10 @@ fn steps_do_not_shrink_without_an_end_where_a_motion_ends() {
                     ControlFlow::Continue(())
                 },
             );
-            eprintln!("{speeds:?}, {} to {tolerance:e}: {steps} steps", scheme.name());
+            eprintln!(
+                "{speeds:?}, {} to {tolerance:e}: {steps} steps",
+                scheme.name()
+            );
             let Err(IntegrateError::Excluded(end)) = ended else {
                 panic!("{speeds:?}, {}: {ended:?}", scheme.name());
             };

@@ -280,7 +280,9 @@ fn meaningless(velocity: At<'_, bool>, local: bool, by_relations: bool) -> Diagn
         (false, true) => {
             "v of a joint with relations is the rate along the directions that `basis` names, or along the one that the relations leave, or what X says"
         }
-        (false, false) => "v of a joint in real coordinates is the rate of its coordinates, in no frame",
+        (false, false) => {
+            "v of a joint in real coordinates is the rate of its coordinates, in no frame"
+        }
     };
     let error = Diagnostic::new(code::VELOCITY_UNUSED, velocity.span.clone(), message);
     error

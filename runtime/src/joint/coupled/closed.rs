@@ -279,7 +279,11 @@ impl<const N: usize, const K: usize, const C: usize> Coupled<N, K, C> {
     fn spread(&self, q: &SVector<f64, N>) -> f64 {
         let (_, mut own) = split::<f64, N, K, C>(&self.relations(q).1);
         let length = linkage_length(&self.links, &self.ties.ties);
-        let kinds = self.ties.ties.iter().flat_map(|tie| tie.lengths(&self.links));
+        let kinds = self
+            .ties
+            .ties
+            .iter()
+            .flat_map(|tie| tie.lengths(&self.links));
         for (i, _) in kinds.enumerate().filter(|(_, is_length)| *is_length) {
             own.row_mut(i).scale_mut(1.0 / length);
         }

@@ -144,8 +144,9 @@ impl Problem<'_> {
             true => String::from("no small motion brings them nearer"),
             false => format!("{best} where they come nearest"),
         };
-        let why =
-            format!("it does not close near the start{others}: its ends are {there} off there, and {best}");
+        let why = format!(
+            "it does not close near the start{others}: its ends are {there} off there, and {best}"
+        );
         let error = candidate.named.refuse(&why);
         Err(error.help(
             "give positions at time 0 near which it closes (`initial` of its bodies in a scene; `hamel import` makes a scene of a robot in URDF), and check the frames of its ends",
@@ -227,9 +228,9 @@ impl Problem<'_> {
         if found.len() < expected && found.len() == moving {
             let joints = if moving == 1 { "joint" } else { "joints" };
             let why = format!(
-                "it cannot move: its {} {} {moving} {joints}, and its geometry asks for {expected}",
-                relations(found.len()),
-                if found.len() == 1 { "holds" } else { "hold" }
+                "it cannot move: {moving} {joints} obey {} independent {}",
+                found.len(),
+                relations_word(found.len())
             );
             return Err(candidate.named.refuse(&why));
         }

@@ -80,7 +80,10 @@ fn clear_basis(twists: &[Vector6<f64>]) -> (Vec<Vector6<f64>>, f64) {
         .map(|twist| twist.as_slice().to_vec())
         .collect();
     let (places, left) = clear(&vectors);
-    (places.into_iter().map(|place| scaled[place]).collect(), left)
+    (
+        places.into_iter().map(|place| scaled[place]).collect(),
+        left,
+    )
 }
 
 /// A basis of the smallest Lie algebra that contains these twists. What is not clearly independent of some may still lie in what they generate: three parallel axes nearly in
