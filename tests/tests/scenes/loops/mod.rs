@@ -3,6 +3,7 @@
 mod acting;
 mod ends;
 mod library;
+mod posture;
 
 use hamel::dynamics::{Dynamics, ForwardDerivatives, Recursive, Reference};
 use hamel::integrate::{Form, Method, Options, Scheme, State, integrate, no_inputs, no_observer};
