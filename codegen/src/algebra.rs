@@ -196,7 +196,7 @@ pub fn exp(xi: &Matrix) -> Option<Matrix> {
     about_fixed_axis(xi).or_else(|| exp_by(xi, |order, s| s.stumpff(order)))
 }
 
-/// `exp(r u)` where the angle r is a polynomial that divides all entries of `xi`: `s = r²`, by its terms or, for a single symbol, by the laws of the functions in s.
+/// `exp(r u)` where the angle r is a polynomial that divides all entries of `xi`, times the root of a rational: `s = r²`, by its terms or, for a single symbol, by the laws of the functions in s.
 fn about_fixed_axis(xi: &Matrix) -> Option<Matrix> {
     let identity = Matrix::identity(xi.rows());
     let found = closure(xi)?;
@@ -206,14 +206,16 @@ fn about_fixed_axis(xi: &Matrix) -> Option<Matrix> {
     let ideal = Ideal::default();
     let mut symbols = xi.entries().iter().flat_map(Expr::symbols);
     let is_root = |symbol: &Symbol| ideal.vanishes(&(s - &Expr::symbol(symbol).square()));
-    let of_terms = ideal.normal_form(s).polynomial_root();
-    let r = match of_terms {
-        Some(root) => root,
-        None => Expr::symbol(&symbols.find(is_root)?),
+    let (polynomial, factor) = match root_of_multiple(&ideal.normal_form(s)) {
+        Some(found) => found,
+        None => (Expr::symbol(&symbols.find(is_root)?), Expr::one()),
     };
+    let r = &polynomial * &factor;
     let entries = xi.entries().iter();
-    let entries: Option<Vec<Expr>> = entries.map(|entry| entry.exact_quotient(&r)).collect();
+    let quotient = |entry: &Expr| entry.exact_quotient(&polynomial);
+    let entries: Option<Vec<Expr>> = entries.map(quotient).collect();
     let u = Matrix::from_entries(xi.rows(), xi.columns(), entries?)?;
+    let u = u.scale(&factor.recip()?);
     let (cos, sin) = (r.cos(), r.sin());
     let turned = u.times(&u).scale(&(&Expr::one() - &cos));
     Some(match found {
@@ -224,6 +226,17 @@ fn about_fixed_axis(xi: &Matrix) -> Option<Matrix> {
             identity.plus(xi).plus(&turned).plus(&cube)
         }
     })
+}
+
+/// A polynomial, and the root of a rational, whose product has the square `s`.
+fn root_of_multiple(s: &Expr) -> Option<(Expr, Expr)> {
+    if let Some(root) = s.polynomial_root() {
+        return Some((root, Expr::one()));
+    }
+    let (_, coefficient) = s.leading().filter(|(_, c)| c.is_positive())?;
+    let factor = Expr::rational(coefficient.clone());
+    let rest = s * &factor.recip()?;
+    Some((rest.polynomial_root()?, factor.sqrt()))
 }
 
 /// `exp(xi)` to second order: `I + ξ + ½ ξ²`.

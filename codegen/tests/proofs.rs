@@ -166,3 +166,52 @@ fn a_curve_may_say_how_phi_moves() {
         at_zero.proof
     );
 }
+
+/// The square of its length has no rational root: the angle is the root of 14 times q.
+#[test]
+fn an_axis_may_have_any_length() {
+    for axis in ["[1, 2, 3]", "[1, 1, 0]", "[3, 0, 4]"] {
+        let joint = derived(&format!(" {{ config q: R1; H = exp(q * tilde({axis})); }}"));
+        let rigid = claim(&joint, "pose_in_se3").expect("a claim");
+        assert!(rigid.proof == Proof::NormalForm, "{axis}: {rigid:?}");
+    }
+}
+
+/// A root vanishes where what it is taken of does, which `require` excludes.
+#[test]
+fn a_quotient_by_a_required_root_is_defined() {
+    let joint = |condition: &str| {
+        let source = format!(
+            "hamel = 1; joint test(x: 1 in -1..=1, y: 1 in -1..=1) {{ {condition} config q: R1; H = trans_x(q / sqrt(x * x + y * y)); }}"
+        );
+        derive(&source, "test.joint").map_err(|errors| errors.to_string())
+    };
+    let found = joint("require x * x + y * y > 0;");
+    assert!(found.is_ok(), "{found:?}");
+    let refused = joint("").expect_err("it may be 0");
+    assert!(refused.contains("E0420"), "{refused}");
+}
+
+/// The platform of three arms: the determinant that must not vanish, times a height. Where the product is not 0 neither is the determinant.
+#[test]
+fn an_exception_may_be_a_multiple_of_what_must_not_vanish() {
+    let delta = |exception: &str| {
+        let source = format!(
+            "hamel = 1; joint delta {{ config a: S1, b: S1, c: S1, p: R3; bodies la, lb, lc, platform;\n\
+             let pa = [1/2 * a.c + 1/5, 0, 1/2 * a.s];\n\
+             let pb = rot_z(2/3 * pi) * [1/2 * b.c + 1/5, 0, 1/2 * b.s];\n\
+             let pc = rot_z(-2/3 * pi) * [1/2 * c.c + 1/5, 0, 1/2 * c.s];\n\
+             relation dot(p - pa, p - pa) = 1; relation dot(p - pb, p - pb) = 1; relation dot(p - pc, p - pc) = 1;\n\
+             home near [1, 0], [1, 0], [1, 0], [0, 0, -1];\n\
+             basis ta of so2(a); basis tb of so2(b); basis tc of so2(c);\n\
+             except {exception} = 0;\n\
+             H.la = rot_y(-1 * atan2(a.s, a.c)); H.lb = trans(pb); H.lc = trans(pc); H.platform = trans(p); }}"
+        );
+        derive(&source, "delta.joint").map_err(|errors| errors.to_string())
+    };
+    let determinant = "dot(p - pa, cross(p - pb, p - pc))";
+    let found = delta(&format!("{determinant} * p.z"));
+    assert!(found.is_ok(), "{:?}", found.err());
+    let refused = delta("p.z").expect_err("it vanishes elsewhere too");
+    assert!(refused.contains("E0401"), "{refused}");
+}

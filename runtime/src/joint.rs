@@ -45,7 +45,7 @@ pub const MOST_FREEDOMS: usize = 16;
 #[cfg(feature = "alloc")]
 pub use coupled::{
     CLOSED_SIZES, Coupled, Link, LinkFault, LinkMotion, MOST_COORDINATES, MOST_LINKS,
-    MOST_RELATIONS, Relation, Row, Tie, closed, coupled,
+    MOST_RELATIONS, Relation, Row, Tie, closed, coupled, linkage_length,
 };
 pub use patterns::{Entry, Patterns};
 pub use pin::{DriveSource, Pin, PinDrive, Turning};

@@ -354,6 +354,57 @@ fn a_linkage_ends_where_its_dependent_coordinates_do_not_follow() {
     assert_eq!(joint.singularities().len(), 1);
 }
 
+/// A parallelogram that begins nearly folded ends by its own size, and one that begins folded but for half of the digits is refused.
+#[test]
+fn a_linkage_ends_before_it_loses_half_of_its_digits() {
+    use Relation::Meets;
+    let links = [
+        link(None, at([0.0; 3], [0.0; 3]), 0),
+        link(Some(0), at([0.2, 0.0, 0.0], [0.0; 3]), 1),
+        link(None, at([0.5, 0.0, 0.0], [0.0; 3]), 2),
+    ];
+    let tie = Tie::Closure {
+        links: [Some(1), Some(2)],
+        frames: [at([0.5, 0.0, 0.0], [0.0; 3]), at([0.2, 0.0, 0.0], [0.0; 3])],
+        relations: vec![Meets(0), Meets(1)],
+        implied: vec![],
+    };
+    let begin = |angle: f64| {
+        let start = [angle, -angle, angle];
+        closed(&links, std::slice::from_ref(&tie), &start, &PORTS[..3]).map(|joint| (joint, start))
+    };
+    // What both dependent angles do to the relations is at the angle of the crank. It ends at ε^(1/4) of that, or at ε^(1/6) of its beginning.
+    for (angle, there, is_on) in [
+        (1e-3, 1.5e-4, true),
+        (1e-3, 1e-4, false),
+        (2e-4, 1.5e-4, true),
+        (0.5, 1.3e-3, true),
+        (0.5, 1.1e-3, false),
+    ] {
+        let (joint, mut q) = begin(angle).expect("it closes");
+        let mut moved = q;
+        // By parts, as Φ is found from near it.
+        while !moved[1].is_nan() && q[0] > there {
+            let step = f64::max(0.7 * q[0], there) - q[0];
+            joint.retract(&q, &[step], &mut moved);
+            q = moved;
+        }
+        assert_eq!(
+            !moved[1].is_nan(),
+            is_on,
+            "from {angle} to {there}: {moved:?}"
+        );
+    }
+    for angle in [1e-4, 1e-8, 0.0] {
+        let fault = begin(angle).expect_err("it is folded").to_string();
+        assert_eq!(
+            fault,
+            "coupled links: at the start the dependent coordinates do not follow from the others",
+            "{angle}"
+        );
+    }
+}
+
 /// What is done to links, a tie and a start that are sound.
 type Change<'c> = &'c dyn Fn(&mut Vec<Link>, &mut Tie, &mut Vec<f64>);
 

@@ -16,11 +16,14 @@ pub fn without<'f>(expression: &Expr, never_zero: impl IntoIterator<Item = &'f E
         })
 }
 
-/// The only term with u for `sinh(u)` and `tanh(u)`, which vanish where u does; other expressions as they stand.
-pub fn arguments_of_odd(expression: &Expr) -> Expr {
-    let odd = |atom: Atom| match &atom {
+/// The only term with u for `sinh(u)`, `tanh(u)` and `sqrt(u)`, which vanish where u does; other expressions as they stand.
+pub fn vanishing_arguments(expression: &Expr) -> Expr {
+    let vanishing = |atom: Atom| match &atom {
         Atom::Apply(application)
-            if matches!(application.function, Function::Sinh | Function::Tanh) =>
+            if matches!(
+                application.function,
+                Function::Sinh | Function::Tanh | Function::Sqrt
+            ) =>
         {
             let argument = application.arguments.first()?.clone();
             Some((atom, argument))
@@ -29,7 +32,11 @@ pub fn arguments_of_odd(expression: &Expr) -> Expr {
     };
     match expression.single_term() {
         Some(_) => {
-            let values = expression.atoms().into_iter().filter_map(odd).collect();
+            let values = expression
+                .atoms()
+                .into_iter()
+                .filter_map(vanishing)
+                .collect();
             expression.replace_atoms(&values)
         }
         None => expression.clone(),

@@ -297,7 +297,7 @@ impl<'a> Domain<'a> {
         }
         let conditions = || self.signs.positive_conditions();
         let essential = |e: &Expr| {
-            let rest = factors::without(&factors::arguments_of_odd(e), conditions());
+            let rest = factors::without(&factors::vanishing_arguments(e), conditions());
             let rest = match factors::content(&rest) {
                 Some((content, rest)) if of_one_sign(&&content) => rest,
                 _ => rest,
@@ -310,7 +310,13 @@ impl<'a> Domain<'a> {
             return Some(Certificate::Positive(all[found].clone()));
         }
         let is_beside_loci = |e: &Expr| never_zero(&&beside_loci(e));
-        if generators.iter().any(is_beside_loci) {
+        // What divides a locus vanishes there alone.
+        let divides_locus = |e: &Expr| {
+            let mut loci = self.loci.iter().chain(&written);
+            loci.any(|locus| locus.exact_quotient(e).is_some())
+        };
+        let mut as_written = expressions.iter().chain(&all);
+        if generators.iter().any(is_beside_loci) || as_written.any(divides_locus) {
             return Some(Certificate::NoCommonZero {
                 functions,
                 except: true,

@@ -67,14 +67,23 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     };
     let (text, name) = read_file(&args.robot)?;
     let import = urdf::read(&text, &name, &options)?;
-    tell(&import.build(registry)?.notices);
+    let built = match import.build(registry) {
+        Ok(scene) => {
+            tell(&scene.notices);
+            Ok(())
+        }
+        // A robot whose loops do not close as it stands is a scene all the same, to be edited.
+        Err(mistakes) if !import.scene.loops.is_empty() => Err(mistakes),
+        Err(mistakes) => return Err(mistakes.into()),
+    };
     let written = named(args.output.as_deref()).map(|path| (path, is_own as _));
     let outputs = admit([&*args.robot], written, args.force.force)?;
     let text = marked(&import.to_toml());
     match outputs.first() {
-        None => output::print(&text),
-        Some(output) => output.write(text),
+        None => output::print(&text)?,
+        Some(output) => output.write(text)?,
     }
+    Ok(built?)
 }
 
 /// How the first line of an imported scene begins.

@@ -34,6 +34,8 @@ pub struct ComputedTorque {
     error: Vec<f64>,
     /// Joints that are led by their ports instead.
     at_ports: Vec<OfJoint>,
+    /// How long efforts are held, s.
+    period: Option<f64>,
     accelerations: Vec<f64>,
     /// S₀ of one joint.
     map: Vec<f64>,
@@ -57,6 +59,7 @@ impl ComputedTorque {
             wanted: vec![0.0; layout.configuration],
             error: vec![0.0; layout.freedoms],
             at_ports: Vec::new(),
+            period: None,
             accelerations: vec![0.0; layout.speeds],
             map: vec![0.0; MOST_FREEDOMS * MOST_FREEDOMS],
         })
@@ -69,6 +72,16 @@ impl ComputedTorque {
     /// A body or a port that is not there, or named twice; numbers that are not finite; a joint with more or fewer references than degrees of freedom.
     pub fn at_ports(mut self, references: &[PortReference]) -> Result<Self, ControlError> {
         self.at_ports = OfJoint::all(self.reference.mechanism(), references)?;
+        Ok(self)
+    }
+
+    /// The law whose efforts are held for `period` seconds each time: joints that are led by their ports are not led past a dead point in between.
+    ///
+    /// # Errors
+    /// A period that is not positive, or not finite.
+    pub fn held(mut self, period: f64) -> Result<Self, ControlError> {
+        positive("period", period)?;
+        self.period = Some(period);
         Ok(self)
     }
 
@@ -95,7 +108,13 @@ impl ComputedTorque {
             let range = owner.ranges().speeds.clone();
             let state = (owner.configuration(q), &speeds[range.clone()]);
             let wanted = |[way, faster]: [f64; 2]| -spring * way - damper * faster;
-            own.accelerations(owner, time, state, wanted, &mut self.accelerations[range])?;
+            own.accelerations(
+                owner,
+                (time, self.period),
+                state,
+                wanted,
+                &mut self.accelerations[range],
+            )?;
         }
         Ok(())
     }

@@ -114,6 +114,15 @@ pub enum ControlError {
         /// The least speed, m/s.
         limit: f64,
     },
+    /// A reference by speeds that a joint cannot follow to its end.
+    #[error(
+        "the reference leads joint `{joint}` beyond where its motion ends, as a dead point: after {time} s its relations have no solution", time = Number(*.time))]
+    ReferenceEnds {
+        /// The joint.
+        joint: String,
+        /// Until when it can be followed, s.
+        time: f64,
+    },
     /// Steps of one period are too long to foresee a fast motion.
     #[error(
         "the period of {period} s times the rate of {rate:.3e} 1/s of the fastest motion about the goal, most of all of joint `{joint}`, is {:.3e}, and steps of order 4, which foresee it, are stable up to {limit}: make the period at most {:.1e} s, or the springs and dampers that it is due to weaker",

@@ -16,6 +16,12 @@ const INDEPENDENT: f64 = 1e-8;
 /// turns ten thousand times as fast as elsewhere.
 const STANDING: f64 = 1e-4;
 
+/// Looks ahead within the time over which efforts are held.
+const LOOKS: u32 = 8;
+
+/// The rows of the ports of a joint; the rest is that of the identity.
+type Rows = SMatrix<f64, MOST_FREEDOMS, MOST_FREEDOMS>;
+
 /// The value of one port over time: `start` and what the law leads to from there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PortReference {
@@ -63,6 +69,8 @@ pub(super) struct OfJoint {
     pub(super) ports: Vec<PortReference>,
     /// The largest that the smallest pivot of the ports' rows has been.
     least_pivot: f64,
+    /// Whether the determinant of the ports' rows is positive, which no reference that can be followed changes: beyond a dead point the joint moves the other way.
+    side: Option<bool>,
 }
 
 impl OfJoint {
@@ -103,6 +111,7 @@ impl OfJoint {
                     body,
                     ports: alloc::vec![*reference],
                     least_pivot: 0.0,
+                    side: None,
                 }),
             }
         }
@@ -118,33 +127,28 @@ impl OfJoint {
         Ok(joints)
     }
 
-    /// v̇* at which each port has `wanted` of its deviation as its acceleration beside that of its law: of `P v̇* = ẅ* − Ṗ v`.
+    /// v̇* at which each port has `wanted` of its deviation as its acceleration beside that of its law: of `P v̇* = ẅ* − Ṗ v`. Efforts are held for `period` seconds, if they are.
     ///
     /// # Errors
-    /// Ports that do not move the joint in all its ways here.
+    /// Ports that do not move the joint in all its ways here, have not since the start, or will not at v̇* within the period.
     pub(super) fn accelerations(
         &mut self,
         owner: &Body,
-        t: f64,
+        (t, period): (f64, Option<f64>),
         (q, v): (&[f64], &[f64]),
         wanted: impl Fn([f64; 2]) -> f64,
         out: &mut [f64],
     ) -> Result<(), ControlError> {
         let (joint, size) = (owner.joint(), v.len());
-        // The rest is that of the identity.
-        let mut map = SMatrix::<f64, MOST_FREEDOMS, MOST_FREEDOMS>::identity();
         let mut right = SVector::<f64, MOST_FREEDOMS>::zeros();
         for (i, reference) in self.ports.iter().enumerate() {
-            let (mut row, mut rate) = ([0.0; MOST_FREEDOMS], [0.0; MOST_FREEDOMS]);
-            joint.port_row(q, reference.port, &mut row[..size]);
+            let mut rate = [0.0; MOST_FREEDOMS];
             joint.port_row_rate(q, v, reference.port, &mut rate[..size]);
             let turned: f64 = rate.iter().zip(v).map(|(p, v)| p * v).sum();
             let deviation = reference.deviation(owner, t, (q, v));
             right[i] = reference.law.acceleration(t) + wanted(deviation) - turned;
-            for (j, entry) in row[..size].iter().enumerate() {
-                map[(i, j)] = *entry;
-            }
         }
+        let map = self.rows(owner, q, size);
         let largest = map.view((0, 0), (size, size)).amax();
         let factors = map.full_piv_lu();
         let pivots = factors.u();
@@ -153,13 +157,74 @@ impl OfJoint {
         let solved = factors.solve(&right);
         self.least_pivot = least.max(self.least_pivot);
         let limit = f64::max(INDEPENDENT * largest.min(1.0), STANDING * self.least_pivot);
-        let Some(found) = solved.filter(|_| least > limit) else {
-            return Err(ControlError::Joint {
-                joint: owner.joint_name().into(),
-                reason: "stands where the ports of its reference do not tell how it moves, as at a dead point",
-            });
+        let refused = |reason| ControlError::Joint {
+            joint: owner.joint_name().into(),
+            reason,
         };
+        let Some(found) = solved.filter(|_| least > limit) else {
+            return Err(refused(
+                "stands where the ports of its reference do not tell how it moves, as at a dead point: the reference leads there",
+            ));
+        };
+        let is_positive = factors.determinant() > 0.0;
+        if is_positive != *self.side.get_or_insert(is_positive) {
+            return Err(refused(
+                "has passed a dead point, where the ports of its reference do not tell how it moves: the reference leads there",
+            ));
+        }
         out.copy_from_slice(&found.as_slice()[..size]);
-        Ok(())
+        let is_led_past = |period| {
+            self.passes(
+                owner,
+                period,
+                (q, v),
+                (&found.as_slice()[..size], is_positive),
+            )
+        };
+        match period.is_some_and(is_led_past) {
+            true => Err(refused(
+                "will pass a dead point, where the ports of its reference do not tell how it moves, before efforts are taken anew: the reference leads there, or the period is too long",
+            )),
+            false => Ok(()),
+        }
+    }
+
+    /// The ports' rows.
+    fn rows(&self, owner: &Body, q: &[f64], size: usize) -> Rows {
+        let mut map = Rows::identity();
+        for (i, reference) in self.ports.iter().enumerate() {
+            let mut row = [0.0; MOST_FREEDOMS];
+            owner.joint().port_row(q, reference.port, &mut row[..size]);
+            for (j, entry) in row[..size].iter().enumerate() {
+                map[(i, j)] = *entry;
+            }
+        }
+        map
+    }
+
+    /// Whether the determinant of the ports' rows leaves its side within a time of `period` (s) at constant accelerations.
+    fn passes(
+        &self,
+        owner: &Body,
+        period: f64,
+        (q, v): (&[f64], &[f64]),
+        (accelerations, is_positive): (&[f64], bool),
+    ) -> bool {
+        let mut there = alloc::vec![0.0; q.len()];
+        let mut stays = |look: u32| {
+            let time = period * f64::from(look) / f64::from(LOOKS);
+            let way = v.iter().zip(accelerations);
+            let way = way.map(|(speed, acceleration)| time * (speed + 0.5 * time * acceleration));
+            let way: Vec<f64> = way.collect();
+            owner.joint().retract(q, &way, &mut there);
+            let determinant = self.rows(owner, &there, v.len()).determinant();
+            // What is not a number is on no side.
+            if is_positive {
+                determinant > 0.0
+            } else {
+                determinant < 0.0
+            }
+        };
+        !(1..=LOOKS).all(&mut stays)
     }
 }

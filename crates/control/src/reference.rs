@@ -8,7 +8,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use hamel_integrate::Tableau;
 use hamel_runtime::joint::MOST_FREEDOMS;
-use hamel_runtime::mechanism::{Body, Mechanism, Space};
+use hamel_runtime::mechanism::{Body, Mechanism, Space, StateError};
 use hamel_runtime::time_function::Law;
 use num_traits::Float;
 
@@ -94,9 +94,25 @@ impl Reference {
             let span = Span { start, step };
             self.carrier
                 .carry(&self.mechanism, &self.laws, span, from, &mut to[..size]);
-            self.mechanism.project(&mut to[..size])?;
+            let projected = self.mechanism.project(&mut to[..size]);
+            projected.map_err(|cause| self.ends(cause, start))?;
         }
         Ok(())
+    }
+
+    /// Why it has no value after `time` (s).
+    fn ends(&self, cause: StateError, time: f64) -> ControlError {
+        let closes = |name: &str| {
+            let mut joints = self.mechanism.joints();
+            joints
+                .any(|(_, body)| body.joint_name() == name && !body.joint().relations().is_empty())
+        };
+        match cause {
+            StateError::FiniteMap { joint, .. } if closes(&joint) => {
+                ControlError::ReferenceEnds { joint, time }
+            }
+            cause => cause.into(),
+        }
     }
 
     /// The mechanism that it is a motion of.

@@ -1,7 +1,11 @@
 //! How near a motion comes to the singular configurations of a joint.
 
 use super::StepFailure;
+use super::flow::Flow;
 use super::rates_of_loops::has_ends;
+use super::returns::Returns;
+use super::step_state::StepState;
+use super::stepper::Span;
 use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -25,6 +29,16 @@ pub struct Approach {
     pub most: f64,
 }
 
+impl Approach {
+    /// That a step comes there.
+    fn excluded(&self) -> StepFailure {
+        StepFailure::Excluded {
+            joint: self.joint.clone(),
+            loci: self.loci,
+        }
+    }
+}
+
 impl Display for Approach {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let (joint, value, time, most) = (&self.joint, self.value, Number(self.time), self.most);
@@ -36,9 +50,9 @@ impl Display for Approach {
     }
 }
 
-/// The part of its largest value from which on what vanishes at an excluded configuration is 0 as far as doubles can tell: relations that alone give a
-/// joint's Q determine its distance d from there with an error of ε/d, a hundredth of d at `10 √ε`.
-const AT_END: f64 = 10.0 * 1.490_116_119_384_765_6e-8;
+/// The part of its largest value from which on what vanishes at an excluded configuration is 0 as far as motions can tell, ε^(1/4): relations that alone give a joint's Q determine its distance d
+/// from there with an error of ε/d. Rates of the dependent coordinates grow as 1/d, and so lose ε/d² of themselves: half of their digits at that d.
+const AT_END: f64 = 1.220_703_125e-4;
 
 /// The part of what vanishes at a singular set at the start of a step that must be left within it. A longer step could pass the set unseen, and would lose most digits of what grows there.
 const LEFT: f64 = 0.25;
@@ -78,6 +92,7 @@ pub(super) struct Watch {
     /// ϕ and Q of one joint.
     phi: Vec<f64>,
     configuration: Vec<f64>,
+    returns: Returns,
 }
 
 impl Watch {
@@ -99,7 +114,14 @@ impl Watch {
             nearest,
             phi: vec![],
             configuration: vec![],
+            returns: Returns::new(mechanism),
         }
+    }
+
+    /// Whether a joint has configurations where its motion ends.
+    pub(super) fn knows_ends(&self, mechanism: &Mechanism) -> bool {
+        let mut joints = self.nearest.iter();
+        joints.any(|(index, _)| has_ends(mechanism.bodies()[*index].joint()))
     }
 
     /// Takes note of a configuration, and tells the joint that is where its motion ends: where its relations, which alone give its Q, do not determine how it goes on.
@@ -120,9 +142,24 @@ impl Watch {
         end
     }
 
+    /// Refuses a step just tried within which a joint passes its singular set, or comes much nearer to it than it is at the start.
+    pub(super) fn check(
+        &mut self,
+        flow: &mut Flow<'_>,
+        state: &StepState,
+        span: Span,
+    ) -> core::result::Result<(), StepFailure> {
+        let way = (&*state.offset, &*state.phi);
+        self.check_between(&flow.mechanism, &state.base, way)?;
+        let watched = self.nearest.iter().map(|(index, _)| *index);
+        let found = (self.returns).find(flow, (state, span), watched, (UNSEEN, LEFT))?;
+        let found = self.nearest.iter().find(|(index, _)| Some(*index) == found);
+        found.map_or(Ok(()), |(_, nearest)| Err(nearest.excluded()))
+    }
+
     /// Refuses a step from one ϕ to another, around base points, within which a joint comes much nearer to its singular set than it is at the start. Between steps it may cross the set,
     /// where its equations have no value, without being there at the end of one.
-    pub(super) fn check(
+    fn check_between(
         &mut self,
         mechanism: &Mechanism,
         base: &[f64],
@@ -152,10 +189,7 @@ impl Watch {
             let parts = (1..=looks).map(|look| f64::from(look) / f64::from(looks));
             // What is not a number is no place away from the set.
             if !parts.map(between).all(|value| value >= LEFT * now) {
-                return Err(StepFailure::Excluded {
-                    joint: nearest.joint.clone(),
-                    loci: nearest.loci,
-                });
+                return Err(nearest.excluded());
             }
         }
         Ok(())
@@ -170,7 +204,7 @@ impl Watch {
         Near(here.min_by(|a, b| a.value.total_cmp(&b.value)))
     }
 
-    /// How near a joint, if it has a singular set, is to it at a time and Q.
+    /// How near a joint, if its motion has an end, is to it at a time and Q.
     pub(super) fn end_of(
         &self,
         mechanism: &Mechanism,
@@ -179,9 +213,9 @@ impl Watch {
     ) -> Option<Approach> {
         let mut watched = self.nearest.iter();
         let (index, nearest) = watched.find(|(_, nearest)| nearest.joint == joint)?;
-        let value = value_at(&mechanism.bodies()[*index], q);
-        Some(Approach {
-            value,
+        let body = &mechanism.bodies()[*index];
+        has_ends(body.joint()).then(|| Approach {
+            value: value_at(body, q),
             time,
             ..nearest.clone()
         })

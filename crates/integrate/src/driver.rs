@@ -11,8 +11,10 @@ use super::options::{StepControl, least_step};
 use super::outputs::{Outputs, Passed};
 use super::pieces::{FirstPiece, resolving};
 use super::prospect::{Prospect, other_method};
+use super::rates_of_loops::has_ends;
 use super::reconsider::Reconsideration;
 use super::rounding::Rounding;
+use super::search::Search;
 use super::step_control::StepController;
 use super::step_state::StepState;
 use super::stepper::{self, Span, Stepper};
@@ -106,6 +108,8 @@ pub(super) struct Pacing {
     step: f64,
     pub(super) controller: StepController,
     rounding: Rounding,
+    /// Where a step of fixed size has failed: shorter ones, up to its end.
+    search: Option<Search>,
 }
 
 impl<'a> Driver<'a> {
@@ -271,6 +275,7 @@ impl<'a> Driver<'a> {
             step,
             controller: StepController::new(order),
             rounding: Rounding::new(&self.flow),
+            search: None,
         })
     }
 
@@ -314,6 +319,9 @@ impl<'a> Driver<'a> {
                 Ok(taken) => {
                     let lands = lands && taken == step;
                     if self.accept(pacing, (taken, lands), observer)? {
+                        let search = pacing.search.as_ref();
+                        let next = search.map(|own| own.goes_on(self.clock.time(), taken));
+                        pacing.step = next.transpose()?.unwrap_or(pacing.step);
                         return Ok(());
                     }
                     self.statistics.rejected += 1;
@@ -351,10 +359,9 @@ impl<'a> Driver<'a> {
             watch,
             ..
         } = self;
-        let outcome = stepper.attempt(step_state, flow, span).and_then(|()| {
-            let way = (&*step_state.offset, &*step_state.phi);
-            watch.check(&flow.mechanism, &step_state.base, way)
-        });
+        let outcome = stepper
+            .attempt(step_state, flow, span)
+            .and_then(|()| watch.check(flow, step_state, span));
         let Some(StepControl {
             tolerance,
             max_step,
@@ -387,7 +394,14 @@ impl<'a> Driver<'a> {
             return Err(self.inaccurate(joint, error));
         }
         pacing.rounding.accept(error, joint, tolerance);
-        let next = step * pacing.controller.accept(part);
+        let factor = pacing.controller.accept(part);
+        // Of rounding a shorter step has the same part of what is allowed. Where relations make more of it than a look at it tells, as near an end of a joint, it would be followed by ever shorter ones.
+        let is_of_relations = has_ends(self.flow.mechanism.bodies()[joint].joint());
+        let factor = match allowed > 1.0 && is_of_relations {
+            true => factor.max(1.0),
+            false => factor,
+        };
+        let next = step * factor;
         // A step that was cut short to land says nothing against the step that was meant.
         let cut = step < pacing.step;
         pacing.step = if cut { next.max(pacing.step) } else { next }.min(max_step);
@@ -402,37 +416,55 @@ impl<'a> Driver<'a> {
     }
 
     /// Ends the integration where no smaller step can help.
-    fn refuse(&self, pacing: &Pacing, step: f64, cause: StepFailure) -> Result<(), IntegrateError> {
+    fn refuse(
+        &self,
+        pacing: &mut Pacing,
+        step: f64,
+        cause: StepFailure,
+    ) -> Result<(), IntegrateError> {
         let cause = cause.of_relations(&self.flow.mechanism);
-        let (time, near) = (self.clock.time(), self.near());
-        if matches!(self.options.method, Method::Fixed { .. }) {
-            return Err(IntegrateError::Step {
+        let time = self.clock.time();
+        if let Method::Fixed { dt, .. } = self.options.method {
+            let failure = IntegrateError::Step {
                 time,
                 step,
-                cause: Box::new(cause),
-                near,
-            });
+                cause: Box::new(cause.clone()),
+                near: self.near(),
+            };
+            if !cause.is_of_length() || !self.watch.knows_ends(&self.flow.mechanism) {
+                return Err(failure);
+            }
+            pacing.step = 0.5 * step;
+            (pacing.search).get_or_insert_with(|| Search::new(time + step, dt, failure));
         }
         // From where time does not move on; at time 0, where it always does, by what is nothing of the span.
         let span = self.options.t_end - self.start;
         let limit = least_step(time, f64::EPSILON * span);
-        if pacing.step > limit {
-            return Ok(());
+        match pacing.step > limit {
+            true => Ok(()),
+            false => Err(self.underflow(pacing, limit, cause)),
         }
-        if let StepFailure::NotClosed { joint } = &cause
+    }
+
+    /// Why steps have become as short as they can be.
+    fn underflow(&self, pacing: &Pacing, limit: f64, cause: StepFailure) -> IntegrateError {
+        if let StepFailure::NotClosed { joint } | StepFailure::Excluded { joint, .. } = &cause
             && let Some(end) = self.watch.end_of(&self.flow.mechanism, joint, self.at())
         {
-            return Err(IntegrateError::Excluded(end));
+            return IntegrateError::Excluded(end);
+        }
+        if let Some(search) = &pacing.search {
+            return search.failure();
         }
         let advice = other_method(&self.flow, self.options, &self.state());
-        Err(IntegrateError::StepUnderflow {
-            time,
+        IntegrateError::StepUnderflow {
+            time: self.clock.time(),
             step: pacing.step,
             limit,
             cause: Box::new(cause),
-            near,
+            near: self.near(),
             advice: advice.map_or_else(String::new, |advice| format!("; {advice}")),
-        })
+        }
     }
 
     /// Takes the step just tried, up to the end of the piece if that lies within; whether it is not too long for that.
@@ -515,7 +547,7 @@ impl<'a> Driver<'a> {
     pub(super) fn at_state(&self, cause: StepFailure) -> IntegrateError {
         IntegrateError::AtState {
             time: self.clock.time(),
-            cause: Box::new(cause),
+            cause: Box::new(cause.of_relations(&self.flow.mechanism)),
             near: self.near(),
         }
     }

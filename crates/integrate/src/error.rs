@@ -105,13 +105,34 @@ impl From<DynamicsError> for StepFailure {
 }
 
 impl StepFailure {
-    /// The same cause; a configuration that is not finite becomes [`StepFailure::NotClosed`] where relations determine it.
+    /// Whether a shorter step may not fail.
+    pub(crate) const fn is_of_length(&self) -> bool {
+        match self {
+            Self::Turn { .. }
+            | Self::NoConvergence { .. }
+            | Self::SingularIteration { .. }
+            | Self::NotClosed { .. }
+            | Self::Excluded { .. }
+            | Self::State(_) => true,
+            Self::Length { .. }
+            | Self::Inaccurate { .. }
+            | Self::Event { .. }
+            | Self::Kinks(_)
+            | Self::Tableau { .. }
+            | Self::Dynamics(_) => false,
+        }
+    }
+
+    /// The same cause; a configuration that is not finite, or a finite map without a value, becomes [`StepFailure::NotClosed`] where relations determine the configuration.
     pub(crate) fn of_relations(self, mechanism: &Mechanism) -> Self {
-        let Self::State(StateError::NotFinite {
-            joint,
-            quantity: "configuration",
-            ..
-        }) = &self
+        let Self::State(
+            StateError::NotFinite {
+                joint,
+                quantity: "configuration",
+                ..
+            }
+            | StateError::FiniteMap { joint, .. },
+        ) = &self
         else {
             return self;
         };
@@ -129,19 +150,9 @@ impl StepFailure {
 
 /// What to do about a step of fixed size, where its length can be the reason.
 fn advice(cause: &StepFailure) -> &'static str {
-    match cause {
-        StepFailure::Turn { .. }
-        | StepFailure::NoConvergence { .. }
-        | StepFailure::SingularIteration { .. }
-        | StepFailure::NotClosed { .. }
-        | StepFailure::Excluded { .. }
-        | StepFailure::State(_) => "; take a smaller dt",
-        StepFailure::Length { .. }
-        | StepFailure::Inaccurate { .. }
-        | StepFailure::Event { .. }
-        | StepFailure::Kinks(_)
-        | StepFailure::Tableau { .. }
-        | StepFailure::Dynamics(_) => "",
+    match cause.is_of_length() {
+        true => "; take a smaller dt",
+        false => "",
     }
 }
 

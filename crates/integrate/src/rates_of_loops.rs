@@ -26,15 +26,42 @@ pub(super) fn rounding_of(body: &Body, freedom: usize, configuration: &[f64]) ->
     f64::EPSILON * alike.fold(least, |most, (_, entry)| entry.abs().max(most))
 }
 
+/// Room for the rates of a joint's configuration.
+#[derive(Clone, Debug, Default)]
+pub(super) struct RateOf {
+    /// S̄, K×S.
+    basis: Vec<f64>,
+    /// S̄ v̄, K.
+    velocity: Vec<f64>,
+    /// Q̇, N.
+    rate: Vec<f64>,
+}
+
+impl RateOf {
+    /// Q̇ of a body's joint at a configuration of all, and its own v̄.
+    pub(super) fn of(&mut self, body: &Body, configuration: &[f64], speeds: &[f64]) -> &[f64] {
+        let (joint, q) = (body.joint(), body.configuration(configuration));
+        let freedoms = body.ranges().freedoms.len();
+        self.velocity.resize(freedoms, 0.0);
+        self.rate.resize(q.len(), 0.0);
+        if joint.structures().speed_basis.is_identity() {
+            self.velocity.copy_from_slice(speeds);
+        } else {
+            self.basis.resize(freedoms * speeds.len(), 0.0);
+            joint.speed_basis(q, &mut self.basis);
+            multiply(&self.basis, speeds, &mut self.velocity);
+        }
+        joint.configuration_rate(q, &self.velocity, &mut self.rate);
+        &self.rate
+    }
+}
+
 /// The joints with such coordinates, and room for the rates of one of them.
 #[derive(Clone, Debug)]
 pub(super) struct RatesOfLoops {
     /// Indices of the bodies.
     bodies: Vec<usize>,
-    /// S̄, K×S.
-    basis: Vec<f64>,
-    /// S̄ v̄, K.
-    velocity: Vec<f64>,
+    rate: RateOf,
     /// Q̇ that an error makes, and those at both ends of the step, N each.
     rates: [Vec<f64>; 3],
 }
@@ -43,19 +70,10 @@ impl RatesOfLoops {
     pub(super) fn new(mechanism: &Mechanism) -> Self {
         let joints = mechanism.joints();
         let loops = joints.filter(|(_, body)| has_ends(body.joint()));
-        let bodies: Vec<usize> = loops.map(|(index, _)| index).collect();
-        let largest = |size: &dyn Fn(&Body) -> usize| {
-            let sizes = bodies.iter().map(|&index| size(&mechanism.bodies()[index]));
-            sizes.max().unwrap_or(0)
-        };
-        let freedoms = largest(&|body| body.ranges().freedoms.len());
-        let speeds = largest(&|body| body.ranges().speeds.len());
-        let room = vec![0.0; largest(&|body| body.ranges().configuration.len())];
         Self {
-            basis: vec![0.0; freedoms * speeds],
-            velocity: vec![0.0; freedoms],
-            rates: [room.clone(), room.clone(), room],
-            bodies,
+            bodies: loops.map(|(index, _)| index).collect(),
+            rate: RateOf::default(),
+            rates: [vec![], vec![], vec![]],
         }
     }
 
@@ -75,18 +93,21 @@ impl RatesOfLoops {
             let q = body.configuration(configuration);
             let (freedoms, own) = (&body.ranges().freedoms, &body.ranges().speeds);
             // ϕ is a v times a time, but for S, which is near 1 at small ϕ.
-            let moved = &mut self.rates[0][..q.len()];
+            let moved = &mut self.rates[0];
+            moved.resize(q.len(), 0.0);
             body.joint()
                 .configuration_rate(q, &phi[freedoms.clone()], moved);
             let moved = moved.iter().map(|&error| part(error, 1.0));
             let moved = moved.fold(0.0, f64::max);
             for (slot, speeds) in [speeds.0, speeds.1, speeds.2].into_iter().enumerate() {
-                self.set_rates(slot, body, q, &speeds[own.clone()]);
+                let rate = self.rate.of(body, configuration, &speeds[own.clone()]);
+                self.rates[slot].clear();
+                self.rates[slot].extend_from_slice(rate);
             }
             let [errors, first, last] = &self.rates;
             let sizes = first.iter().zip(last);
             let sizes = sizes.map(|(first, last)| first.abs().max(last.abs()));
-            let parts = errors.iter().zip(sizes).take(q.len());
+            let parts = errors.iter().zip(sizes);
             let parts = parts.map(|(&error, size)| part(error, size));
             let error = parts.fold(moved, f64::max);
             if error > worst.0 {
@@ -94,20 +115,5 @@ impl RatesOfLoops {
             }
         }
         worst
-    }
-
-    /// Q̇ at these speeds of a joint.
-    fn set_rates(&mut self, slot: usize, body: &Body, q: &[f64], speeds: &[f64]) {
-        let joint = body.joint();
-        let freedoms = body.ranges().freedoms.len();
-        let velocity = &mut self.velocity[..freedoms];
-        if joint.structures().speed_basis.is_identity() {
-            velocity.copy_from_slice(speeds);
-        } else {
-            let basis = &mut self.basis[..freedoms * speeds.len()];
-            joint.speed_basis(q, basis);
-            multiply(basis, speeds, velocity);
-        }
-        joint.configuration_rate(q, velocity, &mut self.rates[slot][..q.len()]);
     }
 }

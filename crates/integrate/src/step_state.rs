@@ -327,9 +327,14 @@ impl StepState {
                 &mut self.base[own.clone()],
                 &mut self.configuration[own.clone()],
             );
-            let projected = body.joint().project(new);
-            projected.map_err(|cause| body.finite_map(cause))?;
             let phi = &mut self.offset[freedoms.clone()];
+            let projected = body.joint().project(new);
+            if projected.is_err() && has_ends(body.joint()) {
+                // Next to an end all gradients of the relations may be nearly parallel, as where a parallelogram folds. Φ is on the relations without it.
+                body.joint().retract(old, phi, new);
+                continue;
+            }
+            projected.map_err(|cause| body.finite_map(cause))?;
             self.compensation.keep(body, old, new, phi);
             old.copy_from_slice(new);
             phi.fill(0.0);

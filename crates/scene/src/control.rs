@@ -256,7 +256,11 @@ impl Control {
                 error_dynamics,
             } => {
                 let reference = Reference::new(mechanism, start, laws.clone(), t_end)?;
-                Box::new(ComputedTorque::new(reference, *error_dynamics)?.at_ports(ports)?)
+                let law = ComputedTorque::new(reference, *error_dynamics)?.at_ports(ports)?;
+                Box::new(match self.period {
+                    Some(period) => law.held(period)?,
+                    None => law,
+                })
             }
             ControlLaw::Lqr(goal) => {
                 let equilibrium = goal.equilibrium(mechanism)?;

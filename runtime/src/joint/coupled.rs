@@ -27,7 +27,7 @@ mod link;
 mod names;
 mod tie;
 
-pub use closed::{CLOSED_SIZES, MOST_RELATIONS, closed};
+pub use closed::{CLOSED_SIZES, MOST_RELATIONS, closed, linkage_length};
 pub use link::{Link, LinkFault, LinkMotion, MOST_LINKS};
 pub use tie::{Relation, Row, Tie};
 

@@ -7,7 +7,7 @@ use hamel::control::{
     ComputedTorque, ControlError, Controller, ErrorDynamics, PortReference, Reference,
 };
 use hamel::dynamics::Recursive;
-use hamel::integrate::{Form, Method, Options, State, Step, integrate, no_observer};
+use hamel::integrate::{Form, Integration, Method, Options, State, Step, integrate, no_observer};
 use hamel::mechanism::Mechanism;
 use hamel::time_function::Law;
 use hamel_scene::Scene;
@@ -248,9 +248,52 @@ ports.rocker = { rate = 0.5 }
         );
         stopped.expect_err("the rocker turns back");
         let failure = failure.expect("a controller that fails").to_string();
-        let told =
-            "joint `linkage` stands where the ports of its reference do not tell how it moves";
+        let told = "where the ports of its reference do not tell how it moves";
+        assert!(failure.starts_with("joint `linkage`"), "{failure}");
         assert!(failure.contains(told), "{failure}");
+    }
+}
+
+/// Efforts that are held for a while lead past the end before they are taken anew: the crank then turned ever faster, and nothing said why.
+#[test]
+fn held_efforts_that_lead_beyond_an_end_are_told_by_name() {
+    for (period, amplitude) in [(0.1, 0.9), (0.02, 0.9), (0.02, -0.9), (0.005, 0.9)] {
+        let controller = format!(
+            "kind = \"computed_torque\"\nfrequency = 10.0\nperiod = {period:?}\n[[controller.reference]]\njoint = \"linkage\"\nports.rocker = {{ amplitude = {amplitude:?}, frequency = 3.0 }}"
+        );
+        let scene = scene("phi = [0.9]", &controller);
+        let control = scene.control.as_ref().expect("a controller");
+        let made = control.controller(&scene.mechanism, 10.0);
+        let mut law = made.expect("it was tried");
+        let mut failure = None;
+        let options = Options {
+            form: Form::Lagrangian,
+            method: Method::dormand_prince(1e-8),
+            t_end: 10.0,
+            samples: vec![],
+        };
+        let mut dynamics = Recursive::new(Arc::clone(&scene.mechanism));
+        let start = scene.start();
+        let motion = Integration::new(&mut dynamics, &start, &options)
+            .inputs(|t, q, v, tau| {
+                if let Err(error) = law.efforts(t, q, v, tau) {
+                    failure.get_or_insert(error.to_string());
+                    tau.fill(f64::NAN);
+                }
+            })
+            .held(period)
+            .observer(|step| {
+                assert!(step.number < 5000, "each {period} s: {} s", step.time);
+                ControlFlow::Continue(())
+            });
+        motion.run().expect_err("the rocker turns back");
+        let failure = failure.expect("a controller that fails");
+        let told = "where the ports of its reference do not tell how it moves";
+        assert!(failure.contains(told), "{failure}");
+        assert!(
+            failure.contains("the reference leads there"),
+            "each {period} s: {failure}"
+        );
     }
 }
 

@@ -164,3 +164,47 @@ fn a_linkage_stops_where_its_motion_ends() {
         }
     }
 }
+
+/// The rods of a five-bar come in line. Errors of what depends on v grow as 1/d there, and steps shrank to a part of 1e-13 of the motion with the distance d, before it was said to be 0.
+#[test]
+fn steps_do_not_shrink_without_an_end_where_a_motion_ends() {
+    let joint = "type = \"five_bar\", ground = 0.3, left_crank = 0.2, left_rod = 0.3, right_crank = 0.2, right_rod = 0.3";
+    let bodies = ["left_crank", "left_rod", "right_crank", "right_rod"];
+    for speeds in [[0.42, -1.8], [3.0, 2.0], [1.0, -0.7]] {
+        let motion = format!("initial = {{ speeds = {speeds:?} }}");
+        let scene = linkage(joint, &bodies, &motion).expect("it loads");
+        for (scheme, tolerance) in [
+            (Scheme::Exponential, 1e-8),
+            (Scheme::Radau5, 1e-8),
+            (Scheme::Radau5, 1e-10),
+            (Scheme::Verner9, 1e-14),
+        ] {
+            let options = Options {
+                method: Method::controlled(scheme, tolerance),
+                t_end: 20.0,
+                samples: vec![],
+                form: Form::Lagrangian,
+            };
+            let mut steps = 0;
+            let ended = integrate(
+                &mut Recursive::new(Arc::clone(&scene.mechanism)),
+                &scene.start(),
+                &options,
+                &mut no_inputs,
+                &mut |step: &Step<'_>| {
+                    steps = step.number;
+                    assert!(steps < 20_000, "{speeds:?}, {}", scheme.name());
+                    ControlFlow::Continue(())
+                },
+            );
+            eprintln!(
+                "{speeds:?}, {} to {tolerance:e}: {steps} steps",
+                scheme.name()
+            );
+            let Err(IntegrateError::Excluded(end)) = ended else {
+                panic!("{speeds:?}, {}: {ended:?}", scheme.name());
+            };
+            assert_eq!(end.joint, "linkage");
+        }
+    }
+}

@@ -112,6 +112,7 @@ pub fn context(report: &Report, medium: Medium) -> Context {
     context.insert("manifold", &report.manifold);
     context.insert("coordinates", &report.coordinates);
     context.insert("home", &report.home);
+    context.insert("home_is_guess", &report.home_is_guess);
     context.insert("velocity_frame", report.velocity_frame.as_str());
     context.insert("speeds", &report.speeds);
     context.insert("still", &medium.text(&report.still));

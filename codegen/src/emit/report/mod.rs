@@ -51,6 +51,8 @@ pub struct Report {
     pub coordinates: Vec<String>,
     /// The stored scalars at home, where the spec declares them.
     pub home: Vec<String>,
+    /// Whether these are a guess, near which home is assembled for the values of the parameters.
+    pub home_is_guess: bool,
     /// Freedoms in order.
     pub freedoms: Vec<FreedomRow>,
     /// Speeds in order.
@@ -111,6 +113,7 @@ impl Report {
                 .map(|symbol| notation.symbol(symbol))
                 .collect(),
             home: home(spec, &notation),
+            home_is_guess: spec.home_is_guess,
             freedoms: tables::freedoms(derived, &notation),
             speeds: derived.speed_names.clone(),
             ports: tables::ports(derived),

@@ -248,7 +248,8 @@ pub(super) fn velocity(
     match (statements.velocity, twist_map) {
         (Some(velocity), _) => {
             if !needed {
-                evaluator.report(meaningless(velocity, freedoms.local));
+                let declared = statements.local.is_some();
+                evaluator.report(meaningless(velocity, declared, freedoms.local));
             } else if !velocity.value && statements.body_count() > 1 {
                 evaluator.report(of_no_body(velocity));
             }
@@ -273,10 +274,15 @@ pub(super) fn velocity(
     }
 }
 
-fn meaningless(velocity: At<'_, bool>, local: bool) -> Diagnostic {
-    let message = match local {
-        true => "with `local`, v is the rate of the local coordinates, or what X says",
-        false => "v of a joint in real coordinates is the rate of its coordinates, in no frame",
+fn meaningless(velocity: At<'_, bool>, local: bool, by_relations: bool) -> Diagnostic {
+    let message = match (local, by_relations) {
+        (true, _) => "with `local`, v is the rate of the local coordinates, or what X says",
+        (false, true) => {
+            "v of a joint with relations is the rate along the directions that `basis` names, or along the one that the relations leave, or what X says"
+        }
+        (false, false) => {
+            "v of a joint in real coordinates is the rate of its coordinates, in no frame"
+        }
     };
     let error = Diagnostic::new(code::VELOCITY_UNUSED, velocity.span.clone(), message);
     error

@@ -42,6 +42,11 @@ pub(super) fn made(
             .map(|&own| positions[own].is_some())
             .collect(),
         wanted: wanted(lowering, owners, &leaders)?,
+        rated: leaders
+            .iter()
+            .filter(|&&own| rates[own].is_some())
+            .map(|&own| owners[own].link.coordinate)
+            .collect(),
     };
     let plan = problem.plan()?;
     tell(&problem, &plan, lowering, notices);
@@ -225,10 +230,22 @@ fn tell(problem: &Problem<'_>, plan: &Plan, lowering: &Lowering<'_>, notices: &m
         let slides = links.any(|link| link.coordinate == which && link.motion == LinkMotion::Slide);
         let unit = if slides { "m" } else { "rad" };
         let message = format!(
-            "positions at time 0 are changed by up to {:?} {unit}, that of joint `{}`, so that it closes",
+            "positions at time 0 are changed by up to {:?} {unit}, that of joint `{}`, so that it closes{}",
             Number(way),
-            problem.names[which]
+            problem.names[which],
+            posture(problem, plan)
         );
         notices.add(message, owner);
     }
+}
+
+/// Where its joints are, if the file says nothing of that.
+fn posture(problem: &Problem<'_>, plan: &Plan) -> String {
+    if problem.given.iter().any(|given| *given) {
+        return String::new();
+    }
+    let found = plan.order.iter().zip(&plan.start);
+    let found = found.map(|(&k, value)| format!("`{}` at {:?}", problem.names[k], Number(*value)));
+    let found: Vec<String> = found.collect();
+    format!(": {}", found.join(", "))
 }

@@ -19,6 +19,13 @@ const CLOSED: f64 = 1e-9;
 /// Part of the determinant at the start at which a joint ends, ε^(1/6): rounding ε of the relations is ε/det³ in the second derivatives of the dependent coordinates, which keep half of their digits there.
 const LOST: f64 = 2.5e-3;
 
+/// The sine of the angle between what two coordinates do to the relations at which a joint ends, ε^(1/4): rounding ε of the relations takes ε over its square of the rates of the dependent
+/// coordinates, half of their digits.
+const FOLDED: f64 = 1.220_703_125e-4;
+
+/// Part of the determinant at the start at which a joint ends at the latest: one that begins nearly folded can leave.
+const HALF: f64 = 0.5;
+
 /// Ties with the configuration that says on which branch of the linkage they hold.
 #[derive(Clone, Debug)]
 pub(super) struct Ties {
@@ -157,21 +164,30 @@ fn check_ties(ties: &[Tie], links: usize) -> Result<usize, LinkFault> {
     Ok(ties.iter().map(Tie::count).sum())
 }
 
-/// Divides the rows of lengths by a length of the linkage, and takes it into the columns of lengths: what is left has no unit.
-fn scale(links: &[Link], ties: &[Tie], independent: usize) -> f64 {
+/// The length of a linkage below which it is none, m: what rounding leaves of positions within a metre, some thousand times. All axes of such a linkage meet.
+const NO_LENGTH: f64 = 1e-12;
+
+/// The largest length in a linkage, that of a frame from another, m; 1 where there is none but rounding.
+pub fn linkage_length(links: &[Link], ties: &[Tie]) -> f64 {
     let own = links.iter().map(|link| link.frame.translation.norm());
     let frames = ties.iter().flat_map(|tie| match tie {
         Tie::Closure { frames, .. } => frames.each_ref().map(|frame| frame.translation.norm()),
         Tie::Sum { .. } => [0.0; 2],
     });
     let length = own.chain(frames).fold(0.0, f64::max);
-    let length = if length > 0.0 { length } else { 1.0 };
+    if length > NO_LENGTH { length } else { 1.0 }
+}
+
+/// Divides the rows of lengths by a length of the linkage, and takes it into the columns of lengths: what is left has no unit.
+fn scale(links: &[Link], ties: &[Tie], independent: usize) -> f64 {
+    let length = linkage_length(links, ties);
     let slides = |coordinate: usize| {
         let mut own = links.iter();
         let first = own.find(|link| link.coordinate == coordinate);
         first.is_some_and(|link| link.motion == LinkMotion::Slide)
     };
-    let rows = ties.iter().map(|tie| tie.lengths(links)).sum::<usize>();
+    let rows = ties.iter().flat_map(|tie| tie.lengths(links));
+    let rows = rows.filter(|is_length| *is_length).count();
     let all = links
         .iter()
         .map(|link| link.coordinate + 1)
@@ -247,14 +263,33 @@ impl<const N: usize, const K: usize, const C: usize> Coupled<N, K, C> {
         let mut joint = Self::of(links, ports, ties);
         let start = joint.ties.start::<f64, N>();
         let (residual, determinant) = (joint.residual(&start), joint.singularity(&start));
+        let spread = joint.spread(&start);
         match residual <= CLOSED {
             false => Err(LinkFault::Open { residual }),
-            true if determinant > 0.0 => {
-                Arc::make_mut(&mut joint.ties).end = LOST * determinant;
+            true if determinant > 0.0 && spread >= FOLDED => {
+                let end = LOST.max(FOLDED / spread).min(HALF);
+                Arc::make_mut(&mut joint.ties).end = end * determinant;
                 Ok(joint)
             }
             true => Err(LinkFault::Dependent),
         }
+    }
+
+    /// How far the linkage is from folding: the least sine of the angle between what one dependent coordinate does to the relations and what all others do, with lengths as parts of the largest.
+    fn spread(&self, q: &SVector<f64, N>) -> f64 {
+        let (_, mut own) = split::<f64, N, K, C>(&self.relations(q).1);
+        let length = linkage_length(&self.links, &self.ties.ties);
+        let kinds = self
+            .ties
+            .ties
+            .iter()
+            .flat_map(|tie| tie.lengths(&self.links));
+        for (i, _) in kinds.enumerate().filter(|(_, is_length)| *is_length) {
+            own.row_mut(i).scale_mut(1.0 / length);
+        }
+        let inverse = finite::inverse(&own);
+        let sines = (0..C).map(|k| 1.0 / (own.column(k).norm() * inverse.row(k).norm()));
+        sines.fold(1.0, |least, sine| if sine < least { sine } else { least })
     }
 
     /// g(q), and its derivatives along the coordinates.

@@ -72,18 +72,18 @@ impl Tie {
         }
     }
 
-    /// How many of them are lengths.
-    pub(super) fn lengths(&self, links: &[Link]) -> usize {
+    /// Which of them are lengths.
+    pub(super) fn lengths(&self, links: &[Link]) -> Vec<bool> {
         match self {
             Self::Sum { terms, .. } => {
                 let first = terms.first().and_then(|(link, _)| links.get(*link));
-                usize::from(first.is_some_and(|link| link.motion == LinkMotion::Slide))
+                Vec::from([first.is_some_and(|link| link.motion == LinkMotion::Slide)])
             }
             Self::Closure { relations, .. } => {
-                let lengths = relations.iter();
-                lengths
-                    .filter(|own| matches!(own, Relation::Meets(_)))
-                    .count()
+                let relations = relations.iter();
+                relations
+                    .map(|own| matches!(own, Relation::Meets(_)))
+                    .collect()
             }
         }
     }

@@ -1,7 +1,9 @@
 //! Robots whose loops `<loop>` and `<coupling>` close: linkages of the library written so, energy, derivatives, and the files of others.
 
 mod acting;
+mod ends;
 mod library;
+mod posture;
 
 use hamel::dynamics::{Dynamics, ForwardDerivatives, Recursive, Reference};
 use hamel::integrate::{Form, Method, Options, Scheme, State, integrate, no_inputs, no_observer};

@@ -5,16 +5,17 @@
 //! the others follow from them. Fewer at the start mean that it is singular, or that dimensions alone let the loop move, as Bennett's do: these are refused.
 
 mod newton;
+mod order;
 mod relations;
+mod search;
 mod span;
 
 use super::tie::Tie as Named;
 use crate::description::Closing;
 use crate::diagnostics::Diagnostic;
 use crate::suggest::all_of;
-use hamel_runtime::joint::{CLOSED_SIZES, Link, LinkMotion, Relation, Tie};
+use hamel_runtime::joint::{Link, LinkMotion, Relation, Tie, linkage_length};
 use hamel_runtime::shown::Number;
-use hamel_runtime::spatial::Pose;
 use nalgebra::Vector6;
 use newton::Loops;
 use span::{Unclear, algebra, basis, independent};
@@ -37,6 +38,8 @@ pub(super) struct Problem<'a> {
     pub(super) given: Vec<bool>,
     /// Coordinates that the scene wants independent.
     pub(super) wanted: Vec<usize>,
+    /// Coordinates whose rate it gives.
+    pub(super) rated: Vec<usize>,
 }
 
 /// The joint, its independent coordinates first.
@@ -65,7 +68,7 @@ impl Problem<'_> {
             links: &self.links,
             ties: &ties,
             coordinates: self.names.len(),
-            length: length(&self.links, &ties),
+            length: linkage_length(&self.links, &ties),
         };
         let start = self.closed(&loops)?;
         let rows = loops.rows(&start);
@@ -112,6 +115,21 @@ impl Problem<'_> {
                 Err(found) => nearest = found,
             }
         }
+        // Where the file says nothing of positions, any posture will do.
+        if !self.given.iter().any(|given| *given) {
+            let free: Vec<bool> = (0..self.names.len()).map(|k| !wanted(k)).collect();
+            let is_sound = |q: &[f64]| {
+                let mut candidates = self.candidates.iter();
+                candidates.all(|own| self.refuse_turned(own, q).is_ok())
+            };
+            if let Some(found) = search::posture(loops, &self.guess, &free, is_sound) {
+                return Ok(found);
+            }
+        }
+        let others = match self.given.iter().any(|given| *given) {
+            true => String::new(),
+            false => format!(", nor from {} other postures", search::GUESSES),
+        };
         let candidate = self.candidates.iter().max_by(|a, b| {
             let [a, b] = [a, b].map(|own| self.gap(own, &nearest).iter().sum::<f64>());
             a.total_cmp(&b)
@@ -126,11 +144,12 @@ impl Problem<'_> {
             true => String::from("no small motion brings them nearer"),
             false => format!("{best} where they come nearest"),
         };
-        let why =
-            format!("it does not close near the start: its ends are {there} off there, and {best}");
+        let why = format!(
+            "it does not close near the start{others}: its ends are {there} off there, and {best}"
+        );
         let error = candidate.named.refuse(&why);
         Err(error.help(
-            "give positions at time 0 near which it closes (`initial` of its bodies in a scene), and check the frames of its ends",
+            "give positions at time 0 near which it closes (`initial` of its bodies in a scene; `hamel import` makes a scene of a robot in URDF), and check the frames of its ends",
         ))
     }
 
@@ -194,16 +213,29 @@ impl Problem<'_> {
             return Err(candidate.named.refuse(why));
         }
         let slopes: Vec<Vec<f64>> = rows.iter().map(|(_, slopes)| slopes.clone()).collect();
-        let mut found = independent(&slopes).map_err(unclear)?;
-        if found.len() < expected {
-            let (found, what) = (
-                found.len(),
-                if expected == 1 {
-                    "relation"
-                } else {
-                    "relations"
-                },
+        let nearly = |Unclear(left): Unclear| {
+            let why = format!(
+                "at the start it is nearly in a singular position, as a linkage that is stretched or folded: the last of its {} differs from what the others say by {:?}, which is neither rounding nor clear",
+                relations(expected),
+                Number(left)
             );
+            let error = candidate.named.refuse(&why);
+            error.help("give other positions at time 0 (`initial` of its bodies in a scene), or full digits where it is to be at that position")
+        };
+        let mut found = independent(&slopes).map_err(nearly)?;
+        let moving = (0..self.names.len()).filter(|&k| slopes.iter().any(|row| row[k] != 0.0));
+        let moving = moving.count();
+        if found.len() < expected && found.len() == moving {
+            let joints = if moving == 1 { "joint" } else { "joints" };
+            let why = format!(
+                "it cannot move: {moving} {joints} obey {} independent {}",
+                found.len(),
+                relations_word(found.len())
+            );
+            return Err(candidate.named.refuse(&why));
+        }
+        if found.len() < expected {
+            let (found, what) = (found.len(), relations_word(expected));
             let why = format!(
                 "at the start {found} of its {expected} {what} are independent: it is in a singular position, or its dimensions alone let it move, as those of Bennett's linkage do"
             );
@@ -287,71 +319,6 @@ impl Problem<'_> {
         let error = first.unwrap_or_else(|| Diagnostic::without_place(why));
         Err(error.help("loops that close each other twice over, or a singular position: leave one out, or give other positions at time 0"))
     }
-
-    /// The coordinates, the independent ones first, each in the order of the file.
-    fn ordered(&self, selected: &[Vec<f64>]) -> Result<Vec<usize>, Diagnostic> {
-        let all = self.names.len();
-        let Some(first) = self.candidates.first() else {
-            return Ok((0..all).collect());
-        };
-        let refuse = |why: &str| first.named.refuse(why);
-        let freedoms = all - selected.len().min(all);
-        if freedoms == 0 {
-            let why = format!(
-                "it cannot move: {} joints obey {} independent relations",
-                all,
-                selected.len()
-            );
-            return Err(refuse(&why));
-        }
-        let degrees = match freedoms {
-            1 => String::from("1 degree"),
-            more => format!("{more} degrees"),
-        };
-        let possible = CLOSED_SIZES.iter().find(|(own, _)| *own == freedoms);
-        if !possible.is_some_and(|(_, relations)| relations.contains(&selected.len())) {
-            let why = format!(
-                "with what shares joints with it, it has {degrees} of freedom and {} independent relations, which no joint has",
-                selected.len()
-            );
-            let sizes = CLOSED_SIZES.iter().map(|(own, relations)| {
-                let relations: Vec<String> = relations.iter().map(usize::to_string).collect();
-                format!("{own} with {}", relations.join(", "))
-            });
-            let sizes: Vec<String> = sizes.collect();
-            let help = format!(
-                "joints have degrees of freedom with relations: {}",
-                sizes.join("; ")
-            );
-            return Err(refuse(&why).help(help));
-        }
-        let wanted = self.wanted.iter().map(|&k| self.names[k]);
-        if self.wanted.len() > freedoms {
-            let why = format!(
-                "{} are to move independently, and it has {degrees} of freedom",
-                all_of(wanted)
-            );
-            return Err(refuse(&why));
-        }
-        let others: Vec<usize> = (0..all).filter(|k| !self.wanted.contains(k)).collect();
-        let columns = others
-            .iter()
-            .map(|&k| selected.iter().map(|row| row[k]).collect());
-        let columns: Vec<Vec<f64>> = columns.collect();
-        let dependent = independent(&columns).unwrap_or_default();
-        let mut dependent: Vec<usize> = dependent.into_iter().map(|place| others[place]).collect();
-        if dependent.len() < selected.len() {
-            let why = format!(
-                "at the start the other joints do not follow from {}",
-                all_of(wanted)
-            );
-            return Err(refuse(&why).help("let others move independently"));
-        }
-        dependent.sort_unstable();
-        let mut order: Vec<usize> = (0..all).filter(|k| !dependent.contains(k)).collect();
-        order.extend(dependent);
-        Ok(order)
-    }
 }
 
 /// A tie with its relations parted.
@@ -379,15 +346,16 @@ fn kept(tie: &Tie, chosen: &[usize]) -> Tie {
     }
 }
 
-/// The size of a linkage, m; 1 without any.
-fn length(links: &[Link], ties: &[Tie]) -> f64 {
-    let own = links.iter().map(|link| link.frame.translation.norm());
-    let frames = ties.iter().flat_map(|tie| match tie {
-        Tie::Closure { frames, .. } => frames.map(|frame: Pose<f64>| frame.translation.norm()),
-        Tie::Sum { .. } => [0.0; 2],
-    });
-    let length = own.chain(frames).fold(0.0, f64::max);
-    if length > 0.0 { length } else { 1.0 }
+fn relations_word(count: usize) -> &'static str {
+    match count {
+        1 => "relation",
+        _ => "relations",
+    }
+}
+
+/// Their number in words.
+fn relations(count: usize) -> String {
+    format!("{count} {}", relations_word(count))
 }
 
 /// A twist with lengths as parts of that of the linkage: an automorphism of the algebra.

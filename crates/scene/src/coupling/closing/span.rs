@@ -15,6 +15,15 @@ pub(super) struct Unclear(pub(super) f64);
 
 /// The places of independent vectors among `vectors`, the longest first, then what is longest beside those that are taken. Vectors are of length about 1.
 pub(super) fn independent(vectors: &[Vec<f64>]) -> Result<Vec<usize>, Unclear> {
+    let (taken, left) = clear(vectors);
+    match left <= ROUNDING {
+        true => Ok(taken),
+        false => Err(Unclear(left)),
+    }
+}
+
+/// The places of those that are clearly independent, and the most that is left of another beside them.
+fn clear(vectors: &[Vec<f64>]) -> (Vec<usize>, f64) {
     let mut left = vectors.to_vec();
     let mut taken = Vec::new();
     loop {
@@ -25,9 +34,8 @@ pub(super) fn independent(vectors: &[Vec<f64>]) -> Result<Vec<usize>, Unclear> {
             _ => Some(own),
         });
         match longest {
-            None => return Ok(taken),
-            Some((_, length)) if length <= ROUNDING => return Ok(taken),
-            Some((_, length)) if length < CLEAR => return Err(Unclear(length)),
+            None => return (taken, 0.0),
+            Some((_, length)) if length < CLEAR => return (taken, length),
             Some((place, length)) => {
                 let direction: Vec<f64> = left[place].iter().map(|x| x / length).collect();
                 left.iter_mut().for_each(|own| eliminate(own, &direction));
@@ -53,6 +61,15 @@ fn eliminate(own: &mut [f64], direction: &[f64]) {
 
 /// Independent ones of these twists, each scaled to length 1.
 pub(super) fn basis(twists: &[Vector6<f64>]) -> Result<Vec<Vector6<f64>>, Unclear> {
+    let (found, left) = clear_basis(twists);
+    match left <= ROUNDING {
+        true => Ok(found),
+        false => Err(Unclear(left)),
+    }
+}
+
+/// Those of these twists that are clearly independent, each scaled to length 1, and the most that is left of another beside them.
+fn clear_basis(twists: &[Vector6<f64>]) -> (Vec<Vector6<f64>>, f64) {
     let scaled = twists.iter().map(|twist| match twist.norm() {
         length if length > 0.0 => twist / length,
         _ => *twist,
@@ -62,22 +79,29 @@ pub(super) fn basis(twists: &[Vector6<f64>]) -> Result<Vec<Vector6<f64>>, Unclea
         .iter()
         .map(|twist| twist.as_slice().to_vec())
         .collect();
-    let places = independent(&vectors)?;
-    Ok(places.into_iter().map(|place| scaled[place]).collect())
+    let (places, left) = clear(&vectors);
+    (
+        places.into_iter().map(|place| scaled[place]).collect(),
+        left,
+    )
 }
 
-/// A basis of the smallest Lie algebra that contains these twists.
+/// A basis of the smallest Lie algebra that contains these twists. What is not clearly independent of some may still lie in what they generate: three parallel axes nearly in
+/// one plane move what two of them do.
 pub(super) fn algebra(twists: &[Vector6<f64>]) -> Result<Vec<Vector6<f64>>, Unclear> {
-    let mut found = basis(twists)?;
+    let mut found = clear_basis(twists).0;
     loop {
         let brackets = found.iter().enumerate().flat_map(|(i, a)| {
             let others = found[..i].iter();
             others.map(move |b| bracket_product(a, b))
         });
         let brackets: Vec<Vector6<f64>> = brackets.filter(|own| own.norm() > ROUNDING).collect();
-        let more = basis(&[found.as_slice(), &brackets].concat())?;
+        let (more, left) = clear_basis(&[found.as_slice(), &brackets, twists].concat());
         if more.len() == found.len() {
-            return Ok(found);
+            return match left <= ROUNDING {
+                true => Ok(found),
+                false => Err(Unclear(left)),
+            };
         }
         found = more;
     }
@@ -121,6 +145,15 @@ mod tests {
         assert_eq!(size(&meeting), 3, "turns about a point");
         let skew = [turn(Z, [0.0; 3]), turn([1.0, 0.0, 0.0], [0.0, 0.5, 0.5])];
         assert_eq!(size(&skew), 6, "all motions");
+    }
+
+    /// Three parallel axes that are nearly in one plane, as those of a linkage that is folded.
+    #[test]
+    fn what_is_generated_need_not_be_clear_at_once() {
+        let axes = [[0.0; 3], [0.5, 0.0, 0.0], [0.2, 3e-7, 0.0]].map(|point| turn(Z, point));
+        assert_eq!(size(&axes), 3);
+        let numbers = axes.map(|axis| axis.as_slice().to_vec());
+        assert!(independent(&numbers).is_err());
     }
 
     /// π written as 3.1416 and an axis turned by it back and forth.
