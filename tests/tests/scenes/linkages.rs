@@ -122,15 +122,20 @@ fn motions_are_those_of_multipliers() {
 /// Twice the rounding of sums of terms below 1 m, which the relations of these linkages are.
 const CLOSED: f64 = 2e-15;
 
-/// The worst residual of the joint at the root of a scene, by each method in each form, at `samples` times of as many steps each.
-fn residuals(name: &str, samples: u32, steps_between: u32) -> Largest {
+/// The worst residual of the joint at the root of a scene by these methods in each form, with its compiled equations, at `samples` times of as many steps each.
+fn residuals(
+    (name, equations): (&str, &Equations),
+    schemes: &[Scheme],
+    samples: u32,
+    steps_between: u32,
+) -> Largest {
     const STEP: f64 = 2e-3;
     let scene = scene(name);
     let body = &scene.mechanism.bodies()[0];
     let (joint, configuration) = (body.shared_joint(), body.ranges().configuration.clone());
     let time = |sample: u32| f64::from(sample) * f64::from(steps_between) * STEP;
     let mut worst = Largest::new("residual of a loop");
-    for scheme in Scheme::ALL {
+    for &scheme in schemes {
         // The discrete gradient is one of momenta.
         let forms = match scheme {
             Scheme::DiscreteGradient => &[Form::Hamiltonian][..],
@@ -144,7 +149,8 @@ fn residuals(name: &str, samples: u32, steps_between: u32) -> Largest {
                 samples: (1..=samples).map(time).collect(),
             };
             let start = Instant::now();
-            let mut dynamics = Recursive::new(Arc::clone(&scene.mechanism));
+            let dynamics = Compiled::new(Arc::clone(&scene.mechanism), equations);
+            let mut dynamics = dynamics.expect("its scene");
             let solution = integrate(
                 &mut dynamics,
                 &scene.start(),
@@ -168,13 +174,44 @@ fn residuals(name: &str, samples: u32, steps_between: u32) -> Largest {
 
 #[test]
 fn loops_stay_closed_at_every_method() {
-    for name in ["crank_rocker", "slider_crank_offset"] {
-        residuals(name, 50, 1).assert_within(CLOSED);
+    for case in &CASES[..2] {
+        residuals(*case, &Scheme::ALL, 50, 1).assert_within(CLOSED);
     }
 }
 
-#[test]
-#[ignore = "hours: 10⁷ steps of every method"]
-fn loops_stay_closed_for_10_million_steps() {
-    residuals("crank_rocker", 10_000, 1_000).assert_within(CLOSED);
+/// Ten million steps of an offset slider-crank by each method.
+mod ten_million {
+    use super::{CASES, CLOSED, Scheme, residuals};
+
+    macro_rules! tests {
+        ($($name:ident: $scheme:ident;)*) => {
+            $(
+                #[test]
+                #[ignore = "up to an hour, with --release"]
+                fn $name() {
+                    residuals(CASES[1], &[Scheme::$scheme], 10_000, 1_000).assert_within(CLOSED);
+                }
+            )*
+
+            #[test]
+            fn no_method_is_left_out() {
+                let schemes = [$(Scheme::$scheme),*];
+                assert!(Scheme::ALL.iter().all(|scheme| schemes.contains(scheme)));
+            }
+        };
+    }
+
+    tests! {
+        rk4: Rk4;
+        cf4: CommutatorFree4;
+        dopri5: DormandPrince;
+        dop853: DormandPrince8;
+        verner9: Verner9;
+        midpoint: Midpoint;
+        gauss2: Gauss2;
+        gauss3: Gauss3;
+        radau5: Radau5;
+        exponential: Exponential;
+        discrete_gradient: DiscreteGradient;
+    }
 }
