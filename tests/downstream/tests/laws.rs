@@ -107,7 +107,6 @@ laws_of_bodies! {
     crank_rocker: CrankRocker::new(0.9, 0.4, 1.1, 1.2), Entries(0.5), [1, 2];
     delta: Delta::new(0.2, 0.35, 0.74), Around(0.05), [1, 2, 3];
     five_bar_left: FiveBarLeft::new(0.3, 0.2, 0.3, 0.22, 0.28), Around(0.1), [1, 2, 3];
-    five_bar_left: FiveBarLeft::new(0.3, 0.2, 0.3, 0.22, 0.28), Around(0.1), [1, 2, 3];
     five_bar_rods: FiveBarRods::new(0.3, 0.2, 0.3, 0.22, 0.28), Around(0.1), [1, 2, 3];
     geared_rotor: GearedRotor::new(5.5), Entries(0.5), [1];
     press: Press::new(0.4, 1.1), Entries(0.5), [1, 2];
