@@ -27,6 +27,10 @@ struct Reading {
 
 macro_rules! reading {
     ($name:ident, $joint:literal, $independent:expr) => {
+        #[expect(
+            dead_code,
+            reason = "sizes, for who calls the functions without a mechanism"
+        )]
         mod $name {
             include!(concat!(env!("OUT_DIR"), "/by_", $joint, ".rs"));
         }

@@ -124,7 +124,7 @@ const CLOSED: f64 = 2e-15;
 
 /// The worst residual of the joint at the root of a scene by these methods in each form, with its compiled equations, at `samples` times of as many steps each.
 fn residuals(
-    (name, equations): (&str, &Equations),
+    (name, equations): (&str, &'static Equations),
     schemes: &[Scheme],
     samples: u32,
     steps_between: u32,
