@@ -78,9 +78,11 @@ impl Gauss {
                 .map(smooth)
                 .collect()
         });
-        let sampler = Sampler::new(space, BITS).single();
-        let found = sampler.with_parameters(parameters.to_vec()).point();
-        let point = found.expect("a configuration");
+        let found = Sampler::new(space, BITS).single().point();
+        let mut point = found.expect("a configuration");
+        for (parameter, &value) in space.parameters.iter().zip(parameters) {
+            point.bind(&parameter.symbol, Precise::from_f64(value, BITS));
+        }
         Self {
             relations: relations.iter().map(smooth).collect(),
             kept: ground.iter().map(|own| own.row(derived)).collect(),
