@@ -20,7 +20,6 @@ fn link(mass: f64, centre: f64) -> MassProperties {
     MassProperties::new(mass, Vector3::new(centre, 0.0, 0.0), inertia).expect("valid")
 }
 
-/// A joint with these bodies on the world, or on a body that moves freely.
 fn model(
     name: &str,
     parameters: &[f64],
@@ -28,6 +27,18 @@ fn model(
     gravity: f64,
     on_world: bool,
 ) -> Model {
+    let mechanism = mechanism(name, parameters, masses, gravity, on_world);
+    compiled::model("left_out", &mechanism)
+}
+
+/// A joint with these bodies on the world, or on a body that moves freely.
+fn mechanism(
+    name: &str,
+    parameters: &[f64],
+    masses: &[MassProperties],
+    gravity: f64,
+    on_world: bool,
+) -> Mechanism {
     let registry = hamel_joints::registry();
     let built = |name: &str, parameters: &[f64]| {
         let entry = registry.get(name).expect("a joint of the library");
@@ -51,8 +62,7 @@ fn model(
         .map(|(joint, mass)| body(name, joint, parent, *mass));
     let bodies = base.into_iter().chain(bodies).collect();
     let gravity = Vector3::new(0.3, gravity, 0.7) * gravity.abs().min(1.0);
-    let mechanism = Mechanism::new(gravity, bodies).unwrap_or_else(|errors| panic!("{errors:?}"));
-    compiled::model("left_out", &mechanism)
+    Mechanism::new(gravity, bodies).unwrap_or_else(|errors| panic!("{errors:?}"))
 }
 
 fn operations(model: &Model, links: &[Link]) -> usize {
@@ -184,4 +194,61 @@ fn what_is_left_out_changes_no_effort() {
         }
     }
     worst.assert_within(1e-12);
+}
+
+/// A four-bar of any size, from micrometres to thousands of kilometres, on the world and on a ball: what is left out does not depend on the unit of length, in which v has one as well.
+#[test]
+fn what_is_left_out_does_not_depend_on_the_size() {
+    for exponent in [-6, -3, 0, 3, 6] {
+        let unit = 10.0_f64.powi(exponent);
+        let lengths = [3.0, 1.0, 3.0, 2.5].map(|length| length * unit);
+        let bodies = [[0.2, 0.1], [0.3, -0.2], [0.1, 0.3]].map(|[x, y]| {
+            let inertia = Matrix3::from_diagonal(&Vector3::new(0.02, 0.03, 0.04)) * unit * unit;
+            MassProperties::new(1.0, Vector3::new(x, y, 0.0) * unit, inertia).expect("valid")
+        });
+        for on_world in [true, false] {
+            let model = model("four_bar", &lengths, &bodies, -9.7, on_world);
+            let [pruned, bare] = [Pruning::ALL, Pruning::NONE].map(|pruning| {
+                let links = prune(&model, pruning);
+                compile_with(&model, &links, Kind::InverseDynamics, Loops::Never).function
+            });
+            let mechanism = mechanism("four_bar", &lengths, &bodies, -9.7, on_world);
+            let mut random = ChaCha8Rng::seed_from_u64(5);
+            let mut q = mechanism.home();
+            let body = mechanism.bodies().last().expect("a body");
+            let own = body.ranges().configuration.clone();
+            let mut moved = vec![0.0; own.len()];
+            body.joint()
+                .retract(&q[own.clone()], &[0.05 / (unit * unit)], &mut moved);
+            q[own].copy_from_slice(&moved);
+            let count = mechanism.layout().speeds;
+            // v of the four-bar in 1/(m² s): its links turn at about 1 rad/s.
+            let mut numbers = || {
+                let mut numbers = random::numbers(&mut random, count);
+                numbers[count - 1] /= unit * unit;
+                numbers
+            };
+            let (v, a) = (numbers(), numbers());
+            let efforts = |function: &Function| {
+                let mut efforts = function.evaluate(|argument| match argument {
+                    Argument::Configuration => q.clone(),
+                    Argument::Speeds | Argument::Momenta => v.clone(),
+                    Argument::Efforts | Argument::Accelerations => a.clone(),
+                });
+                efforts[count - 1] /= unit * unit;
+                efforts
+            };
+            let (found, expected) = (efforts(&pruned), efforts(&bare));
+            let largest = expected
+                .iter()
+                .fold(0.0_f64, |most, own| own.abs().max(most));
+            for (found, expected) in found.iter().zip(&expected) {
+                let error = (found - expected).abs() / largest;
+                assert!(
+                    error < 1e-12,
+                    "{unit} m, on the world: {on_world}: {error:e}"
+                );
+            }
+        }
+    }
 }

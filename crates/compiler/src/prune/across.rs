@@ -7,7 +7,7 @@
 //! ```
 //!
 //! and on the world, which does not move, already where the last one holds and the potential energy is constant. That is linear in ten parameters a body. The conditions are written down at
-//! random configurations in 128 bits, until further configurations say nothing new. What meets them there meets them everywhere, unless a non-zero analytic function vanished at random
+//! random configurations in 192 bits, in units of length of the size of the joint and with twists of size 1, until further configurations say nothing new. What meets them there meets them everywhere, unless a non-zero analytic function vanished at random
 //! points to 64 bits. Curves are analytic between their knots alone: joints with curves take what each body has for itself.
 
 use crate::model::{Body, Inertia, Model};
@@ -23,7 +23,7 @@ use echelon::Echelon;
 use sample::Sample;
 
 /// Bits of the numbers.
-const BITS: usize = 128;
+const BITS: usize = 192;
 /// What is below this part of the largest entry, as a power of two, is rounding.
 const ROUNDING: f64 = -64.0;
 /// Configurations at most; after two that say nothing new no more are asked for.
@@ -38,6 +38,8 @@ pub struct Element {
     /// Their sum in the joint's parent frame as its first body sees it, constant on the relations of the joint alone, if at all; on the world its first moment along gravity is. Where each body has its own
     /// for itself, its part is constant in every pose.
     pub sum: Option<Inertia>,
+    /// The unit of length of both, m.
+    pub unit: f64,
 }
 
 /// A basis of the inertias that do not affect the joint under its first body.
@@ -62,6 +64,7 @@ fn of_each(bodies: &[Body]) -> Vec<Element> {
             Element {
                 bodies: all,
                 sum: None,
+                unit: 1.0,
             }
         };
         elements.map(element).collect::<Vec<_>>()
@@ -116,18 +119,19 @@ impl Question {
     fn answer(&self, bodies: &[Body]) -> Option<Vec<Element>> {
         let sampler = Sampler::new(&bodies[0].joint.derived.space, BITS).single();
         let mut sampler = sampler.with_parameters(bodies[0].parameters.clone());
+        let unit = self.unit(bodies, &sampler.point()?);
         let mut echelon = Echelon::new(10 * bodies.len());
         let mut start: Option<(Vec<Vec<Precise>>, Vec<Sample>)> = None;
         let mut in_vain = 0;
         for _ in 0..SAMPLES {
             let point = sampler.point()?;
             let samples = bodies.iter().zip(&self.placements);
-            let samples: Vec<Sample> = samples
-                .map(|(body, placement)| Sample::new(body, placement, point.clone()))
+            let mut samples: Vec<Sample> = samples
+                .map(|(body, placement)| Sample::new(body, placement, point.clone(), unit))
                 .collect();
+            even(&mut samples);
             let constant = constants(&samples, self.gravity.as_ref());
             let vanishing = vanishing(&samples, self.gravity.is_some());
-            // Units of length are about as large as bodies: rounding is told by the largest entry of all.
             let size = constant.iter().chain(&vanishing).flatten().map(size);
             let size = size.fold(f64::NEG_INFINITY, f64::max);
             let (first, places) = start.get_or_insert_with(|| (constant.clone(), samples));
@@ -141,15 +145,39 @@ impl Question {
             in_vain = if news == 0 { in_vain + 1 } else { 0 };
             if in_vain == IN_VAIN {
                 let basis = echelon.null_space().into_iter();
-                return Some(basis.map(|own| element(&own, places)).collect());
+                return Some(basis.map(|own| element(&own, places, unit)).collect());
             }
         }
         None
     }
+
+    /// A power of two as large as the distances of the bodies' frames, m.
+    fn unit(&self, bodies: &[Body], point: &Point) -> f64 {
+        let samples = bodies.iter().zip(&self.placements);
+        let distances = samples
+            .map(|(body, placement)| Sample::new(body, placement, point.clone(), 1.0).distance());
+        match distances.fold(0.0, f64::max) {
+            0.0 => 1.0,
+            distance => distance.log2().round().exp2(),
+        }
+    }
 }
 
-/// An element by the parameters of all bodies, with its sum at one configuration.
-fn element(parameters: &[Precise], places: &[Sample]) -> Element {
+/// Makes each twist of size 1 over all bodies: v may have any unit.
+fn even(samples: &mut [Sample]) {
+    for j in 0..samples[0].twists.len() {
+        let sizes = samples.iter().map(|sample| sample.size(j));
+        let largest = sizes.fold(f64::NEG_INFINITY, f64::max);
+        if largest.is_finite() {
+            samples
+                .iter_mut()
+                .for_each(|sample| sample.lessen(j, largest.round() as i32));
+        }
+    }
+}
+
+/// An element by the parameters of all bodies in units of length of `unit` metres, with its sum at one configuration.
+fn element(parameters: &[Precise], places: &[Sample], unit: f64) -> Element {
     let of_parent = |row: usize| {
         let row = columns(places, |sample, n| sample.in_parent(n)[row].clone());
         let products = row.iter().zip(parameters).map(|(a, b)| a * b);
@@ -160,6 +188,7 @@ fn element(parameters: &[Precise], places: &[Sample]) -> Element {
     Element {
         bodies: parameters.chunks(10).map(of_body).collect(),
         sum: Some(Inertia::from_parameters(&std::array::from_fn(of_parent))),
+        unit,
     }
 }
 
@@ -179,7 +208,9 @@ fn constants(samples: &[Sample], gravity: Option<&Vector3<f64>>) -> Vec<Vec<Prec
             .collect(),
         Some(gravity) => vec![columns(samples, |sample, n| {
             let first = &sample.in_parent(n)[1..4];
-            let gravity = gravity.iter().map(|&g| Precise::from_f64(g, BITS));
+            // Its direction alone counts.
+            let size = gravity.amax().max(f64::MIN_POSITIVE);
+            let gravity = gravity.iter().map(|&g| Precise::from_f64(g / size, BITS));
             gravity.zip(first).fold(zero(), |sum, (g, c)| sum + &g * c)
         })],
     }

@@ -1,7 +1,7 @@
 //! Inertias that do not affect a joint move to its parent, from the leaves to the root; what arrives at the world is dropped.
 //!
-//! N_X is spanned in the child frames of the joint's bodies ([`across`]). Subtracting its elements makes as many of the ten parameters of each
-//! body 0 as it has dimensions. What moves is constant in the parent frame, so it may be read at home.
+//! N_X is spanned in the child frames of the joint's bodies ([`across`]). Subtracting its elements makes as many of their parameters 0 as it has
+//! dimensions. What a body has for itself is constant in the parent frame in every pose, so it may be read at home; sums over bodies come with the elements.
 
 use super::{Fixed, Link, Placed, across};
 use crate::graph::{Sym, record};
@@ -18,6 +18,8 @@ const ORDER: [&[usize]; 4] = [&[0], &[3, 1, 2], &[6, 5, 4], &[9, 8, 7]];
 const ROUNDING: f64 = 1e-14;
 /// Entries of a basis below this part of the largest are not divided by: the square of a gear's ratio of a thousand.
 const SMALL: f64 = 1e-6;
+/// Nor are those below this part of the largest of their own element: some thousand roundings of it, which differences may have left of nothing.
+const CLEAR: f64 = 1e-12;
 /// A sum below this part of what was added and subtracted is rounding of some dozen terms.
 const SUM_ROUNDING: f64 = 4e-15;
 
@@ -37,8 +39,12 @@ pub fn rootward(model: &Model, placed: &Placed<'_>, mut links: Vec<Link>) -> Vec
             .map(|body| placed.moved(body).inverse())
             .collect();
         let basis = across::basis(model, first);
+        let unit = basis.first().map_or(1.0, |element| element.unit);
         let in_links = basis.iter().map(|element| Moved::new(element, &to_links));
-        let basis = reduced(in_links.collect());
+        let mut basis = reduced(in_links.collect());
+        basis
+            .iter_mut()
+            .for_each(|(place, element)| element.in_metres(*place, unit));
         let (parts, sum) = taken(&mut links[bodies.clone()], &basis);
         let mut whole = sum.seen_from(&placed.joint_frame(first));
         for (index, part) in bodies.zip(parts) {
@@ -66,7 +72,11 @@ struct Moved {
 impl Moved {
     fn new(element: &across::Element, to_links: &[Pose<f64>]) -> Self {
         let bodies = element.bodies.iter().zip(to_links);
-        let bodies = bodies.map(|(own, to_link)| own.seen_from(to_link).parameters());
+        let bodies = bodies.map(|(own, to_link)| {
+            let shift = to_link.translation / element.unit;
+            let to_link = Pose::new(to_link.rotation, shift);
+            own.seen_from(&to_link).parameters()
+        });
         let clean = |entry: f64| if entry.abs() <= ROUNDING { 0.0 } else { entry };
         Self {
             bodies: bodies.map(|own| own.map(clean)).collect(),
@@ -77,6 +87,24 @@ impl Moved {
     fn entries(&mut self) -> impl Iterator<Item = &mut f64> {
         let bodies = self.bodies.as_flattened_mut().iter_mut();
         bodies.chain(self.sum.iter_mut().flatten())
+    }
+
+    /// In metres instead of units of length of so many, times what makes the parameter at its place 1 again.
+    fn in_metres(&mut self, place: Place, unit: f64) {
+        let factor = |n: usize| match n {
+            0 => 1.0,
+            1..4 => unit,
+            _ => unit * unit,
+        };
+        let own = factor(place.1);
+        let scale = |(n, entry): (usize, &mut f64)| *entry *= factor(n % 10) / own;
+        self.entries().enumerate().for_each(scale);
+    }
+
+    /// The size of its largest entry.
+    fn largest(&self) -> f64 {
+        let entries = self.bodies.as_flattened().iter();
+        entries.fold(0.0, |most, entry| most.max(entry.abs()))
     }
 
     fn values(&self) -> impl Iterator<Item = &f64> {
@@ -122,7 +150,8 @@ fn largest(basis: &[Moved], parameters: &[usize]) -> Option<(usize, Place)> {
         let places = parameters
             .iter()
             .flat_map(move |&parameter| (0..basis.len()).map(move |n| (n, (body, parameter))));
-        places.reduce(|first, other| match size(&other) > size(&first) {
+        let clear = places.filter(|place| size(place) > CLEAR * basis[place.0].largest());
+        clear.reduce(|first, other| match size(&other) > size(&first) {
             true => other,
             false => first,
         })

@@ -1,6 +1,6 @@
 //! A body at one configuration in extended precision: what each of its ten parameters does.
 
-use super::{BITS, named, zero};
+use super::{BITS, named, size, zero};
 use crate::model::Body;
 use hamel_codegen::matrix::Matrix;
 use hamel_codegen::precise::{Point, Precise};
@@ -27,8 +27,8 @@ pub(super) struct Sample {
 }
 
 impl Sample {
-    /// The body of a joint whose parent frame has this placement, as the body sees it.
-    pub(super) fn new(body: &Body, placement: &Pose<f64>, point: Point) -> Self {
+    /// The body of a joint whose parent frame has this placement, as the body sees it, in units of length of `unit` metres.
+    pub(super) fn new(body: &Body, placement: &Pose<f64>, point: Point, unit: f64) -> Self {
         let derived = &body.joint.derived;
         let point = named(body, point);
         let pose = &derived.spec.pose.value;
@@ -38,15 +38,41 @@ impl Sample {
         let at = vector(&point.matrix(&pose.translation));
         let turned = turned(&fixed, &at);
         let shift = |i: usize| Precise::from_f64(placement.translation[i], BITS);
+        let inverse = Precise::integer(1, BITS) / Precise::from_f64(unit, BITS);
         let twists = &derived.local_twist_map;
+        let twist = |k: usize| {
+            let (angular, linear) = column(&point, twists, k);
+            (angular, linear.map(|entry| &entry * &inverse))
+        };
         Self {
             rotation: product(&fixed, &rotation),
-            translation: std::array::from_fn(|i| &turned[i] + &shift(i)),
-            twists: (0..twists.columns())
-                .map(|k| column(&point, twists, k))
-                .collect(),
+            translation: std::array::from_fn(|i| &(&turned[i] + &shift(i)) * &inverse),
+            twists: (0..twists.columns()).map(twist).collect(),
             units: (0..10).map(Unit::new).collect(),
         }
+    }
+
+    /// The binary logarithm of the largest entry of twist j.
+    pub(super) fn size(&self, j: usize) -> f64 {
+        let (angular, linear) = &self.twists[j];
+        angular
+            .iter()
+            .chain(linear)
+            .map(size)
+            .fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Divides twist j by that power of two.
+    pub(super) fn lessen(&mut self, j: usize, power: i32) {
+        let (angular, linear) = &mut self.twists[j];
+        let entries = angular.iter_mut().chain(linear);
+        entries.for_each(|entry| *entry = entry.halved(power));
+    }
+
+    /// The distance of the child frame from the parent's, in entries.
+    pub(super) fn distance(&self) -> f64 {
+        let entries = self.translation.iter().map(|entry| entry.to_f64().abs());
+        entries.fold(0.0, f64::max)
     }
 
     /// The ten parameters, in the parent's frame, of parameter n.
