@@ -14,7 +14,7 @@
 use super::chain::Chain;
 use super::equations::solve::square;
 use super::graph::Sym;
-use super::spatial::{Mat3, Step, Twist, Vec3, Wrench, cross};
+use super::spatial::{Mat3, Step, Twist, Vec3, Wrench};
 use super::ties::Ties;
 use hamel_runtime::joint::Link;
 use hamel_scene::Coupling;
@@ -239,16 +239,8 @@ impl At<'_> {
     pub(super) fn freedoms_in_parent(&self) -> Vec<Twist> {
         let steps = self.pose();
         let to_parent = |twist: Twist| {
-            steps.iter().rev().fold(twist, |twist, step| match step {
-                Step::Shift(by) => Twist {
-                    linear: twist.linear + cross(by, &twist.angular),
-                    angular: twist.angular,
-                },
-                _ => Twist {
-                    angular: step.to_parent(&twist.angular),
-                    linear: step.to_parent(&twist.linear),
-                },
-            })
+            let steps = steps.iter().rev();
+            steps.fold(twist, |twist, step| step.twist_to_parent(&twist))
         };
         self.freedoms_in_child()
             .into_iter()

@@ -52,8 +52,8 @@ impl Returns {
         }
     }
 
-    /// The index of a joint that has come back, or has no configuration at the end of the step, among those at these indices of bodies, where the step changes its g by more than the part `unseen`, and the tangent at one end of the step leaves
-    /// less than the part `left` of g at the other.
+    /// The index of a joint, among those at these indices of bodies, that has come back within the step, or has no configuration at its end. Looked at are joints whose g the step
+    /// changes by more than the part `unseen`. Such a joint has come back where the tangent at one end of the step leaves less than the part `left` of g at the other.
     ///
     /// # Errors
     /// Equations that have no value at the end of the step.

@@ -218,39 +218,33 @@ tests! {
     wishbone: [0.35, 0.28, 0.2, 0.2, 0.35, 0.1], 0.2;
 }
 
+/// The origin of the chassis, in the middle of its axle, does not move along it.
+const REAR_AXLE: Ground = Ground::Holds {
+    body: 0,
+    ahead: None,
+    axle: 0,
+};
+
+fn rolls(wheel: usize) -> Ground {
+    let radius = "radius";
+    Ground::Rolls { wheel, radius }
+}
+
 /// Bodies: chassis, wheels at the front left, front right, rear left and rear right.
 #[test]
 fn car() {
-    let rolls = |wheel| Ground::Rolls {
-        wheel,
-        radius: "radius",
-    };
-    let rear = Ground::Holds {
-        body: 0,
-        ahead: None,
-        axle: 0,
-    };
     let front = Ground::Holds {
         body: 0,
         ahead: Some("base"),
         axle: 1,
     };
-    let ground = [rear, front, rolls(1), rolls(2), rolls(3), rolls(4)];
+    let ground = [REAR_AXLE, front, rolls(1), rolls(2), rolls(3), rolls(4)];
     check("car", &[2.7, 0.8, 0.33], 0.5, &ground);
 }
 
 /// Bodies: chassis, left and right wheel.
 #[test]
 fn differential_drive() {
-    let rolls = |wheel| Ground::Rolls {
-        wheel,
-        radius: "radius",
-    };
-    let axle = Ground::Holds {
-        body: 0,
-        ahead: None,
-        axle: 0,
-    };
-    let ground = [axle, rolls(1), rolls(2)];
+    let ground = [REAR_AXLE, rolls(1), rolls(2)];
     check("differential_drive", &[0.2, 0.08], 0.5, &ground);
 }

@@ -125,6 +125,20 @@ impl Step {
         }
     }
 
+    /// A twist about the child's origin, in its axes, as one about the parent's.
+    pub fn twist_to_parent(&self, twist: &Twist) -> Twist {
+        match self {
+            Self::Shift(by) => Twist {
+                linear: twist.linear + cross(by, &twist.angular),
+                angular: twist.angular,
+            },
+            _ => Twist {
+                angular: self.to_parent(&twist.angular),
+                linear: self.to_parent(&twist.linear),
+            },
+        }
+    }
+
     /// A twist, read at the parent, as one at the child.
     pub fn twist_to_child(&self, twist: &Twist) -> Twist {
         match self {
