@@ -44,8 +44,8 @@ pub const MOST_FREEDOMS: usize = 16;
 
 #[cfg(feature = "alloc")]
 pub use coupled::{
-    CLOSED_SIZES, Coupled, Link, LinkFault, LinkMotion, MOST_COORDINATES, MOST_LINKS,
-    MOST_RELATIONS, Relation, Row, Tie, closed, coupled, linkage_length,
+    Coupled, Link, LinkFault, LinkMotion, MOST_COORDINATES, MOST_INDEPENDENT, MOST_LINKS,
+    MOST_RELATIONS, Relation, Row, Tie, closed, coupled, linkage_length, most_relations,
 };
 pub use patterns::{Entry, Patterns};
 pub use pin::{DriveSource, Pin, PinDrive, Turning};
@@ -169,6 +169,12 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     /// Names of the bodies: [`Joint::BODIES`], but of a joint that knows them when it is made.
     fn bodies(&self) -> &'static [&'static str] {
         Self::BODIES
+    }
+
+    /// How many of the last of the N stored scalars this joint does not use, of a type that is larger than it is: they are 0 whatever happens, and no part of the
+    /// joint's [layout](crate::erased::AnyJoint::layout), and as many of the last [`Joint::RELATIONS`] hold them there.
+    fn idle(&self) -> usize {
+        0
     }
 
     /// Which of the bodies this is the joint of: [`Joint::BODY`], but of a joint that knows it when it is made.

@@ -66,7 +66,7 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
         ..urdf::Options::default()
     };
     let (text, name) = read_file(&args.robot)?;
-    let import = urdf::read(&text, &name, &options)?;
+    let import = urdf::read(&urdf::completed(&args.robot, text)?, &name, &options)?;
     let built = match import.build(registry) {
         Ok(scene) => {
             tell(&scene.notices);

@@ -42,6 +42,10 @@ impl Input {
                 path.display()
             )));
         }
+        let text = match is_robot {
+            true => urdf::completed(path, text)?,
+            false => text,
+        };
         let label = path.file_name().unwrap_or_default().to_string_lossy();
         Ok(Self {
             text,

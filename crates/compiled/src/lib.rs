@@ -9,6 +9,8 @@
 extern crate alloc;
 
 #[cfg(feature = "alloc")]
+mod agreement;
+#[cfg(feature = "alloc")]
 mod batch;
 #[cfg(feature = "alloc")]
 mod entry;

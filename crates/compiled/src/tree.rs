@@ -64,37 +64,11 @@ pub enum CompiledError {
     },
 }
 
-/// Why two forms do not agree at one configuration.
-enum Unlike {
-    /// Rates differ.
-    Rate {
-        /// Which of the entries of v̄ it belongs to.
-        entry: usize,
-        expected: f64,
-        found: f64,
-    },
-    /// The tree has no value there.
-    NoValue(DynamicsError),
-}
-
-impl From<DynamicsError> for Unlike {
-    fn from(cause: DynamicsError) -> Self {
-        Self::NoValue(cause)
-    }
-}
-
-/// How many configurations near home are tried where home has no value.
-const NEAR_HOME: usize = 4;
-
-/// How far rates may differ, relative to the largest: what conditioning leaves of doubles in the worst of tested robots
-/// is 1e-8; another mass or length shows in the leading digits.
-const AGREEMENT: f64 = 1e-6;
-
 /// Compiled equations of a mechanism: what the module does not have, the tree computes.
 #[derive(Clone, Debug)]
 pub struct Compiled {
-    equations: &'static Equations,
-    tree: Recursive,
+    pub(super) equations: &'static Equations,
+    pub(super) tree: Recursive,
     /// τ of the inputs, none, and τ with the efforts at ports that change with time.
     inputs: [vec::Vec<f64>; 3],
     /// When these act.
@@ -164,163 +138,6 @@ impl Compiled {
         })
     }
 
-    /// Holds both forms against each other at the first place where the tree has a value.
-    fn compared(mut self, start: Option<&[f64]>) -> Result<Self, CompiledError> {
-        let mechanism = Arc::clone(self.tree.mechanism());
-        let start = start.map(|q| ("where the motion begins", q.to_vec()));
-        let home = ("at home", mechanism.home());
-        let near = (1..=NEAR_HOME).filter_map(|round| near_home(&mechanism, round));
-        let near = near.map(|q| ("near home", q));
-        let mut first = None;
-        for (place, q) in start.into_iter().chain([home]).chain(near) {
-            match self.compare(&q) {
-                Ok(()) => return Ok(self),
-                Err(Unlike::Rate {
-                    entry,
-                    expected,
-                    found,
-                }) => return Err(self.other(place, entry, expected, found)),
-                Err(Unlike::NoValue(cause)) => {
-                    first.get_or_insert((place, cause));
-                }
-            }
-        }
-        match first {
-            None => Ok(self),
-            Some((place, cause)) => Err(CompiledError::NoValue {
-                scene: self.equations.scene,
-                place,
-                cause,
-            }),
-        }
-    }
-
-    /// Holds the rates of both forms at `q` against each other, with speeds, momenta and efforts that differ among themselves.
-    fn compare(&mut self, q: &[f64]) -> Result<(), Unlike> {
-        let numbers = |count: usize| (0..count).map(|i| 0.1 + 0.01 * i as f64).collect();
-        let mut speeds: vec::Vec<f64> = numbers(self.equations.speeds);
-        let efforts: vec::Vec<f64> = numbers(self.equations.freedoms);
-        self.tree.complete_speeds(q, &mut speeds)?;
-        let mut expected = vec![0.0; speeds.len()];
-        let mut found = expected.clone();
-        if let Some(forward) = self.equations.forward_dynamics {
-            self.tree
-                .forward_dynamics(q, &speeds, &efforts, &mut expected)?;
-            forward(q, &speeds, self.with_timed(q, &efforts), &mut found);
-            Self::close(&found, &expected)?;
-        }
-        self.compare_derivatives(q, &speeds, &efforts)?;
-        self.compare_momenta(q, &mut speeds, &efforts)
-    }
-
-    /// The same of the port-Hamiltonian form.
-    fn compare_momenta(
-        &mut self,
-        q: &[f64],
-        speeds: &mut [f64],
-        efforts: &[f64],
-    ) -> Result<(), Unlike> {
-        let Equations {
-            momenta: by_speeds,
-            speeds_from_momenta: by_momenta,
-            momentum_rates,
-            ..
-        } = *self.equations;
-        let [mut momenta, mut found, mut expected] = [(); 3].map(|()| vec![0.0; speeds.len()]);
-        self.tree.momenta(q, speeds, &mut momenta)?;
-        if let Some(map) = by_speeds {
-            map(q, speeds, &mut found);
-            Self::close(&found, &momenta)?;
-        }
-        if let Some(map) = by_momenta {
-            self.tree.speeds(q, &momenta, &mut expected)?;
-            map(q, &momenta, &mut found);
-            Self::close(&found, &expected)?;
-        }
-        if let Some(momentum_rates) = momentum_rates {
-            let mut given = |_: &[f64], tau: &mut [f64]| tau.copy_from_slice(efforts);
-            self.tree
-                .momentum_rates(q, &momenta, &mut given, speeds, &mut expected)?;
-            momentum_rates(q, &momenta, self.with_timed(q, efforts), speeds, &mut found);
-            Self::close(&found, &expected)?;
-        }
-        Ok(())
-    }
-
-    /// The same of the derivatives: of forward dynamics the rates that come with them, of inverse dynamics how efforts change as all of ϕ and v̄ grow alike.
-    fn compare_derivatives(
-        &mut self,
-        q: &[f64],
-        speeds: &[f64],
-        inputs: &[f64],
-    ) -> Result<(), Unlike> {
-        let mechanism = Arc::clone(self.tree.mechanism());
-        if self.equations.forward_dynamics_derivatives.is_some() {
-            let mut found = ForwardDerivatives::new(&mechanism);
-            let mut expected = vec![0.0; speeds.len()];
-            self.tree
-                .forward_dynamics(q, speeds, inputs, &mut expected)?;
-            self.forward_dynamics_derivatives(q, speeds, inputs, &mut found)?;
-            Self::close(found.rates(), &expected)?;
-        }
-        if self.equations.inverse_dynamics_derivatives.is_some() {
-            let [mut found, mut expected] = [(); 2].map(|()| InverseDerivatives::new(&mechanism));
-            self.tree
-                .inverse_dynamics_derivatives(q, speeds, speeds, &mut expected)?;
-            self.inverse_dynamics_derivatives(q, speeds, speeds, &mut found)?;
-            // Beside the efforts themselves, so that what is 0 but for rounding is nothing.
-            let mut efforts = vec![0.0; speeds.len()];
-            let given = self.tree.inverse_dynamics(q, speeds, speeds, &mut efforts);
-            given.map_err(DynamicsError::from)?;
-            let changed = |by: &InverseDerivatives| -> vec::Vec<f64> {
-                let rows = efforts.iter().enumerate();
-                rows.map(|(row, effort)| effort + by.sum_of_row(row))
-                    .collect()
-            };
-            Self::close(&changed(&found), &changed(&expected))?;
-        }
-        Ok(())
-    }
-
-    fn close(found: &[f64], expected: &[f64]) -> Result<(), Unlike> {
-        let largest = expected
-            .iter()
-            .fold(0.0_f64, |most, rate| most.max(rate.abs()));
-        let differs = |(found, expected): (&f64, &f64)| {
-            let agrees = (found - expected).abs() <= AGREEMENT * largest;
-            // So that NaN differs.
-            !agrees
-        };
-        match found.iter().zip(expected).position(differs) {
-            None => Ok(()),
-            Some(entry) => Err(Unlike::Rate {
-                entry,
-                expected: expected[entry],
-                found: found[entry],
-            }),
-        }
-    }
-
-    fn other(&self, place: &'static str, entry: usize, expected: f64, found: f64) -> CompiledError {
-        let bodies = self.tree.mechanism().bodies().iter();
-        let mut named = bodies
-            .filter(|body| body.ranges().speeds.contains(&entry))
-            .map(|body| {
-                let own = entry - body.ranges().speeds.start;
-                let speed = body.joint().speeds().get(own).copied();
-                (String::from(body.joint_name()), speed.unwrap_or_default())
-            });
-        let (joint, speed) = named.next().unwrap_or_default();
-        CompiledError::Other {
-            scene: self.equations.scene,
-            place,
-            joint,
-            speed,
-            expected,
-            found,
-        }
-    }
-
     /// The derivatives of inverse dynamics in ϕ and v̄ at (q, v̄, v̄̇) into `out`, as [`Recursive::inverse_dynamics_derivatives`] has them.
     ///
     /// # Errors
@@ -371,7 +188,7 @@ impl Compiled {
     }
 
     /// τ with the efforts at ports that change with time, of which the module is not told.
-    fn with_timed<'t>(&'t mut self, q: &[f64], efforts: &'t [f64]) -> &'t [f64] {
+    pub(super) fn with_timed<'t>(&'t mut self, q: &[f64], efforts: &'t [f64]) -> &'t [f64] {
         if !self.is_timed {
             return efforts;
         }
@@ -400,24 +217,6 @@ impl Compiled {
             }
         }
     }
-}
-
-/// A configuration near home, another one in each round; none where a joint does not get there.
-fn near_home(mechanism: &Mechanism, round: usize) -> Option<vec::Vec<f64>> {
-    // Multiples of the golden section lie without pattern, so that no joint stands as another does.
-    let part = |freedom: usize| (0.618_034 * (freedom + round * 17) as f64) % 1.0;
-    let mut near = mechanism.home();
-    for (index, body) in mechanism.joints() {
-        let ranges = body.ranges();
-        let phi: vec::Vec<f64> = ranges
-            .freedoms
-            .clone()
-            .map(|i| 0.1 + 0.2 * part(i))
-            .collect();
-        let moved = mechanism.configuration_from_local(index, &phi).ok()?;
-        near[ranges.configuration.clone()].copy_from_slice(&moved);
-    }
-    Some(near)
 }
 
 impl Dynamics for Compiled {

@@ -360,6 +360,7 @@ impl Build {
                 floating_base: self.floating_base,
                 ..urdf::Options::default()
             };
+            let text = urdf::completed(path, text).map_err(failed)?;
             let import = urdf::read(&text, &name, &options);
             return import.map(|import| import.scene).map_err(failed);
         }

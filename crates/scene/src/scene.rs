@@ -144,6 +144,7 @@ impl Scene {
         let path = path.as_ref();
         let (text, name) = read_file(path)?;
         if urdf::is_robot(path, &text) {
+            let text = urdf::completed(path, text)?;
             return urdf::read(&text, &name, &urdf::Options::default())?.build(registry);
         }
         Self::parse(&text, &name, registry)

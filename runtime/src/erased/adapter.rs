@@ -1,7 +1,8 @@
 //! [`AnyJoint`] for every [`Joint`] and scalar: sizes are checked here, once a call, and what is done is done on arrays.
 
-use super::kernels::{kernels, passed_on};
+use super::kernels::{kernels, operand, passed_on};
 use super::slices::{Store, array, array_mut, nan, vector};
+use super::stored::{self, stored};
 use super::{AnyJoint, FiniteMapError, Layout, Shared, Sizes};
 use crate::joint::{Entry, Joint, Pin, Port, PortLaw, Products, Structures, Units, VelocityFrame};
 use crate::scalar::{Extended, Native, Scalar};
@@ -45,7 +46,7 @@ where
 
     fn layout(&self) -> Layout {
         Layout {
-            configuration: N,
+            configuration: stored::size(&self.0),
             freedoms: K,
             speeds: S,
             constraints: C,
@@ -75,15 +76,15 @@ where
     }
 
     fn coordinates(&self) -> &'static [&'static str] {
-        const { &J::COORDINATES }
+        stored::used(&self.0, const { &J::COORDINATES })
     }
 
     fn relations(&self) -> &'static [&'static str] {
-        J::RELATIONS
+        stored::used(&self.0, J::RELATIONS)
     }
 
     fn relation_units(&self) -> &'static [&'static str] {
-        J::RELATION_UNITS
+        stored::used(&self.0, J::RELATION_UNITS)
     }
 
     fn units(&self) -> Units {
@@ -120,37 +121,55 @@ where
         }
     }
 
+    fn home(&self, out: &mut [T]) {
+        stored::store(&self.0, &self.0.home(), out);
+    }
+
+    fn configuration_rate(&self, q: &[T], v: &[T], out: &mut [T]) {
+        let rate = self.0.configuration_rate(&stored(&self.0, q), &vector(v));
+        stored::store(&self.0, &rate, out);
+    }
+
+    fn retract(&self, q: &[T], phi: &[T], out: &mut [T]) {
+        let moved = self.0.retract(&stored(&self.0, q), &vector(phi));
+        stored::store(&self.0, &moved, out);
+    }
+
     kernels!(passed_on);
 
     fn pose(&self, q: &[T]) -> Pose<T> {
-        self.0.pose(&vector(q))
+        self.0.pose(&stored(&self.0, q))
     }
 
     fn residual(&self, q: &[T]) -> T {
-        self.0.residual(&vector(q))
+        self.0.residual(&stored(&self.0, q))
     }
 
     fn singularity(&self, q: &[T]) -> T {
-        self.0.singularity(&vector(q))
+        self.0.singularity(&stored(&self.0, q))
     }
 
     fn bias_acceleration(&self, q: &[T], speeds: &[T]) -> Vector6<T> {
-        self.0.bias_acceleration(&vector(q), &vector(speeds))
+        self.0
+            .bias_acceleration(&stored(&self.0, q), &vector(speeds))
     }
 
     fn local(&self, q: &[T], target: &[T], phi: &mut [T]) -> Result<(), FiniteMapError> {
-        self.0.local(&vector(q), &vector(target)).store(phi);
+        self.0
+            .local(&stored(&self.0, q), &stored(&self.0, target))
+            .store(phi);
         check_finite(J::NAME, "local coordinates", phi, K)
     }
 
     fn project(&self, q: &mut [T]) -> Result<(), FiniteMapError> {
-        self.0.project(&vector(q)).store(q);
-        check_finite(J::NAME, "projection", q, N)
+        let found = self.0.project(&stored(&self.0, q));
+        stored::store(&self.0, &found, q);
+        check_finite(J::NAME, "projection", q, stored::size(&self.0))
     }
 
     fn local_rate(&self, q: &[T], phi: &[T], moved: &[T], speeds: &[T], out: &mut [T]) {
         let (joint, structures) = (&self.0, J::STRUCTURES);
-        let moved = vector(moved);
+        let moved = stored(joint, moved);
         let velocity: SVector<T, K> = match structures.speed_basis.is_identity() {
             true => vector(speeds),
             false => joint.speed_basis(&moved) * vector::<T, S>(speeds),
@@ -161,7 +180,7 @@ where
         };
         let local_rate = match structures.retract_differential.is_identity() {
             true => rate,
-            false => joint.retract_differential_inverse(&vector(q), &vector(phi), &rate),
+            false => joint.retract_differential_inverse(&stored(&self.0, q), &vector(phi), &rate),
         };
         local_rate.store(out);
     }
@@ -170,38 +189,42 @@ where
         let efforts = vector::<T, K>(efforts);
         match J::STRUCTURES.speed_basis.is_identity() {
             true => efforts.store(out),
-            false => self.0.speed_basis(&vector(q)).tr_mul(&efforts).store(out),
+            false => self
+                .0
+                .speed_basis(&stored(&self.0, q))
+                .tr_mul(&efforts)
+                .store(out),
         }
     }
 
     fn port_value(&self, q: &[T], port: usize) -> T {
-        let q = vector(q);
+        let q = stored(&self.0, q);
         let values = self.0.port_values(&q);
         values.as_ref().get(port).copied().unwrap_or(nan())
     }
 
     fn port_row(&self, q: &[T], port: usize, out: &mut [T]) {
-        let q = vector(q);
+        let q = stored(&self.0, q);
         let map = self.0.port_map(&q);
         let row = map.as_ref().get(port).copied().unwrap_or([nan(); K]);
         SVector::from(row).store(out);
     }
 
     fn pin_place(&self, q: &[T], pin: usize) -> [T; 9] {
-        let q = vector(q);
+        let q = stored(&self.0, q);
         let places = self.0.pins(&q);
         places.as_ref().get(pin).copied().unwrap_or([nan(); 9])
     }
 
     fn relation_twist(&self, q: &[T], relation: usize) -> Vector6<T> {
-        let q = vector(q);
+        let q = stored(&self.0, q);
         let twists = self.0.relation_twists(&q);
         let own = twists.as_ref().get(relation).copied();
         own.map_or(Vector6::repeat(nan()), Vector6::from)
     }
 
     fn relation_port(&self, q: &[T], relation: usize, port: usize) -> T {
-        let q = vector(q);
+        let q = stored(&self.0, q);
         let rates = self.0.relation_ports(&q);
         let mut of_relation = rates.as_ref().chunks_exact(self.0.ports().len().max(1));
         let own = of_relation.nth(relation);
@@ -213,7 +236,7 @@ where
         T: Native,
     {
         Steps(&self.0)
-            .port_slope((&vector(q), &vector(velocity)), port, law)
+            .port_slope((&stored(&self.0, q), &vector(velocity)), port, law)
             .store(out);
     }
 
@@ -221,7 +244,7 @@ where
     where
         T: Native,
     {
-        let [_, rate] = Steps(&self.0).port_row_motion(&vector(q), &vector(speeds), port);
+        let [_, rate] = Steps(&self.0).port_row_motion(&stored(&self.0, q), &vector(speeds), port);
         rate.store(out);
     }
 
@@ -230,7 +253,7 @@ where
         T: Native,
     {
         Steps(&self.0)
-            .port_row_gradient(&vector(q), port)
+            .port_row_gradient(&stored(&self.0, q), port)
             .store(out);
     }
 
@@ -244,7 +267,7 @@ where
     ) where
         T: Native,
     {
-        let state = (&vector(q), &vector(speeds), &vector(x));
+        let state = (&stored(&self.0, q), &vector(speeds), &vector(x));
         let slopes = Steps(&self.0).rotor_term_slopes(state, AtPort { port, term });
         slopes.0.store(by_local);
         slopes.1.store(by_speeds);
@@ -256,7 +279,7 @@ where
     {
         let field = Field {
             joint: &self.0,
-            base: vector(base),
+            base: stored(&self.0, base),
             phi: vector(phi),
             speeds: vector(speeds),
         };
@@ -268,7 +291,7 @@ where
         T: Native,
     {
         Steps(&self.0)
-            .spring_slope((&vector(q), &vector(rest)), stiffness)
+            .spring_slope((&stored(&self.0, q), &stored(&self.0, rest)), stiffness)
             .store(out);
     }
 
@@ -277,7 +300,7 @@ where
         T: Native,
     {
         Steps(&self.0)
-            .turn_slope(&vector(q), rest, stiffness)
+            .turn_slope(&stored(&self.0, q), rest, stiffness)
             .store(out);
     }
 
@@ -292,7 +315,7 @@ where
         T: Native,
     {
         let (velocity, inertia) = (vector(velocity), vector(inertia));
-        let slopes = Steps(&self.0).rotor_slopes(&vector(q), &velocity, &inertia);
+        let slopes = Steps(&self.0).rotor_slopes(&stored(&self.0, q), &velocity, &inertia);
         slopes[0].store(by_local);
         slopes[1].store(by_velocity);
     }
@@ -317,8 +340,8 @@ where
     where
         T: Native,
     {
-        *own = match array(q) {
-            Some(q) => Steps(&self.0).child(&SVector::from(*q), joint_frame, parent),
+        *own = match stored::exactly(&self.0, q) {
+            Some(q) => Steps(&self.0).child(&q, joint_frame, parent),
             None => Placement::unknown(),
         };
     }
@@ -333,11 +356,11 @@ where
     ) where
         T: Native,
     {
-        let (Some(q), Some(own_columns)) = (array(q), array_mut(columns)) else {
+        let arrays = (stored::exactly(&self.0, q), array_mut(columns));
+        let (Some(q), Some(own_columns)) = arrays else {
             *own = Placement::unknown();
             return columns.fill(Vector6::repeat(nan()));
         };
-        let q = SVector::from(*q);
         *own = Steps(&self.0).child(&q, joint_frame, parent);
         *own_columns = Steps(&self.0).columns(&q, &own.rotation);
     }
@@ -347,7 +370,9 @@ where
         T: Native,
     {
         match array_mut(columns) {
-            Some(columns) => *columns = Steps(&self.0).columns(&vector(q), &Matrix3::identity()),
+            Some(columns) => {
+                *columns = Steps(&self.0).columns(&stored(&self.0, q), &Matrix3::identity())
+            }
             None => columns.fill(Vector6::repeat(nan())),
         }
     }
@@ -360,12 +385,13 @@ where
         own: &mut Motion<T>,
         columns: &mut [Vector6<T>],
     ) {
-        let arrays = (array(q), array(speeds), array_mut(columns));
+        let q = stored::exactly(&self.0, q);
+        let arrays = (q, array(speeds), array_mut(columns));
         let (Some(q), Some(speeds), Some(own_columns)) = arrays else {
             *own = Motion::unknown();
             return columns.fill(Vector6::repeat(nan()));
         };
-        let state = (&SVector::from(*q), &SVector::from(*speeds));
+        let state = (&q, &SVector::from(*speeds));
         *own = Steps(&self.0).advance(state, joint_frame, parent, own_columns);
         if !accelerations.is_empty() {
             let accelerations = vector(accelerations);
@@ -472,7 +498,7 @@ where
             true => SVector::zeros(),
             false => vector(accelerations),
         };
-        let state = (&vector(q), &vector(speeds), &accelerations);
+        let state = (&stored(&self.0, q), &vector(speeds), &accelerations);
         Steps(&self.0).variations(state, motions, columns, own);
     }
 }

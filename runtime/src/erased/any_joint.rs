@@ -64,6 +64,12 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     /// Hands each parameter's name and value to `visit`.
     fn parameters(&self, visit: &mut dyn FnMut(&'static str, f64));
 
+    /// [`Joint::home`] into `out` (N).
+    fn home(&self, out: &mut [T]);
+    /// [`Joint::configuration_rate`] into `out` (N).
+    fn configuration_rate(&self, q: &[T], v: &[T], out: &mut [T]);
+    /// [`Joint::retract`] into `out` (N).
+    fn retract(&self, q: &[T], phi: &[T], out: &mut [T]);
     kernels!(declared);
 
     /// [`Joint::pose`].

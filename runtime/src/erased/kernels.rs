@@ -6,8 +6,6 @@
 macro_rules! kernels {
     ($then:ident) => {
         $then! {
-            /// [`Joint::home`] into `out` (N).
-            home();
             /// [`Joint::twist_map`] into `out` (6×K).
             twist_map(q);
             /// [`Joint::twist_map_child`] into `out` (6×K).
@@ -30,10 +28,6 @@ macro_rules! kernels {
             speed_basis(q);
             /// [`Joint::speed_basis_gradient`] into `out` (K slices of K×S).
             speed_basis_gradient(q);
-            /// [`Joint::configuration_rate`] into `out` (N).
-            configuration_rate(q, v);
-            /// [`Joint::retract`] into `out` (N).
-            retract(q, phi);
             /// [`Joint::retract_differential`] into `out` (K×K).
             retract_differential(q, phi);
             /// [`Joint::retract_differential_inverse`] into `out` (K).
@@ -71,9 +65,19 @@ macro_rules! declared {
 macro_rules! passed_on {
     ($($(#[$doc:meta])* $name:ident($($vector:ident),* $(; $h:ident)?) $(where $t:ident: $native:ident)?;)*) => {
         $(fn $name(&self, $($vector: &[T],)* $($h: &Vector6<T>,)? out: &mut [T]) $(where $t: $native)? {
-            Store::<T>::store(&self.0.$name($(&vector($vector),)* $($h)?), out);
+            Store::<T>::store(&self.0.$name($(&operand!($vector, self, $vector),)* $($h)?), out);
         })*
     };
 }
 
-pub(super) use {declared, kernels, passed_on};
+/// An argument by its name: q is stored, and all others are vectors of fixed sizes.
+macro_rules! operand {
+    (q, $pair:ident, $vector:ident) => {
+        stored(&$pair.0, $vector)
+    };
+    ($name:ident, $pair:ident, $vector:ident) => {
+        vector($vector)
+    };
+}
+
+pub(super) use {declared, kernels, operand, passed_on};

@@ -7,6 +7,7 @@ mod adapter;
 mod any_joint;
 mod kernels;
 mod slices;
+mod stored;
 
 pub use any_joint::AnyJoint;
 pub(crate) use slices::{Store, nan};

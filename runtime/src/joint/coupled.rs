@@ -27,7 +27,7 @@ mod link;
 mod names;
 mod tie;
 
-pub use closed::{CLOSED_SIZES, MOST_RELATIONS, closed, linkage_length};
+pub use closed::{MOST_INDEPENDENT, MOST_RELATIONS, closed, linkage_length, most_relations};
 pub use link::{Link, LinkFault, LinkMotion, MOST_LINKS};
 pub use tie::{Relation, Row, Tie};
 
@@ -43,7 +43,7 @@ use filled::Filled;
 use nalgebra::{SMatrix, SVector, Vector6};
 use names::{BODIES, coordinates};
 
-/// Most independent coordinates of a [`Coupled`] joint.
+/// Most coordinates of a [`Coupled`] joint that no ties hold.
 pub const MOST_COORDINATES: usize = 4;
 
 /// Links that follow N coordinates, of which C relations leave K independent, as one of their bodies sees them; the joint itself is that of the first.
@@ -203,6 +203,10 @@ impl<const N: usize, const K: usize, const C: usize> Joint<N, K, K, 0> for Coupl
 
     fn body(&self) -> usize {
         self.body
+    }
+
+    fn idle(&self) -> usize {
+        self.ties.idle()
     }
 
     fn more(&self, visit: &mut dyn FnMut(Shared)) {

@@ -241,3 +241,33 @@ fn what_cannot_be_compiled_is_refused_by_name() {
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("spring of joint `elbow`"), "{said}");
 }
+
+/// Behind such gears speeds of order 1 make forces of the motor that leave no digit of the rest: compiled equations are compared with those of the tree where bodies move at such speeds, not joints.
+#[test]
+fn gears_of_large_ratio_move_as_on_the_tree() {
+    if !has_compiler() {
+        return;
+    }
+    let inertia = |moment: f64| {
+        format!(
+            "inertia_xx_yy_zz_xy_xz_yz = [{moment:?}, {moment:?}, {moment:?}, 0.0, 0.0, {:?}]",
+            0.1 * moment
+        )
+    };
+    let base = format!(
+        "mass = 2.0\ncom = [0.2, -0.1, 0.1]\n{}\nat = {{ rpy = [0.4, 0.5, -0.7] }}\ninitial.speeds = [0.7]",
+        inertia(0.01)
+    );
+    let joint =
+        "name = \"geared\"\nparent = \"base\"\njoint = { type = \"geared_revolute\", ratio = 1e8 }";
+    let (output, rotor) = (inertia(0.002), inertia(0.05));
+    let text = format!(
+        "hamel = 1\n{}[[body]]\n{joint}\ninitial.speeds = [1e-7]\nbodies.output = {{ mass = 1.0, com = [0.1, 0.05, 0.0], {output} }}\n\
+         bodies.rotor = {{ mass = 0.1, com = [-0.1, -0.2, 0.0], {rotor} }}\n",
+        body("base", "world", "revolute", &base)
+    );
+    let scene = Path::new(env!("CARGO_TARGET_TMPDIR")).join("geared.toml");
+    std::fs::write(&scene, text).expect("a folder of the build");
+    let scene = scene.to_str().expect("text");
+    moves_as_the_tree(&[scene, "--method", "rk4", "--dt", "0.02", "--at", "0.1,0.5"]);
+}

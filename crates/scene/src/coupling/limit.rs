@@ -32,7 +32,7 @@ pub(super) fn add(
 }
 
 /// The limit of y as one of q.
-fn followed(limit: &LimitDescription, owner: &Owner<'_>) -> LimitDescription {
+pub(super) fn followed(limit: &LimitDescription, owner: &Owner<'_>) -> LimitDescription {
     let (ratio, offset) = (owner.link.ratio, owner.link.offset);
     let at = |end: f64| (end - offset) / ratio;
     let (lower, upper) = match ratio > 0.0 {

@@ -3,6 +3,7 @@
 use super::closing::{Candidate, Plan, Problem, relations_of};
 use super::forces::Owner;
 use super::initial::{self, Given};
+use super::limit;
 use super::lower::Lowering;
 use crate::description::{InitialDescription, Motion, PortRate, Position};
 use crate::diagnostics::Diagnostic;
@@ -41,6 +42,7 @@ pub(super) fn made(
             .iter()
             .map(|&own| positions[own].is_some())
             .collect(),
+        ranges: ranges(owners, &positions, leaders.len()),
         wanted: wanted(lowering, owners, &leaders)?,
         rated: leaders
             .iter()
@@ -70,6 +72,24 @@ fn guess(owners: &[Owner<'_>], positions: &[Given], coordinates: usize) -> Vec<f
         }
     }
     values
+}
+
+/// Where the limits of joints leave coordinates, but for those whose position the scene gives: there it has the last word.
+fn ranges(owners: &[Owner<'_>], positions: &[Given], coordinates: usize) -> Vec<[f64; 2]> {
+    let open = [f64::NEG_INFINITY, f64::INFINITY];
+    let mut ranges = vec![open; coordinates];
+    for owner in owners {
+        if let Some(limit) = &owner.body.forces.limit {
+            let own = limit::followed(&limit.value, owner);
+            let [lower, upper] = &mut ranges[owner.link.coordinate];
+            *lower = own.lower.map_or(*lower, |end| end.max(*lower));
+            *upper = own.upper.map_or(*upper, |end| end.min(*upper));
+        }
+    }
+    for (owner, _) in owners.iter().zip(positions).filter(|own| own.1.is_some()) {
+        ranges[owner.link.coordinate] = open;
+    }
+    ranges
 }
 
 /// The coordinates that ties of the group want independent, or whose motion is prescribed.
@@ -235,7 +255,19 @@ fn tell(problem: &Problem<'_>, plan: &Plan, lowering: &Lowering<'_>, notices: &m
             problem.names[which],
             posture(problem, plan)
         );
-        notices.add(message, owner);
+        notices.add(message, owner.clone());
+    }
+    for (place, &k) in plan.order.iter().enumerate() {
+        let [lower, upper] = problem.ranges[k];
+        let value = plan.start[place];
+        if value < lower || value > upper {
+            let message = format!(
+                "joint `{}` begins at {:?}, beyond its limits: no posture was found within those of all joints",
+                problem.names[k],
+                Number(value)
+            );
+            notices.add(message, owner.clone());
+        }
     }
 }
 

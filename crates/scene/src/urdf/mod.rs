@@ -13,6 +13,7 @@
 //! | `<dynamics damping friction>` | damping; dry friction of `revolute` and `prismatic` |
 //! | `<mimic>` | `mimic`: the joint follows the other exactly, and both are one joint of several bodies |
 //! | `<loop>`, `<coupling>`, `independent` of `<joint>` (URDF+, arXiv 2411.19753) | `[[loop]]`, `[[coupling]]`: the joints of a loop are one joint of several bodies |
+//! | a YAML file of the same name beside it (Extended URDF, arXiv 2504.04767): [`completed`] | loops, which joints are independent, universal and spherical joints |
 //! | other limits, safety controllers, transmissions, collision shapes, unknown elements | not simulated, and told as [`Notice`]s |
 //!
 //! A state is not part of a URDF: every joint is at home (angles, displacements 0) and at rest.
@@ -20,6 +21,7 @@
 mod audit;
 mod convert;
 mod document;
+mod extended;
 mod foreign;
 mod joint;
 mod mass;
@@ -30,6 +32,7 @@ mod shapes;
 mod ties;
 mod tree;
 
+pub use extended::completed;
 pub use joint::{JointFacts, Limits};
 
 use crate::description::{SceneDescription, Source};
@@ -132,10 +135,11 @@ pub fn is_robot(path: &Path, text: &str) -> bool {
 /// The robot in the file `path`.
 ///
 /// # Errors
-/// A file that cannot be read or is not UTF-8, and those of [`read`].
+/// A file that cannot be read or is not UTF-8, and those of [`completed`] and [`read`].
 pub fn load(path: impl AsRef<Path>, options: &Options) -> Result<Import, Diagnostics> {
-    let (text, name) = read_file(path.as_ref())?;
-    read(&text, &name, options)
+    let path = path.as_ref();
+    let (text, name) = read_file(path)?;
+    read(&completed(path, text)?, &name, options)
 }
 
 impl Import {
@@ -180,6 +184,15 @@ fn import(
     let root = document.root_element();
     let mut notices = Notices::default();
     let version = version(root, &mut notices);
+    for file in document.root().children().filter_map(|node| node.pi()) {
+        if file.target == extended::TARGET {
+            let file = visible_line(file.value.unwrap_or_default());
+            let message = format!(
+                "its loops, its motors in them, and joints of other types are those of {file}"
+            );
+            notices.add(message, "<robot>");
+        }
+    }
     let mut audit = Audit {
         sink,
         notices: &mut notices,

@@ -1,7 +1,7 @@
 //! Links that [`Tie`]s hold: their relations, how the dependent coordinates follow, and the joint that they make.
 
 use super::link::{check_count, check_links};
-use super::{Coupled, Link, LinkFault, LinkMotion, MOST_COORDINATES, MOST_LINKS, Tie};
+use super::{Coupled, Link, LinkFault, LinkMotion, MOST_LINKS, Tie};
 use crate::erased::{Shared, erase};
 use crate::finite;
 use crate::joint::{Joint, Port};
@@ -11,7 +11,20 @@ use alloc::vec::Vec;
 use nalgebra::{SMatrix, SVector};
 
 /// Most relations of a joint.
-pub const MOST_RELATIONS: usize = 6;
+pub const MOST_RELATIONS: usize = 12;
+
+/// Most independent coordinates of a joint that ties hold.
+pub const MOST_INDEPENDENT: usize = 6;
+
+/// The most relations that leave so many coordinates independent: a joint has [`MOST_LINKS`] links, and each coordinate moves one of them.
+pub const fn most_relations(independent: usize) -> usize {
+    let left = MOST_LINKS.saturating_sub(independent);
+    match independent {
+        1..=MOST_INDEPENDENT if left < MOST_RELATIONS => left,
+        1..=MOST_INDEPENDENT => MOST_RELATIONS,
+        _ => 0,
+    }
+}
 
 /// Residual of its relations that a start may have, m and numbers: it is projected on them.
 const CLOSED: f64 = 1e-9;
@@ -35,6 +48,8 @@ pub(super) struct Ties {
     scale: f64,
     /// The determinant, as a number, at which the joint ends.
     end: f64,
+    /// The relations of the joint's type that it does not have.
+    idle: usize,
 }
 
 /// B: rates of the independent coordinates to those of all.
@@ -51,7 +66,8 @@ pub(super) const fn singularities(relations: usize) -> &'static [&'static str] {
 /// Names of so many relations.
 pub(super) const fn relations(count: usize) -> &'static [&'static str] {
     const NAMES: [&str; MOST_RELATIONS] = [
-        "g_1 = 0", "g_2 = 0", "g_3 = 0", "g_4 = 0", "g_5 = 0", "g_6 = 0",
+        "g_1 = 0", "g_2 = 0", "g_3 = 0", "g_4 = 0", "g_5 = 0", "g_6 = 0", "g_7 = 0", "g_8 = 0",
+        "g_9 = 0", "g_10 = 0", "g_11 = 0", "g_12 = 0",
     ];
     match NAMES.split_at_checked(count) {
         Some((names, _)) => names,
@@ -81,7 +97,7 @@ pub(super) fn split<T: Scalar, const N: usize, const K: usize, const C: usize>(
 /// a configuration on the ties, and chooses the branch of the linkage. `ports` are those of [`coupled`](super::coupled).
 ///
 /// # Errors
-/// Links and ties that no joint can have: numbers of independent coordinates and relations other than [`CLOSED_SIZES`], a start that is off the ties, or where the last coordinates do not follow from the others.
+/// Links and ties that no joint can have: more of independent coordinates than [`MOST_INDEPENDENT`] or of relations than [`most_relations`], a start that is off the ties, or where the last coordinates do not follow from the others.
 pub fn closed(
     links: &[Link],
     ties: &[Tie],
@@ -90,37 +106,27 @@ pub fn closed(
 ) -> Result<Shared, LinkFault> {
     let (coordinates, count) = sizes(links, ties, ports)?;
     let independent = coordinates.saturating_sub(count);
-    match (independent, count) {
-        (1, 1) => Coupled::<2, 1, 1>::closed(links, ties, start, ports).map(erase),
-        (1, 2) => Coupled::<3, 1, 2>::closed(links, ties, start, ports).map(erase),
-        (1, 3) => Coupled::<4, 1, 3>::closed(links, ties, start, ports).map(erase),
-        (1, 4) => Coupled::<5, 1, 4>::closed(links, ties, start, ports).map(erase),
-        (1, 5) => Coupled::<6, 1, 5>::closed(links, ties, start, ports).map(erase),
-        (1, 6) => Coupled::<7, 1, 6>::closed(links, ties, start, ports).map(erase),
-        (2, 1) => Coupled::<3, 2, 1>::closed(links, ties, start, ports).map(erase),
-        (2, 2) => Coupled::<4, 2, 2>::closed(links, ties, start, ports).map(erase),
-        (2, 3) => Coupled::<5, 2, 3>::closed(links, ties, start, ports).map(erase),
-        (2, 4) => Coupled::<6, 2, 4>::closed(links, ties, start, ports).map(erase),
-        (2, 6) => Coupled::<8, 2, 6>::closed(links, ties, start, ports).map(erase),
-        (3, 1) => Coupled::<4, 3, 1>::closed(links, ties, start, ports).map(erase),
-        (3, 2) => Coupled::<5, 3, 2>::closed(links, ties, start, ports).map(erase),
-        (3, 4) => Coupled::<7, 3, 4>::closed(links, ties, start, ports).map(erase),
-        (4, 1) => Coupled::<5, 4, 1>::closed(links, ties, start, ports).map(erase),
-        (4, 2) => Coupled::<6, 4, 2>::closed(links, ties, start, ports).map(erase),
-        _ => Err(LinkFault::Sizes {
-            independent,
-            relations: count,
-        }),
+    // Each size is a type of its own, and takes its time to compile: linkages that are seldom take the next larger one.
+    macro_rules! of_the_next_size {
+        ($($k:literal: $($c:literal)*;)*) => {
+            match (independent, count) {
+                $($(($k, 1..=$c) => Coupled::<{ $k + $c }, $k, $c>::closed(links, ties, start, ports).map(erase),)*)*
+                _ => Err(LinkFault::Sizes {
+                    independent,
+                    relations: count,
+                }),
+            }
+        };
+    }
+    of_the_next_size! {
+        1: 1 2 3 4 5 6 12;
+        2: 1 2 3 4 6 12;
+        3: 1 2 4 12;
+        4: 1 2 12;
+        5: 11;
+        6: 10;
     }
 }
-
-/// The sizes that there are: for each number of independent coordinates the numbers of relations. Each is a type of its own, and takes its time to compile.
-pub const CLOSED_SIZES: [(usize, &[usize]); MOST_COORDINATES] = [
-    (1, &[1, 2, 3, 4, 5, 6]),
-    (2, &[1, 2, 3, 4, 6]),
-    (3, &[1, 2, 4]),
-    (4, &[1, 2]),
-];
 
 /// The numbers of coordinates and of relations.
 fn sizes(links: &[Link], ties: &[Tie], ports: &[Port]) -> Result<(usize, usize), LinkFault> {
@@ -205,6 +211,7 @@ impl Ties {
         start: Vec::new(),
         scale: 1.0,
         end: 0.0,
+        idle: 0,
     };
 
     pub(super) fn start<T: Scalar, const N: usize>(&self) -> SVector<T, N> {
@@ -219,6 +226,10 @@ impl Ties {
         self.end
     }
 
+    pub(super) fn idle(&self) -> usize {
+        self.idle
+    }
+
     /// Root of the sum of squares of all relations, those that follow from others among them.
     pub(super) fn residual<T: Scalar>(&self, links: &[Link], q: &[T]) -> T {
         let mut square = T::zero();
@@ -231,10 +242,10 @@ impl Ties {
 }
 
 impl<const N: usize, const K: usize, const C: usize> Coupled<N, K, C> {
-    /// The joint of these links and ties.
+    /// The joint of these links and ties, of C relations at most. Those that it does not have hold coordinates at 0 that move nothing, [`Joint::idle`].
     ///
     /// # Errors
-    /// Those of [`closed`](fn@closed), and other numbers of coordinates and relations than N and C.
+    /// Those of [`closed`](fn@closed), another number of independent coordinates than K, and more relations than C.
     pub fn closed(
         links: &[Link],
         ties: &[Tie],
@@ -242,7 +253,7 @@ impl<const N: usize, const K: usize, const C: usize> Coupled<N, K, C> {
         ports: &'static [Port],
     ) -> Result<Self, LinkFault> {
         let (coordinates, count) = sizes(links, ties, ports)?;
-        if (coordinates, count) != (N, C) || N != K + C {
+        if coordinates != K + count || !(1..=C).contains(&count) || N != K + C {
             return Err(LinkFault::Sizes {
                 independent: coordinates.saturating_sub(count),
                 relations: count,
@@ -259,6 +270,7 @@ impl<const N: usize, const K: usize, const C: usize> Coupled<N, K, C> {
             start: start.to_vec(),
             scale: scale(links, ties, K),
             end: 0.0,
+            idle: C - count,
         };
         let mut joint = Self::of(links, ports, ties);
         let start = joint.ties.start::<f64, N>();
@@ -303,10 +315,15 @@ impl<const N: usize, const K: usize, const C: usize> Coupled<N, K, C> {
             tie.relations(&self.links, q.as_slice(), |(value, row)| {
                 if i < C {
                     values[i] = value;
-                    (0..N).for_each(|k| slopes[(i, k)] = row[k]);
+                    let row = row.iter().take(N).enumerate();
+                    row.for_each(|(k, slope)| slopes[(i, k)] = *slope);
                 }
                 i += 1;
             });
+        }
+        for i in C - self.ties.idle()..C {
+            values[i] = q[K + i];
+            slopes[(i, K + i)] = T::one();
         }
         (values, slopes)
     }
@@ -389,5 +406,3 @@ impl<T: Scalar, const N: usize, const K: usize> Tangent<T, N, K> {
         core::array::from_fn(|k| self.0[(coordinate, k)])
     }
 }
-
-const _: () = assert!(MOST_COORDINATES + MOST_RELATIONS <= MOST_LINKS);

@@ -103,7 +103,7 @@ pub enum LinkFault {
     },
     /// A number of relations that joints of so many independent coordinates do not have.
     #[error(
-        "coupled links: {relations} relations leave {independent} coordinates independent: possible are 1 to 6 relations for one, 1 to 4 or 6 for two, 1, 2 or 4 for three, 1 or 2 for four"
+        "coupled links: {relations} relations leave {independent} coordinates independent: a joint has 1 to 6 independent coordinates and 1 to 12 relations, and at most 16 of both together"
     )]
     Sizes {
         /// How many coordinates are independent.

@@ -11,8 +11,10 @@ pub(super) const BODIES: [&str; MOST_LINKS] = [
 
 /// Names of coordinates, of which K are independent: `q` of one.
 pub(super) const fn coordinates<const N: usize, const K: usize>() -> [&'static str; N] {
-    let independent = ["q_1", "q_2", "q_3", "q_4"];
-    let others = ["y_1", "y_2", "y_3", "y_4", "y_5", "y_6"];
+    let independent = ["q_1", "q_2", "q_3", "q_4", "q_5", "q_6"];
+    let others = [
+        "y_1", "y_2", "y_3", "y_4", "y_5", "y_6", "y_7", "y_8", "y_9", "y_10", "y_11", "y_12",
+    ];
     let mut names = ["q"; N];
     let mut k = 0;
     while k < N {

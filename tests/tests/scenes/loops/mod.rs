@@ -2,6 +2,7 @@
 
 mod acting;
 mod ends;
+mod extended;
 mod library;
 mod posture;
 

@@ -18,6 +18,7 @@ use hamel_runtime::joint::{Link, LinkMotion, Relation, Tie, linkage_length};
 use hamel_runtime::shown::Number;
 use nalgebra::Vector6;
 use newton::Loops;
+use search::Search;
 use span::{Unclear, algebra, basis, independent};
 
 /// A tie with how it is closed; couplings of sums are not closed by anything.
@@ -36,6 +37,8 @@ pub(super) struct Problem<'a> {
     pub(super) guess: Vec<f64>,
     /// Whether the scene says where it is.
     pub(super) given: Vec<bool>,
+    /// Where coordinates of which it does not say that are to be: from the least to the greatest value that limits leave.
+    pub(super) ranges: Vec<[f64; 2]>,
     /// Coordinates that the scene wants independent.
     pub(super) wanted: Vec<usize>,
     /// Coordinates whose rate it gives.
@@ -107,23 +110,25 @@ impl Problem<'_> {
         let wanted = |k: usize| self.wanted.contains(&k);
         let held: [&dyn Fn(usize) -> bool; 3] =
             [&|k| self.given[k] || wanted(k), &wanted, &|_| false];
+        // Where the file says nothing of positions, any posture will do.
+        let anywhere = !self.given.iter().any(|given| *given);
+        let is_sound = |q: &[f64]| {
+            let mut candidates = self.candidates.iter();
+            candidates.all(|own| self.refuse_turned(own, q).is_ok())
+        };
         let mut nearest = self.guess.clone();
         for held in held {
             let free: Vec<bool> = (0..self.names.len()).map(|k| !held(k)).collect();
-            match loops.closed(&self.guess, &free) {
+            let search = Search {
+                loops,
+                guess: &self.guess,
+                free: &free,
+                ranges: &self.ranges,
+                is_sound: &is_sound,
+            };
+            match search.posture(anywhere) {
                 Ok(found) => return Ok(found),
                 Err(found) => nearest = found,
-            }
-        }
-        // Where the file says nothing of positions, any posture will do.
-        if !self.given.iter().any(|given| *given) {
-            let free: Vec<bool> = (0..self.names.len()).map(|k| !wanted(k)).collect();
-            let is_sound = |q: &[f64]| {
-                let mut candidates = self.candidates.iter();
-                candidates.all(|own| self.refuse_turned(own, q).is_ok())
-            };
-            if let Some(found) = search::posture(loops, &self.guess, &free, is_sound) {
-                return Ok(found);
             }
         }
         let others = match self.given.iter().any(|given| *given) {

@@ -10,7 +10,7 @@ const STEPS: usize = 60;
 const LONGEST: f64 = 0.5;
 
 /// Residual, as part of the size of the linkage, at which a loop is closed.
-pub(super) const CLOSED: f64 = 1e-12;
+const CLOSED: f64 = 1e-12;
 
 /// Part of the largest singular value below which a direction of the relations is one that others imply.
 const IMPLIED: f64 = 1e-9;
@@ -27,7 +27,7 @@ pub(super) struct Loops<'l> {
 impl Loops<'_> {
     /// For each tie its relations: value and derivatives along all coordinates, as numbers.
     pub(super) fn rows(&self, q: &[f64]) -> Vec<Vec<(f64, Vec<f64>)>> {
-        let slides: Vec<bool> = (0..self.coordinates).map(|k| self.slides(k)).collect();
+        let units: Vec<f64> = (0..self.coordinates).map(|k| self.unit(k)).collect();
         let ties = self.ties.iter().map(|tie| {
             let mut rows = Vec::new();
             let lengths = lengths(tie, self.links);
@@ -37,10 +37,8 @@ impl Loops<'_> {
                 |(value, slopes): (f64, [f64; MOST_LINKS])| {
                     let is_length = lengths.get(rows.len()).is_some_and(|own| *own);
                     let scale = if is_length { 1.0 / self.length } else { 1.0 };
-                    let slopes = slopes.iter().zip(&slides);
-                    let slopes = slopes.map(|(slope, slides)| {
-                        slope * scale * if *slides { self.length } else { 1.0 }
-                    });
+                    let slopes = slopes.iter().zip(&units);
+                    let slopes = slopes.map(|(slope, unit)| slope * scale * unit);
                     rows.push((value * scale, slopes.collect()));
                 },
             );
@@ -53,6 +51,19 @@ impl Loops<'_> {
         let mut links = self.links.iter();
         let first = links.find(|link| link.coordinate == coordinate);
         first.is_some_and(|link| link.motion == LinkMotion::Slide)
+    }
+
+    /// What makes a number of a coordinate: 1 rad, or the length of the linkage.
+    pub(super) fn unit(&self, coordinate: usize) -> f64 {
+        match self.slides(coordinate) {
+            true => self.length,
+            false => 1.0,
+        }
+    }
+
+    /// Whether all ties hold.
+    pub(super) fn is_closed(&self, q: &[f64]) -> bool {
+        self.residual(q) <= CLOSED
     }
 
     /// Root of the sum of squares of all relations, as numbers.
@@ -76,7 +87,7 @@ impl Loops<'_> {
                 1.0
             };
             for (k, way) in step.iter().enumerate() {
-                q[k] += part * way * if self.slides(k) { self.length } else { 1.0 };
+                q[k] += part * way * self.unit(k);
             }
             let residual = self.residual(&q);
             if residual < best.0 {
@@ -108,19 +119,44 @@ impl Loops<'_> {
 
     /// The shortest step that solves the relations to first order.
     fn step(&self, q: &[f64], free: &[bool]) -> Option<DVector<f64>> {
+        let (values, slopes) = self.linear(q, free)?;
+        let svd = slopes.svd(true, true);
+        let largest = svd.singular_values.max();
+        svd.solve(&-values, IMPLIED * largest).ok()
+    }
+
+    /// The way from q to `aim` in free coordinates, but for what leads off the ties to first order.
+    pub(super) fn tangent(&self, q: &[f64], aim: &[f64], free: &[bool]) -> Option<Vec<f64>> {
+        let (_, slopes) = self.linear(q, free)?;
+        let way = |k: usize| match free[k] {
+            true => (aim[k] - q[k]) / self.unit(k),
+            false => 0.0,
+        };
+        let way = DVector::from_fn(self.coordinates, |k, _| way(k));
+        let svd = slopes.svd(false, true);
+        let least = IMPLIED * svd.singular_values.max();
+        let rows = svd.v_t?;
+        let off = svd.singular_values.iter().zip(rows.row_iter());
+        let off = off.filter(|(value, _)| **value > least);
+        let along = off.fold(way.clone(), |left, (_, row)| {
+            left - row.transpose() * (row * &way)[0]
+        });
+        let along = along.iter().enumerate();
+        Some(along.map(|(k, way)| way * self.unit(k)).collect())
+    }
+
+    /// The values of all relations, and their derivatives along free coordinates, if they are finite.
+    fn linear(&self, q: &[f64], free: &[bool]) -> Option<(DVector<f64>, DMatrix<f64>)> {
         let rows: Vec<(f64, Vec<f64>)> = self.rows(q).into_iter().flatten().collect();
-        let values = DVector::from_iterator(rows.len(), rows.iter().map(|(value, _)| -value));
+        let values = DVector::from_iterator(rows.len(), rows.iter().map(|(value, _)| *value));
         let slope = |i: usize, k: usize| match free[k] {
             true => rows[i].1[k],
             false => 0.0,
         };
         let slopes = DMatrix::from_fn(rows.len(), self.coordinates, slope);
-        if !slopes.iter().chain(&values).all(|entry| entry.is_finite()) {
-            return None;
-        }
-        let svd = slopes.svd(true, true);
-        let largest = svd.singular_values.max();
-        svd.solve(&values, IMPLIED * largest).ok()
+        let mut all = slopes.iter().chain(&values);
+        all.all(|entry| entry.is_finite())
+            .then_some((values, slopes))
     }
 }
 

@@ -4,7 +4,7 @@ use super::Problem;
 use super::span::independent;
 use crate::diagnostics::Diagnostic;
 use crate::suggest::all_of;
-use hamel_runtime::joint::CLOSED_SIZES;
+use hamel_runtime::joint::{MOST_INDEPENDENT, MOST_LINKS, MOST_RELATIONS, most_relations};
 
 impl Problem<'_> {
     /// The coordinates, the independent ones first, each in the order of the file.
@@ -27,20 +27,13 @@ impl Problem<'_> {
             1 => String::from("1 degree"),
             more => format!("{more} degrees"),
         };
-        let possible = CLOSED_SIZES.iter().find(|(own, _)| *own == freedoms);
-        if !possible.is_some_and(|(_, relations)| relations.contains(&selected.len())) {
+        if selected.len() > most_relations(freedoms) {
             let why = format!(
                 "with what shares joints with it, it has {degrees} of freedom and {} independent relations, which no joint has",
                 selected.len()
             );
-            let sizes = CLOSED_SIZES.iter().map(|(own, relations)| {
-                let relations: Vec<String> = relations.iter().map(usize::to_string).collect();
-                format!("{own} with {}", relations.join(", "))
-            });
-            let sizes: Vec<String> = sizes.collect();
             let help = format!(
-                "joints have degrees of freedom with relations: {}",
-                sizes.join("; ")
+                "a joint has at most {MOST_INDEPENDENT} degrees of freedom and {MOST_RELATIONS} relations, and {MOST_LINKS} of both together"
             );
             return Err(refuse(&why).help(help));
         }
