@@ -119,6 +119,17 @@ fn motions_are_those_of_multipliers() {
     }
 }
 
+/// Refined equations leave the roundings of the steps alone.
+#[test]
+fn refined_motions_are_within_ten_floors() {
+    for (name, _) in CASES {
+        let scene = scene(name);
+        let mut refined = Refined::new(Arc::clone(&scene.mechanism));
+        check_by(&scene, &mut refined, Form::Lagrangian, 10.0);
+        check_by(&scene, &mut refined, Form::Hamiltonian, 30.0);
+    }
+}
+
 /// Twice the rounding of sums of terms below 1 m, which the relations of these linkages are.
 const CLOSED: f64 = 2e-15;
 
