@@ -3,16 +3,15 @@
 mod acting;
 mod ends;
 mod extended;
+mod kernels;
 mod library;
 mod posture;
 
 use hamel::dynamics::{Dynamics, ForwardDerivatives, Recursive, Reference};
 use hamel::integrate::{Form, Method, Options, Scheme, State, integrate, no_inputs, no_observer};
-use hamel::joint::Coupled;
 use hamel::nalgebra::Vector3;
 use hamel_scene::urdf::{self, Import};
-use hamel_scene::{Coupling, Located, Motion, Position, Scene, SceneDescription};
-use hamel_tests::laws::{self, Reach};
+use hamel_scene::{Located, Motion, Position, Scene, SceneDescription};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -224,36 +223,6 @@ fn derivatives_are_those_of_differences() {
                 );
             }
         }
-    }
-}
-
-/// How far the independent coordinates go, which end all around: less than at any of these linkages.
-const REACH: f64 = 0.2;
-
-/// The laws that the joints of the library are held to, by dual numbers, at random configurations.
-#[test]
-fn kernels_of_loops_obey_the_laws_of_joints() {
-    fn check<const N: usize, const K: usize, const C: usize>(coupling: &Coupling) {
-        let (links, ties, start) = (&coupling.links, &coupling.ties, &coupling.start);
-        let joint = Coupled::<N, K, C>::closed(links, ties, start, coupling.ports);
-        let joint = joint.expect("a linkage");
-        for body in 0..links.len() {
-            laws::check_within(&joint.member(body).expect("a body"), Reach::Around(REACH));
-        }
-    }
-    for (name, check) in [
-        ("slider_crank", check::<3, 1, 2> as fn(&Coupling)),
-        ("rssr", check::<4, 1, 3>),
-        ("ankle", check::<8, 2, 6>),
-        ("parallel_chains", check::<5, 2, 3>),
-    ] {
-        let scene = import(name, [0.0, 0.0, -9.81]).scene;
-        let coupled = scene.coupled().expect("it closes");
-        let mut couplings = coupled
-            .bodies
-            .iter()
-            .filter_map(|body| body.joint.coupling.as_ref());
-        check(couplings.next().expect("a loop"));
     }
 }
 
