@@ -45,13 +45,13 @@ impl Tree<'_> {
                 (parent.twist.clone(), parent.rate.clone())
             });
             let base = carried(&body.steps, &from.0);
-            let twist = base.plus(&body.velocity);
+            let twist = base.plus(&body.velocity).settled();
             let inertia = self.links[index].inertia.on_graph();
             motions.push(Motion {
-                rate: spins[index].rate(&linear[index], &twist.linear),
+                rate: spins[index].rate(&linear[index], &twist.linear).settled(),
                 twist,
-                carried: base,
-                carried_rate: carried(&body.steps, &from.1),
+                carried: base.settled(),
+                carried_rate: carried(&body.steps, &from.1).settled(),
                 wrench: spins[index].wrench(&inertia, &linear[index]),
             });
         }
