@@ -49,10 +49,10 @@ pub struct Pairs<'a> {
     pub masses: &'a [[usize; 3]],
     /// Speeds whose rates are given, with the columns of these rates.
     pub held: &'a [[usize; 2]],
-    /// Columns of the right-hand sides that are not 0 when a speed is eliminated: the speed, the first column, the one behind the last; the last speeds first.
-    pub inward: &'a [[usize; 3]],
-    /// The same when a speed is found, the first speeds first.
-    pub outward: &'a [[usize; 3]],
+    /// Columns of the right-hand sides that are not 0: from the first to behind the last.
+    pub columns: &'a [[usize; 2]],
+    /// Entries that are added to what is solved: row, column, place in `work`.
+    pub followed: &'a [[usize; 3]],
     /// The column from which as many as there are speeds are M̄⁻¹, of which the upper triangle is found: the other one is its mirror image.
     pub mirrored: Option<usize>,
 }
@@ -60,9 +60,6 @@ pub struct Pairs<'a> {
 /// Numbers of a twist or wrench, and of what a unit or a speed has beside it.
 const SIX: usize = 6;
 const NINE: usize = 9;
-
-/// Columns that are solved for together.
-const BLOCK: usize = 16;
 
 impl Pairs<'_> {
     /// M̄ by rows, from `work` that has six numbers for each speed alone.
@@ -96,6 +93,7 @@ impl Pairs<'_> {
         self.hold(matrix, rows, width);
         self.factorise(matrix);
         self.solve(matrix, rows, width);
+        add(self.followed, work, rows, width);
     }
 
     /// What forward dynamics is solved for: derivatives of inverse dynamics, S̄ᵀ and the rates; the number of degrees of freedom.
@@ -207,26 +205,21 @@ impl Pairs<'_> {
         }
     }
 
-    /// `M̄⁻¹` times the columns of the tables.
+    /// `M̄⁻¹` times the columns of the tables, as many at once as registers take.
     fn solve<T: Scalar>(&self, factors: &[T], rows: &mut [T], width: usize) {
-        let size = self.above.len();
-        for &[k, from, to] in self.inward {
-            let (before, own) = rows.split_at_mut(k * width);
-            let mut next = self.above[k];
-            while let Some(i) = next {
-                subtract(factors[k * size + i], &own[from..to], &mut before[i * width + from..]);
-                next = self.above[i];
-            }
-        }
-        for &[k, from, to] in self.outward {
-            let (before, own) = rows.split_at_mut(k * width);
-            let inverse = factors[k * size + k];
-            for (part, own) in own[from..to].chunks_mut(BLOCK).enumerate() {
-                let from = from + BLOCK * part;
-                self.find(k, &factors[k * size..], inverse, own, |i| &before[i * width + from..]);
+        for &[from, to] in self.columns {
+            let mut from = from;
+            while from < to {
+                from += match to - from {
+                    16.. => self.solve_block::<T, 16>(factors, rows, [width, from]),
+                    8.. => self.solve_block::<T, 8>(factors, rows, [width, from]),
+                    4.. => self.solve_block::<T, 4>(factors, rows, [width, from]),
+                    _ => self.solve_block::<T, 1>(factors, rows, [width, from]),
+                };
             }
         }
         if let Some(first) = self.mirrored {
+            let size = self.above.len();
             for row in 0..size {
                 for column in 0..row {
                     rows[row * width + first + column] = rows[column * width + first + row];
@@ -234,41 +227,56 @@ impl Pairs<'_> {
             }
         }
     }
-}
 
-impl Pairs<'_> {
-    /// Speeds from their right-hand sides, where those above are known: as many as there are registers for at once.
-    #[inline(always)]
-    fn find<'a, T: Scalar>(
+    /// The same of columns beside each other; how many these are.
+    fn solve_block<T: Scalar, const N: usize>(
         &self,
-        k: usize,
         factors: &[T],
-        inverse: T,
-        own: &mut [T],
-        above: impl Fn(usize) -> &'a [T],
-    ) {
-        let Ok(block) = <&mut [T; BLOCK]>::try_from(&mut *own) else {
-            own.iter_mut().for_each(|entry| *entry *= inverse);
+        rows: &mut [T],
+        [width, from]: [usize; 2],
+    ) -> usize {
+        let size = self.above.len();
+        // A column of M̄⁻¹ is a unit below its diagonal, and not wanted there.
+        let wanted = self.mirrored.and_then(|first| (from + N).checked_sub(first));
+        let wanted = wanted.filter(|&wanted| wanted > 0).map_or(size, |wanted| wanted.min(size));
+        for k in (0..wanted).rev() {
+            let own: [T; N] = block(rows, k * width + from);
             let mut next = self.above[k];
             while let Some(i) = next {
-                subtract(factors[i], above(i), own);
+                let place = i * width + from;
+                let sums = less(block(rows, place), factors[k * size + i], &own);
+                rows[place..place + N].copy_from_slice(&sums);
                 next = self.above[i];
             }
-            return;
-        };
-        let mut sums = block.map(|entry| entry * inverse);
-        let mut next = self.above[k];
-        while let Some(i) = next {
-            let factor = -factors[i];
-            if let Some(others) = above(i).first_chunk::<BLOCK>() {
-                for (sum, &other) in sums.iter_mut().zip(others) {
-                    *sum = factor.mul_add(other, *sum);
-                }
-            }
-            next = self.above[i];
         }
-        *block = sums;
+        for k in 0..wanted {
+            let inverse = factors[k * size + k];
+            let place = k * width + from;
+            let mut own: [T; N] = block(rows, place).map(|entry| entry * inverse);
+            let mut next = self.above[k];
+            while let Some(i) = next {
+                own = less(own, factors[k * size + i], &block(rows, i * width + from));
+                next = self.above[i];
+            }
+            rows[place..place + N].copy_from_slice(&own);
+        }
+        N
     }
+}
+
+#[inline(always)]
+fn block<T: Scalar, const N: usize>(rows: &[T], place: usize) -> [T; N] {
+    let found = rows[place..].first_chunk();
+    found.copied().unwrap_or([T::zero(); N])
+}
+
+#[inline(always)]
+fn less<T: Scalar, const N: usize>(mut sums: [T; N], factor: T, from: &[T; N]) -> [T; N] {
+    let factor = -factor;
+    for (sum, &other) in sums.iter_mut().zip(from) {
+        *sum = factor.mul_add(other, *sum);
+    }
+    sums
 }
 
 impl Pairing {
@@ -285,13 +293,6 @@ fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
     let mut pairs = a.iter().zip(b);
     let first = pairs.next().map_or(T::zero(), |(&a, &b)| a * b);
     pairs.fold(first, |sum, (&a, &b)| a.mul_add(b, sum))
-}
-
-fn subtract<T: Scalar>(factor: T, from: &[T], row: &mut [T]) {
-    let factor = -factor;
-    for (entry, &other) in row.iter_mut().zip(from) {
-        *entry = factor.mul_add(other, *entry);
-    }
 }
 
 fn add<T: Scalar>(entries: &[[usize; 3]], work: &[T], rows: &mut [T], width: usize) {

@@ -44,10 +44,10 @@ pub struct Tables {
     pub masses: Vec<[usize; 3]>,
     /// Speeds whose rates are given, with the columns of these rates.
     pub held: Vec<[usize; 2]>,
-    /// Columns that are not 0 when a speed is eliminated.
-    pub inward: Vec<[usize; 3]>,
-    /// Columns that are not 0 when a speed is found.
-    pub outward: Vec<[usize; 3]>,
+    /// Columns of right-hand sides that are not 0.
+    pub columns: Vec<[usize; 2]>,
+    /// Entries that are added to what is solved: row, column, place among the numbers of the bodies.
+    pub followed: Vec<[usize; 3]>,
     /// Where M̄⁻¹ begins, of which half is found.
     pub mirrored: Option<usize>,
 }
@@ -62,8 +62,8 @@ impl Tables {
             entries: &self.entries,
             masses: &self.masses,
             held: &self.held,
-            inward: &self.inward,
-            outward: &self.outward,
+            columns: &self.columns,
+            followed: &self.followed,
             mirrored: self.mirrored,
         }
     }
@@ -126,12 +126,13 @@ impl Tables {
             count.multiplications += carriers + carriers * (carriers + 1) / 2;
             count.additions += carriers * (carriers + 1) / 2;
         }
-        for &[speed, from, to] in self.inward.iter().chain(&self.outward) {
-            count.multiplications += above(speed).count() * (to - from);
-            count.additions += above(speed).count() * (to - from);
+        let pairs = |speeds: usize| (0..speeds).map(|k| above(k).count()).sum::<usize>();
+        for column in self.columns.iter().flat_map(|&[from, to]| from..to) {
+            let place = self.mirrored.and_then(|first| column.checked_sub(first));
+            let speeds = place.map_or(self.above.len(), |place| place + 1);
+            count.multiplications += 2 * pairs(speeds) + speeds;
+            count.additions += 2 * pairs(speeds);
         }
-        let found = self.outward.iter().map(|[_, from, to]| to - from);
-        count.multiplications += found.sum::<usize>();
     }
 }
 

@@ -5,7 +5,7 @@ use super::point::{BOUND, Evaluate, Point, of_solutions};
 use hamel::dynamics::{
     Dynamics, ForwardDerivatives, InverseDerivatives, MassMatrix, Recursive, Sensitivity,
 };
-use hamel_compiler::functions::{Kind, Loops};
+use hamel_compiler::functions::Kind;
 use std::sync::Arc;
 
 /// Size of the terms that cancel where a matrix of derivatives is 0, such as ∂τ̄/∂v̄ of a pendulum: speeds and efforts of random states are about 1.

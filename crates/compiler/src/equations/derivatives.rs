@@ -45,9 +45,10 @@ impl Tree<'_> {
         self.needed_slopes(&rates, None).concat()
     }
 
-    /// The derivatives of what v̄̇ takes beside the efforts of the argument and what acts on the mechanism.
+    /// The derivatives of what v̄̇ takes beside the efforts of the argument and what acts on the mechanism; with efforts, v̄̇ is solved for, and what bodies follow
+    /// by themselves ([`Tree::followed_variations`]) is left out.
     pub(super) fn needed_slopes(&self, rates: &[Sym], efforts: Option<Argument>) -> Rows {
-        let mut rows = self.rigid_slopes(rates);
+        let mut rows = self.rigid_slopes(rates, efforts.is_some());
         self.add_acting_slopes(rates, efforts, &mut rows);
         rows
     }
@@ -109,10 +110,10 @@ impl Tree<'_> {
     }
 
     /// The derivatives of what moving the bodies takes.
-    fn rigid_slopes(&self, rates: &[Sym]) -> Rows {
+    fn rigid_slopes(&self, rates: &[Sym], solved: bool) -> Rows {
         let [_, freedoms, speeds] = self.model.sizes();
         let mut rows = vec![vec![Sym::zero(); freedoms + speeds]; speeds];
-        self.carry(rates, |index, carried, variations| {
+        self.carry((rates, solved), |index, carried, variations| {
             self.climb(index, carried, variations, &mut rows);
         });
         rows
@@ -122,18 +123,11 @@ impl Tree<'_> {
     /// behind them.
     pub(super) fn carry(
         &self,
-        rates: &[Sym],
+        (rates, solved): (&[Sym], bool),
         mut visit: impl FnMut(usize, &[Carried], &[Vec<Variation>]),
     ) {
         let motions = self.moved(rates);
-        let variations: Vec<Vec<Variation>> = motions
-            .iter()
-            .enumerate()
-            .map(|(index, motion)| {
-                section(number(index), "variation");
-                self.variations(index, motion, rates)
-            })
-            .collect();
+        let variations = self.all_variations(&motions, rates, solved);
         let bodies = motions.iter().zip(&self.links);
         let mut carried: Vec<Carried> = bodies
             .map(|(motion, link)| {

@@ -39,8 +39,8 @@ impl<'a> Layout<'a> {
                 entries: vec![],
                 masses: vec![],
                 held: vec![],
-                inward: vec![],
-                outward: vec![],
+                columns: vec![],
+                followed: vec![],
                 mirrored: None,
             },
         }
@@ -75,6 +75,11 @@ impl<'a> Layout<'a> {
             }
         }
         self.others(entries);
+        let followed = rates.map(|rates| self.tree.followed_variations(rates));
+        for (column, row, value) in followed.into_iter().flatten() {
+            self.tables.followed.push([row, column, self.work.len()]);
+            self.work.push(value.settled());
+        }
     }
 
     fn contribution(&mut self, index: usize, (seen, shown): Contribution<'_>) {
@@ -163,50 +168,36 @@ impl<'a> Layout<'a> {
     /// The numbers and the tables.
     pub(super) fn finish(mut self) -> super::pairs::Paired {
         if self.tables.product == Product::Forward {
-            let filled = self.filled();
-            self.solution(filled);
+            let [_, freedoms, speeds] = self.tree.model.sizes();
+            let plain = self.tables.held.is_empty() && self.is_plain();
+            self.tables.mirrored = plain.then_some(freedoms + speeds);
+            self.tables.columns = spans(&self.filled(), self.tables.mirrored);
         }
         (self.work, self.tables)
     }
 
-    /// Which entries of the right-hand sides are not 0.
-    fn filled(&self) -> Vec<Vec<bool>> {
+    /// Which columns of the right-hand sides are not 0.
+    fn filled(&self) -> Vec<bool> {
         let [rows, width] = self.tables.size;
+        let mut filled = vec![false; width];
         // Numbers that tell where something is: sums of what is positive are never 0.
-        let work: Vec<f64> = self.work.iter().map(|sym| f64::from(u8::from(!sym.is_zero()))).collect();
+        let marks = self.work.iter().map(|sym| f64::from(u8::from(!sym.is_zero())));
+        let work: Vec<f64> = marks.collect();
         let mut marks = vec![0.0; rows * width];
-        self.tables.pairs().right_hand_sides(&work, &mut marks, width);
-        let row = |row: &[f64]| row.iter().map(|&mark| mark != 0.0).collect();
-        marks.chunks(width.max(1)).map(row).collect()
-    }
-
-    /// Which columns are not 0 in which row, as M̄ is eliminated and speeds are found.
-    fn solution(&mut self, mut filled: Vec<Vec<bool>>) {
-        let [size, width] = self.tables.size;
-        let [_, freedoms, speeds] = self.tree.model.sizes();
-        if !self.tables.held.is_empty() {
-            let all = |k: usize| [k, 0, width - 1];
-            self.tables.inward = (0..size).rev().map(all).collect();
-            self.tables.outward = (0..size).map(all).collect();
-            return;
-        }
-        let above = self.tables.above.clone();
-        let carriers = |k: usize| std::iter::successors(above[k], |&i| above[i]);
-        let first = freedoms + speeds;
-        for k in (0..size).rev() {
-            let spans = spans(&filled[k][..width - 1]).into_iter();
-            self.tables.inward.extend(spans.filter(|_| above[k].is_some()).map(|[a, b]| [k, a, b]));
-            carriers(k).for_each(|i| merge(&mut filled, i, k));
-        }
-        self.tables.mirrored = self.is_plain().then_some(first);
-        for k in 0..size {
-            carriers(k).for_each(|i| merge(&mut filled, k, i));
-            if self.tables.mirrored.is_some() {
-                filled[k][first..first + k].fill(false);
+        self.tables
+            .pairs()
+            .right_hand_sides(&work, &mut marks, width);
+        for row in marks.chunks(width) {
+            for (filled, &mark) in filled.iter_mut().zip(row) {
+                *filled |= mark != 0.0;
             }
-            let spans = spans(&filled[k][..width - 1]).into_iter();
-            self.tables.outward.extend(spans.map(|[a, b]| [k, a, b]));
         }
+        for &[_, column] in &self.tables.held {
+            filled[column] = true;
+        }
+        // The rates are found already.
+        filled[width - 1] = false;
+        filled
     }
 
     /// Whether efforts are generalised forces of the speeds, one by one: S̄ = 1.
@@ -223,20 +214,12 @@ impl<'a> Layout<'a> {
     }
 }
 
-fn merge(filled: &mut [Vec<bool>], into: usize, from: usize) {
-    let other = filled[from].clone();
-    filled[into].iter_mut().zip(other).for_each(|(own, other)| *own |= other);
-}
-
-/// Columns that are not marked, between others, with which one loop costs less than two.
-const GAP: usize = 0;
-
-/// What is marked, from columns to behind others.
-fn spans(marks: &[bool]) -> Vec<[usize; 2]> {
+/// What is marked, from the first to behind the last; what begins at `start` stands alone.
+fn spans(marks: &[bool], start: Option<usize>) -> Vec<[usize; 2]> {
     let mut all: Vec<[usize; 2]> = vec![];
     for column in (0..marks.len()).filter(|&column| marks[column]) {
         match all.last_mut() {
-            Some(last) if column <= last[1] + GAP => last[1] = column + 1,
+            Some(last) if column == last[1] && start != Some(column) => last[1] = column + 1,
             _ => all.push([column, column + 1]),
         }
     }

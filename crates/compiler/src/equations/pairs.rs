@@ -111,7 +111,7 @@ impl Tree<'_> {
         let [_, freedoms, speeds] = self.model.sizes();
         let frames = self.root_frames();
         let mut found = self.nothing(freedoms + speeds);
-        self.carry(rates, |index, carried, variations| {
+        self.carry((rates, efforts.is_some()), |index, carried, variations| {
             let mut sum: Option<Shown> = None;
             let mut seen = vec![];
             for body in self.model.carried(index) {

@@ -41,6 +41,7 @@ impl Written {
         let above = tables.above.iter().map(|&above| vec![optional(above)]);
         let plain = |rows: &[[usize; 3]]| rows.iter().map(|row| row.map(number).to_vec()).collect();
         let held = tables.held.iter().map(|row| row.map(number).to_vec());
+        let columns = tables.columns.iter().map(|row| row.map(number).to_vec());
         let all: [(&'static str, usize, Vec<Vec<i64>>); 8] = [
             ("joints", 6, joints.collect()),
             ("bodies", 3, bodies.collect()),
@@ -48,8 +49,8 @@ impl Written {
             ("entries", 3, plain(&tables.entries)),
             ("masses", 3, plain(&tables.masses)),
             ("held", 2, held.collect()),
-            ("inward", 3, plain(&tables.inward)),
-            ("outward", 3, plain(&tables.outward)),
+            ("columns", 2, columns.collect()),
+            ("followed", 3, plain(&tables.followed)),
         ];
         Self {
             helper: tables.product.name(),

@@ -33,13 +33,13 @@ fn constants(tables: &Tables) -> TokenStream {
     let joints = tables.joints.iter().map(pairing);
     let bodies = tables.bodies.iter().map(carrying);
     let above = tables.above.iter().map(|&speed| optional(speed));
-    let [entries, masses, inward, outward] = [
+    let [entries, masses, followed] = [
         &tables.entries,
         &tables.masses,
-        &tables.inward,
-        &tables.outward,
+        &tables.followed,
     ]
     .map(|table| table.iter().map(|row| numbers(row)).collect::<Vec<_>>());
+    let columns = tables.columns.iter().map(|row| numbers(row));
     let held = tables.held.iter().map(|row| numbers(row));
     let mirrored = optional(tables.mirrored);
     quote! {
@@ -50,8 +50,8 @@ fn constants(tables: &Tables) -> TokenStream {
             entries: &[#(#entries),*],
             masses: &[#(#masses),*],
             held: &[#(#held),*],
-            inward: &[#(#inward),*],
-            outward: &[#(#outward),*],
+            columns: &[#(#columns),*],
+            followed: &[#(#followed),*],
             mirrored: #mirrored,
         };
     }
