@@ -84,7 +84,9 @@ impl Pairs<'_> {
         }
         let freedoms = self.right_hand_sides(work, rows, width);
         for row in rows.chunks_exact_mut(width) {
-            row[..freedoms + size].iter_mut().for_each(|entry| *entry = -*entry);
+            row[..freedoms + size]
+                .iter_mut()
+                .for_each(|entry| *entry = -*entry);
         }
         self.fill_mass(work, matrix, |joint, speed| {
             let units = joint.freedoms[1] + joint.speeds[1];
@@ -116,7 +118,11 @@ impl Pairs<'_> {
         for joint in self.joints {
             let mut carrier = joint.parent;
             while let Some(body) = carrier {
-                let Carrying { joint: above, parent, seen } = self.bodies[body];
+                let Carrying {
+                    joint: above,
+                    parent,
+                    seen,
+                } = self.bodies[body];
                 let [other, others] = self.joints[above].speeds;
                 for speed in 0..joint.speeds[1] {
                     let momentum = &work[momentum(joint, speed)..][..SIX];
@@ -138,7 +144,11 @@ impl Pairs<'_> {
             let units = joint.freedoms[1] + joint.speeds[1];
             let mut carrier = joint.parent;
             while let Some(body) = carrier {
-                let Carrying { joint: above, parent, seen } = self.bodies[body];
+                let Carrying {
+                    joint: above,
+                    parent,
+                    seen,
+                } = self.bodies[body];
                 let above = &self.joints[above];
                 for k in 0..above.speeds[1] {
                     let column = &work[seen + SIX * k..][..SIX];
@@ -237,8 +247,12 @@ impl Pairs<'_> {
     ) -> usize {
         let size = self.above.len();
         // A column of M̄⁻¹ is a unit below its diagonal, and not wanted there.
-        let wanted = self.mirrored.and_then(|first| (from + N).checked_sub(first));
-        let wanted = wanted.filter(|&wanted| wanted > 0).map_or(size, |wanted| wanted.min(size));
+        let wanted = self
+            .mirrored
+            .and_then(|first| (from + N).checked_sub(first));
+        let wanted = wanted
+            .filter(|&wanted| wanted > 0)
+            .map_or(size, |wanted| wanted.min(size));
         for k in (0..wanted).rev() {
             let own: [T; N] = block(rows, k * width + from);
             let mut next = self.above[k];

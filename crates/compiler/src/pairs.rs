@@ -77,8 +77,7 @@ impl Tables {
             Product::Inverse => self.pairs().inverse(work, &mut results, width),
             Product::Forward => {
                 let mut matrix = vec![0.0; rows * rows];
-                self.pairs()
-                    .forward(work, &mut matrix, &mut results, width);
+                self.pairs().forward(work, &mut matrix, &mut results, width);
             }
         }
         results

@@ -49,7 +49,11 @@ impl Function {
     /// Its operations.
     pub fn operations(&self) -> Operations {
         let mut operations = self.operations_of_bodies();
-        operations += self.pairs.as_ref().map(Tables::operations).unwrap_or_default();
+        operations += self
+            .pairs
+            .as_ref()
+            .map(Tables::operations)
+            .unwrap_or_default();
         operations
     }
 

@@ -130,7 +130,9 @@ impl Tree<'_> {
         let variations = self.all_variations(&motions, rates, solved);
         let bodies = motions.iter().zip(&self.links);
         let mut carried: Vec<Carried> = bodies
-            .map(|(motion, link)| {
+            .enumerate()
+            .map(|(index, (motion, link))| {
+                section(number(index), "slope");
                 let inertia = link.inertia.on_graph();
                 Carried {
                     coriolis: Coriolis::of(&inertia, &motion.twist),
@@ -180,7 +182,13 @@ impl Tree<'_> {
     }
 
     /// Rows and columns of one body's joint against itself, and what the body shows.
-    pub(super) fn shown(&self, index: usize, carried: &Carried, own: &[Variation], rows: &mut Rows) -> Shown {
+    pub(super) fn shown(
+        &self,
+        index: usize,
+        carried: &Carried,
+        own: &[Variation],
+        rows: &mut Rows,
+    ) -> Shown {
         let body = &self.bodies[index];
         let mut raised: Vec<Wrench> = own.iter().map(|own| carried.raised(own)).collect();
         let gradient = self.joint_at(index, &[]).effort_gradient(&carried.wrench);

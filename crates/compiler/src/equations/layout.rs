@@ -2,8 +2,8 @@
 //!
 //! All numbers of a joint follow each other: like joints leave them at like places.
 
-use super::Tree;
-use crate::graph::Sym;
+use super::{Tree, number};
+use crate::graph::{Sym, section};
 use crate::pairs::{Product, Tables};
 use hamel_compiled::{Carrying, Pairing};
 use num_traits::{One, Zero};
@@ -47,7 +47,12 @@ impl<'a> Layout<'a> {
     }
 
     /// The contributions of all joints, one per body, or none; after those of a joint the entries between its own units.
-    pub(super) fn place<'b>(&mut self, all: impl Iterator<Item = Contribution<'b>>, entries: Entries<'_>, rates: Option<&[Sym]>) {
+    pub(super) fn place<'b>(
+        &mut self,
+        all: impl Iterator<Item = Contribution<'b>>,
+        entries: Entries<'_>,
+        rates: Option<&[Sym]>,
+    ) {
         let is_mass = self.tables.product == Product::Mass;
         let mut all = all.fuse();
         for (index, body) in self.tree.bodies.iter().enumerate() {
@@ -55,6 +60,7 @@ impl<'a> Layout<'a> {
             if !self.tree.model.bodies[index].leads() {
                 continue;
             }
+            section(number(index), "pairs");
             if let Some(contribution) = contribution {
                 self.contribution(index, contribution);
             }
@@ -150,12 +156,18 @@ impl<'a> Layout<'a> {
         let [_, freedoms, speeds] = tree.model.sizes();
         let (mut by_speed, mut by_column) = (vec![0; speeds], vec![0; freedoms + speeds]);
         for (index, body) in tree.joints() {
-            body.share.speeds.clone().for_each(|speed| by_speed[speed] = index);
-            tree.places(index).into_iter().for_each(|place| by_column[place] = index);
+            body.share
+                .speeds
+                .clone()
+                .for_each(|speed| by_speed[speed] = index);
+            tree.places(index)
+                .into_iter()
+                .for_each(|place| by_column[place] = index);
         }
         let is_mass = self.tables.product == Product::Mass;
         for row in 0..speeds {
-            let columns = (0..freedoms + speeds).filter(|&c| !is_mass && by_column[c] != by_speed[row]);
+            let columns =
+                (0..freedoms + speeds).filter(|&c| !is_mass && by_column[c] != by_speed[row]);
             for column in columns {
                 self.entry([row, column], rows[row][column]);
             }
@@ -181,7 +193,10 @@ impl<'a> Layout<'a> {
         let [rows, width] = self.tables.size;
         let mut filled = vec![false; width];
         // Numbers that tell where something is: sums of what is positive are never 0.
-        let marks = self.work.iter().map(|sym| f64::from(u8::from(!sym.is_zero())));
+        let marks = self
+            .work
+            .iter()
+            .map(|sym| f64::from(u8::from(!sym.is_zero())));
         let work: Vec<f64> = marks.collect();
         let mut marks = vec![0.0; rows * width];
         self.tables
@@ -209,7 +224,9 @@ impl<'a> Layout<'a> {
         self.tree.bodies.iter().all(|body| {
             let rows = body.basis.iter().enumerate();
             body.basis.len() == body.speeds.len()
-                && rows.into_iter().all(|(i, row)| (0..row.len()).all(|j| unit(i, j, row[j])))
+                && rows
+                    .into_iter()
+                    .all(|(i, row)| (0..row.len()).all(|j| unit(i, j, row[j])))
         })
     }
 }

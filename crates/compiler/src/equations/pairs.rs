@@ -4,8 +4,8 @@
 //! to itself, and what elements, dampers and rotors do, is found here entry by entry.
 
 use super::composite::Matrix;
-use super::layout::Layout;
 use super::derivatives::{Rows, Shown};
+use super::layout::Layout;
 use super::variation::Variation;
 use super::{Tree, number, to_parent, wrench_to_parent};
 use crate::graph::{Argument, Sym, section};
@@ -46,7 +46,11 @@ impl Tree<'_> {
             let mut seen = vec![];
             for body in self.model.carried(index) {
                 let columns = &self.bodies[body].columns;
-                self.own_block(body, columns.iter().map(|x| composites[body].of(x)), &mut found.matrix);
+                self.own_block(
+                    body,
+                    columns.iter().map(|x| composites[body].of(x)),
+                    &mut found.matrix,
+                );
                 section(number(body), "pairs");
                 for (sum, column) in momenta.iter_mut().zip(columns) {
                     let own = wrench_to_parent(&frames[body], &composites[body].of(column));
@@ -203,18 +207,27 @@ impl Tree<'_> {
             }
             places.push((rotation.map(Sym::settled), origin.map(Sym::settled)));
         }
-        let frame = |(rotation, origin)| simplified([Step::Shift(origin), Step::rotation(&rotation)]);
+        let frame =
+            |(rotation, origin)| simplified([Step::Shift(origin), Step::rotation(&rotation)]);
         places.into_iter().map(frame).collect()
     }
 
     /// X̄ at the root.
     fn seen_columns(&self, body: usize, frame: &[Step]) -> Vec<Sym> {
         let columns = self.bodies[body].columns.iter();
-        columns.flat_map(|column| of_twist(&at_root(frame, column))).collect()
+        columns
+            .flat_map(|column| of_twist(&at_root(frame, column)))
+            .collect()
     }
 
     /// The numbers of the bodies in order, body after body, and the tables.
-    fn tables(&self, product: Product, size: [usize; 2], found: Found, rates: Option<Vec<Sym>>) -> Paired {
+    fn tables(
+        &self,
+        product: Product,
+        size: [usize; 2],
+        found: Found,
+        rates: Option<Vec<Sym>>,
+    ) -> Paired {
         let mut layout = Layout::new(self, product, size);
         let all = found.contributions.iter();
         let all = all.map(|own| (&own.seen[..], &own.shown[..]));

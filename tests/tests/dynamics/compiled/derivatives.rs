@@ -46,7 +46,9 @@ fn long_chains_have_all_functions() {
     }
     let (short, long) = written.split_at(Kind::ALL.len());
     for ((kind, short), long) in Kind::ALL.iter().zip(short).zip(long) {
-        println!("{kind:?}: {short} operations are written, {long} of the chain that is twice as long");
+        println!(
+            "{kind:?}: {short} operations are written, {long} of the chain that is twice as long"
+        );
         assert!(*long <= 2 * short, "{kind:?}: {short}, {long}");
     }
 }

@@ -1,7 +1,7 @@
 //! What functions use: names and arguments that they read, and functions of the runtime that C does not have, which a module brings along.
 
-use super::super::{Function, Lowered};
 use super::super::lines::Formula;
+use super::super::{Function, Lowered};
 use super::formula::{adds_product, literal};
 use crate::alike::Read;
 use crate::graph::Argument;
@@ -72,7 +72,8 @@ impl Used {
 
     /// Takes note of loops over pairs of joints.
     pub fn note_pairs(&mut self, function: &Function) {
-        self.products.extend(function.pairs.as_ref().map(|pairs| pairs.product));
+        self.products
+            .extend(function.pairs.as_ref().map(|pairs| pairs.product));
     }
 
     fn of(&mut self, formula: &Formula) {
@@ -115,7 +116,11 @@ impl Used {
             mass: self.products.contains(&Product::Mass),
             inverse: self.products.contains(&Product::Inverse),
             forward: self.products.contains(&Product::Forward),
-            mul_add: self.mul_add || !self.products.is_empty() || self.curve || self.dexp_inverse || self.stumpff.is_some(),
+            mul_add: self.mul_add
+                || !self.products.is_empty()
+                || self.curve
+                || self.dexp_inverse
+                || self.stumpff.is_some(),
             curve: self.curve,
             dexp_inverse: self.dexp_inverse,
             sech: self.sech,

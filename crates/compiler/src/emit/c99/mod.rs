@@ -100,7 +100,9 @@ pub fn module(
     let lowered: Vec<Lowered> = lowered.collect();
     let mut used = Used::default();
     lowered.iter().for_each(|lowered| used.note(lowered));
-    functions.iter().for_each(|function| used.note_pairs(function));
+    functions
+        .iter()
+        .for_each(|function| used.note_pairs(function));
     let prefix = identifier(name, "scene");
     let macros = prefix.to_uppercase();
     let written = functions.iter().zip(&lowered);
@@ -195,8 +197,15 @@ impl Written {
             arrays: statement::arrays(lowered),
             lines: statement::statements(&lowered.lines, &used),
             outputs: outputs.collect(),
-            target: if function.pairs.is_some() { "work" } else { "results" },
-            pairs: function.pairs.as_ref().map(|tables| pairs::Written::new(tables, function.outputs.len())),
+            target: if function.pairs.is_some() {
+                "work"
+            } else {
+                "results"
+            },
+            pairs: function
+                .pairs
+                .as_ref()
+                .map(|tables| pairs::Written::new(tables, function.outputs.len())),
         }
     }
 }

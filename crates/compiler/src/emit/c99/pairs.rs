@@ -34,10 +34,18 @@ impl Written {
         let joints = tables.joints.iter().map(|joint| {
             let [a, b] = joint.speeds;
             let [c, d] = joint.freedoms;
-            vec![number(a), number(b), number(c), number(d), optional(joint.parent), number(joint.shown)]
+            vec![
+                number(a),
+                number(b),
+                number(c),
+                number(d),
+                optional(joint.parent),
+                number(joint.shown),
+            ]
         });
         let bodies = tables.bodies.iter();
-        let bodies = bodies.map(|body| vec![number(body.joint), optional(body.parent), number(body.seen)]);
+        let bodies =
+            bodies.map(|body| vec![number(body.joint), optional(body.parent), number(body.seen)]);
         let above = tables.above.iter().map(|&above| vec![optional(above)]);
         let plain = |rows: &[[usize; 3]]| rows.iter().map(|row| row.map(number).to_vec()).collect();
         let held = tables.held.iter().map(|row| row.map(number).to_vec());
@@ -76,7 +84,12 @@ impl Table {
             // An array without entries is no C.
             rows.push("0".to_owned());
         }
-        Self { name, count, width, rows }
+        Self {
+            name,
+            count,
+            width,
+            rows,
+        }
     }
 }
 

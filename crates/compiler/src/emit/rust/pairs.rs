@@ -33,12 +33,8 @@ fn constants(tables: &Tables) -> TokenStream {
     let joints = tables.joints.iter().map(pairing);
     let bodies = tables.bodies.iter().map(carrying);
     let above = tables.above.iter().map(|&speed| optional(speed));
-    let [entries, masses, followed] = [
-        &tables.entries,
-        &tables.masses,
-        &tables.followed,
-    ]
-    .map(|table| table.iter().map(|row| numbers(row)).collect::<Vec<_>>());
+    let [entries, masses, followed] = [&tables.entries, &tables.masses, &tables.followed]
+        .map(|table| table.iter().map(|row| numbers(row)).collect::<Vec<_>>());
     let columns = tables.columns.iter().map(|row| numbers(row));
     let held = tables.held.iter().map(|row| numbers(row));
     let mirrored = optional(tables.mirrored);
@@ -59,7 +55,10 @@ fn constants(tables: &Tables) -> TokenStream {
 
 fn pairing(joint: &Pairing) -> TokenStream {
     let (speeds, freedoms) = (numbers(&joint.speeds), numbers(&joint.freedoms));
-    let (parent, shown) = (optional(joint.parent), Literal::usize_unsuffixed(joint.shown));
+    let (parent, shown) = (
+        optional(joint.parent),
+        Literal::usize_unsuffixed(joint.shown),
+    );
     quote! {
         ::hamel::compiled::Pairing { speeds: #speeds, freedoms: #freedoms, parent: #parent, shown: #shown }
     }
