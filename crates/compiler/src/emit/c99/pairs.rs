@@ -10,6 +10,8 @@ pub struct Written {
     helper: &'static str,
     /// Numbers of the bodies.
     work: usize,
+    /// Whether there are none: an array without entries is no C, and one that nothing assigns is refused by compilers.
+    is_empty: bool,
     /// Speeds, and columns of the results.
     size: usize,
     width: usize,
@@ -63,6 +65,7 @@ impl Written {
         Self {
             helper: tables.product.name(),
             work: work.max(1),
+            is_empty: work == 0,
             size: tables.size[0],
             width: tables.size[1],
             matrix: tables.product == Product::Forward,
