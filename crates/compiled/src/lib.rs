@@ -17,6 +17,7 @@ mod entry;
 mod instructions;
 mod lanes;
 mod layout;
+mod pairs;
 mod transpose;
 #[cfg(feature = "alloc")]
 mod tree;
@@ -27,6 +28,7 @@ pub use batch::{Batch, BatchError};
 pub use entry::Entry;
 pub use lanes::{LANES, Level, ManyStates, OfState, many_states};
 pub use layout::{Lanes, Quantities, States};
+pub use pairs::{Carrying, Pairing, Pairs};
 #[cfg(feature = "alloc")]
 pub use tree::{Compiled, CompiledError};
 

@@ -82,6 +82,7 @@ impl Model {
             outputs: rows,
             columns: None,
             plan: None,
+            pairs: None,
         };
         let entries = matrix.evaluate(|_| q.to_vec());
         DMatrix::from_row_slice(self.coupling.constraints.len(), self.sizes()[2], &entries)

@@ -37,6 +37,7 @@ pub mod graph;
 mod joint;
 mod linkage;
 pub mod model;
+pub mod pairs;
 mod products;
 pub mod prune;
 mod spatial;

@@ -19,8 +19,13 @@ const STATES: u64 = 3;
 
 /// The functions of a model that are not too long, as a module has them; of derivatives those that a compiler is done with soon.
 pub fn functions(model: &Model) -> Vec<Function> {
+    functions_with(model, Loops::default())
+}
+
+/// The same with loops as said.
+fn functions_with(model: &Model, loops: Loops) -> Vec<Function> {
     let function = |kind: Kind| {
-        let function = compile(model, kind, Loops::default()).ok()?.function;
+        let function = compile(model, kind, loops).ok()?.function;
         let derivatives = [Kind::ForwardDerivatives, Kind::InverseDerivatives];
         let is_short = !derivatives.contains(&kind) || function.written() < LONG;
         is_short.then_some(function)
@@ -40,7 +45,14 @@ pub fn same(a: &[f64], b: &[f64]) -> bool {
 /// # Panics
 /// Where one has not.
 pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)]) {
-    let functions: Vec<Vec<Function>> = scenes.iter().map(|(_, model)| functions(model)).collect();
+    // As a module has them, and every other scene with all loops that there are, those over pairs of joints among them.
+    let loops = [Loops::Long, Loops::Always];
+    let models = scenes
+        .iter()
+        .map(|(_, model)| model)
+        .zip(loops.into_iter().cycle());
+    let functions = models.map(|(model, loops)| functions_with(model, loops));
+    let functions: Vec<Vec<Function>> = functions.collect();
     let named = scenes.iter().zip(&functions).enumerate();
     let modules: Vec<Module<'_>> = named
         .map(|(i, ((_, model), functions))| Module {

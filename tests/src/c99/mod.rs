@@ -80,7 +80,7 @@ impl Program {
         let mut child = child.expect("what was built runs");
         let functions = modules.iter().flat_map(|module| {
             let functions = module.functions.iter();
-            functions.map(|one| (module.name.clone(), one.name, one.outputs.len()))
+            functions.map(|one| (module.name.clone(), one.name, one.results()))
         });
         Some(Self {
             requests: child.stdin.take(),
@@ -164,7 +164,7 @@ fn main(modules: &[Module<'_>]) -> String {
         })
     };
     let most = |size: fn(&Function) -> usize| all().map(|(_, one)| size(one)).max().unwrap_or(0);
-    let (inputs, outputs) = (most(arguments), most(|one| one.outputs.len()));
+    let (inputs, outputs) = (most(arguments), most(|one| one.results()));
     let mut text = String::from("#include <stdio.h>\n");
     for module in modules {
         let _ = writeln!(text, "#include \"{}.h\"", module.name);
@@ -188,7 +188,7 @@ fn main(modules: &[Module<'_>]) -> String {
              count = {};\n            break;\n",
             arguments(function),
             function.name,
-            function.outputs.len()
+            function.results()
         );
     }
     text + "        }\n        if (fwrite(y, sizeof *y, count, stdout) != count || fflush(stdout)) return 1;\n    }\n    return 0;\n}\n"

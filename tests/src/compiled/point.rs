@@ -116,6 +116,14 @@ impl Point {
         Self { loops, ..self }
     }
 
+    /// How derivatives are compiled: loops over pairs of joints hold for all joints, whether bodies are alike or not.
+    pub(super) fn loops_of_derivatives(&self) -> Vec<Loops> {
+        match self.loops {
+            [Loops::Long] => vec![Loops::Long],
+            _ => vec![Loops::Never, Loops::Long, Loops::Always],
+        }
+    }
+
     /// All functions have the values of the tree.
     ///
     /// # Panics

@@ -5,7 +5,7 @@ use super::point::{BOUND, Evaluate, Point, of_solutions};
 use hamel::dynamics::{
     Dynamics, ForwardDerivatives, InverseDerivatives, MassMatrix, Recursive, Sensitivity,
 };
-use hamel_compiler::functions::{Kind, Loops};
+use hamel_compiler::functions::Kind;
 use std::sync::Arc;
 
 /// Size of the terms that cancel where a matrix of derivatives is 0, such as ∂τ̄/∂v̄ of a pendulum: speeds and efforts of random states are about 1.
@@ -68,17 +68,19 @@ impl Point {
         bound: f64,
     ) {
         let width: usize = parts.iter().map(|(columns, _)| columns).sum();
-        let how = (kind, Loops::Never);
-        let found = by(&self.model, how, &self.q, &self.speeds, inputs);
-        assert_eq!(found.len(), width * self.speeds.len(), "{kind:?}");
-        let mut start = 0;
-        for (number, (columns, entries)) in parts.iter().enumerate() {
-            let rows = found.chunks_exact(width.max(1));
-            let own = rows.flat_map(|row| &row[start..start + columns]);
-            let own: Vec<f64> = own.copied().collect();
-            let what = format!("{kind:?}, part {number}");
-            self.close_beside(TERMS, &what, &own, entries, bound);
-            start += columns;
+        for loops in self.loops_of_derivatives() {
+            let how = (kind, loops);
+            let found = by(&self.model, how, &self.q, &self.speeds, inputs);
+            assert_eq!(found.len(), width * self.speeds.len(), "{how:?}");
+            let mut start = 0;
+            for (number, (columns, entries)) in parts.iter().enumerate() {
+                let rows = found.chunks_exact(width.max(1));
+                let own = rows.flat_map(|row| &row[start..start + columns]);
+                let own: Vec<f64> = own.copied().collect();
+                let what = format!("{how:?}, part {number}");
+                self.close_beside(TERMS, &what, &own, entries, bound);
+                start += columns;
+            }
         }
     }
 }

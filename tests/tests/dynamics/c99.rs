@@ -257,6 +257,7 @@ fn helpers_agree() {
         graph,
         outputs,
         plan: None,
+        pairs: None,
     };
     let functions = [function];
     let module = Module {

@@ -27,9 +27,13 @@ impl Function {
             turn: Turn::default(),
         };
         lowered.lines.iter().for_each(|line| state.line(line));
-        match &lowered.outputs {
+        let results = match &lowered.outputs {
             Some(outputs) => outputs.iter().map(|output| state.value(output)).collect(),
             None => state.results,
+        };
+        match &self.pairs {
+            Some(pairs) => pairs.evaluate(&results),
+            None => results,
         }
     }
 }

@@ -17,6 +17,7 @@ pub use rust::module;
 use super::alike::Plan;
 use super::graph::{Argument, Graph, Operation, Operations, Value};
 use super::model::Model;
+use super::pairs::Tables;
 use hamel_codegen::expr::Function as Known;
 use hamel_codegen::expr::curve::Curve;
 use hamel_codegen::formula::names::NameSet;
@@ -40,19 +41,38 @@ pub struct Function {
     pub columns: Option<usize>,
     /// Its like parts, where they are looped over.
     pub plan: Option<Plan>,
+    /// What loops over pairs of joints make of the outputs; without, these are the results.
+    pub pairs: Option<Tables>,
 }
 
 impl Function {
     /// Its operations.
     pub fn operations(&self) -> Operations {
+        let mut operations = self.operations_of_bodies();
+        operations += self
+            .pairs
+            .as_ref()
+            .map(Tables::operations)
+            .unwrap_or_default();
+        operations
+    }
+
+    /// Its operations without those of loops over pairs of joints.
+    fn operations_of_bodies(&self) -> Operations {
         Operations::of(&self.graph, &self.outputs)
     }
 
-    /// Operations that are written, where those of loops stand once.
+    /// How many results it has.
+    pub fn results(&self) -> usize {
+        let pairs = self.pairs.as_ref();
+        pairs.map_or(self.outputs.len(), |pairs| pairs.size.iter().product())
+    }
+
+    /// Operations that are written, where those of loops over like bodies stand once; loops over pairs of joints are not written.
     pub fn written(&self) -> usize {
         match &self.plan {
             Some(plan) => plan.written(&self.graph),
-            None => self.operations().flops(),
+            None => self.operations_of_bodies().flops(),
         }
     }
 }

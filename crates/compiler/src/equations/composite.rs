@@ -69,6 +69,17 @@ impl Tree<'_> {
     pub fn mass_matrix(&self) -> Matrix {
         let count = self.model.sizes()[2];
         let mut matrix = vec![vec![Sym::zero(); count]; count];
+        self.composites(|index, composites| {
+            let body = &self.bodies[index];
+            for (j, place) in body.share.speeds.clone().enumerate() {
+                self.fill_row(index, (j, place), composites, &mut matrix);
+            }
+        });
+        matrix
+    }
+
+    /// The inertia that each body carries, itself included, from the leaves to the root; `visit` sees those of a joint's bodies and of all behind them.
+    pub(super) fn composites(&self, mut visit: impl FnMut(usize, &[Rigid])) {
         let mut composites: Vec<Rigid> = self
             .links
             .iter()
@@ -82,15 +93,13 @@ impl Tree<'_> {
             }
             // All other bodies of the joint come before in this order.
             if self.model.bodies[index].leads() {
-                for (j, place) in body.share.speeds.clone().enumerate() {
-                    self.fill_row(index, (j, place), &composites, &mut matrix);
-                }
+                visit(index, &composites);
+                section(number(index), "composite inertia");
             }
             if let Some(parent) = body.parent {
                 seen[parent].push(composites[index].to_parent(&body.steps).settled());
             }
         }
-        matrix
     }
 
     /// The entries of one speed with those of its own joint and of the joints that carry it.
@@ -216,7 +225,7 @@ impl Tree<'_> {
 
     /// The speeds that each speed's momentum reaches: those before it in its own joint and those of all joints that carry it, nearest
     /// first.
-    fn carriers(&self) -> Vec<Vec<usize>> {
+    pub(super) fn carriers(&self) -> Vec<Vec<usize>> {
         let mut carriers: Vec<Vec<usize>> = vec![];
         for (_, body) in self.joints() {
             for place in body.share.speeds.clone() {

@@ -22,18 +22,18 @@ pub(super) type Rows = Vec<Vec<Sym>>;
 
 /// A body and all that hangs on it.
 #[derive(Clone)]
-struct Carried {
+pub(super) struct Carried {
     inertia: Rigid,
     coriolis: Coriolis,
     wrench: Wrench,
 }
 
 /// What a joint's own units and speeds show to the joints above it.
-struct Shown {
+pub(super) struct Shown {
     /// `N W + B U − ad_Zᵀ F` of each variation.
-    raised: Vec<Wrench>,
+    pub(super) raised: Vec<Wrench>,
     /// `N X̄` and the angular part of `Bᵀ X̄` of each speed.
-    momenta: Vec<(Wrench, Vec3)>,
+    pub(super) momenta: Vec<(Wrench, Vec3)>,
 }
 
 impl Tree<'_> {
@@ -45,17 +45,28 @@ impl Tree<'_> {
         self.needed_slopes(&rates, None).concat()
     }
 
-    /// The derivatives of what v̄̇ takes beside the efforts of the argument and what acts on the mechanism.
+    /// The derivatives of what v̄̇ takes beside the efforts of the argument and what acts on the mechanism; with efforts, v̄̇ is solved for, and what bodies follow
+    /// by themselves ([`Tree::followed_variations`]) is left out.
     pub(super) fn needed_slopes(&self, rates: &[Sym], efforts: Option<Argument>) -> Rows {
-        let mut rows = self.rigid_slopes(rates);
-        self.add_rotor_slopes(rates, &mut rows);
+        let mut rows = self.rigid_slopes(rates, efforts.is_some());
+        self.add_acting_slopes(rates, efforts, &mut rows);
+        rows
+    }
+
+    /// What efforts, elements, dampers and rotors add to rows of derivatives.
+    pub(super) fn add_acting_slopes(
+        &self,
+        rates: &[Sym],
+        efforts: Option<Argument>,
+        rows: &mut Rows,
+    ) {
+        self.add_rotor_slopes(rates, rows);
         let exerted = Slopes::new(self.exerted(efforts));
         for (place, column) in self.along_state(&exerted).into_iter().enumerate() {
             for (row, entry) in rows.iter_mut().zip(column) {
                 row[place] -= entry;
             }
         }
-        rows
     }
 
     /// The generalised forces of the efforts of the argument, elements, dampers and rotors.
@@ -99,21 +110,29 @@ impl Tree<'_> {
     }
 
     /// The derivatives of what moving the bodies takes.
-    fn rigid_slopes(&self, rates: &[Sym]) -> Rows {
+    fn rigid_slopes(&self, rates: &[Sym], solved: bool) -> Rows {
         let [_, freedoms, speeds] = self.model.sizes();
         let mut rows = vec![vec![Sym::zero(); freedoms + speeds]; speeds];
+        self.carry((rates, solved), |index, carried, variations| {
+            self.climb(index, carried, variations, &mut rows);
+        });
+        rows
+    }
+
+    /// What each body carries, itself included, from the leaves to the root, and the variations of all joints; `visit` sees what a joint's bodies carry and all
+    /// behind them.
+    pub(super) fn carry(
+        &self,
+        (rates, solved): (&[Sym], bool),
+        mut visit: impl FnMut(usize, &[Carried], &[Vec<Variation>]),
+    ) {
         let motions = self.moved(rates);
-        let variations: Vec<Vec<Variation>> = motions
-            .iter()
-            .enumerate()
-            .map(|(index, motion)| {
-                section(number(index), "variation");
-                self.variations(index, motion, rates)
-            })
-            .collect();
+        let variations = self.all_variations(&motions, rates, solved);
         let bodies = motions.iter().zip(&self.links);
         let mut carried: Vec<Carried> = bodies
-            .map(|(motion, link)| {
+            .enumerate()
+            .map(|(index, (motion, link))| {
+                section(number(index), "slope");
                 let inertia = link.inertia.on_graph();
                 Carried {
                     coriolis: Coriolis::of(&inertia, &motion.twist),
@@ -126,14 +145,14 @@ impl Tree<'_> {
             section(number(index), "slope");
             // All other bodies of the joint come before in this order.
             if self.model.bodies[index].leads() {
-                self.climb(index, &carried, &variations, &mut rows);
+                visit(index, &carried, &variations);
+                section(number(index), "slope");
             }
             if let Some(parent) = self.bodies[index].parent {
                 let own = carried[index].clone();
                 carried[parent] = carried[parent].plus(&own.to_parent(&self.bodies[index].steps));
             }
         }
-        rows
     }
 
     /// Rows and columns of one joint against itself and those above it.
@@ -163,7 +182,13 @@ impl Tree<'_> {
     }
 
     /// Rows and columns of one body's joint against itself, and what the body shows.
-    fn shown(&self, index: usize, carried: &Carried, own: &[Variation], rows: &mut Rows) -> Shown {
+    pub(super) fn shown(
+        &self,
+        index: usize,
+        carried: &Carried,
+        own: &[Variation],
+        rows: &mut Rows,
+    ) -> Shown {
         let body = &self.bodies[index];
         let mut raised: Vec<Wrench> = own.iter().map(|own| carried.raised(own)).collect();
         let gradient = self.joint_at(index, &[]).effort_gradient(&carried.wrench);
@@ -188,7 +213,7 @@ impl Tree<'_> {
     }
 
     /// The columns of a joint's own units: of its local coordinates, then of its speeds.
-    fn places(&self, index: usize) -> Vec<usize> {
+    pub(super) fn places(&self, index: usize) -> Vec<usize> {
         let share = &self.bodies[index].share;
         let freedoms = self.model.sizes()[1];
         let speeds = share.speeds.clone().map(|speed| freedoms + speed);
@@ -231,9 +256,9 @@ impl Carried {
 
     fn to_parent(&self, steps: &[Step]) -> Self {
         Self {
-            inertia: self.inertia.to_parent(steps),
-            coriolis: self.coriolis.to_parent(steps),
-            wrench: wrench_to_parent(steps, &self.wrench),
+            inertia: self.inertia.to_parent(steps).settled(),
+            coriolis: self.coriolis.to_parent(steps).settled(),
+            wrench: wrench_to_parent(steps, &self.wrench).settled(),
         }
     }
 
@@ -245,7 +270,7 @@ impl Carried {
 }
 
 impl Shown {
-    fn plus(mut self, other: Self) -> Self {
+    pub(super) fn plus(mut self, other: Self) -> Self {
         for (raised, other) in self.raised.iter_mut().zip(&other.raised) {
             *raised = raised.plus(other);
         }
@@ -255,7 +280,7 @@ impl Shown {
         self
     }
 
-    fn at_parent(mut self, steps: &[Step]) -> Self {
+    pub(super) fn at_parent(mut self, steps: &[Step]) -> Self {
         for raised in &mut self.raised {
             *raised = wrench_to_parent(steps, raised);
         }

@@ -22,6 +22,9 @@ impl Tree<'_> {
             factors.solve((0..speeds).map(row).collect(), "slope")
         });
         let mut columns: Vec<Vec<Sym>> = given.collect();
+        for (place, speed, rate) in self.followed_variations(&rates) {
+            columns[place][speed] += rate;
+        }
         columns.extend(self.effort_columns(&matrix, &factors));
         columns.push(rates);
         by_rows(&columns, speeds)

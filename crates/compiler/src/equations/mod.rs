@@ -18,13 +18,16 @@ mod energy;
 mod external;
 mod forward_derivatives;
 mod kinematics;
+mod layout;
 mod newton_euler;
+mod pairs;
 mod ports;
 mod rotors;
 pub(crate) mod solve;
 mod variation;
 
 pub use articulated::Bias;
+pub use pairs::Paired;
 
 use super::graph::{Argument, Sym, inverse_of_inertia, section};
 use super::joint::Joint;

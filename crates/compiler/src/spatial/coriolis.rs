@@ -1,6 +1,7 @@
 //! How the wrench that a moving body takes changes with its angular velocity.
 
 use super::{Mat3, Rigid, Step, Twist, Vec3, Wrench, apply, cross, dot};
+use crate::graph::Sym;
 
 /// `B U = N ad_U V − ad_Uᵀ N V − ad_Vᵀ N U` of bodies with inertia N and twist V: what U added to the twist, together with `ad_U V` added to
 /// its rate, adds to the wrench that they take. By Galileo's principle a linear U adds nothing: `B U = (K ω; ω × 2p)`, twelve numbers that add
@@ -36,6 +37,15 @@ impl Coriolis {
         Self {
             turn: self.turn + other.turn,
             twice: self.twice + other.twice,
+        }
+    }
+
+    /// The same without signs beside its scalars ([`Sym::settled`]).
+    #[must_use]
+    pub fn settled(&self) -> Self {
+        Self {
+            turn: self.turn.map(Sym::settled),
+            twice: self.twice.map(Sym::settled),
         }
     }
 

@@ -1,10 +1,11 @@
 //! What functions use: names and arguments that they read, and functions of the runtime that C does not have, which a module brings along.
 
-use super::super::Lowered;
 use super::super::lines::Formula;
+use super::super::{Function, Lowered};
 use super::formula::{adds_product, literal};
 use crate::alike::Read;
 use crate::graph::Argument;
+use crate::pairs::Product;
 use hamel_codegen::derived::Primitive;
 use hamel_codegen::expr::Function as Known;
 use hamel_runtime::scalar::Scalar;
@@ -33,6 +34,7 @@ pub struct Used {
     /// Orders of Stumpff functions.
     stumpff: Option<u8>,
     primitives: Vec<Primitive>,
+    products: Vec<Product>,
 }
 
 /// The helpers that a module brings along, for the templates.
@@ -48,6 +50,11 @@ pub struct Helpers {
     rotation_vector: bool,
     quaternion_vector: bool,
     nearest_rotation: bool,
+    /// Loops over pairs of joints.
+    pairs: bool,
+    mass: bool,
+    inverse: bool,
+    forward: bool,
     /// 1/n! as far as Stumpff functions take them.
     inverse_factorials: Vec<String>,
 }
@@ -61,6 +68,12 @@ impl Used {
         for output in lowered.outputs.iter().flatten() {
             output.each(&mut |formula| self.of(formula));
         }
+    }
+
+    /// Takes note of loops over pairs of joints.
+    pub fn note_pairs(&mut self, function: &Function) {
+        self.products
+            .extend(function.pairs.as_ref().map(|pairs| pairs.product));
     }
 
     fn of(&mut self, formula: &Formula) {
@@ -99,7 +112,15 @@ impl Used {
         let orders = self.stumpff.map(usize::from);
         let orders = orders.map_or(0..0, |order| 0..order + 2 * STUMPFF_TERMS - 1);
         Helpers {
-            mul_add: self.mul_add || self.curve || self.dexp_inverse || self.stumpff.is_some(),
+            pairs: !self.products.is_empty(),
+            mass: self.products.contains(&Product::Mass),
+            inverse: self.products.contains(&Product::Inverse),
+            forward: self.products.contains(&Product::Forward),
+            mul_add: self.mul_add
+                || !self.products.is_empty()
+                || self.curve
+                || self.dexp_inverse
+                || self.stumpff.is_some(),
             curve: self.curve,
             dexp_inverse: self.dexp_inverse,
             sech: self.sech,

@@ -9,6 +9,7 @@ mod curve;
 mod formula;
 mod helpers;
 mod layout;
+mod pairs;
 mod results;
 mod statement;
 
@@ -34,7 +35,7 @@ const TEMPLATES: [(&str, &str); 4] = [
 ];
 
 /// Names that lines must not take: arguments, what the functions bind themselves, helpers, and what `<math.h>` defines.
-const RESERVED: [&str; 27] = [
+const RESERVED: [&str; 35] = [
     "q",
     "v",
     "p",
@@ -44,6 +45,14 @@ const RESERVED: [&str; 27] = [
     "sines",
     "cosines",
     "results",
+    "work",
+    "matrix",
+    "tables",
+    "pairs",
+    "pair_entries",
+    "pair_masses",
+    "pair_slopes",
+    "pair_product",
     "numbers",
     "places",
     "mul_add",
@@ -91,6 +100,9 @@ pub fn module(
     let lowered: Vec<Lowered> = lowered.collect();
     let mut used = Used::default();
     lowered.iter().for_each(|lowered| used.note(lowered));
+    functions
+        .iter()
+        .for_each(|function| used.note_pairs(function));
     let prefix = identifier(name, "scene");
     let macros = prefix.to_uppercase();
     let written = functions.iter().zip(&lowered);
@@ -146,13 +158,17 @@ struct Written {
     lines: Vec<Statement>,
     /// Results that no line assigns.
     outputs: Vec<String>,
+    /// What lines assign.
+    target: &'static str,
+    /// Loops over pairs of joints, where lines assign numbers of bodies.
+    pairs: Option<pairs::Written>,
 }
 
 impl Written {
     fn new(function: &Function, lowered: &Lowered, macros: &str) -> Self {
         let mut used = Used::default();
         used.note(lowered);
-        let count = function.outputs.len();
+        let count = function.results();
         let arguments = function.arguments.iter();
         let parameters = arguments.clone().map(|&(argument, size)| {
             let name = argument.name();
@@ -181,6 +197,15 @@ impl Written {
             arrays: statement::arrays(lowered),
             lines: statement::statements(&lowered.lines, &used),
             outputs: outputs.collect(),
+            target: if function.pairs.is_some() {
+                "work"
+            } else {
+                "results"
+            },
+            pairs: function
+                .pairs
+                .as_ref()
+                .map(|tables| pairs::Written::new(tables, function.outputs.len())),
         }
     }
 }

@@ -79,7 +79,7 @@ fn one_state(function: &Function) -> TokenStream {
 /// The same with results in rows, one after the other.
 fn rows_of_state(function: &Function) -> TokenStream {
     let name = Ident::new(function.name, Span::call_site());
-    let count = Literal::usize_unsuffixed(function.outputs.len());
+    let count = Literal::usize_unsuffixed(function.results());
     let entries = match function.columns {
         None => quote! { as_slice },
         Some(_) => quote! { as_flattened },

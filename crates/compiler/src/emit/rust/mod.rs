@@ -2,6 +2,7 @@
 
 mod equations;
 mod lines;
+mod pairs;
 
 use super::{Function, Lowered, array, curves, identifiers};
 use crate::model::Model;
@@ -13,9 +14,9 @@ use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
 /// Names that lines must not take: arguments, and what the functions bind themselves.
-const RESERVED: [&str; 14] = [
+const RESERVED: [&str; 16] = [
     "q", "v", "p", "tau", "a", "n", "i", "sines", "cosines", "results", "numbers", "places",
-    "hamel", "core",
+    "matrix", "rows", "hamel", "core",
 ];
 
 /// The module that holds `functions` of the model. `label` names the scene's file; with `lanes` it can take many states at a time.
@@ -113,8 +114,12 @@ fn item(function: &Function, bodies: &[String], inlined: bool) -> TokenStream {
         quote! { let mut #name = [[n(0.0); #width]; #rows]; }
     });
     let columns = function.columns.unwrap_or(1);
-    let size = Literal::usize_unsuffixed(function.outputs.len() / columns);
+    let size = Literal::usize_unsuffixed(function.results() / columns);
     let width = Literal::usize_unsuffixed(columns);
+    let kind = match function.columns {
+        None => quote! { [T; #size] },
+        Some(_) => quote! { [[T; #width]; #size] },
+    };
     let entries = Literal::usize_unsuffixed(function.outputs.len());
     let results = match &lowered.outputs {
         None => quote! { let mut results = [n(0.0); #entries]; },
@@ -124,18 +129,20 @@ fn item(function: &Function, bodies: &[String], inlined: bool) -> TokenStream {
         .outputs
         .as_ref()
         .map(|outputs| outputs.iter().map(value).collect());
-    let (result, kind) = match (outputs, function.columns) {
-        (None, None) => (quote! { results }, quote! { [T; #size] }),
-        (None, Some(_)) => (
-            quote! {
-                core::array::from_fn(|i| core::array::from_fn(|j| results[#width * i + j]))
-            },
-            quote! { [[T; #width]; #size] },
-        ),
-        (Some(outputs), None) => (quote! { [#(#outputs),*] }, quote! { [T; #size] }),
+    let result = match (outputs, function.columns) {
+        (outputs, _) if function.pairs.is_some() => {
+            let work = outputs.map(|outputs| quote! { let results = [#(#outputs),*]; });
+            let rows = function.pairs.as_ref().map(pairs::rows);
+            quote! { #work #rows }
+        }
+        (None, None) => quote! { results },
+        (None, Some(_)) => quote! {
+            core::array::from_fn(|i| core::array::from_fn(|j| results[#width * i + j]))
+        },
+        (Some(outputs), None) => quote! { [#(#outputs),*] },
         (Some(outputs), Some(_)) => {
             let rows = outputs.chunks(columns).map(|row| quote! { [#(#row),*] });
-            (quote! { [#(#rows),*] }, quote! { [[T; #width]; #size] })
+            quote! { [#(#rows),*] }
         }
     };
     let docs = [

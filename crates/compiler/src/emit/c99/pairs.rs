@@ -1,0 +1,106 @@
+//! Loops over pairs of joints in C: tables of numbers, and a call of a helper of the module.
+
+use crate::pairs::{Product, Tables};
+use serde::Serialize;
+
+/// As the templates see them. Numbers that are not there are −1.
+#[derive(Serialize)]
+pub struct Written {
+    /// The helper that is called.
+    helper: &'static str,
+    /// Numbers of the bodies.
+    work: usize,
+    /// Whether there are none: an array without entries is no C, and one that nothing assigns is refused by compilers.
+    is_empty: bool,
+    /// Speeds, and columns of the results.
+    size: usize,
+    width: usize,
+    /// Whether it needs room for M̄.
+    matrix: bool,
+    mirrored: String,
+    tables: Vec<Table>,
+}
+
+/// A table, not empty.
+#[derive(Serialize)]
+struct Table {
+    name: &'static str,
+    count: usize,
+    width: usize,
+    rows: Vec<String>,
+}
+
+impl Written {
+    /// Of a function whose lines assign so many numbers.
+    pub fn new(tables: &Tables, work: usize) -> Self {
+        let joints = tables.joints.iter().map(|joint| {
+            let [a, b] = joint.speeds;
+            let [c, d] = joint.freedoms;
+            vec![
+                number(a),
+                number(b),
+                number(c),
+                number(d),
+                optional(joint.parent),
+                number(joint.shown),
+            ]
+        });
+        let bodies = tables.bodies.iter();
+        let bodies =
+            bodies.map(|body| vec![number(body.joint), optional(body.parent), number(body.seen)]);
+        let above = tables.above.iter().map(|&above| vec![optional(above)]);
+        let plain = |rows: &[[usize; 3]]| rows.iter().map(|row| row.map(number).to_vec()).collect();
+        let held = tables.held.iter().map(|row| row.map(number).to_vec());
+        let columns = tables.columns.iter().map(|row| row.map(number).to_vec());
+        let all: [(&'static str, usize, Vec<Vec<i64>>); 8] = [
+            ("joints", 6, joints.collect()),
+            ("bodies", 3, bodies.collect()),
+            ("above", 1, above.collect()),
+            ("entries", 3, plain(&tables.entries)),
+            ("masses", 3, plain(&tables.masses)),
+            ("held", 2, held.collect()),
+            ("columns", 2, columns.collect()),
+            ("followed", 3, plain(&tables.followed)),
+        ];
+        Self {
+            helper: tables.product.name(),
+            work: work.max(1),
+            is_empty: work == 0,
+            size: tables.size[0],
+            width: tables.size[1],
+            matrix: tables.product == Product::Forward,
+            mirrored: optional(tables.mirrored).to_string(),
+            tables: all.into_iter().map(Table::new).collect(),
+        }
+    }
+}
+
+impl Table {
+    fn new((name, width, rows): (&'static str, usize, Vec<Vec<i64>>)) -> Self {
+        let text = |row: &Vec<i64>| {
+            let numbers: Vec<String> = row.iter().map(i64::to_string).collect();
+            numbers.join(", ")
+        };
+        let count = rows.len();
+        let mut rows: Vec<String> = rows.iter().map(text).collect();
+        if rows.is_empty() {
+            // An array without entries is no C.
+            rows.push("0".to_owned());
+        }
+        Self {
+            name,
+            count,
+            width,
+            rows,
+        }
+    }
+}
+
+fn number(number: usize) -> i64 {
+    // Places in memory fit.
+    number as i64
+}
+
+fn optional(place: Option<usize>) -> i64 {
+    place.map_or(-1, number)
+}

@@ -1,0 +1,147 @@
+//! What a function leaves to loops over pairs of joints: the tables of [`hamel_compiled::Pairs`], as they are made.
+
+use super::graph::Operations;
+use hamel_compiled::{Carrying, Pairing, Pairs};
+
+/// What is made of the numbers of the bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Product {
+    /// M̄.
+    Mass,
+    /// Derivatives of inverse dynamics.
+    Inverse,
+    /// Derivatives of forward dynamics.
+    Forward,
+}
+
+impl Product {
+    /// Its name in emitted code: a method of the runtime, a helper in C.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Mass => "mass",
+            Self::Inverse => "inverse",
+            Self::Forward => "forward",
+        }
+    }
+}
+
+/// The tables of one function.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Tables {
+    /// What is made.
+    pub product: Product,
+    /// Rows and columns of the results.
+    pub size: [usize; 2],
+    /// Joints.
+    pub joints: Vec<Pairing>,
+    /// Bodies that carry others.
+    pub bodies: Vec<Carrying>,
+    /// For each speed the next one towards the root.
+    pub above: Vec<Option<usize>>,
+    /// Entries of rows that are added: row, column, place among the numbers of the bodies.
+    pub entries: Vec<[usize; 3]>,
+    /// The same of M̄.
+    pub masses: Vec<[usize; 3]>,
+    /// Speeds whose rates are given, with the columns of these rates.
+    pub held: Vec<[usize; 2]>,
+    /// Columns of right-hand sides that are not 0.
+    pub columns: Vec<[usize; 2]>,
+    /// Entries that are added to what is solved: row, column, place among the numbers of the bodies.
+    pub followed: Vec<[usize; 3]>,
+    /// Where M̄⁻¹ begins, of which half is found.
+    pub mirrored: Option<usize>,
+}
+
+impl Tables {
+    /// The same for the runtime.
+    pub fn pairs(&self) -> Pairs<'_> {
+        Pairs {
+            joints: &self.joints,
+            bodies: &self.bodies,
+            above: &self.above,
+            entries: &self.entries,
+            masses: &self.masses,
+            held: &self.held,
+            columns: &self.columns,
+            followed: &self.followed,
+            mirrored: self.mirrored,
+        }
+    }
+
+    /// The results, row by row, from the numbers of the bodies.
+    pub fn evaluate(&self, work: &[f64]) -> Vec<f64> {
+        let [rows, width] = self.size;
+        let mut results = vec![0.0; rows * width];
+        match self.product {
+            Product::Mass => self.pairs().mass(work, &mut results),
+            Product::Inverse => self.pairs().inverse(work, &mut results, width),
+            Product::Forward => {
+                let mut matrix = vec![0.0; rows * rows];
+                self.pairs().forward(work, &mut matrix, &mut results, width);
+            }
+        }
+        results
+    }
+
+    /// What the loops take.
+    pub fn operations(&self) -> Operations {
+        let mut count = Operations::default();
+        for joint in &self.joints {
+            let (speeds, units) = sizes(joint);
+            let mut carrier = joint.parent;
+            while let Some(body) = carrier {
+                let above = &self.bodies[body];
+                let (others, other_units) = sizes(&self.joints[above.joint]);
+                if self.product != Product::Inverse {
+                    products(&mut count, speeds * others, 6);
+                }
+                if self.product != Product::Mass {
+                    products(&mut count, units * others, 6);
+                    products(&mut count, speeds * other_units, 9);
+                }
+                carrier = above.parent;
+            }
+        }
+        count.additions += self.added();
+        if self.product == Product::Forward {
+            self.solution(&mut count);
+        }
+        count
+    }
+
+    /// Entries that come to others: those that stand alone are no additions.
+    fn added(&self) -> usize {
+        let mut places: Vec<[usize; 2]> = self.entries.iter().map(|&[i, j, _]| [i, j]).collect();
+        places.sort_unstable();
+        places.windows(2).filter(|pair| pair[0] == pair[1]).count()
+    }
+
+    /// Factors of M̄ and what is solved with them.
+    fn solution(&self, count: &mut Operations) {
+        let above = |speed: usize| std::iter::successors(self.above[speed], |&i| self.above[i]);
+        for speed in 0..self.above.len() {
+            let carriers = above(speed).count();
+            count.divisions += 1;
+            count.multiplications += carriers + carriers * (carriers + 1) / 2;
+            count.additions += carriers * (carriers + 1) / 2;
+        }
+        let pairs = |speeds: usize| (0..speeds).map(|k| above(k).count()).sum::<usize>();
+        for column in self.columns.iter().flat_map(|&[from, to]| from..to) {
+            let place = self.mirrored.and_then(|first| column.checked_sub(first));
+            let speeds = place.map_or(self.above.len(), |place| place + 1);
+            count.multiplications += 2 * pairs(speeds) + speeds;
+            count.additions += 2 * pairs(speeds);
+        }
+    }
+}
+
+/// Speeds and units of a joint.
+fn sizes(joint: &Pairing) -> (usize, usize) {
+    (joint.speeds[1], joint.speeds[1] + joint.freedoms[1])
+}
+
+/// Sums of products.
+fn products(count: &mut Operations, sums: usize, terms: usize) {
+    count.multiplications += sums * terms;
+    count.additions += sums * (terms - 1);
+}
