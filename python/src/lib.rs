@@ -1,0 +1,26 @@
+//! The Python package `hamel`: the part of it that is compiled. What users see of it stands in `package/hamel/__init__.pyi`.
+
+// The macros of PyO3 expand to `unsafe`; nothing here writes any.
+mod arguments;
+mod batch;
+mod dynamics;
+mod errors;
+mod info;
+mod positions;
+mod robot;
+mod simulation;
+mod source;
+mod workspace;
+
+use pyo3::prelude::*;
+
+/// Compiled part of `hamel`.
+#[pymodule]
+mod _hamel {
+    #[pymodule_export]
+    use crate::batch::set_threads;
+    #[pymodule_export]
+    use crate::robot::{Robot, load, parse};
+    #[pymodule_export]
+    use crate::simulation::simulate;
+}
