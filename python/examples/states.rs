@@ -1,6 +1,6 @@
 //! Evaluates the façade at states that come in as doubles on stdin, and writes its results as doubles to stdout: what the tests of the Python package compare with.
 //!
-//! `states FILE WHAT FRAME` reads q, v and τ of one state after the other. `states FILE time` measures one call of forward dynamics, µs.
+//! `states FILE WHAT FRAME` reads q, v and τ, or accelerations, of one state after the other. `states FILE time` measures one call of forward dynamics, µs.
 
 use hamel::Model;
 use hamel::integrate::State;
@@ -24,7 +24,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let numbers: Vec<f64> = words.iter().map(|word| f64::from_le_bytes(*word)).collect();
     let sizes = *model.sizes();
     let mut results = Vec::new();
-    for state in numbers.chunks(sizes.configuration + sizes.speeds + sizes.freedoms) {
+    let last = match what.starts_with("inverse") {
+        true => sizes.speeds,
+        false => sizes.freedoms,
+    };
+    for state in numbers.chunks(sizes.configuration + sizes.speeds + last) {
         let (q, rest) = state.split_at(sizes.configuration);
         let (v, tau) = rest.split_at(sizes.speeds);
         let state = State {

@@ -59,7 +59,8 @@ impl<'py> Argument<'py> {
 fn plain<'py>(value: &Bound<'py, PyAny>) -> Option<PyReadonlyArrayDyn<'py, f64>> {
     let array = value.cast::<PyArrayDyn<f64>>().ok()?;
     let array = array.try_readonly().ok()?;
-    array.as_slice().is_ok().then_some(array)
+    // Columns after columns are a slice as well.
+    (array.is_c_contiguous() && array.as_slice().is_ok()).then_some(array)
 }
 
 /// An array of doubles in the order of C, made of whatever numpy makes an array of real numbers of.

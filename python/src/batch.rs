@@ -27,6 +27,9 @@ const LOOK: Duration = Duration::from_millis(20);
 /// Results of more numbers are made by numpy, which can refuse them.
 const LARGE: usize = 1 << 20;
 
+/// Doubles of the largest array that there can be.
+const MOST: usize = isize::MAX as usize / size_of::<f64>();
+
 /// Threads that batches may take; 0 for as many as the machine runs at once.
 static THREADS: AtomicUsize = AtomicUsize::new(0);
 
@@ -56,7 +59,7 @@ pub fn evaluate<'py, const N: usize, const M: usize>(
     each: impl Fn(&mut Workspace, [&[f64]; N], [&mut [f64]; M]) -> Result<(), hamel::Error> + Sync,
 ) -> PyResult<[Bound<'py, PyArrayDyn<f64>>; M]> {
     let batch = broadcast(py, &arguments)?;
-    let count = size(&batch).ok_or_else(|| errors::memory(py))?;
+    let count = size(&batch).ok_or_else(errors::memory)?;
     let results = collect(shapes.map(|shape| zeros(py, &batch, shape)))?;
     let rows = collect(arguments.each_ref().map(|argument| argument.rows(&batch)))?;
     let mut writable = collect(results.each_ref().map(|result| Ok(result.try_readwrite()?)))?;
@@ -114,11 +117,11 @@ fn zeros<'py>(
     let dims = [batch, shape].concat();
     match size(&dims) {
         Some(entries) if entries <= LARGE => Ok(PyArrayDyn::zeros(py, IxDyn(&dims), false)),
-        Some(_) => {
+        Some(entries) if entries <= MOST => {
             let array = numpy_module(py)?.call_method1("zeros", (dims,))?;
             Ok(array.cast_into()?)
         }
-        None => Err(errors::memory(py)),
+        _ => Err(errors::memory()),
     }
 }
 

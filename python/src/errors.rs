@@ -89,7 +89,7 @@ pub fn argument(py: Python<'_>, message: impl AsRef<str>) -> PyErr {
 }
 
 /// More numbers than memory holds.
-pub fn memory(_py: Python<'_>) -> PyErr {
+pub fn memory() -> PyErr {
     PyMemoryError::new_err("the batch has more numbers than memory can hold")
 }
 
