@@ -6,11 +6,31 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 
+/// Arguments of no more numbers are copied: to make sure that nothing writes an array takes longer.
+const SMALL: usize = 1 << 8;
+
 /// An array of states' shares: its last dimension has `entries` numbers.
 pub struct Argument<'py> {
     name: &'static str,
-    array: PyReadonlyArrayDyn<'py, f64>,
+    array: Bound<'py, PyArrayDyn<f64>>,
+    numbers: Numbers<'py>,
     entries: usize,
+}
+
+/// The numbers of an array, in the order of C.
+enum Numbers<'py> {
+    Copied(Vec<f64>),
+    Within(PyReadonlyArrayDyn<'py, f64>),
+}
+
+impl Numbers<'_> {
+    fn all(&self) -> &[f64] {
+        match self {
+            Self::Copied(numbers) => numbers,
+            // That they are a slice was seen when they were read.
+            Self::Within(array) => array.as_slice().unwrap_or_default(),
+        }
+    }
 }
 
 impl<'py> Argument<'py> {
@@ -19,14 +39,17 @@ impl<'py> Argument<'py> {
     /// # Errors
     /// What is no array of real numbers, or has another last dimension.
     pub fn read(name: &'static str, value: &Bound<'py, PyAny>, entries: usize) -> PyResult<Self> {
-        let array = match plain(value) {
-            Some(array) => array,
+        let plain = value.cast::<PyArrayDyn<f64>>().ok();
+        let read = plain.and_then(|array| Some((array.clone(), numbers(array)?)));
+        let (array, numbers) = match read {
+            Some(read) => read,
             None => converted(name, value)?,
         };
         match array.shape().last() {
             Some(&last) if last == entries => Ok(Self {
                 name,
                 array,
+                numbers,
                 entries,
             }),
             _ => {
@@ -46,28 +69,33 @@ impl<'py> Argument<'py> {
     }
 
     /// Its numbers, to be read state by state of a batch of this shape.
-    pub fn rows(&self, batch: &[usize]) -> PyResult<Rows<'_>> {
-        Ok(Rows {
-            data: self.array.as_slice()?,
+    pub fn rows(&self, batch: &[usize]) -> Rows<'_> {
+        Rows {
+            data: self.numbers.all(),
             entries: self.entries,
             walk: Walk::new(self.leading(), batch),
-        })
+        }
     }
 }
 
-/// The array itself, where it needs no conversion.
-fn plain<'py>(value: &Bound<'py, PyAny>) -> Option<PyReadonlyArrayDyn<'py, f64>> {
-    let array = value.cast::<PyArrayDyn<f64>>().ok()?;
-    let array = array.try_readonly().ok()?;
+/// The numbers of an array that needs no conversion.
+fn numbers<'py>(array: &Bound<'py, PyArrayDyn<f64>>) -> Option<Numbers<'py>> {
     // Columns after columns are a slice as well.
-    (array.is_c_contiguous() && array.as_slice().is_ok()).then_some(array)
+    if !array.is_c_contiguous() {
+        return None;
+    }
+    if array.len() <= SMALL {
+        return Some(Numbers::Copied(array.to_vec().ok()?));
+    }
+    let array = array.try_readonly().ok()?;
+    array.as_slice().is_ok().then_some(Numbers::Within(array))
 }
 
 /// An array of doubles in the order of C, made of whatever numpy makes an array of real numbers of.
 fn converted<'py>(
     name: &'static str,
     value: &Bound<'py, PyAny>,
-) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+) -> PyResult<(Bound<'py, PyArrayDyn<f64>>, Numbers<'py>)> {
     let py = value.py();
     let numpy = numpy_module(py)?;
     let refuse = |cause: PyErr| {
@@ -88,7 +116,8 @@ fn converted<'py>(
         .call_method1(intern!(py, "require"), wanted)
         .map_err(refuse)?;
     let array = array.cast_into::<PyArrayDyn<f64>>()?;
-    Ok(array.try_readonly()?)
+    let numbers = Numbers::Within(array.try_readonly()?);
+    Ok((array, numbers))
 }
 
 /// The module numpy.

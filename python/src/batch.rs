@@ -3,10 +3,11 @@
 //! Threads are started by the call and end with it: none outlives a fork of the process. Each takes one chunk of states after the other. While
 //! they work the interpreter is released, and the calling thread hears its signals between its chunks.
 
-use crate::arguments::{Argument, Rows, broadcast, numpy_module};
+use crate::arguments::{Argument, Rows, broadcast};
 use crate::errors;
+use crate::results::{Room, size};
 use crate::workspace::{Workspace, Workspaces};
-use numpy::{IxDyn, PyArrayDyn, PyArrayMethods};
+use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use std::num::NonZero;
 use std::ops::Range;
@@ -23,12 +24,6 @@ const CHUNK: usize = 2048;
 
 /// Time between two looks at the signals of the process.
 const LOOK: Duration = Duration::from_millis(20);
-
-/// Results of more numbers are made by numpy, which can refuse them.
-const LARGE: usize = 1 << 20;
-
-/// Doubles of the largest array that there can be.
-const MOST: usize = isize::MAX as usize / size_of::<f64>();
 
 /// Threads that batches may take; 0 for as many as the machine runs at once.
 static THREADS: AtomicUsize = AtomicUsize::new(0);
@@ -60,10 +55,9 @@ pub fn evaluate<'py, const N: usize, const M: usize>(
 ) -> PyResult<[Bound<'py, PyArrayDyn<f64>>; M]> {
     let batch = broadcast(py, &arguments)?;
     let count = size(&batch).ok_or_else(errors::memory)?;
-    let results = collect(shapes.map(|shape| zeros(py, &batch, shape)))?;
-    let rows = collect(arguments.each_ref().map(|argument| argument.rows(&batch)))?;
-    let mut writable = collect(results.each_ref().map(|result| Ok(result.try_readwrite()?)))?;
-    let slices = collect(writable.each_mut().map(|own| Ok(own.as_slice_mut()?)))?;
+    let mut rooms = collect(shapes.map(|shape| Room::new(py, [&batch, shape].concat())))?;
+    let rows = arguments.each_ref().map(|argument| argument.rows(&batch));
+    let slices = rooms.each_mut().map(Room::numbers);
     let work = Work {
         workspaces,
         rows,
@@ -81,19 +75,11 @@ pub fn evaluate<'py, const N: usize, const M: usize>(
         true => work.alone(),
         false => py.detach(|| work.on_threads(count)),
     };
-    drop(writable);
     match failure {
-        None => Ok(results),
+        None => collect(rooms.map(|room| room.array(py))),
         Some(Failure::Interrupt(error)) => Err(error),
         Some(Failure::State(state, error)) => Err(errors::of_state(py, error, state, &batch)),
     }
-}
-
-/// How many states a batch of this shape has; `None` where no number tells it.
-fn size(batch: &[usize]) -> Option<usize> {
-    batch
-        .iter()
-        .try_fold(1_usize, |all, &size| all.checked_mul(size))
 }
 
 /// All of them, or the first error.
@@ -106,22 +92,6 @@ fn collect<T, const M: usize>(all: [PyResult<T>; M]) -> PyResult<[T; M]> {
         Ok(found) => Ok(found),
         // As many went in as come out.
         Err(_) => unreachable!("{M} results of {M}"),
-    }
-}
-
-fn zeros<'py>(
-    py: Python<'py>,
-    batch: &[usize],
-    shape: &[usize],
-) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    let dims = [batch, shape].concat();
-    match size(&dims) {
-        Some(entries) if entries <= LARGE => Ok(PyArrayDyn::zeros(py, IxDyn(&dims), false)),
-        Some(entries) if entries <= MOST => {
-            let array = numpy_module(py)?.call_method1("zeros", (dims,))?;
-            Ok(array.cast_into()?)
-        }
-        _ => Err(errors::memory()),
     }
 }
 

@@ -1,12 +1,12 @@
 //! The Python package `hamel`: the part of it that is compiled. What users see of it stands in `package/hamel/__init__.pyi`.
 
-// The macros of PyO3 expand to `unsafe`; nothing here writes any.
 mod arguments;
 mod batch;
 mod dynamics;
 mod errors;
 mod info;
 mod positions;
+mod results;
 mod robot;
 mod simulation;
 mod source;

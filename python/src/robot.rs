@@ -15,7 +15,14 @@ use pyo3::types::{PyDict, PyTuple};
 type Arrays<'py> = Bound<'py, PyArrayDyn<f64>>;
 type Given<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// The robot or the scene in a file or a text.
+/// The robot or the scene in a file or a text, as a `Robot`.
+///
+/// Args:
+///     file_or_text: path of a robot in URDF or of a scene in TOML, or its text: a `str` with several lines, or one that begins as XML does, is a text.
+///     floating_base: whether the root link of a URDF moves freely; otherwise it is fixed to the world.
+///
+/// Raises:
+///     FileError: a file that cannot be read, and all mistakes of its text, each with its line.
 #[pyfunction]
 #[pyo3(signature = (file_or_text, *, floating_base=false))]
 pub fn load(file_or_text: &Bound<'_, PyAny>, floating_base: bool) -> PyResult<Robot> {
@@ -37,7 +44,16 @@ pub fn parse(py: Python<'_>, source: (String, String, bool, bool)) -> PyResult<R
     )
 }
 
-/// A robot or a scene: its equations of motion, evaluated on arrays.
+/// A robot or a scene: its equations of motion, evaluated on arrays. `hamel.load` makes one.
+///
+/// With N, K and S of `sizes`, q is (..., N), efforts tau are (..., K), speeds v and accelerations are (..., S); K = S but for nonholonomic joints. The dimensions before the
+/// last are a batch and broadcast as those of numpy do; large batches run on several threads, with the same bits as on one. Arguments may be of any real numbers in any
+/// order; they are neither modified nor kept, and must not be changed by another thread during a call.
+///
+/// q is what the joints store, one after the other: the angle of a revolute joint, the displacement of a prismatic one, cosine and sine of a continuous one, a rotation matrix of
+/// a ball. `configuration` makes it of angles and displacements of all joints, `joint` tells which entries belong to a joint.
+///
+/// Raises `ArgumentError` for a wrong shape, an unknown name or a number that is not finite, `DynamicsError` for equations without a solution.
 #[pyclass(frozen, module = "hamel")]
 pub struct Robot {
     model: Model,
@@ -90,21 +106,25 @@ impl Robot {
 
 #[pymethods]
 impl Robot {
+    /// Name of the robot or scene.
     #[getter]
     fn name(&self) -> &str {
         &self.model.scene().name
     }
 
+    /// What the scene shows; may be empty.
     #[getter]
     fn description(&self) -> &str {
         &self.model.scene().description
     }
 
+    /// The text that it was read from.
     #[getter]
     fn source(&self) -> &str {
         &self.source.text
     }
 
+    /// What the file says and a robot does not have, as texts: limits that are not simulated, meshes, unknown elements.
     #[getter]
     fn notices(&self) -> Vec<String> {
         self.model
@@ -115,21 +135,25 @@ impl Robot {
             .collect()
     }
 
+    /// Names of the joints, in the order of their entries.
     #[getter]
     fn joints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.model.joints().collect::<Vec<_>>())
     }
 
+    /// Names of the bodies: one per joint, but for joints that carry several. Links that are fixed to others are frames.
     #[getter]
     fn bodies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.model.bodies().collect::<Vec<_>>())
     }
 
+    /// Names of the frames beside those of the bodies.
     #[getter]
     fn frames<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.model.frames().collect::<Vec<_>>())
     }
 
+    /// Limits by the names of joints, as the file says them; of a URDF they are not simulated.
     #[getter]
     fn limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
@@ -139,6 +163,7 @@ impl Robot {
         Ok(all)
     }
 
+    /// Sizes of its vectors: N = `configuration`, K = `freedoms`, S = `speeds`.
     #[pyo3(name = "sizes")]
     #[getter]
     fn sizes_of<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -148,11 +173,13 @@ impl Robot {
         class.call1((sizes.configuration, sizes.freedoms, sizes.speeds))
     }
 
+    /// What is known of a joint, by its name or that of its body: a `JointInfo`.
     fn joint<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let body = self.joint_named(py, name)?;
         self.info(py, body)
     }
 
+    /// The initial state of the file: a `State`. A robot in URDF is at home and at rest.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         static CLASS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
         let start = self.model.state();
@@ -164,14 +191,33 @@ impl Robot {
         of_package(py, &CLASS, "hamel._values", "State")?.call1(arrays)
     }
 
+    /// q of positions, (..., N): the joints moved by them from home.
+    ///
+    /// The position of a revolute or continuous joint is its angle, of a prismatic one its displacement, of a ball its rotation vector; rad and m.
+    ///
+    /// Args:
+    ///     positions: (..., K), or a dict of positions by the names of joints, the others at home.
     fn configuration<'py>(&self, positions: Given<'_, 'py>) -> PyResult<Arrays<'py>> {
         self.configuration_of(positions)
     }
 
+    /// Positions of q, (..., K), which `configuration` takes back to q. Angles that q stores as cosine and sine, and rotations, are found between -pi and pi.
+    ///
+    /// Args:
+    ///     q: configurations, (..., N).
     fn positions<'py>(&self, q: Given<'_, 'py>) -> PyResult<Arrays<'py>> {
         self.positions_of(q)
     }
 
+    /// Accelerations of speeds under efforts, (..., S): rad/s² and m/s².
+    ///
+    /// Args:
+    ///     q: configurations, (..., N).
+    ///     v: speeds, (..., S), rad/s and m/s.
+    ///     tau: efforts, (..., K), N m and N. Of a joint whose motion the scene prescribes they are accelerations.
+    ///
+    /// Raises:
+    ///     DynamicsError: a singular mass matrix.
     fn forward_dynamics<'py>(
         &self,
         q: Given<'_, 'py>,
@@ -181,6 +227,12 @@ impl Robot {
         self.accelerations([q, v, tau])
     }
 
+    /// Efforts per speed that inputs must exert for accelerations, (..., S): N m and N. Springs, dampers and gravity act beside them.
+    ///
+    /// Args:
+    ///     q: configurations, (..., N).
+    ///     v: speeds, (..., S), rad/s and m/s.
+    ///     a: accelerations, (..., S), rad/s² and m/s².
     fn inverse_dynamics<'py>(
         &self,
         q: Given<'_, 'py>,
@@ -190,14 +242,34 @@ impl Robot {
         self.efforts([q, v, a])
     }
 
+    /// Inverse dynamics at zero accelerations, (..., S): Coriolis and centrifugal forces, gravity, springs and dampers; N m and N.
+    ///
+    /// Args:
+    ///     q: configurations, (..., N).
+    ///     v: speeds, (..., S), rad/s and m/s.
     fn bias_forces<'py>(&self, q: Given<'_, 'py>, v: Given<'_, 'py>) -> PyResult<Arrays<'py>> {
         self.bias([q, v])
     }
 
+    /// The mass matrix, (..., S, S); kg, kg m, kg m².
+    ///
+    /// Args:
+    ///     q: configurations, (..., N).
     fn mass_matrix<'py>(&self, q: Given<'_, 'py>) -> PyResult<Arrays<'py>> {
         self.mass(q)
     }
 
+    /// Accelerations and their derivatives, as `ForwardDerivatives`: by local coordinates phi about q, by v and by tau. Nothing is differenced.
+    ///
+    /// For joints that store angles or displacements phi is a change of q.
+    ///
+    /// Args:
+    ///     q: configurations, (..., N).
+    ///     v: speeds, (..., S), rad/s and m/s.
+    ///     tau: efforts, (..., K), N m and N.
+    ///
+    /// Raises:
+    ///     DynamicsError: a singular mass matrix; something that acts whose derivatives are not known.
     fn forward_dynamics_derivatives<'py>(
         &self,
         q: Given<'_, 'py>,
@@ -211,6 +283,12 @@ impl Robot {
         class.call1((rates, by_local, by_speeds, by_efforts))
     }
 
+    /// Derivatives of inverse dynamics, as `InverseDerivatives`: by local coordinates phi about q and by v. That by accelerations is the mass matrix.
+    ///
+    /// Args:
+    ///     q: configurations, (..., N).
+    ///     v: speeds, (..., S), rad/s and m/s.
+    ///     a: accelerations, (..., S), rad/s² and m/s².
     fn inverse_dynamics_derivatives<'py>(
         &self,
         q: Given<'_, 'py>,
@@ -223,11 +301,25 @@ impl Robot {
         class.call1((by_local, by_speeds))
     }
 
+    /// The matrix that takes v to the twist of a frame or a body, (..., 6, S): angular velocity in the first three rows, rad/s, linear velocity in the last three, m/s.
+    ///
+    /// Args:
+    ///     q: configurations, (..., N).
+    ///     frame: name of a frame or a body.
+    ///     axes: `world_aligned` for the velocity of the frame's origin in world axes, `body` for that in its own axes, `world` for that of the point at the world's
+    ///         origin in world axes.
     #[pyo3(signature = (q, frame, axes="world_aligned"))]
     fn jacobian<'py>(&self, q: Given<'_, 'py>, frame: &str, axes: &str) -> PyResult<Arrays<'py>> {
         self.jacobian_of(q, (frame, axes))
     }
 
+    /// The twist of a frame or a body relative to the world, (..., 6): angular velocity first, rad/s, then linear, m/s.
+    ///
+    /// Args:
+    ///     q: configurations, (..., N).
+    ///     v: speeds, (..., S), rad/s and m/s.
+    ///     frame: name of a frame or a body.
+    ///     axes: as for `jacobian`.
     #[pyo3(signature = (q, v, frame, axes="world_aligned"))]
     fn twist<'py>(
         &self,
@@ -239,29 +331,56 @@ impl Robot {
         self.twist_of([q, v], (frame, axes))
     }
 
+    /// The pose of a frame or a body, (..., 4, 4): takes its coordinates to those of the world, m.
+    ///
+    /// Args:
+    ///     q: configurations, (..., N).
+    ///     frame: name of a frame or a body.
     fn pose<'py>(&self, q: Given<'_, 'py>, frame: &str) -> PyResult<Arrays<'py>> {
         self.pose_of(q, frame)
     }
 
+    /// Poses of all bodies in the order of `bodies`, (..., bodies, 4, 4): take their coordinates to those of the world, m.
+    ///
+    /// Args:
+    ///     q: configurations, (..., N).
     fn poses<'py>(&self, q: Given<'_, 'py>) -> PyResult<Arrays<'py>> {
         self.poses_of_bodies(q)
     }
 
+    /// Kinetic and potential energy together, (...), J.
+    ///
+    /// Args:
+    ///     q: configurations, (..., N).
+    ///     v: speeds, (..., S), rad/s and m/s.
     fn energy<'py>(&self, q: Given<'_, 'py>, v: Given<'_, 'py>) -> PyResult<Arrays<'py>> {
         self.total_energy([q, v])
     }
 
+    /// Kinetic energy, (...), J.
+    ///
+    /// Args:
+    ///     q: configurations, (..., N).
+    ///     v: speeds, (..., S), rad/s and m/s.
     fn kinetic_energy<'py>(&self, q: Given<'_, 'py>, v: Given<'_, 'py>) -> PyResult<Arrays<'py>> {
         let [kinetic, _] = self.energies([q, v])?;
         Ok(kinetic)
     }
 
+    /// Potential energy in gravity and of springs, (...), J; that in gravity is zero at the world's origin.
+    ///
+    /// Args:
+    ///     q: configurations, (..., N).
     fn potential_energy<'py>(&self, q: Given<'_, 'py>) -> PyResult<Arrays<'py>> {
         let rest = PyArray1::<f64>::zeros(q.py(), self.sizes().speeds, false).into_any();
         let [_, potential] = self.energies([q, &rest])?;
         Ok(potential)
     }
 
+    /// The centre of mass of all bodies, (..., 3), world axes, m.
+    ///
+    /// Args:
+    ///     q: configurations, (..., N).
     fn center_of_mass<'py>(&self, q: Given<'_, 'py>) -> PyResult<Arrays<'py>> {
         self.center(q)
     }

@@ -54,7 +54,11 @@ impl Workspace {
 /// Workspaces that no thread uses.
 pub struct Workspaces {
     mechanism: Arc<Mechanism>,
-    free: Mutex<Vec<Workspace>>,
+    #[expect(
+        clippy::vec_box,
+        reason = "they change hands at each call, and are hundreds of bytes long"
+    )]
+    free: Mutex<Vec<Box<Workspace>>>,
 }
 
 impl Workspaces {
@@ -72,13 +76,13 @@ impl Workspaces {
     }
 
     /// One that no other thread has.
-    pub fn take(&self) -> Workspace {
+    pub fn take(&self) -> Box<Workspace> {
         let free = lock(&self.free).pop();
-        free.unwrap_or_else(|| Workspace::new(&self.mechanism))
+        free.unwrap_or_else(|| Box::new(Workspace::new(&self.mechanism)))
     }
 
     /// Keeps one for the next call.
-    pub fn give_back(&self, workspace: Workspace) {
+    pub fn give_back(&self, workspace: Box<Workspace>) {
         lock(&self.free).push(workspace);
     }
 }

@@ -1,5 +1,6 @@
 """Exceptions by kind."""
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 
@@ -23,7 +24,9 @@ class FileError(Error):
         mistakes: all of them, in the order of the file.
     """
 
-    def __init__(self, message="", *, source="", mistakes=()):
+    def __init__(
+        self, message: str = "", *, source: str = "", mistakes: Iterable[tuple[int | None, int | None, str]] = ()
+    ) -> None:
         super().__init__(message)
         self.source = source
         self.mistakes = [Mistake(*mistake) for mistake in mistakes]
@@ -36,7 +39,7 @@ class ArgumentError(Error, ValueError):
         index: of the state in a batch, a tuple; None where it is of no state.
     """
 
-    def __init__(self, message="", *, index=None):
+    def __init__(self, message: str = "", *, index: tuple[int, ...] | None = None) -> None:
         super().__init__(message)
         self.index = index
 
@@ -48,7 +51,7 @@ class DynamicsError(Error):
         index: of the state in a batch, a tuple; None where it is of no batch.
     """
 
-    def __init__(self, message="", *, index=None):
+    def __init__(self, message: str = "", *, index: tuple[int, ...] | None = None) -> None:
         super().__init__(message)
         self.index = index
 
@@ -60,6 +63,6 @@ class IntegrationError(Error):
         time: reached, s; None where it is of no time.
     """
 
-    def __init__(self, message="", *, time=None):
+    def __init__(self, message: str = "", *, time: float | None = None) -> None:
         super().__init__(message)
         self.time = time

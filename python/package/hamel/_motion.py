@@ -1,31 +1,38 @@
 """Motions."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from . import _hamel
 from ._errors import ArgumentError
 from ._values import State
+
+if TYPE_CHECKING:
+    import pandas
 
 
 @dataclass(frozen=True, eq=False)
 class Motion:
     """A motion: arrays with one row per sample; n samples, N entries of q, S speeds."""
 
-    t: np.ndarray
+    t: NDArray[np.float64]
     """Times, s, (n,)."""
-    q: np.ndarray
+    q: NDArray[np.float64]
     """Configurations, (n, N)."""
-    v: np.ndarray
+    v: NDArray[np.float64]
     """Speeds, (n, S)."""
-    energy: np.ndarray
+    energy: NDArray[np.float64]
     """Kinetic and potential energy, J, (n,)."""
-    kinetic_energy: np.ndarray
+    kinetic_energy: NDArray[np.float64]
     """J, (n,)."""
-    potential_energy: np.ndarray
+    potential_energy: NDArray[np.float64]
     """Of gravity and springs, J, (n,); that of gravity is zero at the world's origin."""
-    error: np.ndarray | None
+    error: NDArray[np.float64] | None
     """Estimated error of each sample, (n,): attitudes in rad, positions and speeds as parts of max(1 SI unit, size). None without ``estimate``."""
     end_error: float | None
     """That of the last state."""
@@ -43,13 +50,13 @@ class Motion:
     """Names of the columns of q and of v."""
 
     @property
-    def end(self):
+    def end(self) -> State:
         """The last sample as a state."""
         if len(self.t) == 0:
             raise ArgumentError("the motion has no samples, so that it has no last one")
         return State(self.q[-1].copy(), self.v[-1].copy(), float(self.t[-1]))
 
-    def to_pandas(self):
+    def to_pandas(self) -> pandas.DataFrame:
         """A ``pandas.DataFrame`` with a row for each sample; needs pandas."""
         import pandas
 
@@ -63,18 +70,18 @@ class Motion:
             table.update(zip(names, values.T))
         return pandas.DataFrame(table)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         error = "" if self.end_error is None else f", error {self.end_error:.1e}"
         span = f"{self.t[0]:g} s to {self.t[-1]:g} s, " if len(self.t) else ""
         return f"<hamel.Motion {span}{len(self.t)} samples, {self.method}{error}>"
 
 
-def _start(robot, start):
+def _start(robot: _hamel.Robot, start: State | tuple[ArrayLike, ArrayLike] | None) -> tuple[list[float], list[float], float | None] | None:
     """q, v and time of a start as lists, its shapes checked."""
     if start is None:
         return None
     if isinstance(start, State):
-        parts = (start.configuration, start.speeds, start.time)
+        parts: tuple[Any, Any, Any] = (start.configuration, start.speeds, start.time)
     else:
         try:
             q, v = start
@@ -87,7 +94,7 @@ def _start(robot, start):
     return q, v, _number("start: time", parts[2])
 
 
-def _vector(name, value, size=None):
+def _vector(name: str, value: Any, size: int | None = None) -> list[float]:
     try:
         array = np.asarray(value, dtype=float)
     except (TypeError, ValueError) as error:
@@ -95,10 +102,11 @@ def _vector(name, value, size=None):
     wanted = "(n,)" if size is None else f"({size},)"
     if array.ndim != 1 or size not in (None, array.shape[0]):
         raise ArgumentError(f"{name} has shape {array.shape}: it must have shape {wanted}")
-    return array.tolist()
+    found: list[float] = array.tolist()
+    return found
 
 
-def _number(name, value):
+def _number(name: str, value: Any) -> float | None:
     if value is None:
         return None
     try:
@@ -107,26 +115,26 @@ def _number(name, value):
         raise ArgumentError(f"{name} is {value!r}: it must be a number") from None
 
 
-def _word(name, value):
+def _word(name: str, value: Any) -> str | None:
     if value is None or isinstance(value, str):
         return value
     raise ArgumentError(f"{name} is {value!r}: it must be a str")
 
 
 def simulate(
-    robot,
-    t_end=None,
+    robot: _hamel.Robot,
+    t_end: float | None = None,
     *,
-    start=None,
-    method=None,
-    tolerance=None,
-    dt=None,
-    accuracy=None,
-    form=None,
-    samples=None,
-    sample_step=None,
-    estimate=True,
-):
+    start: State | tuple[ArrayLike, ArrayLike] | None = None,
+    method: str | None = None,
+    tolerance: float | None = None,
+    dt: float | None = None,
+    accuracy: float | None = None,
+    form: str | None = None,
+    samples: ArrayLike | None = None,
+    sample_step: float | None = None,
+    estimate: bool = True,
+) -> Motion:
     """Moves a robot, under the controller of its scene if there is one.
 
     What is not given is as the scene has it; a URDF has 1 s, samples each 0.01 s, and a method that is chosen from the first state.
@@ -158,7 +166,7 @@ def simulate(
     if samples is not None and sample_step is not None:
         raise ArgumentError("samples and sample_step are both given: one of them tells the times")
     numbers = {"t_end": t_end, "tolerance": tolerance, "dt": dt, "accuracy": accuracy, "sample_step": sample_step}
-    request = {name: _number(name, value) for name, value in numbers.items()}
+    request: dict[str, Any] = {name: _number(name, value) for name, value in numbers.items()}
     request["start"] = _start(robot, start)
     request["method"] = _word("method", method)
     request["form"] = _word("form", form)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 
 class Sizes(NamedTuple):
@@ -67,28 +68,28 @@ class JointInfo:
 class State:
     """A state of a robot: q, v and a time in s."""
 
-    configuration: np.ndarray
-    speeds: np.ndarray
+    configuration: NDArray[np.float64]
+    speeds: NDArray[np.float64]
     time: float = 0.0
 
 
 class ForwardDerivatives(NamedTuple):
     """Accelerations and their derivatives; S speeds, K freedoms."""
 
-    rates: np.ndarray
+    rates: NDArray[np.float64]
     """Accelerations, (..., S)."""
-    by_local: np.ndarray
+    by_local: NDArray[np.float64]
     """By local coordinates phi about q, (..., S, K)."""
-    by_speeds: np.ndarray
+    by_speeds: NDArray[np.float64]
     """By v, (..., S, S)."""
-    by_efforts: np.ndarray
+    by_efforts: NDArray[np.float64]
     """By tau, (..., S, K)."""
 
 
 class InverseDerivatives(NamedTuple):
     """Derivatives of inverse dynamics; S speeds, K freedoms. That by accelerations is the mass matrix."""
 
-    by_local: np.ndarray
+    by_local: NDArray[np.float64]
     """By local coordinates phi about q, (..., S, K)."""
-    by_speeds: np.ndarray
+    by_speeds: NDArray[np.float64]
     """By v, (..., S, S)."""
