@@ -42,9 +42,13 @@ def test_types_hold(command, tmp_path):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_the_lines_of_use_in_the_page_run(tmp_path, monkeypatch):
+def test_the_lines_of_use_in_the_pages_run(tmp_path, monkeypatch):
     text = (ROOT / "python/README.md").read_text()
     program = text.split("```python\n")[1].split("```")[0]
+    more = (ROOT / "docs/python.md").read_text().split("```python\n")[1].split("```")[0]
     (tmp_path / "panda.urdf").write_text((ROOT / "tests/data/urdf/panda7.urdf").read_text())
     monkeypatch.chdir(tmp_path)
-    exec(compile(program, "README.md", "exec"), {})
+    names = {}
+    exec(compile(program, "README.md", "exec"), names)
+    names["q"] = names["q"][0]
+    exec(compile(more, "python.md", "exec"), names)
