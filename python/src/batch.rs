@@ -28,11 +28,18 @@ const LOOK: Duration = Duration::from_millis(20);
 /// Threads that batches may take; 0 for as many as the machine runs at once.
 static THREADS: AtomicUsize = AtomicUsize::new(0);
 
-/// Sets how many threads a batch takes at most; 0 or `None` for as many as the machine runs at once. Results do not depend on it.
+/// Sets how many threads a batch takes at most. Results do not depend on it.
+///
+/// Args:
+///     count: how many; 0 or None for as many as the machine runs at once.
 #[pyfunction]
 #[pyo3(signature = (count=None))]
-pub fn set_threads(count: Option<usize>) {
-    THREADS.store(count.unwrap_or(0), Ordering::Relaxed);
+pub fn set_threads(py: Python<'_>, count: Option<i64>) -> PyResult<()> {
+    let count = count.unwrap_or(0);
+    let count = usize::try_from(count)
+        .map_err(|_| errors::argument(py, format!("count is {count}: it must be at least 0")))?;
+    THREADS.store(count, Ordering::Relaxed);
+    Ok(())
 }
 
 fn threads() -> usize {

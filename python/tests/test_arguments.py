@@ -121,6 +121,16 @@ def test_more_numbers_than_memory_holds(panda):
             panda.forward_dynamics(q, v, tau)
 
 
+def test_numbers_of_threads(panda):
+    q = states(panda, 2000)[0]
+    expected = panda.mass_matrix(q)
+    for count in (1, 10**9, 0, None):
+        hamel.set_threads(count)
+        assert np.array_equal(panda.mass_matrix(q), expected)
+    with pytest.raises(hamel.ArgumentError, match="count is -1: it must be at least 0"):
+        hamel.set_threads(-1)
+
+
 def test_names_are_told_with_the_nearest(panda):
     with pytest.raises(hamel.ArgumentError, match="frame or body `panda_hnd`; did you mean `panda_hand`"):
         panda.pose(np.zeros(7), "panda_hnd")

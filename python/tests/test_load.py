@@ -78,6 +78,20 @@ def test_bad_files_are_told_as_the_program_tells_them(path):
         assert first.removeprefix("error: ") in str(caught.value)
 
 
+@pytest.mark.parametrize("path", [PANDA, SCENES / "mixed_tree.toml", ROOT / "tests/data/scenes/loops.toml"], ids=lambda path: path.name)
+def test_texts_that_end_anywhere_are_refused_or_read(path):
+    """Never with another exception, and never by a panic."""
+    text = path.read_text()
+    refused = 0
+    for end in np.random.default_rng(5).integers(1, len(text), 60):
+        try:
+            robot = hamel.load(text[:end] + "\n")
+            robot.mass_matrix(robot.state().configuration)
+        except hamel.Error as error:
+            refused += isinstance(error, hamel.FileError)
+    assert refused > 30
+
+
 def test_what_is_no_file_is_told(tmp_path):
     with pytest.raises(hamel.FileError, match="cannot read .*nowhere.urdf"):
         hamel.load(tmp_path / "nowhere.urdf")

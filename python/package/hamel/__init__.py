@@ -30,3 +30,9 @@ __all__ = [
     "set_threads",
     "simulate",
 ]
+
+# Messages and pickles call them by the names that users have for them.
+for _own in (globals()[name] for name in __all__):
+    if isinstance(_own, type) and _own.__module__ != "hamel":
+        _own.__module__ = "hamel"
+del _own
