@@ -68,6 +68,16 @@ impl<'py> Argument<'py> {
         &shape[..shape.len().saturating_sub(1)]
     }
 
+    /// Its dimensions.
+    pub fn shape(&self) -> &[usize] {
+        self.array.shape()
+    }
+
+    /// Its numbers where they are one state's.
+    pub fn one(&self) -> Option<&[f64]> {
+        self.leading().is_empty().then(|| self.numbers.all())
+    }
+
     /// Its numbers, to be read state by state of a batch of this shape.
     pub fn rows(&self, batch: &[usize]) -> Rows<'_> {
         Rows {

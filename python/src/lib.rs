@@ -1,10 +1,12 @@
-//! The Python package `hamel`: the part of it that is compiled. What users see of it stands in `package/hamel/__init__.pyi`.
+//! The Python package `hamel`: the part of it that is compiled. What users see of it stands in `package/hamel`; its types are in `_hamel.pyi`.
 
 mod arguments;
 mod batch;
 mod dynamics;
 mod errors;
 mod info;
+mod inputs;
+mod load;
 mod positions;
 mod results;
 mod robot;
@@ -20,7 +22,9 @@ mod _hamel {
     #[pymodule_export]
     use crate::batch::set_threads;
     #[pymodule_export]
-    use crate::robot::{Robot, load, parse};
+    use crate::load::{load, parse};
+    #[pymodule_export]
+    use crate::robot::Robot;
     #[pymodule_export]
     use crate::simulation::simulate;
 }

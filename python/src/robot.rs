@@ -1,6 +1,6 @@
-//! The class `Robot`, and the ways to one.
+//! The class `Robot`.
 
-use crate::errors::{self, of_package};
+use crate::errors::of_package;
 use crate::info;
 use crate::source::{AllLimits, Source};
 use crate::workspace::Workspaces;
@@ -14,35 +14,6 @@ use pyo3::types::{PyDict, PyTuple};
 
 type Arrays<'py> = Bound<'py, PyArrayDyn<f64>>;
 type Given<'a, 'py> = &'a Bound<'py, PyAny>;
-
-/// The robot or the scene in a file or a text, as a `Robot`.
-///
-/// Args:
-///     file_or_text: path of a robot in URDF or of a scene in TOML, or its text: a `str` with several lines, or one that begins as XML does, is a text.
-///     floating_base: whether the root link of a URDF moves freely; otherwise it is fixed to the world.
-///
-/// Raises:
-///     FileError: a file that cannot be read, and all mistakes of its text, each with its line.
-#[pyfunction]
-#[pyo3(signature = (file_or_text, *, floating_base=false))]
-pub fn load(file_or_text: &Bound<'_, PyAny>, floating_base: bool) -> PyResult<Robot> {
-    Robot::new(file_or_text.py(), Source::of(file_or_text, floating_base)?)
-}
-
-/// The robot of a text that was read before, for pickles.
-#[pyfunction]
-pub fn parse(py: Python<'_>, source: (String, String, bool, bool)) -> PyResult<Robot> {
-    let (name, text, is_urdf, floating_base) = source;
-    Robot::new(
-        py,
-        Source {
-            name,
-            text,
-            is_urdf,
-            floating_base,
-        },
-    )
-}
 
 /// A robot or a scene: its equations of motion, evaluated on arrays. `hamel.load` makes one.
 ///
@@ -63,19 +34,14 @@ pub struct Robot {
 }
 
 impl Robot {
-    fn new(py: Python<'_>, source: Source) -> PyResult<Self> {
-        let read = py.detach(|| source.model());
-        let (model, limits) = read.map_err(|error| errors::file(py, &source.name, &error))?;
-        if source.floating_base && !source.is_urdf {
-            let message = "floating_base is True: only robots in URDF have a base that it frees; a scene has a joint `free`";
-            return Err(errors::argument(py, message));
-        }
-        Ok(Self {
+    /// The robot of a text that has been read.
+    pub fn new(source: Source, model: Model, limits: AllLimits) -> Self {
+        Self {
             workspaces: Workspaces::new(model.mechanism()),
             model,
             source,
             limits,
-        })
+        }
     }
 
     /// What it is in Rust.

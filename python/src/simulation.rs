@@ -1,6 +1,7 @@
 //! Motions: what `hamel.simulate` asks for, as a dictionary of arrays.
 
 use crate::errors;
+use crate::inputs::Listener;
 use crate::robot::Robot;
 use hamel::integrate::{Form, GlobalError, Scheme, Solution, State};
 use hamel::scene::Settings;
@@ -8,11 +9,6 @@ use hamel::{Error, Model, Simulation};
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::cell::{Cell, RefCell};
-use std::time::{Duration, Instant};
-
-/// Time between two looks at the signals of the process.
-const LOOK: Duration = Duration::from_millis(20);
 
 /// What is asked of a motion; what is not given is as the scene has it.
 #[derive(FromPyObject)]
@@ -36,6 +32,8 @@ struct Request {
     #[pyo3(item)]
     sample_step: Option<f64>,
     #[pyo3(item)]
+    inputs: Option<Py<PyAny>>,
+    #[pyo3(item)]
     estimate: bool,
 }
 
@@ -52,7 +50,7 @@ pub fn simulate<'py>(
     let moved = py.detach(|| run(model, &request, plan));
     let motion = match moved {
         Ok(motion) => motion,
-        Err(Ended::Interrupt(error)) => return Err(error),
+        Err(Ended::Exception(error)) => return Err(error),
         Err(Ended::Failure(error)) => return Err(errors::of(py, &error)),
     };
     motion.arrays(py, model)
@@ -129,7 +127,7 @@ impl Plan {
 /// Why there is no motion.
 enum Ended {
     Failure(Error),
-    Interrupt(PyErr),
+    Exception(PyErr),
 }
 
 /// A motion, and its method.
@@ -173,18 +171,11 @@ fn prepared<'a>(model: &'a Model, request: &Request, plan: Plan) -> Simulation<'
 }
 
 fn run(model: &Model, request: &Request, plan: Plan) -> Result<Motion, Ended> {
-    let (last, interrupt) = (Cell::new(Instant::now()), RefCell::new(None));
-    let stop = || {
-        let is_told = interrupt.borrow().is_some();
-        if is_told || last.get().elapsed() < LOOK {
-            return is_told;
-        }
-        last.set(Instant::now());
-        let signal = Python::attach(|py| py.check_signals()).err();
-        *interrupt.borrow_mut() = signal;
-        interrupt.borrow().is_some()
-    };
-    let simulation = prepared(model, request, plan).stopping(stop);
+    let listener = Listener::new(request.inputs.as_ref());
+    let mut simulation = prepared(model, request, plan).stopping(|| listener.is_over());
+    if request.inputs.is_some() {
+        simulation = simulation.inputs(|time, q, v, tau| listener.fill(time, q, v, tau));
+    }
     let method = simulation.chosen_method().map_err(Ended::Failure)?.0;
     let moved = match request.estimate {
         true => simulation
@@ -192,8 +183,8 @@ fn run(model: &Model, request: &Request, plan: Plan) -> Result<Motion, Ended> {
             .map(|(solution, error)| (solution, Some(error))),
         false => simulation.run().map(|solution| (solution, None)),
     };
-    if let Some(signal) = interrupt.take() {
-        return Err(Ended::Interrupt(signal));
+    if let Some(exception) = listener.exception() {
+        return Err(Ended::Exception(exception));
     }
     let (solution, error) = moved.map_err(Ended::Failure)?;
     Ok(Motion {

@@ -78,6 +78,43 @@ def test_controllers_and_events_of_scenes_act():
     assert tracked.t[-1] == 0.05 and free.t.tolist() == [0.0]
 
 
+def test_inputs_are_functions_of_python():
+    """A torque that takes gravity away and brakes: v falls as exp(-c t / I)."""
+    robot = hamel.load(PENDULUM)
+    inertia = robot.mass_matrix([0.0])[0, 0]
+
+    def brake(time, q, v):
+        return robot.bias_forces(q, np.zeros(1)) - 0.7 * v
+
+    motion = hamel.simulate(robot, 1.0, start=([0.3], [2.0]), inputs=brake, tolerance=1e-10, samples=[0.5, 1.0])
+    assert np.abs(motion.v[:, 0] - 2.0 * np.exp(-0.7 * motion.t / inertia)).max() < 1e-8
+    assert motion.end_error < 1e-8
+
+
+def test_what_inputs_raise_ends_the_motion():
+    robot = hamel.load(PENDULUM)
+
+    def fail(time, q, v):
+        if time > 0.5:
+            raise KeyError("gains")
+        return [0.0]
+
+    with pytest.raises(KeyError, match="gains"):
+        hamel.simulate(robot, 1e9, inputs=fail, samples=[0.0])
+    wrong = {
+        r"the result of inputs has shape \(2,\): it must have shape \(..., 1\)": [0.0, 0.0],
+        r"the result of inputs has shape \(1, 1\): it must have shape \(1,\)": [[0.0]],
+        "the result of inputs is an array of object: it must be one of real numbers": None,
+    }
+    for message, result in wrong.items():
+        with pytest.raises(hamel.ArgumentError, match=message):
+            hamel.simulate(robot, 1.0, inputs=lambda time, q, v, result=result: result)
+    with pytest.raises(hamel.Error, match="hinge"):
+        hamel.simulate(robot, 1.0, inputs=lambda time, q, v: [np.nan])
+    with pytest.raises(hamel.ArgumentError, match="inputs is 3: it must be a function"):
+        hamel.simulate(robot, 1.0, inputs=3)
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -133,6 +134,7 @@ def simulate(
     form: str | None = None,
     samples: ArrayLike | None = None,
     sample_step: float | None = None,
+    inputs: Callable[[float, NDArray[np.float64], NDArray[np.float64]], ArrayLike] | None = None,
     estimate: bool = True,
 ) -> Motion:
     """Moves a robot, under the controller of its scene if there is one.
@@ -150,6 +152,8 @@ def simulate(
         form: ``lagrangian`` or ``hamiltonian``.
         samples: times at which the state is wanted, s, ascending.
         sample_step: time between samples, s; not with ``samples``.
+        inputs: function of time in s, q and v that gives efforts tau, (K,), instead of the controller of the scene; N m and N. It is called for each evaluation of the
+            equations of motion, of the estimate too; it may keep no memory, as times go back and forth.
         estimate: whether to estimate the error, which takes about as long again. With ``accuracy``, a motion without an estimate is refused where the accuracy is
             not reached; with one, ``end_error`` tells.
 
@@ -159,7 +163,7 @@ def simulate(
     Raises:
         ArgumentError: an option out of range, a start of the wrong shape or that the robot cannot take.
         IntegrationError: a motion that does not go on, with the time that it has reached.
-        KeyboardInterrupt: Ctrl-C, heard between steps.
+        KeyboardInterrupt: Ctrl-C, heard between steps. What ``inputs`` raises ends the motion as well.
     """
     if not isinstance(robot, _hamel.Robot):
         raise ArgumentError(f"robot is {robot!r}: it must be a Robot, from hamel.load")
@@ -171,6 +175,9 @@ def simulate(
     request["method"] = _word("method", method)
     request["form"] = _word("form", form)
     request["samples"] = None if samples is None else _vector("samples", samples)
+    if inputs is not None and not callable(inputs):
+        raise ArgumentError(f"inputs is {inputs!r}: it must be a function of time, q and v")
+    request["inputs"] = inputs
     request["estimate"] = bool(estimate)
     found = _hamel.simulate(robot, request)
     energy = found["kinetic_energy"] + found["potential_energy"]
