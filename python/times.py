@@ -1,5 +1,6 @@
 """Prints what the page `docs/python.md` says of sizes and times. Run it with `.venv/bin/python` after `check`, on a machine that does nothing else."""
 
+import re
 import subprocess
 import sys
 import time
@@ -61,7 +62,54 @@ def batches():
             print(f"panda7, {count:.0e} states, {threads or 'all'} threads: {wall:.3f} s, {work / count * 1e6:.2f} µs of one core a state")
 
 
+def others():
+    """The same by Pinocchio in a loop and by one step of MuJoCo's rollout, where they are installed; panda7 without the damping that Pinocchio leaves out."""
+    text = re.sub('damping="[^"]*"', 'damping="0"', PANDA.read_text())
+    random, count = np.random.default_rng(1), 10**5
+    q, v, tau = random.uniform(-2, 2, (count, 7)), random.normal(size=(count, 7)), random.normal(size=(count, 7))
+    robot = hamel.load(text)
+    expected = robot.forward_dynamics(q, v, tau)
+
+    def tell(name, call, accelerations):
+        wall, work = min(measured(call) for _ in range(3))
+        difference = np.abs(accelerations(call()) - expected).max() / np.abs(expected).max()
+        print(f"{name}: {work / count * 1e6:.2f} µs of one core a state, {difference:.0e} apart")
+
+    tell("hamel", lambda: robot.forward_dynamics(q, v, tau), lambda rates: rates)
+    try:
+        import pinocchio
+    except ImportError:
+        print("no pinocchio: pip install pin")
+    else:
+        model = pinocchio.buildModelFromXML(text)
+        data = model.createData()
+        tell(
+            f"pinocchio {pinocchio.__version__} in a loop",
+            lambda: [pinocchio.aba(model, data, *state).copy() for state in zip(q, v, tau)],
+            np.array,
+        )
+    try:
+        import mujoco
+        from mujoco import rollout
+    except ImportError:
+        print("no mujoco: pip install mujoco")
+    else:
+        model = mujoco.MjSpec.from_string(text).compile()
+        off = mujoco.mjtDisableBit
+        model.opt.disableflags |= int(off.mjDSBL_CONTACT) | int(off.mjDSBL_CONSTRAINT)
+        model.opt.timestep = 1e-7
+        start = np.hstack([np.zeros((count, 1)), q, v])
+        efforts, spec = tau[:, None], int(mujoco.mjtState.mjSTATE_QFRC_APPLIED)
+        data = mujoco.MjData(model)
+        tell(
+            f"mujoco {mujoco.__version__}, a step of rollout",
+            lambda: rollout.rollout(model, data, start, efforts, control_spec=spec, nstep=1)[0],
+            lambda states: (states[:, 0, 8:] - v) / model.opt.timestep,
+        )
+
+
 wheel()
 imports()
 calls()
 batches()
+others()
