@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// Folders whose pages are looked at, and those below them.
-const FOLDERS: [&str; 17] = [
+const FOLDERS: [&str; 18] = [
     "",
     "codegen",
     "crates/cli",
@@ -18,6 +18,7 @@ const FOLDERS: [&str; 17] = [
     "generated",
     "generated/pages",
     "joint-specs",
+    "python",
     "runtime",
     "scenes",
     "tests",

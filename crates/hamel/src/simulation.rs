@@ -9,6 +9,7 @@ use hamel_integrate::{
 use hamel_runtime::dynamics::Dynamics;
 use hamel_scene::{Company, Scene, Settings};
 use std::cell::RefCell;
+use std::ops::ControlFlow;
 
 /// Efforts τ, one per entry of v, from time (s), Q and v̄; they are zero when it is called.
 type Inputs<'a> = Box<dyn FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a>;
@@ -22,6 +23,7 @@ pub struct Simulation<'a> {
     times: Option<Vec<f64>>,
     inputs: Option<Inputs<'a>>,
     events: Vec<Event<'a>>,
+    stop: Option<Box<dyn Fn() -> bool + 'a>>,
 }
 
 impl<'a> Simulation<'a> {
@@ -33,6 +35,7 @@ impl<'a> Simulation<'a> {
             times: None,
             inputs: None,
             events: Vec::new(),
+            stop: None,
         }
     }
 
@@ -103,6 +106,13 @@ impl<'a> Simulation<'a> {
     /// Under efforts τ (one per entry of v, N m or N) from time, Q and v̄, instead of the scene's controller; they are zero when it is called.
     pub fn inputs(mut self, inputs: impl FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a) -> Self {
         self.inputs = Some(Box::new(inputs));
+        self
+    }
+
+    /// With a question after each step, whether it is to end there, such as when the user interrupts it; [`Solution::stopped`] tells. The motions that are made for
+    /// an estimate, or in the search for an accuracy, ask too.
+    pub fn stopping(mut self, stop: impl Fn() -> bool + 'a) -> Self {
+        self.stop = Some(Box::new(stop));
         self
     }
 
@@ -203,13 +213,17 @@ impl<'a> Simulation<'a> {
         let feedback = controller
             .as_mut()
             .map(|law| RefCell::new(Feedback::new(&mut **law)));
+        let stop = self.stop.as_deref();
         let mut motion = Integration::new(dynamics, start, options)
             .sampling(self.settings.sampling)
             .observer(|step| {
                 if let Some(feedback) = &feedback {
                     feedback.borrow_mut().accepted();
                 }
-                observer(step)
+                match stop.is_some_and(|stop| stop()) {
+                    true => ControlFlow::Break(()),
+                    false => observer(step),
+                }
             });
         if self.settings.chooses {
             motion = motion.choosing();

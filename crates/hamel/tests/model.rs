@@ -327,3 +327,31 @@ fn ports_are_read_by_name() -> Result<(), Error> {
     assert!(tree.relation_forces(&state, &rest, "thread")?.is_empty());
     Ok(())
 }
+
+/// The motion, and those of its estimate, end at the step after which they are told to.
+#[test]
+fn a_motion_stops_where_it_is_told_to() -> Result<(), Error> {
+    let robot = robot();
+    let asked = std::cell::Cell::new(0);
+    let stop_after = |steps: usize| {
+        asked.set(0);
+        let asked = &asked;
+        move || {
+            asked.set(asked.get() + 1);
+            asked.get() > steps
+        }
+    };
+    let open = || robot.simulate().until(1.0).method(Method::rk4(0.01));
+    let whole = open().stopping(|| false).run()?;
+    assert!(!whole.stopped);
+    assert_eq!(whole.state.time, 1.0);
+    let motion = open().stopping(stop_after(10)).run()?;
+    assert!(motion.stopped);
+    // It is asked at the start as well.
+    assert_eq!((motion.statistics.steps, asked.get()), (10, 11));
+    let (motion, _) = open().stopping(stop_after(10)).run_estimated()?;
+    assert_eq!(motion.statistics.steps, 10);
+    // Companions take few steps more than none.
+    assert!((12..20).contains(&asked.get()), "{}", asked.get());
+    Ok(())
+}

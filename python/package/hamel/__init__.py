@@ -1,0 +1,38 @@
+"""Rigid-body dynamics of robots and scenes: equations of motion, their derivatives, and motions with an estimate of their error.
+
+``hamel.load`` reads a robot in URDF or a scene in TOML. Methods of ``Robot`` take arrays of numpy whose last dimension holds one state and whose other
+dimensions are a batch. Units are SI, angles radians; twists have the angular velocity first.
+"""
+
+from ._errors import ArgumentError, DynamicsError, Error, FileError, IntegrationError, Mistake
+from ._hamel import Robot, load, set_threads
+from ._motion import Motion, simulate
+from ._values import ForwardDerivatives, InverseDerivatives, JointInfo, Limits, Sizes, State
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "ArgumentError",
+    "DynamicsError",
+    "Error",
+    "FileError",
+    "ForwardDerivatives",
+    "IntegrationError",
+    "InverseDerivatives",
+    "JointInfo",
+    "Limits",
+    "Mistake",
+    "Motion",
+    "Robot",
+    "Sizes",
+    "State",
+    "load",
+    "set_threads",
+    "simulate",
+]
+
+# Messages and pickles call them by the names that users have for them.
+for _own in (globals()[name] for name in __all__):
+    if isinstance(_own, type) and _own.__module__ != "hamel":
+        _own.__module__ = "hamel"
+del _own

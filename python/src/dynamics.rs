@@ -1,0 +1,351 @@
+//! What a robot is asked about states: each function evaluates a batch.
+
+use crate::arguments::Argument;
+use crate::batch::evaluate;
+use crate::errors;
+use crate::robot::Robot;
+use hamel::UnknownName;
+use hamel::dynamics::{Dynamics, Frame, FrameReadings, Sensitivity};
+use hamel::scene::suggest::nearest;
+use hamel::spatial::Pose;
+use numpy::PyArrayDyn;
+use pyo3::prelude::*;
+
+/// An array of results.
+pub type Results<'py> = Bound<'py, PyArrayDyn<f64>>;
+
+type Given<'a, 'py> = &'a Bound<'py, PyAny>;
+
+/// A frame or a body by its index.
+#[derive(Clone, Copy)]
+enum Place {
+    Frame(usize),
+    Body(usize),
+}
+
+impl Robot {
+    fn q<'py>(&self, q: Given<'_, 'py>) -> PyResult<Argument<'py>> {
+        Argument::read("q", q, self.sizes().configuration)
+    }
+
+    fn of_speeds<'py>(&self, name: &'static str, value: Given<'_, 'py>) -> PyResult<Argument<'py>> {
+        Argument::read(name, value, self.sizes().speeds)
+    }
+
+    fn tau<'py>(&self, tau: Given<'_, 'py>) -> PyResult<Argument<'py>> {
+        Argument::read("tau", tau, self.sizes().freedoms)
+    }
+
+    /// v̄̇.
+    pub fn accelerations<'py>(&self, [q, v, tau]: [Given<'_, 'py>; 3]) -> PyResult<Results<'py>> {
+        let py = q.py();
+        let arguments = [self.q(q)?, self.of_speeds("v", v)?, self.tau(tau)?];
+        let speeds = self.sizes().speeds;
+        let [rates] = evaluate(
+            py,
+            self.workspaces(),
+            arguments,
+            [&[speeds]],
+            |own, [q, v, tau], [rates]| Ok(own.dynamics.forward_dynamics(q, v, tau, rates)?),
+        )?;
+        Ok(rates)
+    }
+
+    /// `S̄ᵀτ`.
+    pub fn efforts<'py>(&self, [q, v, a]: [Given<'_, 'py>; 3]) -> PyResult<Results<'py>> {
+        let py = q.py();
+        let arguments = [self.q(q)?, self.of_speeds("v", v)?, self.of_speeds("a", a)?];
+        let speeds = self.sizes().speeds;
+        let [efforts] = evaluate(
+            py,
+            self.workspaces(),
+            arguments,
+            [&[speeds]],
+            |own, [q, v, a], [efforts]| Ok(own.dynamics.inverse_dynamics(q, v, a, efforts)?),
+        )?;
+        Ok(efforts)
+    }
+
+    /// Inverse dynamics at v̄̇ = 0.
+    pub fn bias<'py>(&self, [q, v]: [Given<'_, 'py>; 2]) -> PyResult<Results<'py>> {
+        let arguments = [self.q(q)?, self.of_speeds("v", v)?];
+        let speeds = self.sizes().speeds;
+        let [bias] = evaluate(
+            q.py(),
+            self.workspaces(),
+            arguments,
+            [&[speeds]],
+            |own, [q, v], [bias]| Ok(own.dynamics.bias_forces(q, v, bias)?),
+        )?;
+        Ok(bias)
+    }
+
+    /// M̄.
+    pub fn mass<'py>(&self, q: Given<'_, 'py>) -> PyResult<Results<'py>> {
+        let size = self.sizes().speeds;
+        let [mass] = evaluate(
+            q.py(),
+            self.workspaces(),
+            [self.q(q)?],
+            [&[size, size]],
+            |own, [q], [mass]| {
+                own.dynamics.mass_matrix(q, &mut own.mass)?;
+                for (i, row) in mass.chunks_exact_mut(size.max(1)).enumerate() {
+                    for (j, entry) in row.iter_mut().enumerate() {
+                        *entry = own.mass.entry(i, j);
+                    }
+                }
+                Ok(())
+            },
+        )?;
+        Ok(mass)
+    }
+
+    /// v̄̇, and its derivatives by ϕ, v̄ and τ.
+    pub fn accelerations_and_derivatives<'py>(
+        &self,
+        [q, v, tau]: [Given<'_, 'py>; 3],
+    ) -> PyResult<[Results<'py>; 4]> {
+        let py = q.py();
+        let arguments = [self.q(q)?, self.of_speeds("v", v)?, self.tau(tau)?];
+        let (s, k) = (self.sizes().speeds, self.sizes().freedoms);
+        let shapes: [&[usize]; 4] = [&[s], &[s, k], &[s, s], &[s, k]];
+        evaluate(
+            py,
+            self.workspaces(),
+            arguments,
+            shapes,
+            |own, [q, v, tau], results| {
+                let (dynamics, found) = own.forward();
+                dynamics.forward_dynamics_derivatives(q, v, tau, found)?;
+                let [rates, by_local, by_speeds, by_efforts] = results;
+                rates.copy_from_slice(found.rates());
+                copy(found.by_local(), by_local);
+                copy(found.by_speeds(), by_speeds);
+                copy(found.by_efforts(), by_efforts);
+                Ok(())
+            },
+        )
+    }
+
+    /// The derivatives of inverse dynamics by ϕ and v̄.
+    pub fn effort_derivatives<'py>(
+        &self,
+        [q, v, a]: [Given<'_, 'py>; 3],
+    ) -> PyResult<[Results<'py>; 2]> {
+        let py = q.py();
+        let arguments = [self.q(q)?, self.of_speeds("v", v)?, self.of_speeds("a", a)?];
+        let (s, k) = (self.sizes().speeds, self.sizes().freedoms);
+        let shapes: [&[usize]; 2] = [&[s, k], &[s, s]];
+        evaluate(
+            py,
+            self.workspaces(),
+            arguments,
+            shapes,
+            |own, [q, v, a], [by_local, by_speeds]| {
+                let (dynamics, found) = own.inverse();
+                dynamics.inverse_dynamics_derivatives(q, v, a, found)?;
+                copy(found.by_local(), by_local);
+                copy(found.by_speeds(), by_speeds);
+                Ok(())
+            },
+        )
+    }
+
+    /// The 6×S matrix that takes v̄ to the twist of a frame.
+    pub fn jacobian_of<'py>(
+        &self,
+        q: Given<'_, 'py>,
+        (frame, axes): (&str, &str),
+    ) -> PyResult<Results<'py>> {
+        let py = q.py();
+        let (place, axes) = (self.place(py, frame)?, axes_named(py, axes)?);
+        let speeds = self.sizes().speeds;
+        let [jacobian] = evaluate(
+            py,
+            self.workspaces(),
+            [self.q(q)?],
+            [&[6, speeds]],
+            |own, [q], [out]| {
+                let readings = own.dynamics.readings(q, &own.rest)?;
+                place.of(&readings)?.jacobian(axes, &mut own.jacobian)?;
+                for (column, entries) in own.jacobian.chunks_exact(6).enumerate() {
+                    for (row, entry) in entries.iter().enumerate() {
+                        out[row * speeds + column] = *entry;
+                    }
+                }
+                Ok(())
+            },
+        )?;
+        Ok(jacobian)
+    }
+
+    /// The twist of a frame.
+    pub fn twist_of<'py>(
+        &self,
+        [q, v]: [Given<'_, 'py>; 2],
+        (frame, axes): (&str, &str),
+    ) -> PyResult<Results<'py>> {
+        let py = q.py();
+        let (place, axes) = (self.place(py, frame)?, axes_named(py, axes)?);
+        let arguments = [self.q(q)?, self.of_speeds("v", v)?];
+        let [twist] = evaluate(
+            py,
+            self.workspaces(),
+            arguments,
+            [&[6]],
+            |own, [q, v], [out]| {
+                let readings = own.dynamics.readings(q, v)?;
+                out.copy_from_slice(place.of(&readings)?.twist(axes).as_slice());
+                Ok(())
+            },
+        )?;
+        Ok(twist)
+    }
+
+    /// H of one frame.
+    pub fn pose_of<'py>(&self, q: Given<'_, 'py>, frame: &str) -> PyResult<Results<'py>> {
+        let py = q.py();
+        let place = self.place(py, frame)?;
+        let [pose] = evaluate(
+            py,
+            self.workspaces(),
+            [self.q(q)?],
+            [&[4, 4]],
+            |own, [q], [out]| {
+                let readings = own.dynamics.readings(q, &own.rest)?;
+                write_pose(&place.of(&readings)?.pose(), out);
+                Ok(())
+            },
+        )?;
+        Ok(pose)
+    }
+
+    /// H of all bodies.
+    pub fn poses_of_bodies<'py>(&self, q: Given<'_, 'py>) -> PyResult<Results<'py>> {
+        let bodies = self.mechanism().bodies().len();
+        let [poses] = evaluate(
+            q.py(),
+            self.workspaces(),
+            [self.q(q)?],
+            [&[bodies, 4, 4]],
+            |own, [q], [out]| {
+                let readings = own.dynamics.readings(q, &own.rest)?;
+                for (body, out) in out.chunks_exact_mut(16).enumerate() {
+                    write_pose(&readings.pose(body)?, out);
+                }
+                Ok(())
+            },
+        )?;
+        Ok(poses)
+    }
+
+    /// Kinetic and potential energy.
+    pub fn energies<'py>(&self, [q, v]: [Given<'_, 'py>; 2]) -> PyResult<[Results<'py>; 2]> {
+        let arguments = [self.q(q)?, self.of_speeds("v", v)?];
+        evaluate(
+            q.py(),
+            self.workspaces(),
+            arguments,
+            [&[], &[]],
+            |_, [q, v], [kinetic, potential]| {
+                let found = self.mechanism().kinematics(q, v)?;
+                kinetic[0] = found.kinetic_energy();
+                potential[0] = found.potential_energy();
+                Ok(())
+            },
+        )
+    }
+
+    /// Kinetic and potential energy together.
+    pub fn total_energy<'py>(&self, [q, v]: [Given<'_, 'py>; 2]) -> PyResult<Results<'py>> {
+        let arguments = [self.q(q)?, self.of_speeds("v", v)?];
+        let [energy] = evaluate(
+            q.py(),
+            self.workspaces(),
+            arguments,
+            [&[]],
+            |_, [q, v], [energy]| {
+                energy[0] = self.mechanism().kinematics(q, v)?.energy();
+                Ok(())
+            },
+        )?;
+        Ok(energy)
+    }
+
+    /// The centre of mass of all bodies.
+    pub fn center<'py>(&self, q: Given<'_, 'py>) -> PyResult<Results<'py>> {
+        let [center] = evaluate(
+            q.py(),
+            self.workspaces(),
+            [self.q(q)?],
+            [&[3]],
+            |own, [q], [out]| {
+                let readings = own.dynamics.readings(q, &own.rest)?;
+                out.copy_from_slice(readings.center_of_mass().as_slice());
+                Ok(())
+            },
+        )?;
+        Ok(center)
+    }
+
+    /// The frame or the body of that name.
+    fn place(&self, py: Python<'_>, name: &str) -> PyResult<Place> {
+        let mechanism = self.mechanism();
+        let frame = mechanism.frame_index(name).map(Place::Frame);
+        let found = frame.or_else(|| mechanism.body_index(name).map(Place::Body));
+        found.ok_or_else(|| {
+            let known = self.model().frames().chain(self.model().bodies());
+            errors::of(py, &unknown("frame or body", name, known).into())
+        })
+    }
+}
+
+impl Place {
+    fn of<'a>(
+        self,
+        readings: &hamel::dynamics::Readings<'a>,
+    ) -> Result<FrameReadings<'a>, hamel::Error> {
+        Ok(match self {
+            Self::Frame(index) => readings.frame(index)?,
+            Self::Body(index) => readings.body_frame(index)?,
+        })
+    }
+}
+
+/// A name that is none of those known.
+pub fn unknown<'a>(
+    kind: &'static str,
+    name: &str,
+    known: impl Iterator<Item = &'a str>,
+) -> UnknownName {
+    UnknownName {
+        kind,
+        name: name.to_owned(),
+        nearest: nearest(name, known).map(str::to_owned),
+    }
+}
+
+fn axes_named(py: Python<'_>, name: &str) -> PyResult<Frame> {
+    match name {
+        "world_aligned" => Ok(Frame::WorldAligned),
+        "body" => Ok(Frame::Body),
+        "world" => Ok(Frame::World),
+        _ => Err(errors::argument(
+            py,
+            format!("axes is `{name}`: it must be `world_aligned`, `body` or `world`"),
+        )),
+    }
+}
+
+fn copy(from: &Sensitivity, to: &mut [f64]) {
+    to.copy_from_slice(from.entries());
+}
+
+/// A 4×4 matrix, row by row.
+fn write_pose(pose: &Pose<f64>, out: &mut [f64]) {
+    let matrix = pose.matrix();
+    for (entry, place) in out.iter_mut().zip(0..16) {
+        *entry = matrix[(place / 4, place % 4)];
+    }
+}

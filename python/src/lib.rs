@@ -1,0 +1,30 @@
+//! The Python package `hamel`: the part of it that is compiled. What users see of it stands in `package/hamel`; its types are in `_hamel.pyi`.
+
+mod arguments;
+mod batch;
+mod dynamics;
+mod errors;
+mod info;
+mod inputs;
+mod load;
+mod positions;
+mod results;
+mod robot;
+mod simulation;
+mod source;
+mod workspace;
+
+use pyo3::prelude::*;
+
+/// Compiled part of `hamel`.
+#[pymodule]
+mod _hamel {
+    #[pymodule_export]
+    use crate::batch::set_threads;
+    #[pymodule_export]
+    use crate::load::{load, parse};
+    #[pymodule_export]
+    use crate::robot::Robot;
+    #[pymodule_export]
+    use crate::simulation::simulate;
+}

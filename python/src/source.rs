@@ -1,0 +1,135 @@
+//! Where a robot comes from: a file, or a text.
+
+use crate::errors;
+use hamel::Model;
+use hamel::scene::urdf::{self, Import};
+use hamel::scene::{Diagnostics, Scene, SceneDescription, read_file};
+use pyo3::prelude::*;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// The text that a robot is made of.
+#[derive(Clone)]
+pub struct Source {
+    /// What messages call it.
+    pub name: String,
+    /// The text.
+    pub text: String,
+    /// Whether it is URDF, by its ending or by how it begins.
+    pub is_urdf: bool,
+    /// Whether the root link of a URDF moves freely.
+    pub floating_base: bool,
+}
+
+/// Limits of a joint, as a file says them; rad or m, rad/s or m/s, N m or N.
+#[derive(Clone, Copy, Default)]
+pub struct Limits {
+    /// Least position.
+    pub lower: Option<f64>,
+    /// Largest position.
+    pub upper: Option<f64>,
+    /// Largest velocity.
+    pub velocity: Option<f64>,
+    /// Largest effort.
+    pub effort: Option<f64>,
+}
+
+/// Limits by the names of joints.
+pub type AllLimits = BTreeMap<String, Limits>;
+
+impl Source {
+    /// A file where `given` is a path, or a `str` without a line break that does not begin as XML does; a text otherwise.
+    ///
+    /// # Errors
+    /// What is neither `str` nor a path; a file that cannot be read.
+    pub fn of(given: &Bound<'_, PyAny>, floating_base: bool) -> PyResult<Self> {
+        let py = given.py();
+        if let Ok(text) = given.extract::<String>()
+            && is_text(&text)
+        {
+            return Ok(Self::of_text(text, floating_base));
+        }
+        let path: PathBuf = given.extract().map_err(|_| {
+            errors::argument(
+                py,
+                format!("file_or_text is {given:?}: it must be a path or a text"),
+            )
+        })?;
+        let (text, name) =
+            read_file(&path).map_err(|error| errors::file(py, &path.to_string_lossy(), &error))?;
+        let is_urdf = urdf::is_robot(&path, &text);
+        Ok(Self {
+            name,
+            text,
+            is_urdf,
+            floating_base,
+        })
+    }
+
+    fn of_text(text: String, floating_base: bool) -> Self {
+        Self {
+            name: String::from("text"),
+            is_urdf: urdf::is_robot(&PathBuf::new(), &text),
+            text,
+            floating_base,
+        }
+    }
+
+    /// The model, and the limits of its joints.
+    ///
+    /// # Errors
+    /// All mistakes of the text.
+    pub fn model(&self) -> Result<(Model, AllLimits), Diagnostics> {
+        let joints = hamel::joints::registry();
+        let (scene, limits) = match self.is_urdf {
+            true => {
+                let options = urdf::Options {
+                    floating_base: self.floating_base,
+                    ..urdf::Options::default()
+                };
+                let import = urdf::read(&self.text, &self.name, &options)?;
+                (import.build(&joints)?, limits_of_robot(&import))
+            }
+            false => {
+                // Mistakes of both steps are told together.
+                let scene = Scene::parse(&self.text, &self.name, &joints)?;
+                let described = Scene::from_toml(&self.text, &self.name)?;
+                (scene, limits_of_scene(&described))
+            }
+        };
+        Ok((Model::new(scene), limits))
+    }
+}
+
+/// Whether a `str` is the text itself: no path of a robot has several lines, and none begins as XML does.
+fn is_text(given: &str) -> bool {
+    given.contains('\n') || urdf::is_robot(&PathBuf::new(), given)
+}
+
+fn limits_of_robot(import: &Import) -> AllLimits {
+    let limited = import.joints.iter().filter_map(|joint| {
+        let limits = joint.limits.as_ref()?;
+        let (lower, upper) = limits.position.map(|[lower, upper]| (lower, upper)).unzip();
+        let own = Limits {
+            lower,
+            upper,
+            velocity: limits.velocity,
+            effort: limits.effort,
+        };
+        Some((joint.name.clone(), own))
+    });
+    limited.collect()
+}
+
+fn limits_of_scene(scene: &SceneDescription) -> AllLimits {
+    let limited = scene.bodies.iter().filter_map(|body| {
+        let limit = body.forces.limit.as_ref()?.value;
+        let own = Limits {
+            lower: limit.lower,
+            upper: limit.upper,
+            ..Limits::default()
+        };
+        Some((body.joint.name.value.clone(), own))
+    });
+    limited.collect()
+}

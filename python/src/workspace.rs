@@ -1,0 +1,88 @@
+//! Memory for the equations of motion of one robot: one workspace for each thread that asks, kept for the next call.
+
+use crate::batch::lock;
+use hamel::dynamics::{Dynamics, ForwardDerivatives, InverseDerivatives, MassMatrix, Recursive};
+use hamel::mechanism::Mechanism;
+use std::sync::{Arc, Mutex};
+
+/// Memory of one thread.
+pub struct Workspace {
+    /// The equations of motion.
+    pub dynamics: Recursive,
+    /// M̄.
+    pub mass: MassMatrix,
+    /// Speeds of a mechanism at rest.
+    pub rest: Vec<f64>,
+    /// A Jacobian, column by column.
+    pub jacobian: Vec<f64>,
+    forward: Option<Box<ForwardDerivatives>>,
+    inverse: Option<Box<InverseDerivatives>>,
+}
+
+impl Workspace {
+    fn new(mechanism: &Arc<Mechanism>) -> Self {
+        let speeds = mechanism.layout().speeds;
+        Self {
+            dynamics: Recursive::new(Arc::clone(mechanism)),
+            mass: MassMatrix::new(mechanism),
+            rest: vec![0.0; speeds],
+            jacobian: vec![0.0; 6 * speeds],
+            forward: None,
+            inverse: None,
+        }
+    }
+
+    /// The equations of motion, and room for derivatives of forward dynamics.
+    pub fn forward(&mut self) -> (&mut Recursive, &mut ForwardDerivatives) {
+        let mechanism = Arc::clone(self.dynamics.mechanism());
+        let room = self
+            .forward
+            .get_or_insert_with(|| Box::new(ForwardDerivatives::new(&mechanism)));
+        (&mut self.dynamics, room)
+    }
+
+    /// The equations of motion, and room for derivatives of inverse dynamics.
+    pub fn inverse(&mut self) -> (&mut Recursive, &mut InverseDerivatives) {
+        let mechanism = Arc::clone(self.dynamics.mechanism());
+        let room = self
+            .inverse
+            .get_or_insert_with(|| Box::new(InverseDerivatives::new(&mechanism)));
+        (&mut self.dynamics, room)
+    }
+}
+
+/// Workspaces that no thread uses.
+pub struct Workspaces {
+    mechanism: Arc<Mechanism>,
+    #[expect(
+        clippy::vec_box,
+        reason = "they change hands at each call, and are hundreds of bytes long"
+    )]
+    free: Mutex<Vec<Box<Workspace>>>,
+}
+
+impl Workspaces {
+    /// Those of a mechanism: none yet.
+    pub fn new(mechanism: &Arc<Mechanism>) -> Self {
+        Self {
+            mechanism: Arc::clone(mechanism),
+            free: Mutex::default(),
+        }
+    }
+
+    /// How many speeds its mechanism has.
+    pub fn speeds(&self) -> usize {
+        self.mechanism.layout().speeds
+    }
+
+    /// One that no other thread has.
+    pub fn take(&self) -> Box<Workspace> {
+        let free = lock(&self.free).pop();
+        free.unwrap_or_else(|| Box::new(Workspace::new(&self.mechanism)))
+    }
+
+    /// Keeps one for the next call.
+    pub fn give_back(&self, workspace: Box<Workspace>) {
+        lock(&self.free).push(workspace);
+    }
+}

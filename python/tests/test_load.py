@@ -1,0 +1,118 @@
+"""Files and texts, what is known of robots, and what is said of bad files."""
+
+from pathlib import Path
+
+import hamel
+import numpy as np
+import pytest
+from conftest import PANDA, ROOT, SCENES
+
+BAD = sorted((ROOT / "tests/corpus/scenes-bad").glob("*.toml")) + sorted((ROOT / "tests/corpus/urdf-bad").glob("*.urdf"))
+
+
+def test_paths_and_texts_give_the_same():
+    text = PANDA.read_text()
+    in_one_line = text.replace("\n", " ").strip()
+    robots = [hamel.load(source) for source in (PANDA, str(PANDA), text, in_one_line)]
+    q = np.linspace(0.1, 0.7, 7)
+    masses = [robot.mass_matrix(q) for robot in robots]
+    assert all(np.array_equal(mass, masses[0]) for mass in masses)
+    scene = SCENES / "mixed_tree.toml"
+    assert hamel.load(scene.read_text()).joints == hamel.load(scene).joints
+
+
+def test_names_sizes_and_limits(panda):
+    assert panda.name == "panda"
+    assert panda.joints == tuple(f"panda_joint{i}" for i in range(1, 8))
+    assert panda.bodies == tuple(f"panda_link{i}" for i in range(1, 8))
+    assert "panda_hand_tcp" in panda.frames
+    assert panda.sizes == hamel.Sizes(configuration=7, freedoms=7, speeds=7)
+    joint = panda.joint("panda_joint4")
+    assert (joint.type, joint.parent, joint.bodies) == ("revolute", "panda_link3", ("panda_link4",))
+    assert (joint.configuration, joint.units, joint.effort_units) == (slice(3, 4, 1), ("rad",), ("N m",))
+    assert joint.limits == hamel.Limits(lower=-3.0718, upper=-0.0698, velocity=2.175, effort=87.0)
+    assert panda.limits["panda_joint4"] == joint.limits
+    assert any("limits of position are not simulated" in notice for notice in panda.notices)
+    assert panda.source == PANDA.read_text()
+
+
+def test_a_state_is_that_of_the_file():
+    robot = hamel.load(SCENES / "mixed_tree.toml")
+    state = robot.state()
+    assert state.time == 0.0
+    assert state.speeds[robot.joint("rail").speeds].tolist() == [0.5]
+    assert robot.positions(state.configuration)[robot.joint("rail").freedoms].tolist() == [0.1]
+
+
+def test_a_base_moves_freely_where_that_is_asked_for():
+    path = ROOT / "tests/data/urdf/anymal.urdf"
+    fixed, free = hamel.load(path), hamel.load(path, floating_base=True)
+    assert free.sizes.speeds == fixed.sizes.speeds + 6
+    with pytest.raises(hamel.ArgumentError, match="floating_base is True: only robots in URDF"):
+        hamel.load(SCENES / "mixed_tree.toml", floating_base=True)
+
+
+def test_mistakes_are_told_with_their_lines():
+    text = 'hamel = 1\nname = "a"\n[[body]]\nname = "b"\nparent = "c"\nmass = -1\njoint = { type = "revolut" }\n'
+    with pytest.raises(hamel.FileError) as caught:
+        hamel.load(text)
+    error = caught.value
+    assert error.source == "text"
+    lines = {mistake.line for mistake in error.mistakes}
+    assert {5, 7} <= lines
+    assert any("revolut" in mistake.message for mistake in error.mistakes)
+    assert "text:7:" in str(error) and 'joint = { type = "revolut" }' in str(error)
+
+
+# Read as a text of the other format, or empty: refused, with another message.
+OTHERWISE = {"xml.toml", "xml_empty.urdf"}
+
+
+@pytest.mark.parametrize("path", BAD, ids=lambda path: path.name)
+def test_bad_files_are_told_as_the_program_tells_them(path):
+    with pytest.raises(hamel.FileError) as caught:
+        hamel.load(path, floating_base=path.name.startswith("floating_"))
+    assert caught.value.mistakes
+    if path.name not in OTHERWISE:
+        first = path.with_suffix(".expected").read_text().splitlines()[0]
+        assert first.removeprefix("error: ") in str(caught.value)
+
+
+@pytest.mark.parametrize("path", [PANDA, SCENES / "mixed_tree.toml", ROOT / "tests/data/scenes/loops.toml"], ids=lambda path: path.name)
+def test_texts_that_end_anywhere_are_refused_or_read(path):
+    """Never with another exception, and never by a panic."""
+    text = path.read_text()
+    refused = 0
+    for end in np.random.default_rng(5).integers(1, len(text), 60):
+        try:
+            robot = hamel.load(text[:end] + "\n")
+            robot.mass_matrix(robot.state().configuration)
+        except hamel.Error as error:
+            refused += isinstance(error, hamel.FileError)
+    assert refused > 30
+
+
+def test_what_is_no_file_is_told(tmp_path):
+    with pytest.raises(hamel.FileError, match="cannot read .*nowhere.urdf"):
+        hamel.load(tmp_path / "nowhere.urdf")
+    with pytest.raises(hamel.FileError):
+        hamel.load("")
+    with pytest.raises(hamel.FileError):
+        hamel.load(tmp_path)
+    with pytest.raises(hamel.FileError, match="nul|NUL|null"):
+        hamel.load("a\0b")
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(hamel.FileError):
+        hamel.load(tmp_path / "binary.toml")
+    for wrong in (None, 3, b"\xff", ["a"]):
+        with pytest.raises((hamel.ArgumentError, hamel.FileError)):
+            hamel.load(wrong)
+
+
+def test_robots_are_told_in_words_and_as_a_table(panda):
+    assert repr(panda) == '<hamel.Robot "panda": 7 joints, 7 bodies, 7 entries of q, 7 speeds>'
+    table = panda._repr_html_()
+    assert table.startswith("<table>") and table.count("<tr>") == 8
+    assert "<td>-3.0718 to -0.0698</td>" in table
+    text = (SCENES / "mixed_tree.toml").read_text().replace('name = "mixed_tree"', 'name = "<b>&"')
+    assert "<caption>&lt;b&gt;&amp;</caption>" in hamel.load(text)._repr_html_()

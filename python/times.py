@@ -1,0 +1,115 @@
+"""Prints what the page `docs/python.md` says of sizes and times. Run it with `.venv/bin/python` after `check`, on a machine that does nothing else."""
+
+import re
+import subprocess
+import sys
+import time
+import timeit
+from pathlib import Path
+
+import hamel
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[1]
+PANDA = ROOT / "tests/data/urdf/panda7.urdf"
+PENDULUM = ROOT / "tests/data/scenes/pendulum.toml"
+
+
+def least(call, count=1000, repeat=100):
+    """The least of several means, µs."""
+    return min(timeit.repeat(call, number=count, repeat=repeat)) / count * 1e6
+
+
+def measured(call):
+    """Time on the wall and time of all cores, s."""
+    wall, work = time.perf_counter(), time.process_time()
+    call()
+    return time.perf_counter() - wall, time.process_time() - work
+
+
+def wheel():
+    for path in (ROOT / "target/python/wheels").glob("*.whl"):
+        print(f"{path.name}: {path.stat().st_size / 1e6:.1f} MB")
+
+
+def imports():
+    """Time of `import hamel` after `import numpy`, and of both, in a process of its own, s."""
+    program = "import time; a = time.perf_counter(); import numpy; b = time.perf_counter(); import hamel; c = time.perf_counter(); print(c - b, c - a)"
+    runs = [subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True) for _ in range(5)]
+    own, both = min(tuple(map(float, run.stdout.split())) for run in runs)
+    print(f"import hamel: {own:.3f} s, with numpy {both:.3f} s")
+
+
+def calls():
+    """One call of forward dynamics beside that of Rust, which `examples/states.rs` measures."""
+    for path in (PENDULUM, PANDA):
+        robot = hamel.load(path)
+        q, v, tau = (np.full(robot.sizes.speeds, value) for value in (0.7, -0.3, 1.0))
+        program = ROOT / "target/python/release/examples/states"
+        in_rust = min(float(subprocess.run([program, path, "time"], capture_output=True, check=True).stdout) for _ in range(3))
+        ours = least(lambda: robot.forward_dynamics(q, v, tau)) - least(lambda: None)
+        print(f"{robot.name}, one state: {ours:.2f} µs, in Rust {in_rust:.2f} µs, more by {ours - in_rust:.2f} µs")
+
+
+def batches():
+    """Forward dynamics of many states of panda7."""
+    robot, random = hamel.load(PANDA), np.random.default_rng(1)
+    for count in (10**5, 10**6):
+        q, v, tau = random.uniform(-2, 2, (count, 7)), random.normal(size=(count, 7)), random.normal(size=(count, 7))
+        for threads in (1, 2, None):
+            hamel.set_threads(threads)
+            wall, work = min(measured(lambda: robot.forward_dynamics(q, v, tau)) for _ in range(3))
+            print(f"panda7, {count:.0e} states, {threads or 'all'} threads: {wall:.3f} s, {work / count * 1e6:.2f} µs of one core a state")
+
+
+def others():
+    """The same by Pinocchio in a loop and by one step of MuJoCo's rollout, where they are installed; panda7 without the damping that Pinocchio leaves out."""
+    text = re.sub('damping="[^"]*"', 'damping="0"', PANDA.read_text())
+    random, count = np.random.default_rng(1), 10**5
+    q, v, tau = random.uniform(-2, 2, (count, 7)), random.normal(size=(count, 7)), random.normal(size=(count, 7))
+    robot = hamel.load(text)
+    expected = robot.forward_dynamics(q, v, tau)
+
+    def tell(name, call, accelerations):
+        wall, work = min(measured(call) for _ in range(3))
+        difference = np.abs(accelerations(call()) - expected).max() / np.abs(expected).max()
+        print(f"{name}: {work / count * 1e6:.2f} µs of one core a state, {difference:.0e} apart")
+
+    tell("hamel", lambda: robot.forward_dynamics(q, v, tau), lambda rates: rates)
+    try:
+        import pinocchio
+    except ImportError:
+        print("no pinocchio: pip install pin")
+    else:
+        model = pinocchio.buildModelFromXML(text)
+        data = model.createData()
+        tell(
+            f"pinocchio {pinocchio.__version__} in a loop",
+            lambda: [pinocchio.aba(model, data, *state).copy() for state in zip(q, v, tau)],
+            np.array,
+        )
+    try:
+        import mujoco
+        from mujoco import rollout
+    except ImportError:
+        print("no mujoco: pip install mujoco")
+    else:
+        model = mujoco.MjSpec.from_string(text).compile()
+        off = mujoco.mjtDisableBit
+        model.opt.disableflags |= int(off.mjDSBL_CONTACT) | int(off.mjDSBL_CONSTRAINT)
+        model.opt.timestep = 1e-7
+        start = np.hstack([np.zeros((count, 1)), q, v])
+        efforts, spec = tau[:, None], int(mujoco.mjtState.mjSTATE_QFRC_APPLIED)
+        data = mujoco.MjData(model)
+        tell(
+            f"mujoco {mujoco.__version__}, a step of rollout",
+            lambda: rollout.rollout(model, data, start, efforts, control_spec=spec, nstep=1)[0],
+            lambda states: (states[:, 0, 8:] - v) / model.opt.timestep,
+        )
+
+
+wheel()
+imports()
+calls()
+batches()
+others()
