@@ -262,7 +262,7 @@ fn gears_of_large_ratio_move_as_on_the_tree() {
         "name = \"geared\"\nparent = \"base\"\njoint = { type = \"geared_revolute\", ratio = 1e8 }";
     let (output, rotor) = (inertia(0.002), inertia(0.05));
     let text = format!(
-        "hamel = 1\n{}[[body]]\n{joint}\ninitial.speeds = [1e-7]\nbodies.output = {{ mass = 1.0, com = [0.1, 0.05, 0.0], {output} }}\n\
+        "hamel = 1\ngravity = [0.0, 0.0, -9.81]\n{}[[body]]\n{joint}\ninitial.speeds = [1e-7]\nbodies.output = {{ mass = 1.0, com = [0.1, 0.05, 0.0], {output} }}\n\
          bodies.rotor = {{ mass = 0.1, com = [-0.1, -0.2, 0.0], {rotor} }}\n",
         body("base", "world", "revolute", &base)
     );
