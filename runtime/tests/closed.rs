@@ -428,7 +428,7 @@ fn ties_that_make_no_joint_are_refused() {
     use Relation::{Meets, Square};
     assert_eq!(
         fault(&|_, tie, _| relations(tie, &[Meets(0), Meets(1), Meets(2)])),
-        "coupled links: 3 relations leave 0 coordinates independent: possible are 1 to 6 relations for one, 1 to 4 or 6 for two, 1, 2 or 4 for three, 1 or 2 for four"
+        "coupled links: 3 relations leave 0 coordinates independent: a joint has 1 to 6 independent coordinates and 1 to 12 relations, and at most 16 of both together"
     );
     assert_eq!(
         fault(&|_, tie, _| relations(tie, &[Meets(0), Square(3, 0)])),

@@ -17,6 +17,8 @@ use crate::suggest::nearest;
 use roxmltree::{Document, Node};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
+use yaml_rust2::parser::{Event, Parser};
+use yaml_rust2::scanner::ScanError;
 use yaml_rust2::{Yaml, YamlLoader};
 
 /// Begins the processing instruction that names the file.
@@ -41,10 +43,14 @@ pub fn completed(path: &Path, text: String) -> Result<String, Diagnostics> {
     let Some(file) = files.iter().find(small) else {
         return Ok(text);
     };
-    let (supplement, name) = match read_file(file) {
-        Ok(read) if read.0.contains(LOOPS) => read,
-        _ => return Ok(text),
+    let named = |bytes: Vec<u8>| {
+        let mut parts = bytes.windows(LOOPS.len());
+        parts.any(|part| part == LOOPS.as_bytes())
     };
+    if !std::fs::read(file).is_ok_and(named) {
+        return Ok(text);
+    }
+    let (supplement, name) = read_file(file)?;
     let mut sink = Sink::default();
     let completed = extended(&text, &supplement, &name, &mut sink);
     match sink.len() {
@@ -56,7 +62,7 @@ pub fn completed(path: &Path, text: String) -> Result<String, Diagnostics> {
 /// The robot in URDF+; `None` where it is no URDF, or the YAML says nothing of it.
 fn extended(text: &str, supplement: &str, name: &str, sink: &mut Sink) -> Option<String> {
     let refuse = |why: String| Diagnostic::without_place(format!("{name}: {why}"));
-    let said = match YamlLoader::load_from_str(supplement) {
+    let said = match plain(supplement).and_then(|()| YamlLoader::load_from_str(supplement)) {
         Ok(documents) => documents.into_iter().next()?,
         Err(error) => {
             sink.push(refuse(format!("not valid YAML: {error}")));
@@ -81,6 +87,23 @@ fn extended(text: &str, supplement: &str, name: &str, sink: &mut Sink) -> Option
         sink.push(refuse(why));
     }
     Some(edited(text, work.edits))
+}
+
+/// Whether a text has no aliases: each is read as a copy of what it stands for, and copies of copies fill any memory.
+fn plain(text: &str) -> Result<(), ScanError> {
+    let mut events = Parser::new_from_str(text);
+    loop {
+        match events.next_token()? {
+            (Event::Alias(_), at) => {
+                return Err(ScanError::new_string(
+                    at,
+                    String::from("aliases are not read"),
+                ));
+            }
+            (Event::StreamEnd, _) => return Ok(()),
+            _ => {}
+        }
+    }
 }
 
 /// Where a text is replaced by another.
@@ -174,7 +197,7 @@ impl Work<'_, '_> {
     /// What `closed_loop` and `type` say; without `type` each loop is rigid.
     fn loops(&mut self, said: &Yaml) -> Vec<Loop> {
         let pairs = said[LOOPS].as_vec().cloned().unwrap_or_default();
-        if !said[LOOPS].is_array() {
+        if !said[LOOPS].is_array() && !said[LOOPS].is_null() {
             self.errors
                 .push(format!("`{LOOPS}` must be a list of pairs of frames"));
         }
@@ -241,7 +264,13 @@ impl Work<'_, '_> {
                 types.len()
             ));
         }
+        let mut seen = HashSet::new();
         for (name, kind) in names.iter().zip(types) {
+            if !seen.insert(*name) {
+                self.errors
+                    .push(format!("joint `{name}` is in `joint_name` twice"));
+                continue;
+            }
             let Some(&joint) = self.robot.joints.get(name) else {
                 let meant = Robot::meant(name, self.robot.joints.keys().copied());
                 self.errors.push(format!(
@@ -323,7 +352,8 @@ impl Work<'_, '_> {
             }
             None => self.texts("name_mot", motors),
         };
-        for name in names {
+        let mut seen = HashSet::new();
+        for name in names.into_iter().filter(|name| seen.insert(*name)) {
             let Some(&joint) = self.robot.joints.get(name) else {
                 let meant = Robot::meant(name, self.robot.joints.keys().copied());
                 self.errors.push(format!(
@@ -332,7 +362,15 @@ impl Work<'_, '_> {
                 continue;
             };
             let is_in_loop = loops.iter().any(|own| own.joints.contains(name));
-            if is_in_loop && joint.attribute("independent").is_none() {
+            let is_split = self
+                .edits
+                .iter()
+                .any(|Edit(span, _)| *span == joint.range());
+            if is_split {
+                self.errors.push(format!(
+                    "motor `{name}` of `name_mot` is several turns by `joint_type`: which of them it drives is not told"
+                ));
+            } else if is_in_loop && joint.attribute("independent").is_none() {
                 let at = tag(joint).end;
                 let said = String::from(" independent=\"true\"");
                 self.edits.push(Edit(at..at, said));

@@ -185,8 +185,20 @@ fn what_a_supplement_gets_wrong_is_told() {
             "{found}\n{wanted}"
         );
     }
-    let errors = import("broken", &ankle("POINT"), "closed_loop: [\n").expect_err("no YAML");
-    assert!(errors.to_string().contains("not valid YAML"), "{errors}");
+    let twice = "closed_loop: []\nname_mot: [motor_left, motor_left, sole]\njoint_name: [sole, sole]\njoint_type: [UJOINT_XY, SPHERICAL]\n";
+    let copies = "a: &a [x, x]\nb: &b [*a, *a]\nclosed_loop: *b\n";
+    for (yaml, wanted) in [
+        ("closed_loop: [\n", "not valid YAML"),
+        (copies, "not valid YAML: aliases are not read"),
+        (twice, "joint `sole` is in `joint_name` twice"),
+        (
+            twice,
+            "motor `sole` of `name_mot` is several turns by `joint_type`",
+        ),
+    ] {
+        let errors = import("broken", &ankle("POINT"), yaml).expect_err("it is wrong");
+        assert!(errors.to_string().contains(wanted), "{errors}");
+    }
 }
 
 /// YAML of another kind beside a robot is none of its business.
