@@ -7,6 +7,15 @@ use hamel_scene::Coupling;
 use hamel_tests::laws::{self, Reach};
 use std::sync::Arc;
 
+/// The joint that the loop of a robot makes.
+fn linkage(name: &str) -> Coupling {
+    let scene = import(name, [0.0, 0.0, -9.81]).scene;
+    let coupled = scene.coupled().expect("it closes");
+    let mut bodies = coupled.bodies.iter();
+    let found = bodies.find_map(|body| body.joint.coupling.clone());
+    found.expect("a loop")
+}
+
 /// How far the independent coordinates go, which end all around: less than at any of these linkages.
 const REACH: f64 = 0.2;
 
@@ -27,13 +36,7 @@ fn kernels_of_loops_obey_the_laws_of_joints() {
         ("ankle", check::<8, 2, 6>),
         ("parallel_chains", check::<5, 2, 3>),
     ] {
-        let scene = import(name, [0.0, 0.0, -9.81]).scene;
-        let coupled = scene.coupled().expect("it closes");
-        let mut couplings = coupled
-            .bodies
-            .iter()
-            .filter_map(|body| body.joint.coupling.as_ref());
-        check(couplings.next().expect("a loop"));
+        check(&linkage(name));
     }
 }
 
@@ -106,12 +109,6 @@ fn linkages_of_a_larger_type_are_the_same() {
         ("ankle", check::<14, 2, 12>),
         ("parallel_chains", check::<14, 2, 12>),
     ] {
-        let scene = import(name, [0.0, 0.0, -9.81]).scene;
-        let coupled = scene.coupled().expect("it closes");
-        let mut couplings = coupled
-            .bodies
-            .iter()
-            .filter_map(|body| body.joint.coupling.as_ref());
-        check(couplings.next().expect("a loop"));
+        check(&linkage(name));
     }
 }
