@@ -63,6 +63,19 @@ fn least_squares_solves_what_normal_equations_cannot() {
 }
 
 #[test]
+fn a_number_that_is_not_finite_leaves_no_result() {
+    for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for place in 0..9 {
+            let mut matrix = Matrix3::new(2.0, 0.5, 0.0, 0.0, 3.0, 0.5, 0.0, 0.0, 1.0);
+            matrix[place] = wrong;
+            let found = least_squares(&matrix, &Vector3::new(1.0, 2.0, 3.0));
+            let lost = found.iter().any(|entry| !entry.is_finite());
+            assert!(lost, "{wrong} at {place}: {found}");
+        }
+    }
+}
+
+#[test]
 fn inverses_need_no_pivots() {
     // A zero where elimination would divide first.
     let a = Matrix3::new(0.0, 2.0, 0.0, 0.0, 0.0, -4.0, 1.0, 0.5, 0.0);
