@@ -4,7 +4,7 @@ use crate::errors;
 use crate::inputs::Listener;
 use crate::robot::Robot;
 use hamel::integrate::{Form, GlobalError, Scheme, Solution, State};
-use hamel::scene::Settings;
+use hamel::scene::{Arithmetic, Settings};
 use hamel::{Error, Model, Simulation};
 use numpy::{IntoPyArray, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
@@ -27,6 +27,8 @@ struct Request {
     accuracy: Option<f64>,
     #[pyo3(item)]
     form: Option<String>,
+    #[pyo3(item)]
+    arithmetic: Option<String>,
     #[pyo3(item)]
     samples: Option<Vec<f64>>,
     #[pyo3(item)]
@@ -56,11 +58,12 @@ pub fn simulate<'py>(
     motion.arrays(py, model)
 }
 
-/// Method and form, checked.
+/// Method, form and arithmetic, checked.
 #[derive(Clone, Copy)]
 struct Plan {
     method: Way,
     form: Option<Form>,
+    arithmetic: Option<Arithmetic>,
 }
 
 /// What decides on the method.
@@ -91,9 +94,15 @@ impl Plan {
                 ));
             }
         };
+        let arithmetic = request.arithmetic.as_deref().map(|name| {
+            Arithmetic::named(name).ok_or_else(|| {
+                format!("arithmetic is `{name}`: it must be `doubles`, `refined` or `auto`")
+            })
+        });
         Ok(Self {
             method: Self::way(request)?,
             form,
+            arithmetic: arithmetic.transpose()?,
         })
     }
 
@@ -163,6 +172,9 @@ fn prepared<'a>(model: &'a Model, request: &Request, plan: Plan) -> Simulation<'
     };
     if let Some(form) = plan.form {
         simulation = simulation.form(form);
+    }
+    if let Some(arithmetic) = plan.arithmetic {
+        simulation = simulation.arithmetic(arithmetic);
     }
     match request.accuracy {
         Some(error) => simulation.accuracy(error),

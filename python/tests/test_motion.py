@@ -48,6 +48,16 @@ def test_the_error_estimate_is_about_the_error():
     assert error / 10 < coarse.end_error < 100 * error
 
 
+def test_open_arithmetic_is_refined_where_rounding_decides():
+    robot = hamel.load(SCENES / "report/ratio_heavy_tip.toml")
+    ends = {
+        name: hamel.simulate(robot, 0.2, tolerance=1e-10, arithmetic=name, samples=[0.2], estimate=False).q
+        for name in ("doubles", "refined", "auto")
+    }
+    assert np.array_equal(ends["auto"], ends["refined"])
+    assert not np.array_equal(ends["doubles"], ends["refined"])
+
+
 def test_methods_tolerances_and_steps():
     robot = hamel.load(PENDULUM)
     assert hamel.simulate(robot, 0.1, method="gauss2", dt=0.01).statistics["steps"] == 10
@@ -127,6 +137,7 @@ def test_what_inputs_raise_ends_the_motion():
         ({"dt": 0.1, "tolerance": 1e-6}, "dt is 0.1 and tolerance is 0.000001: a method takes one of them"),
         ({"tolerance": 0.0}, "tolerance is 0: it must be between 1e-16 and 0.1"),
         ({"dt": -1.0}, "dt is -1: it must be positive and finite"),
+        ({"arithmetic": "floats"}, "arithmetic is `floats`: it must be `doubles`, `refined` or `auto`"),
         ({"form": "newton"}, "form is `newton`: it must be `lagrangian` or `hamiltonian`"),
         ({"sample_step": 0.0}, "the time between two samples is 0.0 s, it must be above 0"),
         ({"samples": [0.2, 0.1]}, "sample 1 is at 0.1 s: sample times ascend"),

@@ -31,6 +31,7 @@ fn samples_as_json_have_their_stable_shape() {
     assert_eq!(
         keys(&report),
         [
+            "arithmetic",
             "columns",
             "error",
             "form",
@@ -276,6 +277,34 @@ fn a_method_that_is_chosen_is_told_with_its_reason_and_what_steps_pass_over_is_t
     assert!(long["reason"].is_null());
     let short = simulate(&["--method", "gauss3", "--dt", "1e-5"]);
     assert!(short["unresolved"].is_null());
+}
+
+#[test]
+fn arithmetic_that_is_left_open_is_told_with_its_reason() {
+    let run = |scene: &str, options: &[&str]| {
+        let mut arguments = vec!["simulate", scene, "--arithmetic", "auto", "--t-end", "0.5"];
+        arguments.extend(options);
+        stdout(&arguments)
+    };
+    for (scene, told, name) in [
+        (
+            "scenes/report/ratio_heavy_tip.toml",
+            "arithmetic  refined: rounding in doubles decides the length of",
+            "refined",
+        ),
+        (
+            "scenes/report/ratio_light_tip.toml",
+            "arithmetic  doubles: their rounding does not decide the accuracy",
+            "doubles",
+        ),
+    ] {
+        let page = run(scene, &["--tol", "1e-10", "--csv", "/dev/null"]);
+        assert!(page.contains(told), "{page}");
+        let text = run(scene, &["--accuracy", "1e-11", "--json"]);
+        let report: Value = serde_json::from_str(&text).expect("JSON and nothing else");
+        assert_eq!(report["arithmetic"], name, "{scene}");
+        assert_eq!(report["accuracy"]["reached"], true, "{scene}");
+    }
 }
 
 #[test]

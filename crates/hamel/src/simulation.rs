@@ -7,7 +7,7 @@ use hamel_integrate::{
     no_observer,
 };
 use hamel_runtime::dynamics::Dynamics;
-use hamel_scene::{Company, Scene, Settings};
+use hamel_scene::{Arithmetic, Company, Scene, Settings};
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 
@@ -91,6 +91,12 @@ impl<'a> Simulation<'a> {
         self
     }
 
+    /// With equations of motion in this arithmetic. Where it is [`Arithmetic::Auto`], a motion in doubles comes first, and inputs are asked for its efforts too.
+    pub const fn arithmetic(mut self, arithmetic: Arithmetic) -> Self {
+        self.settings.arithmetic = arithmetic;
+        self
+    }
+
     /// In this form of the equations of motion.
     pub const fn form(mut self, form: Form) -> Self {
         self.settings.form = form;
@@ -121,9 +127,8 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// A state, settings or events that are refused; a controller or equations that fail on the way; an accuracy that is not reached.
     pub fn run(mut self) -> Result<Solution, Error> {
-        let mut dynamics = self.dynamics();
         if let Some(wanted) = self.settings.accuracy {
-            let found = self.search(&mut *dynamics, wanted)?;
+            let found = self.search(wanted)?;
             if !found.is_reached {
                 let (error, rounding) = (found.error.total(), found.error.rounding);
                 return Err(Error::Accuracy {
@@ -133,8 +138,11 @@ impl<'a> Simulation<'a> {
                 });
             }
         }
-        let options = self.options()?;
-        self.motion(&mut *dynamics, &options)
+        let moved = self.moved();
+        match self.refines(&moved) {
+            true => self.moved(),
+            false => moved,
+        }
     }
 
     /// As [`Simulation::run`], with an estimate of the error of its states. It takes about as many evaluations of the equations again; inputs are asked for
@@ -143,34 +151,82 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// Those of [`Simulation::run`].
     pub fn run_estimated(mut self) -> Result<(Solution, GlobalError), Error> {
-        let mut dynamics = self.dynamics();
         if let Some(wanted) = self.settings.accuracy {
-            self.search(&mut *dynamics, wanted)?;
+            self.search(wanted)?;
         }
-        self.estimated(&mut *dynamics)
+        let moved = self.moved();
+        let solution = match self.refines(&moved) {
+            true => self.moved(),
+            false => moved,
+        }?;
+        let error = self.estimate(&solution)?;
+        Ok((solution, error))
     }
 
-    /// Settles the tolerance at which the last state has the accuracy that is wanted.
-    fn search(&mut self, dynamics: &mut dyn Dynamics, wanted: f64) -> Result<Tuned, Error> {
+    /// Settles the tolerance at which the last state has the accuracy that is wanted, and the arithmetic where that is left open.
+    fn search(&mut self, wanted: f64) -> Result<Tuned, Error> {
+        let is_open = self.settings.arithmetic == Arithmetic::Auto;
+        let mut is_limited = false;
         let found = Tuned::search(wanted, |tolerance| {
             self.settings = self.settings.with_tolerance(tolerance);
-            Ok::<_, Error>(self.estimated(dynamics)?.1)
-        })?;
+            let moved = self.moved();
+            is_limited |= self.reason_to_refine(&moved).is_some();
+            let solution = moved?;
+            self.estimate(&solution)
+        });
+        let is_short = match &found {
+            Ok(found) => !found.is_reached && (is_limited || found.error.rounding > wanted),
+            Err(_) => is_limited,
+        };
+        if is_open && is_short {
+            self.settings.arithmetic = Arithmetic::Refined;
+            return self.search(wanted);
+        }
+        let found = found?;
+        if is_open {
+            self.settings.arithmetic = Arithmetic::Doubles;
+        }
         self.settings = self.settings.with_tolerance(found.tolerance);
         Ok(found)
     }
 
-    fn estimated(&mut self, dynamics: &mut dyn Dynamics) -> Result<(Solution, GlobalError), Error> {
+    /// Whether a motion that ended like this is to be made again in refined arithmetic, which is settled then.
+    fn refines(&mut self, moved: &Result<Solution, Error>) -> bool {
+        let refines = self.reason_to_refine(moved).is_some();
+        if refines {
+            self.settings.arithmetic = Arithmetic::Refined;
+        }
+        refines
+    }
+
+    fn reason_to_refine(&self, moved: &Result<Solution, Error>) -> Option<String> {
+        let ended = match moved {
+            Ok(solution) => Ok(solution),
+            Err(Error::Integrate(error)) => Err(error),
+            Err(_) => return None,
+        };
+        self.settings.arithmetic.reason_to_refine(ended)
+    }
+
+    fn moved(&mut self) -> Result<Solution, Error> {
         let options = self.options()?;
-        let solution = self.motion(dynamics, &options)?;
-        let start = self.start.clone();
-        let mut own = self.dynamics();
+        self.motion(&mut *self.dynamics(), &options)
+    }
+
+    fn estimate(&mut self, solution: &Solution) -> Result<GlobalError, Error> {
+        let (start, options) = (self.start.clone(), self.options()?);
+        let (mut own, mut others) = (self.dynamics(), self.dynamics());
         let mut companion = |start: &State, options: &Options, observer: &mut Observer<'_>| {
-            let motion = self.integrate(&mut *dynamics, (start, options), vec![], observer);
+            let motion = self.integrate(&mut *others, (start, options), vec![], observer);
             motion.map_err(|error| error.to_string())
         };
-        let error = GlobalError::estimate(&mut *own, &start, &options, &solution, &mut companion);
-        Ok((solution, error))
+        Ok(GlobalError::estimate(
+            &mut *own,
+            &start,
+            &options,
+            solution,
+            &mut companion,
+        ))
     }
 
     fn dynamics(&self) -> Box<dyn Dynamics> {

@@ -355,3 +355,36 @@ fn a_motion_stops_where_it_is_told_to() -> Result<(), Error> {
     assert!((12..20).contains(&asked.get()), "{}", asked.get());
     Ok(())
 }
+
+/// Where doubles are enough a motion in open arithmetic is that in doubles, and elsewhere it is the refined one.
+#[test]
+fn open_arithmetic_is_refined_where_rounding_decides() -> Result<(), Error> {
+    use hamel::scene::Arithmetic;
+    for (scene, refines) in [
+        ("report/ratio_heavy_tip.toml", true),
+        ("report/ratio_light_tip.toml", false),
+    ] {
+        let model = hamel::load(format!("{SCENES}{scene}"))?;
+        let moved = |arithmetic| {
+            let simulation = model.simulate().tolerance(1e-10).until(0.5);
+            simulation.arithmetic(arithmetic).run()
+        };
+        let [doubles, refined, open] = [
+            moved(Arithmetic::Doubles)?,
+            moved(Arithmetic::Refined)?,
+            moved(Arithmetic::Auto)?,
+        ];
+        assert_eq!(doubles.rounding.is_some(), refines, "{scene}");
+        assert!(refined.rounding.is_none(), "{scene}");
+        let expected = if refines { &refined } else { &doubles };
+        assert_eq!(open.state, expected.state, "{scene}");
+        // The motion in doubles is off by its rounding, which no tolerance makes smaller.
+        let accurate = |arithmetic| {
+            let simulation = model.simulate().until(0.5).accuracy(1e-11);
+            simulation.arithmetic(arithmetic).run()
+        };
+        assert_eq!(accurate(Arithmetic::Doubles).is_err(), refines, "{scene}");
+        accurate(Arithmetic::Auto)?;
+    }
+    Ok(())
+}

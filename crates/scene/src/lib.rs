@@ -6,6 +6,7 @@
 //! solves for their initial state and gives a [`Scene`]. [`Scene::load`] does both, and then reports the errors of both
 //! steps together. Errors are [`Diagnostics`]: all mistakes of a file, each with the line it stands on.
 
+mod arithmetic;
 mod build;
 mod choose;
 mod control;
@@ -28,6 +29,7 @@ pub mod text;
 pub mod urdf;
 mod write;
 
+pub use arithmetic::Arithmetic;
 pub use choose::Company;
 pub use control::{
     Control, ControllerDescription, GoalDescription, LawDescription, PortDescription,
@@ -49,7 +51,7 @@ pub use forces::{
 pub use notice::{Notice, Severity};
 pub use samples::SampleError;
 pub use scene::{Scene, read_file};
-pub use settings::{Arithmetic, Settings};
+pub use settings::Settings;
 pub use shape::{Geometry, ShapeDescription};
 pub use source::{Located, Span};
 pub use start::StartError;

@@ -1,47 +1,13 @@
 //! How a scene wants to be simulated: defaults that a caller may override.
 
+use crate::arithmetic::Arithmetic;
 use hamel_integrate::{Form, Method, Sampling, Scheme};
-use hamel_runtime::dynamics::{Dynamics, Recursive, Refined};
-use hamel_runtime::mechanism::Mechanism;
-use std::sync::Arc;
 
 /// Names of the forms of the equations of motion, as scene files and the command line write them.
 pub(crate) const FORM_NAMES: [&str; 2] = ["lagrangian", "hamiltonian"];
 
 /// Names of the places that samples come from, as scene files and the command line write them.
 pub(crate) const SAMPLING_NAMES: [&str; 2] = ["landing", "dense"];
-
-/// Names of the kinds of arithmetic, as scene files and the command line write them.
-pub(crate) const ARITHMETIC_NAMES: [&str; 2] = ["doubles", "refined"];
-
-/// What the equations of motion are solved in.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Arithmetic {
-    /// Doubles alone: [`Recursive`].
-    #[default]
-    Doubles,
-    /// Doubles with residuals in numbers of 106 bits, for light bodies that carry heavy ones: [`Refined`].
-    Refined,
-}
-
-impl Arithmetic {
-    /// As scene files and the command line write it.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Doubles => "doubles",
-            Self::Refined => "refined",
-        }
-    }
-
-    /// The equations of motion of a mechanism.
-    pub fn dynamics(self, mechanism: &Arc<Mechanism>) -> Box<dyn Dynamics> {
-        let mechanism = Arc::clone(mechanism);
-        match self {
-            Self::Doubles => Box::new(Recursive::new(mechanism)),
-            Self::Refined => Box::new(Refined::new(mechanism)),
-        }
-    }
-}
 
 /// Names of the integration methods, as scene files write them; the last one leaves the choice to [`hamel_integrate::Choice`].
 pub(crate) const METHOD_NAMES: [&str; Scheme::ALL.len() + 1] = {
@@ -162,15 +128,6 @@ pub(crate) fn sampling_named(name: &str) -> Option<Sampling> {
     match name {
         "landing" => Some(Sampling::Landing),
         "dense" => Some(Sampling::Dense),
-        _ => None,
-    }
-}
-
-/// The arithmetic of that name.
-pub(crate) fn arithmetic_named(name: &str) -> Option<Arithmetic> {
-    match name {
-        "doubles" => Some(Arithmetic::Doubles),
-        "refined" => Some(Arithmetic::Refined),
         _ => None,
     }
 }

@@ -1,5 +1,6 @@
 //! Whether a scene can start: what every command that goes on from a scene asks first.
 
+use crate::arithmetic::Arithmetic;
 use crate::control::Control;
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -30,7 +31,23 @@ impl Scene {
         settings: &Settings,
         control: Option<&Control>,
     ) -> Result<(), StartError> {
-        let mut dynamics = settings.arithmetic.dynamics(&self.mechanism);
+        let checked = self.check_start_in(settings.arithmetic, settings, control);
+        match (settings.arithmetic, checked) {
+            // What doubles cannot solve, the other may.
+            (Arithmetic::Auto, Err(_)) => {
+                self.check_start_in(Arithmetic::Refined, settings, control)
+            }
+            (_, checked) => checked,
+        }
+    }
+
+    fn check_start_in(
+        &self,
+        arithmetic: Arithmetic,
+        settings: &Settings,
+        control: Option<&Control>,
+    ) -> Result<(), StartError> {
+        let mut dynamics = arithmetic.dynamics(&self.mechanism);
         let start = self.start();
         let options = Options {
             form: settings.form,

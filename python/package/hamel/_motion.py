@@ -132,6 +132,7 @@ def simulate(
     dt: float | None = None,
     accuracy: float | None = None,
     form: str | None = None,
+    arithmetic: str | None = None,
     samples: ArrayLike | None = None,
     sample_step: float | None = None,
     inputs: Callable[[float, NDArray[np.float64], NDArray[np.float64]], ArrayLike] | None = None,
@@ -150,6 +151,8 @@ def simulate(
         dt: step, s, for methods without; alone it asks for ``rk4``. Not with ``tolerance``.
         accuracy: largest error that the last state shall have; the tolerance is searched for.
         form: ``lagrangian`` or ``hamiltonian``.
+        arithmetic: ``doubles``; ``refined``, accelerations by iterative refinement, for light bodies that carry heavy ones; ``auto``, refined where a motion in doubles
+            shows that rounding decides its accuracy.
         samples: times at which the state is wanted, s, ascending.
         sample_step: time between samples, s; not with ``samples``.
         inputs: function of time in s, q and v that gives efforts tau, (K,), instead of the controller of the scene; N m and N. It is called for each evaluation of the
@@ -174,6 +177,7 @@ def simulate(
     request["start"] = _start(robot, start)
     request["method"] = _word("method", method)
     request["form"] = _word("form", form)
+    request["arithmetic"] = _word("arithmetic", arithmetic)
     request["samples"] = None if samples is None else _vector("samples", samples)
     if inputs is not None and not callable(inputs):
         raise ArgumentError(f"inputs is {inputs!r}: it must be a function of time, q and v")

@@ -97,24 +97,42 @@ fn accelerations_at_the_start_are_those_of_multipliers() {
     }
 }
 
-/// Floors of a reference that motions of linkages are held to. Accelerations of `crank_rocker` reach 325 rad/s² and are off by up to eight roundings (5.7e-13 rad/s², against
-/// refined equations along the motion): in a step of 4 ms, 1.5 roundings of the initial 14 rad/s, which are the unit of a floor. Over 650 steps at random they
-/// make √650 times that.
+/// Floors of a reference that motions of linkages with the steps of their scenes are held to. Accelerations of `crank_rocker` reach 325 rad/s² and are off by up to
+/// eight roundings (5.7e-13 rad/s², against refined equations along the motion): in a step of 4 ms, 1.5 roundings of the initial 14 rad/s, which are the unit of a floor.
+/// Over 650 steps at random they make √650 times that.
 const FLOORS: f64 = 1.5 * 25.5;
+
+/// The tree and the compiled equations of a scene.
+fn both(scene: &Scene, equations: &'static Equations) -> [Box<dyn Dynamics>; 2] {
+    let compiled = Compiled::new(Arc::clone(&scene.mechanism), equations);
+    [
+        Box::new(Recursive::new(Arc::clone(&scene.mechanism))),
+        Box::new(compiled.expect("its scene")),
+    ]
+}
 
 #[test]
 fn motions_are_those_of_multipliers() {
     for (name, equations) in CASES {
         let scene = scene(name);
-        let compiled = Compiled::new(Arc::clone(&scene.mechanism), equations);
-        let mut both: [Box<dyn Dynamics>; 2] = [
-            Box::new(Recursive::new(Arc::clone(&scene.mechanism))),
-            Box::new(compiled.expect("its scene")),
-        ];
-        for equations in &mut both {
+        for equations in &mut both(&scene, equations) {
             for form in [Form::Lagrangian, Form::Hamiltonian] {
                 check_by(&scene, &mut **equations, form, FLOORS);
             }
+        }
+    }
+}
+
+/// Random roundings of the accelerations add up to what one of them makes in a step, times the root of the number of steps: over a given time they fall with the
+/// root of the step. Eight times as many steps as above leave a third.
+#[test]
+fn short_steps_are_within_ten_floors() {
+    for (name, equations) in CASES {
+        let mut scene = scene(name);
+        scene.settings.method = Method::fixed(Scheme::Verner9, 5e-4);
+        for equations in &mut both(&scene, equations) {
+            check_by(&scene, &mut **equations, Form::Lagrangian, 10.0);
+            check_by(&scene, &mut **equations, Form::Hamiltonian, 30.0);
         }
     }
 }

@@ -212,6 +212,8 @@ pub enum ArithmeticName {
     Doubles,
     /// Doubles with residuals in 106 bits: for light bodies that carry heavy ones; up to a hundred times slower
     Refined,
+    /// Doubles, unless a motion that is tried first shows that their rounding decides its accuracy
+    Auto,
 }
 
 /// Names of the places that samples come from.

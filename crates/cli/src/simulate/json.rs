@@ -24,6 +24,11 @@ pub struct Report<'a> {
     /// Why the method was chosen; absent where it was named.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<&'a str>,
+    /// What the equations of motion were solved in: `doubles` or `refined`.
+    pub arithmetic: &'a str,
+    /// Why, where that was left open; absent where it was named.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub arithmetic_reason: Option<&'a str>,
     /// The methods that took over on the way, where the choice was left open; absent where none did.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     pub method_changes: &'a [MethodChange<'a>],

@@ -100,6 +100,8 @@ impl<'a> Metadata<'a> {
                 "form": settings.form_name(),
                 "method": self.plan.method(),
                 "reason": self.plan.reason,
+                "arithmetic": settings.arithmetic.name(),
+                "arithmetic_reason": self.plan.arithmetic_reason,
                 "accuracy": self.plan.request,
                 "error": accuracy,
             }],

@@ -9,7 +9,7 @@ use hamel::registry::JointRegistry;
 use hamel::shown::Number;
 use hamel_console::files::{Output, admit, is_stdout};
 use hamel_console::output::{Failure, tell};
-use hamel_scene::{Company, Control, SampleError, Scene, Settings};
+use hamel_scene::{Arithmetic, Company, Control, SampleError, Scene, Settings};
 use std::path::{Path, PathBuf};
 
 /// A run, decided in every respect.
@@ -25,6 +25,8 @@ pub struct Plan {
     pub reason: Option<String>,
     /// Whether the choice of the method is looked at again on the way; compiled equations have what one method needs.
     pub is_open: bool,
+    /// What was settled of the arithmetic, and why, where it was left open.
+    pub arithmetic_reason: Option<String>,
     /// What came of the accuracy that was asked for, if one was.
     pub request: Option<Request>,
     /// What controls the mechanism, if anything does.
@@ -65,6 +67,10 @@ impl Plan {
             tell(&scene.notices);
         }
         let mut settings = settings::overridden(&scene.settings, args)?;
+        if args.compiled && settings.arithmetic == Arithmetic::Auto {
+            // Compiled equations have no other.
+            settings.arithmetic = Arithmetic::Doubles;
+        }
         let times = if args.at.is_empty() {
             settings.sample_times(0.0).map_err(refused)?
         } else {
@@ -80,6 +86,7 @@ impl Plan {
             scene,
             settings,
             reason: None,
+            arithmetic_reason: None,
             request: None,
             is_open: settings.chooses && !args.compiled,
             control,
@@ -116,6 +123,20 @@ impl Plan {
         let chosen = chosen.map_err(|error| Failure::Simulation(error.to_string()))?;
         (self.settings.method, self.reason) = chosen;
         Ok(())
+    }
+
+    /// Settles the arithmetic, where it is left open: refined for a reason, doubles without one.
+    pub fn settle_arithmetic(&mut self, reason: Option<String>) {
+        if self.settings.arithmetic != Arithmetic::Auto {
+            return;
+        }
+        (self.settings.arithmetic, self.arithmetic_reason) = match reason {
+            Some(_) => (Arithmetic::Refined, reason),
+            None => (
+                Arithmetic::Doubles,
+                Some("their rounding does not decide the accuracy".into()),
+            ),
+        };
     }
 
     /// Whether anything but gravity can change the energy.

@@ -1,11 +1,12 @@
-//! `--accuracy`: the tolerance that a motion needs for the error that was asked for.
+//! What is settled by motions before the one that is recorded: the tolerance that `--accuracy` needs, and the arithmetic where it is left open.
 
 use super::accuracy::estimate;
 use super::control::Loop;
 use super::plan::Plan;
 use super::progress;
 use super::run::{Motion, move_unrecorded};
-use hamel::integrate::{GlobalError, IntegrateError, Solution, Tuned, no_observer};
+use hamel::dynamics::Dynamics;
+use hamel::integrate::{Solution, Tuned, no_observer};
 use hamel_console::interrupt::{self, Heed};
 use hamel_console::output::Failure;
 use hamel_scene::Arithmetic;
@@ -29,29 +30,29 @@ pub struct Request {
 }
 
 impl Request {
-    /// Settles the method and the tolerance of `plan`, by motions that are integrated for this alone, if it asks for an accuracy.
+    /// Settles the method and the tolerance of `plan`, if it asks for an accuracy, and the arithmetic, if that is left open, by motions that are integrated for
+    /// this alone.
     ///
     /// # Errors
     /// Those of a simulation; an interrupt.
     pub fn settle(plan: &mut Plan, quiet: bool) -> Result<(), Failure> {
         let Some(wanted) = plan.settings.accuracy else {
-            return Ok(());
+            return settle_arithmetic(plan, quiet);
         };
-        let progress = progress::working("looking for the tolerance", quiet);
-        let heed = Heed::begin();
-        let found = Tuned::search(wanted, |tolerance| {
-            plan.choose(tolerance)?;
-            progress.set_message(format!("looking for the tolerance: {tolerance:.1e}"));
-            attempt(plan)
-        });
-        drop(heed);
-        progress.finish_and_clear();
+        let found = match search(plan, wanted, quiet) {
+            Err(Ended::ByRounding(reason)) => {
+                plan.settle_arithmetic(Some(reason));
+                search(plan, wanted, quiet)
+            }
+            found => found,
+        };
         let Tuned {
             tolerance,
             error,
             is_reached,
             ..
-        } = found?;
+        } = found.map_err(Ended::into_failure)?;
+        plan.settle_arithmetic(None);
         plan.choose(tolerance)?;
         plan.request = Some(Self {
             wanted,
@@ -64,9 +65,81 @@ impl Request {
     }
 }
 
-/// The motion of `plan`, unrecorded, and the estimate of its error.
-fn attempt(plan: &Plan) -> Result<GlobalError, Failure> {
-    let mut dynamics = plan.settings.arithmetic.dynamics(&plan.scene.mechanism);
+/// Settles the arithmetic of `plan` by a motion in doubles, if it is left open.
+fn settle_arithmetic(plan: &mut Plan, quiet: bool) -> Result<(), Failure> {
+    if plan.settings.arithmetic != Arithmetic::Auto {
+        return Ok(());
+    }
+    let progress = progress::working("trying doubles", quiet);
+    let heed = Heed::begin();
+    let tried = attempt(plan).map(|(solution, _)| reason_to_refine(plan, &solution));
+    drop(heed);
+    progress.finish_and_clear();
+    match tried {
+        Ok(reason) => plan.settle_arithmetic(reason),
+        Err(Ended::ByRounding(reason)) => plan.settle_arithmetic(Some(reason)),
+        Err(Ended::Failed(failure)) => return Err(failure),
+    }
+    Ok(())
+}
+
+/// Why a motion that is made before the one that is recorded comes to nothing.
+enum Ended {
+    /// It wants refined arithmetic, for this reason, which is left open.
+    ByRounding(String),
+    Failed(Failure),
+}
+
+impl Ended {
+    fn into_failure(self) -> Failure {
+        match self {
+            Self::ByRounding(reason) => Failure::Simulation(reason),
+            Self::Failed(failure) => failure,
+        }
+    }
+}
+
+impl From<Failure> for Ended {
+    fn from(failure: Failure) -> Self {
+        Self::Failed(failure)
+    }
+}
+
+/// The tolerance with which the motion of `plan` has an error of at most `wanted`, or its least error.
+fn search(plan: &mut Plan, wanted: f64, quiet: bool) -> Result<Tuned, Ended> {
+    let progress = progress::working("looking for the tolerance", quiet);
+    let heed = Heed::begin();
+    let mut limited = None;
+    let found = Tuned::search(wanted, |tolerance| {
+        plan.choose(tolerance)?;
+        progress.set_message(format!("looking for the tolerance: {tolerance:.1e}"));
+        let (solution, mut dynamics) = attempt(plan)?;
+        limited = limited.take().or_else(|| reason_to_refine(plan, &solution));
+        Ok::<_, Ended>(estimate(plan, &mut *dynamics, &solution))
+    });
+    drop(heed);
+    progress.finish_and_clear();
+    let found = found?;
+    let (rounding, is_open) = (
+        found.error.rounding,
+        plan.settings.arithmetic == Arithmetic::Auto,
+    );
+    let alone = (is_open && rounding > wanted)
+        .then(|| format!("rounding in doubles alone makes an error of {rounding:.1e}"));
+    match limited.or(alone) {
+        Some(reason) if !found.is_reached => Err(Ended::ByRounding(reason)),
+        _ => Ok(found),
+    }
+}
+
+fn reason_to_refine(plan: &Plan, solution: &Solution) -> Option<String> {
+    plan.settings.arithmetic.reason_to_refine(Ok(solution))
+}
+
+/// The motion of `plan`, unrecorded, and the equations that it follows.
+fn attempt(plan: &Plan) -> Result<(Solution, Box<dyn Dynamics>), Ended> {
+    let arithmetic = plan.settings.arithmetic;
+    let mut dynamics = arithmetic.dynamics(&plan.scene.mechanism);
     let control = Loop::new(plan)?;
     let (initial, options) = (plan.scene.start(), plan.options());
     let motion = Motion {
@@ -77,23 +150,20 @@ fn attempt(plan: &Plan) -> Result<GlobalError, Failure> {
         is_companion: false,
     };
     let moved = move_unrecorded(&motion, &mut *dynamics, &mut no_observer);
-    let solution = solution(moved, control.as_ref())?;
-    Ok(estimate(plan, &mut *dynamics, &solution))
-}
-
-fn solution(
-    moved: Result<Solution, IntegrateError>,
-    control: Option<&Loop>,
-) -> Result<Solution, Failure> {
     if interrupt::is_requested() {
-        return Err(Failure::Interrupted(
-            "the search for the tolerance was ended: no file was written".into(),
-        ));
+        let told = "the motions before the one that is recorded were ended: no file was written";
+        return Err(Failure::Interrupted(told.into()).into());
     }
-    moved.map_err(|error| {
-        let failure = control.and_then(Loop::failure);
-        Failure::Simulation(failure.unwrap_or_else(|| error.to_string()))
-    })
+    match moved {
+        Ok(solution) => Ok((solution, dynamics)),
+        Err(error) => {
+            let failure = control.as_ref().and_then(Loop::failure);
+            Err(match arithmetic.reason_to_refine(Err(&error)) {
+                Some(reason) if failure.is_none() => Ended::ByRounding(reason),
+                _ => Failure::Simulation(failure.unwrap_or_else(|| error.to_string())).into(),
+            })
+        }
+    }
 }
 
 impl fmt::Display for Request {

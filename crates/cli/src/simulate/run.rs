@@ -238,6 +238,8 @@ fn print_json(plan: &Plan, columns: &Columns<'_>, run: &Run) -> Result<(), Failu
         form: plan.settings.form_name(),
         method: plan.settings.method.scheme().name(),
         reason: plan.reason.as_deref(),
+        arithmetic: plan.settings.arithmetic.name(),
+        arithmetic_reason: plan.arithmetic_reason.as_deref(),
         accuracy: plan.request.as_ref(),
         method_changes: &run
             .solution

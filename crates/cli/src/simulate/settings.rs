@@ -22,6 +22,7 @@ pub fn overridden(settings: &Settings, args: &Args) -> Result<Settings, Failure>
     let arithmetic = args.arithmetic.map(|arithmetic| match arithmetic {
         ArithmeticName::Doubles => Arithmetic::Doubles,
         ArithmeticName::Refined => Arithmetic::Refined,
+        ArithmeticName::Auto => Arithmetic::Auto,
     });
     let sampling = args.sampling.map(|sampling| match sampling {
         SamplingName::Landing => Sampling::Landing,

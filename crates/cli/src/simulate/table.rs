@@ -91,7 +91,7 @@ impl fmt::Display for Summary<'_> {
             writeln!(
                 f,
                 "rounding    decided the length of {steps} steps, not the tolerance: at joint `{joint}` the error of a step is not below {error:.1e} in \
-                 doubles; see `--arithmetic refined`"
+                 doubles; see `--arithmetic auto`"
             )?;
         }
         for note in self.forces {
@@ -135,6 +135,9 @@ impl Summary<'_> {
         for change in self.method_changes {
             let (time, name, reason) = (change.time, change.scheme.name(), &change.reason);
             writeln!(f, "            from {time:.6} s on {name}: {reason}")?;
+        }
+        if let Some(reason) = &self.plan.arithmetic_reason {
+            writeln!(f, "arithmetic  {}: {reason}", settings.arithmetic.name())?;
         }
         if let Some(equations) = self.equations {
             writeln!(f, "equations   {equations}")?;

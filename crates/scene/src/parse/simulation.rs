@@ -1,10 +1,10 @@
 //! The `[simulation]` table.
 
+use crate::arithmetic::{ARITHMETIC_NAMES, Arithmetic};
 use crate::diagnostics::Diagnostic;
 use crate::read::{Fields, Sink};
 use crate::settings::{
-    ARITHMETIC_NAMES, FORM_NAMES, METHOD_NAMES, SAMPLING_NAMES, Settings, arithmetic_named,
-    form_named, sampling_named,
+    FORM_NAMES, METHOD_NAMES, SAMPLING_NAMES, Settings, form_named, sampling_named,
 };
 use hamel_integrate::{Method, Scheme, StepControl};
 use hamel_runtime::shown::Number;
@@ -34,7 +34,7 @@ pub(super) fn settings(fields: &mut Fields<'_>, sink: &mut Sink) -> Settings {
         arithmetic: table
             .optional("arithmetic")
             .and_then(|arithmetic| arithmetic.choice(&ARITHMETIC_NAMES, sink))
-            .and_then(arithmetic_named)
+            .and_then(Arithmetic::named)
             .unwrap_or(defaults.arithmetic),
         sample_step: positive(&mut table, "sample_step", sink).unwrap_or(defaults.sample_step),
         sampling: table

@@ -9,8 +9,9 @@ mod ties;
 mod time;
 mod value;
 
+use crate::arithmetic::Arithmetic;
 use crate::description::SceneDescription;
-use crate::settings::{Arithmetic, Settings};
+use crate::settings::Settings;
 use crate::text::visible_line;
 use hamel_integrate::{Method, Sampling};
 use value::{list, number, text};
