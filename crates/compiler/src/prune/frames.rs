@@ -1,7 +1,9 @@
 //! Frames for equations: each body's may slide and turn along what its joint does not notice, so that constant placements become sparse.
 //!
 //! A frame on the child side of a joint may move by any g that leaves the columns of X^c and of its derivative as they are: a turn about
-//! the direction of all of them, a shift along the direction of all rotations (anywhere, where there are none).
+//! the direction of all of them, a shift along the direction of all rotations (anywhere, where there are none). A shift is constant on the parent side as well,
+//! `T(R d) H = H T(d)`, if the rotation R of H(Q) takes its direction to a constant one; there it is written, as part of the placement. The two directions
+//! differ where H(Q) has a constant turn: links of a mechanism that is one joint, each placed in the one before it.
 
 use super::{Fixed, Link, rotation};
 use crate::graph::{Argument, Sym, record};
@@ -26,8 +28,8 @@ const ROUNDING: f64 = 1e-15;
 /// How a body's frame may move.
 #[derive(Clone, Copy, Debug, Default)]
 struct Freedom {
-    /// Along which axes.
-    shifts: [bool; 3],
+    /// Along which axes, each with its direction in the joint's parent frame.
+    shifts: [Option<Vector3<f64>>; 3],
     /// About z.
     turns: bool,
     /// Whether the joint's pose ends with a turn about z, which takes up others.
@@ -91,8 +93,15 @@ impl<'a> Placed<'a> {
 
     /// Placement of a body's joint between the frames of equations, without what turns on the child side.
     fn placement(&self, body: usize) -> Pose<f64> {
-        let own = Pose::from_translation(self.moved[body].shift);
-        self.joint_frame(body).compose(&own)
+        self.joint_frame(body).compose(&self.shifted(body))
+    }
+
+    /// The shift of a body's frame on the parent side of its joint.
+    fn shifted(&self, body: usize) -> Pose<f64> {
+        let shift = &self.moved[body].shift;
+        let parts = self.freedoms[body].shifts.iter().zip(shift.iter());
+        let parts = parts.filter_map(|(direction, by)| Some(direction.as_ref()? * *by));
+        Pose::from_translation(parts.sum())
     }
 
     /// The joint's parent frame, as this body sees it, in the frame of the parent's equations.
@@ -155,9 +164,7 @@ impl<'a> Placed<'a> {
         let mut candidates = vec![];
         let children: Vec<Pose<f64>> = self
             .children(body)
-            .map(|child| {
-                self.joints[child].compose(&Pose::from_translation(self.moved[child].shift))
-            })
+            .map(|child| self.joints[child].compose(&self.shifted(child)))
             .collect();
         if freedom.turns {
             candidates.push(Moved {
@@ -184,7 +191,8 @@ impl<'a> Placed<'a> {
                 }
             }
         }
-        for axis in (0..3).filter(|&axis| freedom.shifts[axis]) {
+        for (axis, direction) in freedom.shifts.iter().enumerate() {
+            let Some(direction) = direction else { continue };
             let mut to = |entry: f64| {
                 let mut moved = now;
                 moved.shift[axis] = entry;
@@ -192,7 +200,7 @@ impl<'a> Placed<'a> {
             };
             to(0.0);
             let still = self.placement(body);
-            let direction = still.rotation.column(axis);
+            let direction = still.rotation * direction;
             for i in (0..3).filter(|&i| direction[i].abs() > 0.1) {
                 to(now.shift[axis] - still.translation[i] / direction[i]);
             }
@@ -282,8 +290,14 @@ fn freedom(body: &Body) -> Freedom {
             .iter()
             .all(|column| column.angular.iter().all(Zero::is_zero));
         let slides = columns.iter().all(|column| along_z(column, true));
+        let rotation = joint.rotation();
+        let shift = |axis: usize| -> Option<Vector3<f64>> {
+            let [x, y, z] = [0, 1, 2].map(|row| rotation[(row, axis)].number());
+            let keeps = if axis == 2 { slides } else { still };
+            keeps.then_some(Vector3::new(x?, y?, z?))
+        };
         Freedom {
-            shifts: [still, still, slides],
+            shifts: [0, 1, 2].map(shift),
             turns: slides && columns.iter().all(|column| along_z(column, false)),
             absorbs: matches!(joint.pose().last(), Some(Step::Turn { axis: 2, .. })),
         }
