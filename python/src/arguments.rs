@@ -2,12 +2,16 @@
 
 use crate::errors;
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 
 /// Arguments of no more numbers are copied: to make sure that nothing writes an array takes longer.
 const SMALL: usize = 1 << 8;
+
+/// The name of the argument of configurations.
+pub const CONFIGURATION: &str = "q";
 
 /// An array of states' shares: its last dimension has `entries` numbers.
 pub struct Argument<'py> {
@@ -68,6 +72,11 @@ impl<'py> Argument<'py> {
         &shape[..shape.len().saturating_sub(1)]
     }
 
+    /// Whether it is that of configurations.
+    pub fn is_configuration(&self) -> bool {
+        self.name == CONFIGURATION
+    }
+
     /// Its dimensions.
     pub fn shape(&self) -> &[usize] {
         self.array.shape()
@@ -109,8 +118,14 @@ fn converted<'py>(
     let py = value.py();
     let numpy = numpy_module(py)?;
     let refuse = |cause: PyErr| {
-        let cause = cause.value(py).to_string();
-        errors::argument(py, format!("{name} is no array of numbers: {cause}"))
+        // All else, such as Ctrl-C or a lack of memory, is not about the argument.
+        let is_own =
+            cause.is_instance_of::<PyTypeError>(py) || cause.is_instance_of::<PyValueError>(py);
+        if !is_own {
+            return cause;
+        }
+        let told = cause.value(py).to_string();
+        errors::argument(py, format!("{name} is no array of numbers: {told}"))
     };
     let array = numpy
         .call_method1(intern!(py, "asarray"), (value,))

@@ -22,6 +22,9 @@ const FEW: usize = 4;
 /// Speeds of all states of a chunk together: so many take a fraction of a millisecond.
 const CHUNK: usize = 2048;
 
+/// Dimensions of an array of results at most: those of arrays of numpy 1.
+const MOST_DIMENSIONS: usize = 32;
+
 /// Time between two looks at the signals of the process.
 const LOOK: Duration = Duration::from_millis(20);
 
@@ -62,11 +65,22 @@ pub fn evaluate<'py, const N: usize, const M: usize>(
 ) -> PyResult<[Bound<'py, PyArrayDyn<f64>>; M]> {
     let batch = broadcast(py, &arguments)?;
     let count = size(&batch).ok_or_else(errors::memory)?;
+    let most = shapes.iter().map(|shape| shape.len()).max().unwrap_or(0);
+    if batch.len() + most > MOST_DIMENSIONS {
+        let allowed = MOST_DIMENSIONS - most;
+        let message = format!(
+            "arguments have {} dimensions before the last: they must have at most {allowed}",
+            batch.len()
+        );
+        return Err(errors::argument(py, message));
+    }
     let mut rooms = collect(shapes.map(|shape| Room::new(py, [&batch, shape].concat())))?;
+    let is_of_q = arguments.first().is_some_and(Argument::is_configuration);
     let rows = arguments.each_ref().map(|argument| argument.rows(&batch));
     let slices = rooms.each_mut().map(Room::numbers);
     let work = Work {
         workspaces,
+        is_of_q,
         rows,
         widths: shapes.map(|shape| shape.iter().product()),
         chunk: CHUNK.div_ceil(workspaces.speeds() + 1),
@@ -137,6 +151,8 @@ impl<'a, const M: usize> Rest<'a, M> {
 /// An evaluation for all states of a batch.
 struct Work<'a, F, const N: usize, const M: usize> {
     workspaces: &'a Workspaces,
+    /// Whether the first argument is q.
+    is_of_q: bool,
     rows: [Rows<'a>; N],
     widths: [usize; M],
     chunk: usize,
@@ -205,7 +221,12 @@ where
                 let width = widths.next().copied().unwrap_or(0);
                 rest.split_off_mut(..width).unwrap_or_default()
             });
-            if let Err(error) = (self.each)(workspace, inputs, own) {
+            let checked = match (self.is_of_q, inputs.first()) {
+                (true, Some(q)) => self.workspaces.check_configuration(q),
+                _ => Ok(()),
+            };
+            let done = checked.map_err(hamel::Error::from);
+            if let Err(error) = done.and_then(|()| (self.each)(workspace, inputs, own)) {
                 return Some((state, error));
             }
         }

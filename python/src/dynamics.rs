@@ -1,6 +1,6 @@
 //! What a robot is asked about states: each function evaluates a batch.
 
-use crate::arguments::Argument;
+use crate::arguments::{Argument, CONFIGURATION};
 use crate::batch::evaluate;
 use crate::errors;
 use crate::robot::Robot;
@@ -25,7 +25,7 @@ enum Place {
 
 impl Robot {
     fn q<'py>(&self, q: Given<'_, 'py>) -> PyResult<Argument<'py>> {
-        Argument::read("q", q, self.sizes().configuration)
+        Argument::read(CONFIGURATION, q, self.sizes().configuration)
     }
 
     fn of_speeds<'py>(&self, name: &'static str, value: Given<'_, 'py>) -> PyResult<Argument<'py>> {

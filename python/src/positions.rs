@@ -1,6 +1,6 @@
 //! Positions of joints as users have them, local coordinates ϕ from home, to configurations Q and back.
 
-use crate::arguments::Argument;
+use crate::arguments::{Argument, CONFIGURATION};
 use crate::batch::evaluate;
 use crate::dynamics::Results;
 use crate::errors;
@@ -41,7 +41,7 @@ impl Robot {
 
     /// Positions of Q.
     pub fn positions_of<'py>(&self, q: &Bound<'py, PyAny>) -> PyResult<Results<'py>> {
-        let argument = Argument::read("q", q, self.sizes().configuration)?;
+        let argument = Argument::read(CONFIGURATION, q, self.sizes().configuration)?;
         let shape = self.sizes().freedoms;
         let [phi] = evaluate(
             q.py(),
@@ -59,6 +59,24 @@ impl Robot {
             },
         )?;
         Ok(phi)
+    }
+
+    /// The nearest Q on the manifolds.
+    pub fn projected<'py>(&self, q: &Bound<'py, PyAny>) -> PyResult<Results<'py>> {
+        let shape = self.sizes().configuration;
+        let [projected] = evaluate(
+            q.py(),
+            self.workspaces(),
+            [Argument::read("near", q, shape)?],
+            [&[shape]],
+            |_, [q], [projected]| {
+                self.mechanism().check_poses(q)?;
+                projected.copy_from_slice(q);
+                self.mechanism().project(projected)?;
+                Ok(())
+            },
+        )?;
+        Ok(projected)
     }
 
     /// An array of positions, zero but for those of the joints named.

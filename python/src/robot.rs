@@ -175,6 +175,16 @@ impl Robot {
         self.positions_of(q)
     }
 
+    /// q moved to the nearest point where stored scalars are those of a configuration, (..., N): what q lacks whose digits were cut off, as by float32.
+    ///
+    /// Functions of q refuse a q that is off by more than 1e-9: a rotation matrix that is none, a quaternion not of length 1, a loop that is open.
+    ///
+    /// Args:
+    ///     near: about configurations, (..., N).
+    fn project<'py>(&self, near: Given<'_, 'py>) -> PyResult<Arrays<'py>> {
+        self.projected(near)
+    }
+
     /// Accelerations of speeds under efforts, (..., S): rad/s² and m/s².
     ///
     /// Args:

@@ -84,6 +84,17 @@ impl Plan {
                 "dt is {dt} and tolerance is {tolerance}: a method takes one of them"
             ));
         }
+        if let Some(accuracy) = request.accuracy {
+            let other = [("dt", request.dt), ("tolerance", request.tolerance)];
+            let other = other
+                .into_iter()
+                .find_map(|(name, value)| Some((name, value?)));
+            if let Some((name, value)) = other {
+                return Err(format!(
+                    "accuracy is {accuracy} and {name} is {value}: for an accuracy the tolerance is searched for"
+                ));
+            }
+        }
         let form = match request.form.as_deref() {
             None => None,
             Some("lagrangian") => Some(Form::Lagrangian),
@@ -99,8 +110,17 @@ impl Plan {
                 format!("arithmetic is `{name}`: it must be `doubles`, `refined` or `auto`")
             })
         });
+        let method = Self::way(request)?;
+        if let (Some(accuracy), Way::Method(method @ hamel::integrate::Method::Fixed { .. })) =
+            (request.accuracy, method)
+        {
+            let name = method.scheme().name();
+            return Err(format!(
+                "accuracy is {accuracy} and method is `{name}`, which has no step control: its accuracy is dt"
+            ));
+        }
         Ok(Self {
-            method: Self::way(request)?,
+            method,
             form,
             arithmetic: arithmetic.transpose()?,
         })
@@ -188,7 +208,6 @@ fn run(model: &Model, request: &Request, plan: Plan) -> Result<Motion, Ended> {
     if request.inputs.is_some() {
         simulation = simulation.inputs(|time, q, v, tau| listener.fill(time, q, v, tau));
     }
-    let method = simulation.chosen_method().map_err(Ended::Failure)?.0;
     let moved = match request.estimate {
         true => simulation
             .run_estimated()
@@ -201,9 +220,9 @@ fn run(model: &Model, request: &Request, plan: Plan) -> Result<Motion, Ended> {
     let (solution, error) = moved.map_err(Ended::Failure)?;
     Ok(Motion {
         energies: energies(model, &solution).map_err(Ended::Failure)?,
+        method: solution.scheme.name(),
         solution,
         error,
-        method: method.scheme().name(),
     })
 }
 

@@ -2,7 +2,7 @@
 
 use crate::batch::lock;
 use hamel::dynamics::{Dynamics, ForwardDerivatives, InverseDerivatives, MassMatrix, Recursive};
-use hamel::mechanism::Mechanism;
+use hamel::mechanism::{Body, CONFIGURATION_TOLERANCE, Mechanism, StateError};
 use std::sync::{Arc, Mutex};
 
 /// Memory of one thread.
@@ -54,6 +54,8 @@ impl Workspace {
 /// Workspaces that no thread uses.
 pub struct Workspaces {
     mechanism: Arc<Mechanism>,
+    /// The bodies of joints whose Q is not free: rotations, circles, loops.
+    bound: Vec<usize>,
     #[expect(
         clippy::vec_box,
         reason = "they change hands at each call, and are hundreds of bytes long"
@@ -64,10 +66,37 @@ pub struct Workspaces {
 impl Workspaces {
     /// Those of a mechanism: none yet.
     pub fn new(mechanism: &Arc<Mechanism>) -> Self {
+        let is_bound = |body: &Body| {
+            let ranges = body.ranges();
+            ranges.configuration.len() != ranges.freedoms.len()
+                || !body.joint().relations().is_empty()
+        };
+        let joints = mechanism.joints();
+        let bound = joints.filter_map(|(index, body)| is_bound(body).then_some(index));
         Self {
             mechanism: Arc::clone(mechanism),
+            bound: bound.collect(),
             free: Mutex::default(),
         }
+    }
+
+    /// Whether Q lies on the manifold of each joint; numbers that are not finite are left to the equations of motion.
+    ///
+    /// # Errors
+    /// The first joint that is off, with its residual.
+    pub fn check_configuration(&self, q: &[f64]) -> Result<(), StateError> {
+        self.bound.iter().try_for_each(|&index| {
+            let body = self.mechanism.body(index)?;
+            let residual = body.joint().residual(body.configuration(q));
+            if residual.is_finite() && residual > CONFIGURATION_TOLERANCE {
+                return Err(StateError::OffManifold {
+                    joint: body.joint_name().into(),
+                    residual,
+                    limit: CONFIGURATION_TOLERANCE,
+                });
+            }
+            Ok(())
+        })
     }
 
     /// How many speeds its mechanism has.

@@ -82,6 +82,38 @@ def test_wrong_arrays_are_told(panda, arguments, message):
     assert isinstance(caught.value, ValueError) and isinstance(caught.value, hamel.Error)
 
 
+def test_what_is_not_about_the_argument_is_passed_on(panda):
+    class Interrupted:
+        def __array__(self, *_, **__):
+            raise KeyboardInterrupt
+
+    class Large:
+        def __array__(self, *_, **__):
+            raise MemoryError
+
+    for value, kind in ((Interrupted(), KeyboardInterrupt), (Large(), MemoryError)):
+        with pytest.raises(kind):
+            panda.mass_matrix(value)
+
+
+def test_results_have_at_most_32_dimensions(panda):
+    assert panda.mass_matrix(np.zeros((1,) * 30 + (7,))).ndim == 32
+    with pytest.raises(hamel.ArgumentError, match="arguments have 31 dimensions before the last: they must have at most 30"):
+        panda.mass_matrix(np.zeros((1,) * 31 + (7,)))
+
+
+def test_configurations_that_are_none_are_refused():
+    robot = hamel.load(SCENES / "ball_pendulum_swing_up.toml")
+    q = robot.state().configuration
+    with pytest.raises(hamel.ArgumentError, match="joint `pivot`: its configuration is off its manifold by"):
+        robot.mass_matrix(1.001 * q)
+    # What float32 cuts off, `project` puts back, to what is left of float32.
+    cut = q.astype(np.float32)
+    whole = robot.project(cut)
+    assert np.abs(whole - q).max() < 1e-6
+    assert np.isfinite(robot.mass_matrix(whole)).all()
+
+
 def test_ragged_lists_are_told(panda):
     with pytest.raises(hamel.ArgumentError, match="^q is no array of numbers: "):
         panda.mass_matrix([[0.0] * 7, [0.0] * 6])

@@ -66,6 +66,9 @@ def test_methods_tolerances_and_steps():
     assert hamel.simulate(robot, 0.1, method="auto", form="hamiltonian").error is not None
     exact = hamel.simulate(robot, 1.0, accuracy=1e-8)
     assert exact.end_error <= 1e-8
+    # The method is that of the tolerance that was found.
+    assert hamel.simulate(robot, 1.0, accuracy=1e-3).method == "dopri5"
+    assert hamel.simulate(robot, samples=[0.5, 2.0], estimate=False).t[-1] == 2.0
     none = hamel.simulate(robot, 0.1, estimate=False)
     assert none.error is None and none.end_error is None
 
@@ -135,6 +138,9 @@ def test_what_inputs_raise_ends_the_motion():
         ({"method": 4}, "method is 4: it must be a str"),
         ({"method": "rk4", "tolerance": 1e-6}, "the method `rk4` does not estimate its error"),
         ({"dt": 0.1, "tolerance": 1e-6}, "dt is 0.1 and tolerance is 0.000001: a method takes one of them"),
+        ({"accuracy": 1e-6, "tolerance": 1e-6}, "accuracy is 0.000001 and tolerance is 0.000001: for an accuracy the tolerance is searched for"),
+        ({"accuracy": 1e-6, "dt": 0.1}, "accuracy is 0.000001 and dt is 0.1: for an accuracy the tolerance is searched for"),
+        ({"accuracy": 1e-6, "method": "rk4"}, "accuracy is 0.000001 and method is `rk4`, which has no step control"),
         ({"tolerance": 0.0}, "tolerance is 0: it must be between 1e-16 and 0.1"),
         ({"dt": -1.0}, "dt is -1: it must be positive and finite"),
         ({"arithmetic": "floats"}, "arithmetic is `floats`: it must be `doubles`, `refined` or `auto`"),

@@ -221,6 +221,7 @@ impl<'a> Driver<'a> {
             state: self.end.take().unwrap_or_else(|| self.state()),
             samples: self.samples,
             waypoints: self.waypoints.finish(),
+            scheme: *self.options.method.scheme(),
             method_changes: self
                 .reconsideration
                 .map_or_else(Vec::new, |own| own.changes),

@@ -1,6 +1,6 @@
 //! What an integration starts from, shows on the way, and returns.
 
-use super::{Approach, Crossing, MethodChange, RoundingLimit};
+use super::{Approach, Crossing, MethodChange, RoundingLimit, Scheme};
 use alloc::vec::Vec;
 use hamel_runtime::dynamics::Recursive;
 
@@ -67,6 +67,8 @@ pub struct Solution {
     pub waypoints: Vec<State>,
     /// What crossed zero, and what joints with friction and limits did, in the order of time.
     pub events: Vec<Crossing>,
+    /// The method that it began with.
+    pub scheme: Scheme,
     /// The methods that took over on the way, where [`Integration::choosing`](super::Integration::choosing) allowed it.
     pub method_changes: Vec<MethodChange>,
     /// The work done.

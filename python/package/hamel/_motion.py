@@ -144,12 +144,12 @@ def simulate(
 
     Args:
         robot: a ``Robot``.
-        t_end: time at which to end, s; a time, not a duration.
+        t_end: time at which to end, s; a time, not a duration. With ``samples`` alone it is the last of them.
         start: a ``State`` or a pair ``(q, v)`` at time 0, instead of the initial state of the file.
         method: name of a method, such as ``dop853`` or ``radau5``; ``auto`` chooses.
         tolerance: error allowed a step, for methods with step control.
         dt: step, s, for methods without; alone it asks for ``rk4``. Not with ``tolerance``.
-        accuracy: largest error that the last state shall have; the tolerance is searched for.
+        accuracy: largest error that the last state shall have; the tolerance is searched for. Not with ``tolerance``, ``dt`` or a method of fixed steps.
         form: ``lagrangian`` or ``hamiltonian``.
         arithmetic: ``doubles``; ``refined``, accelerations by iterative refinement, for light bodies that carry heavy ones; ``auto``, refined where a motion in doubles
             shows that rounding decides its accuracy.
@@ -173,12 +173,17 @@ def simulate(
     if samples is not None and sample_step is not None:
         raise ArgumentError("samples and sample_step are both given: one of them tells the times")
     numbers = {"t_end": t_end, "tolerance": tolerance, "dt": dt, "accuracy": accuracy, "sample_step": sample_step}
+    for name, value in numbers.items():
+        if isinstance(value, float) and np.isnan(value):
+            raise ArgumentError(f"{name} is {value!r}: it must be a number")
     request: dict[str, Any] = {name: _number(name, value) for name, value in numbers.items()}
     request["start"] = _start(robot, start)
     request["method"] = _word("method", method)
     request["form"] = _word("form", form)
     request["arithmetic"] = _word("arithmetic", arithmetic)
     request["samples"] = None if samples is None else _vector("samples", samples)
+    if request["samples"] and t_end is None:
+        request["t_end"] = request["samples"][-1]
     if inputs is not None and not callable(inputs):
         raise ArgumentError(f"inputs is {inputs!r}: it must be a function of time, q and v")
     request["inputs"] = inputs

@@ -41,12 +41,14 @@ const fn of(kind: Kind) -> &'static str {
         Kind::ForwardDerivatives => {
             "results: a row a speed, in the order of v. Its columns are the derivatives of the acceleration by phi (a column a freedom, in the \
              order of tau), by v (a column a speed) and by tau (a column a freedom), then the acceleration itself; units are those of a over those \
-             of phi (rad, m), v and tau. phi are local coordinates about q, 0 at q: a displacement of the joint along each freedom."
+             of phi (rad, m), v and tau. phi are local coordinates about q, 0 at q: those of the joint's Phi(q, phi), which `hamel joints explain` \
+             writes for each type. Their axes may be others than those of v: of a ball they turn about the child's axes."
         }
         Kind::InverseDerivatives => {
             "results: a row a speed, in the order of v. Its columns are the derivatives of the effort by phi (a column a freedom, in the order of \
              tau) and by v (a column a speed); units are those of efforts over those of phi (rad, m) and v. phi are local coordinates about q, 0 at \
-             q: a displacement of the joint along each freedom."
+             q: those of the joint's Phi(q, phi), which `hamel joints explain` writes for each type. Their axes may be others than those of v: of a ball \
+             they turn about the child's axes."
         }
     }
 }
