@@ -1,0 +1,32 @@
+//! The accelerations that Hamel gives for the states of a table on stdin, a table on stdout: `compare.py` sends and reads both.
+
+mod states;
+
+use states::{Peer, tables};
+use std::io::Read;
+
+fn main() -> std::io::Result<()> {
+    let mut text = String::new();
+    std::io::stdin().read_to_string(&mut text)?;
+    for table in tables(&text) {
+        println!("model\t{}", table.file);
+        let mut peer = match Peer::new(&table.file, &table.joints) {
+            Ok(peer) => peer,
+            Err(error) => {
+                let error = error.to_string();
+                println!("refused\t{}", error.replace(['\n', '\t'], " "));
+                continue;
+            }
+        };
+        for state in &table.states {
+            match peer.answer(state) {
+                Ok(answer) => {
+                    let a: Vec<String> = answer.a.iter().map(|a| format!("{a:e}")).collect();
+                    println!("a\t{}\t{:e}", a.join(" "), answer.condition);
+                }
+                Err(error) => println!("failed\t{error}"),
+            }
+        }
+    }
+    Ok(())
+}
