@@ -109,6 +109,8 @@ def table(path, shown, count):
         model = Coupled(path)
     except Exception as error:
         return None, str(error).splitlines()[0]
+    if model.m.nv == 0:
+        return None, 'it has no joint'
     rng = np.random.default_rng(sum(path.name.encode()))
     lines = [f'model\t{shown}'] + [f'joint\t{name}\t{kind}' for name, kind in model.joints()]
     wanted = []
@@ -172,7 +174,7 @@ def main():
     for path in models(args):
         lines, wanted = table(path, str(path), count)
         if lines is None:
-            verdict, said = 'not of MuJoCo', wanted
+            verdict, said = 'left out', wanted
         else:
             written += [lines[0].replace(str(path), path.name)] + lines[1:]
             own = answers('\n'.join(lines) + '\n', args.program)

@@ -18,13 +18,16 @@ pub(super) fn masses(
     settings: &Settings,
     sink: &mut Sink,
 ) -> Vec<MassProperties> {
-    let all = bodies.iter().enumerate().map(|(place, body)| match place {
-        0 => MassProperties::massless(),
-        _ => of_body(body, settings, sink),
+    let all = (0..bodies.len()).map(|place| {
+        // What never moves may weigh what it will, unless the whole is to weigh something.
+        match place == 0 || settings.total.is_none() && is_static(bodies, place) {
+            true => MassProperties::massless(),
+            false => of_body(&bodies[place], settings, sink),
+        }
     });
     let mut all: Vec<MassProperties> = all.collect();
     if let Some(total) = settings.total {
-        // What is fused with the world is no body, and counts for nothing.
+        // What is fused with the world is no body for MuJoCo, and counts for nothing.
         let counts = |place: &usize| !settings.fused || !is_static(bodies, *place);
         let weighed: f64 = (0..all.len())
             .filter(counts)
