@@ -6,11 +6,6 @@ mod states;
 use states::{Peer, tables};
 use std::path::{Path, PathBuf};
 
-/// What differs is rounding: 1e-9 of the accelerations, or where more digits are lost by the condition of M, a few roundings of those.
-fn allowed(condition: f64, size: f64) -> f64 {
-    size.max(1.0) * f64::max(1e-9, condition * 1e-15)
-}
-
 fn data() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/mjcf")
 }
@@ -34,7 +29,7 @@ fn accelerations_are_those_of_mujoco() {
             let error = differ.sum::<f64>().sqrt();
             let size = state.a.iter().map(|a| a * a).sum::<f64>().sqrt();
             assert!(
-                error <= allowed(answer.condition, size),
+                error <= answer.allowed(size),
                 "{}: {error:e} of {size:e}\n{:?}\n{:?}",
                 table.file,
                 answer.a,

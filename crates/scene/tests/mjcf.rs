@@ -192,14 +192,14 @@ fn what_is_left_out_is_told_with_its_line() {
         .collect();
     for wanted in [
         "warning: drag and lift of a surrounding fluid are not simulated: <option>",
-        "warning: tendons are not simulated: <tendon> in line 28",
-        "warning: equalities other than those of joints are not simulated: <weld> in line 27",
-        "note: equalities that are not active are left out: <connect> in line 27",
-        "warning: bodies that a user moves (mocap) stand still: <body> in line 11",
+        "warning: tendons are not simulated: <tendon> in line 24",
+        "warning: equalities other than those of joints are not simulated: <weld> in line 23",
+        "note: equalities that are not active are left out: <connect> in line 23",
+        "warning: bodies that a user moves (mocap) stand still: <body> in line 10",
         "warning: limits of position are not simulated: the joint moves past them: joint `a`",
         "note: motors are read at joints alone: motor `pull`",
-        "note: sensors are not read: <sensor> in line 30",
-        "note: keyframes are not read: the robot begins with its joints at `ref`: <keyframe> in line 31",
+        "note: sensors are not read: <sensor> in line 26",
+        "note: keyframes are not read: the robot begins with its joints at `ref`: <keyframe> in line 27",
         "note: contacts are not simulated: bodies pass through each other: <worldbody>",
     ] {
         assert!(

@@ -22,7 +22,13 @@ fn main() -> std::io::Result<()> {
             match peer.answer(state) {
                 Ok(answer) => {
                     let a: Vec<String> = answer.a.iter().map(|a| format!("{a:e}")).collect();
-                    println!("a\t{}\t{:e}", a.join(" "), answer.condition);
+                    let size = state.a.iter().map(|a| a * a).sum::<f64>().sqrt();
+                    println!(
+                        "a\t{}\t{:e}\t{:e}",
+                        a.join(" "),
+                        answer.allowed(size),
+                        answer.allowed_of_small(size)
+                    );
                 }
                 Err(error) => println!("failed\t{error}"),
             }

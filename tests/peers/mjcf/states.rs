@@ -4,7 +4,6 @@
 //! state lines `q` and `v`, MuJoCo's `qpos` and `qvel`, and `a`, its `qacc_smooth`, where it is known. Parts of a line are between tabs, numbers between blanks.
 
 use hamel::Model;
-use hamel::spatial::MassProperties;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use std::error::Error;
 
@@ -83,10 +82,23 @@ pub struct Peer {
     joints: Vec<(Kind, Place)>,
 }
 
-/// Accelerations, and the condition of the mass matrix.
+/// Accelerations, and of the mass matrix its condition and its least singular value.
 pub struct Answer {
     pub a: Vec<f64>,
     pub condition: f64,
+    pub least: f64,
+}
+
+impl Answer {
+    /// How far it may be from accelerations of that size: 1e-9 of them, or where more digits are lost by the condition of M, a few roundings of those.
+    pub fn allowed(&self, size: f64) -> f64 {
+        size.max(1.0) * f64::max(1e-9, self.condition * 1e-15)
+    }
+
+    /// The same where bodies are small: MuJoCo takes products of inertia below 1e-12 kg m² for 0 where it looks for principal axes, of meshes with the density 1, as if they weighed some thousand times less.
+    pub fn allowed_of_small(&self, size: f64) -> f64 {
+        self.allowed(size) + size.max(1.0) * 1e-9 / self.least
+    }
 }
 
 impl Peer {
@@ -177,17 +189,13 @@ impl Peer {
         }
         let mass = self.model.mass_matrix(&state)?;
         let values = mass.singular_values();
-        let condition = values.max() / values.min();
-        Ok(Answer { a, condition })
-    }
-
-    /// Masses of the bodies, for messages.
-    pub fn masses(&self) -> impl Iterator<Item = &MassProperties> {
-        self.model
-            .mechanism()
-            .bodies()
-            .iter()
-            .map(|body| body.mass())
+        let least = values.min();
+        let condition = values.max() / least;
+        Ok(Answer {
+            a,
+            condition,
+            least,
+        })
     }
 }
 

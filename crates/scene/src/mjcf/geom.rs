@@ -1,11 +1,13 @@
 //! Geoms: what they weigh, and how pictures show them. Contacts between them are not simulated.
 
 use super::element::Element;
+use super::mesh::Bulks;
 use super::placement;
 use super::settings::Settings;
 use super::solid::Solid;
 use crate::diagnostics::Diagnostic;
 use crate::read::Sink;
+use crate::robot::mass::moved;
 use crate::shape::Geometry;
 use crate::source::Span;
 use hamel_runtime::shown::Number;
@@ -28,6 +30,8 @@ pub(super) struct Geom {
     pub(super) owner: String,
     /// Its shape, if it is a simple one.
     solid: Option<Solid>,
+    /// What its mesh weighs with the density 1, if it is a mesh that has been read.
+    bulk: Option<MassProperties>,
     /// The name of its type.
     kind: &'static str,
     /// Its frame in that of the body.
@@ -47,7 +51,7 @@ impl Geom {
         owner: String,
         element: &Element<'_>,
         frame: &Pose<f64>,
-        settings: &Settings,
+        (settings, meshes): (&Settings, &Bulks),
         sink: &mut Sink,
     ) -> Option<Self> {
         const KINDS: [&str; 9] = [
@@ -92,6 +96,10 @@ impl Geom {
         Some(Self {
             owner,
             solid,
+            bulk: element
+                .text("mesh")
+                .filter(|_| said == "mesh")
+                .and_then(|name| meshes.get(name).copied()),
             kind,
             pose: *frame * pose,
             group: element.number("group").unwrap_or(0.0),
@@ -109,39 +117,59 @@ impl Geom {
         if self.group < first || self.group > last || self.mass == Some(0.0) {
             return None;
         }
-        let Some(solid) = &self.solid else {
-            let weighs = self.mass.is_some() || self.density != 0.0;
-            if self.kind != "plane" && weighs {
-                let message = format!(
-                    "{}: the mass of a {} is not read, and the mass of its body is that of its geoms",
-                    self.owner, self.kind
-                );
-                let error = Diagnostic::new(self.span.clone(), message);
-                sink.push(error.help(
-                    "give the body an <inertial>: MuJoCo writes one by `saveinertial=\"true\"` of <compiler>; or give the geom the mass 0",
-                ));
+        let unit = match (&self.solid, self.bulk) {
+            (Some(solid), _) => self.unit(solid),
+            (None, Some(bulk)) => bulk,
+            (None, None) => {
+                self.refuse(sink);
+                return None;
             }
-            return None;
-        };
-        let volume = match self.hollow {
-            true => solid.surface(),
-            false => solid.volume(),
         };
         let mass = match self.mass {
-            Some(mass) if volume > NOTHING => mass,
+            Some(mass) if unit.mass > NOTHING => mass,
             Some(_) => 0.0,
-            None => self.density * volume,
+            None => self.density * unit.mass,
+        };
+        let own = MassProperties {
+            mass,
+            inertia_com: unit.inertia_com * (mass / unit.mass),
+            ..unit
+        };
+        (mass > NOTHING).then(|| moved(&own, &self.pose))
+    }
+
+    /// What a simple shape weighs with the density 1.
+    fn unit(&self, solid: &Solid) -> MassProperties {
+        let mass = match self.hollow {
+            true => solid.surface(),
+            false => solid.volume(),
         };
         let moments = match self.hollow {
             true => solid.hollow(mass),
             false => solid.filled(mass),
         };
-        let r = self.pose.rotation;
-        (mass > NOTHING).then(|| MassProperties {
+        MassProperties {
             mass,
-            com: self.pose.translation,
-            inertia_com: r * Matrix3::from_diagonal(&moments) * r.transpose(),
-        })
+            com: Vector3::zeros(),
+            inertia_com: Matrix3::from_diagonal(&moments),
+        }
+    }
+
+    /// Refuses what has mass, but not which.
+    fn refuse(&self, sink: &mut Sink) {
+        let weighs = self.mass.is_some() || self.density != 0.0;
+        if self.kind == "plane" || !weighs {
+            return;
+        }
+        let message = format!(
+            "{}: the mass of its body is that of its geoms, and this {} is none whose mass is known",
+            self.owner, self.kind
+        );
+        let error = Diagnostic::new(self.span.clone(), message);
+        sink.push(error.help(
+            "STL in binary, OBJ and MSH are read from the files of a model that is read from its file, but for convex hulls (`inertia=\"convex\"`). \
+             Else give the body an <inertial>: MuJoCo writes one by `saveinertial=\"true\"` of <compiler>; or give the geom the mass 0",
+        ));
     }
 
     /// How pictures show it; an error says why they do not, with nothing to say where they need not.
@@ -226,7 +254,10 @@ fn solid(
     let mut sizes = sizes.into_iter().take(wanted);
     let all: Vec<f64> = sizes.by_ref().filter(|size| *size > 0.0).collect();
     if all.len() < wanted {
-        let message = format!("{owner}: a {kind} needs {wanted} sizes above 0");
+        let message = match wanted {
+            1 => format!("{owner}: a {kind} needs a size above 0"),
+            _ => format!("{owner}: a {kind} needs {wanted} sizes above 0"),
+        };
         sink.push(Diagnostic::new(element.span("size"), message));
         return None;
     }

@@ -1,5 +1,6 @@
 //! The files that a model includes, in the places of the elements that name them.
 
+use super::mesh::weighed;
 use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::read::Sink;
 use crate::robot::xml::{self, tag};
@@ -18,11 +19,16 @@ const MOST_BYTES: usize = 512 << 20;
 pub(super) const TARGET: &str = "hamel-included";
 
 /// The model `text` of the file `path`, with what the elements `<include>` name in their places: files beside the one that names them, or beside
-/// the first.
+/// the first. What its meshes weigh stands before their elements, where bodies may have their masses of them.
 ///
 /// # Errors
 /// Files that cannot be read, that are no MJCF or that include each other in a circle, each by the name of the file that includes them.
-pub fn with_includes(path: &Path, text: String) -> Result<String, Diagnostics> {
+pub fn with_files(path: &Path, text: String) -> Result<String, Diagnostics> {
+    let main = path.parent().unwrap_or(Path::new(""));
+    Ok(weighed(main, with_includes(path, text)?))
+}
+
+fn with_includes(path: &Path, text: String) -> Result<String, Diagnostics> {
     if !text.contains("<include") {
         return Ok(text);
     }

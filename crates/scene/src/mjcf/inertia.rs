@@ -18,9 +18,10 @@ pub(super) fn masses(
     settings: &Settings,
     sink: &mut Sink,
 ) -> Vec<MassProperties> {
+    let moving = moving(bodies);
     let all = (0..bodies.len()).map(|place| {
         // What never moves may weigh what it will, unless the whole is to weigh something.
-        match place == 0 || settings.total.is_none() && is_static(bodies, place) {
+        match place == 0 || settings.total.is_none() && !moving[place] {
             true => MassProperties::massless(),
             false => of_body(&bodies[place], settings, sink),
         }
@@ -28,7 +29,7 @@ pub(super) fn masses(
     let mut all: Vec<MassProperties> = all.collect();
     if let Some(total) = settings.total {
         // What is fused with the world is no body for MuJoCo, and counts for nothing.
-        let counts = |place: &usize| !settings.fused || !is_static(bodies, *place);
+        let counts = |place: &usize| !settings.fused || moving[*place];
         let weighed: f64 = (0..all.len())
             .filter(counts)
             .map(|place| all[place].mass)
@@ -44,16 +45,14 @@ pub(super) fn masses(
     all
 }
 
-/// Whether no joint moves a body.
-fn is_static(bodies: &[Body<'_>], place: usize) -> bool {
-    let mut at = Some(place);
-    while let Some(place) = at {
-        if !bodies[place].joints.is_empty() {
-            return false;
-        }
-        at = bodies[place].parent;
+/// Which bodies a joint moves, their own or one that they hang on.
+fn moving(bodies: &[Body<'_>]) -> Vec<bool> {
+    let mut moving = Vec::with_capacity(bodies.len());
+    for body in bodies {
+        let carried = body.parent.is_some_and(|parent| moving[parent]);
+        moving.push(carried || !body.joints.is_empty());
     }
-    true
+    moving
 }
 
 fn of_body(body: &Body<'_>, settings: &Settings, sink: &mut Sink) -> MassProperties {

@@ -19,6 +19,7 @@
 
 mod actuator;
 mod audit;
+mod bulk;
 mod chain;
 mod convert;
 mod couple;
@@ -29,6 +30,7 @@ mod geom;
 mod include;
 mod inertia;
 mod joint;
+mod mesh;
 mod names;
 mod notes;
 mod placement;
@@ -37,7 +39,7 @@ mod settings;
 mod solid;
 mod tree;
 
-pub use include::with_includes;
+pub use include::with_files;
 
 use crate::description::Source;
 use crate::diagnostics::Diagnostic;
@@ -74,7 +76,8 @@ pub(crate) fn import(
     let mut notices = Notices::default();
     let settings = Settings::read(root, &mut notices, sink);
     let defaults = Defaults::read(root, sink);
-    let by = (&settings, &defaults, &lines);
+    let meshes = mesh::bulks(root, &defaults, sink);
+    let by = (&settings, &defaults, &lines, &meshes);
     let mut bodies = Reader::new(by, &mut notices, sink).bodies(root);
     notes::tell(root, &bodies, &settings, &lines, &mut notices);
     let masses = inertia::masses(&bodies, &settings, sink);

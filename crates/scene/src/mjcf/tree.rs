@@ -4,6 +4,7 @@ use super::defaults::{Defaults, MAIN};
 use super::element::{Element, Lines, label};
 use super::geom::Geom;
 use super::joint::{Joint, Movement};
+use super::mesh::Bulks;
 use super::placement;
 use super::settings::Settings;
 use crate::diagnostics::Diagnostic;
@@ -55,6 +56,7 @@ pub(super) struct Reader<'r, 'a> {
     pub(super) settings: &'r Settings,
     pub(super) defaults: &'r Defaults<'a>,
     pub(super) lines: &'r Lines,
+    meshes: &'r Bulks,
     pub(super) notices: &'r mut Notices,
     pub(super) sink: &'r mut Sink,
     bodies: Vec<Body<'a>>,
@@ -65,7 +67,7 @@ pub(super) struct Reader<'r, 'a> {
 impl<'r, 'a> Reader<'r, 'a> {
     /// A reader with what it reads by.
     pub(super) fn new(
-        (settings, defaults, lines): (&'r Settings, &'r Defaults<'a>, &'r Lines),
+        (settings, defaults, lines, meshes): (&'r Settings, &'r Defaults<'a>, &'r Lines, &'r Bulks),
         notices: &'r mut Notices,
         sink: &'r mut Sink,
     ) -> Self {
@@ -73,6 +75,7 @@ impl<'r, 'a> Reader<'r, 'a> {
             settings,
             defaults,
             lines,
+            meshes,
             notices,
             sink,
             bodies: Vec::new(),
@@ -225,7 +228,8 @@ impl<'r, 'a> Reader<'r, 'a> {
         self.register("geoms", own.node);
         let owner = label(own.node, self.lines);
         let element = self.defaults.element(own.node, own.class, self.sink);
-        let geom = Geom::read(owner, &element, &own.frame, self.settings, self.sink);
+        let by = (self.settings, self.meshes);
+        let geom = Geom::read(owner, &element, &own.frame, by, self.sink);
         self.bodies[own.body].geoms.extend(geom);
     }
 

@@ -110,7 +110,7 @@ pub fn is_robot(path: &Path, text: &str) -> bool {
     ending.eq_ignore_ascii_case("urdf") || text.trim_start_matches(is_before_xml).starts_with('<')
 }
 
-/// The text of the file `path` with what other files say of its robot: the files that an MJCF includes; the loops of a URDF ([`urdf::with_loops`]).
+/// The text of the file `path` with what other files say of its robot: the files that an MJCF includes, and what its meshes weigh; the loops of a URDF ([`urdf::with_loops`]).
 ///
 /// # Errors
 /// Files that cannot be read or do not belong to the robot.
@@ -118,7 +118,7 @@ pub fn completed(path: &Path, text: String) -> Result<String, Diagnostics> {
     let may_be = text.contains("<mujoco");
     let document = may_be.then(|| Document::parse(&text).ok()).flatten();
     match document.is_some_and(|document| is_mjcf(&document)) {
-        true => mjcf::with_includes(path, text),
+        true => mjcf::with_files(path, text),
         false => urdf::with_loops(path, text),
     }
 }
