@@ -248,6 +248,20 @@ fn files_that_include_each_other_are_told_by_name() {
     }
 }
 
+/// Bodies in bodies are read one after the other, however deep they stand.
+#[test]
+fn deep_models_are_read() {
+    const DEEP: usize = 900;
+    let inside = "<body><joint/><geom size=\"0.1\"/>".repeat(DEEP) + &"</body>".repeat(DEEP);
+    let text = format!("<mujoco><worldbody>{inside}</worldbody></mujoco>");
+    let import =
+        read(&text, "deep", &Options::default()).unwrap_or_else(|errors| panic!("{errors}"));
+    assert_eq!(import.scene.bodies.len(), DEEP);
+    // XML itself has a limit.
+    let deep = text.replace("<worldbody>", &"<worldbody>".repeat(100_000));
+    assert!(read(&deep, "deeper", &Options::default()).is_err());
+}
+
 /// A scene that is written of a robot reads back as the same bodies.
 #[test]
 fn written_scenes_read_back() {

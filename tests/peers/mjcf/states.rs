@@ -82,22 +82,17 @@ pub struct Peer {
     joints: Vec<(Kind, Place)>,
 }
 
-/// Accelerations, and of the mass matrix its condition and its least singular value.
+/// Accelerations, and the largest and the least singular value of the mass matrix.
 pub struct Answer {
     pub a: Vec<f64>,
-    pub condition: f64,
-    pub least: f64,
+    pub singular: [f64; 2],
 }
 
 impl Answer {
     /// How far it may be from accelerations of that size: 1e-9 of them, or where more digits are lost by the condition of M, a few roundings of those.
     pub fn allowed(&self, size: f64) -> f64 {
-        size.max(1.0) * f64::max(1e-9, self.condition * 1e-15)
-    }
-
-    /// The same where bodies are small: MuJoCo takes products of inertia below 1e-12 kg m² for 0 where it looks for principal axes, of meshes with the density 1, as if they weighed some thousand times less.
-    pub fn allowed_of_small(&self, size: f64) -> f64 {
-        self.allowed(size) + size.max(1.0) * 1e-9 / self.least
+        let [largest, least] = self.singular;
+        size.max(1.0) * f64::max(1e-9, largest / least * 1e-15)
     }
 }
 
@@ -189,13 +184,8 @@ impl Peer {
         }
         let mass = self.model.mass_matrix(&state)?;
         let values = mass.singular_values();
-        let least = values.min();
-        let condition = values.max() / least;
-        Ok(Answer {
-            a,
-            condition,
-            least,
-        })
+        let singular = [values.max(), values.min()];
+        Ok(Answer { a, singular })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::chain;
 use super::couple;
-use super::equality::Follower;
+use super::equality::Followers;
 use super::geom::Geom;
 use super::joint::Movement;
 use super::names::Names;
@@ -34,7 +34,7 @@ pub(super) struct Model<'m, 'a> {
     /// Their masses in their frames.
     pub(super) masses: &'m [MassProperties],
     /// The joints that follow others.
-    pub(super) mimics: Vec<Follower>,
+    pub(super) mimics: Followers,
     pub(super) settings: &'m Settings,
 }
 
@@ -174,12 +174,7 @@ impl Converter<'_, '_> {
                     ([before.pose * at, body_at], before.body)
                 }
             };
-            let mimic = self
-                .model
-                .mimics
-                .iter()
-                .find(|(own, _)| *own == (place, number));
-            let mimic = mimic.map(|(_, mimic)| mimic.clone());
+            let mimic = self.model.mimics.get(&(place, number)).cloned();
             let forces = self.forces(joint, &before.pose, stops);
             self.tell(&name, joint, stops);
             self.facts.push(chain::facts(&name, joint));

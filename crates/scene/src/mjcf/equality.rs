@@ -10,9 +10,13 @@ use crate::notice::Notices;
 use crate::read::Sink;
 use crate::source::Located;
 use roxmltree::Node;
+use std::collections::HashMap;
 
 /// A joint, by its body and its place there, with what it follows.
 pub(super) type Follower = ((usize, usize), Located<MimicDescription>);
+
+/// All of them.
+pub(super) type Followers = HashMap<(usize, usize), Located<MimicDescription>>;
 
 /// The joints that follow others.
 pub(super) fn mimics<'a>(
@@ -21,9 +25,9 @@ pub(super) fn mimics<'a>(
     places: &Places,
     (defaults, lines): (&Defaults<'a>, &Lines),
     (notices, sink): (&mut Notices, &mut Sink),
-) -> Vec<Follower> {
+) -> Followers {
     let sections = root.children().filter(|node| node.has_tag_name("equality"));
-    let mut mimics: Vec<Follower> = Vec::new();
+    let mut mimics = Followers::new();
     for node in sections
         .flat_map(|section| section.children())
         .filter(Node::is_element)
@@ -51,13 +55,15 @@ pub(super) fn mimics<'a>(
         // The class of an equality says nothing that is read here, but must be one.
         defaults.named(node, "class", MAIN, sink);
         match mimic(&label(node, lines), &element, bodies, places, sink) {
-            Some(Ok((place, _))) if mimics.iter().any(|(known, _)| *known == place) => {
+            Some(Ok((place, _))) if mimics.contains_key(&place) => {
                 notices.warn(
                     "a joint follows one other: further equalities of it are not simulated",
                     owner,
                 );
             }
-            Some(Ok(follower)) => mimics.push(follower),
+            Some(Ok((place, mimic))) => {
+                mimics.insert(place, mimic);
+            }
             Some(Err(why)) => notices.warn(why, owner),
             None => {}
         }

@@ -157,7 +157,9 @@ fn needed<'a>(root: Node<'a, 'a>) -> HashSet<&'a str> {
 fn folder(main: &Path, root: Node<'_, '_>) -> std::path::PathBuf {
     let said = |name: &str| {
         let compilers = root.children().filter(|node| node.has_tag_name("compiler"));
-        compilers.filter_map(|node| node.attribute(name)).last()
+        compilers
+            .filter_map(|node| node.attribute(name))
+            .next_back()
     };
     main.join(said("meshdir").or(said("assetdir")).unwrap_or(""))
 }

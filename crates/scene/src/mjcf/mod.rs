@@ -97,7 +97,7 @@ pub(crate) fn import(
             (&defaults, &lines),
             (&mut notices, sink),
         ),
-        false => Vec::new(),
+        false => equality::Followers::new(),
     };
     let model = convert::Model {
         root,
