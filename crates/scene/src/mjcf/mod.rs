@@ -7,7 +7,7 @@
 //! | several joints of a body | a chain in their order; the bodies between them have no mass, and are called by their joints with `_link` |
 //! | a body without joints | a part of the body that it hangs on: masses and inertias add up, its frame stays as a named frame; so do sites |
 //! | `<default>`, `class`, `childclass`, `<frame>`, `<include>` | resolved |
-//! | `<inertial>`, or masses of geoms, with `<compiler>`'s bounds | mass, centre of mass and inertia |
+//! | `<inertial>`, or masses of geoms, meshes among them, with `<compiler>`'s bounds | mass, centre of mass and inertia |
 //! | `stiffness`, `springref`, `damping`, `armature`, `frictionloss` | the joint's spring, damping, armature and dry friction |
 //! | `range` of `hinge` and `slide` | compliant limits, if [`Options::limits`] gives their numbers |
 //! | `gravcomp` | a constant force at the centre of mass |
