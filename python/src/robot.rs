@@ -119,7 +119,7 @@ impl Robot {
         PyTuple::new(py, self.model.frames().collect::<Vec<_>>())
     }
 
-    /// Limits by the names of joints, as the file says them; of a URDF they are not simulated.
+    /// Limits by the names of joints, as the file says them; of a robot they are not simulated.
     #[getter]
     fn limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
@@ -145,7 +145,7 @@ impl Robot {
         self.info(py, body)
     }
 
-    /// The initial state of the file: a `State`. A robot in URDF is at home and at rest.
+    /// The initial state of the file: a `State`. A robot in URDF is at home and at rest, one in MJCF where its file draws it.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         static CLASS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
         let start = self.model.state();
@@ -373,11 +373,11 @@ impl Robot {
         let Source {
             name,
             text,
-            is_urdf,
+            is_robot,
             floating_base,
         } = self.source.clone();
         let parse = py.import("hamel._hamel")?.getattr("parse")?;
-        let source = (name, text, is_urdf, floating_base).into_pyobject(py)?;
+        let source = (name, text, is_robot, floating_base).into_pyobject(py)?;
         Ok((parse, (source,).into_pyobject(py)?))
     }
 

@@ -2,7 +2,7 @@
 
 use crate::errors;
 use hamel::Model;
-use hamel::scene::urdf::{self, Import};
+use hamel::scene::robot::{self, Import};
 use hamel::scene::{Diagnostics, Scene, SceneDescription, read_file};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
@@ -15,8 +15,8 @@ pub struct Source {
     pub name: String,
     /// The text.
     pub text: String,
-    /// Whether it is URDF, by its ending or by how it begins.
-    pub is_urdf: bool,
+    /// Whether it is a robot in URDF or MJCF rather than a scene, by its ending or by how it begins.
+    pub is_robot: bool,
     /// Whether the root link of a URDF moves freely.
     pub floating_base: bool,
 }
@@ -57,11 +57,17 @@ impl Source {
         })?;
         let (text, name) =
             read_file(&path).map_err(|error| errors::file(py, &path.to_string_lossy(), &error))?;
-        let is_urdf = urdf::is_robot(&path, &text);
+        let is_robot = robot::is_robot(&path, &text);
+        let text = match is_robot {
+            // With what stands in files beside it.
+            true => robot::completed(&path, text)
+                .map_err(|error| errors::file(py, &path.to_string_lossy(), &error))?,
+            false => text,
+        };
         Ok(Self {
             name,
             text,
-            is_urdf,
+            is_robot,
             floating_base,
         })
     }
@@ -69,7 +75,7 @@ impl Source {
     fn of_text(text: String, floating_base: bool) -> Self {
         Self {
             name: String::from("text"),
-            is_urdf: urdf::is_robot(&PathBuf::new(), &text),
+            is_robot: robot::is_robot(&PathBuf::new(), &text),
             text,
             floating_base,
         }
@@ -81,13 +87,13 @@ impl Source {
     /// All mistakes of the text.
     pub fn model(&self) -> Result<(Model, AllLimits), Diagnostics> {
         let joints = hamel::joints::registry();
-        let (scene, limits) = match self.is_urdf {
+        let (scene, limits) = match self.is_robot {
             true => {
-                let options = urdf::Options {
+                let options = robot::Options {
                     floating_base: self.floating_base,
-                    ..urdf::Options::default()
+                    ..robot::Options::default()
                 };
-                let import = urdf::read(&self.text, &self.name, &options)?;
+                let import = robot::read(&self.text, &self.name, &options)?;
                 (import.build(&joints)?, limits_of_robot(&import))
             }
             false => {
@@ -103,7 +109,7 @@ impl Source {
 
 /// Whether a `str` is the text itself: no path of a robot has several lines, and none begins as XML does.
 fn is_text(given: &str) -> bool {
-    given.contains('\n') || urdf::is_robot(&PathBuf::new(), given)
+    given.contains('\n') || robot::is_robot(&PathBuf::new(), given)
 }
 
 fn limits_of_robot(import: &Import) -> AllLimits {

@@ -8,7 +8,7 @@ use hamel_compiler::functions::Kind;
 use hamel_compiler::{Build, Error, Language, explain};
 use hamel_console::files::{Force, admit, first_line, named};
 use hamel_console::output::{self, Failure};
-use hamel_scene::urdf::Stops;
+use hamel_scene::robot::Stops;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
@@ -39,7 +39,7 @@ Exit codes: 0 success; 1 a scene with mistakes or that cannot be compiled, a fil
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Scene file (TOML), or a robot in URDF (`.urdf`)
+    /// Scene file (TOML), or a robot in URDF or MJCF
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
 
@@ -63,7 +63,7 @@ pub struct Args {
     #[arg(long)]
     pub floating_base: bool,
 
-    /// Simulate the limits of position of a robot in URDF as stops that give way: stiffness, N m/rad or N/m, and damping d, s/rad or s/m, of the effort
+    /// Simulate the limits of position of a robot in URDF or MJCF as stops that give way: stiffness, N m/rad or N/m, and damping d, s/rad or s/m, of the effort
     /// k x (1 + d ẋ) beyond them
     #[arg(long, value_name = "STIFFNESS,DAMPING", value_parser = stops, allow_negative_numbers = true)]
     pub limits: Option<Stops>,

@@ -1,12 +1,12 @@
-//! `hamel import`: a robot in URDF as a scene file.
+//! `hamel import`: a robot in URDF or MJCF as a scene file.
 
 use crate::input::stops;
 use fnv::FnvHasher;
 use hamel::registry::JointRegistry;
 use hamel_console::files::{Force, admit, named};
 use hamel_console::output::{self, Failure, tell};
-use hamel_scene::urdf::Stops;
-use hamel_scene::{read_file, urdf};
+use hamel_scene::read_file;
+use hamel_scene::robot::{self, Stops};
 use std::fs::File;
 use std::hash::Hasher;
 use std::io::Read;
@@ -24,17 +24,17 @@ Examples:
 The scene has a body for each link that moves by itself; fixed joints join links to one body, and keep their frames as [[frame]].
 Every joint is at home (angles and displacements 0) and at rest. Boxes, spheres, cylinders and capsules of <visual> become [[shape]],
 which pictures show; meshes and the shapes of <collision> do not. What the scene does not hold (limits, mimic joints, friction, meshes …)
-is told on stderr and in comments. scenes/README.md says how each element of URDF is read.
+is told on stderr and in comments. scenes/README.md says how each element of URDF and MJCF is read.
 
 The first line of the scene tells whether it was edited: an imported scene is replaced by another import, an edited one only with --force.
 
 Exit codes: 0 success; 1 a robot with mistakes, a file that cannot be written; 2 wrong options; 130 interrupted.";
 
-/// Turn a robot in URDF into a scene file.
+/// Turn a robot in URDF or MJCF into a scene file.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Robot in URDF
+    /// Robot in URDF, or in MJCF
     #[arg(value_name = "ROBOT")]
     pub robot: PathBuf,
 
@@ -46,7 +46,7 @@ pub struct Args {
     #[arg(long)]
     pub floating_base: bool,
 
-    /// Simulate the limits of position of a robot in URDF as stops that give way: stiffness, N m/rad or N/m, and damping d, s/rad or s/m, of the effort
+    /// Simulate the limits of position of a robot in URDF or MJCF as stops that give way: stiffness, N m/rad or N/m, and damping d, s/rad or s/m, of the effort
     /// k x (1 + d ẋ) beyond them
     #[arg(long, value_name = "STIFFNESS,DAMPING", value_parser = stops, allow_negative_numbers = true)]
     pub limits: Option<Stops>,
@@ -60,13 +60,13 @@ pub struct Args {
 /// # Errors
 /// Mistakes in the robot; a file that cannot be written.
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
-    let options = urdf::Options {
+    let options = robot::Options {
         floating_base: args.floating_base,
         limits: args.limits,
-        ..urdf::Options::default()
+        ..robot::Options::default()
     };
     let (text, name) = read_file(&args.robot)?;
-    let import = urdf::read(&urdf::completed(&args.robot, text)?, &name, &options)?;
+    let import = robot::read(&robot::completed(&args.robot, text)?, &name, &options)?;
     let built = match import.build(registry) {
         Ok(scene) => {
             tell(&scene.notices);

@@ -1,9 +1,9 @@
-//! What commands read: a scene file, or a robot in URDF. It is read once, whatever is made of it.
+//! What commands read: a scene file, or a robot in URDF or MJCF. It is read once, whatever is made of it.
 
 use hamel::registry::JointRegistry;
 use hamel_compiler::Build;
 use hamel_console::output::Failure;
-use hamel_scene::{Scene, SceneDescription, read_file, urdf};
+use hamel_scene::{Scene, SceneDescription, read_file, robot};
 use std::path::Path;
 
 /// The text of a scene or of a robot.
@@ -15,21 +15,21 @@ pub struct Input {
     /// Name of the file without its folder.
     label: String,
     /// How to read a robot; absent for a scene.
-    robot: Option<urdf::Options>,
+    robot: Option<robot::Options>,
 }
 
 impl Input {
-    /// The scene, or the robot: what is XML is read as URDF, whatever the file's ending, and so is what ends in `.urdf`.
+    /// The scene, or the robot: what is XML is read as URDF or MJCF, whatever the file's ending, and so is what ends in `.urdf`.
     ///
     /// # Errors
     /// A file that cannot be read; `floating_base` or `limits` for what is no robot.
     pub fn read(
         path: &Path,
         floating_base: bool,
-        limits: Option<urdf::Stops>,
+        limits: Option<robot::Stops>,
     ) -> Result<Self, Failure> {
         let (text, name) = read_file(path)?;
-        let is_robot = urdf::is_robot(path, &text);
+        let is_robot = robot::is_robot(path, &text);
         if floating_base && !is_robot {
             return Err(Failure::Options(format!(
                 "--floating-base is for robots in URDF, and {} is none: a scene says itself how its bodies move",
@@ -38,12 +38,12 @@ impl Input {
         }
         if limits.is_some() && !is_robot {
             return Err(Failure::Options(format!(
-                "--limits is for robots in URDF, and {} is none: a scene says itself what limits its joints",
+                "--limits is for robots in URDF and MJCF, and {} is none: a scene says itself what limits its joints",
                 path.display()
             )));
         }
         let text = match is_robot {
-            true => urdf::completed(path, text)?,
+            true => robot::completed(path, text)?,
             false => text,
         };
         let label = path.file_name().unwrap_or_default().to_string_lossy();
@@ -51,10 +51,10 @@ impl Input {
             text,
             name,
             label: label.into_owned(),
-            robot: is_robot.then(|| urdf::Options {
+            robot: is_robot.then(|| robot::Options {
                 floating_base,
                 limits,
-                ..urdf::Options::default()
+                ..robot::Options::default()
             }),
         })
     }
@@ -70,7 +70,7 @@ impl Input {
     /// Mistakes in the text.
     pub fn scene(&self, registry: &JointRegistry) -> Result<Scene, Failure> {
         Ok(match &self.robot {
-            Some(options) => urdf::read(&self.text, &self.name, options)?.build(registry)?,
+            Some(options) => robot::read(&self.text, &self.name, options)?.build(registry)?,
             None => Scene::parse(&self.text, &self.name, registry)?,
         })
     }
@@ -81,7 +81,7 @@ impl Input {
     /// Mistakes in the text.
     pub fn build(&self) -> Result<Build, Failure> {
         let description: SceneDescription = match &self.robot {
-            Some(options) => urdf::read(&self.text, &self.name, options)?.scene,
+            Some(options) => robot::read(&self.text, &self.name, options)?.scene,
             None => Scene::from_toml(&self.text, &self.name)?,
         };
         let build = hamel_compiler::scene_of(&self.label, description);
@@ -93,7 +93,7 @@ impl Input {
 ///
 /// # Errors
 /// What is not two numbers of at least 0.
-pub fn stops(text: &str) -> Result<urdf::Stops, String> {
+pub fn stops(text: &str) -> Result<robot::Stops, String> {
     let number = |text: &str| {
         let number: f64 = text.trim().parse().ok()?;
         (number.is_finite() && number >= 0.0).then_some(number)
@@ -102,5 +102,5 @@ pub fn stops(text: &str) -> Result<urdf::Stops, String> {
     let numbers = pair.and_then(|(k, d)| Some((number(k)?, number(d)?)));
     let (stiffness, damping) =
         numbers.ok_or("it must be two numbers of at least 0, such as 1e4,0.5")?;
-    Ok(urdf::Stops { stiffness, damping })
+    Ok(robot::Stops { stiffness, damping })
 }

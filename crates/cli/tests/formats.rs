@@ -1,4 +1,4 @@
-//! Files of robots in other formats than URDF: the error says what the file is, and what makes a URDF of it.
+//! Files of robots in other formats than URDF: MJCF is read, and of others the error says what the file is, and what makes a URDF of it.
 
 mod common;
 
@@ -64,21 +64,43 @@ fn what_xacro_has_expanded_is_read_whatever_its_ending() {
 }
 
 #[test]
+fn mjcf_is_read_whatever_its_ending_with_what_it_includes() {
+    write(
+        "mjcf_link.xml",
+        "<mujocoinclude><body name=\"link\"><joint name=\"hinge\"/><geom size=\"0.1\" pos=\"0.1 0 0\"/></body></mujocoinclude>\n",
+    );
+    let text = "\u{feff}<mujoco model=\"arm\"><worldbody><include file=\"mjcf_link.xml\"/></worldbody></mujoco>\n";
+    for name in ["mjcf.xml", "mjcf.mjcf", "mjcf.toml"] {
+        let file = write(name, text);
+        let simulated = hamel(&["simulate", &file, "--t-end", "0.1", "--json"]);
+        let imported = hamel(&["import", &file]);
+        for output in [&simulated, &imported] {
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{name}: {said}");
+            assert!(said.contains("contacts are not simulated"), "{said}");
+        }
+        let scene = String::from_utf8_lossy(&imported.stdout).into_owned();
+        assert!(scene.contains("name = \"hinge\""), "{scene}");
+        let floating = hamel(&["simulate", &file, "--floating-base"]);
+        let said = String::from_utf8_lossy(&floating.stderr);
+        assert!(said.contains("<freejoint/>"), "{said}");
+    }
+}
+
+#[test]
 fn other_formats_are_named() {
     let sdf = "<?xml version='1.0'?>\n<sdf version='1.9'><model name='arm'/></sdf>\n";
-    let mjcf = "\u{feff}<mujoco model=\"arm\"><worldbody/></mujoco>\n";
+    let part = "\u{feff}<mujocoinclude><worldbody/></mujocoinclude>\n";
     for (name, text, wanted) in [
         ("arm.sdf", sdf, ["SDF, the format of Gazebo", "sdf2urdf.py"]),
         ("sdf.urdf", sdf, ["SDF, the format of Gazebo", "gz sdf -p"]),
         (
-            "arm.xml",
-            mjcf,
-            ["MJCF, the format of MuJoCo", "mjcf_urdf_simple_converter"],
-        ),
-        (
-            "mjcf.toml",
-            mjcf,
-            ["MJCF, the format of MuJoCo", "not read"],
+            "part.xml",
+            part,
+            [
+                "a part of a robot in MJCF",
+                "read the file that includes it",
+            ],
         ),
     ] {
         let said = refusal(name, text);

@@ -1,5 +1,5 @@
 //! Scene files of Hamel: a mechanism, its initial state, what acts on it and how to simulate it, in TOML; and robots in
-//! [URDF](urdf).
+//! [URDF](urdf) and [MJCF](mjcf), by [`robot`].
 //!
 //! A file is read in two steps. [`Scene::from_toml`] reads what the text says by itself and gives a
 //! [`SceneDescription`]; [`SceneDescription::build`] looks the joints up in a [`JointRegistry`](hamel_runtime::registry::JointRegistry),
@@ -15,9 +15,11 @@ mod description;
 mod diagnostics;
 mod event;
 mod forces;
+pub mod mjcf;
 mod notice;
 mod parse;
 mod read;
+pub mod robot;
 mod samples;
 mod scene;
 mod settings;

@@ -10,10 +10,10 @@ use crate::event::SceneEvent;
 use crate::notice::{Notice, Notices};
 use crate::parse::{self, BodyDraft, Draft, Tree};
 use crate::read::Sink;
+use crate::robot;
 use crate::settings::Settings;
 use crate::shape::ShapeDescription;
 use crate::text;
-use crate::urdf;
 use hamel_integrate::State;
 use hamel_runtime::mechanism::Mechanism;
 use hamel_runtime::registry::JointRegistry;
@@ -136,16 +136,16 @@ impl Scene {
         describe(draft, sink, source)?.build(registry)
     }
 
-    /// The scene in the file `path`, or the robot in it ([`urdf::is_robot`]): on a fixed base, at home and at rest.
+    /// The scene in the file `path`, or the robot in it ([`robot::is_robot`]): on a fixed base, at home and at rest.
     ///
     /// # Errors
     /// A file that cannot be read or is not UTF-8, and all mistakes of its text.
     pub fn load(path: impl AsRef<Path>, registry: &JointRegistry) -> Result<Self, Diagnostics> {
         let path = path.as_ref();
         let (text, name) = read_file(path)?;
-        if urdf::is_robot(path, &text) {
-            let text = urdf::completed(path, text)?;
-            return urdf::read(&text, &name, &urdf::Options::default())?.build(registry);
+        if robot::is_robot(path, &text) {
+            let text = robot::completed(path, text)?;
+            return robot::read(&text, &name, &robot::Options::default())?.build(registry);
         }
         Self::parse(&text, &name, registry)
     }

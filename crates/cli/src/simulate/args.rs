@@ -6,7 +6,7 @@ use clap::{ArgGroup, ValueEnum};
 use hamel::integrate::Scheme;
 use hamel_console::files::Force;
 use hamel_scene::Settings;
-use hamel_scene::urdf::Stops;
+use hamel_scene::robot::Stops;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -34,7 +34,7 @@ Examples:
   hamel simulate scenes/free_body.toml --at 1,2.5,20 --json
       the state at three times, as JSON on stdout
   hamel simulate anymal.urdf --floating-base --t-end 0.5
-      a robot in URDF, from its home position at rest; `hamel import` makes a scene of it that can be edited
+      a robot in URDF, from its home position at rest, as one in MJCF (`robot.xml`) from where its file draws it; `hamel import` makes a scene of it that can be edited
   hamel simulate scenes/panda7_tracking.toml
       with the controller that the scene has; the summary says how well it did
   hamel simulate panda7.urdf --controller hold.toml --t-end 2
@@ -70,7 +70,7 @@ Exit codes: 0 success; 1 a scene with mistakes, a simulation that stopped, a fil
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES, group = ArgGroup::new("steps"))]
 pub struct Args {
-    /// Scene file (TOML; the format is described in scenes/README.md), or a robot in URDF (`.urdf`)
+    /// Scene file (TOML; the format is described in scenes/README.md), or a robot in URDF or MJCF
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
 
@@ -78,7 +78,7 @@ pub struct Args {
     #[arg(long)]
     pub floating_base: bool,
 
-    /// Simulate the limits of position of a robot in URDF as stops that give way: stiffness, N m/rad or N/m, and damping d, s/rad or s/m, of the effort
+    /// Simulate the limits of position of a robot in URDF or MJCF as stops that give way: stiffness, N m/rad or N/m, and damping d, s/rad or s/m, of the effort
     /// k x (1 + d ẋ) beyond them
     #[arg(long, value_name = "STIFFNESS,DAMPING", value_parser = stops, allow_negative_numbers = true)]
     pub limits: Option<Stops>,

@@ -59,7 +59,7 @@ impl SceneDescription {
 
 impl<'a> Node<'a> {
     /// A body of a scene.
-    fn of(body: &'a BodyDescription) -> Self {
+    pub(crate) fn of(body: &'a BodyDescription) -> Self {
         let kind = match body.part {
             None => Movement::of(&body.joint.kind.value),
             Some(_) => Movement::Other(&body.joint.kind.value),

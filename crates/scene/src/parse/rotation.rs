@@ -96,7 +96,7 @@ pub(crate) fn from_matrix(
 }
 
 /// The vector of length 1 in the direction of `vector`.
-pub(super) fn unit(
+pub(crate) fn unit(
     path: &str,
     vector: Located<Vector3<f64>>,
     sink: &mut Sink,

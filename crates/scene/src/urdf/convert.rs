@@ -1,7 +1,7 @@
 //! From links and joints to bodies: moving joints make bodies, fixed joints join links to one.
 
 use super::document::{place, tag};
-use super::joint::{self, JointFacts};
+use super::joint;
 use super::masses::Part;
 use super::robot::Robot;
 use super::tree::{self, Links, name_span};
@@ -15,6 +15,8 @@ use crate::forces::{FrameDescription, JointForces, PerFreedom};
 use crate::notice::Notices;
 use crate::parse::WORLD;
 use crate::read::Sink;
+use crate::robot::JointFacts;
+use crate::robot::mass::moved;
 use crate::scene::stem;
 use crate::settings::Settings;
 use crate::shape::ShapeDescription;
@@ -330,7 +332,7 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
         match anchor.body {
             Some(body) => self.parts[body].push(Part {
                 link,
-                mass: mass::moved(&mass, &anchor.pose),
+                mass: moved(&mass, &anchor.pose),
             }),
             None => self.notices.add(
                 "links fixed to the world do not move: their masses have no effect",
@@ -354,7 +356,7 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
             self.sink.push(Diagnostic::new(place, message));
             return None;
         }
-        Some(mass::moved(&mass, &origin))
+        Some(moved(&mass, &origin))
     }
 
     fn owner(&self, link: usize) -> String {

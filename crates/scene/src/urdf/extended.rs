@@ -34,7 +34,7 @@ const MOST_BYTES: u64 = 1 << 20;
 ///
 /// # Errors
 /// A YAML file with `closed_loop` that cannot be read, lists of different lengths, frames and joints that the robot does not have, and types that are not known: all at once, by the name of the YAML file.
-pub fn completed(path: &Path, text: String) -> Result<String, Diagnostics> {
+pub fn with_loops(path: &Path, text: String) -> Result<String, Diagnostics> {
     let files = ["yaml", "yml"].map(|ending| path.with_extension(ending));
     let small = |file: &&std::path::PathBuf| {
         file.metadata()

@@ -1,4 +1,4 @@
-//! Other formats in XML that files of robots come in: they are not read, and errors say what makes a URDF of them.
+//! Other formats in XML that files of robots come in: they are not read, but for MJCF, and errors say what makes a URDF of them.
 
 use super::document::tag;
 use crate::diagnostics::Diagnostic;
@@ -21,17 +21,16 @@ pub(super) fn refusal(document: &Document<'_>) -> Option<Diagnostic> {
     let (format, advice) = match name {
         "sdf" | "gazebo" => (
             "SDF, the format of Gazebo, which is not read",
-            "Hamel reads URDF: `gz sdf -p robot.urdf` only goes from URDF to SDF; pysdf's `sdf2urdf.py` goes the other way, \
+            "Hamel reads URDF and MJCF: `gz sdf -p robot.urdf` only goes from URDF to SDF; pysdf's `sdf2urdf.py` goes the other way, \
              or take the URDF or xacro that the model was made of",
         ),
-        "mujoco" | "mujocoinclude" => (
-            "MJCF, the format of MuJoCo, which is not read",
-            "Hamel reads URDF: MuJoCo's `compile` only goes from URDF to MJCF; `mjcf_urdf_simple_converter` (PyPI) goes the other way, \
-             or take the URDF that the model was made of, or write it as a scene (scenes/README.md)",
+        "mujocoinclude" => (
+            "a part of a robot in MJCF, the format of MuJoCo",
+            "read the file that includes it, whose root is <mujoco>",
         ),
         _ => {
             let name = visible_line(name);
-            let message = format!("the document is a <{name}>, not a <robot>");
+            let message = format!("the document is a <{name}>, not a <robot> or a <mujoco>");
             return Some(Diagnostic::new(tag(root), message));
         }
     };
@@ -40,7 +39,7 @@ pub(super) fn refusal(document: &Document<'_>) -> Option<Diagnostic> {
 }
 
 /// The help for XML that cannot be read because nothing declares xacro's prefix.
-pub(super) fn of_prefix(prefix: &str) -> Option<&'static str> {
+pub(crate) fn of_prefix(prefix: &str) -> Option<&'static str> {
     (prefix == "xacro").then_some(EXPAND)
 }
 

@@ -1,12 +1,12 @@
 //! What the links of each body weigh together, and whether that can move.
 
 use super::document::place;
-use super::mass::{is_nothing, sum};
 use super::robot::Robot;
 use crate::description::BodyDescription;
 use crate::diagnostics::Diagnostic;
 use crate::notice::Notices;
 use crate::read::Sink;
+use crate::robot::mass::{is_nothing, sum};
 use hamel_runtime::spatial::{MassError, MassProperties};
 
 /// A link as a part of a body.

@@ -1,0 +1,103 @@
+//! Joints that follow others: the bodies of a coupling stand side by side, and what a coupling cannot have is left out. And bodies without mass.
+
+use crate::coupling::{Group, Node, groups, order};
+use crate::description::{BodyDescription, SceneDescription};
+use crate::diagnostics::Diagnostic;
+use crate::notice::Notices;
+use crate::read::Sink;
+use crate::robot::mass::is_nothing;
+
+/// Puts the bodies of each coupling side by side.
+pub(super) fn couple(scene: &mut SceneDescription, notices: &mut Notices, sink: &mut Sink) {
+    let nodes: Vec<Node<'_>> = scene.bodies.iter().map(Node::of).collect();
+    let Some(found) = groups(&nodes, &[], "robot", sink) else {
+        return;
+    };
+    if found.is_empty() {
+        return;
+    }
+    found
+        .iter()
+        .filter(|group| !group.is_of_one())
+        .for_each(|group| {
+            let members = group.members.iter().map(|(place, _)| *place);
+            members.for_each(|place| leave_out(&mut scene.bodies[place], notices));
+        });
+    settle(scene, &found);
+}
+
+/// Leaves out what joints of a coupling with several independent ones cannot have.
+fn leave_out(body: &mut BodyDescription, notices: &mut Notices) {
+    let owner = format!("joint `{}`", body.joint.name.value);
+    if body.forces.friction.take().is_some() {
+        notices.warn("dry friction is not simulated of joints that are coupled with several independent ones", &owner);
+    }
+    if body.forces.limit.take().is_some() {
+        notices.warn(
+            "limits are not simulated of joints that are coupled with several independent ones",
+            &owner,
+        );
+    }
+}
+
+/// Brings the bodies in order, and all that refers to them.
+fn settle(scene: &mut SceneDescription, found: &[Group]) {
+    let parents: Vec<Option<usize>> = scene.bodies.iter().map(|body| body.parent).collect();
+    let order = order(&parents, found);
+    let mut rank = vec![0; order.len()];
+    order
+        .iter()
+        .enumerate()
+        .for_each(|(own, place)| rank[*place] = own);
+    let ranked = |place: &mut Option<usize>| *place = place.map(|place| rank[place]);
+    let mut bodies: Vec<Option<BodyDescription>> = scene.bodies.drain(..).map(Some).collect();
+    scene.bodies = order
+        .iter()
+        .filter_map(|place| bodies[*place].take())
+        .collect();
+    scene
+        .bodies
+        .iter_mut()
+        .for_each(|body| ranked(&mut body.parent));
+    scene
+        .frames
+        .iter_mut()
+        .for_each(|frame| ranked(&mut frame.body));
+    scene
+        .shapes
+        .iter_mut()
+        .for_each(|shape| ranked(&mut shape.body));
+    for spring in &mut scene.springs {
+        ranked(&mut spring.from.body);
+        ranked(&mut spring.to.body);
+    }
+    scene
+        .wrenches
+        .iter_mut()
+        .for_each(|wrench| wrench.body = rank[wrench.body]);
+}
+
+/// Refuses bodies that move without mass on them or on what hangs on them, and without an armature: M would be singular.
+pub(super) fn refuse_massless(scene: &SceneDescription, sink: &mut Sink) {
+    let bodies = &scene.bodies;
+    let massive = bodies.iter().map(|body| !is_nothing(&body.mass));
+    let mut massive: Vec<bool> = massive.collect();
+    for (index, body) in bodies.iter().enumerate().rev() {
+        if let Some(parent) = body.parent.filter(|_| massive[index]) {
+            massive[parent] = true;
+        }
+    }
+    let bare = bodies.iter().zip(massive).filter(|(body, massive)| {
+        !massive && body.forces.armature.is_none() && body.mimic.is_none()
+    });
+    for (body, _) in bare {
+        let (name, joint) = (&body.name.value, &body.joint.name.value);
+        let message = format!(
+            "body `{name}` moves on joint `{joint}`, but neither it nor what hangs on it has mass: its acceleration would not be determined"
+        );
+        let error = Diagnostic::new(body.name.span.clone(), message);
+        sink.push(
+            error.help("give the body an <inertial> or a geom with mass, or take the joint away"),
+        );
+    }
+}
