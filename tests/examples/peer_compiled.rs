@@ -200,7 +200,7 @@ edition = "2024"
 
 [dependencies]
 cpu-time = "1.0"
-hamel = {{ path = "{root}/runtime", features = ["levels", "wide"] }}
+hamel = {{ path = "{root}/crates/hamel", default-features = false, features = ["batch", "wide"] }}
 nalgebra = {{ version = "0.35", default-features = false, features = ["libm", "std"] }}
 
 [profile.release]
