@@ -180,7 +180,7 @@ const PAIRED: usize = 30_000;
 const PAIRED_SOON: usize = 10_000;
 
 /// Operations that a function in lanes may have: the Rust compiler takes them once for each level of instructions.
-const LONGEST_IN_LANES: usize = 30_000;
+const LONGEST_IN_LANES: usize = 40_000;
 
 /// Numbers that a function in lanes may hold beside its arguments, on the stack eight of each: 512 KiB.
 const WIDEST_IN_LANES: usize = 8192;
