@@ -57,6 +57,12 @@ fn main() -> Result<(), Error> {
     )
     .compile()?;
     compiled(
+        "../scenes/report/chain_8.toml",
+        [Kind::ForwardDerivatives, Kind::InverseMassMatrix],
+    )
+    .lanes()
+    .compile()?;
+    compiled(
         "data/scenes/ball_chain.toml",
         [Kind::ForwardDynamics, Kind::InverseDynamics],
     )

@@ -5,12 +5,12 @@
 //! peer_compiled [--build] [--limit OPERATIONS] FOLDER MODEL.txt[:ALGO,ALGO...] ...
 //! ```
 //!
-//! ALGO is one of rnea, nle, crba, aba, rnea_deriv, aba_deriv; all of them by default, and with rnea and aba those for 4 and 8 lanes. With `--build` the program is not started: its path is
+//! ALGO is one of rnea, nle, crba, minverse, aba, rnea_deriv, aba_deriv; all of them by default, and with them those for 8 lanes, of rnea and aba for 4 as well. With `--build` the program is not started: its path is
 //! printed. A function of more operations than the limit (30000) is left out; of a model that has none left, or that the compiler refuses, the
 //! program says `skip` and why.
 
 use hamel_compiler::emit::{self, Function};
-use hamel_compiler::functions::{Kind, Loops, compile};
+use hamel_compiler::functions::{Kind, Loops, compile, compile_in_lanes};
 use hamel_tests::compiled;
 use hamel_tests::peers::Model;
 use std::error::Error;
@@ -21,10 +21,11 @@ use std::process::{Command, Stdio};
 /// Operations of the longest function that is compiled by default: beyond it the Rust compiler takes minutes.
 const LIMIT: usize = 30_000;
 
-const KINDS: [(&str, Kind); 6] = [
+const KINDS: [(&str, Kind); 7] = [
     ("rnea", Kind::InverseDynamics),
     ("nle", Kind::BiasForces),
     ("crba", Kind::MassMatrix),
+    ("minverse", Kind::InverseMassMatrix),
     ("aba", Kind::ForwardDynamics),
     ("rnea_deriv", Kind::InverseDerivatives),
     ("aba_deriv", Kind::ForwardDerivatives),
@@ -108,7 +109,7 @@ fn module(
     for algorithm in &asked {
         if !KINDS.iter().any(|(known, _)| known == algorithm) {
             return Err(format!(
-                "no algorithm `{algorithm}`: rnea, nle, crba, aba, rnea_deriv, aba_deriv are there"
+                "no algorithm `{algorithm}`: rnea, nle, crba, minverse, aba, rnea_deriv, aba_deriv are there"
             )
             .into());
         }
@@ -132,9 +133,18 @@ fn module(
     if functions.is_empty() {
         return Err(format!("every function has more than {limit} operations").into());
     }
-    // Loops over like bodies do not become SIMD code.
-    let lanes = functions.iter().all(|function| function.plan.is_none());
-    let text = emit::module(&model, &functions, &format!("{name}.txt"), lanes)?;
+    let asked = KINDS.iter().filter(|(_, kind)| {
+        let mut names = functions.iter().map(|function| function.name);
+        kind.is_batched() && names.any(|name| name == kind.name())
+    });
+    let mut lanes = vec![];
+    for (algorithm, kind) in asked {
+        match compile_in_lanes(&model, *kind) {
+            Ok(function) => lanes.push(function),
+            Err(long) => eprintln!("{name}: {algorithm} for 8 lanes left out: {long}"),
+        }
+    }
+    let text = emit::module(&model, &functions, &format!("{name}.txt"), &lanes)?;
     Ok((
         text,
         functions.iter().map(|function| function.name).collect(),
@@ -190,7 +200,7 @@ edition = "2024"
 
 [dependencies]
 cpu-time = "1.0"
-hamel = {{ path = "{root}/runtime", features = ["levels", "wide"] }}
+hamel = {{ path = "{root}/crates/hamel", default-features = false, features = ["batch", "wide"] }}
 nalgebra = {{ version = "0.35", default-features = false, features = ["libm", "std"] }}
 
 [profile.release]

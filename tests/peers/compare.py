@@ -46,6 +46,7 @@ if a.robots:
     robots = [r for r in robots if r in a.robots.split(',')]
 nvs = {r['name']: r['nv'] for r in index}
 LANES = [f'{al}_{lanes}' for al in ('aba', 'rnea') for lanes in ('x4', 'x8', 'x8_rows')]
+LANES += [f'{al}_x8' for al in ('aba_deriv', 'rnea_deriv', 'crba', 'minverse')]
 # algorithms whose results are compared, with what they are compared as
 CHECKED = dict.fromkeys(('aba', 'aba_world', 'forward', 'fd_crba_chol'), 'aba') | {'rnea': 'rnea'}
 CHECKED |= {al: al.split('_')[0] for al in LANES}

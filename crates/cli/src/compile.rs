@@ -55,7 +55,7 @@ pub struct Args {
     #[arg(long, conflicts_with = "output")]
     pub explain: bool,
 
-    /// Let forward and inverse dynamics of a module in Rust take many states at a time, in SIMD lanes (`hamel::compiled::Batch`); compiling takes longer
+    /// Let forward and inverse dynamics of a module in Rust, their derivatives, the mass matrix and its inverse take many states at a time, in SIMD lanes (`hamel::compiled::Batch`); compiling takes longer
     #[arg(long, conflicts_with = "explain")]
     pub lanes: bool,
 
@@ -106,6 +106,8 @@ pub enum FunctionName {
     ForwardDynamicsDerivatives,
     /// How efforts change with local coordinates and v̄
     InverseDynamicsDerivatives,
+    /// M̄⁻¹(Q)
+    InverseMassMatrix,
 }
 
 impl FunctionName {
@@ -123,6 +125,7 @@ impl FunctionName {
             Self::Poses => Kind::Poses,
             Self::ForwardDynamicsDerivatives => Kind::ForwardDerivatives,
             Self::InverseDynamicsDerivatives => Kind::InverseDerivatives,
+            Self::InverseMassMatrix => Kind::InverseMassMatrix,
         }
     }
 }

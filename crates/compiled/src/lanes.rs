@@ -7,6 +7,7 @@
 
 use super::instructions::{Instructions, Plain, Work};
 use super::layout::{Lanes, Quantities, States};
+use super::number::Number;
 use super::transpose::{apart, side_by_side};
 use core::hint::black_box;
 use core::marker::PhantomData;
@@ -19,10 +20,16 @@ use hamel_runtime::unrolled;
 /// States that go through together; a number that is no multiple of it is filled up with copies of the last state.
 pub const LANES: usize = 8;
 
-/// A function of one state for any scalar: Q, v̄ and inputs in, as many results as speeds. Its code must be inlined into `value`.
-pub trait OfState<const Q: usize, const V: usize, const U: usize> {
-    /// The results.
-    fn value<T: Scalar>(q: &[T; Q], v: &[T; V], u: &[T; U]) -> [T; V];
+/// A function of one state for any scalar: Q, v̄ and inputs in, `R` results out. Its code must be inlined into `value`.
+pub trait OfState<const Q: usize, const V: usize, const U: usize, const R: usize> {
+    /// Puts each result in its place.
+    fn value<T: Scalar>(q: &[T; Q], v: &[T; V], u: &[T; U], put: impl FnMut(usize, T));
+}
+
+/// A function whose results loops over pairs of joints make ([`Pairs`](super::Pairs)) of the numbers that its [`OfState`] leaves.
+pub trait OfPairs {
+    /// The results by rows, of `work`; `matrix` has room for M̄ where it is solved with. Its code must be inlined.
+    fn rows<T: Number, const FUSED: bool>(work: &[T], matrix: &mut [T], rows: &mut [T]);
 }
 
 /// A function of many states at a level that the machine has; whether all results are finite.
@@ -69,59 +76,93 @@ impl Default for Level {
 /// done at the baseline.
 ///
 /// Modules that are compiled with lanes hold this function of theirs: see [`Equations`](super::Equations).
-pub fn many_states<F, const Q: usize, const V: usize, const U: usize>(
+pub fn many_states<F, const Q: usize, const V: usize, const U: usize, const R: usize>(
     level: Level,
     states: States<'_>,
 ) -> bool
 where
-    F: OfState<Q, V, U>,
+    F: OfState<Q, V, U, R>,
+{
+    at_level::<Loop<F, true>, Loop<F, BUILT_FUSED>, Q, V, U, R>(level, states)
+}
+
+/// The same of a function with loops over pairs of joints: `W` numbers of its bodies, `M` of M̄.
+pub fn many_paired<
+    F,
+    const Q: usize,
+    const V: usize,
+    const U: usize,
+    const R: usize,
+    const W: usize,
+    const M: usize,
+>(
+    level: Level,
+    states: States<'_>,
+) -> bool
+where
+    F: OfState<Q, V, U, W> + OfPairs,
+{
+    at_level::<Paired<F, true, W, M>, Paired<F, BUILT_FUSED, W, M>, Q, V, U, R>(level, states)
+}
+
+/// Whether the build's own instructions fuse multiply–adds.
+const BUILT_FUSED: bool = cfg!(target_feature = "fma");
+
+/// `E` where the level has fused multiply–adds, `B` as the build has them.
+fn at_level<E, B, const Q: usize, const V: usize, const U: usize, const R: usize>(
+    level: Level,
+    states: States<'_>,
+) -> bool
+where
+    E: OfEight<Q, V, U, R>,
+    B: OfEight<Q, V, U, R>,
 {
     #[cfg(all(feature = "levels", target_arch = "x86_64"))]
     match level {
         Level::Baseline => {}
         Level::Avx2 => {
             if let Some(simd) = Detected::new().as_avx2() {
-                return at::<Loop<F, true>, Q, V, U>(simd, states);
+                return at::<E, Q, V, U, R>(simd, states);
             }
         }
         Level::Avx512 => {
             if let Some(simd) = Detected::new().as_avx512() {
-                return at::<Loop<F, true>, Q, V, U>(simd, states);
+                return at::<E, Q, V, U, R>(simd, states);
             }
         }
     }
     // There is but one.
     #[cfg(not(all(feature = "levels", target_arch = "x86_64")))]
-    let _ = level;
-    at::<Loop<F, { cfg!(target_feature = "fma") }>, Q, V, U>(Plain, states)
+    let _ = (level, PhantomData::<E>);
+    at::<B, Q, V, U, R>(Plain, states)
 }
 
 /// The same by instructions that the machine has.
-fn at<E, const Q: usize, const V: usize, const U: usize>(
+fn at<E, const Q: usize, const V: usize, const U: usize, const R: usize>(
     simd: impl Instructions,
     states: States<'_>,
 ) -> bool
 where
-    E: OfEight<Q, V, U>,
+    E: OfEight<Q, V, U, R>,
 {
     match states {
-        States::SideBySide(of) => simd.run(Groups::<E, Q, V, U>(whole(of), PhantomData)),
-        States::Rows(of) => rows::<E, Q, V, U>(simd, whole(of)),
+        States::SideBySide(of) => simd.run(Groups::<E, Q, V, U, R>(whole(of), PhantomData)),
+        States::Rows(of) => rows::<E, Q, V, U, R>(simd, whole(of)),
     }
 }
 
 /// Whole rows of what a function takes and leaves.
-struct Whole<'a, N, const Q: usize, const V: usize, const U: usize> {
+struct Whole<'a, N, const Q: usize, const V: usize, const U: usize, const R: usize> {
     q: &'a [[N; Q]],
     v: &'a [[N; V]],
     u: &'a [[N; U]],
-    results: &'a mut [[N; V]],
+    results: &'a mut [[N; R]],
 }
 
 /// As many whole rows as all quantities have.
-fn whole<N, const Q: usize, const V: usize, const U: usize>(
+fn whole<N, const Q: usize, const V: usize, const U: usize, const R: usize>(
     of: Quantities<'_, N>,
-) -> Whole<'_, N, Q, V, U> {
+) -> Whole<'_, N, Q, V, U, R> {
     let (q, v, u) = (of.q.as_chunks().0, of.v.as_chunks().0, of.u.as_chunks().0);
     let results = of.results.as_chunks_mut().0;
     let count = results.len().min(q.len()).min(v.len()).min(u.len());
@@ -134,15 +175,15 @@ fn whole<N, const Q: usize, const V: usize, const U: usize>(
 }
 
 /// States in rows: eight at a time side by side, and back.
-fn rows<E, const Q: usize, const V: usize, const U: usize>(
+fn rows<E, const Q: usize, const V: usize, const U: usize, const R: usize>(
     simd: impl Instructions,
-    rows: Whole<'_, f64, Q, V, U>,
+    rows: Whole<'_, f64, Q, V, U, R>,
 ) -> bool
 where
-    E: OfEight<Q, V, U>,
+    E: OfEight<Q, V, U, R>,
 {
     let (mut q, mut v, mut u) = ([Lanes::ZERO; Q], [Lanes::ZERO; V], [Lanes::ZERO; U]);
-    let mut results = [Lanes::ZERO; V];
+    let mut results = [Lanes::ZERO; R];
     let mut finite = true;
     for start in (0..rows.results.len()).step_by(LANES) {
         simd.run(Gather {
@@ -156,20 +197,21 @@ where
             u: slice::from_ref(&u),
             results: slice::from_mut(&mut results),
         };
-        finite &= simd.run(Groups::<E, Q, V, U>(group, PhantomData));
+        finite &= simd.run(Groups::<E, Q, V, U, R>(group, PhantomData));
         simd.run(Scatter(simd, &results, &mut rows.results[start..]));
     }
     finite
 }
 
 /// Eight rows of all arguments from one on, to side by side.
-struct Gather<'a, S, const Q: usize, const V: usize, const U: usize> {
+struct Gather<'a, S, const Q: usize, const V: usize, const U: usize, const R: usize> {
     simd: S,
-    from: (&'a Whole<'a, f64, Q, V, U>, usize),
+    from: (&'a Whole<'a, f64, Q, V, U, R>, usize),
     to: (&'a mut [Lanes; Q], &'a mut [Lanes; V], &'a mut [Lanes; U]),
 }
 
-impl<S, const Q: usize, const V: usize, const U: usize> Work for Gather<'_, S, Q, V, U>
+impl<S, const Q: usize, const V: usize, const U: usize, const R: usize> Work
+    for Gather<'_, S, Q, V, U, R>
 where
     S: Instructions,
 {
@@ -197,14 +239,15 @@ impl<S: Instructions, const N: usize> Work for Scatter<'_, S, N> {
 }
 
 /// `E` of states that lie side by side; whether all results are finite.
-struct Groups<'a, E, const Q: usize, const V: usize, const U: usize>(
-    Whole<'a, Lanes, Q, V, U>,
+struct Groups<'a, E, const Q: usize, const V: usize, const U: usize, const R: usize>(
+    Whole<'a, Lanes, Q, V, U, R>,
     PhantomData<E>,
 );
 
-impl<E, const Q: usize, const V: usize, const U: usize> Work for Groups<'_, E, Q, V, U>
+impl<E, const Q: usize, const V: usize, const U: usize, const R: usize> Work
+    for Groups<'_, E, Q, V, U, R>
 where
-    E: OfEight<Q, V, U>,
+    E: OfEight<Q, V, U, R>,
 {
     type Output = bool;
 
@@ -234,9 +277,9 @@ where
 ///
 /// Callers take it as a parameter, so that it is LLVM that inlines it: it then knows that results overlap no argument, without which it does not vectorise the
 /// loop. The Rust compiler, which inlines what it knows, forgets that.
-trait OfEight<const Q: usize, const V: usize, const U: usize> {
+trait OfEight<const Q: usize, const V: usize, const U: usize, const R: usize> {
     /// The results.
-    fn eight(q: &[Lanes; Q], v: &[Lanes; V], u: &[Lanes; U], results: &mut [Lanes; V]);
+    fn eight(q: &[Lanes; Q], v: &[Lanes; V], u: &[Lanes; U], results: &mut [Lanes; R]);
 }
 
 /// `F` in a loop over states, which is vectorised.
@@ -244,13 +287,13 @@ trait OfEight<const Q: usize, const V: usize, const U: usize> {
 /// Rows would do in place of lanes side by side, but longer ones keep the compiler from it.
 struct Loop<F, const FUSED: bool>(PhantomData<F>);
 
-impl<F, const FUSED: bool, const Q: usize, const V: usize, const U: usize> OfEight<Q, V, U>
-    for Loop<F, FUSED>
+impl<F, const FUSED: bool, const Q: usize, const V: usize, const U: usize, const R: usize>
+    OfEight<Q, V, U, R> for Loop<F, FUSED>
 where
-    F: OfState<Q, V, U>,
+    F: OfState<Q, V, U, R>,
 {
     #[inline(always)]
-    fn eight(q: &[Lanes; Q], v: &[Lanes; V], u: &[Lanes; U], results: &mut [Lanes; V]) {
+    fn eight(q: &[Lanes; Q], v: &[Lanes; V], u: &[Lanes; U], results: &mut [Lanes; R]) {
         for lane in 0..LANES {
             // Read and written here, not by helpers: what these read, once they are inlined, LLVM may no longer know to be apart from the results.
             let mut state = (
@@ -267,10 +310,50 @@ where
             unrolled!(i in U {
                 state.2[i] = Lane(u[i].0[lane]);
             });
-            let value = F::value(&state.0, &state.1, &state.2);
-            unrolled!(i in V {
-                results[i].0[lane] = value[i].0;
-            });
+            F::value(
+                &state.0,
+                &state.1,
+                &state.2,
+                #[inline(always)]
+                |place, result: Lane<FUSED>| results[place].0[lane] = result.0,
+            );
         }
     }
+}
+
+/// `F` in a loop over states, and what loops over pairs of joints make of its numbers.
+struct Paired<F, const FUSED: bool, const W: usize, const M: usize>(PhantomData<F>);
+
+impl<
+    F,
+    const FUSED: bool,
+    const Q: usize,
+    const V: usize,
+    const U: usize,
+    const R: usize,
+    const W: usize,
+    const M: usize,
+> OfEight<Q, V, U, R> for Paired<F, FUSED, W, M>
+where
+    F: OfState<Q, V, U, W> + OfPairs,
+{
+    #[inline(always)]
+    fn eight(q: &[Lanes; Q], v: &[Lanes; V], u: &[Lanes; U], results: &mut [Lanes; R]) {
+        let (mut work, mut matrix) = ([Lanes::ZERO; W], [Lanes::ZERO; M]);
+        bodies::<Loop<F, FUSED>, Q, V, U, W>(q, v, u, &mut work);
+        F::rows::<Lanes, FUSED>(&work, &mut matrix, results);
+    }
+}
+
+/// As [`Groups`] takes them: by a parameter.
+#[inline(always)]
+fn bodies<E, const Q: usize, const V: usize, const U: usize, const W: usize>(
+    q: &[Lanes; Q],
+    v: &[Lanes; V],
+    u: &[Lanes; U],
+    work: &mut [Lanes; W],
+) where
+    E: OfEight<Q, V, U, W>,
+{
+    E::eight(q, v, u, work);
 }

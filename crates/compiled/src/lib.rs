@@ -17,6 +17,7 @@ mod entry;
 mod instructions;
 mod lanes;
 mod layout;
+mod number;
 mod pairs;
 mod transpose;
 #[cfg(feature = "alloc")]
@@ -26,8 +27,9 @@ mod tree;
 pub use batch::{Batch, BatchError};
 #[cfg(feature = "alloc")]
 pub use entry::Entry;
-pub use lanes::{LANES, Level, ManyStates, OfState, many_states};
+pub use lanes::{LANES, Level, ManyStates, OfPairs, OfState, many_paired, many_states};
 pub use layout::{Lanes, Quantities, States};
+pub use number::Number;
 pub use pairs::{Carrying, Pairing, Pairs};
 #[cfg(feature = "alloc")]
 pub use tree::{Compiled, CompiledError};
@@ -72,8 +74,23 @@ pub struct Equations {
     pub forward_dynamics_derivatives: Option<OneState>,
     /// Derivatives of inverse dynamics from Q, v̄ and v̄̇, where the module has them: for each speed a row of `∂τ̄/∂ϕ` and `∂τ̄/∂v̄`.
     pub inverse_dynamics_derivatives: Option<OneState>,
-    /// Forward and inverse dynamics of many states, eight at a time.
+    /// Numbers that derivatives of forward dynamics have: all rows together, 0 without them.
+    pub forward_slopes: usize,
+    /// M̄ by rows from Q, where the module has it: v̄ and inputs are not read.
+    pub mass_matrix: Option<OneState>,
+    /// M̄⁻¹ by rows from Q, where the module has it: v̄ and inputs are not read, and rows of joints whose motion is prescribed are 0.
+    pub inverse_mass_matrix: Option<OneState>,
+    /// Functions of many states, eight at a time.
     pub in_lanes: InLanes,
+}
+
+impl Equations {
+    /// Numbers that derivatives of inverse dynamics have: all rows together.
+    #[cfg(feature = "alloc")]
+    const fn inverse_slopes(&self) -> usize {
+        let row = self.freedoms.saturating_add(self.speeds);
+        self.speeds.saturating_mul(row)
+    }
 }
 
 /// Functions of many states, where the module was compiled with lanes.
@@ -83,4 +100,24 @@ pub struct InLanes {
     pub forward_dynamics: Option<ManyStates>,
     /// τ̄ from Q, v̄ and v̄̇.
     pub inverse_dynamics: Option<ManyStates>,
+    /// Derivatives of forward dynamics from Q, v̄ and τ.
+    pub forward_dynamics_derivatives: Option<ManyStates>,
+    /// Derivatives of inverse dynamics from Q, v̄ and v̄̇.
+    pub inverse_dynamics_derivatives: Option<ManyStates>,
+    /// M̄ from Q, which stands in the places of v̄ and of inputs as well.
+    pub mass_matrix: Option<ManyStates>,
+    /// M̄⁻¹ from Q, which stands in the places of v̄ and of inputs as well.
+    pub inverse_mass_matrix: Option<ManyStates>,
+}
+
+impl InLanes {
+    /// No function.
+    pub const NONE: Self = Self {
+        forward_dynamics: None,
+        inverse_dynamics: None,
+        forward_dynamics_derivatives: None,
+        inverse_dynamics_derivatives: None,
+        mass_matrix: None,
+        inverse_mass_matrix: None,
+    };
 }

@@ -13,10 +13,12 @@ fn forward<T: Scalar>(q: &[T; 2], v: &[T; 2], u: &[T; 3]) -> [T; 2] {
 }
 
 struct Forward;
-impl OfState<2, 2, 3> for Forward {
+impl OfState<2, 2, 3, 2> for Forward {
     #[inline(always)]
-    fn value<T: Scalar>(q: &[T; 2], v: &[T; 2], u: &[T; 3]) -> [T; 2] {
-        forward(q, v, u)
+    fn value<T: Scalar>(q: &[T; 2], v: &[T; 2], u: &[T; 3], mut put: impl FnMut(usize, T)) {
+        let [first, second] = forward(q, v, u);
+        put(0, first);
+        put(1, second);
     }
 }
 
@@ -42,17 +44,17 @@ const IN_LANES: Equations = Equations {
     inverse_dynamics: None,
     forward_dynamics_derivatives: None,
     inverse_dynamics_derivatives: None,
+    forward_slopes: 0,
+    mass_matrix: None,
+    inverse_mass_matrix: None,
     in_lanes: InLanes {
-        forward_dynamics: Some(many_states::<Forward, 2, 2, 3>),
-        inverse_dynamics: None,
+        forward_dynamics: Some(many_states::<Forward, 2, 2, 3, 2>),
+        ..InLanes::NONE
     },
 };
 
 const ONE_BY_ONE: Equations = Equations {
-    in_lanes: InLanes {
-        forward_dynamics: None,
-        inverse_dynamics: None,
-    },
+    in_lanes: InLanes::NONE,
     ..IN_LANES
 };
 

@@ -84,7 +84,7 @@ pub struct Module {
     pub text: String,
     /// In C, its header: prototypes, sizes and layouts.
     pub header: Option<String>,
-    /// Functions that it does not have, where nobody asked for them by name.
+    /// Functions that it does not have, where nobody asked for them by name, and those that it does not have in lanes.
     pub left_out: Vec<TooLong>,
 }
 
@@ -215,7 +215,7 @@ impl Build {
         self
     }
 
-    /// Lets forward and inverse dynamics take many states at a time (`hamel_compiled::Batch`), in SIMD lanes. They are compiled once for each level of
+    /// Lets forward and inverse dynamics, their derivatives, the mass matrix and its inverse take many states at a time (`hamel_compiled::Batch`), in SIMD lanes. They are compiled once for each level of
     /// instructions, which takes the Rust compiler its time.
     #[must_use]
     pub fn lanes(mut self) -> Self {
@@ -270,7 +270,7 @@ impl Build {
         let (mut functions, mut left_out) = (vec![], vec![]);
         let mut reasons: Vec<String> = vec![];
         for &kind in kinds {
-            match functions::compile(&model, kind, self.loops(kind)) {
+            match functions::compile(&model, kind, Loops::Long) {
                 Ok(chosen) => {
                     let found = check::of_function(&model, &chosen.function).into_iter();
                     let new = found.filter(|reason| !reasons.contains(reason));
@@ -285,7 +285,19 @@ impl Build {
             let scene = model.name;
             return Err(Error::Refused(Refused { scene, reasons }));
         }
-        let (text, header) = self.texts(&model, &functions, label)?;
+        let mut lanes = vec![];
+        for kind in kinds.iter().filter(|kind| self.lanes && kind.is_batched()) {
+            if functions
+                .iter()
+                .any(|function| function.name == kind.name())
+            {
+                match functions::compile_in_lanes(&model, *kind) {
+                    Ok(function) => lanes.push(function),
+                    Err(long) => left_out.push(long),
+                }
+            }
+        }
+        let (text, header) = self.texts(&model, (&functions, &lanes), label)?;
         Ok(Module {
             text,
             header,
@@ -297,12 +309,12 @@ impl Build {
     fn texts(
         &self,
         model: &Model,
-        functions: &[emit::Function],
+        (functions, lanes): (&[emit::Function], &[emit::Function]),
         label: &str,
     ) -> Result<(String, Option<String>), Error> {
         match self.language {
             Language::Rust => {
-                let text = emit::module(model, functions, label, self.lanes);
+                let text = emit::module(model, functions, label, lanes);
                 Ok((text.map_err(Error::Write)?, None))
             }
             Language::C99 if self.lanes => Err(Error::Lanes),
@@ -315,14 +327,6 @@ impl Build {
                 let texts = texts.map_err(Error::Template)?;
                 Ok((texts.source, Some(texts.header)))
             }
-        }
-    }
-
-    /// A loop over states must be the innermost one to become SIMD code.
-    fn loops(&self, kind: Kind) -> Loops {
-        match self.lanes && kind.is_batched() {
-            true => Loops::Never,
-            false => Loops::Long,
         }
     }
 

@@ -8,6 +8,8 @@ use hamel_compiled::{Carrying, Pairing, Pairs};
 pub enum Product {
     /// M̄.
     Mass,
+    /// M̄⁻¹.
+    InverseMass,
     /// Derivatives of inverse dynamics.
     Inverse,
     /// Derivatives of forward dynamics.
@@ -19,6 +21,7 @@ impl Product {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Mass => "mass",
+            Self::InverseMass => "inverse_mass",
             Self::Inverse => "inverse",
             Self::Forward => "forward",
         }
@@ -48,14 +51,28 @@ pub struct Tables {
     pub columns: Vec<[usize; 2]>,
     /// Entries that are added to what is solved: row, column, place among the numbers of the bodies.
     pub followed: Vec<[usize; 3]>,
+    /// For each speed which columns may differ from 0 when what hangs on it is eliminated: bits of words of 64 columns.
+    pub filled: Vec<Vec<u64>>,
+    /// For each speed those that reach it on their way to the root, the last one first.
+    pub below: Vec<Vec<usize>>,
     /// Where M̄⁻¹ begins, of which half is found.
     pub mirrored: Option<usize>,
 }
 
 impl Tables {
-    /// The same for the runtime.
-    pub fn pairs(&self) -> Pairs<'_> {
-        Pairs {
+    /// Numbers that are needed for M̄.
+    pub fn room(&self) -> usize {
+        match self.product {
+            Product::Mass | Product::Inverse => 0,
+            Product::InverseMass | Product::Forward => self.above.len() * self.above.len(),
+        }
+    }
+
+    /// What the runtime makes with them.
+    fn with_pairs<R>(&self, make: impl FnOnce(&Pairs<'_>) -> R) -> R {
+        let filled: Vec<&[u64]> = self.filled.iter().map(Vec::as_slice).collect();
+        let below: Vec<&[usize]> = self.below.iter().map(Vec::as_slice).collect();
+        make(&Pairs {
             joints: &self.joints,
             bodies: &self.bodies,
             above: &self.above,
@@ -64,22 +81,37 @@ impl Tables {
             held: &self.held,
             columns: &self.columns,
             followed: &self.followed,
+            filled: &filled,
+            below: &below,
             mirrored: self.mirrored,
-        }
+        })
+    }
+
+    /// Rows of what forward dynamics is solved for, from the numbers of the bodies.
+    pub fn right_hand_sides(&self, work: &[f64]) -> Vec<f64> {
+        let [rows, width] = self.size;
+        let mut results = vec![0.0; rows * width];
+        self.with_pairs(|pairs| {
+            pairs.right_hand_sides::<f64, false>(work, &mut results, width);
+        });
+        results
     }
 
     /// The results, row by row, from the numbers of the bodies.
     pub fn evaluate(&self, work: &[f64]) -> Vec<f64> {
         let [rows, width] = self.size;
         let mut results = vec![0.0; rows * width];
-        match self.product {
-            Product::Mass => self.pairs().mass(work, &mut results),
-            Product::Inverse => self.pairs().inverse(work, &mut results, width),
-            Product::Forward => {
-                let mut matrix = vec![0.0; rows * rows];
-                self.pairs().forward(work, &mut matrix, &mut results, width);
+        let mut matrix = vec![0.0; self.room()];
+        self.with_pairs(|pairs| match self.product {
+            Product::Mass => pairs.mass::<f64, false>(work, &mut results),
+            Product::InverseMass => {
+                pairs.inverse_mass::<f64, false>(work, &mut matrix, &mut results);
             }
-        }
+            Product::Inverse => pairs.inverse::<f64, false>(work, &mut results, width),
+            Product::Forward => {
+                pairs.forward::<f64, false>(work, &mut matrix, &mut results, width);
+            }
+        });
         results
     }
 
@@ -95,7 +127,7 @@ impl Tables {
                 if self.product != Product::Inverse {
                     products(&mut count, speeds * others, 6);
                 }
-                if self.product != Product::Mass {
+                if matches!(self.product, Product::Inverse | Product::Forward) {
                     products(&mut count, units * others, 6);
                     products(&mut count, speeds * other_units, 9);
                 }
@@ -103,7 +135,7 @@ impl Tables {
             }
         }
         count.additions += self.added();
-        if self.product == Product::Forward {
+        if self.room() > 0 {
             self.solution(&mut count);
         }
         count

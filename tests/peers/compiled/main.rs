@@ -28,7 +28,6 @@ const BATCH: usize = 64;
 #[derive(Clone, Copy)]
 pub struct Functions {
     equations: &'static Equations,
-    mass_matrix: Option<fn(&[f64], &mut [f64])>,
     bias_forces: Option<fn(&[f64], &[f64], &mut [f64])>,
     forward_x4: Option<Four>,
     inverse_x4: Option<Four>,
@@ -50,13 +49,6 @@ macro_rules! functions {
 /// One function of a module.
 #[macro_export]
 macro_rules! function {
-    ($functions:ident, $module:ident, mass_matrix) => {
-        $functions.mass_matrix = Some(|q, results| {
-            if let Some(q) = q.first_chunk() {
-                results.copy_from_slice($module::mass_matrix::<f64>(q).as_flattened());
-            }
-        })
-    };
     ($functions:ident, $module:ident, bias_forces) => {
         $functions.bias_forces = Some(|q, v, results| {
             if let (Some(q), Some(v)) = (q.first_chunk(), v.first_chunk()) {
@@ -67,6 +59,8 @@ macro_rules! function {
     // The runtime's own call is what is measured.
     ($functions:ident, $module:ident, forward_dynamics_derivatives) => {};
     ($functions:ident, $module:ident, inverse_dynamics_derivatives) => {};
+    ($functions:ident, $module:ident, mass_matrix) => {};
+    ($functions:ident, $module:ident, inverse_mass_matrix) => {};
     ($functions:ident, $module:ident, forward_dynamics) => {
         $functions.forward_x4 = Some($crate::four!($module, forward_dynamics))
     };
@@ -92,7 +86,6 @@ impl Functions {
     const fn new(equations: &'static Equations) -> Self {
         Self {
             equations,
-            mass_matrix: None,
             bias_forces: None,
             forward_x4: None,
             inverse_x4: None,
@@ -106,7 +99,8 @@ impl Functions {
         let all = [
             ("rnea", equations.inverse_dynamics.is_some()),
             ("nle", self.bias_forces.is_some()),
-            ("crba", self.mass_matrix.is_some()),
+            ("crba", equations.mass_matrix.is_some()),
+            ("minverse", equations.inverse_mass_matrix.is_some()),
             ("aba", equations.forward_dynamics.is_some()),
             ("rnea_deriv", equations.inverse_dynamics_derivatives.is_some()),
             ("aba_deriv", equations.forward_dynamics_derivatives.is_some()),
@@ -116,6 +110,10 @@ impl Functions {
             ("rnea_x4", self.inverse_x4.is_some()),
             ("rnea_x8", lanes.inverse_dynamics.is_some()),
             ("rnea_x8_rows", lanes.inverse_dynamics.is_some()),
+            ("rnea_deriv_x8", lanes.inverse_dynamics_derivatives.is_some()),
+            ("aba_deriv_x8", lanes.forward_dynamics_derivatives.is_some()),
+            ("crba_x8", lanes.mass_matrix.is_some()),
+            ("minverse_x8", lanes.inverse_mass_matrix.is_some()),
         ];
         let there = all.iter().filter(|(_, there)| *there);
         there.map(|(name, _)| format!(" {name}")).collect()
@@ -198,7 +196,8 @@ impl Loaded {
             fours: of.map(|rows| rows.chunks_exact(4).flat_map(side_by_side).collect()),
             eights: of.map(|rows| Lanes::side_by_side(&rows.concat(), rows[0].len())),
             out: vec![0.0; BATCH * equations.speeds],
-            out_eight: vec![Lanes::default(); BATCH / LANES * equations.speeds],
+            // Rows of three matrices as wide as there are speeds, at most, and of the accelerations.
+            out_eight: vec![Lanes::default(); BATCH / LANES * equations.speeds * (3 * equations.speeds + 1)],
             out_four: vec![F64x4::default(); equations.speeds],
             mass: vec![0.0; equations.speeds * equations.speeds],
             // Rows of three matrices as wide as there are speeds, at most, and of the accelerations.
@@ -211,9 +210,9 @@ impl Loaded {
 
     /// States of one call.
     fn together(&self, algorithm: &str) -> usize {
-        let most = match algorithm.split_once('_') {
-            Some((_, "x4")) => 4,
-            Some((_, "x8" | "x8_rows")) => BATCH,
+        let most = match algorithm {
+            "aba_x4" | "rnea_x4" => 4,
+            _ if algorithm.contains("_x8") => BATCH,
             _ => 1,
         };
         most.min(self.states.q.len())
@@ -235,13 +234,19 @@ impl Loaded {
                 let [q, v, u] = group(&self.fours, &self.states, k, 1);
                 function.ok_or_else(missing)?(q, v, u, &mut self.out_four);
             }
-            "aba_x8" | "rnea_x8" => {
+            _ if algorithm.ends_with("_x8") => {
                 let rows = states / LANES;
                 let [q, v, u] = group(&self.eights, &self.states, k, rows);
-                let out = &mut self.out_eight[..rows * size];
+                let batch = self.batch;
+                let width = self.width(algorithm);
+                let out = &mut self.out_eight[..rows * width];
                 match algorithm {
-                    "aba_x8" => self.batch.forward_dynamics(q, v, u, out)?,
-                    _ => self.batch.inverse_dynamics(q, v, u, out)?,
+                    "aba_x8" => batch.forward_dynamics(q, v, u, out)?,
+                    "rnea_x8" => batch.inverse_dynamics(q, v, u, out)?,
+                    "aba_deriv_x8" => batch.forward_dynamics_derivatives(q, v, u, out)?,
+                    "rnea_deriv_x8" => batch.inverse_dynamics_derivatives(q, v, u, out)?,
+                    "crba_x8" => batch.mass_matrix(q, out)?,
+                    _ => batch.inverse_mass_matrix(q, out)?,
                 }
             }
             // The accelerations of inverse dynamics are the states' efforts.
@@ -268,7 +273,11 @@ impl Loaded {
                         let slopes = equations.forward_dynamics_derivatives;
                         slopes.ok_or_else(missing)?(q, v, u, &mut self.slopes);
                     }
-                    "crba" => functions.mass_matrix.ok_or_else(missing)?(q, &mut self.mass),
+                    "crba" => equations.mass_matrix.ok_or_else(missing)?(q, v, u, &mut self.mass),
+                    "minverse" => {
+                        let inverse = equations.inverse_mass_matrix;
+                        inverse.ok_or_else(missing)?(q, v, u, &mut self.mass);
+                    }
                     _ => return Err(missing().into()),
                 }
             }
@@ -276,6 +285,18 @@ impl Loaded {
         black_box((&self.out, &self.out_four, &self.out_eight));
         black_box((&self.mass, &self.slopes));
         Ok(())
+    }
+
+    /// Numbers of one state's results.
+    fn width(&self, algorithm: &str) -> usize {
+        let equations = self.functions.equations;
+        let size = equations.speeds;
+        match algorithm {
+            "crba_x8" | "minverse_x8" => size * size,
+            "rnea_deriv_x8" => size * (equations.freedoms + size),
+            "aba_deriv_x8" => equations.forward_slopes,
+            _ => size,
+        }
     }
 
     /// Nanoseconds of one state.
@@ -303,7 +324,7 @@ impl Loaded {
     }
 
     fn check(&mut self, algorithm: &str, k: usize) -> Result<String, Box<dyn Error>> {
-        if algorithm.ends_with("_deriv") {
+        if algorithm.contains("_deriv") {
             return Ok("none".to_owned());
         }
         let states = self.together(algorithm);
@@ -312,9 +333,14 @@ impl Loaded {
         let size = order.len();
         let lane = k % states;
         let numbers: Vec<f64> = match algorithm {
-            "crba" => {
+            "crba" | "minverse" => {
                 let pairs = order.iter().flat_map(|&i| order.iter().map(move |&j| (i, j)));
                 pairs.map(|(i, j)| self.mass[i * size + j]).collect()
+            }
+            "crba_x8" | "minverse_x8" => {
+                let matrix = &self.out_eight[lane / LANES * size * size..];
+                let pairs = order.iter().flat_map(|&i| order.iter().map(move |&j| (i, j)));
+                pairs.map(|(i, j)| matrix[i * size + j].0[lane % LANES]).collect()
             }
             "aba_x4" | "rnea_x4" => {
                 let lanes = order.iter().map(|&i| self.out_four[i].to_array());

@@ -26,8 +26,12 @@ pub fn functions(model: &Model) -> Vec<Function> {
 fn functions_with(model: &Model, loops: Loops) -> Vec<Function> {
     let function = |kind: Kind| {
         let function = compile(model, kind, loops).ok()?.function;
-        let derivatives = [Kind::ForwardDerivatives, Kind::InverseDerivatives];
-        let is_short = !derivatives.contains(&kind) || function.written() < LONG;
+        let long = [
+            Kind::ForwardDerivatives,
+            Kind::InverseDerivatives,
+            Kind::InverseMassMatrix,
+        ];
+        let is_short = !long.contains(&kind) || function.written() < LONG;
         is_short.then_some(function)
     };
     Kind::ALL.into_iter().filter_map(function).collect()

@@ -57,6 +57,13 @@ impl Point {
         parts.extend(completed.into_iter().flatten().map(of));
         let bound = of_solutions(mass.matrix());
         self.parts_agree(by, (Kind::ForwardDerivatives, &self.inputs), &parts, bound);
+
+        // Where constraints alone keep M̄ of the tree from being singular there is no such matrix.
+        if tree.inverse_mass_matrix(&self.q, &mut mass).is_ok() {
+            let rows: Vec<f64> = mass.matrix().transpose().iter().copied().collect();
+            let parts = [(self.speeds.len(), &rows[..])];
+            self.parts_agree(by, (Kind::InverseMassMatrix, &[]), &parts, bound);
+        }
     }
 
     /// Matrices that stand side by side in the rows of a function are these.

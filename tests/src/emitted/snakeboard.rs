@@ -32,10 +32,10 @@ pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations
     inverse_dynamics: None,
     forward_dynamics_derivatives: None,
     inverse_dynamics_derivatives: None,
-    in_lanes: ::hamel::compiled::InLanes {
-        forward_dynamics: None,
-        inverse_dynamics: None,
-    },
+    forward_slopes: 0,
+    mass_matrix: None,
+    inverse_mass_matrix: None,
+    in_lanes: ::hamel::compiled::InLanes::NONE,
     momenta: None,
     speeds_from_momenta: None,
     momentum_rates: Some(|q, p, tau, speeds, rates| {

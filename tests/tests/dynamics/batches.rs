@@ -2,11 +2,11 @@
 
 use allocation_counter::measure;
 use chacha20::ChaCha8Rng;
-use hamel::compiled::{Batch, Equations, InLanes, Lanes, Level};
-use hamel::dynamics::{Dynamics, Recursive};
+use hamel::compiled::{Batch, Entry, Equations, InLanes, LANES, Lanes, Level};
+use hamel::dynamics::{Dynamics, MassMatrix, Recursive};
 use hamel::mechanism::Mechanism;
 use hamel_scene::Scene;
-use hamel_tests::emitted::{loops, plate_cart_arm as module};
+use hamel_tests::emitted::{chain_8, loops, plate_cart_arm as module};
 use hamel_tests::{random, scenes};
 use rand::SeedableRng;
 use std::path::Path;
@@ -15,10 +15,7 @@ use std::sync::Arc;
 /// A module as it would be without lanes.
 const fn one_by_one(equations: Equations) -> Equations {
     Equations {
-        in_lanes: InLanes {
-            forward_dynamics: None,
-            inverse_dynamics: None,
-        },
+        in_lanes: InLanes::NONE,
         ..equations
     }
 }
@@ -30,10 +27,13 @@ struct Subject {
     mechanism: Arc<Mechanism>,
 }
 
-/// A scene of the library's joints, and loops on a base that moves.
-fn subjects() -> [Subject; 2] {
-    static ONE_BY_ONE: [Equations; 2] =
-        [one_by_one(module::EQUATIONS), one_by_one(loops::EQUATIONS)];
+/// A scene of the library's joints, loops on a base that moves, and ball joints whose pairs are looped over.
+fn subjects() -> [Subject; 3] {
+    static ONE_BY_ONE: [Equations; 3] = [
+        one_by_one(module::EQUATIONS),
+        one_by_one(loops::EQUATIONS),
+        one_by_one(chain_8::EQUATIONS),
+    ];
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let closed = Scene::load(
         folder.join("data/scenes/loops.toml"),
@@ -50,6 +50,11 @@ fn subjects() -> [Subject; 2] {
             equations: &loops::EQUATIONS,
             one_by_one: &ONE_BY_ONE[1],
             mechanism: closed.mechanism,
+        },
+        Subject {
+            equations: &chain_8::EQUATIONS,
+            one_by_one: &ONE_BY_ONE[2],
+            mechanism: scenes::load("report/chain_8").mechanism,
         },
     ]
 }
@@ -69,7 +74,7 @@ struct States {
 
 impl States {
     fn new(count: usize) -> Self {
-        let [subject, _] = subjects();
+        let [subject, ..] = subjects();
         Self::of(&subject, count)
     }
 
@@ -96,32 +101,135 @@ impl States {
         &self.tau[..self.v.len()]
     }
 
-    /// Results of both functions.
-    fn run(&self, batch: &Batch) -> [Vec<f64>; 2] {
-        let (mut rates, mut efforts) = (vec![f64::NAN; self.v.len()], vec![f64::NAN; self.v.len()]);
-        let done = batch.forward_dynamics(&self.q, &self.v, &self.tau, &mut rates);
-        done.expect("sizes fit");
-        let done = batch.inverse_dynamics(&self.q, &self.v, self.accelerations(), &mut efforts);
-        done.expect("sizes fit");
-        [rates, efforts]
+    /// The condition of M̄ in each state.
+    fn conditions(&self, mechanism: &Arc<Mechanism>) -> Vec<f64> {
+        let mut tree = Recursive::new(Arc::clone(mechanism));
+        let mut mass = MassMatrix::new(mechanism);
+        let states = self.q.chunks(self.equations.configuration);
+        let conditions = states.map(|q| {
+            tree.mass_matrix(q, &mut mass).expect("sizes fit");
+            let eigenvalues = mass.matrix().symmetric_eigenvalues();
+            eigenvalues.max() / eigenvalues.min()
+        });
+        conditions.collect()
+    }
+
+    /// Results of all functions that the module has.
+    fn run(&self, batch: &Batch) -> Vec<Results> {
+        let rows = Rows {
+            q: self.q.clone(),
+            v: self.v.clone(),
+            tau: self.tau.clone(),
+            a: self.accelerations().to_vec(),
+        };
+        self.run_rows(batch, &rows, self.count)
     }
 
     /// The same of states that lie side by side.
-    fn run_side_by_side(&self, batch: &Batch) -> [Vec<f64>; 2] {
-        let q = Lanes::side_by_side(&self.q, self.equations.configuration);
-        let v = Lanes::side_by_side(&self.v, self.equations.speeds);
-        let tau = Lanes::side_by_side(&self.tau, self.equations.freedoms);
-        let a = Lanes::side_by_side(self.accelerations(), self.equations.speeds);
-        let (mut rates, mut efforts) = (v.clone(), v.clone());
-        let counted = measure(|| {
-            let done = batch.forward_dynamics(&q, &v, &tau, &mut rates);
-            done.expect("sizes fit");
-            let done = batch.inverse_dynamics(&q, &v, &a, &mut efforts);
-            done.expect("sizes fit");
+    fn run_side_by_side(&self, batch: &Batch) -> Vec<Results> {
+        let equations = self.equations;
+        let rows = Rows {
+            q: Lanes::side_by_side(&self.q, equations.configuration),
+            v: Lanes::side_by_side(&self.v, equations.speeds),
+            tau: Lanes::side_by_side(&self.tau, equations.freedoms),
+            a: Lanes::side_by_side(self.accelerations(), equations.speeds),
+        };
+        let mut found = vec![];
+        let groups = self.count.div_ceil(LANES);
+        for results in self.run_rows(batch, &rows, groups) {
+            let states = Lanes::apart(&results.rows, results.width);
+            found.push(Results {
+                name: results.name,
+                width: results.width,
+                rows: states[..self.count * results.width].to_vec(),
+            });
+        }
+        found
+    }
+
+    fn run_rows<N: Entry + Default>(
+        &self,
+        batch: &Batch,
+        rows: &Rows<N>,
+        count: usize,
+    ) -> Vec<Results<N>> {
+        let Rows { q, v, tau, a } = rows;
+        let widths = widths(self.equations);
+        let found = widths.into_iter().map(|(name, width)| {
+            let mut rows = vec![N::default(); count * width];
+            let counted = measure(|| {
+                let done = match name {
+                    "forward" => batch.forward_dynamics(q, v, tau, &mut rows),
+                    "inverse" => batch.inverse_dynamics(q, v, a, &mut rows),
+                    "forward slopes" => batch.forward_dynamics_derivatives(q, v, tau, &mut rows),
+                    "inverse slopes" => batch.inverse_dynamics_derivatives(q, v, a, &mut rows),
+                    "mass" => batch.mass_matrix(q, &mut rows),
+                    _ => batch.inverse_mass_matrix(q, &mut rows),
+                };
+                done.expect("sizes fit");
+            });
+            // What is not finite is computed once more, by what allocates where states are side by side.
+            assert_eq!(counted.count_total, 0, "{name}");
+            Results { name, width, rows }
         });
-        assert_eq!(counted.count_total, 0);
-        [rates, efforts]
-            .map(|lanes| Lanes::apart(&lanes, self.equations.speeds)[..self.v.len()].to_vec())
+        found.collect()
+    }
+}
+
+/// Arguments of many states.
+struct Rows<N> {
+    q: Vec<N>,
+    v: Vec<N>,
+    tau: Vec<N>,
+    a: Vec<N>,
+}
+
+/// What one function leaves, so many numbers a state.
+#[derive(Debug, PartialEq)]
+struct Results<N = f64> {
+    name: &'static str,
+    width: usize,
+    rows: Vec<N>,
+}
+
+/// The functions that a module has, and how many numbers they leave.
+fn widths(equations: &Equations) -> Vec<(&'static str, usize)> {
+    let Equations {
+        freedoms, speeds, ..
+    } = *equations;
+    let all = [
+        ("forward", equations.forward_dynamics, speeds),
+        ("inverse", equations.inverse_dynamics, speeds),
+        (
+            "forward slopes",
+            equations.forward_dynamics_derivatives,
+            equations.forward_slopes,
+        ),
+        (
+            "inverse slopes",
+            equations.inverse_dynamics_derivatives,
+            speeds * (freedoms + speeds),
+        ),
+        ("mass", equations.mass_matrix, speeds * speeds),
+        (
+            "inverse mass",
+            equations.inverse_mass_matrix,
+            speeds * speeds,
+        ),
+    ];
+    let there = all
+        .into_iter()
+        .filter(|(_, function, _)| function.is_some());
+    there.map(|(name, _, width)| (name, width)).collect()
+}
+
+/// The bound of a function's errors: of what is solved for with M̄, 10 roundings for each unit of its condition where that is more, as in the test `compiled`.
+fn bound(function: &str, condition: f64) -> f64 {
+    match function {
+        "forward" | "forward slopes" | "inverse mass" => {
+            ROUNDINGS.max(10.0 * condition * f64::EPSILON)
+        }
+        _ => ROUNDINGS,
     }
 }
 
@@ -137,15 +245,18 @@ fn a_batch_is_its_states_one_by_one_at_every_level() {
     for subject in subjects() {
         let states = States::of(&subject, 77);
         let expected = states.run(&Batch::new(subject.one_by_one));
+        let conditions = states.conditions(&subject.mechanism);
         for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
             let batch = Batch::at(subject.equations, level).expect("it is available");
             let found = states.run(&batch);
             for (found, expected) in found.iter().zip(&expected) {
                 for state in 0..states.count {
-                    let speeds = subject.equations.speeds;
-                    let row = state * speeds..(state + 1) * speeds;
-                    let what = format!("{}, {level:?}, state {state}", subject.equations.scene);
-                    assert_close(&found[row.clone()], &expected[row], ROUNDINGS, &what);
+                    let row = state * found.width..(state + 1) * found.width;
+                    let (scene, name) = (subject.equations.scene, found.name);
+                    let what = format!("{scene}, {name}, {level:?}, state {state}");
+                    let (found, expected) = (&found.rows[row.clone()], &expected.rows[row]);
+                    let bound = bound(name, conditions[state]);
+                    assert_close(found, expected, bound, &what);
                 }
             }
         }
@@ -169,7 +280,15 @@ fn a_batch_is_what_the_tree_computes() {
         let states = States::of(&subject, 21);
         let mut tree = Recursive::new(Arc::clone(&subject.mechanism));
         let equations = subject.equations;
-        let [rates, efforts] = states.run(&Batch::new(equations));
+        let found = states.run(&Batch::new(equations));
+        let [rates, efforts] = ["forward", "inverse"].map(|name| {
+            let mut all = found.iter();
+            all.find(|results| results.name == name)
+                .map(|results| &results.rows)
+        });
+        let (Some(rates), Some(efforts)) = (rates, efforts) else {
+            continue;
+        };
         let mut expected = vec![0.0; equations.speeds];
         let q = states.q.chunks(equations.configuration);
         let tau = states.tau.chunks(equations.freedoms);
@@ -205,7 +324,14 @@ fn threads_and_the_number_of_states_do_not_show() {
             let done = batch.par_inverse_dynamics(q, v, a, &mut efforts);
             done.expect("sizes fit");
         });
-        assert_eq!([rates, efforts], expected);
+        assert_eq!([&rates, &efforts], [&expected[0].rows, &expected[1].rows]);
+        let mut slopes = vec![0.0; states.count * module::EQUATIONS.forward_slopes];
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.expect("threads").install(|| {
+            let done = batch.par_forward_dynamics_derivatives(q, v, &states.tau, &mut slopes);
+            done.expect("sizes fit");
+        });
+        assert_eq!(slopes, expected[2].rows);
     }
     for count in [1, 7, 8, 9, 130] {
         let few = States {
@@ -215,8 +341,9 @@ fn threads_and_the_number_of_states_do_not_show() {
             v: states.v[..count * module::SPEEDS].to_vec(),
             tau: states.tau[..count * module::FREEDOMS].to_vec(),
         };
-        let [rates, _] = few.run(&batch);
-        assert_eq!(rates, expected[0][..count * module::SPEEDS]);
+        for (few, all) in few.run(&batch).iter().zip(&expected) {
+            assert_eq!(few.rows, all.rows[..count * all.width], "{}", all.name);
+        }
     }
 }
 

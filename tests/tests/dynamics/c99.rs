@@ -11,7 +11,7 @@ use hamel_compiler::graph::{Argument, Sym, atan2, call, call_two, primitive, rec
 use hamel_compiler::scene;
 use hamel_scene::Scene;
 use hamel_tests::c99::{Module, Program, agree, functions, same};
-use hamel_tests::emitted::{ball_chain, geodesic_springs, plate_cart_arm, snakeboard};
+use hamel_tests::emitted::{ball_chain, chain_8, geodesic_springs, plate_cart_arm, snakeboard};
 use hamel_tests::random;
 use rand::SeedableRng;
 use std::path::Path;
@@ -101,6 +101,14 @@ fn committed() -> Vec<Committed> {
             [0, 1, 2],
             as_flattened
         ),
+        committed!(plate_cart_arm, inverse_mass_matrix, [0], as_flattened),
+        committed!(
+            chain_8,
+            forward_dynamics_derivatives,
+            [0, 1, 2],
+            as_flattened
+        ),
+        committed!(chain_8, inverse_mass_matrix, [0], as_flattened),
         committed!(geodesic_springs, forward_dynamics, [0, 1, 2]),
         committed!(geodesic_springs, momentum_rates, [0, 1, 2], as_flattened),
         committed!(geodesic_springs, hamiltonian, [0, 1]),
@@ -121,6 +129,7 @@ fn committed_modules_agree() {
         "../scenes/snakeboard.toml",
         "data/scenes/geodesic_springs.toml",
         "data/scenes/ball_chain.toml",
+        "../scenes/report/chain_8.toml",
     ];
     let load = |file: &&str| {
         let model = scene(here.join(file))

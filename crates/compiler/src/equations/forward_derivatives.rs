@@ -44,6 +44,15 @@ impl Tree<'_> {
         by_rows(&columns, count)
     }
 
+    /// M̄⁻¹ by rows; those of driven joints are 0.
+    pub fn inverse_mass_matrix(&self) -> Vec<Sym> {
+        let mut inverse = self.held_factors(self.mass_matrix()).inverse();
+        for place in (0..inverse.len()).filter(|&place| self.is_driven(place)) {
+            inverse[place].fill(Sym::zero());
+        }
+        inverse.concat()
+    }
+
     /// The factors of M̄ where driven joints do not give way.
     fn held_factors(&self, mut matrix: Matrix) -> Factors {
         for place in (0..matrix.len()).filter(|&place| self.is_driven(place)) {

@@ -41,6 +41,8 @@ impl<'a> Layout<'a> {
                 held: vec![],
                 columns: vec![],
                 followed: vec![],
+                filled: vec![],
+                below: vec![],
                 mirrored: None,
             },
         }
@@ -53,7 +55,7 @@ impl<'a> Layout<'a> {
         entries: Entries<'_>,
         rates: Option<&[Sym]>,
     ) {
-        let is_mass = self.tables.product == Product::Mass;
+        let is_mass = self.is_mass();
         let mut all = all.fuse();
         for (index, body) in self.tree.bodies.iter().enumerate() {
             let contribution = all.next();
@@ -164,7 +166,7 @@ impl<'a> Layout<'a> {
                 .into_iter()
                 .for_each(|place| by_column[place] = index);
         }
-        let is_mass = self.tables.product == Product::Mass;
+        let is_mass = self.is_mass();
         for row in 0..speeds {
             let columns =
                 (0..freedoms + speeds).filter(|&c| !is_mass && by_column[c] != by_speed[row]);
@@ -177,42 +179,81 @@ impl<'a> Layout<'a> {
         }
     }
 
+    /// Whether M̄ alone is made of them.
+    fn is_mass(&self) -> bool {
+        matches!(self.tables.product, Product::Mass | Product::InverseMass)
+    }
+
     /// The numbers and the tables.
     pub(super) fn finish(mut self) -> super::pairs::Paired {
-        if self.tables.product == Product::Forward {
-            let [_, freedoms, speeds] = self.tree.model.sizes();
-            let plain = self.tables.held.is_empty() && self.is_plain();
-            self.tables.mirrored = plain.then_some(freedoms + speeds);
-            self.tables.columns = spans(&self.filled(), self.tables.mirrored);
+        let [_, freedoms, speeds] = self.tree.model.sizes();
+        match self.tables.product {
+            Product::Mass | Product::Inverse => {}
+            Product::InverseMass => {
+                let driven = (0..speeds).filter(|&speed| self.tree.is_driven(speed));
+                self.tables.held = driven.map(|speed| [speed, 0]).collect();
+                self.tables.mirrored = Some(0);
+                self.tables.columns = vec![[0, speeds]];
+                let unit = |row| (0..speeds).map(move |column| row == column).collect();
+                self.eliminated((0..speeds).map(unit).collect());
+            }
+            Product::Forward => {
+                let plain = self.tables.held.is_empty() && self.is_plain();
+                self.tables.mirrored = plain.then_some(freedoms + speeds);
+                let filled = self.filled();
+                let any = |column| filled.iter().any(|row: &Vec<bool>| row[column]);
+                let columns: Vec<bool> = (0..self.tables.size[1]).map(any).collect();
+                self.tables.columns = spans(&columns, self.tables.mirrored);
+                self.eliminated(filled);
+            }
         }
         (self.work, self.tables)
     }
 
-    /// Which columns of the right-hand sides are not 0.
-    fn filled(&self) -> Vec<bool> {
-        let [rows, width] = self.tables.size;
-        let mut filled = vec![false; width];
+    /// Which entries of the right-hand sides are not 0, by rows.
+    fn filled(&self) -> Vec<Vec<bool>> {
+        let [_, width] = self.tables.size;
         // Numbers that tell where something is: sums of what is positive are never 0.
         let marks = self
             .work
             .iter()
             .map(|sym| f64::from(u8::from(!sym.is_zero())));
-        let work: Vec<f64> = marks.collect();
-        let mut marks = vec![0.0; rows * width];
-        self.tables
-            .pairs()
-            .right_hand_sides(&work, &mut marks, width);
-        for row in marks.chunks(width) {
-            for (filled, &mark) in filled.iter_mut().zip(row) {
-                *filled |= mark != 0.0;
+        let marks = self.tables.right_hand_sides(&marks.collect::<Vec<f64>>());
+        let rows = marks.chunks(width).map(|row| {
+            let filled = row.iter().map(|&mark| mark != 0.0);
+            let mut filled: Vec<bool> = filled.collect();
+            self.tables
+                .held
+                .iter()
+                .for_each(|&[_, column]| filled[column] = true);
+            // The rates are found already.
+            filled[width - 1] = false;
+            filled
+        });
+        rows.collect()
+    }
+
+    /// The tables of what is eliminated from the leaves to the root, where these entries of the right-hand sides are not 0.
+    fn eliminated(&mut self, mut filled: Vec<Vec<bool>>) {
+        let carriers = self.tree.carriers();
+        self.tables.below = vec![vec![]; carriers.len()];
+        for (k, carriers) in carriers.iter().enumerate().rev() {
+            let own = filled[k].clone();
+            for &i in carriers {
+                self.tables.below[i].push(k);
+                for (filled, &own) in filled[i].iter_mut().zip(&own) {
+                    *filled |= own;
+                }
             }
         }
-        for &[_, column] in &self.tables.held {
-            filled[column] = true;
-        }
-        // The rates are found already.
-        filled[width - 1] = false;
-        filled
+        let word = |bits: &[bool]| {
+            let places = bits.iter().enumerate();
+            places.fold(0, |word, (place, &is_set)| {
+                word | u64::from(is_set) << place
+            })
+        };
+        let rows = filled.iter();
+        self.tables.filled = rows.map(|row| row.chunks(64).map(word).collect()).collect();
     }
 
     /// Whether efforts are generalised forces of the speeds, one by one: S̄ = 1.

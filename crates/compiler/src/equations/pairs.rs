@@ -38,6 +38,15 @@ struct Found {
 impl Tree<'_> {
     /// M̄.
     pub fn paired_mass(&self) -> Paired {
+        self.paired_composites(Product::Mass)
+    }
+
+    /// M̄⁻¹.
+    pub fn paired_inverse_mass(&self) -> Paired {
+        self.paired_composites(Product::InverseMass)
+    }
+
+    fn paired_composites(&self, product: Product) -> Paired {
         let count = self.model.sizes()[2];
         let frames = self.root_frames();
         let mut found = self.nothing(count);
@@ -66,7 +75,7 @@ impl Tree<'_> {
             };
         });
         self.add_armature(&mut found.matrix);
-        self.tables(Product::Mass, [count, count], found, None)
+        self.tables(product, [count, count], found, None)
     }
 
     /// `∂τ̄/∂ϕ` and `∂τ̄/∂v̄` of inverse dynamics at v̄̇, the argument.

@@ -68,10 +68,10 @@ const fn equations(configuration: usize, freedoms: usize, speeds: usize) -> Equa
         hamiltonian: None,
         forward_dynamics_derivatives: None,
         inverse_dynamics_derivatives: None,
-        in_lanes: InLanes {
-            forward_dynamics: None,
-            inverse_dynamics: None,
-        },
+        forward_slopes: 0,
+        mass_matrix: None,
+        inverse_mass_matrix: None,
+        in_lanes: InLanes::NONE,
     }
 }
 

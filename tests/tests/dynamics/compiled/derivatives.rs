@@ -2,7 +2,7 @@
 
 use super::{acted_on, flops, robots, scene_files};
 use chacha20::ChaCha8Rng;
-use hamel_compiler::functions::{Kind, Loops, compile};
+use hamel_compiler::functions::{Kind, Loops, compile, compile_in_lanes};
 use hamel_tests::compiled::Point;
 use hamel_tests::{compiled, random, scenes};
 use rand::SeedableRng;
@@ -23,6 +23,25 @@ fn derivatives_of_robots_agree() {
         let point = Point::random(compiled::model(name, &mechanism), &mechanism, 1);
         point.derivatives_agree();
     }
+}
+
+/// What the Rust compiler would take minutes for in lanes is named, and not written.
+#[test]
+fn lanes_of_long_chains_are_left_out_by_name() {
+    let mut all = random::library().into_iter();
+    let joint = all.find(|joint| joint.name() == "ball");
+    let joint = joint.expect("a joint of the library");
+    let mechanism = random::chain(&mut ChaCha8Rng::seed_from_u64(7), &joint, 64);
+    let model = compiled::model("chain", &mechanism);
+    assert!(compile_in_lanes(&model, Kind::MassMatrix).is_err());
+    let long = compile_in_lanes(&model, Kind::ForwardDynamics);
+    let long = long.expect_err("its bodies are not looped over");
+    let (operations, numbers) = (long.operations, long.numbers);
+    assert!(operations > 40_000, "{operations}");
+    let expected = format!(
+        "forward_dynamics in lanes would have {operations} operations and {numbers} numbers, more than 40000 or 8192: a batch takes its states one by one"
+    );
+    assert_eq!(long.to_string(), expected);
 }
 
 /// Pairs of joints grow as the square of a chain, what is written does not: its like links are looped over.

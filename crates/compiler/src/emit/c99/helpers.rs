@@ -53,6 +53,7 @@ pub struct Helpers {
     /// Loops over pairs of joints.
     pairs: bool,
     mass: bool,
+    inverse_mass: bool,
     inverse: bool,
     forward: bool,
     /// 1/n! as far as Stumpff functions take them.
@@ -114,6 +115,7 @@ impl Used {
         Helpers {
             pairs: !self.products.is_empty(),
             mass: self.products.contains(&Product::Mass),
+            inverse_mass: self.products.contains(&Product::InverseMass),
             inverse: self.products.contains(&Product::Inverse),
             forward: self.products.contains(&Product::Forward),
             mul_add: self.mul_add

@@ -15,8 +15,9 @@ pub struct Written {
     /// Speeds, and columns of the results.
     size: usize,
     width: usize,
-    /// Whether it needs room for M̄.
+    /// Whether it needs room for M̄, and whether its helper is told the columns.
     matrix: bool,
+    is_wide: bool,
     mirrored: String,
     tables: Vec<Table>,
 }
@@ -68,7 +69,8 @@ impl Written {
             is_empty: work == 0,
             size: tables.size[0],
             width: tables.size[1],
-            matrix: tables.product == Product::Forward,
+            matrix: tables.room() > 0,
+            is_wide: matches!(tables.product, Product::Inverse | Product::Forward),
             mirrored: optional(tables.mirrored).to_string(),
             tables: all.into_iter().map(Table::new).collect(),
         }

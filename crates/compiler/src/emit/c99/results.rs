@@ -21,6 +21,10 @@ const fn of(kind: Kind) -> &'static str {
             "results: row i and column j belong to speeds i and j in the order of v; kg m^2 where both turn, kg where both slide, \
              kg m between them. Symmetric, and all of it is written."
         }
+        Kind::InverseMassMatrix => {
+            "results: row i and column j belong to the rates of speeds i and j in the order of v, per unit of their momenta. Symmetric, and all of it \
+             is written; rows and columns of joints whose motion is prescribed are 0."
+        }
         Kind::MomentumRates => {
             "results: first v, rad/s and m/s, then the rates of p, N m and N, both in the order of v."
         }

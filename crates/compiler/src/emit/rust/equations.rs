@@ -1,19 +1,14 @@
 //! The constant of a module by which the runtime finds its functions.
 
+use super::lanes;
 use crate::emit::Function;
 use crate::functions::Kind;
 use crate::model::Model;
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 
-/// Whether the runtime takes the function for many states.
-pub fn is_batched(function: &Function) -> bool {
-    let mut kinds = Kind::ALL.iter().filter(|kind| kind.is_batched());
-    kinds.any(|kind| kind.name() == function.name)
-}
-
 /// The constant by which the runtime finds the functions.
-pub fn equations(model: &Model, functions: &[Function], lanes: bool) -> TokenStream {
+pub fn equations(model: &Model, functions: &[Function], lanes: &[&Function]) -> TokenStream {
     let [configuration, freedoms, speeds] = model.sizes().map(Literal::usize_unsuffixed);
     let scene = &model.name;
     let of = |kind: Kind| {
@@ -27,19 +22,19 @@ pub fn equations(model: &Model, functions: &[Function], lanes: bool) -> TokenStr
     };
     let one = |kind| some(of(kind).map(one_state));
     let (forward, inverse) = (one(Kind::ForwardDynamics), one(Kind::InverseDynamics));
-    // A row without numbers is no row.
     let rows = |kind| some(of(kind).map(rows_of_state));
     let (forward_slopes, inverse_slopes) = (
         rows(Kind::ForwardDerivatives),
         rows(Kind::InverseDerivatives),
     );
-    let lanes = lanes && model.sizes().iter().all(|&size| size > 0);
-    let many = |kind| some(of(kind).filter(|_| lanes).map(many_states));
-    let (forward_lanes, inverse_lanes) = (many(Kind::ForwardDynamics), many(Kind::InverseDynamics));
-    let batched = functions
-        .iter()
-        .filter(|function| lanes && is_batched(function));
-    let of_state = batched.map(of_state);
+    let size = of(Kind::ForwardDerivatives).map_or(0, Function::results);
+    let size = Literal::usize_unsuffixed(size);
+    let masses = [Kind::MassMatrix, Kind::InverseMassMatrix].map(|kind| {
+        let name = Ident::new(kind.name(), Span::call_site());
+        let value = some(of(kind).map(rows_of_configuration));
+        quote! { #name: #value, }
+    });
+    let in_lanes = in_lanes(lanes);
     let hamiltonian = hamiltonian_form(functions);
     quote! {
         /// These functions for the runtime, in double precision.
@@ -52,13 +47,11 @@ pub fn equations(model: &Model, functions: &[Function], lanes: bool) -> TokenStr
             inverse_dynamics: #inverse,
             forward_dynamics_derivatives: #forward_slopes,
             inverse_dynamics_derivatives: #inverse_slopes,
-            in_lanes: ::hamel::compiled::InLanes {
-                forward_dynamics: #forward_lanes,
-                inverse_dynamics: #inverse_lanes,
-            },
+            forward_slopes: #size,
+            #(#masses)*
+            in_lanes: #in_lanes,
             #hamiltonian
         };
-        #(#of_state)*
     }
 }
 
@@ -95,46 +88,37 @@ fn rows_of_state(function: &Function) -> TokenStream {
     }
 }
 
-fn many_states(function: &Function) -> TokenStream {
-    let (kind, sizes) = (in_lanes(function), argument_sizes(function));
-    quote! { ::hamel::compiled::many_states::<#kind, #(#sizes),*> }
-}
-
-/// A function as a type, for the loop over states.
-fn of_state(function: &Function) -> TokenStream {
-    let (name, kind) = (
-        Ident::new(function.name, Span::call_site()),
-        in_lanes(function),
-    );
-    let sizes = argument_sizes(function);
-    let [q, v, u] = [0, 1, 2].map(|i| sizes.get(i));
-    let docs = format!(" `{}` in a loop over states.", function.name);
+/// The same of Q alone.
+fn rows_of_configuration(function: &Function) -> TokenStream {
+    let name = Ident::new(function.name, Span::call_site());
+    let count = Literal::usize_unsuffixed(function.results());
     quote! {
-        #[doc = #docs]
-        struct #kind;
-        impl ::hamel::compiled::OfState<#(#sizes),*> for #kind {
-            #[inline(always)]
-            fn value<T: Scalar>(q: &[T; #q], v: &[T; #v], u: &[T; #u]) -> [T; #v] {
-                #name(q, v, u)
+        |q, _, _, results| {
+            if let (Some(q), Some(results)) = (q.first_chunk(), results.get_mut(..#count)) {
+                results.copy_from_slice(#name::<f64>(q).as_flattened());
             }
         }
     }
 }
 
-fn argument_sizes(function: &Function) -> Vec<Literal> {
-    let sizes = function.arguments.iter();
-    sizes
-        .map(|&(_, size)| Literal::usize_unsuffixed(size))
-        .collect()
-}
-
-/// The name of a function as a type.
-fn in_lanes(function: &Function) -> Ident {
-    let words = function.name.split('_').map(|word| {
-        let (first, rest) = word.split_at(1);
-        first.to_ascii_uppercase() + rest
+/// The functions of many states.
+fn in_lanes(lanes: &[&Function]) -> TokenStream {
+    if lanes.is_empty() {
+        return quote! { ::hamel::compiled::InLanes::NONE };
+    }
+    let batched = Kind::ALL.iter().filter(|kind| kind.is_batched());
+    let fields = batched.map(|kind| {
+        let name = Ident::new(kind.name(), Span::call_site());
+        let mut found = lanes.iter().filter(|function| function.name == kind.name());
+        match found.next() {
+            Some(function) => {
+                let many = lanes::many_states(function);
+                quote! { #name: Some(#many), }
+            }
+            None => quote! { #name: None, },
+        }
     });
-    Ident::new(&words.collect::<String>(), Span::call_site())
+    quote! { ::hamel::compiled::InLanes { #(#fields)* } }
 }
 
 /// The fields of that constant for the port-Hamiltonian form.

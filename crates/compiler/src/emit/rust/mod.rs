@@ -1,12 +1,13 @@
 //! A module of functions in Rust, generic over the runtime's scalars.
 
 mod equations;
+mod lanes;
 mod lines;
 mod pairs;
 
 use super::{Function, Lowered, array, curves, identifiers};
 use crate::model::Model;
-use equations::{equations, is_batched};
+use equations::equations;
 use hamel_codegen::emit::rust::{WriteError, curve_constant, text};
 use hamel_codegen::text::one_line;
 use lines::{curve_ident, line, value};
@@ -19,7 +20,7 @@ const RESERVED: [&str; 16] = [
     "matrix", "rows", "hamel", "core",
 ];
 
-/// The module that holds `functions` of the model. `label` names the scene's file; with `lanes` it can take many states at a time.
+/// The module that holds `functions` of the model, and `lanes` of many states at a time, each of which is among the functions as well. `label` names the scene's file.
 ///
 /// # Errors
 /// Tokens that are no Rust: a fault of this crate.
@@ -27,14 +28,15 @@ pub fn module(
     model: &Model,
     functions: &[Function],
     label: &str,
-    lanes: bool,
+    lanes: &[Function],
 ) -> Result<String, WriteError> {
     let bodies = identifiers(model);
     let sizes = sizes(model);
-    let items = functions
-        .iter()
-        .map(|function| item(function, &bodies, lanes && is_batched(function)));
-    let equations = equations(model, functions, lanes);
+    let items = functions.iter().map(|function| item(function, &bodies));
+    let lanes = lanes.iter().filter(|_| sizes_are_all_positive(model));
+    let lanes: Vec<&Function> = lanes.collect();
+    let equations = equations(model, functions, &lanes);
+    let in_lanes = lanes.iter().map(|function| lanes::item(function, &bodies));
     let curves = curves(functions);
     let uses = (!curves.is_empty()).then(|| quote! { use ::hamel::curve::{Curve, Outside}; });
     let tables = curves.iter().map(|curve| {
@@ -52,6 +54,7 @@ pub fn module(
         #(#tables)*
         #equations
         #(#items)*
+        #(#in_lanes)*
     };
     // Plain comments: a file that is included may not begin with documentation of what includes it.
     let header = format!(
@@ -92,9 +95,12 @@ fn sizes(model: &Model) -> TokenStream {
     quote! { #(#items)* }
 }
 
-/// With `inlined`, a loop over states sees its body, for each level of instructions.
-fn item(function: &Function, bodies: &[String], inlined: bool) -> TokenStream {
-    let inline = inlined.then(|| quote! { #[inline(always)] });
+/// Whether no argument is empty: rows of nothing are no rows.
+fn sizes_are_all_positive(model: &Model) -> bool {
+    model.sizes().iter().all(|&size| size > 0)
+}
+
+fn item(function: &Function, bodies: &[String]) -> TokenStream {
     let lowered = Lowered::new(function, bodies, &RESERVED);
     let name = Ident::new(function.name, Span::call_site());
     let arguments = function.arguments.iter().map(|&(argument, size)| {
@@ -132,7 +138,10 @@ fn item(function: &Function, bodies: &[String], inlined: bool) -> TokenStream {
     let result = match (outputs, function.columns) {
         (outputs, _) if function.pairs.is_some() => {
             let work = outputs.map(|outputs| quote! { let results = [#(#outputs),*]; });
-            let rows = function.pairs.as_ref().map(pairs::rows);
+            let rows = function
+                .pairs
+                .as_ref()
+                .map(|tables| pairs::rows(function.name, tables));
             quote! { #work #rows }
         }
         (None, None) => quote! { results },
@@ -145,14 +154,18 @@ fn item(function: &Function, bodies: &[String], inlined: bool) -> TokenStream {
             quote! { [#(#rows),*] }
         }
     };
+    let by_pairs = function
+        .pairs
+        .as_ref()
+        .map(|tables| pairs::item(function.name, tables));
     let docs = [
         format!(" {}", function.summary),
         String::new(),
         format!(" Operations: {}.", function.operations()),
     ];
     quote! {
+        #by_pairs
         #(#[doc = #docs])*
-        #inline
         #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
         #[must_use]
         pub fn #name<T: Scalar>(#(#arguments),*) -> #kind {

@@ -8,7 +8,9 @@
 //! W and U of each unit (nine); for each joint that is carried the wrench that each of its units raises (six), then N X̄ and the angular part of Bᵀ X̄ of each
 //! speed (nine). Units of a joint are its local coordinates, then its speeds.
 
-use hamel_runtime::scalar::Scalar;
+mod solution;
+
+use super::number::Number;
 
 /// A joint of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +53,10 @@ pub struct Pairs<'a> {
     pub held: &'a [[usize; 2]],
     /// Columns of the right-hand sides that are not 0: from the first to behind the last.
     pub columns: &'a [[usize; 2]],
+    /// For each speed which columns may differ from 0 when what hangs on it is eliminated: bits of words of 64 columns.
+    pub filled: &'a [&'a [u64]],
+    /// For each speed those that its momentum reaches on the way from the leaves, the last one first.
+    pub below: &'a [&'a [usize]],
     /// Entries that are added to what is solved: row, column, place in `work`.
     pub followed: &'a [[usize; 3]],
     /// The column from which as many as there are speeds are M̄⁻¹, of which the upper triangle is found: the other one is its mirror image.
@@ -63,58 +69,96 @@ const NINE: usize = 9;
 
 impl Pairs<'_> {
     /// M̄ by rows, from `work` that has six numbers for each speed alone.
-    pub fn mass<T: Scalar>(&self, work: &[T], matrix: &mut [T]) {
-        self.fill_mass(work, matrix, |joint, speed| joint.shown + SIX * speed);
+    #[inline(always)]
+    pub fn mass<T: Number, const FUSED: bool>(&self, work: &[T], matrix: &mut [T]) {
+        self.fill_mass::<T, FUSED>(work, matrix, |joint, speed| joint.shown + SIX * speed);
+    }
+
+    /// M̄⁻¹ by rows, from the same `work`; rows of rates that are given are 0. `matrix` has room for M̄, and then holds its factors.
+    #[inline(always)]
+    pub fn inverse_mass<T: Number, const FUSED: bool>(
+        &self,
+        work: &[T],
+        matrix: &mut [T],
+        rows: &mut [T],
+    ) {
+        let size = self.above.len();
+        self.mass::<T, FUSED>(work, matrix);
+        rows.fill(T::from_f64(0.0));
+        for speed in 0..size {
+            let given = self.held.iter().any(|&[held, _]| held == speed);
+            rows[speed * size + speed] = T::from_f64(if given { 0.0 } else { 1.0 });
+        }
+        self.fix(matrix);
+        self.factorise::<T, FUSED>(matrix);
+        self.solve::<T, FUSED>(matrix, rows, size);
     }
 
     /// Rows of derivatives of inverse dynamics, `width` numbers each: in all degrees of freedom, then in all speeds.
-    pub fn inverse<T: Scalar>(&self, work: &[T], rows: &mut [T], width: usize) {
+    #[inline(always)]
+    pub fn inverse<T: Number, const FUSED: bool>(&self, work: &[T], rows: &mut [T], width: usize) {
         let freedoms = width.saturating_sub(self.above.len());
-        rows.fill(T::zero());
-        self.fill_slopes(work, rows, [width, freedoms]);
+        rows.fill(T::from_f64(0.0));
+        self.fill_slopes::<T, FUSED>(work, rows, [width, freedoms]);
         add(self.entries, work, rows, width);
     }
 
     /// Rows of derivatives of forward dynamics, `width` numbers each: in all degrees of freedom, in all speeds, in all efforts, and the rates.
     /// `matrix` has room for M̄, and then holds its factors.
-    pub fn forward<T: Scalar>(&self, work: &[T], matrix: &mut [T], rows: &mut [T], width: usize) {
+    #[inline(always)]
+    pub fn forward<T: Number, const FUSED: bool>(
+        &self,
+        work: &[T],
+        matrix: &mut [T],
+        rows: &mut [T],
+        width: usize,
+    ) {
         let size = self.above.len();
         if size == 0 || width == 0 {
             return;
         }
-        let freedoms = self.right_hand_sides(work, rows, width);
+        let freedoms = self.right_hand_sides::<T, FUSED>(work, rows, width);
+        let zero = T::from_f64(0.0);
         for row in rows.chunks_exact_mut(width) {
-            row[..freedoms + size]
-                .iter_mut()
-                .for_each(|entry| *entry = -*entry);
+            for entry in &mut row[..freedoms + size] {
+                // Zeros stay positive, so that it does not show whether they are skipped.
+                *entry = zero.plus(entry.negative());
+            }
         }
-        self.fill_mass(work, matrix, |joint, speed| {
+        self.fill_mass::<T, FUSED>(work, matrix, |joint, speed| {
             let units = joint.freedoms[1] + joint.speeds[1];
             joint.shown + SIX * units + NINE * speed
         });
         self.hold(matrix, rows, width);
-        self.factorise(matrix);
-        self.solve(matrix, rows, width);
+        self.factorise::<T, FUSED>(matrix);
+        self.solve::<T, FUSED>(matrix, rows, width);
         add(self.followed, work, rows, width);
     }
 
     /// What forward dynamics is solved for: derivatives of inverse dynamics, S̄ᵀ and the rates; the number of degrees of freedom.
-    pub fn right_hand_sides<T: Scalar>(&self, work: &[T], rows: &mut [T], width: usize) -> usize {
+    #[inline(always)]
+    pub fn right_hand_sides<T: Number, const FUSED: bool>(
+        &self,
+        work: &[T],
+        rows: &mut [T],
+        width: usize,
+    ) -> usize {
         let freedoms = width.saturating_sub(self.above.len() + 1) / 2;
-        rows.fill(T::zero());
-        self.fill_slopes(work, rows, [width, freedoms]);
+        rows.fill(T::from_f64(0.0));
+        self.fill_slopes::<T, FUSED>(work, rows, [width, freedoms]);
         add(self.entries, work, rows, width);
         freedoms
     }
 
-    fn fill_mass<T: Scalar>(
+    #[inline(always)]
+    fn fill_mass<T: Number, const FUSED: bool>(
         &self,
         work: &[T],
         matrix: &mut [T],
         momentum: impl Fn(&Pairing, usize) -> usize,
     ) {
         let size = self.above.len();
-        matrix.fill(T::zero());
+        matrix.fill(T::from_f64(0.0));
         for joint in self.joints {
             let mut carrier = joint.parent;
             while let Some(body) = carrier {
@@ -128,7 +172,7 @@ impl Pairs<'_> {
                     let momentum = &work[momentum(joint, speed)..][..SIX];
                     let row = joint.speeds[0] + speed;
                     for k in 0..others {
-                        let entry = dot(&work[seen + SIX * k..][..SIX], momentum);
+                        let entry = dot::<T, FUSED>(&work[seen + SIX * k..][..SIX], momentum);
                         matrix[row * size + other + k] = entry;
                         matrix[(other + k) * size + row] = entry;
                     }
@@ -139,7 +183,13 @@ impl Pairs<'_> {
         add(self.masses, work, matrix, size);
     }
 
-    fn fill_slopes<T: Scalar>(&self, work: &[T], rows: &mut [T], [width, freedoms]: [usize; 2]) {
+    #[inline(always)]
+    fn fill_slopes<T: Number, const FUSED: bool>(
+        &self,
+        work: &[T],
+        rows: &mut [T],
+        [width, freedoms]: [usize; 2],
+    ) {
         for joint in self.joints {
             let units = joint.freedoms[1] + joint.speeds[1];
             let mut carrier = joint.parent;
@@ -155,7 +205,7 @@ impl Pairs<'_> {
                     let row = (above.speeds[0] + k) * width;
                     for unit in 0..units {
                         let raised = &work[joint.shown + SIX * unit..][..SIX];
-                        rows[row + joint.place(unit, freedoms)] = dot(column, raised);
+                        rows[row + joint.place(unit, freedoms)] = dot::<T, FUSED>(column, raised);
                     }
                 }
                 let (seen, shown) = (seen + SIX * above.speeds[1], joint.shown + SIX * units);
@@ -164,137 +214,19 @@ impl Pairs<'_> {
                     let row = (joint.speeds[0] + speed) * width;
                     for unit in 0..above.freedoms[1] + above.speeds[1] {
                         let variation = &work[seen + NINE * unit..][..NINE];
-                        rows[row + above.place(unit, freedoms)] = dot(variation, momentum);
+                        rows[row + above.place(unit, freedoms)] =
+                            dot::<T, FUSED>(variation, momentum);
                     }
                 }
                 carrier = parent;
             }
         }
     }
-
-    /// Makes given rates known: what they take of others moves to the right-hand side.
-    fn hold<T: Scalar>(&self, matrix: &mut [T], rows: &mut [T], width: usize) {
-        let size = self.above.len();
-        for &[speed, column] in self.held {
-            for row in 0..size {
-                rows[row * width + column] = -matrix[row * size + speed];
-            }
-        }
-        for &[speed, _] in self.held {
-            rows[speed * width..][..width - 1].fill(T::zero());
-        }
-        for &[speed, column] in self.held {
-            rows[speed * width + column] = T::one();
-            for other in 0..size {
-                matrix[speed * size + other] = T::zero();
-                matrix[other * size + speed] = T::zero();
-            }
-            matrix[speed * size + speed] = T::one();
-        }
-    }
-
-    /// `M̄ = LᵀDL`, which fills no zero of the tree: L in the lower triangle, D⁻¹ on the diagonal.
-    fn factorise<T: Scalar>(&self, matrix: &mut [T]) {
-        let size = self.above.len();
-        for k in (0..size).rev() {
-            let (before, own) = matrix.split_at_mut(k * size);
-            let inverse = T::one() / own[k];
-            let mut next = self.above[k];
-            while let Some(i) = next {
-                let factor = own[i] * inverse;
-                let row = &mut before[i * size..][..size];
-                let mut other = next;
-                while let Some(j) = other {
-                    row[j] = (-factor).mul_add(own[j], row[j]);
-                    other = self.above[j];
-                }
-                own[i] = factor;
-                next = self.above[i];
-            }
-            own[k] = inverse;
-        }
-    }
-
-    /// `M̄⁻¹` times the columns of the tables, as many at once as registers take.
-    fn solve<T: Scalar>(&self, factors: &[T], rows: &mut [T], width: usize) {
-        for &[from, to] in self.columns {
-            let mut from = from;
-            while from < to {
-                from += match to - from {
-                    16.. => self.solve_block::<T, 16>(factors, rows, [width, from]),
-                    8.. => self.solve_block::<T, 8>(factors, rows, [width, from]),
-                    4.. => self.solve_block::<T, 4>(factors, rows, [width, from]),
-                    _ => self.solve_block::<T, 1>(factors, rows, [width, from]),
-                };
-            }
-        }
-        if let Some(first) = self.mirrored {
-            let size = self.above.len();
-            for row in 0..size {
-                for column in 0..row {
-                    rows[row * width + first + column] = rows[column * width + first + row];
-                }
-            }
-        }
-    }
-
-    /// The same of columns beside each other; how many these are.
-    fn solve_block<T: Scalar, const N: usize>(
-        &self,
-        factors: &[T],
-        rows: &mut [T],
-        [width, from]: [usize; 2],
-    ) -> usize {
-        let size = self.above.len();
-        // A column of M̄⁻¹ is a unit below its diagonal, and not wanted there.
-        let wanted = self
-            .mirrored
-            .and_then(|first| (from + N).checked_sub(first));
-        let wanted = wanted
-            .filter(|&wanted| wanted > 0)
-            .map_or(size, |wanted| wanted.min(size));
-        for k in (0..wanted).rev() {
-            let own: [T; N] = block(rows, k * width + from);
-            let mut next = self.above[k];
-            while let Some(i) = next {
-                let place = i * width + from;
-                let sums = less(block(rows, place), factors[k * size + i], &own);
-                rows[place..place + N].copy_from_slice(&sums);
-                next = self.above[i];
-            }
-        }
-        for k in 0..wanted {
-            let inverse = factors[k * size + k];
-            let place = k * width + from;
-            let mut own: [T; N] = block(rows, place).map(|entry| entry * inverse);
-            let mut next = self.above[k];
-            while let Some(i) = next {
-                own = less(own, factors[k * size + i], &block(rows, i * width + from));
-                next = self.above[i];
-            }
-            rows[place..place + N].copy_from_slice(&own);
-        }
-        N
-    }
-}
-
-#[inline(always)]
-fn block<T: Scalar, const N: usize>(rows: &[T], place: usize) -> [T; N] {
-    let found = rows[place..].first_chunk();
-    found.copied().unwrap_or([T::zero(); N])
-}
-
-#[inline(always)]
-fn less<T: Scalar, const N: usize>(mut sums: [T; N], factor: T, from: &[T; N]) -> [T; N] {
-    let factor = -factor;
-    for (sum, &other) in sums.iter_mut().zip(from) {
-        *sum = factor.mul_add(other, *sum);
-    }
-    sums
 }
 
 impl Pairing {
     /// The column of a unit.
+    #[inline(always)]
     fn place(&self, unit: usize, freedoms: usize) -> usize {
         match unit.checked_sub(self.freedoms[1]) {
             None => self.freedoms[0] + unit,
@@ -303,15 +235,19 @@ impl Pairing {
     }
 }
 
-fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
-    let mut pairs = a.iter().zip(b);
-    let first = pairs.next().map_or(T::zero(), |(&a, &b)| a * b);
-    pairs.fold(first, |sum, (&a, &b)| a.mul_add(b, sum))
+#[inline(always)]
+fn dot<T: Number, const FUSED: bool>(a: &[T], b: &[T]) -> T {
+    let mut sum = a[0].times(b[0]);
+    for (&a, &b) in a[1..].iter().zip(&b[1..]) {
+        sum = a.times_plus::<FUSED>(b, sum);
+    }
+    sum
 }
 
-fn add<T: Scalar>(entries: &[[usize; 3]], work: &[T], rows: &mut [T], width: usize) {
+#[inline(always)]
+fn add<T: Number>(entries: &[[usize; 3]], work: &[T], rows: &mut [T], width: usize) {
     for &[row, column, place] in entries {
         let entry = &mut rows[row * width + column];
-        *entry += work[place];
+        *entry = entry.plus(work[place]);
     }
 }

@@ -1,5 +1,9 @@
 //! The functions that can be asked for, each by its own recursion; where there are several, the one with the fewest operations.
 
+mod kind;
+
+pub use kind::Kind;
+
 use super::alike::Plan;
 use super::emit::{Function, argument_size};
 use super::equations::{Bias, Paired, Tree};
@@ -8,134 +12,7 @@ use super::model::Model;
 use super::pairs::Tables;
 use super::prune::{Link, Pruning, prune};
 
-/// A function of a mechanism.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
-    /// v̄̇ from Q, v̄ and τ: (24), (34).
-    ForwardDynamics,
-    /// The efforts τ̄ that v̄̇ takes at Q and v̄.
-    InverseDynamics,
-    /// M̄(Q).
-    MassMatrix,
-    /// The efforts τ̄ that no acceleration takes at Q and v̄.
-    BiasForces,
-    /// v̄ and p̄̇ from Q, p̄ and τ: (27), (35).
-    MomentumRates,
-    /// p̄ from Q and v̄.
-    Momenta,
-    /// v̄ from Q and p̄.
-    Speeds,
-    /// H from Q and p̄.
-    Hamiltonian,
-    /// Kinetic and potential energy from Q and v̄.
-    Energies,
-    /// Poses of all bodies from Q.
-    Poses,
-    /// How v̄̇ changes with ϕ, v̄ and τ, from Q, v̄ and τ.
-    ForwardDerivatives,
-    /// How the efforts τ̄ change with ϕ and v̄, from Q, v̄ and v̄̇.
-    InverseDerivatives,
-}
-
 impl Kind {
-    /// All of them.
-    pub const ALL: [Self; 12] = [
-        Self::ForwardDynamics,
-        Self::InverseDynamics,
-        Self::MassMatrix,
-        Self::BiasForces,
-        Self::MomentumRates,
-        Self::Momenta,
-        Self::Speeds,
-        Self::Hamiltonian,
-        Self::Energies,
-        Self::Poses,
-        Self::ForwardDerivatives,
-        Self::InverseDerivatives,
-    ];
-
-    /// Those of a module for which none are named: all but the derivatives, which are longer than all others together.
-    pub const BY_DEFAULT: [Self; 10] = [
-        Self::ForwardDynamics,
-        Self::InverseDynamics,
-        Self::MassMatrix,
-        Self::BiasForces,
-        Self::MomentumRates,
-        Self::Momenta,
-        Self::Speeds,
-        Self::Hamiltonian,
-        Self::Energies,
-        Self::Poses,
-    ];
-
-    /// Its name, in emitted code as well.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::ForwardDynamics => "forward_dynamics",
-            Self::InverseDynamics => "inverse_dynamics",
-            Self::MassMatrix => "mass_matrix",
-            Self::BiasForces => "bias_forces",
-            Self::MomentumRates => "momentum_rates",
-            Self::Momenta => "momenta",
-            Self::Speeds => "speeds_from_momenta",
-            Self::Hamiltonian => "hamiltonian",
-            Self::Energies => "energies",
-            Self::Poses => "poses",
-            Self::ForwardDerivatives => "forward_dynamics_derivatives",
-            Self::InverseDerivatives => "inverse_dynamics_derivatives",
-        }
-    }
-
-    /// What it computes, in a sentence.
-    pub const fn summary(self) -> &'static str {
-        match self {
-            Self::ForwardDynamics => "Accelerations v̄̇ from Q, v̄ and τ, (24), (34).",
-            Self::InverseDynamics => {
-                "Efforts τ̄ = S̄ᵀτ that the accelerations take at Q and v̄, (24), (34)."
-            }
-            Self::MassMatrix => "Mass matrix M̄ by rows.",
-            Self::BiasForces => "Efforts τ̄ = S̄ᵀτ that no acceleration takes at Q and v̄.",
-            Self::MomentumRates => "v̄ and p̄̇ from Q, p̄ and τ, (27), (35).",
-            Self::Momenta => "Momenta p̄ = M̄ v̄.",
-            Self::Speeds => "v̄ = M̄⁻¹ p̄.",
-            Self::Hamiltonian => "H = ½ p̄ᵀ M̄⁻¹ p̄ + V, J.",
-            Self::Energies => "Kinetic and potential energy, J.",
-            Self::Poses => {
-                "For each body its rotation to world axes by rows, and its origin in the world, m."
-            }
-            Self::ForwardDerivatives => {
-                "For each speed ∂v̄̇/∂ϕ, ∂v̄̇/∂v̄ and ∂v̄̇/∂τ in local coordinates ϕ about Q, then v̄̇; where constraints couple joints ∂v̄/∂ϕ and ∂v̄/∂v̄ \
-                 of the speeds that they complete after these."
-            }
-            Self::InverseDerivatives => {
-                "For each speed ∂τ̄/∂ϕ and ∂τ̄/∂v̄ of inverse dynamics in local coordinates ϕ about Q; ∂τ̄/∂v̄̇ is M̄."
-            }
-        }
-    }
-
-    fn arguments(self) -> &'static [Argument] {
-        match self {
-            Self::ForwardDynamics | Self::ForwardDerivatives => {
-                &[Argument::Configuration, Argument::Speeds, Argument::Efforts]
-            }
-            Self::InverseDynamics | Self::InverseDerivatives => &[
-                Argument::Configuration,
-                Argument::Speeds,
-                Argument::Accelerations,
-            ],
-            Self::MassMatrix | Self::Poses => &[Argument::Configuration],
-            Self::BiasForces | Self::Momenta | Self::Energies => {
-                &[Argument::Configuration, Argument::Speeds]
-            }
-            Self::MomentumRates => &[
-                Argument::Configuration,
-                Argument::Momenta,
-                Argument::Efforts,
-            ],
-            Self::Speeds | Self::Hamiltonian => &[Argument::Configuration, Argument::Momenta],
-        }
-    }
-
     /// The recursions that compute it.
     fn ways(self, model: &Model) -> Vec<Way> {
         match self {
@@ -197,6 +74,11 @@ impl Kind {
             Self::InverseDerivatives => vec![("composite bodies in motion", |tree| {
                 tree.inverse_derivatives()
             })],
+            Self::InverseMassMatrix => {
+                vec![("composite bodies, factorised along the tree", |tree| {
+                    tree.inverse_mass_matrix()
+                })]
+            }
         }
     }
 
@@ -204,6 +86,11 @@ impl Kind {
     fn pairwise(self, model: &Model) -> Vec<PairedWay> {
         match self {
             Self::MassMatrix => vec![("composite bodies, pair by pair", |tree| tree.paired_mass())],
+            Self::InverseMassMatrix => {
+                vec![("composite bodies, pair by pair", |tree| {
+                    tree.paired_inverse_mass()
+                })]
+            }
             Self::InverseDerivatives => {
                 vec![("composite bodies in motion, pair by pair", |tree| {
                     tree.paired_inverse()
@@ -221,24 +108,11 @@ impl Kind {
         }
     }
 
-    /// Whether the runtime takes it for many states.
-    pub const fn is_batched(self) -> bool {
-        matches!(self, Self::ForwardDynamics | Self::InverseDynamics)
-    }
-
-    /// The columns of its result; none for a vector.
-    fn columns(self, model: &Model) -> Option<usize> {
-        let [_, freedoms, speeds] = model.sizes();
-        match self {
-            Self::MassMatrix | Self::MomentumRates => Some(speeds.max(1)),
-            Self::Poses => Some(12),
-            Self::ForwardDerivatives => {
-                let coupled = !model.coupling.constraints.is_empty();
-                let own = 2 * freedoms + speeds + 1;
-                Some(own + if coupled { freedoms + speeds } else { 0 })
-            }
-            Self::InverseDerivatives => Some((freedoms + speeds).max(1)),
-            _ => None,
+    /// Operations from which on pairs of joints are left to loops.
+    const fn paired(self, loops: Loops) -> usize {
+        match (self, loops) {
+            (Self::InverseMassMatrix, _) | (_, Loops::Pairs) => PAIRED_SOON,
+            _ => PAIRED,
         }
     }
 
@@ -246,7 +120,10 @@ impl Kind {
     const fn has_like_parts(self) -> bool {
         !matches!(
             self,
-            Self::MassMatrix | Self::ForwardDerivatives | Self::InverseDerivatives
+            Self::MassMatrix
+                | Self::InverseMassMatrix
+                | Self::ForwardDerivatives
+                | Self::InverseDerivatives
         )
     }
 }
@@ -299,6 +176,15 @@ const LOOPED: usize = 10_000;
 /// dynamics of g1 (22 900) 0.56 times; and the Rust compiler took both in seconds.
 const PAIRED: usize = 30_000;
 
+/// The same of M̄⁻¹, most of which is solving, and of functions in lanes, whose loops work on whole registers whatever the robot.
+const PAIRED_SOON: usize = 10_000;
+
+/// Operations that a function in lanes may have: the Rust compiler takes them once for each level of instructions.
+const LONGEST_IN_LANES: usize = 40_000;
+
+/// Numbers that a function in lanes may hold beside its arguments, on the stack eight of each: 512 KiB.
+const WIDEST_IN_LANES: usize = 8192;
+
 /// Operations, those of loops once, that a function may have, so that no module keeps the Rust compiler busy without end: straight-line functions
 /// of 31 000 operations already took it more than 100 s.
 pub const LONGEST: usize = 100_000;
@@ -308,18 +194,33 @@ pub const LONGEST: usize = 100_000;
 pub struct TooLong {
     /// The function.
     pub kind: Kind,
+    /// Whether it is left out in lanes alone.
+    pub in_lanes: bool,
     /// At least so many operations would be written.
     pub operations: usize,
+    /// So many numbers would be held in lanes.
+    pub numbers: usize,
 }
 
 impl std::fmt::Display for TooLong {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(
-            f,
-            "{} would have {} operations, more than {LONGEST}: the tree computes it",
-            self.kind.name(),
-            self.operations
-        )
+        let Self {
+            operations,
+            numbers,
+            ..
+        } = self;
+        let name = self.kind.name();
+        match self.in_lanes {
+            false => write!(
+                f,
+                "{name} would have {operations} operations, more than {LONGEST}: the tree computes it"
+            ),
+            true => write!(
+                f,
+                "{name} in lanes would have {operations} operations and {numbers} numbers, more than {LONGEST_IN_LANES} or \
+                 {WIDEST_IN_LANES}: a batch takes its states one by one"
+            ),
+        }
     }
 }
 
@@ -333,6 +234,8 @@ pub enum Loops {
     Long,
     /// Wherever there are any.
     Always,
+    /// Over pairs of joints alone, in functions of more than 10 000 operations: what many states side by side can take.
+    Pairs,
 }
 
 /// A recursion with its name.
@@ -358,7 +261,12 @@ pub struct Chosen {
 /// # Errors
 /// More than [`LONGEST`] operations that would be written.
 pub fn compile(model: &Model, kind: Kind, loops: Loops) -> Result<Chosen, TooLong> {
-    let refused = |operations| TooLong { kind, operations };
+    let refused = |operations| TooLong {
+        kind,
+        in_lanes: false,
+        operations,
+        numbers: 0,
+    };
     let least = least(model, kind);
     let is_looped = loops != Loops::Never && !kind.pairwise(model).is_empty();
     if least > LONGEST && !is_looped {
@@ -371,11 +279,32 @@ pub fn compile(model: &Model, kind: Kind, loops: Loops) -> Result<Chosen, TooLon
     }
 }
 
+/// The function for many states side by side, whose body has no loops but those over pairs of joints.
+///
+/// # Errors
+/// More operations than the Rust compiler takes in lanes within a minute, or more numbers than a stack should hold eight of each.
+pub fn compile_in_lanes(model: &Model, kind: Kind) -> Result<Function, TooLong> {
+    let function = compile_with(model, &prune(model, Pruning::ALL), kind, Loops::Pairs).function;
+    let paired = function.pairs.as_ref();
+    let work = paired.map_or(0, |pairs| function.outputs.len() + pairs.room());
+    let (operations, numbers) = (function.written(), function.results() + work);
+    match operations <= LONGEST_IN_LANES && numbers <= WIDEST_IN_LANES {
+        true => Ok(function),
+        false => Err(TooLong {
+            kind,
+            in_lanes: true,
+            operations,
+            numbers,
+        }),
+    }
+}
+
 /// At least so many operations has a function without loops.
 fn least(model: &Model, kind: Kind) -> usize {
     let [_, freedoms, speeds] = model.sizes();
     match kind {
         Kind::MassMatrix => ENTRY * pairs(model),
+        Kind::InverseMassMatrix => (ENTRY + RESPONSE * speeds / 2) * pairs(model),
         Kind::InverseDerivatives => MET * pairs(model),
         Kind::ForwardDerivatives => (MET + RESPONSE * (freedoms + speeds)) * pairs(model),
         _ => 0,
@@ -410,9 +339,9 @@ pub fn compile_with(model: &Model, links: &[Link], kind: Kind, loops: Loops) -> 
         return body_by_body(model, links, kind, loops);
     }
     let mut tried = vec![];
-    if loops == Loops::Long && least(model, kind) <= LONGEST {
+    if loops != Loops::Always && least(model, kind) <= LONGEST {
         let straight = body_by_body(model, links, kind, Loops::Never);
-        if straight.function.operations().flops() < PAIRED {
+        if straight.function.operations().flops() < kind.paired(loops) {
             return straight;
         }
         tried.extend(straight.tried);
@@ -459,7 +388,7 @@ fn pair_by_pair(
     let ((outputs, tables), graph) = record(numbers);
     let straight = paired(outputs, graph, None, tables);
     let whole = straight.written();
-    if loops == Loops::Long && whole < LOOPED {
+    if loops == Loops::Pairs || loops == Loops::Long && whole < LOOPED {
         return straight;
     }
     let ((outputs, tables), graph) = record_alike(numbers);
@@ -507,7 +436,7 @@ fn looped(
     loops: Loops,
 ) -> Option<Function> {
     let whole = straight.operations().flops();
-    let never = !kind.has_like_parts() || loops == Loops::Never;
+    let never = !kind.has_like_parts() || matches!(loops, Loops::Never | Loops::Pairs);
     if never || loops == Loops::Long && whole < LOOPED {
         return None;
     }
