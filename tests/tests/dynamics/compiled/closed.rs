@@ -149,8 +149,8 @@ const KINDS: [(&str, usize); 8] = [
     ("fixed", 7),
 ];
 
-/// Hinges one after the other, closed where they stand.
-fn skew(kind: &str, count: usize) -> String {
+/// Hinges one after the other, closed where they stand, on a body.
+fn skew(base: &str, kind: &str, count: usize) -> String {
     let mut pose = Pose::identity();
     let mut text = String::new();
     for n in 0..count {
@@ -159,7 +159,7 @@ fn skew(kind: &str, count: usize) -> String {
         let position = Vector3::new(0.3, 0.1 * (2.0 * x).cos(), 0.15 - 0.05 * x);
         pose = pose.compose(&Pose::new(so3::exp(&turn), position));
         let parent = match n {
-            0 => String::from("world"),
+            0 => base.to_owned(),
             _ => format!("link {n}"),
         };
         let keys = format!(
@@ -190,11 +190,37 @@ fn skew(kind: &str, count: usize) -> String {
     };
     _ = write!(
         text,
-        "[[loop]]\nname = \"closed\"\ntype = \"{kind}\"\npredecessor = {{ body = \"link {count}\", {} }}\nsuccessor = {{ body = \"world\", {} }}\n",
+        "[[loop]]\nname = \"closed\"\ntype = \"{kind}\"\npredecessor = {{ body = \"link {count}\", {} }}\nsuccessor = {{ body = \"{base}\", {} }}\n",
         frame(&end),
         frame(&closed)
     );
     text
+}
+
+/// A body that moves freely, whose frame is not that of its joint.
+const OFFSET_BASE: &str = "[[body]]\nname = \"base\"\nparent = \"world\"\nmass = 1.9\njoint = { type = \"free\" }\n\
+    inertia_xx_yy_zz_xy_xz_yz = [0.1, 0.12, 0.15, 0.0, 0.0, 0.0]\nbody_at.position = [0.2, 0.3, 0.1]\n";
+
+/// Joints, and those that follow them.
+const MIMICS: [[&str; 2]; 4] = [
+    ["prismatic", "revolute"],
+    ["prismatic", "prismatic"],
+    ["revolute", "prismatic"],
+    ["revolute", "revolute"],
+];
+
+/// A joint on a base with an offset, and one on its body that follows it and stands turned, with a body on that.
+fn mimic([leader, follower]: [&str; 2]) -> String {
+    let turned = "at = { rotation_vector = [0.86, -1.93, 0.87], position = [0.5, 0.6, 0.7] }\n";
+    OFFSET_BASE.to_owned()
+        + &body("first", "base", leader, "at.position = [0.1, -0.2, 0.3]\n")
+        + &body(
+            "second",
+            "first",
+            follower,
+            &format!("{turned}mimic = {{ joint = \"first\", multiplier = 0.7 }}\n"),
+        )
+        + &body("third", "second", "revolute", turned)
 }
 
 /// All of them.
@@ -210,7 +236,15 @@ pub fn cases() -> Vec<Case> {
         }
     }
     for (kind, count) in KINDS {
-        cases.push(of_text(kind, &skew(kind, count)));
+        cases.push(of_text(kind, &skew("world", kind, count)));
+    }
+    cases.extend(MIMICS.into_iter().map(|kinds| {
+        let [leader, follower] = kinds;
+        of_text(&format!("{follower} mimics {leader}"), &mimic(kinds))
+    }));
+    for (kind, count) in KINDS {
+        let text = OFFSET_BASE.to_owned() + &skew("base", kind, count);
+        cases.push(of_text(&format!("{kind} on a base with an offset"), &text));
     }
     cases
 }
