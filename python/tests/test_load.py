@@ -21,6 +21,31 @@ def test_paths_and_texts_give_the_same():
     assert hamel.load(scene.read_text()).joints == hamel.load(scene).joints
 
 
+def test_robots_in_mjcf_are_read():
+    robot = hamel.load(ROOT / "tests/data/mjcf/pendulum.xml")
+    assert robot.sizes.speeds == len(robot.joints) == 1
+    # The rates that MuJoCo finds are compared in the tests of Rust; here it is enough that it falls.
+    q = robot.configuration([0.3])
+    assert np.isfinite(robot.forward_dynamics(q, [0.0], [0.0])).all()
+
+
+def test_what_stands_beside_a_robot_is_read(tmp_path):
+    link = '<link name="{}"><inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    names = ("base", "crank", "coupler", "rocker")
+    hinge = '<joint name="{0}" type="continuous"><parent link="{1}"/><child link="{2}"/><origin xyz="{3} 0 0"/><axis xyz="0 0 1"/></joint>'
+    joints = (("a", "base", "crank", 0.0), ("b", "crank", "coupler", 0.12), ("c", "base", "rocker", 0.3))
+    frames = '<link name="end_1"/><link name="end_2"/>' + "".join(
+        f'<joint name="{name}" type="fixed"><parent link="{parent}"/><child link="{name}"/><origin xyz="{x} 0 0"/></joint>'
+        for name, parent, x in (("end_1", "coupler", 0.35), ("end_2", "rocker", 0.25))
+    )
+    text = "".join(link.format(name) for name in names) + "".join(hinge.format(*joint) for joint in joints) + frames
+    path = tmp_path / "four_bar.urdf"
+    path.write_text(f'<robot name="four_bar">{text}</robot>')
+    assert hamel.load(path).sizes.speeds == 3
+    (tmp_path / "four_bar.yaml").write_text("closed_loop: [[end_1, end_2]]\ntype: [3d]\nname_mot: [a]\n")
+    assert hamel.load(path).sizes.speeds == 1
+
+
 def test_names_sizes_and_limits(panda):
     assert panda.name == "panda"
     assert panda.joints == tuple(f"panda_joint{i}" for i in range(1, 8))
