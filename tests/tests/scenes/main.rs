@@ -5,6 +5,7 @@ mod control;
 mod coupled_scenes;
 mod elastic;
 mod estimates;
+mod extreme;
 mod formats;
 mod forms_agree;
 mod fuzz_scenes;

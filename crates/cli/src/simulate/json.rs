@@ -188,6 +188,8 @@ mod tests {
             form: "lagrangian",
             method: "rk4",
             reason: None,
+            arithmetic: "doubles",
+            arithmetic_reason: None,
             accuracy: None,
             method_changes: &[],
             unresolved: None,
