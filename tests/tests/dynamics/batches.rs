@@ -250,12 +250,12 @@ fn a_batch_is_its_states_one_by_one_at_every_level() {
             let batch = Batch::at(subject.equations, level).expect("it is available");
             let found = states.run(&batch);
             for (found, expected) in found.iter().zip(&expected) {
-                for state in 0..states.count {
+                for (state, condition) in conditions.iter().enumerate() {
                     let row = state * found.width..(state + 1) * found.width;
                     let (scene, name) = (subject.equations.scene, found.name);
                     let what = format!("{scene}, {name}, {level:?}, state {state}");
                     let (found, expected) = (&found.rows[row.clone()], &expected.rows[row]);
-                    let bound = bound(name, conditions[state]);
+                    let bound = bound(name, *condition);
                     assert_close(found, expected, bound, &what);
                 }
             }
