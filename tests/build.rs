@@ -60,8 +60,11 @@ fn main() -> Result<(), Error> {
         "../scenes/report/chain_8.toml",
         [Kind::ForwardDerivatives, Kind::InverseMassMatrix],
     )
-    .lanes()
     .compile()?;
+    compiled("../scenes/report/chain_8.toml", [Kind::InverseMassMatrix])
+        .name("chain_8_in_lanes")
+        .lanes()
+        .compile()?;
     compiled(
         "data/scenes/ball_chain.toml",
         [Kind::ForwardDynamics, Kind::InverseDynamics],

@@ -21,9 +21,25 @@ use hamel_runtime::unrolled;
 pub const LANES: usize = 8;
 
 /// A function of one state for any scalar: Q, v̄ and inputs in, `R` results out. Its code must be inlined into `value`.
+///
+/// LLVM takes no loop with more than 250 places in memory for SIMD code: functions with more results come in parts, one after the other, each of which computes what it needs.
 pub trait OfState<const Q: usize, const V: usize, const U: usize, const R: usize> {
+    /// The parts after this one: `()` where there are none.
+    type Rest: OfState<Q, V, U, R>;
+
+    /// Whether it is no part.
+    const IS_NONE: bool = false;
+
     /// Puts each result in its place.
     fn value<T: Scalar>(q: &[T; Q], v: &[T; V], u: &[T; U], put: impl FnMut(usize, T));
+}
+
+impl<const Q: usize, const V: usize, const U: usize, const R: usize> OfState<Q, V, U, R> for () {
+    type Rest = ();
+    const IS_NONE: bool = true;
+
+    #[inline(always)]
+    fn value<T: Scalar>(_: &[T; Q], _: &[T; V], _: &[T; U], _: impl FnMut(usize, T)) {}
 }
 
 /// A function whose results loops over pairs of joints make ([`Pairs`](super::Pairs)) of the numbers that its [`OfState`] leaves.
@@ -317,6 +333,9 @@ where
                 #[inline(always)]
                 |place, result: Lane<FUSED>| results[place].0[lane] = result.0,
             );
+        }
+        if !<F::Rest as OfState<Q, V, U, R>>::IS_NONE {
+            Loop::<F::Rest, FUSED>::eight(q, v, u, results);
         }
     }
 }

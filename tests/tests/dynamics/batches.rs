@@ -6,7 +6,7 @@ use hamel::compiled::{Batch, Entry, Equations, InLanes, LANES, Lanes, Level};
 use hamel::dynamics::{Dynamics, MassMatrix, Recursive};
 use hamel::mechanism::Mechanism;
 use hamel_scene::Scene;
-use hamel_tests::emitted::{chain_8, loops, plate_cart_arm as module};
+use hamel_tests::emitted::{chain_8_in_lanes, loops, plate_cart_arm as module};
 use hamel_tests::{random, scenes};
 use rand::SeedableRng;
 use std::path::Path;
@@ -32,7 +32,7 @@ fn subjects() -> [Subject; 3] {
     static ONE_BY_ONE: [Equations; 3] = [
         one_by_one(module::EQUATIONS),
         one_by_one(loops::EQUATIONS),
-        one_by_one(chain_8::EQUATIONS),
+        one_by_one(chain_8_in_lanes::EQUATIONS),
     ];
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let closed = Scene::load(
@@ -52,7 +52,7 @@ fn subjects() -> [Subject; 3] {
             mechanism: closed.mechanism,
         },
         Subject {
-            equations: &chain_8::EQUATIONS,
+            equations: &chain_8_in_lanes::EQUATIONS,
             one_by_one: &ONE_BY_ONE[2],
             mechanism: scenes::load("report/chain_8").mechanism,
         },

@@ -110,8 +110,8 @@ impl Pairs<'_> {
             let mut own: [T; N] = block(rows, place);
             for &k in self.below[i] {
                 if k < wanted && self.is_filled(k, from, N) {
-                    let other = &rows[k * width + from..];
-                    less::<T, FUSED, N>(&mut own, factors[k * size + i], other);
+                    let other = block(rows, k * width + from);
+                    less::<T, FUSED, N>(&mut own, factors[k * size + i], &other);
                 }
             }
             rows[place..place + N].copy_from_slice(&own);
@@ -122,8 +122,8 @@ impl Pairs<'_> {
             let mut own: [T; N] = block(rows, place).map(|entry| entry.times(inverse));
             let mut next = self.above[k];
             while let Some(i) = next {
-                let other = &rows[i * width + from..];
-                less::<T, FUSED, N>(&mut own, factors[k * size + i], other);
+                let other = block(rows, i * width + from);
+                less::<T, FUSED, N>(&mut own, factors[k * size + i], &other);
                 next = self.above[i];
             }
             rows[place..place + N].copy_from_slice(&own);
@@ -154,7 +154,7 @@ fn block<T: Number, const N: usize>(rows: &[T], place: usize) -> [T; N] {
 }
 
 #[inline(always)]
-fn less<T: Number, const FUSED: bool, const N: usize>(sums: &mut [T; N], factor: T, from: &[T]) {
+fn less<T: Number, const FUSED: bool, const N: usize>(sums: &mut [T; N], factor: T, from: &[T; N]) {
     let factor = factor.negative();
     for (sum, &other) in sums.iter_mut().zip(from) {
         *sum = factor.times_plus::<FUSED>(other, *sum);

@@ -287,7 +287,9 @@ pub fn compile_in_lanes(model: &Model, kind: Kind) -> Result<Function, TooLong> 
     let function = compile_with(model, &prune(model, Pruning::ALL), kind, Loops::Pairs).function;
     let paired = function.pairs.as_ref();
     let work = paired.map_or(0, |pairs| function.outputs.len() + pairs.room());
-    let (operations, numbers) = (function.written(), function.results() + work);
+    let parts = function.parts().into_iter();
+    let operations = parts.map(|(_, part)| part.written()).sum();
+    let numbers = function.results() + work;
     match operations <= LONGEST_IN_LANES && numbers <= WIDEST_IN_LANES {
         true => Ok(function),
         false => Err(TooLong {
