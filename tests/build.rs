@@ -61,10 +61,6 @@ fn main() -> Result<(), Error> {
         [Kind::ForwardDerivatives, Kind::InverseMassMatrix],
     )
     .compile()?;
-    compiled("../scenes/report/chain_8.toml", [Kind::InverseMassMatrix])
-        .name("chain_8_in_lanes")
-        .lanes()
-        .compile()?;
     compiled(
         "data/scenes/ball_chain.toml",
         [Kind::ForwardDynamics, Kind::InverseDynamics],

@@ -14,22 +14,11 @@ fn forward<T: Scalar>(q: &[T; 2], v: &[T; 2], u: &[T; 3]) -> [T; 2] {
 
 struct Forward;
 impl OfState<2, 2, 3, 2> for Forward {
-    type Rest = Second;
-
     #[inline(always)]
     fn value<T: Scalar>(q: &[T; 2], v: &[T; 2], u: &[T; 3], mut put: impl FnMut(usize, T)) {
-        put(0, forward(q, v, u)[0]);
-    }
-}
-
-/// The second of its parts.
-struct Second;
-impl OfState<2, 2, 3, 2> for Second {
-    type Rest = ();
-
-    #[inline(always)]
-    fn value<T: Scalar>(q: &[T; 2], v: &[T; 2], u: &[T; 3], mut put: impl FnMut(usize, T)) {
-        put(1, forward(q, v, u)[1]);
+        let [first, second] = forward(q, v, u);
+        put(0, first);
+        put(1, second);
     }
 }
 

@@ -13,10 +13,6 @@ pub mod ball_chain {
 pub mod chain_8 {
     include!(concat!(env!("OUT_DIR"), "/chain_8.rs"));
 }
-/// M̄⁻¹ of the same, with lanes.
-pub mod chain_8_in_lanes {
-    include!(concat!(env!("OUT_DIR"), "/chain_8_in_lanes.rs"));
-}
 /// Both forms of `scenes/report/crank_rocker.toml`: a loop.
 pub mod crank_rocker {
     include!(concat!(env!("OUT_DIR"), "/crank_rocker.rs"));

@@ -24,9 +24,6 @@ use hamel_codegen::formula::names::NameSet;
 use lines::{Formula, Line};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Places in memory that a loop over states may have: LLVM takes 250 of them apart.
-const PLACES: usize = 240;
-
 /// One function to be written.
 #[derive(Clone, Debug)]
 pub struct Function {
@@ -63,24 +60,6 @@ impl Function {
     /// Its operations without those of loops over pairs of joints.
     fn operations_of_bodies(&self) -> Operations {
         Operations::of(&self.graph, &self.outputs)
-    }
-
-    /// Its parts in lanes: each leaves some of the outputs, from a place on, so few that compilers make SIMD code of a loop over states.
-    pub fn parts(&self) -> Vec<(usize, Self)> {
-        let read: usize = self.arguments.iter().map(|(_, size)| size).sum();
-        let most = PLACES.saturating_sub(read).max(PLACES / 4);
-        let parts = self.outputs.chunks(most).enumerate();
-        let part = |(number, outputs): (usize, &[Value])| {
-            let outputs = outputs.to_vec();
-            (
-                number * most,
-                Self {
-                    outputs,
-                    ..self.clone()
-                },
-            )
-        };
-        parts.map(part).collect()
     }
 
     /// How many results it has.

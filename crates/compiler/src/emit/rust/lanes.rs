@@ -1,60 +1,19 @@
 //! Functions of many states side by side: types whose body a loop over states holds.
 
+use super::RESERVED;
 use super::lines::{line, value};
-use super::{RESERVED, pairs};
 use crate::emit::{Function, Lowered};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
-/// The types of a function's parts, which put each result in its place.
+/// The type of a function, which puts each result in its place.
 pub fn item(function: &Function, bodies: &[String]) -> TokenStream {
-    let parts = function.parts();
-    let count = parts.len();
-    let parts = parts.iter().enumerate();
-    let parts = parts.map(|(number, (start, of))| {
-        let rest = match number + 1 < count {
-            true => {
-                let rest = part(function, number + 1);
-                quote! { #rest }
-            }
-            false => quote! { () },
-        };
-        of_state(
-            function,
-            (&part(function, number), &rest),
-            (*start, of),
-            bodies,
-        )
-    });
     let kind = kind(function);
-    let by_pairs = function.pairs.as_ref().map(|tables| {
-        let name = format!("{}_of_many", function.name);
-        let (item, name) = (pairs::item(&name, tables), pairs::name(&name));
-        quote! {
-            #item
-            impl ::hamel::compiled::OfPairs for #kind {
-                #[inline(always)]
-                fn rows<N: ::hamel::compiled::Number, const FUSED: bool>(work: &[N], matrix: &mut [N], rows: &mut [N]) {
-                    #name::<N, FUSED>(work, matrix, rows);
-                }
-            }
-        }
-    });
-    quote! { #(#parts)* #by_pairs }
-}
-
-/// One part, whose results begin at a place.
-fn of_state(
-    function: &Function,
-    (name, rest): (&Ident, &TokenStream),
-    (start, part): (usize, &Function),
-    bodies: &[String],
-) -> TokenStream {
-    let lowered = Lowered::new(part, bodies, &RESERVED);
+    let lowered = Lowered::new(function, bodies, &RESERVED);
     let lines = lowered.lines.iter().map(line);
     let outputs = lowered.outputs.iter().flatten().enumerate();
     let outputs = outputs.map(|(place, output)| {
-        let (place, output) = (Literal::usize_unsuffixed(start + place), value(output));
+        let (place, output) = (Literal::usize_unsuffixed(place), value(output));
         quote! { put(#place, #output); }
     });
     let sizes = sizes(function);
@@ -72,9 +31,8 @@ fn of_state(
     let docs = format!(" `{}` of many states.", function.name);
     quote! {
         #[doc = #docs]
-        struct #name;
-        impl ::hamel::compiled::OfState<#(#sizes,)* #count> for #name {
-            type Rest = #rest;
+        struct #kind;
+        impl ::hamel::compiled::OfState<#(#sizes,)* #count> for #kind {
             #[inline(always)]
             #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
             fn value<T: Scalar>(#(#parameters,)* mut put: impl FnMut(usize, T)) {
@@ -90,16 +48,7 @@ fn of_state(
 pub fn many_states(function: &Function) -> TokenStream {
     let (kind, sizes) = (kind(function), sizes(function));
     let results = Literal::usize_unsuffixed(function.results());
-    match &function.pairs {
-        None => quote! { ::hamel::compiled::many_states::<#kind, #(#sizes,)* #results> },
-        Some(tables) => {
-            let [work, room] =
-                [function.outputs.len(), tables.room()].map(Literal::usize_unsuffixed);
-            quote! {
-                ::hamel::compiled::many_paired::<#kind, #(#sizes,)* #results, #work, #room>
-            }
-        }
-    }
+    quote! { ::hamel::compiled::many_states::<#kind, #(#sizes,)* #results> }
 }
 
 /// Sizes of Q, v̄ and inputs; of a function of Q alone, Q stands in the places of the others.
@@ -116,12 +65,4 @@ fn kind(function: &Function) -> Ident {
         first.to_ascii_uppercase() + rest
     });
     Ident::new(&words.collect::<String>(), Span::call_site())
-}
-
-/// The name of a part: of the first that of the function.
-fn part(function: &Function, number: usize) -> Ident {
-    match number {
-        0 => kind(function),
-        number => format_ident!("{}{number}", kind(function)),
-    }
 }
