@@ -60,7 +60,6 @@ fn main() -> Result<(), Error> {
         "../scenes/report/chain_8.toml",
         [Kind::ForwardDerivatives, Kind::InverseMassMatrix],
     )
-    .lanes()
     .compile()?;
     compiled(
         "data/scenes/ball_chain.toml",

@@ -7,7 +7,6 @@
 
 use super::instructions::{Instructions, Plain, Work};
 use super::layout::{Lanes, Quantities, States};
-use super::number::Number;
 use super::transpose::{apart, side_by_side};
 use core::hint::black_box;
 use core::marker::PhantomData;
@@ -24,12 +23,6 @@ pub const LANES: usize = 8;
 pub trait OfState<const Q: usize, const V: usize, const U: usize, const R: usize> {
     /// Puts each result in its place.
     fn value<T: Scalar>(q: &[T; Q], v: &[T; V], u: &[T; U], put: impl FnMut(usize, T));
-}
-
-/// A function whose results loops over pairs of joints make ([`Pairs`](super::Pairs)) of the numbers that its [`OfState`] leaves.
-pub trait OfPairs {
-    /// The results by rows, of `work`; `matrix` has room for M̄ where it is solved with. Its code must be inlined.
-    fn rows<T: Number, const FUSED: bool>(work: &[T], matrix: &mut [T], rows: &mut [T]);
 }
 
 /// A function of many states at a level that the machine has; whether all results are finite.
@@ -83,58 +76,24 @@ pub fn many_states<F, const Q: usize, const V: usize, const U: usize, const R: u
 where
     F: OfState<Q, V, U, R>,
 {
-    at_level::<Loop<F, true>, Loop<F, BUILT_FUSED>, Q, V, U, R>(level, states)
-}
-
-/// The same of a function with loops over pairs of joints: `W` numbers of its bodies, `M` of M̄.
-pub fn many_paired<
-    F,
-    const Q: usize,
-    const V: usize,
-    const U: usize,
-    const R: usize,
-    const W: usize,
-    const M: usize,
->(
-    level: Level,
-    states: States<'_>,
-) -> bool
-where
-    F: OfState<Q, V, U, W> + OfPairs,
-{
-    at_level::<Paired<F, true, W, M>, Paired<F, BUILT_FUSED, W, M>, Q, V, U, R>(level, states)
-}
-
-/// Whether the build's own instructions fuse multiply–adds.
-const BUILT_FUSED: bool = cfg!(target_feature = "fma");
-
-/// `E` where the level has fused multiply–adds, `B` as the build has them.
-fn at_level<E, B, const Q: usize, const V: usize, const U: usize, const R: usize>(
-    level: Level,
-    states: States<'_>,
-) -> bool
-where
-    E: OfEight<Q, V, U, R>,
-    B: OfEight<Q, V, U, R>,
-{
     #[cfg(all(feature = "levels", target_arch = "x86_64"))]
     match level {
         Level::Baseline => {}
         Level::Avx2 => {
             if let Some(simd) = Detected::new().as_avx2() {
-                return at::<E, Q, V, U, R>(simd, states);
+                return at::<Loop<F, true>, Q, V, U, R>(simd, states);
             }
         }
         Level::Avx512 => {
             if let Some(simd) = Detected::new().as_avx512() {
-                return at::<E, Q, V, U, R>(simd, states);
+                return at::<Loop<F, true>, Q, V, U, R>(simd, states);
             }
         }
     }
     // There is but one.
     #[cfg(not(all(feature = "levels", target_arch = "x86_64")))]
-    let _ = (level, PhantomData::<E>);
-    at::<B, Q, V, U, R>(Plain, states)
+    let _ = level;
+    at::<Loop<F, { cfg!(target_feature = "fma") }>, Q, V, U, R>(Plain, states)
 }
 
 /// The same by instructions that the machine has.
@@ -310,50 +269,17 @@ where
             unrolled!(i in U {
                 state.2[i] = Lane(u[i].0[lane]);
             });
+            let mut value = [Lane::<FUSED>(0.0); R];
             F::value(
                 &state.0,
                 &state.1,
                 &state.2,
                 #[inline(always)]
-                |place, result: Lane<FUSED>| results[place].0[lane] = result.0,
+                |place, result| value[place] = result,
             );
+            unrolled!(i in R {
+                results[i].0[lane] = value[i].0;
+            });
         }
     }
-}
-
-/// `F` in a loop over states, and what loops over pairs of joints make of its numbers.
-struct Paired<F, const FUSED: bool, const W: usize, const M: usize>(PhantomData<F>);
-
-impl<
-    F,
-    const FUSED: bool,
-    const Q: usize,
-    const V: usize,
-    const U: usize,
-    const R: usize,
-    const W: usize,
-    const M: usize,
-> OfEight<Q, V, U, R> for Paired<F, FUSED, W, M>
-where
-    F: OfState<Q, V, U, W> + OfPairs,
-{
-    #[inline(always)]
-    fn eight(q: &[Lanes; Q], v: &[Lanes; V], u: &[Lanes; U], results: &mut [Lanes; R]) {
-        let (mut work, mut matrix) = ([Lanes::ZERO; W], [Lanes::ZERO; M]);
-        bodies::<Loop<F, FUSED>, Q, V, U, W>(q, v, u, &mut work);
-        F::rows::<Lanes, FUSED>(&work, &mut matrix, results);
-    }
-}
-
-/// As [`Groups`] takes them: by a parameter.
-#[inline(always)]
-fn bodies<E, const Q: usize, const V: usize, const U: usize, const W: usize>(
-    q: &[Lanes; Q],
-    v: &[Lanes; V],
-    u: &[Lanes; U],
-    work: &mut [Lanes; W],
-) where
-    E: OfEight<Q, V, U, W>,
-{
-    E::eight(q, v, u, work);
 }

@@ -17,7 +17,6 @@ mod entry;
 mod instructions;
 mod lanes;
 mod layout;
-mod number;
 mod pairs;
 mod transpose;
 #[cfg(feature = "alloc")]
@@ -27,9 +26,8 @@ mod tree;
 pub use batch::{Batch, BatchError};
 #[cfg(feature = "alloc")]
 pub use entry::Entry;
-pub use lanes::{LANES, Level, ManyStates, OfPairs, OfState, many_paired, many_states};
+pub use lanes::{LANES, Level, ManyStates, OfState, many_states};
 pub use layout::{Lanes, Quantities, States};
-pub use number::Number;
 pub use pairs::{Carrying, Pairing, Pairs};
 #[cfg(feature = "alloc")]
 pub use tree::{Compiled, CompiledError};

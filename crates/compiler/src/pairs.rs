@@ -92,7 +92,7 @@ impl Tables {
         let [rows, width] = self.size;
         let mut results = vec![0.0; rows * width];
         self.with_pairs(|pairs| {
-            pairs.right_hand_sides::<f64, false>(work, &mut results, width);
+            pairs.right_hand_sides(work, &mut results, width);
         });
         results
     }
@@ -103,13 +103,13 @@ impl Tables {
         let mut results = vec![0.0; rows * width];
         let mut matrix = vec![0.0; self.room()];
         self.with_pairs(|pairs| match self.product {
-            Product::Mass => pairs.mass::<f64, false>(work, &mut results),
+            Product::Mass => pairs.mass(work, &mut results),
             Product::InverseMass => {
-                pairs.inverse_mass::<f64, false>(work, &mut matrix, &mut results);
+                pairs.inverse_mass(work, &mut matrix, &mut results);
             }
-            Product::Inverse => pairs.inverse::<f64, false>(work, &mut results, width),
+            Product::Inverse => pairs.inverse(work, &mut results, width),
             Product::Forward => {
-                pairs.forward::<f64, false>(work, &mut matrix, &mut results, width);
+                pairs.forward(work, &mut matrix, &mut results, width);
             }
         });
         results

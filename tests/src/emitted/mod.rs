@@ -9,7 +9,7 @@ pub mod ankle {
 pub mod ball_chain {
     include!(concat!(env!("OUT_DIR"), "/ball_chain.rs"));
 }
-/// Derivatives and M̄⁻¹ of `scenes/report/chain_8.toml`, with lanes: loops over pairs of joints.
+/// Derivatives and M̄⁻¹ of `scenes/report/chain_8.toml`: loops over pairs of joints.
 pub mod chain_8 {
     include!(concat!(env!("OUT_DIR"), "/chain_8.rs"));
 }

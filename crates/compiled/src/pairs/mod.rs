@@ -10,7 +10,7 @@
 
 mod solution;
 
-use super::number::Number;
+use hamel_runtime::scalar::Scalar;
 
 /// A joint of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,96 +69,73 @@ const NINE: usize = 9;
 
 impl Pairs<'_> {
     /// M̄ by rows, from `work` that has six numbers for each speed alone.
-    #[inline(always)]
-    pub fn mass<T: Number, const FUSED: bool>(&self, work: &[T], matrix: &mut [T]) {
-        self.fill_mass::<T, FUSED>(work, matrix, |joint, speed| joint.shown + SIX * speed);
+    pub fn mass<T: Scalar>(&self, work: &[T], matrix: &mut [T]) {
+        self.fill_mass(work, matrix, |joint, speed| joint.shown + SIX * speed);
     }
 
     /// M̄⁻¹ by rows, from the same `work`; rows of rates that are given are 0. `matrix` has room for M̄, and then holds its factors.
-    #[inline(always)]
-    pub fn inverse_mass<T: Number, const FUSED: bool>(
-        &self,
-        work: &[T],
-        matrix: &mut [T],
-        rows: &mut [T],
-    ) {
+    pub fn inverse_mass<T: Scalar>(&self, work: &[T], matrix: &mut [T], rows: &mut [T]) {
         let size = self.above.len();
-        self.mass::<T, FUSED>(work, matrix);
-        rows.fill(T::from_f64(0.0));
+        self.mass(work, matrix);
+        rows.fill(T::zero());
         for speed in 0..size {
             let given = self.held.iter().any(|&[held, _]| held == speed);
-            rows[speed * size + speed] = T::from_f64(if given { 0.0 } else { 1.0 });
+            rows[speed * size + speed] = if given { T::zero() } else { T::one() };
         }
         self.fix(matrix);
-        self.factorise::<T, FUSED>(matrix);
-        self.solve::<T, FUSED>(matrix, rows, size);
+        self.factorise(matrix);
+        self.solve(matrix, rows, size);
     }
 
     /// Rows of derivatives of inverse dynamics, `width` numbers each: in all degrees of freedom, then in all speeds.
-    #[inline(always)]
-    pub fn inverse<T: Number, const FUSED: bool>(&self, work: &[T], rows: &mut [T], width: usize) {
+    pub fn inverse<T: Scalar>(&self, work: &[T], rows: &mut [T], width: usize) {
         let freedoms = width.saturating_sub(self.above.len());
-        rows.fill(T::from_f64(0.0));
-        self.fill_slopes::<T, FUSED>(work, rows, [width, freedoms]);
+        rows.fill(T::zero());
+        self.fill_slopes(work, rows, [width, freedoms]);
         add(self.entries, work, rows, width);
     }
 
     /// Rows of derivatives of forward dynamics, `width` numbers each: in all degrees of freedom, in all speeds, in all efforts, and the rates.
     /// `matrix` has room for M̄, and then holds its factors.
-    #[inline(always)]
-    pub fn forward<T: Number, const FUSED: bool>(
-        &self,
-        work: &[T],
-        matrix: &mut [T],
-        rows: &mut [T],
-        width: usize,
-    ) {
+    pub fn forward<T: Scalar>(&self, work: &[T], matrix: &mut [T], rows: &mut [T], width: usize) {
         let size = self.above.len();
         if size == 0 || width == 0 {
             return;
         }
-        let freedoms = self.right_hand_sides::<T, FUSED>(work, rows, width);
-        let zero = T::from_f64(0.0);
+        let freedoms = self.right_hand_sides(work, rows, width);
         for row in rows.chunks_exact_mut(width) {
             for entry in &mut row[..freedoms + size] {
                 // Zeros stay positive, so that it does not show whether they are skipped.
-                *entry = zero.plus(entry.negative());
+                *entry = T::zero() - *entry;
             }
         }
-        self.fill_mass::<T, FUSED>(work, matrix, |joint, speed| {
+        self.fill_mass(work, matrix, |joint, speed| {
             let units = joint.freedoms[1] + joint.speeds[1];
             joint.shown + SIX * units + NINE * speed
         });
         self.hold(matrix, rows, width);
-        self.factorise::<T, FUSED>(matrix);
-        self.solve::<T, FUSED>(matrix, rows, width);
+        self.factorise(matrix);
+        self.solve(matrix, rows, width);
         add(self.followed, work, rows, width);
     }
 
     /// What forward dynamics is solved for: derivatives of inverse dynamics, S̄ᵀ and the rates; the number of degrees of freedom.
-    #[inline(always)]
-    pub fn right_hand_sides<T: Number, const FUSED: bool>(
-        &self,
-        work: &[T],
-        rows: &mut [T],
-        width: usize,
-    ) -> usize {
+    pub fn right_hand_sides<T: Scalar>(&self, work: &[T], rows: &mut [T], width: usize) -> usize {
         let freedoms = width.saturating_sub(self.above.len() + 1) / 2;
-        rows.fill(T::from_f64(0.0));
-        self.fill_slopes::<T, FUSED>(work, rows, [width, freedoms]);
+        rows.fill(T::zero());
+        self.fill_slopes(work, rows, [width, freedoms]);
         add(self.entries, work, rows, width);
         freedoms
     }
 
-    #[inline(always)]
-    fn fill_mass<T: Number, const FUSED: bool>(
+    fn fill_mass<T: Scalar>(
         &self,
         work: &[T],
         matrix: &mut [T],
         momentum: impl Fn(&Pairing, usize) -> usize,
     ) {
         let size = self.above.len();
-        matrix.fill(T::from_f64(0.0));
+        matrix.fill(T::zero());
         for joint in self.joints {
             let mut carrier = joint.parent;
             while let Some(body) = carrier {
@@ -172,7 +149,7 @@ impl Pairs<'_> {
                     let momentum = &work[momentum(joint, speed)..][..SIX];
                     let row = joint.speeds[0] + speed;
                     for k in 0..others {
-                        let entry = dot::<T, FUSED>(&work[seen + SIX * k..][..SIX], momentum);
+                        let entry = dot(&work[seen + SIX * k..][..SIX], momentum);
                         matrix[row * size + other + k] = entry;
                         matrix[(other + k) * size + row] = entry;
                     }
@@ -183,13 +160,7 @@ impl Pairs<'_> {
         add(self.masses, work, matrix, size);
     }
 
-    #[inline(always)]
-    fn fill_slopes<T: Number, const FUSED: bool>(
-        &self,
-        work: &[T],
-        rows: &mut [T],
-        [width, freedoms]: [usize; 2],
-    ) {
+    fn fill_slopes<T: Scalar>(&self, work: &[T], rows: &mut [T], [width, freedoms]: [usize; 2]) {
         for joint in self.joints {
             let units = joint.freedoms[1] + joint.speeds[1];
             let mut carrier = joint.parent;
@@ -205,7 +176,7 @@ impl Pairs<'_> {
                     let row = (above.speeds[0] + k) * width;
                     for unit in 0..units {
                         let raised = &work[joint.shown + SIX * unit..][..SIX];
-                        rows[row + joint.place(unit, freedoms)] = dot::<T, FUSED>(column, raised);
+                        rows[row + joint.place(unit, freedoms)] = dot(column, raised);
                     }
                 }
                 let (seen, shown) = (seen + SIX * above.speeds[1], joint.shown + SIX * units);
@@ -214,8 +185,7 @@ impl Pairs<'_> {
                     let row = (joint.speeds[0] + speed) * width;
                     for unit in 0..above.freedoms[1] + above.speeds[1] {
                         let variation = &work[seen + NINE * unit..][..NINE];
-                        rows[row + above.place(unit, freedoms)] =
-                            dot::<T, FUSED>(variation, momentum);
+                        rows[row + above.place(unit, freedoms)] = dot(variation, momentum);
                     }
                 }
                 carrier = parent;
@@ -236,18 +206,18 @@ impl Pairing {
 }
 
 #[inline(always)]
-fn dot<T: Number, const FUSED: bool>(a: &[T], b: &[T]) -> T {
-    let mut sum = a[0].times(b[0]);
+fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
+    let mut sum = a[0] * b[0];
     for (&a, &b) in a[1..].iter().zip(&b[1..]) {
-        sum = a.times_plus::<FUSED>(b, sum);
+        sum = a.mul_add(b, sum);
     }
     sum
 }
 
 #[inline(always)]
-fn add<T: Number>(entries: &[[usize; 3]], work: &[T], rows: &mut [T], width: usize) {
+fn add<T: Scalar>(entries: &[[usize; 3]], work: &[T], rows: &mut [T], width: usize) {
     for &[row, column, place] in entries {
         let entry = &mut rows[row * width + column];
-        *entry = entry.plus(work[place]);
+        *entry += work[place];
     }
 }

@@ -1,55 +1,52 @@
 //! Solutions with M̄, factorised along the tree.
 
-use super::super::number::Number;
 use super::Pairs;
+use hamel_runtime::scalar::Scalar;
 
 impl Pairs<'_> {
     /// Makes given rates known: what they take of others moves to the right-hand side.
-    #[inline(always)]
-    pub(super) fn hold<T: Number>(&self, matrix: &mut [T], rows: &mut [T], width: usize) {
+    pub(super) fn hold<T: Scalar>(&self, matrix: &mut [T], rows: &mut [T], width: usize) {
         let size = self.above.len();
         for &[speed, column] in self.held {
             for row in 0..size {
-                rows[row * width + column] = matrix[row * size + speed].negative();
+                rows[row * width + column] = -matrix[row * size + speed];
             }
         }
         for &[speed, _] in self.held {
-            rows[speed * width..][..width - 1].fill(T::from_f64(0.0));
+            rows[speed * width..][..width - 1].fill(T::zero());
         }
         for &[speed, column] in self.held {
-            rows[speed * width + column] = T::from_f64(1.0);
+            rows[speed * width + column] = T::one();
         }
         self.fix(matrix);
     }
 
     /// Rates that are given depend on nothing.
-    #[inline(always)]
-    pub(super) fn fix<T: Number>(&self, matrix: &mut [T]) {
+    pub(super) fn fix<T: Scalar>(&self, matrix: &mut [T]) {
         let size = self.above.len();
         for &[speed, _] in self.held {
             for other in 0..size {
-                matrix[speed * size + other] = T::from_f64(0.0);
-                matrix[other * size + speed] = T::from_f64(0.0);
+                matrix[speed * size + other] = T::zero();
+                matrix[other * size + speed] = T::zero();
             }
-            matrix[speed * size + speed] = T::from_f64(1.0);
+            matrix[speed * size + speed] = T::one();
         }
     }
 
     /// `M̄ = LᵀDL`, which fills no zero of the tree: L in the lower triangle, D⁻¹ on the diagonal.
-    #[inline(always)]
-    pub(super) fn factorise<T: Number, const FUSED: bool>(&self, matrix: &mut [T]) {
+    pub(super) fn factorise<T: Scalar>(&self, matrix: &mut [T]) {
         let size = self.above.len();
         for k in (0..size).rev() {
             let (before, own) = matrix.split_at_mut(k * size);
-            let inverse = T::from_f64(1.0).over(own[k]);
+            let inverse = T::one() / own[k];
             let mut next = self.above[k];
             while let Some(i) = next {
-                let factor = own[i].times(inverse);
-                let less = factor.negative();
+                let factor = own[i] * inverse;
+                let less = -factor;
                 let row = &mut before[i * size..][..size];
                 let mut other = next;
                 while let Some(j) = other {
-                    row[j] = less.times_plus::<FUSED>(own[j], row[j]);
+                    row[j] = less.mul_add(own[j], row[j]);
                     other = self.above[j];
                 }
                 own[i] = factor;
@@ -60,22 +57,16 @@ impl Pairs<'_> {
     }
 
     /// `M̄⁻¹` times the columns of the tables, as many at once as registers take.
-    #[inline(always)]
-    pub(super) fn solve<T: Number, const FUSED: bool>(
-        &self,
-        factors: &[T],
-        rows: &mut [T],
-        width: usize,
-    ) {
+    pub(super) fn solve<T: Scalar>(&self, factors: &[T], rows: &mut [T], width: usize) {
         for &[from, to] in self.columns {
             let mut from = from;
             while from < to {
-                from += match (to - from).min(T::COLUMNS) {
-                    32.. => self.solve_block::<T, FUSED, 32>(factors, rows, [width, from]),
-                    16.. => self.solve_block::<T, FUSED, 16>(factors, rows, [width, from]),
-                    8.. => self.solve_block::<T, FUSED, 8>(factors, rows, [width, from]),
-                    4.. => self.solve_block::<T, FUSED, 4>(factors, rows, [width, from]),
-                    _ => self.solve_block::<T, FUSED, 1>(factors, rows, [width, from]),
+                from += match to - from {
+                    32.. => self.solve_block::<T, 32>(factors, rows, [width, from]),
+                    16.. => self.solve_block::<T, 16>(factors, rows, [width, from]),
+                    8.. => self.solve_block::<T, 8>(factors, rows, [width, from]),
+                    4.. => self.solve_block::<T, 4>(factors, rows, [width, from]),
+                    _ => self.solve_block::<T, 1>(factors, rows, [width, from]),
                 };
             }
         }
@@ -90,8 +81,7 @@ impl Pairs<'_> {
     }
 
     /// The same of columns beside each other; how many these are.
-    #[inline(always)]
-    fn solve_block<T: Number, const FUSED: bool, const N: usize>(
+    fn solve_block<T: Scalar, const N: usize>(
         &self,
         factors: &[T],
         rows: &mut [T],
@@ -110,8 +100,8 @@ impl Pairs<'_> {
             let mut own: [T; N] = block(rows, place);
             for &k in self.below[i] {
                 if k < wanted && self.is_filled(k, from, N) {
-                    let other = &rows[k * width + from..];
-                    less::<T, FUSED, N>(&mut own, factors[k * size + i], other);
+                    let other = block(rows, k * width + from);
+                    less(&mut own, factors[k * size + i], &other);
                 }
             }
             rows[place..place + N].copy_from_slice(&own);
@@ -119,11 +109,11 @@ impl Pairs<'_> {
         for k in 0..wanted {
             let inverse = factors[k * size + k];
             let place = k * width + from;
-            let mut own: [T; N] = block(rows, place).map(|entry| entry.times(inverse));
+            let mut own: [T; N] = block(rows, place).map(|entry| entry * inverse);
             let mut next = self.above[k];
             while let Some(i) = next {
-                let other = &rows[i * width + from..];
-                less::<T, FUSED, N>(&mut own, factors[k * size + i], other);
+                let other = block(rows, i * width + from);
+                less(&mut own, factors[k * size + i], &other);
                 next = self.above[i];
             }
             rows[place..place + N].copy_from_slice(&own);
@@ -148,15 +138,15 @@ impl Pairs<'_> {
 const WORD: usize = u64::BITS as usize;
 
 #[inline(always)]
-fn block<T: Number, const N: usize>(rows: &[T], place: usize) -> [T; N] {
+fn block<T: Scalar, const N: usize>(rows: &[T], place: usize) -> [T; N] {
     let found = rows[place..].first_chunk();
-    found.copied().unwrap_or([T::from_f64(0.0); N])
+    found.copied().unwrap_or([T::zero(); N])
 }
 
 #[inline(always)]
-fn less<T: Number, const FUSED: bool, const N: usize>(sums: &mut [T; N], factor: T, from: &[T]) {
-    let factor = factor.negative();
+fn less<T: Scalar, const N: usize>(sums: &mut [T; N], factor: T, from: &[T; N]) {
+    let factor = -factor;
     for (sum, &other) in sums.iter_mut().zip(from) {
-        *sum = factor.times_plus::<FUSED>(other, *sum);
+        *sum = factor.mul_add(other, *sum);
     }
 }

@@ -109,9 +109,9 @@ impl Kind {
     }
 
     /// Operations from which on pairs of joints are left to loops.
-    const fn paired(self, loops: Loops) -> usize {
-        match (self, loops) {
-            (Self::InverseMassMatrix, _) | (_, Loops::Pairs) => PAIRED_SOON,
+    const fn paired(self) -> usize {
+        match self {
+            Self::InverseMassMatrix => PAIRED_SOON,
             _ => PAIRED,
         }
     }
@@ -176,14 +176,15 @@ const LOOPED: usize = 10_000;
 /// dynamics of g1 (22 900) 0.56 times; and the Rust compiler took both in seconds.
 const PAIRED: usize = 30_000;
 
-/// The same of M̄⁻¹, most of which is solving, and of functions in lanes, whose loops work on whole registers whatever the robot.
+/// The same of M̄⁻¹, most of which is solving.
 const PAIRED_SOON: usize = 10_000;
 
 /// Operations that a function in lanes may have: the Rust compiler takes them once for each level of instructions.
-const LONGEST_IN_LANES: usize = 40_000;
+const LONGEST_IN_LANES: usize = 30_000;
 
-/// Numbers that a function in lanes may hold beside its arguments, on the stack eight of each: 512 KiB.
-const WIDEST_IN_LANES: usize = 8192;
+/// Arguments and results of a function in lanes together: of a loop with more than 250 places in memory LLVM does not see that they are apart, and makes no SIMD
+/// code. The derivatives of anymal (18 degrees of freedom) took 1.6 times as long so as one by one.
+const WIDEST_IN_LANES: usize = 240;
 
 /// Operations, those of loops once, that a function may have, so that no module keeps the Rust compiler busy without end: straight-line functions
 /// of 31 000 operations already took it more than 100 s.
@@ -198,7 +199,7 @@ pub struct TooLong {
     pub in_lanes: bool,
     /// At least so many operations would be written.
     pub operations: usize,
-    /// So many numbers would be held in lanes.
+    /// Arguments and results, where it is left out in lanes.
     pub numbers: usize,
 }
 
@@ -217,7 +218,7 @@ impl std::fmt::Display for TooLong {
             ),
             true => write!(
                 f,
-                "{name} in lanes would have {operations} operations and {numbers} numbers, more than {LONGEST_IN_LANES} or \
+                "{name} in lanes would have {operations} operations on {numbers} arguments and results, more than {LONGEST_IN_LANES} or \
                  {WIDEST_IN_LANES}: a batch takes its states one by one"
             ),
         }
@@ -234,8 +235,6 @@ pub enum Loops {
     Long,
     /// Wherever there are any.
     Always,
-    /// Over pairs of joints alone, in functions of more than 10 000 operations: what many states side by side can take.
-    Pairs,
 }
 
 /// A recursion with its name.
@@ -279,23 +278,28 @@ pub fn compile(model: &Model, kind: Kind, loops: Loops) -> Result<Chosen, TooLon
     }
 }
 
-/// The function for many states side by side, whose body has no loops but those over pairs of joints.
+/// The function for many states side by side, which has no loops.
 ///
 /// # Errors
-/// More operations than the Rust compiler takes in lanes within a minute, or more numbers than a stack should hold eight of each.
+/// More operations than the Rust compiler takes in lanes within a minute, or more numbers than become SIMD code.
 pub fn compile_in_lanes(model: &Model, kind: Kind) -> Result<Function, TooLong> {
-    let function = compile_with(model, &prune(model, Pruning::ALL), kind, Loops::Pairs).function;
-    let paired = function.pairs.as_ref();
-    let work = paired.map_or(0, |pairs| function.outputs.len() + pairs.room());
-    let (operations, numbers) = (function.written(), function.results() + work);
+    let refused = |operations, numbers| TooLong {
+        kind,
+        in_lanes: true,
+        operations,
+        numbers,
+    };
+    let least = least(model, kind);
+    if least > LONGEST_IN_LANES {
+        return Err(refused(least, 0));
+    }
+    let links = prune(model, Pruning::ALL);
+    let function = compile_with(model, &links, kind, Loops::Never).function;
+    let read: usize = function.arguments.iter().map(|(_, size)| size).sum();
+    let (operations, numbers) = (function.written(), read + function.results());
     match operations <= LONGEST_IN_LANES && numbers <= WIDEST_IN_LANES {
         true => Ok(function),
-        false => Err(TooLong {
-            kind,
-            in_lanes: true,
-            operations,
-            numbers,
-        }),
+        false => Err(refused(operations, numbers)),
     }
 }
 
@@ -341,7 +345,7 @@ pub fn compile_with(model: &Model, links: &[Link], kind: Kind, loops: Loops) -> 
     let mut tried = vec![];
     if loops != Loops::Always && least(model, kind) <= LONGEST {
         let straight = body_by_body(model, links, kind, Loops::Never);
-        if straight.function.operations().flops() < kind.paired(loops) {
+        if straight.function.operations().flops() < kind.paired() {
             return straight;
         }
         tried.extend(straight.tried);
@@ -388,7 +392,7 @@ fn pair_by_pair(
     let ((outputs, tables), graph) = record(numbers);
     let straight = paired(outputs, graph, None, tables);
     let whole = straight.written();
-    if loops == Loops::Pairs || loops == Loops::Long && whole < LOOPED {
+    if loops == Loops::Long && whole < LOOPED {
         return straight;
     }
     let ((outputs, tables), graph) = record_alike(numbers);
@@ -436,7 +440,7 @@ fn looped(
     loops: Loops,
 ) -> Option<Function> {
     let whole = straight.operations().flops();
-    let never = !kind.has_like_parts() || matches!(loops, Loops::Never | Loops::Pairs);
+    let never = !kind.has_like_parts() || loops == Loops::Never;
     if never || loops == Loops::Long && whole < LOOPED {
         return None;
     }

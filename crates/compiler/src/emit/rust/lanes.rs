@@ -1,7 +1,7 @@
 //! Functions of many states side by side: types whose body a loop over states holds.
 
+use super::RESERVED;
 use super::lines::{line, value};
-use super::{RESERVED, pairs};
 use crate::emit::{Function, Lowered};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
@@ -29,19 +29,6 @@ pub fn item(function: &Function, bodies: &[String]) -> TokenStream {
     });
     let count = Literal::usize_unsuffixed(function.outputs.len());
     let docs = format!(" `{}` of many states.", function.name);
-    let by_pairs = function.pairs.as_ref().map(|tables| {
-        let name = format!("{}_of_many", function.name);
-        let (item, name) = (pairs::item(&name, tables), pairs::name(&name));
-        quote! {
-            #item
-            impl ::hamel::compiled::OfPairs for #kind {
-                #[inline(always)]
-                fn rows<N: ::hamel::compiled::Number, const FUSED: bool>(work: &[N], matrix: &mut [N], rows: &mut [N]) {
-                    #name::<N, FUSED>(work, matrix, rows);
-                }
-            }
-        }
-    });
     quote! {
         #[doc = #docs]
         struct #kind;
@@ -54,7 +41,6 @@ pub fn item(function: &Function, bodies: &[String]) -> TokenStream {
                 #(#outputs)*
             }
         }
-        #by_pairs
     }
 }
 
@@ -62,16 +48,7 @@ pub fn item(function: &Function, bodies: &[String]) -> TokenStream {
 pub fn many_states(function: &Function) -> TokenStream {
     let (kind, sizes) = (kind(function), sizes(function));
     let results = Literal::usize_unsuffixed(function.results());
-    match &function.pairs {
-        None => quote! { ::hamel::compiled::many_states::<#kind, #(#sizes,)* #results> },
-        Some(tables) => {
-            let [work, room] =
-                [function.outputs.len(), tables.room()].map(Literal::usize_unsuffixed);
-            quote! {
-                ::hamel::compiled::many_paired::<#kind, #(#sizes,)* #results, #work, #room>
-            }
-        }
-    }
+    quote! { ::hamel::compiled::many_states::<#kind, #(#sizes,)* #results> }
 }
 
 /// Sizes of Q, v̄ and inputs; of a function of Q alone, Q stands in the places of the others.

@@ -138,10 +138,7 @@ fn item(function: &Function, bodies: &[String]) -> TokenStream {
     let result = match (outputs, function.columns) {
         (outputs, _) if function.pairs.is_some() => {
             let work = outputs.map(|outputs| quote! { let results = [#(#outputs),*]; });
-            let rows = function
-                .pairs
-                .as_ref()
-                .map(|tables| pairs::rows(function.name, tables));
+            let rows = function.pairs.as_ref().map(pairs::rows);
             quote! { #work #rows }
         }
         (None, None) => quote! { results },
@@ -154,17 +151,12 @@ fn item(function: &Function, bodies: &[String]) -> TokenStream {
             quote! { [#(#rows),*] }
         }
     };
-    let by_pairs = function
-        .pairs
-        .as_ref()
-        .map(|tables| pairs::item(function.name, tables));
     let docs = [
         format!(" {}", function.summary),
         String::new(),
         format!(" Operations: {}.", function.operations()),
     ];
     quote! {
-        #by_pairs
         #(#[doc = #docs])*
         #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
         #[must_use]

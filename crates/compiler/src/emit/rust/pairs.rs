@@ -3,46 +3,33 @@
 use crate::pairs::{Product, Tables};
 use hamel_codegen::emit::rust::comment;
 use hamel_compiled::{Carrying, Pairing};
-use proc_macro2::{Ident, Literal, TokenStream};
+use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-/// The function that makes rows of the numbers of bodies.
-pub fn name(function: &str) -> Ident {
-    format_ident!("{function}_by_pairs")
-}
-
-/// That function: of scalars, and of eight states side by side. `matrix` has room for M̄ where it is solved with.
-pub fn item(function: &str, tables: &Tables) -> TokenStream {
-    let width = Literal::usize_unsuffixed(tables.size[1]);
-    let (name, method) = (name(function), format_ident!("{}", tables.product.name()));
-    let room = (tables.room() > 0).then(|| quote! { matrix, });
-    let width = match tables.product {
-        Product::Mass | Product::InverseMass => quote! {},
-        Product::Inverse | Product::Forward => quote! { , #width },
+/// The rows of a function, made of the numbers in `results`.
+pub fn rows(tables: &Tables) -> TokenStream {
+    let [rows, width] = tables.size.map(Literal::usize_unsuffixed);
+    let method = format_ident!("{}", tables.product.name());
+    let matrix = quote! { let mut matrix = [[n(0.0); #rows]; #rows]; };
+    let call = match tables.product {
+        Product::Mass => quote! { PAIRS.#method(&results, rows.as_flattened_mut()); },
+        Product::InverseMass => quote! {
+            #matrix
+            PAIRS.#method(&results, matrix.as_flattened_mut(), rows.as_flattened_mut());
+        },
+        Product::Inverse => quote! { PAIRS.#method(&results, rows.as_flattened_mut(), #width); },
+        Product::Forward => quote! {
+            #matrix
+            PAIRS.#method(&results, matrix.as_flattened_mut(), rows.as_flattened_mut(), #width);
+        },
     };
     let constants = constants(tables);
-    let docs = format!(" Rows of `{function}`: each pair of joints on one way to the root.");
-    quote! {
-        #[doc = #docs]
-        #[inline(always)]
-        #[allow(unused_variables, reason = "written by a machine, for a machine")]
-        fn #name<N: ::hamel::compiled::Number, const FUSED: bool>(work: &[N], matrix: &mut [N], rows: &mut [N]) {
-            #constants
-            PAIRS.#method::<N, FUSED>(work, #room rows #width);
-        }
-    }
-}
-
-/// The rows of a function, made of the numbers in `results`.
-pub fn rows(function: &str, tables: &Tables) -> TokenStream {
-    let [rows, width] = tables.size.map(Literal::usize_unsuffixed);
-    let (name, room) = (name(function), Literal::usize_unsuffixed(tables.room()));
     let heading = comment("each pair of joints on one way to the root:");
     quote! {
         #heading
-        let mut matrix = [n(0.0); #room];
+        #constants
         let mut rows = [[n(0.0); #width]; #rows];
-        #name::<T, false>(&results, &mut matrix, rows.as_flattened_mut());
+        #call
         rows
     }
 }
