@@ -68,14 +68,31 @@ impl Tables {
         }
     }
 
+    /// For each speed those towards the root, the nearest first, in ranges of speeds that follow each other.
+    pub fn ranges(&self) -> Vec<Vec<[usize; 2]>> {
+        let ranges = |speed: usize| {
+            let mut ranges: Vec<[usize; 2]> = vec![];
+            for i in std::iter::successors(self.above[speed], |&i| self.above[i]) {
+                match ranges.last_mut() {
+                    Some(last) if last[0] == i + 1 => last[0] = i,
+                    _ => ranges.push([i, i + 1]),
+                }
+            }
+            ranges
+        };
+        (0..self.above.len()).map(ranges).collect()
+    }
+
     /// What the runtime makes with them.
     fn with_pairs<R>(&self, make: impl FnOnce(&Pairs<'_>) -> R) -> R {
         let filled: Vec<&[u64]> = self.filled.iter().map(Vec::as_slice).collect();
+        let above: Vec<Vec<[usize; 2]>> = self.ranges();
+        let above: Vec<&[[usize; 2]]> = above.iter().map(Vec::as_slice).collect();
         let below: Vec<&[usize]> = self.below.iter().map(Vec::as_slice).collect();
         make(&Pairs {
             joints: &self.joints,
             bodies: &self.bodies,
-            above: &self.above,
+            above: &above,
             entries: &self.entries,
             masses: &self.masses,
             held: &self.held,

@@ -43,8 +43,8 @@ pub struct Pairs<'a> {
     pub joints: &'a [Pairing],
     /// The bodies that carry others.
     pub bodies: &'a [Carrying],
-    /// For each speed the next one towards the root.
-    pub above: &'a [Option<usize>],
+    /// For each speed those towards the root, the nearest first, in ranges of speeds that follow each other: from the first to behind the last.
+    pub above: &'a [&'a [[usize; 2]]],
     /// Entries of rows that are added: row, column, place in `work`.
     pub entries: &'a [[usize; 3]],
     /// The same of M̄.

@@ -39,18 +39,17 @@ impl Pairs<'_> {
         for k in (0..size).rev() {
             let (before, own) = matrix.split_at_mut(k * size);
             let inverse = T::one() / own[k];
-            let mut next = self.above[k];
-            while let Some(i) = next {
+            for i in self.above(k) {
                 let factor = own[i] * inverse;
                 let less = -factor;
                 let row = &mut before[i * size..][..size];
-                let mut other = next;
-                while let Some(j) = other {
-                    row[j] = less.mul_add(own[j], row[j]);
-                    other = self.above[j];
+                row[i] = less.mul_add(own[i], row[i]);
+                for &[from, to] in self.above[i] {
+                    for (entry, &own) in row[from..to].iter_mut().zip(&own[from..to]) {
+                        *entry = less.mul_add(own, *entry);
+                    }
                 }
                 own[i] = factor;
-                next = self.above[i];
             }
             own[k] = inverse;
         }
@@ -110,15 +109,20 @@ impl Pairs<'_> {
             let inverse = factors[k * size + k];
             let place = k * width + from;
             let mut own: [T; N] = block(rows, place).map(|entry| entry * inverse);
-            let mut next = self.above[k];
-            while let Some(i) = next {
+            for i in self.above(k) {
                 let other = block(rows, i * width + from);
                 less(&mut own, factors[k * size + i], &other);
-                next = self.above[i];
             }
             rows[place..place + N].copy_from_slice(&own);
         }
         N
+    }
+
+    /// The speeds towards the root, the nearest first.
+    #[inline(always)]
+    fn above(&self, speed: usize) -> impl Iterator<Item = usize> {
+        let ranges = self.above[speed].iter();
+        ranges.flat_map(|&[from, to]| (from..to).rev())
     }
 
     /// Whether any of so many columns differs from 0 in the row of a speed, before it is divided.

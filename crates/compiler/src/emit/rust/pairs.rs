@@ -37,7 +37,10 @@ pub fn rows(tables: &Tables) -> TokenStream {
 fn constants(tables: &Tables) -> TokenStream {
     let joints = tables.joints.iter().map(pairing);
     let bodies = tables.bodies.iter().map(carrying);
-    let above = tables.above.iter().map(|&speed| optional(speed));
+    let above = tables.ranges().into_iter().map(|ranges| {
+        let ranges = ranges.iter().map(|range| numbers(range));
+        quote! { &[#(#ranges),*] }
+    });
     let [entries, masses, followed] = [&tables.entries, &tables.masses, &tables.followed]
         .map(|table| table.iter().map(|row| numbers(row)).collect::<Vec<_>>());
     let columns = tables.columns.iter().map(|row| numbers(row));
