@@ -117,7 +117,7 @@ arithmetic = \"exact\"
         "`along` is zero; an axis must have a direction",
         "event `nowhere`: ",
         "`simulation.sampling` is \"thin\", but must be `landing` or `dense`",
-        "`simulation.arithmetic` is \"exact\", but must be `doubles` or `refined`",
+        "`simulation.arithmetic` is \"exact\", but must be `doubles`, `refined` or `auto`",
     ] {
         assert!(text.contains(expected), "{expected} is not in:\n{text}");
     }
