@@ -83,8 +83,11 @@ impl Program {
     /// Of the ways to factor, that with the least work: entries one by one, or sums shared between entries first.
     pub fn new(steps: &[Step], outputs: &[Matrix], taken: &NameSet) -> Self {
         let expressions = expressions(steps, outputs);
-        let alone = expressions.iter().map(factored).collect();
+        let alone: Vec<Node> = expressions.iter().map(factored).collect();
         let together = shared_sums(&expressions);
+        if alone == together {
+            return Self::of_formulas(steps, alone, taken);
+        }
         let [alone, together] =
             [alone, together].map(|formulas| Self::of_formulas(steps, formulas, taken));
         let [work_alone, work_together] =

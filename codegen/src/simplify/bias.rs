@@ -1,6 +1,6 @@
 //! `c = Ẋ̄^c v̄` and `Ẋ̄^cᵀ h`, in the way that takes fewest operations.
 
-use super::kernels::{LONG, least_work, terms, with_lines};
+use super::kernels::{LONG, alternative, least_work, terms, with_lines};
 use super::words::Words;
 use crate::expand::{Expansion, Steps, speed_map};
 use crate::expr::{Expr, Symbol};
@@ -20,18 +20,29 @@ pub fn kernels(
     let few = words.functions_alone();
     let speed_map = speed_map(joint, expansion);
     let is_long = terms(std::slice::from_ref(&speed_map)) > LONG / 2;
-    let kernels = maker.by_slices(words, map, Entries::Lines);
-    let kernels = kernels.into_iter().enumerate();
-    let least = kernels.map(|(n, kernel)| {
-        let others: [&dyn Fn() -> Kernel; 3] = [
-            &|| maker.by_slices(words, map, Entries::InPlace)[n].clone(),
-            &|| maker.by_coordinates(&few)[n].clone(),
-            &|| maker.by_slices(&few, &speed_map, Entries::InPlace)[n].clone(),
-        ];
-        let tried = if is_long { &others[..1] } else { &others[..] };
-        least_work(kernel, tried)
+    let rate = maker.by_slices(words, map);
+    let first = maker.with(&rate, Entries::Lines);
+    let mut others = vec![maker.with(&rate, Entries::InPlace)];
+    if !is_long {
+        let by_coordinates = alternative(|| maker.by_coordinates(&few));
+        let by_slices = alternative(|| {
+            let rate = maker.by_slices(&few, &speed_map);
+            maker.with(&rate, Entries::InPlace)
+        });
+        others.extend([by_coordinates, by_slices].into_iter().flatten());
+    }
+    let first = first.into_iter().enumerate();
+    let least = first.map(|(n, kernel)| {
+        let others = others.iter().map(|others| others[n].clone());
+        least_work(kernel, others)
     });
     least.collect()
+}
+
+/// Ẋ̄^c, and the words that it is written in.
+struct Rate<'a> {
+    words: Words<'a>,
+    entries: Matrix,
 }
 
 /// Where the entries of Ẋ̄^c stand.
@@ -60,7 +71,7 @@ impl Maker<'_> {
     }
 
     /// By slices: `Ẋ̄^c = Σ_k ∂X̄^c/∂ϕ_k ϕ̇_k`.
-    fn by_slices(&self, words: &Words<'_>, map: &Matrix, entries: Entries) -> [Kernel; 2] {
+    fn by_slices<'a>(&self, words: &Words<'a>, map: &Matrix) -> Rate<'a> {
         let mut words = words.clone();
         let map = words.shorten_each(map);
         let local = self.local_rates(&words);
@@ -69,13 +80,18 @@ impl Maker<'_> {
             let slice = words.along_each(&map, k);
             sum.plus(&slice.scale(local.at(k, 0)))
         });
-        let rate = words.shorten_each(&rate);
+        let entries = words.shorten_each(&rate);
+        Rate { words, entries }
+    }
+
+    /// Both kernels, made of the rate.
+    fn with(&self, rate: &Rate<'_>, entries: Entries) -> [Kernel; 2] {
         let mut steps = Steps::default();
-        let rate = match entries {
-            Entries::Lines => steps.bind_matrix("rate", &rate),
-            Entries::InPlace => rate,
+        let lines = match entries {
+            Entries::Lines => steps.bind_matrix("rate", &rate.entries),
+            Entries::InPlace => rate.entries.clone(),
         };
-        self.both(&rate, &words, &steps.finish())
+        self.both(&lines, &rate.words, &steps.finish())
     }
 
     /// `ϕ̇ = S₀⁻¹ S̄ v̄`.

@@ -122,7 +122,10 @@ fn shortest_gradient(words: &mut Words<'_>, map: &Matrix, kernel: &Kernel) -> Ke
     let first = with_lines(words, by_chain_rule);
     match terms(&kernel.outputs) > LONG {
         true => first,
-        false => least_work(first, &[&|| shortened(words), &|| shortened(&few)]),
+        false => {
+            let others = [words, &few].map(|words| alternative(|| shortened(words)));
+            least_work(first, others.into_iter().flatten())
+        }
     }
 }
 
@@ -138,21 +141,28 @@ pub(super) fn terms(matrices: &[Matrix]) -> usize {
 /// Most term operations for another way to write a kernel.
 const ALTERNATIVE: u64 = 300_000;
 
-/// The kernel, or one of the other ways to write it where that takes less work; a way that is long to find is not taken.
-pub(super) fn least_work(first: Kernel, others: &[&dyn Fn() -> Kernel]) -> Kernel {
+/// Another way to write a kernel, unless it is long to find.
+pub(super) fn alternative<T>(make: impl FnOnce() -> T) -> Option<T> {
+    budget::scope(ALTERNATIVE, make).ok()
+}
+
+/// The kernel, or one of the other ways to write it where that takes less work.
+pub(super) fn least_work(first: Kernel, others: impl IntoIterator<Item = Kernel>) -> Kernel {
     // Where the work is the same, fewer operations are: what is not written as a multiply–add here may be one in a scene.
     let work = |kernel: &Kernel| {
         let program = Program::new(&kernel.steps, &kernel.outputs, &NameSet::default());
         let counts = Counts::of_program(&program);
         (counts.work(), counts.total())
     };
+    let others: Vec<Kernel> = others.into_iter().filter(|other| *other != first).collect();
+    if others.is_empty() {
+        return first;
+    }
     let mut best = (work(&first), first);
     for other in others {
-        if let Ok(other) = budget::scope(ALTERNATIVE, other) {
-            let own = work(&other);
-            if own < best.0 {
-                best = (own, other);
-            }
+        let own = work(&other);
+        if own < best.0 {
+            best = (own, other);
         }
     }
     best.1

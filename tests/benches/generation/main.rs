@@ -69,7 +69,14 @@ fn downstream(root: &Path, scratch: &Path) -> Result<(), Box<dyn Error>> {
     fs::copy(root.join("tests/downstream").join(spec), package.join(spec))?;
     fs::write(package.join("build.rs"), BUILD_SCRIPT)?;
     fs::write(package.join("src/lib.rs"), LIBRARY)?;
-    fs::write(package.join("Cargo.toml"), manifest(root))?;
+    let generator = format!(
+        "\n[build-dependencies]\nhamel-codegen = {{ path = \"{}/codegen\" }}\n",
+        root.display()
+    );
+    fs::write(
+        package.join("Cargo.toml"),
+        manifest(root, "hamel-downstream", "alloc", &generator),
+    )?;
     let target = scratch.join("downstream");
     cargo(&package, &target, &["build"])?;
     let script = newest_script(&target, "hamel-downstream")?;
@@ -80,11 +87,12 @@ fn downstream(root: &Path, scratch: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn manifest(root: &Path) -> String {
+/// A package outside the workspace that depends on the façade with a feature alone, and on what `more` says.
+fn manifest(root: &Path, name: &str, feature: &str, more: &str) -> String {
     let root = root.display();
     format!(
-        "[package]\nname = \"hamel-downstream\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[workspace]\n\n\
-         [dependencies]\nhamel = {{ path = \"{root}/runtime\" }}\n\n[build-dependencies]\nhamel-codegen = {{ path = \"{root}/codegen\" }}\n"
+        "[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[workspace]\n\n\
+         [dependencies]\nhamel = {{ path = \"{root}/crates/hamel\", default-features = false, features = [\"{feature}\"] }}\n{more}"
     )
 }
 

@@ -1,7 +1,7 @@
 //! From a scene or robot to compiled equations: `hamel compile` of a humanoid of 35 degrees of freedom and of a chain of 512 like links, and what the Rust compiler takes
 //! for their modules, all functions but derivatives, optimised.
 
-use crate::{cargo, report};
+use crate::{cargo, manifest, report};
 use std::error::Error;
 use std::ffi::OsStr;
 use std::fmt::Write;
@@ -24,7 +24,10 @@ pub fn modules(root: &Path, scratch: &Path) -> Result<(), Box<dyn Error>> {
     )?;
     let package = scratch.join("module");
     fs::create_dir_all(package.join("src"))?;
-    fs::write(package.join("Cargo.toml"), manifest(root))?;
+    fs::write(
+        package.join("Cargo.toml"),
+        manifest(root, "module", "compiled", ""),
+    )?;
     let chain = scratch.join("chain_of_like_links.toml");
     fs::write(&chain, like_links()?)?;
     let program = target.join("release/hamel");
@@ -96,14 +99,6 @@ fn main_of(module: &Path) -> Result<String, Box<dyn Error>> {
     }
     main += "}\n";
     Ok(main)
-}
-
-fn manifest(root: &Path) -> String {
-    let root = root.display();
-    format!(
-        "[package]\nname = \"module\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[workspace]\n\n\
-         [dependencies]\nhamel = {{ path = \"{root}/runtime\" }}\n"
-    )
 }
 
 /// A hanging chain of rods on ball joints.
