@@ -182,7 +182,8 @@ impl Build {
             let source = source::read(&path).map_err(|error| BuildError::read(&path, error))?;
             sources.push((label, source));
         }
-        let derived = parallel::map(sources, |(label, source)| {
+        let length = |(_, source): &(String, String)| source.len();
+        let derived = parallel::map(sources, length, |(label, source)| {
             Ok((
                 label.clone(),
                 derive_in(&source, &label, Some(&self.specs))?,

@@ -25,7 +25,9 @@ pub(super) fn generate(
         .parent()
         .filter(|parent| !parent.as_os_str().is_empty());
     let above = parent.unwrap_or(here);
-    let written = parallel::map(joints, |(label, joint)| {
+    let kernels =
+        |(_, joint): &(String, Derived)| joint.bodies().map(|body| body.kernels.len()).sum();
+    let written = parallel::map(joints, kernels, |(label, joint)| {
         let own = of_joint(&joint, &label, accuracy, runtime);
         (joint, own)
     });

@@ -1,13 +1,20 @@
 //! Independent work on all cores, with results in the order of the items.
 
+use std::cmp::Reverse;
 use std::num::NonZero;
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-/// Applies `work` to each item.
-pub fn map<T: Send, U: Send>(items: Vec<T>, work: impl Fn(T) -> U + Sync) -> Vec<U> {
+/// Applies `work` to each item. Those of the largest size come first, so that no core waits for one of them at the end.
+pub fn map<T: Send, U: Send>(
+    items: Vec<T>,
+    size: impl Fn(&T) -> usize,
+    work: impl Fn(T) -> U + Sync,
+) -> Vec<U> {
     let threads = thread::available_parallelism().map_or(1, NonZero::get);
-    let queue = Mutex::new(items.into_iter().enumerate());
+    let mut items: Vec<(usize, T)> = items.into_iter().enumerate().collect();
+    items.sort_by_key(|(_, item)| Reverse(size(item)));
+    let queue = Mutex::new(items.into_iter());
     let take = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
     let run = || {
         let mut done = vec![];
@@ -33,7 +40,7 @@ mod tests {
     #[test]
     fn results_keep_the_order_of_the_items() {
         let items: Vec<u32> = (0..100).collect();
-        let doubled = super::map(items, |item| 2 * item);
+        let doubled = super::map(items, |item| (item * 37 % 101) as usize, |item| 2 * item);
         assert!(
             doubled
                 .iter()
