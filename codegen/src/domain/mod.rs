@@ -177,7 +177,7 @@ impl<'a> Domain<'a> {
 
     /// Whether the expression is one term of a rational and parameters that are never 0.
     pub fn is_unit(&self, e: &Expr) -> bool {
-        e.is_unit() && e.symbols().is_disjoint(&self.vanishing)
+        e.is_unit() && !e.contains_any(&self.vanishing)
     }
 
     /// Whether the expression is positive everywhere.

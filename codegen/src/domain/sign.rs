@@ -230,7 +230,7 @@ impl Signs {
     pub fn zero_terms(&self, expression: &Expr) -> Option<Vec<Expr>> {
         let signed = self.has_one_sign(expression, true) || self.has_one_sign(expression, false);
         // A term with such a parameter vanishes elsewhere, too.
-        if !signed || !expression.symbols().is_disjoint(&self.vanishing) {
+        if !signed || expression.contains_any(&self.vanishing) {
             return None;
         }
         let radical = |monomial: &Monomial| {

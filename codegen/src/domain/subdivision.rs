@@ -136,7 +136,7 @@ fn free_angles(expression: &Expr, ranges: &BTreeMap<Symbol, Interval>) -> (Expr,
         });
         let values: BTreeMap<Atom, Expr> = replaced.collect();
         let free = current.replace_atoms(&values);
-        if free.symbols().is_disjoint(&held) {
+        if !free.contains_any(&held) {
             current = free;
             turning.insert(symbol);
         }

@@ -18,6 +18,9 @@ pub trait Number: Clone {
 
     /// The integer power.
     fn power(&self, exponent: i32) -> Self {
+        if exponent == 1 {
+            return self.clone();
+        }
         let one = self.rational(&Rational::from_integer(1.into()));
         let power =
             (0..exponent.unsigned_abs()).fold(one.clone(), |product, _| product.times(self));

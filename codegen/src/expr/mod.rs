@@ -154,10 +154,10 @@ impl Expr {
     /// All symbols, those inside functions included.
     pub fn symbols(&self) -> BTreeSet<Symbol> {
         let mut symbols = BTreeSet::new();
-        for atom in self.atoms() {
+        for atom in self.distinct_atoms() {
             match atom {
                 Atom::Symbol(symbol) => {
-                    symbols.insert(symbol);
+                    symbols.insert(symbol.clone());
                 }
                 Atom::Apply(application) => {
                     symbols.extend(application.symbols().iter().cloned());
@@ -167,13 +167,38 @@ impl Expr {
         symbols
     }
 
+    /// Whether the symbol occurs, inside functions too.
+    pub fn contains(&self, symbol: &Symbol) -> bool {
+        self.any_atom(|atom| match atom {
+            Atom::Symbol(own) => own == symbol,
+            Atom::Apply(application) => application.symbols().contains(symbol),
+        })
+    }
+
+    /// Whether one of the symbols occurs, inside functions too.
+    pub fn contains_any(&self, symbols: &BTreeSet<Symbol>) -> bool {
+        self.any_atom(|atom| match atom {
+            Atom::Symbol(own) => symbols.contains(own),
+            Atom::Apply(application) => !application.symbols().is_disjoint(symbols),
+        })
+    }
+
+    fn any_atom(&self, holds: impl Fn(&Atom) -> bool) -> bool {
+        budget::spend(self.work());
+        let mut factors = self.terms.keys().flat_map(Monomial::factors);
+        factors.any(|(atom, _)| holds(atom))
+    }
+
     /// The atoms of the polynomial itself, not those inside functions.
     pub fn atoms(&self) -> BTreeSet<Atom> {
+        self.distinct_atoms().into_iter().cloned().collect()
+    }
+
+    fn distinct_atoms(&self) -> FxHashSet<&Atom> {
         budget::spend(self.work());
         let factors = self.terms.keys().flat_map(Monomial::factors);
         // Most occur in many terms: hashing finds that sooner than sorting.
-        let distinct: FxHashSet<&Atom> = factors.map(|(atom, _)| atom).collect();
-        distinct.into_iter().cloned().collect()
+        factors.map(|(atom, _)| atom).collect()
     }
 
     /// The functions with relations that occur, those inside arguments of roots and quotients included.

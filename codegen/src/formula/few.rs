@@ -5,7 +5,6 @@ use super::{Counts, Node, Program};
 use crate::expr::{Role, Symbol};
 use crate::formula::names::{NameSet, number_name};
 use rustc_hash::FxHashMap;
-use std::collections::BTreeMap;
 
 /// Most shared values of a kernel of which no name says what they are.
 const MOST: usize = 6;
@@ -57,11 +56,11 @@ pub fn named(
             }
         });
         let symbol = Symbol::new(name.role, name.index.into(), &taken.claim(&wish));
-        let values = BTreeMap::from([(name.clone(), Node::Symbol(symbol.clone()))]);
+        let value = Node::Symbol(symbol.clone());
         if let Binding::Value { name, .. } = &mut program.bindings[place] {
-            *name = symbol;
+            let before = std::mem::replace(name, symbol);
+            program.change(&mut |node| _ = node.put(&before, &value));
         }
-        program = program.mapped(&|node| replaced(node, &values));
     }
     program
 }
@@ -90,15 +89,11 @@ fn put_in(program: &mut Program, place: usize) {
     let Binding::Value { name, value } = program.bindings.remove(place) else {
         return;
     };
-    let values = BTreeMap::from([(name, value)]);
-    *program = std::mem::take(program).mapped(&|node| replaced(node, &values).opened().polished());
-}
-
-fn replaced(node: &Node, values: &BTreeMap<Symbol, Node>) -> Node {
-    match node {
-        Node::Symbol(symbol) => values.get(symbol).unwrap_or(node).clone(),
-        other => other.map_parts(&mut |part| replaced(part, values)),
-    }
+    program.change(&mut |node| {
+        if node.put(&name, &value) {
+            node.replace_by(|node| node.opened().polished());
+        }
+    });
 }
 
 /// What a value is called where that says what it is: `x_squared`, `inverse_x` of a name x.

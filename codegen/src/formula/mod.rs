@@ -206,10 +206,44 @@ impl Node {
         }
     }
 
+    /// Calls `change` for each direct part.
+    pub(super) fn change_parts(&mut self, change: &mut impl FnMut(&mut Self)) {
+        match self {
+            Self::Number(_) | Self::Symbol(_) | Self::Pi => {}
+            Self::Sum(terms) => terms.iter_mut().for_each(|(_, term)| change(term)),
+            Self::Product(parts) | Self::Call(_, parts) => parts.iter_mut().for_each(change),
+            Self::Quotient(above, below) => {
+                [above, below].into_iter().for_each(|part| change(part))
+            }
+            Self::Negative(inner) => change(inner),
+        }
+    }
+
+    /// Puts `make` of this formula in its place.
+    pub(super) fn replace_by(&mut self, make: impl FnOnce(Self) -> Self) {
+        *self = make(std::mem::replace(self, Self::Pi));
+    }
+
+    /// Puts the value in the place of the symbol; whether it occurs.
+    pub(super) fn put(&mut self, symbol: &Symbol, value: &Self) -> bool {
+        match self {
+            Self::Symbol(own) if own == symbol => {
+                *self = value.clone();
+                true
+            }
+            other => {
+                let mut occurs = false;
+                other.change_parts(&mut |part| occurs |= part.put(symbol, value));
+                occurs
+            }
+        }
+    }
+
     /// The same value without sums as terms of sums, nor products and quotients as factors.
     #[must_use]
-    pub fn opened(&self) -> Self {
-        match self.map_parts(&mut Self::opened) {
+    pub fn opened(mut self) -> Self {
+        self.change_parts(&mut |part| part.replace_by(Self::opened));
+        match self {
             Self::Sum(terms) => Self::sum(terms.into_iter().map(|(minus, term)| match minus {
                 true => term.negated(),
                 false => term,
@@ -221,12 +255,15 @@ impl Node {
 
     /// The same value as it is best read: `b − a` instead of `−(a − b)`, a positive term first.
     #[must_use]
-    pub fn polished(&self) -> Self {
+    pub fn polished(mut self) -> Self {
         match self {
             Self::Negative(inner) => inner
                 .flipped()
                 .unwrap_or_else(|| Self::Negative(Box::new(inner.polished()))),
-            other => other.map_parts(&mut Self::polished),
+            _ => {
+                self.change_parts(&mut |part| part.replace_by(Self::polished));
+                self
+            }
         }
     }
 
@@ -234,7 +271,9 @@ impl Node {
     fn flipped(&self) -> Option<Self> {
         match self {
             Self::Sum(terms) => {
-                let flipped = terms.iter().map(|(minus, term)| (!minus, term.polished()));
+                let flipped = terms
+                    .iter()
+                    .map(|(minus, term)| (!minus, term.clone().polished()));
                 let mut flipped: Vec<_> = flipped.collect();
                 let first = flipped.iter().position(|(subtracted, _)| !subtracted)?;
                 flipped.rotate_left(first);
@@ -245,7 +284,8 @@ impl Node {
                     .iter()
                     .enumerate()
                     .find_map(|(at, factor)| Some((at, factor.flipped()?)))?;
-                let mut factors: Vec<Self> = factors.iter().map(Self::polished).collect();
+                let factors = factors.iter().cloned();
+                let mut factors: Vec<Self> = factors.map(Self::polished).collect();
                 factors[at] = flipped;
                 Some(Self::Product(factors))
             }

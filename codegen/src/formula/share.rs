@@ -118,13 +118,12 @@ impl Program {
         }
         let outputs = remaining.map(|formula| sharing.rewrite(formula)).collect();
         let mut names = sharing.taken;
-        Self {
+        let mut program = Self {
             bindings: sharing.bindings,
             outputs,
-        }
-        .mapped(&|node| node.opened().polished())
-        .pruned()
-        .few(&mut names)
+        };
+        program.change(&mut |node| node.replace_by(|node| node.opened().polished()));
+        program.pruned().few(&mut names)
     }
 
     /// With few shared values, called by a letter and an index where no name says what they are.
@@ -147,17 +146,16 @@ impl Program {
         }
     }
 
-    pub(super) fn mapped(mut self, f: &impl Fn(&Node) -> Node) -> Self {
-        let map = |node: &mut Node| *node = f(node);
+    /// Calls `change` for every formula in it, in order.
+    pub(super) fn change(&mut self, change: &mut impl FnMut(&mut Node)) {
         for binding in &mut self.bindings {
             match binding {
-                Binding::Value { value, .. } => map(value),
-                Binding::SinCos { angle, .. } => map(angle),
-                Binding::Call { argument, .. } => argument.iter_mut().for_each(map),
+                Binding::Value { value, .. } => change(value),
+                Binding::SinCos { angle, .. } => change(angle),
+                Binding::Call { argument, .. } => argument.iter_mut().for_each(&mut *change),
             }
         }
-        self.outputs.iter_mut().for_each(map);
-        self
+        self.outputs.iter_mut().for_each(change);
     }
 
     /// Every formula in it, in order.

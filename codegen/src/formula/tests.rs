@@ -107,7 +107,7 @@ fn factoring_and_polishing_keep_the_value() {
     for expression in expressions() {
         let exact = evaluate_f64(&expression, &value_of_symbol);
         let node = factored(&expression);
-        for (written, step) in [(&node, "factored"), (&node.polished(), "polished")] {
+        for (written, step) in [(&node, "factored"), (&node.clone().polished(), "polished")] {
             let found = value(written, &value_of_symbol);
             assert!(
                 (found - exact).abs() <= ROUNDING * exact.abs().max(1.0),

@@ -313,11 +313,7 @@ impl Ideal {
         let relations = relations_of(&functions, |function| function != Function::Recip);
         let all = [relations, numerators].concat();
         let own = self.own.relations();
-        if own
-            .iter()
-            .chain(&all)
-            .all(|e| e.symbols().is_disjoint(vanishing))
-        {
+        if own.iter().chain(&all).all(|e| !e.contains_any(vanishing)) {
             let reduction = self.own.with(&all, &[], &BTreeSet::new());
             let mut of_parameters = reduction.relations().into_iter().filter(Expr::is_constant);
             return reduction.is_trivial() || of_parameters.any(|e| is_nonzero(&e));

@@ -40,7 +40,7 @@ impl Reduction {
         let own = self.relations();
         let held = |symbol: &&Symbol| {
             let mut all = own.iter().chain(relations).chain(rules);
-            all.any(|e| e.symbols().contains(*symbol))
+            all.any(|e| e.contains(symbol))
         };
         let held = vanishing.iter().filter(held).cloned().map(Atom::Symbol);
         let held: Vec<Atom> = held.collect();

@@ -241,7 +241,7 @@ fn uses(symbol: &Symbol, kernel: &Kernel, lines: &[Word]) -> usize {
     let all = outputs
         .chain(steps)
         .chain(lines.iter().map(|word| &word.value));
-    all.filter(|entry| entry.symbols().contains(symbol)).count()
+    all.filter(|entry| entry.contains(symbol)).count()
 }
 
 fn put_in(kernel: &mut Kernel, lines: &mut [Word], value: &BTreeMap<Symbol, Expr>) {

@@ -30,7 +30,7 @@ fn shortened<'a>(
     let mut ring = Ring::of(functions);
     let sum = ring.sum(expression);
     let symbols = expression.symbols();
-    let near = |relation: &Expr| !relation.symbols().is_disjoint(&symbols);
+    let near = |relation: &Expr| relation.contains_any(&symbols);
     let given = given.filter(|(_, relation)| near(relation));
     let mut all: Vec<Relation> = given.map(|(name, r)| ring.relation(r, name)).collect();
     let of_functions = relations(functions).into_iter().filter(near);

@@ -186,7 +186,7 @@ impl<'a> Words<'a> {
     fn expanded(&self, expression: &Expr) -> Expr {
         let mut value = expression.clone();
         for word in self.words.iter().skip(self.derived_in).rev() {
-            if value.symbols().contains(&word.symbol) {
+            if value.contains(&word.symbol) {
                 let values = BTreeMap::from([(word.symbol.clone(), word.value.clone())]);
                 value = value.substitute(&values);
             }

@@ -56,7 +56,7 @@ fn bias_gradient(derived: &Derived) -> Option<String> {
         let velocities = arguments.velocity.iter().enumerate();
         let mut velocities =
             velocities.filter(|(j, _)| map.is_none_or(|map| !map.at(*j, k).is_zero()));
-        velocities.any(|(_, velocity)| rate.symbols().contains(velocity))
+        velocities.any(|(_, velocity)| rate.contains(velocity))
     };
     let sign = |k: usize| {
         let mut rates = arguments.configuration.iter().zip(rates.entries());

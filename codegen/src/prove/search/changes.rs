@@ -84,7 +84,7 @@ fn tangents(joint: &Prepared) -> Vec<Direction> {
     let manifold = &joint.space.manifold;
     let moves_manifold = |symbol: &Symbol| {
         let mut relations = manifold.declared().iter();
-        relations.any(|relation| relation.symbols().contains(symbol))
+        relations.any(|relation| relation.contains(symbol))
     };
     let free = |p: &&Parameter| !p.range.is_one_number() && !moves_manifold(&p.symbol);
     let ranges = joint.spec.parameters.iter().filter(free);

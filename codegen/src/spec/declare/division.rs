@@ -38,7 +38,7 @@ fn hidden(spec: &JointSpec, suspects: &[&Parameter], span: &Range<usize>) -> Vec
     let manifold = &spec.manifold.value;
     let occurs = |parameter: &&&Parameter| {
         let mut declared = manifold.declared().iter();
-        declared.any(|relation| relation.symbols().contains(&parameter.symbol))
+        declared.any(|relation| relation.contains(&parameter.symbol))
     };
     let named: Vec<&&Parameter> = suspects.iter().filter(occurs).collect();
     let symbols: BTreeSet<Symbol> = named.iter().map(|p| p.symbol.clone()).collect();

@@ -73,15 +73,21 @@ impl<'a> Sampler<'a> {
             .into_iter()
             .map(|relation| (relation.clone(), slopes(&relation)))
             .collect();
-        for (relation, slopes) in std::iter::repeat_n(&relations, PROJECTIONS).flatten() {
-            let at = self.at(&q);
-            let slopes: Vec<f64> = slopes.iter().map(|slope| self.value(slope, &at)).collect();
-            let square: f64 = slopes.iter().map(|slope| slope * slope).sum();
-            let step = self.value(relation, &at) / square;
-            if step.is_finite() {
-                q.iter_mut()
-                    .zip(slopes)
-                    .for_each(|(q, slope)| *q -= step * slope);
+        for _ in 0..PROJECTIONS {
+            let before = q.clone();
+            for (relation, slopes) in &relations {
+                let at = self.at(&q);
+                let slopes: Vec<f64> = slopes.iter().map(|slope| self.value(slope, &at)).collect();
+                let square: f64 = slopes.iter().map(|slope| slope * slope).sum();
+                let step = self.value(relation, &at) / square;
+                if step.is_finite() {
+                    q.iter_mut()
+                        .zip(slopes)
+                        .for_each(|(q, slope)| *q -= step * slope);
+                }
+            }
+            if q == before {
+                break;
             }
         }
         q
