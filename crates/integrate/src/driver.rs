@@ -211,7 +211,7 @@ impl<'a> Driver<'a> {
             let is_past = is_past.is_some_and(|end| end.time < self.clock.time());
             stopped = is_past || self.report(observer)? || self.end.is_some();
             if !stopped {
-                self.look_ahead()?;
+                self.look_ahead(&pacing.rounding)?;
                 self.reconsider(&mut pacing)?;
             }
         }
@@ -234,7 +234,7 @@ impl<'a> Driver<'a> {
     }
 
     /// Whether the end is within reach at the present pace.
-    fn look_ahead(&mut self) -> Result<(), IntegrateError> {
+    fn look_ahead(&mut self, rounding: &Rounding) -> Result<(), IntegrateError> {
         let Self {
             prospect,
             flow,
@@ -250,7 +250,7 @@ impl<'a> Driver<'a> {
             configuration: step_state.configuration.clone(),
             speeds: step_state.speeds().to_vec(),
         };
-        prospect.check(flow, (options, statistics), time, state)
+        prospect.check(flow, (options, statistics), (time, rounding), state)
     }
 
     /// Adds the work of the stepper, which is not used any more.

@@ -1,6 +1,7 @@
 //! Whether a motion comes to its end in a time that anybody waits for.
 
 use super::flow::Flow;
+use super::rounding::Rounding;
 use super::{Choice, IntegrateError, Method, Options, State, Statistics, Wanted};
 use alloc::format;
 use alloc::string::String;
@@ -48,7 +49,7 @@ impl Prospect {
         &mut self,
         flow: &Flow<'_>,
         (options, statistics): (&Options, &Statistics),
-        time: f64,
+        (time, rounding): (f64, &Rounding),
         state: impl FnOnce() -> State,
     ) -> Result<(), IntegrateError> {
         let steps = statistics.steps;
@@ -75,16 +76,20 @@ impl Prospect {
         if !is_long && other.is_none() {
             return Ok(());
         }
-        let advice = match options.method {
-            Method::Fixed { .. } => "take a larger dt, or a method with step control",
-            Method::Controlled { .. } => "take a larger tolerance",
+        let advice = || match (options.method, rounding.limit(flow)) {
+            (Method::Fixed { .. }, _) => "take a larger dt, or a method with step control".into(),
+            (_, Some(limit)) => format!(
+                "rounding in doubles has decided the length of {} of them, first of all at joint `{}`: take refined arithmetic, or a larger tolerance",
+                limit.steps, limit.joint
+            ),
+            _ => "take a larger tolerance".into(),
         };
         Err(IntegrateError::Hopeless {
             time,
             steps,
             step,
             to_go,
-            advice: other.unwrap_or_else(|| advice.into()),
+            advice: other.unwrap_or_else(advice),
         })
     }
 }

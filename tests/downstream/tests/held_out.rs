@@ -41,7 +41,10 @@ macro_rules! law_tests {
 // Joints with exceptions, half a turn or a radius away, take smaller steps than the others.
 law_tests! {
     axle_wheel: AxleWheel::new(0.7, 0.85), HalfTurn;
+    ball_along_bore: BallAlongBore::new(0.85, 0.3), Entries(0.5);
     ball_in_shell: BallInShell::new(0.85, 0.7), Entries(0.5);
+    ball_over_cone: BallOverCone::new(0.2, 0.6), Entries(0.5);
+    ball_over_sphere: BallOverSphere::new(0.85, 0.3), Entries(0.5);
     bennett: Bennett::new(0.7, 0.85, 1.15), HalfTurn;
     bevel_torus: BevelTorus::new(0.85, 0.7, 1.0), HalfTurn;
     constant_velocity: ConstantVelocity, Entries(0.5);
@@ -50,11 +53,13 @@ law_tests! {
     grashof_coupler: GrashofCoupler::new(0.9, 0.4, 1.1, 1.2), HalfTurn;
     helicoid: Helicoid::new(0.7), HalfTurn;
     hyperbolic_cam: HyperbolicCam::new(0.7, 0.85), HalfTurn;
+    lemniscate: Lemniscate::new(0.7), Entries(0.3);
     mixed4: Mixed4::new(0.7, 0.85, 1.0, 1.15), HalfTurn;
     moebius: Moebius::new(0.7), HalfTurn;
     named_root: NamedRoot, Entries(0.5);
     offset_wrist: OffsetWrist::new(0.7), HalfTurn;
     plane_tilt: PlaneTilt::new(0.7), HalfTurn;
+    polynomial_knee: PolynomialKnee, Entries(0.5);
     profile_roller: ProfileRoller::new(0.7, 0.85, 1.0), HalfTurn;
     rolling_cone: RollingCone::new(0.7), HalfTurn;
     screw_plane: ScrewPlane::new(0.7), HalfTurn;

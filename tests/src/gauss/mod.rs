@@ -13,7 +13,7 @@
 mod ground;
 mod solve;
 
-pub use ground::Ground;
+pub use ground::{Ground, coordinate, parameter, pose};
 
 use hamel::nalgebra::{Matrix3, Vector3};
 use hamel_codegen::derived::Derived;
@@ -49,6 +49,8 @@ pub struct Gauss {
     /// Of each body the nine entries of R row by row, and the three of p.
     poses: Vec<Vec<Smooth>>,
     point: Point,
+    /// Moments of inertia that turn as fast as a stored scalar changes.
+    rotors: Vec<(usize, f64)>,
 }
 
 /// A value with its derivative along the motion, what of its second derivative is not of ẍ, and its slopes.
@@ -85,11 +87,23 @@ impl Gauss {
         }
         Self {
             relations: relations.iter().map(smooth).collect(),
-            kept: ground.iter().map(|own| own.row(derived)).collect(),
+            kept: ground.iter().flat_map(|own| own.rows(derived)).collect(),
+            rotors: vec![],
             poses: poses.collect(),
             coordinates,
             point,
         }
+    }
+
+    /// With a rotor that turns as fast as a stored scalar changes.
+    ///
+    /// # Panics
+    /// Where no stored scalar has this name.
+    #[must_use]
+    pub fn with_rotor(mut self, coordinate: &str, inertia: f64) -> Self {
+        let place = self.coordinates.iter().position(|own| &*own.name == coordinate);
+        self.rotors.push((place.expect("a stored scalar"), inertia));
+        self
     }
 
     /// The accelerations of its bodies at Q and Q̇, both brought onto the relations, under gravity in axes of the joint.
@@ -125,6 +139,9 @@ impl Gauss {
         let mut rows = vec![vec![zero; count + constraints.len() + 1]; count + constraints.len()];
         for body in &bodies {
             body.add_to(&mut rows, count, gravity);
+        }
+        for &(place, inertia) in &self.rotors {
+            rows[place][place] = &rows[place][place] + &Precise::from_f64(inertia, BITS);
         }
         for (n, (slopes, bend)) in constraints.iter().enumerate() {
             for (i, slope) in slopes.iter().enumerate() {

@@ -1,12 +1,16 @@
 //! Linkages, gears and parallel robots, of the library and of this crate, against Gauss's principle in 256 bits, from their specs alone: accelerations of all bodies by the tree and by the reference
 //! form, and efforts of inverse dynamics at them.
 
+#[path = "../common/mod.rs"]
 mod common;
+mod held_out;
 
 use hamel::dynamics::{Dynamics, Frame, MassMatrix, Recursive, Reference};
 use hamel::erased::AnyJoint;
 use hamel::mechanism::{BodySpec, Mechanism, NamedFrame};
+use hamel::registry::JointRegistry;
 use hamel::spatial::{MassProperties, Pose};
+use hamel_codegen::derived::Derived;
 use hamel_tests::figures::Largest;
 use hamel_tests::gauss::{Acceleration, Gauss, Ground, Inertia};
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, Vector3};
@@ -16,10 +20,39 @@ use std::sync::Arc;
 /// States of each joint.
 const STATES: u64 = 8;
 
-/// Where the library's specs are, and those of this crate.
-fn folders() -> [PathBuf; 2] {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    [here.join("../../joint-specs"), here.join("joints")]
+/// Joints by name, and the folders of their specs.
+struct Source {
+    registry: JointRegistry,
+    folders: Vec<PathBuf>,
+}
+
+impl Source {
+    /// The library's joints and those of this crate.
+    fn new() -> Self {
+        let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+        Self {
+            registry: common::registry(),
+            folders: vec![here.join("../../joint-specs"), here.join("joints")],
+        }
+    }
+
+    fn derived(&self, name: &str) -> Derived {
+        let mut folders = self.folders.iter();
+        let folder = folders.find(|folder| folder.join(format!("{name}.joint")).exists());
+        hamel_tests::derived_in(folder.expect("a spec"), name)
+    }
+}
+
+/// A joint on the ground.
+struct Case<'a> {
+    name: &'a str,
+    parameters: &'a [f64],
+    /// Local coordinates of its states are below this.
+    reach: f64,
+    /// What keeps its velocities beside its relations.
+    ground: &'a [Ground],
+    /// The moment of inertia of a rotor that turns as fast as a stored scalar changes, and the place of its effort.
+    rotor: Option<(&'a str, usize, f64)>,
 }
 
 /// Mass properties of the n-th body, without symmetry.
@@ -41,9 +74,11 @@ fn inertia(n: usize) -> Inertia {
 }
 
 /// A joint on the ground, with a frame in the centre of mass of each body.
-fn mechanism(name: &str, parameters: &[f64], gravity: Vector3<f64>) -> Arc<Mechanism> {
-    let registry = common::registry();
-    let entry = registry.get(name).expect("registered");
+fn mechanism(source: &Source, case: &Case<'_>, gravity: Vector3<f64>) -> Arc<Mechanism> {
+    let Case {
+        name, parameters, ..
+    } = *case;
+    let entry = source.registry.get(name).expect("registered");
     let first = (entry.build)(parameters).unwrap_or_else(|error| panic!("{name}: {error}"));
     let joints = std::iter::once(first.clone()).chain(first.more());
     let bodies = joints.enumerate().map(|(n, joint)| {
@@ -66,7 +101,17 @@ fn mechanism(name: &str, parameters: &[f64], gravity: Vector3<f64>) -> Arc<Mecha
     });
     let frames = frames.collect();
     let mechanism = Mechanism::new(gravity, bodies).unwrap_or_else(|errors| panic!("{errors:?}"));
-    Arc::new(mechanism.with_frames(frames).expect("they fit"))
+    let mechanism = mechanism.with_frames(frames).expect("they fit");
+    Arc::new(match case.rotor {
+        None => mechanism,
+        Some((_, place, inertia)) => {
+            let mut armature = vec![0.0; mechanism.layout().freedoms];
+            armature[place] = inertia;
+            mechanism
+                .with_armature(0, &armature)
+                .expect("it is a speed")
+        }
+    })
 }
 
 /// The same accelerations of bodies by the runtime, at these v̄̇.
@@ -97,6 +142,44 @@ fn condition(mechanism: &Arc<Mechanism>, q: &[f64]) -> f64 {
     let mut recursive = Recursive::new(Arc::clone(mechanism));
     recursive.mass_matrix(q, &mut mass).expect("sizes fit");
     let values = mass.matrix().singular_values();
+    let joint = mechanism.bodies()[0].joint();
+    let count = joint.layout().speeds;
+    let mut basis = DMatrix::zeros(q.len(), count);
+    for (n, mut column) in basis.column_iter_mut().enumerate() {
+        let mut speeds = vec![0.0; count];
+        speeds[n] = 1.0;
+        column.copy_from_slice(&rates(joint, q, &speeds));
+    }
+    values.max() / values.min() * basis.amax().max(1.0).powi(2)
+}
+
+/// Q̇ at these v̄, by v = S̄ v̄.
+fn rates(joint: &dyn AnyJoint, q: &[f64], speeds: &[f64]) -> Vec<f64> {
+    let mut basis = DMatrix::zeros(joint.layout().freedoms, speeds.len());
+    joint.speed_basis(q, basis.as_mut_slice());
+    let velocity = basis * DVector::from_column_slice(speeds);
+    let mut rates = vec![0.0; q.len()];
+    joint.configuration_rate(q, velocity.as_slice(), &mut rates);
+    rates
+}
+
+/// A number in [−1, 1) by its place.
+fn random(seed: u64) -> f64 {
+    let mixed = seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    (mixed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+}
+
+/// Holds the joint to the principle at all its states.
+fn check(source: &Source, case: &Case<'_>) {
+    let Case { name, reach, .. } = *case;
+    let derived = source.derived(name);
+    let mut gauss = Gauss::new(&derived, case.parameters, case.ground);
+    if let Some((coordinate, _, inertia)) = case.rotor {
+        gauss = gauss.with_rotor(coordinate, inertia);
+    }
+    let gravity = Vector3::new(0.7, -0.9, -9.7);
+    let mechanism = mechanism(source, case, gravity);
     let joint = mechanism.bodies()[0].joint();
     let count = joint.layout().speeds;
     let mut basis = DMatrix::zeros(q.len(), count);
@@ -189,17 +272,30 @@ fn check(name: &str, parameters: &[f64], reach: f64, ground: &[Ground]) {
     worst.iter().for_each(|worst| worst.assert_within(10.0));
 }
 
+/// A joint of the library or of this crate.
+fn check_on(name: &str, parameters: &[f64], reach: f64, ground: &[Ground]) {
+    let case = Case {
+        name,
+        parameters,
+        reach,
+        ground,
+        rotor: None,
+    };
+    check(&Source::new(), &case);
+}
+
 macro_rules! tests {
     ($($name:ident: $parameters:expr, $reach:expr;)*) => {$(
         #[test]
         fn $name() {
-            check(stringify!($name), &$parameters, $reach, &[]);
+            check_on(stringify!($name), &$parameters, $reach, &[]);
         }
     )*};
 }
 
 tests! {
     cam_follower: [0.2], 0.5;
+    crank_coupler: [0.9, 0.4, 1.1, 1.2], 0.5;
     crank_rocker: [0.9, 0.4, 1.1, 1.2], 0.5;
     delta: [0.2, 0.35, 0.74], 0.1;
     differential: [2.0], 0.5;
@@ -239,12 +335,12 @@ fn car() {
         axle: 1,
     };
     let ground = [REAR_AXLE, front, rolls(1), rolls(2), rolls(3), rolls(4)];
-    check("car", &[2.7, 0.8, 0.33], 0.5, &ground);
+    check_on("car", &[2.7, 0.8, 0.33], 0.5, &ground);
 }
 
 /// Bodies: chassis, left and right wheel.
 #[test]
 fn differential_drive() {
     let ground = [REAR_AXLE, rolls(1), rolls(2)];
-    check("differential_drive", &[0.2, 0.08], 0.5, &ground);
+    check_on("differential_drive", &[0.2, 0.08], 0.5, &ground);
 }
