@@ -14,7 +14,7 @@ use crate::prepare::Prepared;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Kernels of which every entry is shortened.
-const OF_CONFIGURATION: [KernelKind; 11] = [
+const SHORTENED: [KernelKind; 13] = [
     KernelKind::Pose,
     KernelKind::TwistMap,
     KernelKind::TwistMapChild,
@@ -26,6 +26,8 @@ const OF_CONFIGURATION: [KernelKind; 11] = [
     KernelKind::PortMap,
     KernelKind::Pins,
     KernelKind::ConfigurationRate,
+    KernelKind::Gamma,
+    KernelKind::J22,
 ];
 
 /// The kernels in words, and the words that they use.
@@ -175,9 +177,9 @@ fn output(kernels: &[Kernel], kind: KernelKind) -> Matrix {
         .unwrap_or_else(|| Matrix::zeros(0, 0))
 }
 
-/// A kernel that follows from the configuration alone, shortened; others as they are.
+/// A kernel with every entry shortened, where it is one of these; others as they are.
 pub(super) fn base(words: &Words<'_>, mut kernel: Kernel) -> Kernel {
-    if kernel.method == Method::Formula && OF_CONFIGURATION.contains(&kernel.kind) {
+    if kernel.method == Method::Formula && SHORTENED.contains(&kernel.kind) {
         let short = kernel.outputs.iter().map(|m| words.shorten_each(m));
         kernel.outputs = short.collect();
     }

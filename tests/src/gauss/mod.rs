@@ -101,7 +101,10 @@ impl Gauss {
     /// Where no stored scalar has this name.
     #[must_use]
     pub fn with_rotor(mut self, coordinate: &str, inertia: f64) -> Self {
-        let place = self.coordinates.iter().position(|own| &*own.name == coordinate);
+        let place = self
+            .coordinates
+            .iter()
+            .position(|own| &*own.name == coordinate);
         self.rotors.push((place.expect("a stored scalar"), inertia));
         self
     }

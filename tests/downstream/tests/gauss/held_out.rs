@@ -52,7 +52,7 @@ fn ball_over_sphere() {
     let point = |joint: &Derived| {
         let centre = pose(joint, 0).1.entries();
         let [base, radius] = ["base", "radius"].map(|name| parameter(joint, name));
-        let share = &radius * &(&base + &radius).recip();
+        let share = &radius * &(&base + &radius).recip().expect("not 0");
         [0, 1, 2].map(|i| -&(&share * &centre[i]))
     };
     check_held_out(

@@ -181,43 +181,6 @@ fn check(source: &Source, case: &Case<'_>) {
     let gravity = Vector3::new(0.7, -0.9, -9.7);
     let mechanism = mechanism(source, case, gravity);
     let joint = mechanism.bodies()[0].joint();
-    let count = joint.layout().speeds;
-    let mut basis = DMatrix::zeros(q.len(), count);
-    for (n, mut column) in basis.column_iter_mut().enumerate() {
-        let mut speeds = vec![0.0; count];
-        speeds[n] = 1.0;
-        column.copy_from_slice(&rates(joint, q, &speeds));
-    }
-    values.max() / values.min() * basis.amax().max(1.0).powi(2)
-}
-
-/// Q̇ at these v̄, by v = S̄ v̄.
-fn rates(joint: &dyn AnyJoint, q: &[f64], speeds: &[f64]) -> Vec<f64> {
-    let mut basis = DMatrix::zeros(joint.layout().freedoms, speeds.len());
-    joint.speed_basis(q, basis.as_mut_slice());
-    let velocity = basis * DVector::from_column_slice(speeds);
-    let mut rates = vec![0.0; q.len()];
-    joint.configuration_rate(q, velocity.as_slice(), &mut rates);
-    rates
-}
-
-/// A number in [−1, 1) by its place.
-fn random(seed: u64) -> f64 {
-    let mixed = seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    (mixed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-}
-
-fn check(name: &str, parameters: &[f64], reach: f64, ground: &[Ground]) {
-    let folders = folders();
-    let folder = folders
-        .iter()
-        .find(|folder| folder.join(format!("{name}.joint")).exists());
-    let derived = hamel_tests::derived_in(folder.expect("a spec"), name);
-    let mut gauss = Gauss::new(&derived, parameters, ground);
-    let gravity = Vector3::new(0.7, -0.9, -9.7);
-    let mechanism = mechanism(name, parameters, gravity);
-    let joint = mechanism.bodies()[0].joint();
     let (freedoms, count) = (joint.layout().freedoms, joint.layout().speeds);
     let inertias: Vec<Inertia> = (0..mechanism.bodies().len()).map(inertia).collect();
     let mut worst = [
