@@ -32,7 +32,9 @@ pub fn sweep<'py>(
         Ok(robot) => robot.get().origin().clone(),
         Err(_) => Source::of(scene, floating_base)?,
     };
-    let count = columns.first().map_or(0, |column| column.len().unwrap_or(0));
+    let count = columns
+        .first()
+        .map_or(0, |column| column.len().unwrap_or(0));
     let mut rows = vec![Cells::default(); count];
     for column in &columns {
         let cells = rows.iter_mut().zip(column.as_array());
@@ -86,7 +88,9 @@ fn run(
     let write = |block: &Block, rows: &[Row]| {
         let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
         let places = all.iter_mut().skip(block.first as usize);
-        places.zip(rows).for_each(|(place, row)| *place = Some(row.clone()));
+        places
+            .zip(rows)
+            .for_each(|(place, row)| *place = Some(row.clone()));
         Ok(())
     };
     let watch = Watch {
@@ -97,7 +101,10 @@ fn run(
     hamel_sweep::run(&sweep, &joints, workers, next, &write, watch)?;
     let all = all.into_inner().unwrap_or_else(PoisonError::into_inner);
     // Those that an exception has ended are not told.
-    Ok((sweep.results().to_vec(), all.into_iter().flatten().collect()))
+    Ok((
+        sweep.results().to_vec(),
+        all.into_iter().flatten().collect(),
+    ))
 }
 
 /// Hears the signals of the process, in the thread that was called from Python.
@@ -134,6 +141,9 @@ impl Listener {
     }
 
     fn into_exception(self) -> Option<PyErr> {
-        self.heard.into_inner().unwrap_or_else(PoisonError::into_inner).1
+        self.heard
+            .into_inner()
+            .unwrap_or_else(PoisonError::into_inner)
+            .1
     }
 }
