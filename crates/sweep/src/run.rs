@@ -100,7 +100,11 @@ pub fn run<E: Send>(
     let workers = workers.or_else(|| thread::available_parallelism().ok());
     thread::scope(|scope| {
         for _ in 1..workers.map_or(1, NonZero::get) {
-            scope.spawn(|| work(sweep, registry, &feed, write, watch));
+            let work = || work(sweep, registry, &feed, write, watch);
+            if thread::Builder::new().spawn_scoped(scope, work).is_err() {
+                // Where the system has no more threads, those that there are do the work.
+                break;
+            }
         }
         work(sweep, registry, &feed, write, watch);
     });
