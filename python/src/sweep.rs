@@ -25,9 +25,10 @@ pub fn sweep<'py>(
     scene: &Bound<'py, PyAny>,
     names: Vec<String>,
     columns: Vec<PyReadonlyArray1<'py, f64>>,
-    (workers, estimate, floating_base): (Option<usize>, bool, bool),
+    options: (Option<usize>, bool, bool),
 ) -> PyResult<Bound<'py, PyDict>> {
     let py = scene.py();
+    let (workers, estimate, floating_base) = options;
     let source = match scene.cast::<Robot>() {
         Ok(robot) => robot.get().origin().clone(),
         Err(_) => Source::of(scene, floating_base)?,
