@@ -119,7 +119,12 @@ fn work<E: Send, N: FnMut() -> Result<Option<Block>, E> + Send>(
     write: &(dyn Fn(&Block, &[Row]) -> Result<(), E> + Sync),
     watch: Watch<'_>,
 ) {
-    while let Some((open, first)) = locked(feed).take(watch.pause) {
+    loop {
+        // The lock is given back before anything moves.
+        let taken = locked(feed).take(watch.pause);
+        let Some((open, first)) = taken else {
+            return;
+        };
         let rows = &open.block.rows[first..];
         let rows = &rows[..rows.len().min(TAKEN)];
         let mut moved = Vec::with_capacity(rows.len());
