@@ -12,7 +12,7 @@ pub mod summary;
 
 pub use motion::{Sweep, SweepError};
 pub use results::{Outcome, Row};
-pub use run::{Block, Cells, Watch, run};
+pub use run::{Block, Cells, Watch, Write, run};
 
 use hamel::registry::JointRegistry;
 

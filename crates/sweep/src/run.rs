@@ -63,6 +63,9 @@ impl std::fmt::Debug for Watch<'_> {
     }
 }
 
+/// Takes a block with its results, in the order of its rows.
+pub type Write<'a, E> = dyn Fn(&Block, &[Row]) -> Result<(), E> + Sync + 'a;
+
 /// A block of which rows are being moved.
 struct Open {
     block: Block,
@@ -88,7 +91,7 @@ pub fn run<E: Send>(
     registry: &JointRegistry,
     workers: Option<NonZero<usize>>,
     next: impl FnMut() -> Result<Option<Block>, E> + Send,
-    write: &(dyn Fn(&Block, &[Row]) -> Result<(), E> + Sync),
+    write: &Write<'_, E>,
     watch: Watch<'_>,
 ) -> Result<(), E> {
     let feed = Mutex::new(Feed {
@@ -116,7 +119,7 @@ fn work<E: Send, N: FnMut() -> Result<Option<Block>, E> + Send>(
     sweep: &Sweep,
     registry: &JointRegistry,
     feed: &Mutex<Feed<N, E>>,
-    write: &(dyn Fn(&Block, &[Row]) -> Result<(), E> + Sync),
+    write: &Write<'_, E>,
     watch: Watch<'_>,
 ) {
     loop {
