@@ -46,7 +46,7 @@ def test_rows_fail_alone():
     assert found["outcome"].tolist() == [
         "ended",
         "failed: body `hand`: mass is -1 kg: it must be at least 0 (column `body.hand.mass`)",
-        "failed: body `hand`: `mass` is NaN, not a finite number (column `body.hand.mass`)",
+        "failed: body `hand`: `mass` is nan, not a finite number (column `body.hand.mass`)",
     ]
     assert np.isnan(found["t_s"]).tolist() == [False, True, True]
 
