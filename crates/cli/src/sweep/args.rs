@@ -58,7 +58,7 @@ pub struct Args {
     #[arg(long, value_name = "COUNT")]
     pub workers: Option<NonZero<usize>>,
 
-    /// Rows of one part of the results, which is what a kill loses at most [default: a 64th of the table, between 8 and 5000]
+    /// Rows of one part of the results; a kill loses the parts under way [default: a 64th of the table, between 8 and 5000]
     #[arg(long, value_name = "ROWS")]
     pub block: Option<NonZero<u64>>,
 
