@@ -12,6 +12,7 @@ mod results;
 mod robot;
 mod simulation;
 mod source;
+mod sweep;
 mod workspace;
 
 use pyo3::prelude::*;
@@ -27,4 +28,6 @@ mod _hamel {
     use crate::robot::Robot;
     #[pymodule_export]
     use crate::simulation::simulate;
+    #[pymodule_export]
+    use crate::sweep::sweep;
 }

@@ -49,6 +49,11 @@ impl Robot {
         &self.model
     }
 
+    /// What it was read from.
+    pub const fn origin(&self) -> &Source {
+        &self.source
+    }
+
     /// Its bodies and joints.
     pub fn mechanism(&self) -> &Mechanism {
         self.model.mechanism()

@@ -81,6 +81,23 @@ impl Source {
         }
     }
 
+    /// The text of the scene; of a robot that of the scene that is made of it.
+    ///
+    /// # Errors
+    /// Mistakes in the text of a robot.
+    pub fn scene_text(&self) -> Result<String, Diagnostics> {
+        match self.is_robot {
+            true => {
+                let options = robot::Options {
+                    floating_base: self.floating_base,
+                    ..robot::Options::default()
+                };
+                Ok(robot::read(&self.text, &self.name, &options)?.to_toml())
+            }
+            false => Ok(self.text.clone()),
+        }
+    }
+
     /// The model, and the limits of its joints.
     ///
     /// # Errors

@@ -75,6 +75,22 @@ impl Input {
         })
     }
 
+    /// The text of the scene file, or of the one that `hamel import` makes of the robot.
+    ///
+    /// # Errors
+    /// Mistakes in the text of a robot.
+    pub fn scene_text(&self) -> Result<String, Failure> {
+        Ok(match &self.robot {
+            Some(options) => robot::read(&self.text, &self.name, options)?.to_toml(),
+            None => self.text.clone(),
+        })
+    }
+
+    /// What messages call the file.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
     /// For the scene compiler: what [`Input::scene`] is made of.
     ///
     /// # Errors

@@ -10,6 +10,7 @@ mod joints;
 #[path = "absent/report.rs"]
 mod report;
 mod simulate;
+mod sweep;
 
 use clap::{Parser, Subcommand};
 use hamel_console::{interrupt, output, terminal};
@@ -21,7 +22,7 @@ use std::process::ExitCode;
 const FEATURES: &str = "`hamel help COMMAND` explains a command with examples.
 
 What takes long to build is left out unless `cargo` is told otherwise, `cargo run --release -p hamel-cli --features full`:
-  parquet     trajectories as Parquet, `simulate --parquet`
+  parquet     trajectories, tables and results as Parquet: `simulate --parquet`, `sweep`
   predictive  scenes whose controller is model predictive control, `kind = \"mpc\"`
   report      `hamel report`: error against run time, with plots
   full        all of them";
@@ -42,6 +43,7 @@ enum Command {
     Import(import::Args),
     Joints(joints::Args),
     Report(report::Args),
+    Sweep(sweep::Args),
 }
 
 /// The program: parses the command line, does what it says, and gives the exit code.
@@ -61,6 +63,7 @@ pub fn main() -> ExitCode {
         Command::Import(args) => import::run(&args, &registry),
         Command::Joints(args) => joints::run(&args),
         Command::Report(args) => report::run(&args, &registry),
+        Command::Sweep(args) => sweep::run(&args, &registry),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

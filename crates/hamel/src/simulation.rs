@@ -3,8 +3,7 @@
 use crate::error::Error;
 use hamel_control::Feedback;
 use hamel_integrate::{
-    Event, Form, GlobalError, Integration, Method, Observer, Options, Solution, State, Tuned,
-    no_observer,
+    Event, Form, GlobalError, Integration, Method, Observer, Options, Solution, State, Step, Tuned,
 };
 use hamel_runtime::dynamics::Dynamics;
 use hamel_scene::{Arithmetic, Company, Scene, Settings};
@@ -13,6 +12,9 @@ use std::ops::ControlFlow;
 
 /// Efforts τ, one per entry of v, from time (s), Q and v̄; they are zero when it is called.
 type Inputs<'a> = Box<dyn FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a>;
+
+/// Sees the steps of a motion.
+type Sight<'a> = Box<dyn FnMut(&Step<'_>) + 'a>;
 
 /// A motion that is being put together; [`Simulation::run`] moves the model.
 #[must_use = "nothing moves before `run`"]
@@ -24,6 +26,7 @@ pub struct Simulation<'a> {
     inputs: Option<Inputs<'a>>,
     events: Vec<Event<'a>>,
     stop: Option<Box<dyn Fn() -> bool + 'a>>,
+    sight: Option<Sight<'a>>,
 }
 
 impl<'a> Simulation<'a> {
@@ -36,6 +39,7 @@ impl<'a> Simulation<'a> {
             inputs: None,
             events: Vec::new(),
             stop: None,
+            sight: None,
         }
     }
 
@@ -119,6 +123,13 @@ impl<'a> Simulation<'a> {
     /// an estimate, or in the search for an accuracy, ask too.
     pub fn stopping(mut self, stop: impl Fn() -> bool + 'a) -> Self {
         self.stop = Some(Box::new(stop));
+        self
+    }
+
+    /// With a look at the initial state ([`Step::number`] 0), each step, and each sample within one. Where a tolerance is searched for, or arithmetic is left open,
+    /// the motions before the last are seen too, each from its initial state; companions of an estimate are not.
+    pub fn observing(mut self, observer: impl FnMut(&Step<'_>) + 'a) -> Self {
+        self.sight = Some(Box::new(observer));
         self
     }
 
@@ -246,8 +257,15 @@ impl<'a> Simulation<'a> {
         let others_again = others.iter_mut().map(Event::by_ref);
         let events = own.chain(others_again).collect();
         let start = self.start.clone();
-        let moved = self.integrate(dynamics, (&start, options), events, &mut no_observer);
+        let mut sight = self.sight.take();
+        let moved = self.integrate(dynamics, (&start, options), events, &mut |step| {
+            if let Some(sight) = &mut sight {
+                sight(step);
+            }
+            ControlFlow::Continue(())
+        });
         self.events = others;
+        self.sight = sight;
         moved
     }
 

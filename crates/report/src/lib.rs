@@ -8,7 +8,6 @@ mod case;
 mod choice;
 mod drift;
 mod figures;
-mod lock;
 mod machine;
 mod measure;
 mod page;

@@ -2,7 +2,6 @@
 
 use super::args::Args;
 use super::figures::Figures;
-use super::lock::Lock;
 use super::machine::Machine;
 use super::plan::Plan;
 use super::progress::Progress;
@@ -10,7 +9,7 @@ use super::row::{Build, Drift, Stability, Work};
 use super::store::{Store, Stores, set_aside};
 use super::{drift, page, stability, work};
 use hamel::registry::JointRegistry;
-use hamel_console::files::{Output, admit};
+use hamel_console::files::{Lock, Output, admit};
 use hamel_console::interrupt::Heed;
 use hamel_console::output::{self, Failure};
 use std::path::Path;
@@ -26,7 +25,10 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
         std::fs::create_dir_all(folder).map_err(|error| Failure::write(folder, error))?;
     }
     // Without the folder there are no figures, which is told below.
-    let lock = folder.is_dir().then(|| Lock::of(folder)).transpose()?;
+    let lock = folder
+        .is_dir()
+        .then(|| Lock::of(folder, "hamel report"))
+        .transpose()?;
     let page = folder.join("index.html");
     let admitted = || admit([], [(&*page, page::is_own as _)], args.force.force);
     let output: Option<Output> = match &lock {

@@ -7,6 +7,7 @@ dimensions are a batch. Units are SI, angles radians; twists have the angular ve
 from ._errors import ArgumentError, DynamicsError, Error, FileError, IntegrationError, Mistake
 from ._hamel import Robot, load, set_threads
 from ._motion import Motion, simulate
+from ._sweep import sweep
 from ._values import ForwardDerivatives, InverseDerivatives, JointInfo, Limits, Sizes, State
 
 __version__ = "0.1.0"
@@ -29,6 +30,7 @@ __all__ = [
     "load",
     "set_threads",
     "simulate",
+    "sweep",
 ]
 
 # Messages and pickles call them by the names that users have for them.

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._values import ForwardDerivatives, InverseDerivatives, JointInfo, Limits, Sizes, State
 
-__all__ = ["Robot", "load", "parse", "set_threads", "simulate"]
+__all__ = ["Robot", "load", "parse", "set_threads", "simulate", "sweep"]
 
 _Array: TypeAlias = NDArray[np.float64]
 _Axes: TypeAlias = Literal["world_aligned", "body", "world"]
@@ -17,6 +17,9 @@ def load(file_or_text: str | PathLike[str], *, floating_base: bool = False) -> R
 def parse(source: tuple[str, str, bool, bool]) -> Robot: ...
 def set_threads(count: int | None = None) -> None: ...
 def simulate(robot: Robot, request: dict[str, Any]) -> dict[str, Any]: ...
+def sweep(
+    scene: Robot | str | PathLike[str], names: list[str], columns: list[_Array], options: tuple[int | None, bool, bool]
+) -> dict[str, Any]: ...
 
 @final
 class Robot:

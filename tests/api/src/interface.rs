@@ -26,6 +26,7 @@ pub const CRATES: &[Interface] = &[
     all("hamel_compiled"),
     all("hamel_scene"),
     all("hamel_joints"),
+    all("hamel_sweep"),
     Interface {
         name: "hamel_compiler",
         only: &[

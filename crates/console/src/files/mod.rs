@@ -7,12 +7,14 @@
 mod admit;
 mod draft;
 mod first;
+mod lock;
 mod place;
 mod unfinished;
 
 pub use admit::{IsOwn, Output, admit, is_stdout, new_file};
 pub use draft::Draft;
 pub use first::first_line;
+pub use lock::Lock;
 use std::path::Path;
 use unfinished::Unfinished;
 pub(crate) use unfinished::{private_folder, remove_unfinished};

@@ -1,10 +1,10 @@
 //! Columns of joints: coordinates, speeds, and what a controller exerts.
 
-use super::coordinates::{Factor, Kind};
-use super::turns::{Angle, Turn, port_rate, velocity};
 use super::{Columns, Ending, List};
 use hamel::joint::{Port, Unit, Units};
 use hamel::mechanism::{Body, Mechanism};
+use hamel_sweep::columns::{Angle, Factor, Turn, port_rate, velocity};
+use hamel_sweep::columns::{coordinate_endings, speed_endings, turns};
 
 impl<'a> Columns<'a> {
     /// Coordinates and speeds of all joints.
@@ -81,15 +81,7 @@ impl<'a> Columns<'a> {
         let factors = Factor::all(body.joint());
         let endings = coordinate_endings(&factors, units);
         let first = self.turns.len();
-        let turns = factors.iter().filter_map(|factor| {
-            let (cosine, sine) = factor.kind.turn()?;
-            let angle = Angle::Stored {
-                cosine: factor.first + cosine,
-                sine: factor.first + sine,
-            };
-            Some(Turn { body: index, angle })
-        });
-        self.turns.extend(turns);
+        self.turns.extend(turns(index, &factors));
         self.add("q", endings, move |moment, row| {
             let q = body.configuration(moment.configuration);
             let mut angles = moment.angles[first..].iter();
@@ -109,62 +101,6 @@ fn unit(port: &Port) -> Unit {
     }
 }
 
-/// Of all parts of Q. The name of a part is left out where there is no other, unless it is all that there is to say.
-fn coordinate_endings(factors: &[Factor], units: &Units) -> Vec<Ending> {
-    let endings = factors.iter().flat_map(|factor| {
-        let stem = factor.stem.trim_end_matches('_');
-        let quantities = factor.kind.quantities();
-        let scalar = || {
-            let unit = units.coordinate(factor.first);
-            vec![ending("q", factor.stem.clone(), unit, meaning(unit))]
-        };
-        match quantities {
-            [] => scalar(),
-            [(_, unit)] if !stem.is_empty() => {
-                vec![ending("q", stem.to_owned(), *unit, meaning(*unit))]
-            }
-            quantities => {
-                let named = quantities.iter().map(|(name, unit)| {
-                    let name = match factors {
-                        [_] => (*name).to_owned(),
-                        _ if stem.is_empty() => (*name).to_owned(),
-                        _ => format!("{stem}_{name}"),
-                    };
-                    let meaning = match (factor.kind, unit) {
-                        (Kind::S2, _) => "unit vector in Q",
-                        (_, &Unit::NUMBER) => {
-                            "attitude in Q as unit quaternion, scalar last and not negative"
-                        }
-                        (_, unit) => meaning(*unit),
-                    };
-                    ending("q", name, *unit, meaning)
-                });
-                named.collect()
-            }
-        }
-    });
-    endings.collect()
-}
-
-/// Of a coordinate.
-fn meaning(unit: Unit) -> &'static str {
-    match unit {
-        Unit::ANGLE => "angle of the joint, not reduced to a turn",
-        Unit::LENGTH => "displacement of the joint",
-        _ => "stored scalar of Q",
-    }
-}
-
-fn speed_endings(body: &Body, units: &Units) -> Vec<Ending> {
-    let speeds = body.joint().speeds().iter().enumerate();
-    let endings = speeds.map(|(place, name)| Ending {
-        name: format!("v.{name}"),
-        unit: units.speed(place).rate,
-        meaning: String::from("speed of the joint"),
-    });
-    endings.collect()
-}
-
 fn effort_endings(body: &Body, units: &Units) -> Vec<Ending> {
     let freedoms = body.joint().freedoms().iter().enumerate();
     let endings = freedoms.map(|(place, name)| Ending {
@@ -173,12 +109,4 @@ fn effort_endings(body: &Body, units: &Units) -> Vec<Ending> {
         meaning: String::from("effort of the controller"),
     });
     endings.collect()
-}
-
-fn ending(key: &str, name: String, unit: Unit, meaning: &str) -> Ending {
-    Ending {
-        name: format!("{key}.{name}"),
-        unit: unit.name,
-        meaning: meaning.to_owned(),
-    }
 }

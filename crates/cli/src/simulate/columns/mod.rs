@@ -1,17 +1,15 @@
 //! The columns of a trajectory: names, units, meanings and numbers in one list, of which CSV, Parquet and JSON are written.
 
-mod coordinates;
 mod forces;
 mod header;
 mod joint;
 mod parts;
 mod sample;
-mod turns;
 
+pub use hamel_sweep::columns::Turns;
 pub use header::are_columns;
 pub use parts::BODY;
 pub use sample::JsonSample;
-pub use turns::Turns;
 
 use super::plan::Plan;
 use forces::Notes;
@@ -19,9 +17,9 @@ use hamel::dynamics::Recursive;
 use hamel::integrate::Step;
 use hamel::mechanism::{Kinematics, Mechanism};
 use hamel::spatial::Pose;
+use hamel_sweep::columns::{Ending, Turn, suffix};
 use serde::Serialize;
 use std::ops::Range;
-use turns::Turn;
 
 /// One column.
 #[derive(Clone, Debug, Serialize)]
@@ -120,13 +118,6 @@ struct Entry<'a> {
     list: Option<List>,
     name: &'a str,
     quantities: Vec<Quantity<'a>>,
-}
-
-/// A column before it has its place: name without owner and unit, unit, meaning.
-struct Ending {
-    name: String,
-    unit: &'static str,
-    meaning: String,
 }
 
 /// The columns of a run, in their order.
@@ -273,17 +264,5 @@ impl<'a> Columns<'a> {
             columns: first..self.list.len(),
             read: Box::new(read),
         });
-    }
-}
-
-/// A unit at the end of a name: `_m_per_s`, `_per_m2_s`.
-fn suffix(unit: &str) -> String {
-    match unit {
-        "" | "1" => String::new(),
-        unit => {
-            let plain = unit.replace(['(', ')', '^'], "").replace(' ', "_");
-            let written = plain.replace('/', "_per_");
-            format!("_{}", written.strip_prefix("1_").unwrap_or(&written))
-        }
     }
 }

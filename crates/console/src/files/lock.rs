@@ -1,6 +1,6 @@
 //! A folder that one command writes at a time.
 
-use hamel_console::output::Failure;
+use crate::output::Failure;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io;
 use std::path::Path;
@@ -15,11 +15,11 @@ pub struct Lock {
 }
 
 impl Lock {
-    /// Locks a folder.
+    /// Locks a folder for the command of this name.
     ///
     /// # Errors
     /// A folder that another command writes, or that cannot be written.
-    pub fn of(folder: &Path) -> Result<Self, Failure> {
+    pub fn of(folder: &Path, command: &str) -> Result<Self, Failure> {
         let path = folder.join(NAME);
         let failed = |error| Failure::write(&path, error);
         // To open a pipe would wait for its reader.
@@ -33,7 +33,7 @@ impl Lock {
             Ok(()) => Ok(Self { _file: file }),
             Err(TryLockError::Error(error)) => Err(failed(error)),
             Err(TryLockError::WouldBlock) => Err(Failure::Options(format!(
-                "{} is being written by another `hamel report`: wait until it is done, or name another folder",
+                "{} is being written by another `{command}`: wait until it is done, or name another folder",
                 folder.display()
             ))),
         }

@@ -1,12 +1,13 @@
 //! Angles that are known up to whole turns, followed over the motion so that they count turns.
 
+use super::coordinates::Factor;
 use hamel::integrate::Step;
 use hamel::mechanism::{Body, Mechanism};
 use std::f64::consts::TAU;
 
 /// An angle of a joint.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Turn {
+pub struct Turn {
     /// Whose joint it belongs to.
     pub body: usize,
     /// Which one it is.
@@ -15,7 +16,7 @@ pub(super) struct Turn {
 
 /// Where an angle is found.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Angle {
+pub enum Angle {
     /// Stored in Q.
     Stored {
         /// Place of its cosine in the joint's Q.
@@ -37,7 +38,8 @@ pub struct Turns {
 }
 
 impl Turns {
-    pub(super) fn new(turns: Vec<Turn>) -> Self {
+    /// Follows these.
+    pub fn new(turns: Vec<Turn>) -> Self {
         let count = turns.len();
         Self {
             turns,
@@ -54,7 +56,8 @@ impl Turns {
 
     /// Goes on to the end of `step`.
     pub fn follow(&mut self, mechanism: &Mechanism, step: &Step<'_>) {
-        let last = self.time.replace(step.time);
+        // The first state begins another motion.
+        let last = self.time.replace(step.time).filter(|_| step.number > 0);
         let states = self.angles.iter_mut().zip(&mut self.rates);
         for (turn, (angle, rate)) in self.turns.iter().zip(states) {
             let body = &mechanism.bodies()[turn.body];
@@ -94,15 +97,27 @@ impl Turn {
     }
 }
 
+/// The angles among the parts `factors` of the joint under the body of index `body`.
+pub fn turns(body: usize, factors: &[Factor]) -> impl Iterator<Item = Turn> {
+    factors.iter().filter_map(move |factor| {
+        let (cosine, sine) = factor.kind.turn()?;
+        let angle = Angle::Stored {
+            cosine: factor.first + cosine,
+            sine: factor.first + sine,
+        };
+        Some(Turn { body, angle })
+    })
+}
+
 /// The rate of a port at the joint's Q and v.
-pub(super) fn port_rate(body: &Body, q: &[f64], velocity: &[f64], port: usize) -> f64 {
+pub fn port_rate(body: &Body, q: &[f64], velocity: &[f64], port: usize) -> f64 {
     let mut row = vec![0.0; velocity.len()];
     body.joint().port_row(q, port, &mut row);
     row.iter().zip(velocity).map(|(p, v)| p * v).sum()
 }
 
 /// v of a joint at its Q and v̄.
-pub(super) fn velocity(body: &Body, q: &[f64], speeds: &[f64]) -> Vec<f64> {
+pub fn velocity(body: &Body, q: &[f64], speeds: &[f64]) -> Vec<f64> {
     let joint = body.joint();
     let freedoms = joint.layout().freedoms;
     let mut basis = vec![0.0; freedoms * speeds.len()];

@@ -3,14 +3,15 @@
 //! A joint tells the names of its stored scalars and not of which manifold they are. The generator names those of a group by a
 //! pattern; that the joint's projection scales them back to their group makes sure of it.
 
-use super::super::sample::{quaternion, unit_quaternion};
+use super::attitude::{quaternion, unit_quaternion};
 use hamel::erased::AnyJoint;
 use hamel::joint::Unit;
 use nalgebra::Matrix3;
 
 /// A part of Q.
 #[derive(Clone, Debug)]
-pub(super) struct Factor {
+pub struct Factor {
+    /// What it is.
     pub kind: Kind,
     /// What its names begin with.
     pub stem: String,
@@ -20,15 +21,22 @@ pub(super) struct Factor {
 
 /// What a part of Q is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub enum Kind {
     /// One scalar of a real vector, or of a manifold that is not known here.
     Scalar,
+    /// A point of a circle.
     S1,
+    /// A rotation of the plane.
     So2,
+    /// A motion of the plane.
     Se2,
+    /// A unit vector.
     S2,
+    /// A unit quaternion.
     S3,
+    /// A rotation.
     So3,
+    /// A motion.
     Se3,
 }
 
@@ -186,7 +194,7 @@ mod tests {
 
     /// A joint of the library; parameters from 0.2 to 1.2 are tried until they meet its requirements.
     fn joint(name: &str) -> Arc<dyn AnyJoint> {
-        let joints = hamel_joints::registry();
+        let joints = hamel::joints::registry();
         let entry = joints.get(name).expect("a joint of the library");
         // An additive recurrence fills every dimension evenly; its steps are rationally independent.
         let steps = [2.0_f64, 3.0, 5.0, 7.0, 11.0, 13.0].map(f64::sqrt);
@@ -243,7 +251,7 @@ mod tests {
         let wheel = units("upright_wheel");
         assert_eq!(wheel.freedoms, [angle, length, length, angle]);
         assert_eq!(wheel.speeds, [angle, angle]);
-        for entry in hamel_joints::registry().entries() {
+        for entry in hamel::joints::registry().entries() {
             let found = units(entry.name);
             let all = [
                 found.coordinates,

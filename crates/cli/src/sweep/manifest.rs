@@ -1,0 +1,138 @@
+//! `sweep.json`: what was swept, by which a folder of results is known.
+
+use super::args::Format;
+use hamel_console::output::Failure;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// Its name in the folder.
+pub const NAME: &str = "sweep.json";
+
+/// Version of the layout of folders.
+const LAYOUT: u32 = 1;
+
+/// Larger files are no manifests, bytes.
+const LARGEST: u64 = 64 << 20;
+
+/// What decides on the results.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Version of the layout.
+    pub hamel_sweep: u32,
+    /// Version of the program.
+    pub version: String,
+    /// The processor's architecture. Motions are computed one by one in doubles, with the instructions that all processors of it have.
+    pub architecture: String,
+    /// The scene file.
+    pub scene: Input,
+    /// The table.
+    pub table: Input,
+    /// Rows of the table.
+    pub rows: u64,
+    /// Rows of a part.
+    pub block: u64,
+    /// Format of the parts.
+    pub format: String,
+    /// Whether errors of motions are estimated.
+    pub error_estimate: bool,
+}
+
+/// A file that was read.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Input {
+    /// Its name.
+    pub name: String,
+    /// FNV-1a of its bytes, 64 bits; of a robot, of the scene that is made of it.
+    pub sum: String,
+    /// How many bytes.
+    pub bytes: u64,
+}
+
+impl Manifest {
+    /// What is to be swept.
+    pub fn new(
+        [scene, table]: [Input; 2],
+        rows: u64,
+        block: u64,
+        (format, error_estimate): (Format, bool),
+    ) -> Self {
+        Self {
+            hamel_sweep: LAYOUT,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            architecture: std::env::consts::ARCH.to_owned(),
+            scene,
+            table,
+            rows,
+            block,
+            format: format.name().to_owned(),
+            error_estimate,
+        }
+    }
+
+    /// That of a folder, if it has one.
+    ///
+    /// # Errors
+    /// A file of its name that is none.
+    pub fn read(folder: &Path) -> Result<Option<Self>, Failure> {
+        let path = folder.join(NAME);
+        let Ok(found) = path.metadata() else {
+            return Ok(None);
+        };
+        let text = (found.is_file() && found.len() <= LARGEST)
+            .then(|| std::fs::read(&path).ok())
+            .flatten();
+        let read = text.and_then(|text| serde_json::from_slice(&text).ok());
+        match read {
+            Some(manifest) => Ok(Some(manifest)),
+            None => Err(Failure::Options(format!(
+                "{} does not tell of a sweep: name another folder",
+                path.display()
+            ))),
+        }
+    }
+
+    /// As the file has it.
+    pub fn text(&self) -> String {
+        let text = serde_json::to_string_pretty(self).unwrap_or_default();
+        format!("{text}\n")
+    }
+
+    /// How this sweep differs from `other`, whose results are there; empty where both are one. A file of another name with the same bytes is the same.
+    pub fn differences(&self, other: &Self) -> Vec<String> {
+        let mut all = Vec::new();
+        let mut note = |what: &str, then: &str, now: &str| {
+            if then != now {
+                all.push(format!("{what} was {then}, and is {now}"));
+            }
+        };
+        let layout = |own: &Self| own.hamel_sweep.to_string();
+        note("the layout of the folder", &layout(other), &layout(self));
+        note("the program's version", &other.version, &self.version);
+        note("the processor", &other.architecture, &self.architecture);
+        note("the format", &other.format, &self.format);
+        let block = |own: &Self| format!("{} rows", own.block);
+        note("--block", &block(other), &block(self));
+        let estimate = |own: &Self| match own.error_estimate {
+            true => "there",
+            false => "left out",
+        };
+        note("the error estimate", estimate(other), estimate(self));
+        for (what, then, now) in [
+            ("the scene", &other.scene, &self.scene),
+            ("the table", &other.table, &self.table),
+        ] {
+            if (&then.sum, then.bytes) != (&now.sum, now.bytes) {
+                let (then, now) = (then.told(), now.told());
+                all.push(format!("{what} was {then}, and is {now}"));
+            }
+        }
+        all
+    }
+}
+
+impl Input {
+    fn told(&self) -> String {
+        let Self { name, sum, bytes } = self;
+        format!("{name} of {bytes} bytes with the sum {sum}")
+    }
+}

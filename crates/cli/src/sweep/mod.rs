@@ -1,0 +1,19 @@
+//! `hamel sweep`: from a scene and a table to a folder of results.
+
+mod args;
+mod csv;
+mod folder;
+mod manifest;
+mod page;
+#[cfg(feature = "parquet")]
+mod parquet;
+#[cfg(not(feature = "parquet"))]
+#[path = "../absent/parquet_tables.rs"]
+mod parquet;
+mod progress;
+mod run;
+mod summary;
+mod table;
+
+pub use args::Args;
+pub use run::run;

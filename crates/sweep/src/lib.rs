@@ -1,0 +1,22 @@
+#![doc = include_str!("../README.md")]
+//!
+//! [`Sweep`] is the scene with its columns and moves one row; [`run`] moves all rows of a table on many threads; [`summary`] tells what came of them.
+
+pub mod columns;
+mod document;
+mod motion;
+mod path;
+mod results;
+mod run;
+pub mod summary;
+
+pub use motion::{Sweep, SweepError};
+pub use results::{Outcome, Row};
+pub use run::{Block, Cells, Watch, Write, run};
+
+use hamel::registry::JointRegistry;
+
+/// The joints of the library.
+pub fn joints() -> JointRegistry {
+    hamel::joints::registry()
+}

@@ -1,0 +1,177 @@
+//! A scene whose numbers rows change, and the motion of one row.
+
+use crate::document::Document;
+use crate::results::{Results, Row};
+use crate::run::Cells;
+use hamel::registry::JointRegistry;
+use hamel::scene::{Diagnostics, Scene};
+use hamel::{Error, Model};
+use std::cell::RefCell;
+
+/// Why there is no sweep.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SweepError {
+    /// Mistakes in the scene as it is written, before a row changes it.
+    #[error(transparent)]
+    Scene(#[from] Diagnostics),
+    /// Columns that change nothing of the scene, one a line.
+    #[error("{}", .0.join("\n"))]
+    Columns(Vec<String>),
+}
+
+/// A scene, the numbers of it that a table changes, and what is told of its motions.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    document: Document,
+    source: String,
+    columns: Vec<String>,
+    results: Results,
+    has_error: bool,
+}
+
+impl Sweep {
+    /// Motions of the scene in `text`, which messages call `source`, with other numbers under the names `columns`. A name is the way through the scene file to a number, keys
+    /// between dots: `body.arm.mass`, `body.arm.initial.speeds.1`, `controller.frequency`. An element of a list is called by its `name` (or `joint`, or `body`), or by its place, from
+    /// 1; a key that holds dots stands in quotes. All numbers have the units of the file.
+    ///
+    /// # Errors
+    /// Mistakes of the scene as it is written; names that lead to no number of it, all of them.
+    pub fn new(
+        text: &str,
+        source: &str,
+        columns: &[impl AsRef<str>],
+        registry: &JointRegistry,
+    ) -> Result<Self, SweepError> {
+        let scene = Scene::parse(text, source, registry)?;
+        Ok(Self {
+            document: Document::new(text, columns).map_err(SweepError::Columns)?,
+            source: source.to_owned(),
+            columns: columns
+                .iter()
+                .map(|name| name.as_ref().to_owned())
+                .collect(),
+            results: Results::new(&scene.mechanism, false),
+            has_error: false,
+        })
+    }
+
+    /// With an estimate of each motion's error, which takes about as long again as the motion: columns `error` and `error_is_reliable`.
+    ///
+    /// # Errors
+    /// None that [`Sweep::new`] does not have.
+    pub fn estimating(mut self, registry: &JointRegistry) -> Result<Self, SweepError> {
+        let scene = Scene::parse(self.document.text(), &self.source, registry)?;
+        self.results = Results::new(&scene.mechanism, true);
+        self.has_error = true;
+        Ok(self)
+    }
+
+    /// The names of the table's columns.
+    pub fn columns(&self) -> &[String] {
+        &self.columns
+    }
+
+    /// Names of the numbers of a [`Row`], with units as `hamel simulate` writes them: time, energies and steps; then of all joints coordinates and speeds.
+    pub fn results(&self) -> &[String] {
+        self.results.names()
+    }
+
+    /// The scene file of a row, which moves as the row does; `None` of a row that lacks numbers.
+    pub fn scene_of(&self, cells: &Cells) -> Option<String> {
+        self.numbers(cells)
+            .ok()
+            .map(|numbers| self.document.with(numbers))
+    }
+
+    /// The motion of one row: the scene is built with its numbers, and moved as its `[simulation]` says. Its samples are not taken, and shorten no steps. The result depends on the row alone.
+    pub fn motion(&self, cells: &Cells, registry: &JointRegistry) -> Row {
+        let moved = self.motion_until(cells, registry, &|| false);
+        moved.unwrap_or_else(|| self.results.failure("it was ended".into()))
+    }
+
+    /// As [`Sweep::motion`], until `stop` tells after a step that it is to end: then there is no result.
+    pub fn motion_until(
+        &self,
+        cells: &Cells,
+        registry: &JointRegistry,
+        stop: &dyn Fn() -> bool,
+    ) -> Option<Row> {
+        let moved = self.numbers(cells).and_then(|numbers| {
+            let scene = self.scene(numbers, registry)?;
+            self.moved(scene, stop)
+        });
+        match moved {
+            _ if stop() => None,
+            Ok(row) => Some(row),
+            Err(cause) => Some(self.results.failure(cause)),
+        }
+    }
+
+    /// One for each column.
+    fn numbers<'c>(&self, cells: &'c Cells) -> Result<&'c [f64], String> {
+        let Cells { numbers, fault } = cells;
+        match (fault, numbers.len()) {
+            (Some(fault), _) => Err(fault.clone()),
+            (None, found) if found != self.columns.len() => Err(format!(
+                "the row has {found} cells, and the table {} columns",
+                self.columns.len()
+            )),
+            (None, _) => Ok(numbers),
+        }
+    }
+
+    fn scene(&self, numbers: &[f64], registry: &JointRegistry) -> Result<Scene, String> {
+        let text = self.document.with(numbers);
+        let scene = Scene::parse(&text, &self.source, registry);
+        let scene = scene.map_err(|mistakes| self.refusal(numbers, &mistakes))?;
+        match self.results.fit(&scene.mechanism) {
+            true => Ok(scene),
+            false => Err("its loops move by other coordinates than those of the file: name them by `independent`".into()),
+        }
+    }
+
+    /// The first mistake of a row's scene, with its column where it stands at the number of one, and how many there are.
+    fn refusal(&self, numbers: &[f64], mistakes: &Diagnostics) -> String {
+        let [first, others @ ..] = mistakes.errors() else {
+            return mistakes.to_string();
+        };
+        let span = first.span();
+        let column = span.and_then(|span| self.document.column_at(numbers, span));
+        let mut told = first.message().to_owned();
+        if let Some(column) = column {
+            told += &format!(" (column `{}`)", self.columns[column]);
+        }
+        match others.len() {
+            0 => told,
+            more => format!("{told}, and {more} more"),
+        }
+    }
+
+    fn moved(&self, scene: Scene, stop: &dyn Fn() -> bool) -> Result<Row, String> {
+        let model = Model::new(scene);
+        let scene = model.scene();
+        let turns = RefCell::new(self.results.turns());
+        let simulation = model
+            .simulate()
+            .sample_at([])
+            .stopping(stop)
+            .observing(|step| turns.borrow_mut().follow(&scene.mechanism, step));
+        let told = |error: Error| told(&error);
+        let (solution, error) = match self.has_error {
+            true => {
+                let (solution, error) = simulation.run_estimated().map_err(told)?;
+                (solution, Some(error))
+            }
+            false => (simulation.run().map_err(told)?, None),
+        };
+        self.results
+            .row(scene, &solution, error.as_ref(), &turns.borrow())
+    }
+}
+
+/// In one line.
+fn told(error: &Error) -> String {
+    let told = error.to_string();
+    told.lines().map(str::trim).collect::<Vec<_>>().join("; ")
+}

@@ -1,0 +1,185 @@
+//! What is told of one motion: its last state in columns, and how it ended.
+
+use crate::columns::{Factor, Turns, coordinate_endings, speed_endings, suffix, turns};
+use hamel::integrate::{GlobalError, Solution};
+use hamel::mechanism::Mechanism;
+use hamel::scene::Scene;
+use std::fmt;
+use std::sync::Arc;
+
+/// How a motion ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// At the end of the time.
+    Ended,
+    /// At this event of the scene, which stops it.
+    Event(String),
+    /// Before it began, or on the way, for this reason.
+    Failed(String),
+}
+
+/// `ended`, `event NAME` or `failed: CAUSE`.
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Ended => write!(f, "ended"),
+            Self::Event(name) => write!(f, "event {name}"),
+            Self::Failed(cause) => write!(f, "failed: {cause}"),
+        }
+    }
+}
+
+/// What came of one row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// How the motion ended.
+    pub outcome: Outcome,
+    /// One number for each of [`Sweep::results`](crate::Sweep::results); all NaN where the motion failed.
+    pub numbers: Vec<f64>,
+}
+
+/// Names of what is told of every motion.
+const WHOLE: [&str; 4] = ["t_s", "energy_J", "kinetic_energy_J", "potential_energy_J"];
+const WORK: [&str; 1] = ["steps"];
+const ERROR: [&str; 2] = ["error", "error_is_reliable"];
+
+/// The joint under a body, as results tell of it.
+#[derive(Clone, Debug)]
+struct Joint {
+    body: usize,
+    factors: Vec<Factor>,
+    coordinates: &'static [&'static str],
+    speeds: &'static [&'static str],
+}
+
+/// The columns of results.
+#[derive(Clone, Debug)]
+pub(crate) struct Results {
+    names: Vec<String>,
+    joints: Vec<Joint>,
+    has_error: bool,
+}
+
+impl Results {
+    /// Those of motions of `mechanism`, with the estimate of their errors where `has_error`.
+    pub fn new(mechanism: &Mechanism, has_error: bool) -> Self {
+        let error = if has_error { &ERROR[..] } else { &[] };
+        let fixed = WHOLE.iter().chain(&WORK).chain(error);
+        let mut names: Vec<String> = fixed.map(|name| (*name).to_owned()).collect();
+        let mut joints = Vec::new();
+        for (index, body) in mechanism.joints() {
+            let (joint, units) = (body.joint(), body.joint().units());
+            let factors = Factor::all(joint);
+            let endings = coordinate_endings(&factors, &units);
+            for ending in endings.into_iter().chain(speed_endings(body, &units)) {
+                let (owner, unit) = (body.joint_name(), suffix(ending.unit));
+                names.push(format!("{owner}.{}{unit}", ending.name));
+            }
+            joints.push(Joint {
+                body: index,
+                factors,
+                coordinates: joint.coordinates(),
+                speeds: joint.speeds(),
+            });
+        }
+        Self {
+            names,
+            joints,
+            has_error,
+        }
+    }
+
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// Whether the same is told of the motions of `mechanism`: numbers decide which coordinates of a loop are told.
+    pub fn fit(&self, mechanism: &Mechanism) -> bool {
+        let mut own = self.joints.iter();
+        let fits = mechanism.joints().all(|(body, joint)| {
+            own.next().is_some_and(|own| {
+                let joint = joint.joint();
+                own.body == body
+                    && own.coordinates == joint.coordinates()
+                    && own.speeds == joint.speeds()
+            })
+        });
+        fits && own.next().is_none()
+    }
+
+    /// What follows the angles over a motion.
+    pub fn turns(&self) -> Turns {
+        let all = self.joints.iter();
+        Turns::new(
+            all.flat_map(|joint| turns(joint.body, &joint.factors))
+                .collect(),
+        )
+    }
+
+    /// What a motion came to.
+    ///
+    /// # Errors
+    /// A last state that has no finite energy.
+    pub fn row(
+        &self,
+        scene: &Scene,
+        solution: &Solution,
+        error: Option<&GlobalError>,
+        angles: &Turns,
+    ) -> Result<Row, String> {
+        let mechanism: &Arc<Mechanism> = &scene.mechanism;
+        let state = &solution.state;
+        let (q, speeds) = (&*state.configuration, &*state.speeds);
+        let found = mechanism.kinematics(q, speeds);
+        let found = found.map_err(|error| error.to_string())?;
+        let mut numbers = Vec::with_capacity(self.names.len());
+        let energies = [
+            found.energy(),
+            found.kinetic_energy(),
+            found.potential_energy(),
+        ];
+        numbers.push(state.time);
+        numbers.extend(energies);
+        numbers.push(solution.statistics.steps as f64);
+        if self.has_error {
+            numbers.push(error.map_or(f64::NAN, |error| error.end.total()));
+            let is_reliable = error.is_some_and(|error| error.doubt.is_none());
+            numbers.push(f64::from(u8::from(is_reliable)));
+        }
+        let mut angles = angles.angles().iter();
+        for joint in &self.joints {
+            let body = &mechanism.bodies()[joint.body];
+            let own = body.configuration(q);
+            for factor in &joint.factors {
+                let angle = factor.kind.turn().and_then(|_| angles.next());
+                factor.read(own, angle.copied().unwrap_or(f64::NAN), &mut numbers);
+            }
+            numbers.extend(&speeds[body.ranges().speeds.clone()]);
+        }
+        Ok(Row {
+            outcome: outcome(scene, solution),
+            numbers,
+        })
+    }
+
+    /// What is told of a motion that failed.
+    pub fn failure(&self, cause: String) -> Row {
+        Row {
+            outcome: Outcome::Failed(cause),
+            numbers: vec![f64::NAN; self.names.len()],
+        }
+    }
+}
+
+/// A motion that the scene stops ends at the last crossing of an event that does so.
+fn outcome(scene: &Scene, solution: &Solution) -> Outcome {
+    let stops = |name: &str| {
+        let mut events = scene.events.iter();
+        events.any(|event| event.stops && event.name == name)
+    };
+    let mut crossings = solution.events.iter().rev();
+    let last = crossings.find(|crossing| solution.stopped && stops(&crossing.name));
+    last.map_or(Outcome::Ended, |crossing| {
+        Outcome::Event(crossing.name.to_string())
+    })
+}

@@ -1,0 +1,73 @@
+"""Many motions of one scene, beside single ones and the program's."""
+
+import hamel
+import numpy as np
+import pytest
+from conftest import SCENES
+
+ARM = SCENES / "sweep/arm.toml"
+MASS = "body.hand.mass"
+
+
+def table(count):
+    random = np.random.default_rng(3)
+    return {MASS: random.uniform(0.3, 0.9, count), "body.upper.initial.configuration.1": random.normal(0.0, 0.01, count)}
+
+
+def test_rows_are_the_motions_of_their_scenes():
+    rows = table(5)
+    found = hamel.sweep(ARM, rows)
+    assert list(found)[:3] == ["outcome", "t_s", "energy_J"]
+    text = ARM.read_text()
+    for row in range(5):
+        own = text.replace("mass = 0.6", f"mass = {rows[MASS][row]!r}".replace("np.float64(", "").replace(")", ""))
+        first = float(rows["body.upper.initial.configuration.1"][row])
+        own = own.replace("configuration = [0.0]", f"configuration = [{first!r}]", 1)
+        motion = hamel.simulate(hamel.load(own), samples=[], t_end=1.0) if found["outcome"][row] == "ended" else None
+        if motion is not None:
+            assert found["steps"][row] == motion.statistics["steps"]
+            assert found["error"][row] == motion.end_error
+    assert (found["outcome"] == "ended").any()
+
+
+def test_bits_do_not_depend_on_workers_and_on_the_kind_of_table():
+    pandas = pytest.importorskip("pandas")
+    rows = table(40)
+    found = hamel.sweep(hamel.load(ARM), rows, 1, estimate=False)
+    for other in (hamel.sweep(ARM, rows, 4, estimate=False), hamel.sweep(ARM, pandas.DataFrame(rows), estimate=False)):
+        assert list(other) == list(found)
+        for name, values in found.items():
+            assert np.array_equal(values, other[name], equal_nan=name != "outcome"), name
+    assert "error" not in found
+
+
+def test_rows_fail_alone():
+    found = hamel.sweep(ARM, {MASS: [0.5, -1.0, np.nan]}, estimate=False)
+    assert found["outcome"].tolist() == [
+        "ended",
+        "failed: body `hand`: mass is -1 kg: it must be at least 0 (column `body.hand.mass`)",
+        "failed: body `hand`: `mass` is nan, not a finite number (column `body.hand.mass`)",
+    ]
+    assert np.isnan(found["t_s"]).tolist() == [False, True, True]
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        ({"body.hand.mas": [1.0]}, "column `body.hand.mas`: in `body.hand`: the scene has no `mas` there; did you mean `mass`?"),
+        ({MASS: ["a"]}, "column `body.hand.mass` is no array of numbers: could not convert string to float: 'a'"),
+        ({MASS: [[1.0]]}, "column `body.hand.mass` has shape (1, 1): it must have shape (n,)"),
+        ({MASS: [1.0], "gravity.2": [1.0, 2.0]}, "table has columns of different lengths: {'body.hand.mass': 1, 'gravity.2': 2}"),
+        ({}, "table has no columns"),
+        (7, "table is 7: it must be a dict of arrays or a data frame"),
+    ],
+)
+def test_tables_that_are_none_are_refused(rows, message):
+    with pytest.raises(hamel.ArgumentError) as raised:
+        hamel.sweep(ARM, rows)
+    assert str(raised.value) == message
+
+
+def test_workers_are_counted():
+    with pytest.raises(hamel.ArgumentError, match="workers is 0: it must be a whole number of at least 1"):
+        hamel.sweep(ARM, table(1), 0)
