@@ -193,7 +193,9 @@ pub enum ParameterError {
         requirement: &'static str,
     },
     /// The type was made while the program runs: the registry that has it builds it.
-    #[error("a joint type that was made while the program runs is built by its registry: JointRegistry::build")]
+    #[error(
+        "a joint type that was made while the program runs is built by its registry: JointRegistry::build"
+    )]
     Made,
 }
 

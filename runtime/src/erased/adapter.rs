@@ -164,12 +164,7 @@ where
     fn project(&self, q: &mut [T]) -> Result<(), FiniteMapError> {
         let found = self.0.project(&stored(&self.0, q));
         stored::store(&self.0, &found, q);
-        check_finite(
-            self.0.facts().name,
-            "projection",
-            q,
-            stored::size(&self.0),
-        )
+        check_finite(self.0.facts().name, "projection", q, stored::size(&self.0))
     }
 
     fn local_rate(&self, q: &[T], phi: &[T], moved: &[T], speeds: &[T], out: &mut [T]) {
