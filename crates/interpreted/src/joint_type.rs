@@ -4,8 +4,10 @@ use crate::facts;
 use crate::joint::Interpreted;
 use crate::kernels::Kernels;
 use crate::sizes::{self, MOST_STORED, TooLarge};
+use crate::tape::{Inputs, Tape, assemble};
 use hamel_codegen::derived::Derived;
-use hamel_codegen::expr::{Expr, Symbol, evaluate_f64};
+use hamel_codegen::expr::Expr;
+use hamel_codegen::formula::{Program, factored};
 use hamel_codegen::model::Interval;
 use hamel_runtime::erased::Shared;
 use hamel_runtime::registry::{
@@ -22,10 +24,10 @@ pub struct JointType {
     kernels: Arc<Kernels>,
     summary: &'static str,
     parameters: &'static [ParameterInfo],
-    symbols: Vec<Symbol>,
     /// Parameters without a range: any number but 0.
     nonzero: Vec<usize>,
-    requirements: Vec<(&'static str, Expr)>,
+    /// Each as the spec writes it, and what must be positive.
+    requirements: Vec<(&'static str, Tape)>,
     shape: sizes::Shape,
 }
 
@@ -37,7 +39,6 @@ impl JointType {
     pub fn new(derived: &Derived) -> Result<Self, TooLarge> {
         let shape = sizes::Shape::of(derived)?;
         let spec = &derived.spec;
-        let parameters = spec.parameters.iter();
         let has_no_range = |place: &usize| {
             let parameter = spec.parameters.get(*place);
             parameter.is_some_and(|parameter| parameter.range == Interval::default())
@@ -46,16 +47,27 @@ impl JointType {
             .requirements
             .iter()
             .map(|requirement| &requirement.value);
+        let inputs = Inputs {
+            arguments: vec![],
+            parameters: spec.parameters.iter().map(|own| &own.symbol).collect(),
+        };
+        // As `build` of an emitted joint has it.
+        let margin = |value: &Expr| Program {
+            bindings: vec![],
+            outputs: vec![factored(value).polished()],
+        };
         Ok(Self {
             kernels: Arc::new(Kernels::new(derived, MOST_STORED)),
             summary: facts::line(derived),
             parameters: facts::parameters(derived),
-            symbols: parameters
-                .map(|parameter| parameter.symbol.clone())
-                .collect(),
             nonzero: (0..spec.parameters.len()).filter(has_no_range).collect(),
             requirements: requirements
-                .map(|own| (facts::kept(&own.text), own.value.clone()))
+                .map(|own| {
+                    (
+                        facts::kept(&own.text),
+                        assemble(&margin(&own.value), &inputs),
+                    )
+                })
                 .collect(),
             shape,
         })
@@ -134,16 +146,10 @@ impl JointType {
     fn check(&self, values: &[f64]) -> Result<(), ParameterError> {
         let joint = self.name();
         check_values(joint, self.parameters, values)?;
-        let of = |symbol: &Symbol| {
-            let place = self.symbols.iter().position(|known| known == symbol);
-            place
-                .and_then(|place| values.get(place))
-                .copied()
-                .unwrap_or(f64::NAN)
-        };
         for (text, margin) in &self.requirements {
-            let margin = evaluate_f64(margin, &of);
-            check_requirement(joint, text, margin, self.parameters, values)?;
+            let mut found = f64::NAN;
+            margin.run::<f64>(&[], values, |_, value| found = value);
+            check_requirement(joint, text, found, self.parameters, values)?;
         }
         for &place in &self.nonzero {
             if let (Some(info), Some(0.0)) = (self.parameters.get(place), values.get(place)) {

@@ -85,10 +85,9 @@ fn derivatives(model: &mut Model, state: &State, efforts: &[f64]) -> DVector<f64
     let sizes = *model.sizes();
     let mut found = hamel::dynamics::ForwardDerivatives::new(model.mechanism());
     let (q, speeds) = (&*state.configuration, &*state.speeds);
-    let mut rates = vec![0.0; sizes.speeds];
     model
         .dynamics_mut()
-        .forward_dynamics_derivatives(q, speeds, efforts, &mut rates, &mut found)
+        .forward_dynamics_derivatives(q, speeds, efforts, &mut found)
         .expect("a value");
     let all = found.by_local().iter().chain(found.by_speeds().iter());
     DVector::from_iterator(sizes.speeds * (sizes.freedoms + sizes.speeds), all.copied())
