@@ -1,10 +1,11 @@
 //! The library's joints twice: compiled, and interpreted from their specs.
 
-use hamel::erased::Shared;
+use hamel::joint::Joint;
 use hamel::joints::specs;
-use hamel::registry::{JointRegistry, ParameterError};
+use hamel::registry::JointRegistry;
 use hamel_codegen::derived::Derived;
 use hamel_interpreted::{JointType, TooLarge};
+use std::collections::BTreeMap;
 
 /// A joint of the library, derived anew.
 pub fn derived(name: &str) -> Derived {
@@ -36,22 +37,15 @@ pub fn registry() -> JointRegistry {
     registry
 }
 
-/// A joint with values of its parameters that it takes: near 0.7, and where it refuses these, others.
-pub fn example(
-    parameters: usize,
-    build: impl Fn(&[f64]) -> Result<Shared, ParameterError>,
-) -> (Shared, Vec<f64>) {
-    let ascending = (0..parameters).map(|i| 0.7 + 0.15 * i as f64);
-    let small_second = (0..parameters).map(|i| if i == 1 { 0.2 } else { 0.9 + 0.1 * i as f64 });
-    let thirds = (0..parameters).map(|i| 0.9 / 3.0_f64.powi(i as i32));
-    let choices: [Vec<f64>; 4] = [
-        ascending.clone().collect(),
-        ascending.rev().collect(),
-        small_second.collect(),
-        thirds.collect(),
-    ];
-    let built = choices
-        .into_iter()
-        .find_map(|values| Some((build(&values).ok()?, values)));
-    built.expect("one of the choices is taken")
+/// Values of the parameters that a joint of the library takes.
+pub fn parameters(name: &str) -> Vec<f64> {
+    let mut all = BTreeMap::new();
+    macro_rules! add {
+        ($module:ident, $joint:ty, $example:expr, $($size:literal),*) => {
+            let values = Joint::parameters(&$example).map(|(_, value)| value);
+            all.insert(stringify!($module), values.collect::<Vec<f64>>());
+        };
+    }
+    hamel::joints::for_each_joint!(add);
+    all.remove(name).expect("a joint of the library")
 }

@@ -1,7 +1,5 @@
 //! Every kernel of every joint of the library, interpreted, beside the compiled one.
 
-mod common;
-
 use chacha20::ChaCha8Rng;
 use hamel::erased::{AnyJoint, Shared};
 use hamel::nalgebra::Vector6;
@@ -149,9 +147,10 @@ fn bodies(first: &Shared) -> Vec<Shared> {
 fn pairs() -> Vec<(Shared, Shared)> {
     let library = hamel::joints::registry();
     let mut pairs = vec![];
-    for (name, own) in common::all() {
+    for (name, own) in super::common::all() {
         let entry = library.get(name).expect("a joint of the library");
-        let (compiled, parameters) = common::example(entry.parameters.len(), entry.build);
+        let parameters = super::common::parameters(name);
+        let compiled = (entry.build)(&parameters).expect("an example");
         if let Ok(own) = own {
             pairs.push((
                 compiled,
@@ -271,7 +270,7 @@ fn home_is_the_same_in_doubles_and_in_twice_as_many_digits() {
                 "{}: {own:?}",
                 compiled.name()
             );
-            let apart = f64::from(near[i] - far[i]).abs();
+            let apart = (near[i] - far[i]).high().abs();
             // 106 bits, of which iterations and the quotients of a few operations take some.
             assert!(apart <= 1e-26, "{}: {apart:e}", compiled.name());
         }

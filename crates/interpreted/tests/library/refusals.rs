@@ -1,7 +1,5 @@
 //! What is refused: joints that are too large, values of parameters, names that are taken.
 
-mod common;
-
 use hamel::registry::JointRegistry;
 use hamel_interpreted::JointType;
 
@@ -13,7 +11,7 @@ fn type_of(spec: &str, name: &str) -> JointType {
 
 #[test]
 fn joints_that_are_too_large_say_what_of_them_is() {
-    let refused = common::all().into_iter().filter_map(|(_, own)| own.err());
+    let refused = super::common::all().into_iter().filter_map(|(_, own)| own.err());
     let told: Vec<String> = refused.map(|error| error.to_string()).collect();
     assert_eq!(
         told,
@@ -27,7 +25,7 @@ fn joints_that_are_too_large_say_what_of_them_is() {
 fn values_are_refused_as_emitted_joints_refuse_them() {
     let library = hamel::joints::registry();
     let mut refused = 0;
-    for (name, own) in common::all() {
+    for (name, own) in super::common::all() {
         let Ok(own) = own else { continue };
         let entry = library.get(name).expect("a joint of the library");
         let count = entry.parameters.len();
