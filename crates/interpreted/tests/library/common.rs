@@ -42,8 +42,11 @@ pub fn parameters(name: &str) -> Vec<f64> {
     let mut all = BTreeMap::new();
     macro_rules! add {
         ($module:ident, $joint:ty, $example:expr, $($size:literal),*) => {
-            let values = Joint::parameters(&$example).map(|(_, value)| value);
-            all.insert(stringify!($module), values.collect::<Vec<f64>>());
+            let example = $example;
+            let values: Vec<f64> = Joint::parameters(&example)
+                .map(|(_, value)| value)
+                .collect();
+            all.insert(stringify!($module), values);
         };
     }
     hamel::joints::for_each_joint!(add);

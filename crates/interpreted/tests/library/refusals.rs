@@ -11,7 +11,9 @@ fn type_of(spec: &str, name: &str) -> JointType {
 
 #[test]
 fn joints_that_are_too_large_say_what_of_them_is() {
-    let refused = super::common::all().into_iter().filter_map(|(_, own)| own.err());
+    let refused = super::common::all()
+        .into_iter()
+        .filter_map(|(_, own)| own.err());
     let told: Vec<String> = refused.map(|error| error.to_string()).collect();
     assert_eq!(
         told,

@@ -84,7 +84,11 @@ fn derivatives(model: &mut Model, state: &State, efforts: &[f64]) -> DVector<f64
         .dynamics_mut()
         .forward_dynamics_derivatives(q, speeds, efforts, &mut found)
         .expect("a value");
-    let all = found.by_local().entries().iter().chain(found.by_speeds().entries());
+    let all = found
+        .by_local()
+        .entries()
+        .iter()
+        .chain(found.by_speeds().entries());
     DVector::from_iterator(sizes.speeds * (sizes.freedoms + sizes.speeds), all.copied())
 }
 
