@@ -73,8 +73,8 @@ impl Tape {
     ) {
         let zero = T::zero();
         match self.size {
-            0..=FEW => self.run_in(&mut [zero; FEW], arguments, parameters, output),
-            0..=SOME => self.run_in(&mut [zero; SOME], arguments, parameters, output),
+            size if size <= FEW => self.run_in(&mut [zero; FEW], arguments, parameters, output),
+            size if size <= SOME => self.run_in(&mut [zero; SOME], arguments, parameters, output),
             size => self.run_in(&mut vec![zero; size], arguments, parameters, output),
         }
     }
