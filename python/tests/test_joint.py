@@ -83,7 +83,7 @@ def test_texts_paths_and_names_are_the_same_joint(ball):
 def test_curves_with_knots_in_a_file_pickle_as_one_text(tmp_path):
     knots = "\n".join(f"{i * 0.5},{np.sin(i * 0.5)}" for i in range(9))
     (tmp_path / "knots.csv").write_text(f"angle_rad,lift_m\n{knots}\n")
-    spec = 'hamel = 1;\njoint cam {\n    config q: R1;\n    curve lift(rad): m = quintic natural from "knots.csv" continue linear;\n    H = trans_z(lift(q));\n}\n'
+    spec = 'hamel = 1;\njoint cam {\n    config q: R1;\n    curve lift(rad): m = quintic natural from "knots.csv" continue linear;\n    H = rot_z(q) * trans_z(lift(q));\n}\n'
     (tmp_path / "cam.joint").write_text(spec)
     joint = hamel.Joint(tmp_path / "cam.joint")
     other = pickle.loads(pickle.dumps(joint))
@@ -95,8 +95,8 @@ def test_mistakes_have_lines_and_the_text_of_the_program():
     with pytest.raises(hamel.FileError) as caught:
         hamel.Joint(PIN_SLOT.replace("rot_z(theta)", "rot_z(angle)"))
     (mistake,) = caught.value.mistakes
-    assert mistake.line == 9 and mistake.column == 47 and "angle" in mistake.message
-    assert str(caught.value).startswith("error[E") and "--> text:9:47" in str(caught.value)
+    assert mistake.line == 9 and mistake.column == 43 and "angle" in mistake.message
+    assert str(caught.value).startswith("error[E") and "--> text:9:43" in str(caught.value)
     with pytest.raises(hamel.FileError) as caught:
         hamel.Joint("hamel = 1;\njoint bad {\n    config Q: SO3;\n    basis e1, e2, e3 of so3;\n    velocity in parent;\n    H = pose(Q, [0, 0, 0]);\n    X = [2 * I(3); O(3, 3)];\n}\n")
     assert caught.value.mistakes[0].line == 7
