@@ -79,7 +79,7 @@ at = {{ position = [0.0, 0.1, 0.2], axis = [{2}] }}
 """
     axes = ["0.0, 0.0, 1.0", "0.0, 1.0, 0.0"]
     bodies = [body.format(i, f"link{i - 1}" if i else "world", axes[i % 2]) for i in range(7)]
-    text = 'hamel = 1\nname = "chain"\n' + "".join(bodies)
+    text = 'hamel = 1\nname = "chain"\ngravity = [0.0, 0.0, -9.81]\n' + "".join(bodies)
     random, count = np.random.default_rng(1), 10**4
     q, v, tau = (random.normal(size=(count, 7)) for _ in range(3))
     hamel.set_threads(1)
