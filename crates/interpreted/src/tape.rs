@@ -86,12 +86,18 @@ impl Tape {
         parameters: &[f64],
         mut output: impl FnMut(usize, T),
     ) {
+        self.execute(results, arguments, parameters);
+        for (number, place) in self.outputs.iter().enumerate() {
+            output(number, results[*place as usize]);
+        }
+    }
+
+    /// All operations. Once for each scalar: a copy beside each use of the results would make programs several times as large.
+    #[inline(never)]
+    fn execute<T: Scalar>(&self, results: &mut [T], arguments: &[&[T]], parameters: &[f64]) {
         let mut next = 0;
         for operation in &self.operations {
             next += operation.run(results, next, arguments, parameters);
-        }
-        for (number, place) in self.outputs.iter().enumerate() {
-            output(number, results[*place as usize]);
         }
     }
 }
