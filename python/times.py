@@ -62,6 +62,38 @@ def batches():
             print(f"panda7, {count:.0e} states, {threads or 'all'} threads: {wall:.3f} s, {work / count * 1e6:.2f} µs of one core a state")
 
 
+def interpreted():
+    """A chain of 7 hinges as panda7 has them, of the library's joint and of the same spec interpreted; and what it takes to derive that."""
+    spec = (ROOT / "joint-specs/revolute.joint").read_text().replace("joint revolute", "joint hinge")
+    began = time.perf_counter()
+    joint = hamel.Joint(spec)
+    print(f"deriving a hinge: {time.perf_counter() - began:.3f} s")
+    body = """[[body]]
+name = "link{0}"
+parent = "{1}"
+mass = 2.0
+com = [0.0, 0.1, 0.1]
+inertia = [[0.03, 0.0, 0.0], [0.0, 0.02, 0.0], [0.0, 0.0, 0.01]]
+joint = {{ type = "KIND", name = "joint{0}" }}
+at = {{ position = [0.0, 0.1, 0.2], axis = [{2}] }}
+"""
+    axes = ["0.0, 0.0, 1.0", "0.0, 1.0, 0.0"]
+    bodies = [body.format(i, f"link{i - 1}" if i else "world", axes[i % 2]) for i in range(7)]
+    text = 'hamel = 1\nname = "chain"\ngravity = [0.0, 0.0, -9.81]\n' + "".join(bodies)
+    random, count = np.random.default_rng(1), 10**4
+    q, v, tau = (random.normal(size=(count, 7)) for _ in range(3))
+    hamel.set_threads(1)
+    times = []
+    for kind, joints in (("revolute", []), ("hinge", [joint])):
+        robot = hamel.load(text.replace("KIND", kind), joints=joints)
+        forward = min(measured(lambda: robot.forward_dynamics(q, v, tau))[1] for _ in range(5)) / count
+        slopes = min(measured(lambda: robot.forward_dynamics_derivatives(q, v, tau))[1] for _ in range(3)) / count
+        times.append((forward, slopes))
+        print(f"7 hinges, {kind}: forward dynamics {forward * 1e6:.2f} µs, with derivatives {slopes * 1e6:.2f} µs")
+    print("interpreted over compiled: " + ", ".join(f"{own / other:.1f}" for own, other in zip(times[1], times[0])))
+    hamel.set_threads(None)
+
+
 def others():
     """The same by Pinocchio in a loop and by one step of MuJoCo's rollout, where they are installed; panda7 without the damping that Pinocchio leaves out."""
     text = re.sub('damping="[^"]*"', 'damping="0"', PANDA.read_text())
@@ -113,3 +145,4 @@ imports()
 calls()
 batches()
 others()
+interpreted()

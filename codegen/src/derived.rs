@@ -1,7 +1,7 @@
 //! What is derived from a spec: kernels in symbols, and the claims that were proved. The border between derivation and output.
 
 use crate::expand::PinDrive;
-use crate::expr::{Expr, Rational};
+use crate::expr::{Expr, Rational, Symbol};
 use crate::formula::{Names, Program};
 use crate::matrix::Matrix;
 use crate::model::{ConfigurationSpace, JointSpec};
@@ -153,6 +153,31 @@ impl Derived {
             };
             format!("{move_none}; {speeds}")
         })
+    }
+
+    /// How many relations the spec declares, and how many those of the factors are, which stand before them.
+    pub fn relation_counts(&self) -> [usize; 2] {
+        let declared = self.space.manifold.declared().len();
+        let relations = self.kernel(KernelKind::Relations);
+        let all = relations.and_then(|kernel| kernel.outputs.first());
+        [declared, all.map_or(0, |column| column.rows() - declared)]
+    }
+
+    /// Rank of the derivatives of the relations on the manifold: N less the dimension that they cut out, without what known factors
+    /// that no relation names contribute to it.
+    pub fn codimension(&self) -> usize {
+        let relations = self.kernel(KernelKind::Relations);
+        let entries = relations.iter().flat_map(|kernel| &kernel.outputs);
+        let named: Vec<Symbol> = entries
+            .flat_map(|column| column.entries())
+            .flat_map(|entry| entry.symbols())
+            .collect();
+        let factors = self.space.manifold.factors().iter();
+        let apart: usize = factors
+            .filter(|factor| !factor.coordinates.iter().any(|q| named.contains(q)))
+            .map(|factor| factor.coordinates.len() - factor.kind.dimension())
+            .sum();
+        self.shape.configuration - self.cut_out - apart
     }
 
     /// The kernel of that kind.

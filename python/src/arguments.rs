@@ -66,6 +66,11 @@ impl<'py> Argument<'py> {
         }
     }
 
+    /// The interpreter.
+    pub fn py(&self) -> Python<'py> {
+        self.array.py()
+    }
+
     /// Its dimensions but for the last one.
     fn leading(&self) -> &[usize] {
         let shape = self.array.shape();

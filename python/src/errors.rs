@@ -95,23 +95,92 @@ pub fn memory() -> PyErr {
 
 /// Mistakes in a file or a text.
 pub fn file(py: Python<'_>, source: &str, mistakes: &Diagnostics) -> PyErr {
+    let list = mistakes.errors().iter().map(|mistake| {
+        let place = mistake
+            .span()
+            .map(|span| mistakes.line_and_column(span.start));
+        let (line, column) = place.unzip();
+        (line, column, mistake.message())
+    });
+    let text = mistakes.render(false);
+    of_file(py, source, text.trim_end(), list.collect())
+}
+
+/// Mistakes in the spec of a joint, with the text of the program.
+pub fn spec(py: Python<'_>, mistakes: &hamel_codegen::diagnostic::Diagnostics) -> PyErr {
+    let list = mistakes.errors.iter().map(|mistake| {
+        let before = mistakes
+            .source
+            .get(..mistake.span.start)
+            .unwrap_or_default();
+        let line = before.matches('\n').count() + 1;
+        let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+        (Some(line), Some(column), mistake.message.as_str())
+    });
+    let text = mistakes.render();
+    of_file(py, &mistakes.file, text.trim_end(), list.collect())
+}
+
+/// A file that cannot be read, or a text that is none.
+pub fn unread(py: Python<'_>, source: &str, message: &str) -> PyErr {
+    of_file(py, source, message, vec![(None, None, message)])
+}
+
+fn of_file(
+    py: Python<'_>,
+    source: &str,
+    text: &str,
+    mistakes: Vec<(Option<usize>, Option<usize>, &str)>,
+) -> PyErr {
     let facts = || {
-        let list = mistakes.errors().iter().map(|mistake| {
-            let place = mistake
-                .span()
-                .map(|span| mistakes.line_and_column(span.start));
-            let (line, column) = place.unzip();
-            (line, column, mistake.message())
-        });
         let facts = PyDict::new(py);
         facts.set_item("source", source)?;
-        facts.set_item("mistakes", list.collect::<Vec<_>>())?;
+        facts.set_item("mistakes", mistakes)?;
         Ok::<_, PyErr>(facts)
     };
     match facts() {
-        Ok(facts) => raise(py, Kind::File, mistakes.render(false).trim_end(), &facts),
+        Ok(facts) => raise(py, Kind::File, text, &facts),
         Err(error) => error,
     }
+}
+
+/// Something of no other kind.
+pub fn other(py: Python<'_>, message: impl AsRef<str>) -> PyErr {
+    raise(py, Kind::Other, message.as_ref(), &PyDict::new(py))
+}
+
+/// An argument that is refused at one state of a batch.
+pub fn argument_of_state(py: Python<'_>, message: &str, state: usize, batch: &[usize]) -> PyErr {
+    if batch.is_empty() {
+        return argument(py, message);
+    }
+    let index = index(state, batch);
+    let text = format!("state {}: {message}", shown(&index));
+    let facts = || {
+        let facts = PyDict::new(py);
+        facts.set_item("index", pyo3::types::PyTuple::new(py, index)?)?;
+        Ok::<_, PyErr>(facts)
+    };
+    match facts() {
+        Ok(facts) => raise(py, Kind::Argument, &text, &facts),
+        Err(error) => error,
+    }
+}
+
+/// Where a state stands in a batch.
+fn index(state: usize, batch: &[usize]) -> Vec<usize> {
+    let mut rest = state;
+    let mut index: Vec<usize> = batch
+        .iter()
+        .rev()
+        .map(|&size| {
+            let own = rest % size;
+            rest /= size;
+            own
+        })
+        .collect();
+    index.reverse();
+    index
 }
 
 /// The exception of an error.
@@ -124,17 +193,7 @@ pub fn of_state(py: Python<'_>, error: Error, state: usize, batch: &[usize]) -> 
     if batch.is_empty() {
         return of(py, &error);
     }
-    let mut rest = state;
-    let mut index: Vec<usize> = batch
-        .iter()
-        .rev()
-        .map(|&size| {
-            let own = rest % size;
-            rest /= size;
-            own
-        })
-        .collect();
-    index.reverse();
+    let index = index(state, batch);
     let message = format!("state {}: {error}", shown(&index));
     of_place(py, &error, message, Some(index))
 }

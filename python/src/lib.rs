@@ -6,6 +6,9 @@ mod dynamics;
 mod errors;
 mod info;
 mod inputs;
+mod joint;
+mod joint_source;
+mod joint_values;
 mod load;
 mod positions;
 mod results;
@@ -22,6 +25,8 @@ use pyo3::prelude::*;
 mod _hamel {
     #[pymodule_export]
     use crate::batch::set_threads;
+    #[pymodule_export]
+    use crate::joint::Joint;
     #[pymodule_export]
     use crate::load::{load, parse};
     #[pymodule_export]

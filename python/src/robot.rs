@@ -380,10 +380,12 @@ impl Robot {
             text,
             is_robot,
             floating_base,
+            joints,
         } = self.source.clone();
         let parse = py.import("hamel._hamel")?.getattr("parse")?;
         let source = (name, text, is_robot, floating_base).into_pyobject(py)?;
-        Ok((parse, (source,).into_pyobject(py)?))
+        let joints: Vec<String> = joints.into_iter().map(|joint| joint.spec).collect();
+        Ok((parse, (source, joints).into_pyobject(py)?))
     }
 
     fn __repr__(&self) -> String {

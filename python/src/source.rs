@@ -2,8 +2,10 @@
 
 use crate::errors;
 use hamel::Model;
+use hamel::registry::JointRegistry;
 use hamel::scene::robot::{self, Import};
 use hamel::scene::{Diagnostics, Scene, SceneDescription, read_file};
+use hamel_interpreted::JointType;
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -19,6 +21,17 @@ pub struct Source {
     pub is_robot: bool,
     /// Whether the root link of a URDF moves freely.
     pub floating_base: bool,
+    /// Joint types beside those of the library.
+    pub joints: Vec<OwnJoint>,
+}
+
+/// A joint type that was made by a `Joint`.
+#[derive(Clone)]
+pub struct OwnJoint {
+    /// The text of its spec, which needs no file beside it.
+    pub spec: String,
+    /// The type.
+    pub kind: JointType,
 }
 
 /// Limits of a joint, as a file says them; rad or m, rad/s or m/s, N m or N.
@@ -69,7 +82,13 @@ impl Source {
             text,
             is_robot,
             floating_base,
+            joints: vec![],
         })
+    }
+
+    /// With joint types beside those of the library.
+    pub fn with_joints(self, joints: Vec<OwnJoint>) -> Self {
+        Self { joints, ..self }
     }
 
     fn of_text(text: String, floating_base: bool) -> Self {
@@ -78,6 +97,7 @@ impl Source {
             is_robot: robot::is_robot(&PathBuf::new(), &text),
             text,
             floating_base,
+            joints: vec![],
         }
     }
 
@@ -98,12 +118,11 @@ impl Source {
         }
     }
 
-    /// The model, and the limits of its joints.
+    /// The model of joints of these types, and the limits of its joints.
     ///
     /// # Errors
     /// All mistakes of the text.
-    pub fn model(&self) -> Result<(Model, AllLimits), Diagnostics> {
-        let joints = hamel::joints::registry();
+    pub fn model(&self, joints: &JointRegistry) -> Result<(Model, AllLimits), Diagnostics> {
         let (scene, limits) = match self.is_robot {
             true => {
                 let options = robot::Options {
@@ -111,11 +130,11 @@ impl Source {
                     ..robot::Options::default()
                 };
                 let import = robot::read(&self.text, &self.name, &options)?;
-                (import.build(&joints)?, limits_of_robot(&import))
+                (import.build(joints)?, limits_of_robot(&import))
             }
             false => {
                 // Mistakes of both steps are told together.
-                let scene = Scene::parse(&self.text, &self.name, &joints)?;
+                let scene = Scene::parse(&self.text, &self.name, joints)?;
                 let described = Scene::from_toml(&self.text, &self.name)?;
                 (scene, limits_of_scene(&described))
             }

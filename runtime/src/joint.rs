@@ -30,6 +30,7 @@
 
 #[cfg(feature = "alloc")]
 mod coupled;
+mod facts;
 mod patterns;
 mod pin;
 mod port;
@@ -47,6 +48,7 @@ pub use coupled::{
     Coupled, Link, LinkFault, LinkMotion, MOST_COORDINATES, MOST_INDEPENDENT, MOST_LINKS,
     MOST_RELATIONS, Relation, Row, Tie, closed, coupled, linkage_length, most_relations,
 };
+pub use facts::Facts;
 pub use patterns::{Entry, Patterns};
 pub use pin::{DriveSource, Pin, PinDrive, Turning};
 pub use port::{Port, PortLaw};
@@ -155,6 +157,17 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
 
     /// Which of them this is the joint of: 0 but for a [`Member`].
     const BODY: usize = 0;
+
+    /// What the constants of the trait tell, but of a joint that knows it when it is made.
+    fn facts(&self) -> Facts {
+        Facts::of::<Self, N, K, S, C>()
+    }
+
+    /// Whether the velocity of a degree of freedom moves the body at some configuration, by [`Joint::PATTERNS`], but of a joint that knows it when it is made.
+    fn moves_body(&self, freedom: usize) -> bool {
+        let rows = &Self::PATTERNS.twist_map_child;
+        freedom < K && rows.iter().any(|row| !matches!(row[freedom], Entry::Zero))
+    }
 
     /// What everything is measured in: [`Joint::UNITS`], but of a joint that knows it when it is made.
     fn units(&self) -> Units {

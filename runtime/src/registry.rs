@@ -3,7 +3,7 @@
 use crate::erased::Shared;
 use crate::shown::Number;
 #[cfg(feature = "alloc")]
-use alloc::collections::BTreeMap;
+use alloc::{collections::BTreeMap, sync::Arc};
 use core::fmt::{Display, Formatter};
 
 /// Builds a joint from the values of its parameters, in the order of [`JointEntry::parameters`].
@@ -192,6 +192,11 @@ pub enum ParameterError {
         /// What is allowed, such as `positive`.
         requirement: &'static str,
     },
+    /// The type was made while the program runs: the registry that has it builds it.
+    #[error(
+        "a joint type that was made while the program runs is built by its registry: JointRegistry::build"
+    )]
+    Made,
 }
 
 /// Names and values of parameters, for messages: as many as an error carries without allocating.
@@ -243,12 +248,23 @@ pub fn check_parameters<const P: usize>(
     parameters: &[ParameterInfo; P],
     values: &[f64],
 ) -> Result<[f64; P], ParameterError> {
-    let array = <[f64; P]>::try_from(values).map_err(|_| ParameterError::Count {
-        joint,
-        expected: P,
-        found: values.len(),
-    })?;
-    for (info, value) in parameters.iter().zip(array) {
+    check_values(joint, parameters, values)?;
+    <[f64; P]>::try_from(values).map_err(|_| count(joint, P, values))
+}
+
+/// Whether there is a value for each of the parameters, finite and in range.
+///
+/// # Errors
+/// As [`check_parameters`].
+pub fn check_values(
+    joint: &'static str,
+    parameters: &[ParameterInfo],
+    values: &[f64],
+) -> Result<(), ParameterError> {
+    if values.len() != parameters.len() {
+        return Err(count(joint, parameters.len(), values));
+    }
+    for (info, &value) in parameters.iter().zip(values) {
         let parameter = info.name;
         if !value.is_finite() {
             return Err(ParameterError::NotFinite {
@@ -267,7 +283,15 @@ pub fn check_parameters<const P: usize>(
             });
         }
     }
-    Ok(array)
+    Ok(())
+}
+
+const fn count(joint: &'static str, expected: usize, values: &[f64]) -> ParameterError {
+    ParameterError::Count {
+        joint,
+        expected,
+        found: values.len(),
+    }
 }
 
 /// Whether `margin`, which the spec's `requirement` says is positive, is so.
@@ -292,11 +316,30 @@ pub fn check_requirement(
     })
 }
 
+/// Builds a joint of a type that is made while the program runs.
+#[cfg(feature = "alloc")]
+pub type MakeJoint = Arc<dyn Fn(&[f64]) -> Result<Shared, ParameterError> + Send + Sync>;
+
+/// A joint type and what builds it, where that is no function of its own.
+#[cfg(feature = "alloc")]
+#[derive(Clone)]
+struct Registered {
+    entry: JointEntry,
+    made: Option<MakeJoint>,
+}
+
+#[cfg(feature = "alloc")]
+impl core::fmt::Debug for Registered {
+    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
+        self.entry.fmt(f)
+    }
+}
+
 /// Joint types by name, in alphabetical order.
 #[cfg(feature = "alloc")]
 #[derive(Clone, Debug, Default)]
 pub struct JointRegistry {
-    entries: BTreeMap<&'static str, JointEntry>,
+    entries: BTreeMap<&'static str, Registered>,
 }
 
 #[cfg(feature = "alloc")]
@@ -313,11 +356,50 @@ impl JointRegistry {
     /// # Errors
     /// When the name is taken; the registry then stays as it was.
     pub fn insert(&mut self, entry: JointEntry) -> Result<(), DuplicateJoint> {
-        if self.entries.contains_key(entry.name) {
-            return Err(DuplicateJoint { name: entry.name });
+        self.add(Registered { entry, made: None })
+    }
+
+    /// Adds a joint type that is made while the program runs: [`JointRegistry::build`] builds it, and the entry's own [`JointEntry::build`] refuses to.
+    ///
+    /// # Errors
+    /// As [`JointRegistry::insert`].
+    pub fn insert_made(
+        &mut self,
+        (name, summary): (&'static str, &'static str),
+        parameters: &'static [ParameterInfo],
+        make: MakeJoint,
+    ) -> Result<(), DuplicateJoint> {
+        let entry = JointEntry {
+            name,
+            summary,
+            parameters,
+            build: |_| Err(ParameterError::Made),
+        };
+        self.add(Registered {
+            entry,
+            made: Some(make),
+        })
+    }
+
+    fn add(&mut self, registered: Registered) -> Result<(), DuplicateJoint> {
+        let name = registered.entry.name;
+        if self.entries.contains_key(name) {
+            return Err(DuplicateJoint { name });
         }
-        self.entries.insert(entry.name, entry);
+        self.entries.insert(name, registered);
         Ok(())
+    }
+
+    /// A joint of the type called `name`, from the values of its parameters in their order; `None` where there is no such type.
+    ///
+    /// # Errors
+    /// Values that the type refuses.
+    pub fn build(&self, name: &str, values: &[f64]) -> Option<Result<Shared, ParameterError>> {
+        let registered = self.entries.get(name)?;
+        Some(match &registered.made {
+            Some(make) => make(values),
+            None => (registered.entry.build)(values),
+        })
     }
 
     /// Adds every joint type of `entries`.
@@ -333,7 +415,7 @@ impl JointRegistry {
 
     /// The joint type called `name`.
     pub fn get(&self, name: &str) -> Option<&JointEntry> {
-        self.entries.get(name)
+        self.entries.get(name).map(|registered| &registered.entry)
     }
 
     /// All names, in alphabetical order.
@@ -343,6 +425,6 @@ impl JointRegistry {
 
     /// All entries, in alphabetical order.
     pub fn entries(&self) -> impl Iterator<Item = &JointEntry> {
-        self.entries.values()
+        self.entries.values().map(|registered| &registered.entry)
     }
 }

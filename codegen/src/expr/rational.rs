@@ -167,6 +167,20 @@ impl Rational {
         }
     }
 
+    /// The doubles that it is written as: numerator and denominator where both are exact and no short decimal says the same, else the nearest double alone.
+    pub fn in_doubles(&self) -> (f64, Option<f64>) {
+        let exact = |n: &BigInt| n.bits() <= 53;
+        let double = |value: Option<f64>| value.unwrap_or(f64::INFINITY);
+        let (above, below) = (self.numer(), self.denom());
+        let is_dyadic = below
+            .trailing_zeros()
+            .is_some_and(|zeros| below == BigInt::from(1) << zeros);
+        match exact(&above) && exact(&below) && !is_dyadic && self.decimal().is_none() {
+            true => (double(above.to_f64()), Some(double(below.to_f64()))),
+            false => (double(self.to_f64()), None),
+        }
+    }
+
     /// As a number with one to six decimals: `0.0177`, `-12.5`; none where more are needed.
     pub fn decimal(&self) -> Option<String> {
         (1..=6).find_map(|decimals: usize| {

@@ -125,12 +125,15 @@ impl Body {
     }
 
     fn joint(&self, registry: &JointRegistry) -> Result<Arc<dyn AnyJoint>, Vec<String>> {
-        let entry = registry.get(&self.joint).ok_or_else(|| {
+        let unknown = || {
             let hint = hint(&self.joint, registry.names());
             vec![format!("no joint type is called `{}`{hint}", self.joint)]
-        })?;
+        };
+        let entry = registry.get(&self.joint).ok_or_else(unknown)?;
         let names: Vec<&str> = entry.parameters.iter().map(|info| info.name).collect();
-        (entry.build)(&self.values(&names)?).map_err(|error| vec![error.to_string()])
+        let built = registry.build(entry.name, &self.values(&names)?);
+        let built = built.ok_or_else(unknown)?;
+        built.map_err(|error| vec![error.to_string()])
     }
 
     fn parent(&self, before: &[Self]) -> Result<Option<usize>, Vec<String>> {

@@ -1,29 +1,32 @@
 """Rigid-body dynamics of robots and scenes: equations of motion, their derivatives, and motions with an estimate of their error.
 
-``hamel.load`` reads a robot in URDF or a scene in TOML. Methods of ``Robot`` take arrays of numpy whose last dimension holds one state and whose other
+``hamel.load`` reads a robot in URDF or a scene in TOML, ``hamel.Joint`` a joint type of one's own. Methods of ``Robot`` take arrays of numpy whose last dimension holds one state and whose other
 dimensions are a batch. Units are SI, angles radians; twists have the angular velocity first.
 """
 
 from ._errors import ArgumentError, DynamicsError, Error, FileError, IntegrationError, Mistake
-from ._hamel import Robot, load, set_threads
+from ._hamel import Joint, Robot, load, set_threads
 from ._motion import Motion, simulate
 from ._sweep import sweep
-from ._values import ForwardDerivatives, InverseDerivatives, JointInfo, Limits, Sizes, State
+from ._values import Claim, ForwardDerivatives, InverseDerivatives, JointInfo, Limits, Parameter, Sizes, State
 
 __version__ = "0.1.0"
 
 __all__ = [
     "ArgumentError",
+    "Claim",
     "DynamicsError",
     "Error",
     "FileError",
     "ForwardDerivatives",
     "IntegrationError",
     "InverseDerivatives",
+    "Joint",
     "JointInfo",
     "Limits",
     "Mistake",
     "Motion",
+    "Parameter",
     "Robot",
     "Sizes",
     "State",

@@ -31,6 +31,33 @@ class Limits(NamedTuple):
     """Largest effort, N m or N."""
 
 
+class Parameter(NamedTuple):
+    """A parameter of a joint type."""
+
+    name: str
+    unit: str
+    """SI unit, such as ``m`` or ``m/rad``."""
+    description: str
+    lower: float | None
+    """Least value; None where the spec says none."""
+    upper: float | None
+    """Greatest value. Without a range it may be any number but 0."""
+
+
+class Claim(NamedTuple):
+    """Something that is true of a joint type, and how that is known."""
+
+    name: str
+    """Stable name, such as ``pose_in_se3``."""
+    statement: str
+    proof: str
+    """``normal_form``, ``certificate``, or ``checked`` for what the spec leaves unproved."""
+    detail: str
+    """The certificate, or the author's reason."""
+    points: int
+    """Points at which a claim that is not proved was evaluated; 0 for proofs."""
+
+
 @dataclass(frozen=True)
 class JointInfo:
     """A joint of a robot: its names, and where its entries lie."""

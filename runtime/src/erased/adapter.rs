@@ -4,7 +4,7 @@ use super::kernels::{kernels, operand, passed_on};
 use super::slices::{Store, array, array_mut, nan, vector};
 use super::stored::{self, stored};
 use super::{AnyJoint, FiniteMapError, Layout, Shared, Sizes};
-use crate::joint::{Entry, Joint, Pin, Port, PortLaw, Products, Structures, Units, VelocityFrame};
+use crate::joint::{Joint, Pin, Port, PortLaw, Products, Structures, Units, VelocityFrame};
 use crate::scalar::{Extended, Native, Scalar};
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
 use crate::steps::{
@@ -41,7 +41,7 @@ where
     }
 
     fn name(&self) -> &'static str {
-        J::NAME
+        self.0.facts().name
     }
 
     fn layout(&self) -> Layout {
@@ -68,23 +68,23 @@ where
     }
 
     fn structures(&self) -> Structures {
-        J::STRUCTURES
+        self.0.facts().structures
     }
 
     fn velocity_frame(&self) -> VelocityFrame {
-        J::VELOCITY_FRAME
+        self.0.facts().velocity_frame
     }
 
     fn coordinates(&self) -> &'static [&'static str] {
-        stored::used(&self.0, const { &J::COORDINATES })
+        stored::used(&self.0, self.0.facts().coordinates)
     }
 
     fn relations(&self) -> &'static [&'static str] {
-        stored::used(&self.0, J::RELATIONS)
+        stored::used(&self.0, self.0.facts().relations)
     }
 
     fn relation_units(&self) -> &'static [&'static str] {
-        stored::used(&self.0, J::RELATION_UNITS)
+        stored::used(&self.0, self.0.facts().relation_units)
     }
 
     fn units(&self) -> Units {
@@ -96,23 +96,23 @@ where
     }
 
     fn pins(&self) -> &'static [Pin] {
-        J::PINS
+        self.0.facts().pins
     }
 
     fn freedoms(&self) -> &'static [&'static str] {
-        const { &J::FREEDOMS }
+        self.0.facts().freedoms
     }
 
     fn speeds(&self) -> &'static [&'static str] {
-        const { &J::SPEEDS }
+        self.0.facts().speeds
     }
 
     fn unidentifiable(&self) -> &'static [[f64; 10]] {
-        J::UNIDENTIFIABLE
+        self.0.facts().unidentifiable
     }
 
     fn singularities(&self) -> &'static [&'static str] {
-        J::SINGULARITIES
+        self.0.facts().singularities
     }
 
     fn parameters(&self, visit: &mut dyn FnMut(&'static str, f64)) {
@@ -158,13 +158,13 @@ where
         self.0
             .local(&stored(&self.0, q), &stored(&self.0, target))
             .store(phi);
-        check_finite(J::NAME, "local coordinates", phi, K)
+        check_finite(self.0.facts().name, "local coordinates", phi, K)
     }
 
     fn project(&self, q: &mut [T]) -> Result<(), FiniteMapError> {
         let found = self.0.project(&stored(&self.0, q));
         stored::store(&self.0, &found, q);
-        check_finite(J::NAME, "projection", q, stored::size(&self.0))
+        check_finite(self.0.facts().name, "projection", q, stored::size(&self.0))
     }
 
     fn local_rate(&self, q: &[T], phi: &[T], moved: &[T], speeds: &[T], out: &mut [T]) {
@@ -321,8 +321,7 @@ where
     }
 
     fn moves_body(&self, freedom: usize) -> bool {
-        let rows = &J::PATTERNS.twist_map_child;
-        freedom < K && rows.iter().any(|row| !matches!(row[freedom], Entry::Zero))
+        self.0.moves_body(freedom)
     }
 
     fn parts(&self) -> (bool, bool) {

@@ -15,24 +15,24 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
         assert!(
             joint.residual(q) < 1e-14,
             "{}: residual {:e}",
-            J::NAME,
+            self.joint.facts().name,
             joint.residual(q)
         );
         let pose = joint.pose(q);
         close(
             "RᵀR = I",
-            J::NAME,
+            self.joint.facts().name,
             &pose.rotation.tr_mul(&pose.rotation),
             &Matrix3::identity(),
         );
         assert!(
             (pose.rotation.determinant() - 1.0).abs() < TOLERANCE,
             "{}: det R",
-            J::NAME
+            self.joint.facts().name
         );
         close(
             "projection keeps the manifold",
-            J::NAME,
+            self.joint.facts().name,
             &joint.project(q),
             q,
         );
@@ -40,25 +40,25 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
         assert!(
             joint.residual(&back) < 1e-14,
             "{}: residual {:e} after projection",
-            J::NAME,
+            self.joint.facts().name,
             joint.residual(&back)
         );
         // The nearest point is at most twice the disturbance from Q.
         assert!(
             (back - q).norm() <= 2.0 * disturbance.norm(),
             "{}: projection moves far",
-            J::NAME
+            self.joint.facts().name
         );
     }
 
     /// N_X: no force, no inertia felt.
     pub(super) fn unidentifiable_laws(&self, phi: &SVector<f64, K>) {
         let other = self.joint.retract(&self.q, phi);
-        for parameters in J::UNIDENTIFIABLE {
+        for parameters in self.joint.facts().unidentifiable {
             let n = spatial_inertia(parameters);
             close(
                 "N X^c = 0",
-                J::NAME,
+                self.joint.facts().name,
                 &(n * self.joint.twist_map_child(&self.q)),
                 &SMatrix::zeros(),
             );
@@ -68,7 +68,7 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
             };
             close(
                 "N is constant in the parent",
-                J::NAME,
+                self.joint.facts().name,
                 &in_parent(&self.q),
                 &in_parent(&other),
             );
@@ -78,9 +78,13 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
     /// A joint that names no singular set is at no distance from one; any other is off its own here.
     pub(super) fn singular_sets(&self) {
         let distance: f64 = self.joint.singularity(&self.q);
-        match J::SINGULARITIES.is_empty() {
-            true => assert_eq!(distance, f64::INFINITY, "{}", J::NAME),
-            false => assert!(distance > 0.0 && distance.is_finite(), "{}", J::NAME),
+        match self.joint.facts().singularities.is_empty() {
+            true => assert_eq!(distance, f64::INFINITY, "{}", self.joint.facts().name),
+            false => assert!(
+                distance > 0.0 && distance.is_finite(),
+                "{}",
+                self.joint.facts().name
+            ),
         }
     }
 
@@ -91,38 +95,48 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
         assert!(
             joint.residual(&moved) < 2e-14,
             "{}: Φ leaves the manifold by {:e}",
-            J::NAME,
+            self.joint.facts().name,
             joint.residual(&moved)
         );
-        close("Φ⁻¹(Q, Φ(Q, ϕ)) = ϕ", J::NAME, &joint.local(q, &moved), phi);
+        close(
+            "Φ⁻¹(Q, Φ(Q, ϕ)) = ϕ",
+            self.joint.facts().name,
+            &joint.local(q, &moved),
+            phi,
+        );
         let u = joint.velocity_map_inverse(&moved) * v;
         let rate = joint.retract_differential_inverse(q, phi, &u);
         let differential = joint.retract_differential(q, phi);
-        close("D D⁻¹ = I", J::NAME, &(differential * rate), &u);
+        close(
+            "D D⁻¹ = I",
+            self.joint.facts().name,
+            &(differential * rate),
+            &u,
+        );
         let path = joint.retract(&constant(q), &moving(phi, &rate));
         let from_there = joint.local(&constant(&moved), &path);
         close(
             "Φ(Q, ϕ + δ) = Φ(Q′, D δ)",
-            J::NAME,
+            self.joint.facts().name,
             &slopes(&from_there),
             &u,
         );
         close(
             "X(Φ) v = J ϕ̇ at finite ϕ",
-            J::NAME,
+            self.joint.facts().name,
             &twist(&joint.pose(&path)),
             &(joint.twist_map(&moved) * v),
         );
         close(
             "Q̇ along Φ",
-            J::NAME,
+            self.joint.facts().name,
             &slopes(&path),
             &joint.configuration_rate(&moved, v),
         );
         let inverse_path = joint.local(&constant(q), &path);
         close(
             "differential of Φ⁻¹",
-            J::NAME,
+            self.joint.facts().name,
             &slopes(&inverse_path),
             &rate,
         );

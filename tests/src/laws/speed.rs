@@ -14,7 +14,7 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
         let basis = joint.speed_basis(q);
         close(
             "Aᵀ S̄ = 0",
-            J::NAME,
+            self.joint.facts().name,
             &joint.constraint(q).tr_mul(&basis),
             &SMatrix::zeros(),
         );
@@ -22,7 +22,7 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
         for (k, slice) in gradient.iter().enumerate() {
             close(
                 "∂S̄/∂ϕ",
-                J::NAME,
+                self.joint.facts().name,
                 &slopes(&joint.speed_basis(&self.along(&unit(k)))),
                 slice,
             );
@@ -31,26 +31,31 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
         let rate = slopes(&(joint.twist_map_child(&moved) * joint.speed_basis(&moved)));
         close(
             "c = Ẋ̄^c v̄",
-            J::NAME,
+            self.joint.facts().name,
             &joint.bias_acceleration(q, speeds),
             &(rate * speeds),
         );
         close(
             "Ẋ̄^cᵀ h",
-            J::NAME,
+            self.joint.facts().name,
             &joint.bias_momentum(q, speeds, wrench),
             &rate.tr_mul(wrench),
         );
-        close("Ẋ̄^c", J::NAME, &joint.twist_map_rate(q, speeds), &rate);
+        close(
+            "Ẋ̄^c",
+            self.joint.facts().name,
+            &joint.twist_map_rate(q, speeds),
+            &rate,
+        );
         close(
             "c by products",
-            J::NAME,
+            self.joint.facts().name,
             &joint.bias_acceleration_by_products(q, speeds),
             &(rate * speeds),
         );
         close(
             "Ẋ̄^cᵀ h by products",
-            J::NAME,
+            self.joint.facts().name,
             &joint.bias_momentum_by_products(q, speeds, wrench),
             &rate.tr_mul(wrench),
         );
@@ -67,7 +72,7 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
         let of_bias = joint.bias_acceleration_gradient(q, speeds);
         let of_momentum = joint.bias_momentum_gradient(q, speeds, wrench);
         let product = joint.twist_map_child(q) * joint.velocity_map(q);
-        close("X^c S₀", J::NAME, &local, &product);
+        close("X^c S₀", self.joint.facts().name, &local, &product);
         for k in 0..K {
             let moved = self.along(&unit(k));
             let (v, h) = (constant(speeds), constant(wrench));
@@ -77,7 +82,7 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
                     let got = SVector::<f64, 1>::new(*got);
                     close(
                         law,
-                        J::NAME,
+                        self.joint.facts().name,
                         &got,
                         &SVector::<f64, 1>::new(expected.derivative()),
                     );
@@ -104,13 +109,13 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
             let faster = moving(speeds, &unit(a));
             close(
                 "∂c/∂v̄",
-                J::NAME,
+                self.joint.facts().name,
                 &of_bias.column(a).into_owned(),
                 &slopes(&joint.bias_acceleration(&q, &faster)),
             );
             close(
                 "∂(Ẋ̄^cᵀ h)/∂v̄",
-                J::NAME,
+                self.joint.facts().name,
                 &of_momentum.column(a).into_owned(),
                 &slopes(&joint.bias_momentum(&q, &faster, &constant(wrench))),
             );

@@ -15,11 +15,16 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
         let x = joint.twist_map(q);
         let s = joint.velocity_map(q);
         let inverse = joint.velocity_map_inverse(q);
-        close("S₀ S₀⁻¹ = I", J::NAME, &(s * inverse), &SMatrix::identity());
+        close(
+            "S₀ S₀⁻¹ = I",
+            self.joint.facts().name,
+            &(s * inverse),
+            &SMatrix::identity(),
+        );
         let child = joint.twist_map_child(q);
         close(
             "X = Ad X^c",
-            J::NAME,
+            self.joint.facts().name,
             &(joint.pose(q).adjoint() * child),
             &x,
         );
@@ -29,23 +34,28 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
             let moved = self.along(&unit(k));
             close(
                 "J₀ = X S₀",
-                J::NAME,
+                self.joint.facts().name,
                 &twist(&joint.pose(&moved)),
                 &(x * s.column(k)),
             );
             close(
                 "∂X^c/∂ϕ",
-                J::NAME,
+                self.joint.facts().name,
                 &slopes(&joint.twist_map_child(&moved)),
                 &child_gradient[k],
             );
             let left = x * gradient[k] + slopes(&joint.twist_map(&moved)) * s;
-            close("X ∂S + ∂X S = ∂J", J::NAME, &left, &self.jacobian_slope(k));
+            close(
+                "X ∂S + ∂X S = ∂J",
+                self.joint.facts().name,
+                &left,
+                &self.jacobian_slope(k),
+            );
         }
         let rate = inverse * v;
         close(
             "Q̇",
-            J::NAME,
+            self.joint.facts().name,
             &joint.configuration_rate(q, v),
             &slopes(&self.along(&rate)),
         );
@@ -58,13 +68,18 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
     fn pin_laws(&self) {
         let places = self.joint.pins(&self.q);
         let places = places.as_ref();
-        assert_eq!(places.len(), J::PINS.len(), "{}: pins", J::NAME);
+        assert_eq!(
+            places.len(),
+            self.joint.facts().pins.len(),
+            "{}: pins",
+            self.joint.facts().name
+        );
         // As the first body sees it: `more` has the others.
-        if J::BODY != 0 {
+        if self.joint.body() != 0 {
             return;
         }
         let maps = self.twist_maps();
-        for (pin, place) in J::PINS.iter().zip(places) {
+        for (pin, place) in self.joint.facts().pins.iter().zip(places) {
             let [first, second] = pin.bodies.map(|body| match body {
                 Some(body) => maps[body],
                 None => SMatrix::zeros(),
@@ -81,7 +96,7 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
                 };
                 close(
                     "turns as the pin says",
-                    J::NAME,
+                    self.joint.facts().name,
                     &otherwise,
                     &Vector3::zeros(),
                 );
@@ -91,7 +106,7 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
                 };
                 close(
                     "slides as the pin says",
-                    J::NAME,
+                    self.joint.facts().name,
                     &otherwise,
                     &Vector3::zeros(),
                 );
@@ -115,7 +130,12 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
         let map = self.joint.port_map(&self.q);
         let here = self.joint.port_values(&self.q);
         let sizes = [map.as_ref().len(), here.as_ref().len()];
-        assert_eq!(sizes, [self.joint.ports().len(); 2], "{}: ports", J::NAME);
+        assert_eq!(
+            sizes,
+            [self.joint.ports().len(); 2],
+            "{}: ports",
+            self.joint.facts().name
+        );
         for k in 0..K {
             let moved = self.along(&unit(k));
             let values = self.joint.port_values(&moved);
@@ -123,7 +143,7 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
                 let found = SVector::from(*row).dot(&s.column(k));
                 close(
                     "P S₀ = ∂y/∂ϕ",
-                    J::NAME,
+                    self.joint.facts().name,
                     &SVector::from([found]),
                     &SVector::from([value.derivative()]),
                 );
@@ -161,19 +181,24 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
                 .sum()
         });
         let gamma = self.joint.gamma(&self.q, v);
-        close("γ, (17)", J::NAME, &gamma, &inverse.tr_mul(&inner));
+        close(
+            "γ, (17)",
+            self.joint.facts().name,
+            &gamma,
+            &inverse.tr_mul(&inner),
+        );
         let b =
             SMatrix::<f64, K, K>::from_fn(|i, m| (0..K).map(|l| gradient[m][(l, i)] * p[l]).sum());
         let j22 = self.joint.j22(&self.q, p);
         close(
             "J22, (28)",
-            J::NAME,
+            self.joint.facts().name,
             &j22,
             &(inverse.tr_mul(&(b.transpose() - b)) * inverse),
         );
         close(
             "Σ γ_k v_k p = −J22 v",
-            J::NAME,
+            self.joint.facts().name,
             &(gamma * p),
             &(j22 * v * -1.0),
         );

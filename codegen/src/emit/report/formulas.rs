@@ -54,6 +54,15 @@ pub fn main_formulas(derived: &Derived) -> Vec<Formula> {
     formulas.chain(series).collect()
 }
 
+/// The formula of one kernel of this body as pages show it; of S₀, S to first order in ϕ. `None` of a kernel that has no formula or is not shown.
+pub fn formula(derived: &Derived, kind: KernelKind) -> Option<Formula> {
+    let notation = Notation::new(derived);
+    match kind {
+        KernelKind::VelocityMap => Some(velocity_map(derived, &notation)),
+        kind => of_kernel(derived, &notation, kind),
+    }
+}
+
 /// What the names of the spec that stand in the formulas of these kernels mean, and the derivatives of those.
 fn names(derived: &Derived, notation: &Notation, kernels: &[KernelKind]) -> Option<Formula> {
     let of = |kind: &KernelKind| derived.kernel(*kind);

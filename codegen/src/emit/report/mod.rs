@@ -15,7 +15,7 @@ pub mod units;
 
 pub use accuracy::{Accuracy, AccuracyError, AccuracyRow};
 pub use finite::FiniteRow;
-pub use formulas::{Formula, main_formulas};
+pub use formulas::{Formula, formula, main_formulas};
 pub use provenance::{Statement, sources, statement};
 pub use series::{Series, series};
 pub use tables::{ClaimRow, CountRow, FreedomRow, ParameterRow, PinRow, PortRow, proof_in_words};

@@ -1,7 +1,6 @@
 //! Kernels whose value no formula gives: calls of the runtime's Newton iterations and solves with Φ and the relations.
 
 use crate::derived::{Derived, Kernel, KernelKind, Method};
-use crate::expr::Symbol;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -30,14 +29,14 @@ pub fn call(derived: &Derived, kernel: &Kernel, start: &TokenStream) -> Option<T
 }
 
 fn projection(derived: &Derived, start: &TokenStream) -> TokenStream {
-    let codimension = Literal::usize_unsuffixed(codimension(derived));
+    let codimension = Literal::usize_unsuffixed(derived.codimension());
     quote! { ::hamel::finite::project(#start, #codimension, |q| self.relations(q)) }
 }
 
 /// The call where relations alone give Φ.
 fn by_relations(derived: &Derived, kind: KernelKind, start: &TokenStream) -> Option<TokenStream> {
     let bases = quote! { (self.tangent_basis(q), self.normal_basis(q)) };
-    let [declared, own] = relations(derived).map(Literal::usize_unsuffixed);
+    let [declared, own] = derived.relation_counts().map(Literal::usize_unsuffixed);
     let relations = quote! { self.relations(q).fixed_rows::<#declared>(#own).into_owned() };
     let is_bent = derived.kernel(KernelKind::DisplacedDifferential).is_some();
     Some(match kind {
@@ -69,7 +68,7 @@ fn by_relations(derived: &Derived, kind: KernelKind, start: &TokenStream) -> Opt
         },
         // A guess may be far away, and off the factors.
         KernelKind::Home => {
-            let codimension = Literal::usize_unsuffixed(codimension(derived));
+            let codimension = Literal::usize_unsuffixed(derived.codimension());
             quote! {
                 ::hamel::finite::assemble(
                     #start,
@@ -107,14 +106,6 @@ pub fn factor(kind: KernelKind) -> Option<TokenStream> {
         .then(|| quote! { self.relation_displacements(q) })
 }
 
-/// How many relations the spec declares, and how many those of the factors are, which stand before them.
-fn relations(derived: &Derived) -> [usize; 2] {
-    let declared = derived.space.manifold.declared().len();
-    let relations = derived.kernel(KernelKind::Relations);
-    let all = relations.and_then(|kernel| kernel.outputs.first());
-    [declared, all.map_or(0, |column| column.rows() - declared)]
-}
-
 /// Whether a kernel is a method of the joint's type alone: one that only these calls need.
 pub fn is_beside_the_trait(kind: KernelKind) -> bool {
     matches!(
@@ -128,23 +119,6 @@ pub fn is_beside_the_trait(kind: KernelKind) -> bool {
             | KernelKind::DisplacedDifferential
             | KernelKind::Displacement
     )
-}
-
-/// Rank of the derivatives of the relations on the manifold: N less the dimension that they cut out, without what known factors
-/// that no relation names contribute to it.
-fn codimension(derived: &Derived) -> usize {
-    let relations = derived.kernel(KernelKind::Relations);
-    let entries = relations.iter().flat_map(|kernel| &kernel.outputs);
-    let named: Vec<Symbol> = entries
-        .flat_map(|column| column.entries())
-        .flat_map(|entry| entry.symbols())
-        .collect();
-    let factors = derived.space.manifold.factors().iter();
-    let apart: usize = factors
-        .filter(|factor| !factor.coordinates.iter().any(|q| named.contains(q)))
-        .map(|factor| factor.coordinates.len() - factor.kind.dimension())
-        .sum();
-    derived.shape.configuration - derived.cut_out - apart
 }
 
 /// How the value is found, in a sentence of a doc comment.

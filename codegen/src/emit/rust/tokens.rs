@@ -5,7 +5,6 @@ use crate::expr::{Function, Rational, Symbol};
 use crate::formula::Names;
 use crate::formula::names::{NameSet, is_number_word, number_name};
 use crate::formula::{Binding, Chain, Node, Program};
-use num_bigint::BigInt;
 use num_traits::{One, ToPrimitive, Zero};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
@@ -302,27 +301,22 @@ pub fn curve_name(curve: Curve) -> String {
 
 /// A positive rational as a literal, or as the quotient of two where it has no short one.
 fn number_literal(value: &Rational) -> TokenStream {
-    let exact = |n: &BigInt| n.bits() <= 53;
-    let (above, below) = (value.numer(), value.denom());
-    let is_dyadic = below
-        .trailing_zeros()
-        .is_some_and(|zeros| below == BigInt::one() << zeros);
-    if exact(&above) && exact(&below) && !is_dyadic && value.decimal().is_none() {
-        let (above, below) = (float(above.to_f64()), float(below.to_f64()));
-        return quote! { #above / #below };
+    let (above, below) = value.in_doubles();
+    let above = float(above);
+    match below.map(float) {
+        Some(below) => quote! { #above / #below },
+        None => quote! { #above },
     }
-    let value = float(value.to_f64());
-    quote! { #value }
 }
 
 /// The literal of a finite value: numbers that doubles do not hold are refused before (`expand::beyond_doubles`).
-fn float(value: Option<f64>) -> Literal {
-    Literal::f64_unsuffixed(value.filter(|value| value.is_finite()).unwrap_or(f64::MAX))
+fn float(value: f64) -> Literal {
+    Literal::f64_unsuffixed(if value.is_finite() { value } else { f64::MAX })
 }
 
 /// A number that may be negative, as in constant tables.
 pub fn signed_literal(value: &Rational) -> TokenStream {
-    let literal = float(value.to_f64().map(f64::abs));
+    let literal = float(value.to_f64().map_or(f64::MAX, f64::abs));
     match value < &Rational::zero() {
         true => quote! { -#literal },
         false => quote! { #literal },

@@ -32,7 +32,8 @@ pub(super) fn joint(
     if sink.len() > errors_before {
         return None;
     }
-    (entry.build)(&values)
+    registry
+        .build(entry.name, &values)?
         .map_err(|error| {
             let message = format!("joint `{}`: {error}", description.name.value);
             sink.push(Diagnostic::new(description.span.clone(), message));

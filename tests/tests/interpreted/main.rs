@@ -1,0 +1,61 @@
+//! The law suite on joints that are interpreted: of each kind of spec one.
+
+use hamel::joint::Joint;
+use hamel_codegen::derived::Derived;
+use hamel_interpreted::{Interpreted, JointType};
+use hamel_tests::laws::{Reach, check_within};
+
+fn derived(name: &str) -> Derived {
+    let text = hamel_joints::spec(name).expect("a joint of the library");
+    let derived = hamel_codegen::derive(text, &format!("{name}.joint"));
+    derived.unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+fn check<
+    const N: usize,
+    const K: usize,
+    const S: usize,
+    const C: usize,
+    const R: usize,
+    const G: usize,
+>(
+    name: &str,
+    parameters: &[f64],
+    reach: Reach,
+) {
+    let exact = JointType::exact(&derived(name), parameters).expect("values that it takes");
+    let joint: Interpreted<N, K, S, C, R, G> = exact.expect("its sizes");
+    assert_eq!(joint.facts().name, name);
+    check_within(&joint, reach);
+}
+
+#[test]
+fn on_a_line() {
+    check::<1, 1, 1, 0, 0, 1>("screw", &[0.7], Reach::HalfTurn);
+}
+
+#[test]
+fn along_a_curve() {
+    check::<2, 1, 1, 0, 0, 1>("ellipse", &[0.9, 0.7], Reach::HalfTurn);
+}
+
+#[test]
+fn on_a_group() {
+    check::<12, 6, 6, 0, 0, 6>("free", &[], Reach::HalfTurn);
+}
+
+#[test]
+fn on_a_quaternion() {
+    check::<4, 3, 3, 0, 0, 3>("ball_quaternion", &[], Reach::HalfTurn);
+}
+
+#[test]
+fn rolling() {
+    check::<11, 5, 3, 2, 0, 5>("falling_disk", &[0.7], Reach::HalfTurn);
+}
+
+#[test]
+fn in_a_loop() {
+    let links = [0.2, 0.85, 1.0, 1.15];
+    check::<6, 1, 1, 0, 2, 3>("four_bar", &links, Reach::Around(0.2));
+}
