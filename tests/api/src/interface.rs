@@ -25,6 +25,7 @@ pub const CRATES: &[Interface] = &[
     all("hamel_control"),
     all("hamel_compiled"),
     all("hamel_scene"),
+    all("hamel_interpreted"),
     all("hamel_joints"),
     all("hamel_sweep"),
     Interface {
