@@ -101,19 +101,20 @@ impl Source {
         }
     }
 
+    fn options(&self) -> robot::Options {
+        robot::Options {
+            floating_base: self.floating_base,
+            ..robot::Options::default()
+        }
+    }
+
     /// The text of the scene; of a robot that of the scene that is made of it.
     ///
     /// # Errors
     /// Mistakes in the text of a robot.
     pub fn scene_text(&self) -> Result<String, Diagnostics> {
         match self.is_robot {
-            true => {
-                let options = robot::Options {
-                    floating_base: self.floating_base,
-                    ..robot::Options::default()
-                };
-                Ok(robot::read(&self.text, &self.name, &options)?.to_toml())
-            }
+            true => Ok(robot::read(&self.text, &self.name, &self.options())?.to_toml()),
             false => Ok(self.text.clone()),
         }
     }
@@ -125,11 +126,7 @@ impl Source {
     pub fn model(&self, joints: &JointRegistry) -> Result<(Model, AllLimits), Diagnostics> {
         let (scene, limits) = match self.is_robot {
             true => {
-                let options = robot::Options {
-                    floating_base: self.floating_base,
-                    ..robot::Options::default()
-                };
-                let import = robot::read(&self.text, &self.name, &options)?;
+                let import = robot::read(&self.text, &self.name, &self.options())?;
                 (import.build(joints)?, limits_of_robot(&import))
             }
             false => {
