@@ -62,13 +62,19 @@ fn best_division(sum: &Sum, relations: &[Relation], floor: &FxHashMap<u16, i16>)
     best
 }
 
-/// Whether a name stands for whole sums: what is new in the remainder holds it.
+/// Whether a name stands for whole sums: what is new in the remainder holds it, unless all that it replaces did, as where a sum is divided by its square.
 fn is_whole(before: &Sum, after: &Sum, defined: Option<u16>) -> bool {
     let Some(defined) = defined else {
         return true;
     };
     let holds = |product: &Product| product.iter().any(|(variable, _)| *variable == defined);
     let is_old = |product: &Product, number: &Rational| before.get(product) == Some(number);
+    let mut replaced = before
+        .iter()
+        .filter(|(product, number)| after.get(*product) != Some(number));
+    if replaced.all(|(product, _)| holds(product)) {
+        return true;
+    }
     after
         .iter()
         .all(|(product, number)| holds(product) || is_old(product, number))

@@ -46,6 +46,19 @@ fn sines_and_cosines_of_one_angle_add_up() {
 }
 
 #[test]
+fn a_power_of_a_sum_over_the_sum_is_a_number() {
+    let x = Expr::symbol(&Symbol::new(Role::Parameter, 0, "x"));
+    let y = Expr::symbol(&Symbol::new(Role::Parameter, 1, "y"));
+    let z = Expr::symbol(&Symbol::new(Role::Velocity, 0, "z"));
+    let square = (&x - &y).square();
+    let inverse = square.recip().expect("not 0");
+    for power in 1..3 {
+        let quotient = &square.pow(power) * &inverse.pow(power);
+        assert_eq!(shortened(&(&quotient * &z), &[]), z, "{power}");
+    }
+}
+
+#[test]
 fn nothing_is_divided_by_that_was_not() {
     let x = Expr::symbol(&Symbol::new(Role::Coordinate, 0, "x"));
     let y = Expr::symbol(&Symbol::new(Role::Coordinate, 1, "y"));
