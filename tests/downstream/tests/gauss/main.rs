@@ -1,8 +1,9 @@
 //! Linkages, gears and parallel robots, of the library and of this crate, against Gauss's principle in 256 bits, from their specs alone: accelerations of all bodies by the tree and by the reference
-//! form, and efforts of inverse dynamics at them.
+//! form, and efforts of inverse dynamics at them; and their energy over ten seconds.
 
 #[path = "../common/mod.rs"]
 mod common;
+mod energy;
 mod held_out;
 
 use hamel::dynamics::{Dynamics, Frame, MassMatrix, Recursive, Reference};
@@ -233,6 +234,7 @@ fn check(source: &Source, case: &Case<'_>) {
     }
     // Errors of single roundings, by the condition: as the projected equations may have them.
     worst.iter().for_each(|worst| worst.assert_within(10.0));
+    energy::is_kept(&self::mechanism(source, case, Vector3::zeros()), case);
 }
 
 /// A joint of the library or of this crate.
