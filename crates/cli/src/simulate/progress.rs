@@ -1,21 +1,16 @@
 //! Progress on stderr: a bar on a terminal; elsewhere a line, once, of a motion that takes more than a minute.
 
+use crate::pace::{FIRST_LOOK, target, to_go};
 use hamel::shown::Number;
 use hamel_console::output::tell;
 use hamel_native::Compiler;
 use hamel_scene::text::visible;
-use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressStyle};
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 /// Ticks of the whole bar.
 const LENGTH: u64 = 1000;
-
-/// Where there is no bar, it is said after this time whether a motion takes long.
-const FIRST_LOOK: Duration = Duration::from_secs(5);
-
-/// How long a motion takes that this is said of.
-const LONG: Duration = Duration::from_secs(60);
 
 /// Shows how much of the time has been simulated.
 pub struct Progress {
@@ -61,12 +56,7 @@ impl Progress {
             return;
         }
         self.is_told.set(true);
-        let whole = spent.as_secs_f64() * self.t_end / t;
-        let Ok(left) = Duration::try_from_secs_f64(whole - spent.as_secs_f64()) else {
-            return;
-        };
-        if whole > LONG.as_secs_f64() {
-            let left = HumanDuration(left);
+        if let Some(left) = to_go(spent, t, self.t_end) {
             tell(&[format!(
                 "at {t:.3e} s of {:?} s after {} s: about {left} to go at this pace",
                 Number(self.t_end),
@@ -95,11 +85,4 @@ pub fn working(message: &str, quiet: bool) -> ProgressBar {
     bar.set_message(message.to_owned());
     bar.enable_steady_tick(Duration::from_millis(100));
     bar
-}
-
-fn target(quiet: bool) -> ProgressDrawTarget {
-    match quiet {
-        true => ProgressDrawTarget::hidden(),
-        false => ProgressDrawTarget::stderr(),
-    }
 }

@@ -1,15 +1,10 @@
 //! Progress on stderr: a bar on a terminal; elsewhere a line, once, of a sweep that takes more than a minute.
 
+use crate::pace::{FIRST_LOOK, target, to_go};
 use hamel_console::output::tell;
-use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressStyle};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
-
-/// Where there is no bar, it is said after this time whether a sweep takes long.
-const FIRST_LOOK: Duration = Duration::from_secs(5);
-
-/// How long a sweep takes that this is said of.
-const LONG: Duration = Duration::from_secs(60);
 
 /// How many rows are done. The time to go is that of the rows to go at the pace of this run: rows of an earlier run count in neither.
 pub struct Progress {
@@ -25,11 +20,7 @@ pub struct Progress {
 impl Progress {
     /// A bar of `all` rows, of which `rows` are to be moved; hidden if `quiet`.
     pub fn new(all: u64, rows: u64, quiet: bool) -> Self {
-        let target = match quiet {
-            true => ProgressDrawTarget::hidden(),
-            false => ProgressDrawTarget::stderr(),
-        };
-        let bar = ProgressBar::with_draw_target(Some(all), target);
+        let bar = ProgressBar::with_draw_target(Some(all), target(quiet));
         let template = "{wide_bar} {percent:>3} %  {human_pos} of {human_len} rows  {elapsed} spent, {eta} to go";
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
@@ -57,16 +48,11 @@ impl Progress {
 
     /// Says, where there is no bar, that the sweep takes long.
     fn announce(&self, done: u64, spent: Duration) {
-        let whole = spent.as_secs_f64() * self.rows as f64 / done as f64;
-        let Ok(left) = Duration::try_from_secs_f64(whole - spent.as_secs_f64()) else {
-            return;
-        };
-        if whole > LONG.as_secs_f64() {
+        if let Some(left) = to_go(spent, done as f64, self.rows as f64) {
             tell(&[format!(
-                "{done} of {} rows after {} s: about {} to go at this pace",
+                "{done} of {} rows after {} s: about {left} to go at this pace",
                 self.rows,
-                spent.as_secs(),
-                HumanDuration(left)
+                spent.as_secs()
             )]);
         }
     }
