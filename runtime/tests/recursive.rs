@@ -5,7 +5,7 @@ mod common;
 use common::random::Random;
 use common::readings::assert_same;
 use common::trees::{configuration, slender_trees, trees};
-use hamel_runtime::dynamics::{Dynamics, MassMatrix, Recursive, Reference};
+use hamel_runtime::dynamics::{Dynamics, InverseMassMatrix, MassMatrix, Recursive, Reference};
 use hamel_runtime::mechanism::Mechanism;
 use nalgebra::DVector;
 use std::sync::Arc;
@@ -141,7 +141,7 @@ fn mass_matrix_and_its_factors_agree() {
         mass.solve(&mut x).expect("sizes fit");
         case.same(&x, &case.speeds, "solution");
 
-        let mut inverse = MassMatrix::new(&case.mechanism);
+        let mut inverse = InverseMassMatrix::new(&case.mechanism);
         case.recursive
             .inverse_mass_matrix(&case.q, &mut inverse)
             .expect("regular");

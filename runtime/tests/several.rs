@@ -8,8 +8,8 @@ use common::readings::{assert_same, readings};
 use common::several::{arms, between, drifter, links};
 use common::trees::{GRAVITY, body, mass, pose};
 use hamel_runtime::dynamics::{
-    Dynamics, ForwardDerivatives, Frame, HamiltonianDerivatives, InverseDerivatives, LoadedMass,
-    MassMatrix, Recursive, Reference, Refined, Sensitivity,
+    Dynamics, ForwardDerivatives, Frame, HamiltonianDerivatives, InverseDerivatives,
+    InverseMassMatrix, LoadedMass, MassMatrix, Recursive, Reference, Refined, Sensitivity,
 };
 use hamel_runtime::elements::{
     BodySpring, BodyWrench, Drive, Element, JointDamper, JointSlopes, JointSpring, PointConstraint,
@@ -389,10 +389,11 @@ fn inverse_dynamics_and_mass_matrices_agree() {
             let mut rates = state.rates.clone();
             mass.solve(&mut rates).expect("fits");
             all.extend(rates);
+            let mut inverse = InverseMassMatrix::new(own);
             recursive
-                .inverse_mass_matrix(&state.q, &mut mass)
+                .inverse_mass_matrix(&state.q, &mut inverse)
                 .expect("regular");
-            all.extend(mass.matrix().as_slice());
+            all.extend(inverse.entries());
             let freedoms = state.efforts.len();
             let (mut potential, mut kinetic) = (vec![0.0; freedoms], vec![0.0; freedoms]);
             recursive

@@ -8,7 +8,9 @@
 //! quit
 //! ```
 
-use hamel::dynamics::{Dynamics, ForwardDerivatives, InverseDerivatives, MassMatrix, Recursive};
+use hamel::dynamics::{
+    Dynamics, ForwardDerivatives, InverseDerivatives, InverseMassMatrix, MassMatrix, Recursive,
+};
 use hamel::mechanism::Mechanism;
 use hamel_tests::peers::{Model, States, convert};
 use std::error::Error;
@@ -35,6 +37,7 @@ struct Loaded {
     states: States,
     dynamics: Recursive,
     mass: MassMatrix,
+    inverse_mass: InverseMassMatrix,
     inverse: InverseDerivatives,
     forward: ForwardDerivatives,
     out: Vec<f64>,
@@ -92,6 +95,7 @@ impl Loaded {
         Ok(Self {
             dynamics: Recursive::new(Arc::clone(&mechanism)),
             mass: MassMatrix::new(&mechanism),
+            inverse_mass: InverseMassMatrix::new(&mechanism),
             inverse: InverseDerivatives::new(&mechanism),
             forward: ForwardDerivatives::new(&mechanism),
             out: vec![0.0; mechanism.layout().speeds],
@@ -111,7 +115,7 @@ impl Loaded {
             "nle" => dynamics.bias_forces(q, v, &mut self.out)?,
             "crba" => dynamics.mass_matrix(q, &mut self.mass)?,
             "aba" => dynamics.forward_dynamics(q, v, tau, &mut self.out)?,
-            "minverse" => dynamics.inverse_mass_matrix(q, &mut self.mass)?,
+            "minverse" => dynamics.inverse_mass_matrix(q, &mut self.inverse_mass)?,
             "rnea_deriv" => {
                 dynamics.inverse_dynamics_derivatives(q, v, tau, &mut self.inverse)?;
             }
@@ -154,7 +158,10 @@ impl Loaded {
             "crba" | "minverse" => {
                 let rows = order.iter();
                 rows.flat_map(|&i| order.iter().map(move |&j| (i, j)))
-                    .map(|(i, j)| self.mass.entry(i, j))
+                    .map(|(i, j)| match algorithm {
+                        "crba" => self.mass.entry(i, j),
+                        _ => self.inverse_mass.entry(i, j),
+                    })
                     .collect()
             }
             _ => return Ok("none".to_owned()),

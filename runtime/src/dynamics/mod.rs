@@ -16,7 +16,7 @@ pub use error::DynamicsError;
 pub use recursive::LoadedMass;
 pub use recursive::{
     ForwardDerivatives, Frame, FrameReadings, HamiltonianDerivatives, InverseDerivatives,
-    MassMatrix, PinError, PinForce, Readings, Recursive, Refined, Sensitivity,
+    InverseMassMatrix, MassMatrix, PinError, PinForce, Readings, Recursive, Refined, Sensitivity,
 };
 pub use reference::Reference;
 

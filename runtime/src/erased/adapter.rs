@@ -1,11 +1,11 @@
-//! [`AnyJoint`] for every [`Joint`] and scalar: sizes are checked here, once a call, and what is done is done on arrays.
+//! [`AnyJoint`] for every [`Joint`]: sizes are checked here, once a call, and what is done is done on arrays.
 
+use super::extended::check_finite;
 use super::kernels::{kernels, operand, passed_on};
 use super::slices::{Store, array, array_mut, nan, vector};
 use super::stored::{self, stored};
-use super::{AnyJoint, FiniteMapError, Layout, Shared, Sizes};
+use super::{AnyJoint, ExtendedJoint, FiniteMapError, Layout, Shared, Sizes};
 use crate::joint::{Joint, Pin, Port, PortLaw, Products, Structures, Units, VelocityFrame};
-use crate::scalar::{Extended, Native, Scalar};
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
 use crate::steps::{
     AtPort, ChartDerivatives, Field, Motion, Pivot, PivotFailure, Placement, RotorTerm, Steps,
@@ -15,28 +15,12 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 use nalgebra::{Matrix3, SVector, Vector6};
 
-/// The error of a finite map unless there are `size` values, all finite.
-fn check_finite<T: Scalar<Mask = bool>>(
-    joint: &'static str,
-    map: &'static str,
-    values: &[T],
-    size: usize,
-) -> Result<(), FiniteMapError> {
-    let infinity = T::from_f64(f64::INFINITY);
-    let is_finite = |value: &T| (-infinity).less(*value) && value.less(infinity);
-    match values.len() == size && values.iter().all(is_finite) {
-        true => Ok(()),
-        false => Err(FiniteMapError { joint, map }),
-    }
-}
-
-impl<T, J, const N: usize, const K: usize, const S: usize, const C: usize> AnyJoint<T>
+impl<J, const N: usize, const K: usize, const S: usize, const C: usize> AnyJoint
     for (J, Sizes<N, K, S, C>)
 where
-    T: Scalar<Mask = bool>,
     J: Joint<N, K, S, C>,
 {
-    fn extended(self: Arc<Self>) -> Arc<dyn AnyJoint<Extended>> {
+    fn extended(self: Arc<Self>) -> Arc<dyn ExtendedJoint> {
         self
     }
 
@@ -121,58 +105,58 @@ where
         }
     }
 
-    fn home(&self, out: &mut [T]) {
+    fn home(&self, out: &mut [f64]) {
         stored::store(&self.0, &self.0.home(), out);
     }
 
-    fn configuration_rate(&self, q: &[T], v: &[T], out: &mut [T]) {
+    fn configuration_rate(&self, q: &[f64], v: &[f64], out: &mut [f64]) {
         let rate = self.0.configuration_rate(&stored(&self.0, q), &vector(v));
         stored::store(&self.0, &rate, out);
     }
 
-    fn retract(&self, q: &[T], phi: &[T], out: &mut [T]) {
+    fn retract(&self, q: &[f64], phi: &[f64], out: &mut [f64]) {
         let moved = self.0.retract(&stored(&self.0, q), &vector(phi));
         stored::store(&self.0, &moved, out);
     }
 
     kernels!(passed_on);
 
-    fn pose(&self, q: &[T]) -> Pose<T> {
+    fn pose(&self, q: &[f64]) -> Pose<f64> {
         self.0.pose(&stored(&self.0, q))
     }
 
-    fn residual(&self, q: &[T]) -> T {
+    fn residual(&self, q: &[f64]) -> f64 {
         self.0.residual(&stored(&self.0, q))
     }
 
-    fn singularity(&self, q: &[T]) -> T {
+    fn singularity(&self, q: &[f64]) -> f64 {
         self.0.singularity(&stored(&self.0, q))
     }
 
-    fn bias_acceleration(&self, q: &[T], speeds: &[T]) -> Vector6<T> {
+    fn bias_acceleration(&self, q: &[f64], speeds: &[f64]) -> Vector6<f64> {
         self.0
             .bias_acceleration(&stored(&self.0, q), &vector(speeds))
     }
 
-    fn local(&self, q: &[T], target: &[T], phi: &mut [T]) -> Result<(), FiniteMapError> {
+    fn local(&self, q: &[f64], target: &[f64], phi: &mut [f64]) -> Result<(), FiniteMapError> {
         self.0
             .local(&stored(&self.0, q), &stored(&self.0, target))
             .store(phi);
         check_finite(self.0.facts().name, "local coordinates", phi, K)
     }
 
-    fn project(&self, q: &mut [T]) -> Result<(), FiniteMapError> {
+    fn project(&self, q: &mut [f64]) -> Result<(), FiniteMapError> {
         let found = self.0.project(&stored(&self.0, q));
         stored::store(&self.0, &found, q);
         check_finite(self.0.facts().name, "projection", q, stored::size(&self.0))
     }
 
-    fn local_rate(&self, q: &[T], phi: &[T], moved: &[T], speeds: &[T], out: &mut [T]) {
+    fn local_rate(&self, q: &[f64], phi: &[f64], moved: &[f64], speeds: &[f64], out: &mut [f64]) {
         let (joint, structures) = (&self.0, J::STRUCTURES);
         let moved = stored(joint, moved);
-        let velocity: SVector<T, K> = match structures.speed_basis.is_identity() {
+        let velocity: SVector<f64, K> = match structures.speed_basis.is_identity() {
             true => vector(speeds),
-            false => joint.speed_basis(&moved) * vector::<T, S>(speeds),
+            false => joint.speed_basis(&moved) * vector::<f64, S>(speeds),
         };
         let rate = match structures.velocity_map.is_identity() {
             true => velocity,
@@ -185,8 +169,8 @@ where
         local_rate.store(out);
     }
 
-    fn reduce_efforts(&self, q: &[T], efforts: &[T], out: &mut [T]) {
-        let efforts = vector::<T, K>(efforts);
+    fn reduce_efforts(&self, q: &[f64], efforts: &[f64], out: &mut [f64]) {
+        let efforts = vector::<f64, K>(efforts);
         match J::STRUCTURES.speed_basis.is_identity() {
             true => efforts.store(out),
             false => self
@@ -197,33 +181,33 @@ where
         }
     }
 
-    fn port_value(&self, q: &[T], port: usize) -> T {
+    fn port_value(&self, q: &[f64], port: usize) -> f64 {
         let q = stored(&self.0, q);
         let values = self.0.port_values(&q);
         values.as_ref().get(port).copied().unwrap_or(nan())
     }
 
-    fn port_row(&self, q: &[T], port: usize, out: &mut [T]) {
+    fn port_row(&self, q: &[f64], port: usize, out: &mut [f64]) {
         let q = stored(&self.0, q);
         let map = self.0.port_map(&q);
         let row = map.as_ref().get(port).copied().unwrap_or([nan(); K]);
         SVector::from(row).store(out);
     }
 
-    fn pin_place(&self, q: &[T], pin: usize) -> [T; 9] {
+    fn pin_place(&self, q: &[f64], pin: usize) -> [f64; 9] {
         let q = stored(&self.0, q);
         let places = self.0.pins(&q);
         places.as_ref().get(pin).copied().unwrap_or([nan(); 9])
     }
 
-    fn relation_twist(&self, q: &[T], relation: usize) -> Vector6<T> {
+    fn relation_twist(&self, q: &[f64], relation: usize) -> Vector6<f64> {
         let q = stored(&self.0, q);
         let twists = self.0.relation_twists(&q);
         let own = twists.as_ref().get(relation).copied();
         own.map_or(Vector6::repeat(nan()), Vector6::from)
     }
 
-    fn relation_port(&self, q: &[T], relation: usize, port: usize) -> T {
+    fn relation_port(&self, q: &[f64], relation: usize, port: usize) -> f64 {
         let q = stored(&self.0, q);
         let rates = self.0.relation_ports(&q);
         let mut of_relation = rates.as_ref().chunks_exact(self.0.ports().len().max(1));
@@ -231,27 +215,25 @@ where
         own.and_then(|own| own.get(port).copied()).unwrap_or(nan())
     }
 
-    fn port_slope(&self, q: &[T], velocity: &[T], port: usize, law: &PortLaw<T>, out: &mut [T])
-    where
-        T: Native,
-    {
+    fn port_slope(
+        &self,
+        q: &[f64],
+        velocity: &[f64],
+        port: usize,
+        law: &PortLaw<f64>,
+        out: &mut [f64],
+    ) {
         Steps(&self.0)
             .port_slope((&stored(&self.0, q), &vector(velocity)), port, law)
             .store(out);
     }
 
-    fn port_row_rate(&self, q: &[T], speeds: &[T], port: usize, out: &mut [T])
-    where
-        T: Native,
-    {
+    fn port_row_rate(&self, q: &[f64], speeds: &[f64], port: usize, out: &mut [f64]) {
         let [_, rate] = Steps(&self.0).port_row_motion(&stored(&self.0, q), &vector(speeds), port);
         rate.store(out);
     }
 
-    fn port_row_gradient(&self, q: &[T], port: usize, out: &mut [T])
-    where
-        T: Native,
-    {
+    fn port_row_gradient(&self, q: &[f64], port: usize, out: &mut [f64]) {
         Steps(&self.0)
             .port_row_gradient(&stored(&self.0, q), port)
             .store(out);
@@ -259,24 +241,25 @@ where
 
     fn rotor_term_slopes(
         &self,
-        (q, speeds, x): (&[T], &[T], &[T]),
+        (q, speeds, x): (&[f64], &[f64], &[f64]),
         port: usize,
         term: RotorTerm,
-        by_local: &mut [T],
-        by_speeds: &mut [T],
-    ) where
-        T: Native,
-    {
+        by_local: &mut [f64],
+        by_speeds: &mut [f64],
+    ) {
         let state = (&stored(&self.0, q), &vector(speeds), &vector(x));
         let slopes = Steps(&self.0).rotor_term_slopes(state, AtPort { port, term });
         slopes.0.store(by_local);
         slopes.1.store(by_speeds);
     }
 
-    fn differentiate(&self, base: &[T], phi: &[T], speeds: &[T], out: &mut ChartDerivatives<'_, T>)
-    where
-        T: Native,
-    {
+    fn differentiate(
+        &self,
+        base: &[f64],
+        phi: &[f64],
+        speeds: &[f64],
+        out: &mut ChartDerivatives<'_, f64>,
+    ) {
         let field = Field {
             joint: &self.0,
             base: stored(&self.0, base),
@@ -286,19 +269,13 @@ where
         field.fill(out);
     }
 
-    fn spring_slope(&self, q: &[T], rest: &[T], stiffness: &[T], out: &mut [T])
-    where
-        T: Native,
-    {
+    fn spring_slope(&self, q: &[f64], rest: &[f64], stiffness: &[f64], out: &mut [f64]) {
         Steps(&self.0)
             .spring_slope((&stored(&self.0, q), &stored(&self.0, rest)), stiffness)
             .store(out);
     }
 
-    fn turn_slope(&self, q: &[T], rest: &Matrix3<T>, stiffness: T, out: &mut [T])
-    where
-        T: Native,
-    {
+    fn turn_slope(&self, q: &[f64], rest: &Matrix3<f64>, stiffness: f64, out: &mut [f64]) {
         Steps(&self.0)
             .turn_slope(&stored(&self.0, q), rest, stiffness)
             .store(out);
@@ -306,14 +283,12 @@ where
 
     fn rotor_slopes(
         &self,
-        q: &[T],
-        velocity: &[T],
-        inertia: &[T],
-        by_local: &mut [T],
-        by_velocity: &mut [T],
-    ) where
-        T: Native,
-    {
+        q: &[f64],
+        velocity: &[f64],
+        inertia: &[f64],
+        by_local: &mut [f64],
+        by_velocity: &mut [f64],
+    ) {
         let (velocity, inertia) = (vector(velocity), vector(inertia));
         let slopes = Steps(&self.0).rotor_slopes(&stored(&self.0, q), &velocity, &inertia);
         slopes[0].store(by_local);
@@ -335,10 +310,13 @@ where
         }
     }
 
-    fn place(&self, q: &[T], joint_frame: &Pose<T>, parent: &Placement<T>, own: &mut Placement<T>)
-    where
-        T: Native,
-    {
+    fn place(
+        &self,
+        q: &[f64],
+        joint_frame: &Pose<f64>,
+        parent: &Placement<f64>,
+        own: &mut Placement<f64>,
+    ) {
         *own = match stored::exactly(&self.0, q) {
             Some(q) => Steps(&self.0).child(&q, joint_frame, parent),
             None => Placement::unknown(),
@@ -347,14 +325,12 @@ where
 
     fn stand(
         &self,
-        q: &[T],
-        joint_frame: &Pose<T>,
-        parent: &Placement<T>,
-        own: &mut Placement<T>,
-        columns: &mut [Vector6<T>],
-    ) where
-        T: Native,
-    {
+        q: &[f64],
+        joint_frame: &Pose<f64>,
+        parent: &Placement<f64>,
+        own: &mut Placement<f64>,
+        columns: &mut [Vector6<f64>],
+    ) {
         let arrays = (stored::exactly(&self.0, q), array_mut(columns));
         let (Some(q), Some(own_columns)) = arrays else {
             *own = Placement::unknown();
@@ -364,10 +340,7 @@ where
         *own_columns = Steps(&self.0).columns(&q, &own.rotation);
     }
 
-    fn speed_map(&self, q: &[T], columns: &mut [Vector6<T>])
-    where
-        T: Native,
-    {
+    fn speed_map(&self, q: &[f64], columns: &mut [Vector6<f64>]) {
         match array_mut(columns) {
             Some(columns) => {
                 *columns = Steps(&self.0).columns(&stored(&self.0, q), &Matrix3::identity())
@@ -378,11 +351,11 @@ where
 
     fn advance(
         &self,
-        (q, speeds, accelerations): (&[T], &[T], &[T]),
-        joint_frame: &Pose<T>,
-        parent: &Motion<T>,
-        own: &mut Motion<T>,
-        columns: &mut [Vector6<T>],
+        (q, speeds, accelerations): (&[f64], &[f64], &[f64]),
+        joint_frame: &Pose<f64>,
+        parent: &Motion<f64>,
+        own: &mut Motion<f64>,
+        columns: &mut [Vector6<f64>],
     ) {
         let q = stored::exactly(&self.0, q);
         let arrays = (q, array(speeds), array_mut(columns));
@@ -400,14 +373,11 @@ where
 
     fn articulate(
         &self,
-        inertia: &mut ArticulatedInertia<T>,
-        columns: &[Vector6<T>],
-        armature: &[T],
-        pivots: &mut [Pivot<T>],
-    ) -> Result<(), PivotFailure<T>>
-    where
-        T: Native,
-    {
+        inertia: &mut ArticulatedInertia<f64>,
+        columns: &[Vector6<f64>],
+        armature: &[f64],
+        pivots: &mut [Pivot<f64>],
+    ) -> Result<(), PivotFailure<f64>> {
         let (Some(columns), Some(pivots)) = (array(columns), array_mut(pivots)) else {
             return Err(PivotFailure::unknown());
         };
@@ -416,14 +386,12 @@ where
 
     fn reduce(
         &self,
-        wrench: &mut Vector6<T>,
-        columns: &[Vector6<T>],
-        pivots: &[Pivot<T>],
-        forces: &[T],
-        loads: &mut [T],
-    ) where
-        T: Native,
-    {
+        wrench: &mut Vector6<f64>,
+        columns: &[Vector6<f64>],
+        pivots: &[Pivot<f64>],
+        forces: &[f64],
+        loads: &mut [f64],
+    ) {
         let arrays = (
             array(columns),
             array(pivots),
@@ -439,14 +407,12 @@ where
 
     fn resolve(
         &self,
-        motion: &mut Vector6<T>,
-        columns: &[Vector6<T>],
-        pivots: &[Pivot<T>],
-        loads: &[T],
-        rates: &mut [T],
-    ) where
-        T: Native,
-    {
+        motion: &mut Vector6<f64>,
+        columns: &[Vector6<f64>],
+        pivots: &[Pivot<f64>],
+        loads: &[f64],
+        rates: &mut [f64],
+    ) {
         let arrays = (
             array(columns),
             array(pivots),
@@ -460,10 +426,12 @@ where
         *motion = Steps::<J, N, K, S, C>::motion(motion, columns, pivots, loads, rates);
     }
 
-    fn momenta(&self, inertia: &SpatialInertia<T>, columns: &[Vector6<T>], out: &mut [Vector6<T>])
-    where
-        T: Native,
-    {
+    fn momenta(
+        &self,
+        inertia: &SpatialInertia<f64>,
+        columns: &[Vector6<f64>],
+        out: &mut [Vector6<f64>],
+    ) {
         let (Some(columns), Some(own)) = (array::<_, S>(columns), array_mut::<_, S>(out)) else {
             return out.fill(Vector6::repeat(nan()));
         };
@@ -472,7 +440,7 @@ where
         }
     }
 
-    fn gather(&self, wrench: &Vector6<T>, columns: &[Vector6<T>], out: &mut [T]) {
+    fn gather(&self, wrench: &Vector6<f64>, columns: &[Vector6<f64>], out: &mut [f64]) {
         let (Some(columns), Some(own)) = (array::<_, S>(columns), array_mut::<_, S>(out)) else {
             return out.fill(nan());
         };
@@ -483,13 +451,11 @@ where
 
     fn vary(
         &self,
-        (q, speeds, accelerations): (&[T], &[T], &[T]),
-        motions: (&Motion<T>, &Motion<T>),
-        columns: &[Vector6<T>],
-        out: &mut [Variation<T>],
-    ) where
-        T: Native,
-    {
+        (q, speeds, accelerations): (&[f64], &[f64], &[f64]),
+        motions: (&Motion<f64>, &Motion<f64>),
+        columns: &[Vector6<f64>],
+        out: &mut [Variation<f64>],
+    ) {
         let (Some(columns), Some(own)) = (array(columns), array_mut(out)) else {
             return out.fill(Variation::unknown());
         };

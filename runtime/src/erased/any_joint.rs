@@ -1,11 +1,10 @@
 //! The trait [`AnyJoint`]: what a mechanism knows of a joint.
 
 use super::kernels::{declared, kernels};
-use super::{FiniteMapError, Layout, Shared};
+use super::{ExtendedJoint, FiniteMapError, Layout, Shared};
 #[cfg(doc)]
 use crate::joint::{Joint, Products};
 use crate::joint::{Pin, Port, PortLaw, Structures, Units, VelocityFrame};
-use crate::scalar::{Extended, Native, Scalar};
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
 use crate::steps::{
     ChartDerivatives, Motion, Pivot, PivotFailure, Placement, RotorTerm, Variation,
@@ -15,17 +14,16 @@ use alloc::vec::Vec;
 use core::fmt::Debug;
 use nalgebra::{Matrix3, Vector6};
 
-/// A joint of any type in numbers T.
+/// A joint of any type, in doubles.
 ///
 /// With (N, K, S, C) of [`AnyJoint::layout`], shapes, units and frames are as in [`Joint`]. The caller hands over slices of exactly these
 /// sizes; of any other every result is NaN, or an error where there can be one. What does not depend on an argument does not look at it.
 ///
 /// The methods from [`AnyJoint::parts`] on are the joint's share in the recursions over a mechanism, in the frames of
-/// [`steps`](crate::steps). There `columns` are those of X̄, and pivots, loads and rates have one entry per speed. What solves a mechanism or
-/// differentiates it is for [`Native`] numbers.
-pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
+/// [`steps`](crate::steps). There `columns` are those of X̄, and pivots, loads and rates have one entry per speed.
+pub trait AnyJoint: Debug + Send + Sync {
     /// The same joint in numbers of 106 bits.
-    fn extended(self: Arc<Self>) -> Arc<dyn AnyJoint<Extended>>;
+    fn extended(self: Arc<Self>) -> Arc<dyn ExtendedJoint>;
 
     /// Name of the spec.
     fn name(&self) -> &'static str;
@@ -65,89 +63,88 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     fn parameters(&self, visit: &mut dyn FnMut(&'static str, f64));
 
     /// [`Joint::home`] into `out` (N).
-    fn home(&self, out: &mut [T]);
+    fn home(&self, out: &mut [f64]);
     /// [`Joint::configuration_rate`] into `out` (N).
-    fn configuration_rate(&self, q: &[T], v: &[T], out: &mut [T]);
+    fn configuration_rate(&self, q: &[f64], v: &[f64], out: &mut [f64]);
     /// [`Joint::retract`] into `out` (N).
-    fn retract(&self, q: &[T], phi: &[T], out: &mut [T]);
+    fn retract(&self, q: &[f64], phi: &[f64], out: &mut [f64]);
     kernels!(declared);
 
     /// [`Joint::pose`].
-    fn pose(&self, q: &[T]) -> Pose<T>;
+    fn pose(&self, q: &[f64]) -> Pose<f64>;
     /// [`Joint::residual`].
-    fn residual(&self, q: &[T]) -> T;
+    fn residual(&self, q: &[f64]) -> f64;
     /// [`Joint::singularity`].
-    fn singularity(&self, q: &[T]) -> T;
+    fn singularity(&self, q: &[f64]) -> f64;
     /// [`Joint::bias_acceleration`].
-    fn bias_acceleration(&self, q: &[T], speeds: &[T]) -> Vector6<T>;
+    fn bias_acceleration(&self, q: &[f64], speeds: &[f64]) -> Vector6<f64>;
     /// [`Joint::local`] into `phi` (K).
     ///
     /// # Errors
     /// When ϕ is not finite: Newton's method did not converge, or a configuration is not finite.
-    fn local(&self, q: &[T], target: &[T], phi: &mut [T]) -> Result<(), FiniteMapError>;
+    fn local(&self, q: &[f64], target: &[f64], phi: &mut [f64]) -> Result<(), FiniteMapError>;
     /// [`Joint::project`] in place.
     ///
     /// # Errors
     /// When the result is not finite, as for [`AnyJoint::local`].
-    fn project(&self, q: &mut [T]) -> Result<(), FiniteMapError>;
+    fn project(&self, q: &mut [f64]) -> Result<(), FiniteMapError>;
     /// `ϕ̇ = D⁻¹ S₀⁻¹ S̄ v̄` at `moved`, which is Φ(Q, ϕ), into `out` (K): D is the differential of Φ at (Q, ϕ), S₀ and S̄ are those at `moved`.
-    fn local_rate(&self, q: &[T], phi: &[T], moved: &[T], speeds: &[T], out: &mut [T]);
+    fn local_rate(&self, q: &[f64], phi: &[f64], moved: &[f64], speeds: &[f64], out: &mut [f64]);
     /// `S̄ᵀ τ` into `out` (S), for efforts τ (K).
-    fn reduce_efforts(&self, q: &[T], efforts: &[T], out: &mut [T]);
+    fn reduce_efforts(&self, q: &[f64], efforts: &[f64], out: &mut [f64]);
     /// The value of one port, [`Joint::port_values`]; NaN of a port that is not there.
-    fn port_value(&self, q: &[T], port: usize) -> T;
+    fn port_value(&self, q: &[f64], port: usize) -> f64;
     /// The row of P of one port into `out` (K); NaN of a port that is not there.
-    fn port_row(&self, q: &[T], port: usize, out: &mut [T]);
+    fn port_row(&self, q: &[f64], port: usize, out: &mut [f64]);
     /// How the row p̄ = P S̄ of one port changes with time at v̄, into `out` (S); NaN of a port that is not there.
-    fn port_row_rate(&self, q: &[T], speeds: &[T], port: usize, out: &mut [T])
-    where
-        T: Native;
+    fn port_row_rate(&self, q: &[f64], speeds: &[f64], port: usize, out: &mut [f64]);
     /// How the row of P of one port changes with ϕ, into `out` (K×K: column k is its derivative along ϕ_k).
-    fn port_row_gradient(&self, q: &[T], port: usize, out: &mut [T])
-    where
-        T: Native;
+    fn port_row_gradient(&self, q: &[f64], port: usize, out: &mut [f64]);
     /// The derivatives in ϕ (S×K) and in v̄ (S×S), at fixed x, of what a rotor of unit inertia at a port amounts to at the `state` (q, v̄, x).
     fn rotor_term_slopes(
         &self,
-        state: (&[T], &[T], &[T]),
+        state: (&[f64], &[f64], &[f64]),
         port: usize,
         term: RotorTerm,
-        by_local: &mut [T],
-        by_speeds: &mut [T],
-    ) where
-        T: Native;
+        by_local: &mut [f64],
+        by_speeds: &mut [f64],
+    );
     /// Point and axes of one pin, [`Joint::pins`]; NaN of a pin that is not there.
-    fn pin_place(&self, q: &[T], pin: usize) -> [T; 9];
+    fn pin_place(&self, q: &[f64], pin: usize) -> [f64; 9];
     /// What one relation forbids the body, [`Joint::relation_twists`]; NaN of a relation that is not there.
-    fn relation_twist(&self, q: &[T], relation: usize) -> Vector6<T>;
+    fn relation_twist(&self, q: &[f64], relation: usize) -> Vector6<f64>;
     /// What one relation forbids a port, [`Joint::relation_ports`]; NaN of one that is not there.
-    fn relation_port(&self, q: &[T], relation: usize, port: usize) -> T;
+    fn relation_port(&self, q: &[f64], relation: usize, port: usize) -> f64;
     /// `∂τ/∂ϕ` into `out` (K×K) at fixed v of what acts on one port by a law.
-    fn port_slope(&self, q: &[T], velocity: &[T], port: usize, law: &PortLaw<T>, out: &mut [T])
-    where
-        T: Native;
+    fn port_slope(
+        &self,
+        q: &[f64],
+        velocity: &[f64],
+        port: usize,
+        law: &PortLaw<f64>,
+        out: &mut [f64],
+    );
     /// The derivatives of Q′ and ϕ̇ at base point `base`, ϕ = `phi` and v̄ = `speeds`.
-    fn differentiate(&self, base: &[T], phi: &[T], speeds: &[T], out: &mut ChartDerivatives<'_, T>)
-    where
-        T: Native;
+    fn differentiate(
+        &self,
+        base: &[f64],
+        phi: &[f64],
+        speeds: &[f64],
+        out: &mut ChartDerivatives<'_, f64>,
+    );
     /// `∂τ/∂ϕ` into `out` (K×K) of a [`JointSpring`](crate::elements::JointSpring) with this rest configuration and stiffness (K×K, by rows).
-    fn spring_slope(&self, q: &[T], rest: &[T], stiffness: &[T], out: &mut [T])
-    where
-        T: Native;
+    fn spring_slope(&self, q: &[f64], rest: &[f64], stiffness: &[f64], out: &mut [f64]);
     /// `∂τ/∂ϕ` into `out` (K×K) of a [`RotationSpring`](crate::elements::RotationSpring) with this rest rotation and stiffness.
-    fn turn_slope(&self, q: &[T], rest: &Matrix3<T>, stiffness: T, out: &mut [T])
-    where
-        T: Native;
+    fn turn_slope(&self, q: &[f64], rest: &Matrix3<f64>, stiffness: f64, out: &mut [f64]);
     /// The derivatives in ϕ and in v (K×K each) of `Σ_k γ_k v_k (a v)`, the velocity term of rotors with inertias a.
     fn rotor_slopes(
         &self,
-        q: &[T],
-        velocity: &[T],
-        inertia: &[T],
-        by_local: &mut [T],
-        by_velocity: &mut [T],
-    ) where
-        T: Native;
+        q: &[f64],
+        velocity: &[f64],
+        inertia: &[f64],
+        by_local: &mut [f64],
+        by_velocity: &mut [f64],
+    );
 
     /// Whether the velocity of a degree of freedom moves the body at some configuration: a steering angle does not.
     fn moves_body(&self, freedom: usize) -> bool;
@@ -156,32 +153,33 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     /// [`AnyJoint::parts`] of the column of one speed; none of a speed that is not there.
     fn column_parts(&self, speed: usize) -> (bool, bool);
     /// The joint's child frame, given its joint frame in the parent's child frame and that of the parent in the world.
-    fn place(&self, q: &[T], joint_frame: &Pose<T>, parent: &Placement<T>, own: &mut Placement<T>)
-    where
-        T: Native;
+    fn place(
+        &self,
+        q: &[f64],
+        joint_frame: &Pose<f64>,
+        parent: &Placement<f64>,
+        own: &mut Placement<f64>,
+    );
     /// [`AnyJoint::place`], and the columns of X̄ at the child frame's origin, in world axes.
     fn stand(
         &self,
-        q: &[T],
-        joint_frame: &Pose<T>,
-        parent: &Placement<T>,
-        own: &mut Placement<T>,
-        columns: &mut [Vector6<T>],
-    ) where
-        T: Native;
+        q: &[f64],
+        joint_frame: &Pose<f64>,
+        parent: &Placement<f64>,
+        own: &mut Placement<f64>,
+        columns: &mut [Vector6<f64>],
+    );
     /// The columns of X̄ in child axes.
-    fn speed_map(&self, q: &[T], columns: &mut [Vector6<T>])
-    where
-        T: Native;
+    fn speed_map(&self, q: &[f64], columns: &mut [Vector6<f64>]);
     /// [`AnyJoint::stand`] at the `state` (q, v̄, v̄̇); `V = V_λ + X̄ v̄` and
     /// `V̇ = V̇_λ + X̄ v̄̇ + c + ad_V X̄ v̄`. An empty v̄̇ is zero.
     fn advance(
         &self,
-        state: (&[T], &[T], &[T]),
-        joint_frame: &Pose<T>,
-        parent: &Motion<T>,
-        own: &mut Motion<T>,
-        columns: &mut [Vector6<T>],
+        state: (&[f64], &[f64], &[f64]),
+        joint_frame: &Pose<f64>,
+        parent: &Motion<f64>,
+        own: &mut Motion<f64>,
+        columns: &mut [Vector6<f64>],
     );
     /// Takes the joint's degrees of freedom out of `inertia`, which becomes what its parent feels; `armature` is added to the pivots. An empty one is zero.
     ///
@@ -189,39 +187,33 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     /// The first pivot that does not stand above its rounding; one of NaN where a size is another.
     fn articulate(
         &self,
-        inertia: &mut ArticulatedInertia<T>,
-        columns: &[Vector6<T>],
-        armature: &[T],
-        pivots: &mut [Pivot<T>],
-    ) -> Result<(), PivotFailure<T>>
-    where
-        T: Native;
+        inertia: &mut ArticulatedInertia<f64>,
+        columns: &[Vector6<f64>],
+        armature: &[f64],
+        pivots: &mut [Pivot<f64>],
+    ) -> Result<(), PivotFailure<f64>>;
     /// Takes the joint's degrees of freedom out of `wrench`, which becomes what its parent feels, for generalised `forces` (momenta or
     /// efforts) of the joint; `loads` are kept for [`AnyJoint::resolve`].
     fn reduce(
         &self,
-        wrench: &mut Vector6<T>,
-        columns: &[Vector6<T>],
-        pivots: &[Pivot<T>],
-        forces: &[T],
-        loads: &mut [T],
-    ) where
-        T: Native;
+        wrench: &mut Vector6<f64>,
+        columns: &[Vector6<f64>],
+        pivots: &[Pivot<f64>],
+        forces: &[f64],
+        loads: &mut [f64],
+    );
     /// [`AnyJoint::articulate`] and [`AnyJoint::reduce`] in one.
     ///
     /// # Errors
     /// As for [`AnyJoint::articulate`].
     fn eliminate(
         &self,
-        carried: (&mut ArticulatedInertia<T>, &mut Vector6<T>),
-        columns: &[Vector6<T>],
-        armature_and_forces: (&[T], &[T]),
-        pivots: &mut [Pivot<T>],
-        loads: &mut [T],
-    ) -> Result<(), PivotFailure<T>>
-    where
-        T: Native,
-    {
+        carried: (&mut ArticulatedInertia<f64>, &mut Vector6<f64>),
+        columns: &[Vector6<f64>],
+        armature_and_forces: (&[f64], &[f64]),
+        pivots: &mut [Pivot<f64>],
+        loads: &mut [f64],
+    ) -> Result<(), PivotFailure<f64>> {
         self.articulate(carried.0, columns, armature_and_forces.0, pivots)?;
         self.reduce(carried.1, columns, pivots, armature_and_forces.1, loads);
         Ok(())
@@ -229,27 +221,28 @@ pub trait AnyJoint<T: Scalar<Mask = bool> = f64>: Debug + Send + Sync {
     /// The joint's `rates` (speeds or accelerations), added to the `motion` that its parent carries it along with.
     fn resolve(
         &self,
-        motion: &mut Vector6<T>,
-        columns: &[Vector6<T>],
-        pivots: &[Pivot<T>],
-        loads: &[T],
-        rates: &mut [T],
-    ) where
-        T: Native;
+        motion: &mut Vector6<f64>,
+        columns: &[Vector6<f64>],
+        pivots: &[Pivot<f64>],
+        loads: &[f64],
+        rates: &mut [f64],
+    );
     /// `N X̄` of a rigid inertia into `out`, one momentum a speed.
-    fn momenta(&self, inertia: &SpatialInertia<T>, columns: &[Vector6<T>], out: &mut [Vector6<T>])
-    where
-        T: Native;
+    fn momenta(
+        &self,
+        inertia: &SpatialInertia<f64>,
+        columns: &[Vector6<f64>],
+        out: &mut [Vector6<f64>],
+    );
     /// `X̄ᵀ F` into `out`, one entry per speed.
-    fn gather(&self, wrench: &Vector6<T>, columns: &[Vector6<T>], out: &mut [T]);
+    fn gather(&self, wrench: &Vector6<f64>, columns: &[Vector6<f64>], out: &mut [f64]);
     /// What one unit of each ϕ and speed changes at the `state` (q, v̄, v̄̇), one entry per degree of freedom; `motions` are those of the child frames of
     /// this joint and of its parent. An empty v̄̇ is zero.
     fn vary(
         &self,
-        state: (&[T], &[T], &[T]),
-        motions: (&Motion<T>, &Motion<T>),
-        columns: &[Vector6<T>],
-        out: &mut [Variation<T>],
-    ) where
-        T: Native;
+        state: (&[f64], &[f64], &[f64]),
+        motions: (&Motion<f64>, &Motion<f64>),
+        columns: &[Vector6<f64>],
+        out: &mut [Variation<f64>],
+    );
 }

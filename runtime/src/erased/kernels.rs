@@ -1,7 +1,6 @@
 //! The kernels that [`AnyJoint`](super::AnyJoint) passes on to [`Joint`](crate::joint::Joint) as they are, in one table.
 //!
-//! A new kernel of a joint is a row here: its name, its arguments, a wrench or momentum `h` among them after a semicolon, and which scalars
-//! it is for, if not for all. Every row is a method that writes its result into the slice `out`.
+//! A new kernel of a joint is a row here: its name, its arguments, a wrench or momentum `h` among them after a semicolon. Every row is a method that writes its result into the slice `out`.
 
 macro_rules! kernels {
     ($then:ident) => {
@@ -35,37 +34,37 @@ macro_rules! kernels {
             /// [`Joint::bias_momentum`] into `out` (S).
             bias_momentum(q, speeds; h);
             /// [`Products::local_twist_map`] into `out` (6×K).
-            local_twist_map(q) where T: Native;
+            local_twist_map(q);
             /// [`Products::twist_gradient`] into `out` (6×K).
-            twist_gradient(q, speeds) where T: Native;
+            twist_gradient(q, speeds);
             /// [`Products::effort_gradient`] into `out` (S×K).
-            effort_gradient(q; h) where T: Native;
+            effort_gradient(q; h);
             /// [`Products::twist_map_rate`] into `out` (6×S).
-            twist_map_rate(q, speeds) where T: Native;
+            twist_map_rate(q, speeds);
             /// [`Products::bias_acceleration_gradient`] into `out` (6×K).
-            bias_acceleration_gradient(q, speeds) where T: Native;
+            bias_acceleration_gradient(q, speeds);
             /// [`Products::bias_acceleration_slope`] into `out` (6×S).
-            bias_acceleration_slope(q, speeds) where T: Native;
+            bias_acceleration_slope(q, speeds);
             /// [`Products::bias_momentum_gradient`] into `out` (S×K).
-            bias_momentum_gradient(q, speeds; h) where T: Native;
+            bias_momentum_gradient(q, speeds; h);
             /// [`Products::bias_momentum_slope`] into `out` (S×S).
-            bias_momentum_slope(q; h) where T: Native;
+            bias_momentum_slope(q; h);
         }
     };
 }
 
 /// The rows as methods of the trait.
 macro_rules! declared {
-    ($($(#[$doc:meta])* $name:ident($($vector:ident),* $(; $h:ident)?) $(where $t:ident: $native:ident)?;)*) => {
-        $($(#[$doc])* fn $name(&self, $($vector: &[T],)* $($h: &Vector6<T>,)? out: &mut [T]) $(where $t: $native)?;)*
+    ($($(#[$doc:meta])* $name:ident($($vector:ident),* $(; $h:ident)?);)*) => {
+        $($(#[$doc])* fn $name(&self, $($vector: &[f64],)* $($h: &Vector6<f64>,)? out: &mut [f64]);)*
     };
 }
 
 /// The rows as their implementation for a pair of a joint and its sizes.
 macro_rules! passed_on {
-    ($($(#[$doc:meta])* $name:ident($($vector:ident),* $(; $h:ident)?) $(where $t:ident: $native:ident)?;)*) => {
-        $(fn $name(&self, $($vector: &[T],)* $($h: &Vector6<T>,)? out: &mut [T]) $(where $t: $native)? {
-            Store::<T>::store(&self.0.$name($(&operand!($vector, self, $vector),)* $($h)?), out);
+    ($($(#[$doc:meta])* $name:ident($($vector:ident),* $(; $h:ident)?);)*) => {
+        $(fn $name(&self, $($vector: &[f64],)* $($h: &Vector6<f64>,)? out: &mut [f64]) {
+            Store::<f64>::store(&self.0.$name($(&operand!($vector, self, $vector),)* $($h)?), out);
         })*
     };
 }

@@ -1,15 +1,17 @@
 //! Joints behind one object-safe trait, so that a mechanism holds joints of any type.
 //!
-//! [`AnyJoint`] is [`Joint`] over slices, and one joint's share in the recursions; [`erase`] implements it for every joint and scalar. Matrices are
+//! [`AnyJoint`] is [`Joint`] over slices, and one joint's share in the recursions; [`erase`] implements it for every joint. [`ExtendedJoint`] is what iterative refinement takes of a joint. Matrices are
 //! stored column by column, and the K slices of a derivative in ϕ one after the other. Nothing here allocates.
 
 mod adapter;
 mod any_joint;
+mod extended;
 mod kernels;
 mod slices;
 mod stored;
 
 pub use any_joint::AnyJoint;
+pub use extended::ExtendedJoint;
 pub(crate) use slices::{Store, nan};
 
 use crate::joint::Joint;

@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 const ASIDE: f64 = 0.37;
 
 /// A configuration aside from home, in all directions.
-fn aside(joint: &dyn AnyJoint<f64>, home: &[f64]) -> Vec<f64> {
+fn aside(joint: &dyn AnyJoint, home: &[f64]) -> Vec<f64> {
     let mut step = vec![0.0; joint.layout().freedoms];
     let mut length = ASIDE;
     for entry in &mut step {
@@ -25,7 +25,7 @@ fn aside(joint: &dyn AnyJoint<f64>, home: &[f64]) -> Vec<f64> {
 /// rotor would be felt by several speeds or otherwise at another configuration.
 ///
 /// Kernels are analytic, so that home and one place aside tell.
-pub fn speed_of_rotor(joint: &dyn AnyJoint<f64>, freedom: usize) -> Option<usize> {
+pub fn speed_of_rotor(joint: &dyn AnyJoint, freedom: usize) -> Option<usize> {
     let layout = joint.layout();
     let (k, s) = (layout.freedoms, layout.speeds);
     let mut home = vec![0.0; layout.configuration];

@@ -12,6 +12,7 @@
 mod articulate;
 mod chart;
 mod directions;
+mod pattern;
 mod place;
 mod rotors;
 mod slopes;

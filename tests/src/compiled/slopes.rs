@@ -3,7 +3,8 @@
 use super::evaluate;
 use super::point::{BOUND, Evaluate, Point, of_solutions};
 use hamel::dynamics::{
-    Dynamics, ForwardDerivatives, InverseDerivatives, MassMatrix, Recursive, Sensitivity,
+    Dynamics, ForwardDerivatives, InverseDerivatives, InverseMassMatrix, MassMatrix, Recursive,
+    Sensitivity,
 };
 use hamel_compiler::functions::Kind;
 use std::sync::Arc;
@@ -59,9 +60,9 @@ impl Point {
         self.parts_agree(by, (Kind::ForwardDerivatives, &self.inputs), &parts, bound);
 
         // Where constraints alone keep M̄ of the tree from being singular there is no such matrix.
-        if tree.inverse_mass_matrix(&self.q, &mut mass).is_ok() {
-            let rows: Vec<f64> = mass.matrix().transpose().iter().copied().collect();
-            let parts = [(self.speeds.len(), &rows[..])];
+        let mut inverse = InverseMassMatrix::new(&self.mechanism);
+        if tree.inverse_mass_matrix(&self.q, &mut inverse).is_ok() {
+            let parts = [(self.speeds.len(), inverse.entries())];
             self.parts_agree(by, (Kind::InverseMassMatrix, &[]), &parts, bound);
         }
     }

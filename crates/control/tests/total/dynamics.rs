@@ -5,8 +5,8 @@ use crate::common::random::Random;
 use crate::common::trees::tree;
 use crate::support::{NOWHERE, at, bare, equipped, refused, wrong, wrong_sizes};
 use hamel_runtime::dynamics::{
-    Dynamics, ForwardDerivatives, Frame, HamiltonianDerivatives, InverseDerivatives, MassMatrix,
-    Recursive, Reference, Refined,
+    Dynamics, ForwardDerivatives, Frame, HamiltonianDerivatives, InverseDerivatives,
+    InverseMassMatrix, MassMatrix, Recursive, Reference, Refined,
 };
 use hamel_runtime::mechanism::Mechanism;
 use nalgebra::{DVector, Vector6};
@@ -107,7 +107,7 @@ fn readings_refuse_other_sizes_and_bodies_that_are_not_there() {
         refused(dynamics.coupling_force(&bad, &v, &v, &tau, &mut []));
         refused(dynamics.centroidal_map(&bad, &mut vec![0.0; 6 * layout.speeds]));
         refused(dynamics.mass_matrix(&bad, &mut MassMatrix::new(&mechanism)));
-        refused(dynamics.inverse_mass_matrix(&bad, &mut MassMatrix::new(&mechanism)));
+        refused(dynamics.inverse_mass_matrix(&bad, &mut InverseMassMatrix::new(&mechanism)));
         refused(dynamics.energy_gradients(&bad, &v, &mut freedoms.clone(), &mut freedoms));
         refused(dynamics.operational_mobility(&bad, 0, Frame::Body));
         refused(dynamics.operational_inertia(&bad, 0, Frame::Body));
@@ -192,6 +192,7 @@ fn results_that_were_made_for_another_tree_are_refused() {
         let mut forward = ForwardDerivatives::new(&mechanism);
         refused(dynamics.forward_dynamics_derivatives(&q, &v, &tau, &mut forward));
         refused(dynamics.mass_matrix(&q, &mut MassMatrix::new(&mechanism)));
+        refused(dynamics.inverse_mass_matrix(&q, &mut InverseMassMatrix::new(&mechanism)));
     }
     let matrix = MassMatrix::new(&own);
     assert_eq!(matrix.entry(usize::MAX / 8, 3), 0.0);

@@ -251,7 +251,7 @@ fn what_joints_tell_of_themselves_is_the_same() {
 }
 
 #[test]
-fn home_is_the_same_in_doubles_and_in_twice_as_many_digits() {
+fn projections_are_the_same_in_doubles_and_in_twice_as_many_digits() {
     for (compiled, interpreted) in pairs() {
         let [expected, own] = [&compiled, &interpreted].map(|joint| {
             let mut home = vec![0.0; joint.layout().configuration];
@@ -259,9 +259,12 @@ fn home_is_the_same_in_doubles_and_in_twice_as_many_digits() {
             home
         });
         let [far, near] = [&compiled, &interpreted].map(|joint| {
-            let joint: Arc<dyn AnyJoint<Extended>> = Arc::clone(joint).extended();
-            let mut home = vec![Extended::default(); joint.layout().configuration];
-            joint.home(&mut home);
+            let mut home: Vec<_> = expected
+                .iter()
+                .map(|&entry| Extended::from(entry))
+                .collect();
+            let found = Arc::clone(joint).extended().project(&mut home);
+            found.expect("close to the manifold");
             home
         });
         for i in 0..own.len() {

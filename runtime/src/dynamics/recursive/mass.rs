@@ -1,7 +1,6 @@
 //! M̄ by composite rigid bodies, and its factorisation along the branches of the tree.
 
 use super::Recursive;
-use super::inverse::MOST_FREEDOMS;
 use super::link::{Kind, Node, parents};
 use crate::dynamics::DynamicsError;
 use crate::mechanism::{Mechanism, Space, StateError, WHOLE, check_size};
@@ -26,8 +25,6 @@ pub struct MassMatrix {
     factors: Vec<f64>,
     /// The next speed towards the root.
     parents: Vec<Option<usize>>,
-    /// Whether speeds of different branches have entries, as in an inverse.
-    full: bool,
 }
 
 impl MassMatrix {
@@ -39,7 +36,6 @@ impl MassMatrix {
             rows: vec![0.0; size * size],
             factors: Vec::new(),
             parents: parents(mechanism, |ranges| &ranges.speeds),
-            full: false,
         }
         .with_factors()
     }
@@ -149,9 +145,6 @@ impl Recursive {
     /// When `q` has the wrong size, or `mass` belongs to a mechanism of another size.
     pub fn mass_matrix(&mut self, q: &[f64], mass: &mut MassMatrix) -> Result<(), StateError> {
         self.check_mass(mass)?;
-        if core::mem::take(&mut mass.full) {
-            mass.rows.fill(0.0);
-        }
         self.with_inputs(q, &[], |dynamics| {
             dynamics.stand(q);
             dynamics.compose();
@@ -205,66 +198,6 @@ impl Recursive {
                 }
             }
         }
-    }
-
-    /// M̄⁻¹ of the tree at `q` into `inverse`, column by column with the factors of the articulated inertias. Joints whose motion is prescribed
-    /// do not give way: their rows are zero.
-    ///
-    /// # Errors
-    /// A singular mass matrix; a wrong size.
-    pub fn inverse_mass_matrix(
-        &mut self,
-        q: &[f64],
-        inverse: &mut MassMatrix,
-    ) -> Result<(), DynamicsError> {
-        self.check(q, &[])?;
-        self.check_mass(inverse)?;
-        self.weigh(q);
-        self.articulate()?;
-        inverse.full = true;
-        for body in 0..self.links.len() {
-            if !self.links[body].leads {
-                continue;
-            }
-            for speed in self.links[body].speeds.clone() {
-                let row = speed * inverse.size;
-                let row = &mut inverse.rows[row..row + self.links[body].speeds.end];
-                self.inverse_row(row, body, speed);
-            }
-        }
-        Ok(())
-    }
-
-    /// One row of M̄⁻¹, up to the last speed of `body`: the rates under a unit force on `speed`, one of its joint's.
-    pub(super) fn inverse_row(&mut self, row: &mut [f64], body: usize, speed: usize) {
-        let (mut next, mut wrench) = (Some(body), Vector6::zeros());
-        self.loads[..row.len()].fill(0.0);
-        while let Some(index) = next {
-            let link = &self.links[index];
-            let speeds = link.speeds.clone();
-            let mut unit = [0.0; MOST_FREEDOMS];
-            if speeds.contains(&speed) {
-                unit[speed - speeds.start] = 1.0;
-            }
-            next = link.parent;
-            let unit = &unit[..speeds.len()];
-            if let Some(group) = link.group {
-                wrench = self.yield_member(index, group, &wrench, unit);
-                continue;
-            }
-            match link.slender {
-                None => link.joint.reduce(
-                    &mut wrench,
-                    &self.columns[link.columns.clone()],
-                    &self.pivots[speeds.clone()],
-                    unit,
-                    &mut self.loads[speeds],
-                ),
-                Some(number) => wrench = self.reduce_slender(index, number, &wrench, unit),
-            }
-            wrench = shift_wrench(&wrench, &self.nodes[index].motion.placement.offset);
-        }
-        self.resolve_up_to(body, row);
     }
 
     /// `X_kᵀ F` for all speeds k from `body` to the root into their entries of `row`.

@@ -33,7 +33,7 @@ mod slender;
 mod sweeps;
 
 pub use derivatives::{
-    ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives, Sensitivity,
+    ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives, InverseMassMatrix, Sensitivity,
 };
 pub use frames::FrameReadings;
 pub use loaded::LoadedMass;

@@ -9,7 +9,6 @@ use super::derivatives::Sensitivity;
 use super::inverse::MOST_FREEDOMS;
 use crate::erased::AnyJoint;
 use crate::mechanism::Mechanism;
-use crate::scalar::Scalar;
 use crate::steps::RotorTerm;
 use core::ops::Range;
 
@@ -80,13 +79,8 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// p̄ of one port of a joint, one entry per speed.
-pub(super) fn speed_row<T: Scalar<Mask = bool>>(
-    joint: &dyn AnyJoint<T>,
-    q: &[T],
-    port: usize,
-    out: &mut [T],
-) {
-    let mut row = [T::zero(); MOST_FREEDOMS];
+fn speed_row(joint: &dyn AnyJoint, q: &[f64], port: usize, out: &mut [f64]) {
+    let mut row = [0.0; MOST_FREEDOMS];
     let row = &mut row[..joint.layout().freedoms];
     joint.port_row(q, port, row);
     joint.reduce_efforts(q, row, out);

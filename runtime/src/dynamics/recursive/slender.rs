@@ -8,6 +8,7 @@ use super::Recursive;
 use super::link::{Link, Node};
 use super::sweeps::combine;
 use crate::dynamics::DynamicsError;
+use crate::mechanism::Mechanism;
 use crate::spatial::fused::{add_cross, apply_transposed, cross};
 use crate::spatial::{
     ArticulatedInertia, SpatialInertia, bracket_product, join, shift_twist, split, turn_back,
@@ -43,6 +44,13 @@ pub(super) struct Slender {
 pub(super) fn is_slender(inertia: &SpatialInertia<f64>) -> bool {
     let moments = SymmetricEigen::new(inertia.inertia.matrix()).eigenvalues;
     moments.max() > RATIO * moments.min() && moments.max() > 0.0
+}
+
+/// Whether any body of `mechanism` is treated as slender; those of joints that carry several bodies are not.
+pub(super) fn has_slender(mechanism: &Mechanism) -> bool {
+    Link::all(mechanism)
+        .iter()
+        .any(|link| link.slender.is_some())
 }
 
 impl Slender {

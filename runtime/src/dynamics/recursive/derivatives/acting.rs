@@ -183,11 +183,11 @@ impl Recursive {
     }
 
     /// Unit forces on the speeds.
-    pub(super) fn push_units(&self, out: &mut Yielding) {
+    pub(super) fn push_units(&self, units: &mut [Push]) {
         for index in 0..self.links.len() {
             let speeds = self.links[index].speeds.clone();
             for (a, speed) in speeds.enumerate() {
-                out.units[speed] = self.pushed_unit(index, a);
+                units[speed] = self.pushed_unit(index, a);
             }
         }
     }

@@ -55,22 +55,7 @@ impl Dense {
 impl Recursive {
     /// M̄⁻¹ from the factors of the last elimination, and with driven joints M̄; twists, wrenches and loads are lost.
     pub(super) fn invert_mass(&mut self, dense: &mut Dense) {
-        for body in 0..self.links.len() {
-            let speeds = self.links[body].speeds.clone();
-            if !self.links[body].leads {
-                continue;
-            }
-            for speed in speeds.clone() {
-                let row = &mut dense.inverse.row_mut(speed)[..speeds.end];
-                self.inverse_row(row, body, speed);
-            }
-        }
-        for row in 0..dense.inverse.rows() {
-            for column in 0..row {
-                let entry = dense.inverse.entry(row, column);
-                dense.inverse.set(column, row, entry);
-            }
-        }
+        self.invert_row_by_row(&mut dense.inverse);
         if !self.mechanism.drives().is_empty() {
             self.compose();
             self.fill_mass_matrix(&mut dense.mass);

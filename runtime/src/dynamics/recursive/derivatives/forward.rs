@@ -233,8 +233,8 @@ impl Recursive {
             }
         }
         if self.acted_on {
-            self.push_units(&mut out.yielding);
             let Yielding { units, inverse } = &mut out.yielding;
+            self.push_units(units);
             sweep.respond_symmetrically(&tree, units, inverse);
             add_response(inverse, &out.acting.by_local, &mut out.by_local);
             add_response(inverse, &out.acting.by_speeds, &mut out.by_speeds);

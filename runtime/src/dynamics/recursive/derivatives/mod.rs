@@ -41,6 +41,7 @@ mod fold;
 mod forward;
 mod hamiltonian;
 mod inverse;
+mod inverse_mass;
 mod momentum_rates;
 mod product;
 mod sweep;
@@ -48,6 +49,7 @@ mod sweep;
 pub use forward::ForwardDerivatives;
 pub use hamiltonian::HamiltonianDerivatives;
 pub use inverse::InverseDerivatives;
+pub use inverse_mass::InverseMassMatrix;
 
 use super::Recursive;
 use super::link::{Link, Node};
@@ -169,17 +171,23 @@ impl Sensitivity {
 }
 
 impl Recursive {
-    /// Whether derivatives cover all that acts on the mechanism, and results were made for a tree like its own, of these `branches`.
-    fn check_differentiable(&self, branches: &[Branch]) -> Result<(), DynamicsError> {
+    /// Whether results were made for a tree like the mechanism's own, of these `branches`.
+    fn check_branches(&self, branches: &[Branch]) -> Result<(), DynamicsError> {
         let fits = |(branch, link): (&Branch, &Link)| {
             branch.parent == link.parent.unwrap_or(WORLD)
                 && branch.freedoms == (link.variations.start, link.variations.end)
                 && branch.speeds == (link.columns.start, link.columns.end)
         };
         let is_own = branches.len() == self.links.len();
-        if !(is_own && branches.iter().zip(&self.links).all(fits)) {
-            return Err(DynamicsError::ForeignResults);
+        match is_own && branches.iter().zip(&self.links).all(fits) {
+            true => Ok(()),
+            false => Err(DynamicsError::ForeignResults),
         }
+    }
+
+    /// [`Recursive::check_branches`], and whether derivatives cover all that acts on the mechanism.
+    fn check_differentiable(&self, branches: &[Branch]) -> Result<(), DynamicsError> {
+        self.check_branches(branches)?;
         let mut elements = self.mechanism.elements().iter();
         match elements.find(|element| element.slope().is_none()) {
             Some(element) => Err(DynamicsError::NotDifferentiable {

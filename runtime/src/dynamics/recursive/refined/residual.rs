@@ -3,10 +3,12 @@
 use super::super::Recursive;
 use super::super::inverse::MOST_FREEDOMS;
 use super::super::link::Link;
-use super::super::rotors::speed_row;
-use crate::erased::AnyJoint;
+use crate::erased::ExtendedJoint;
 use crate::scalar::Extended;
-use crate::spatial::{Pose, SpatialInertia, Symmetric3, join, nearest_rotation, shift_wrench};
+use crate::spatial::fused::dot;
+use crate::spatial::{
+    Pose, SpatialInertia, Symmetric3, add_weighted, join, nearest_rotation, shift_wrench, split,
+};
 use crate::steps::{Motion, Placement};
 use alloc::sync::Arc;
 use alloc::vec;
@@ -19,7 +21,7 @@ type E = Extended;
 /// One body and its joint, in extended numbers.
 #[derive(Clone, Debug)]
 struct Body {
-    joint: Arc<dyn AnyJoint<E>>,
+    joint: Arc<dyn ExtendedJoint>,
     parent: Option<usize>,
     configuration: Range<usize>,
     speeds: Range<usize>,
@@ -173,10 +175,12 @@ impl Residual {
             let state = (
                 &self.configuration[body.configuration.clone()],
                 &self.speeds[speeds.clone()],
-                &rates[speeds.clone()],
             );
             let columns = &mut self.columns[body.columns.clone()];
             body.joint.advance(state, &body.frame, parent, own, columns);
+            for (column, &rate) in columns.iter().zip(&rates[speeds]) {
+                own.rate = add_weighted(&own.rate, column, rate);
+            }
             let inertia = body.inertia.rotated(&own.placement.rotation);
             self.wrenches[index] = inertia.wrench(&own.twist, &own.rate);
         }
@@ -190,8 +194,9 @@ impl Residual {
             let mut taken = [E::from(0.0); MOST_FREEDOMS];
             let taken = &mut taken[..own.len()];
             let wrench = self.wrenches[index];
-            body.joint
-                .gather(&wrench, &self.columns[body.columns.clone()], taken);
+            for (taken, column) in taken.iter_mut().zip(&self.columns[body.columns.clone()]) {
+                *taken = power(column, &wrench);
+            }
             for (taken, (&inertia, &rate)) in taken
                 .iter_mut()
                 .zip(body.armature.iter().zip(&rates[own.clone()]))
@@ -202,7 +207,7 @@ impl Residual {
                 let q = &self.configuration[body.configuration.clone()];
                 let mut row = [E::from(0.0); MOST_FREEDOMS];
                 let row = &mut row[..own.len()];
-                speed_row(&*body.joint, q, port, row);
+                body.joint.port_speed_row(q, port, row);
                 let along = row.iter().zip(&rates[own.clone()]);
                 let along = along.fold(E::from(0.0), |sum, (&p, &x)| sum + p * x);
                 for (taken, entry) in taken.iter_mut().zip(row) {
@@ -218,4 +223,10 @@ impl Residual {
             }
         }
     }
+}
+
+/// `Xᵀ F`.
+fn power(column: &Vector6<E>, wrench: &Vector6<E>) -> E {
+    let ((angular, linear), (moment, force)) = (split(column), split(wrench));
+    dot(&angular, &moment) + dot(&linear, &force)
 }
