@@ -31,7 +31,7 @@ fn carried(joint: &str, parameters: &[f64], plates: &[Plate]) -> Arc<Mechanism> 
         .extend(hamel_downstream::joints::ENTRIES.iter().copied())
         .expect("distinct names");
     let first = (registry.get(joint).expect("registered").build)(parameters).expect("it closes");
-    let names = AnyJoint::<f64>::bodies(&*first);
+    let names = AnyJoint::bodies(&*first);
     assert_eq!(names.len(), plates.len());
     let joints = std::iter::once(first.clone()).chain(first.more());
     let bodies = names.iter().zip(joints).zip(plates);

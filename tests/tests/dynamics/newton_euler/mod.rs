@@ -31,7 +31,7 @@ fn mechanism(linkage: &Linkage) -> Arc<Mechanism> {
     let registry = hamel_joints::registry();
     let entry = registry.get(linkage.joint).expect("registered");
     let first = (entry.build)(linkage.parameters).expect("it closes");
-    let names = AnyJoint::<f64>::bodies(&*first);
+    let names = AnyJoint::bodies(&*first);
     let joints = std::iter::once(first.clone()).chain(first.more());
     let bodies = names.iter().zip(joints).enumerate();
     let bodies = bodies.map(|(n, (name, joint))| {
