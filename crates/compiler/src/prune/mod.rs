@@ -6,9 +6,12 @@
 mod across;
 mod frames;
 mod inertias;
+mod remembered;
 mod rotation;
 
 pub(crate) use across::Element;
+pub(crate) use frames::Freedom;
+pub(crate) use remembered::Remembered;
 pub use frames::{Placed, clean};
 
 use super::model::{Inertia, Model};
