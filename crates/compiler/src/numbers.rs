@@ -63,7 +63,10 @@ fn elements(all: &mut Elements, see: &mut impl FnMut(&mut f64)) {
         matrix(&mut spring.rest, see);
     }
     for spring in &mut all.springs {
-        spring.points.iter_mut().for_each(|point| vector(point, see));
+        spring
+            .points
+            .iter_mut()
+            .for_each(|point| vector(point, see));
         see(&mut spring.stiffness);
         see(&mut spring.damping);
         see(&mut spring.length);
@@ -115,8 +118,17 @@ impl Shape {
     pub fn of(model: &Model, links: &[Link]) -> Self {
         let mut codes = Vec::new();
         for body in &model.bodies {
-            codes.extend([body.parent.map_or(0, |parent| parent + 1), usize::from(body.driven)]);
-            let lists = [&body.parameters, &body.armature, &body.port_armature, &body.damping, &body.effort];
+            codes.extend([
+                body.parent.map_or(0, |parent| parent + 1),
+                usize::from(body.driven),
+            ]);
+            let lists = [
+                &body.parameters,
+                &body.armature,
+                &body.port_armature,
+                &body.damping,
+                &body.effort,
+            ];
             codes.extend(lists.map(Vec::len));
         }
         of_elements(&model.elements, &mut codes);
@@ -154,7 +166,11 @@ fn of_elements(all: &Elements, codes: &mut Vec<usize>) {
     }
     codes.extend(all.rotation_springs.iter().map(|spring| spring.body));
     codes.extend(all.springs.iter().flat_map(|spring| spring.bodies.map(end)));
-    codes.extend(all.port_springs.iter().flat_map(|spring| [spring.body, spring.port]));
+    codes.extend(
+        all.port_springs
+            .iter()
+            .flat_map(|spring| [spring.body, spring.port]),
+    );
     for wrench in &all.wrenches {
         codes.extend([wrench.body, usize::from(wrench.axes == WrenchAxes::World)]);
     }

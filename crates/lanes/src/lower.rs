@@ -55,7 +55,8 @@ fn constant(graph: &Graph, numbers: usize) -> Vec<bool> {
             Of::Input(Argument::Given, place) => place as usize >= numbers,
             _ => {
                 let mut all = true;
-                node.operation.each_operand(|operand| all &= is_once[operand as usize]);
+                node.operation
+                    .each_operand(|operand| all &= is_once[operand as usize]);
                 all
             }
         };
@@ -78,7 +79,11 @@ fn inner(graph: &Graph, uses: &[u32], is_once: &[bool], outputs: &[Value]) -> Ve
         for product in [a, b] {
             let place = product as usize;
             let is_product = matches!(graph.nodes[place].operation, Of::Product(..));
-            if is_product && uses[place] == 1 && !is_output(product) && is_once[place] == is_once[number] {
+            if is_product
+                && uses[place] == 1
+                && !is_output(product)
+                && is_once[place] == is_once[number]
+            {
                 inner[place] = true;
             }
         }
@@ -272,7 +277,9 @@ impl Lowering<'_> {
         let pair = [Function::Sin, Function::Cos].map(|function| {
             let call = Of::Call(function, angle, None);
             let nodes = self.graph.nodes.iter();
-            let place = nodes.zip(&self.uses).position(|(own, &uses)| uses > 0 && own.operation == call);
+            let place = nodes
+                .zip(&self.uses)
+                .position(|(own, &uses)| uses > 0 && own.operation == call);
             match place {
                 Some(place) => self.row(place as u32),
                 None => self.fresh(),

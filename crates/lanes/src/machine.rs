@@ -58,7 +58,9 @@ impl Machine {
     /// The largest size among the numbers of some rows; NaN counts as none.
     pub fn largest(&self, rows: std::ops::Range<usize>) -> f64 {
         let groups = self.rows[rows].iter().flat_map(|row| &row[..self.groups]);
-        groups.flat_map(|group| group.get().0).fold(0.0, |most, x| x.abs().max(most))
+        groups
+            .flat_map(|group| group.get().0)
+            .fold(0.0, |most, x| x.abs().max(most))
     }
 
     /// Runs operations with the best instructions that the machine has.
@@ -278,14 +280,22 @@ impl Run<'_> {
             numbers.0[lane] = number;
             cell.set(numbers);
         };
-        for (group, lane) in (0..self.groups).flat_map(|group| (0..LANES).map(move |lane| (group, lane))) {
+        for (group, lane) in
+            (0..self.groups).flat_map(|group| (0..LANES).map(move |lane| (group, lane)))
+        {
             match operation {
                 Operation::Call(function, a, b, to) => {
                     let b = b.as_ref().map(|b| read(b, group, lane));
-                    write(*to, group, lane, known::call(*function, read(a, group, lane), b));
+                    write(
+                        *to,
+                        group,
+                        lane,
+                        known::call(*function, read(a, group, lane), b),
+                    );
                 }
                 Operation::Several(function, arguments, to) => {
-                    let arguments: Vec<f64> = arguments.iter().map(|a| read(a, group, lane)).collect();
+                    let arguments: Vec<f64> =
+                        arguments.iter().map(|a| read(a, group, lane)).collect();
                     let results = known::primitive(*function, &arguments);
                     for (row, number) in to.iter().zip(results) {
                         write(*row, group, lane, number);

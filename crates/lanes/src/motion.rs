@@ -128,7 +128,10 @@ impl<'a> Block<'a> {
             let joints = start.scene.mechanism.joints();
             joints.map(|(index, _)| index).collect()
         });
-        let bent = bodies.into_iter().zip(joints).filter(|(_, joint)| !joint.adds);
+        let bent = bodies
+            .into_iter()
+            .zip(joints)
+            .filter(|(_, joint)| !joint.adds);
         Self {
             plan,
             machine: Machine::new(&plan.program, starts.len()),
@@ -187,12 +190,18 @@ impl<'a> Block<'a> {
                 continue;
             }
             for (motion, start) in self.starts.iter().enumerate() {
-                let offset = || joint.offset.clone().map(|row| self.machine.get(row, motion).abs());
+                let offset = || {
+                    joint
+                        .offset
+                        .clone()
+                        .map(|row| self.machine.get(row, motion).abs())
+                };
                 let size = offset().fold(0.0, f64::max);
                 if size <= FAR || self.is_left[motion] {
                     continue;
                 }
-                let mut moved = position(&self.machine, &start.scene.mechanism, *body, joint, motion);
+                let mut moved =
+                    position(&self.machine, &start.scene.mechanism, *body, joint, motion);
                 let body = &start.scene.mechanism.bodies()[*body];
                 if size > TOO_FAR || body.joint().project(&mut moved).is_err() {
                     self.is_left[motion] = true;
@@ -212,9 +221,8 @@ impl<'a> Block<'a> {
         let places = &self.plan.places;
         let mechanism = &self.starts[motion].scene.mechanism;
         let joints = places.joints.iter().zip(mechanism.joints());
-        let q = joints.flat_map(|(joint, (body, _))| {
-            position(&self.machine, mechanism, body, joint, motion)
-        });
+        let q = joints
+            .flat_map(|(joint, (body, _))| position(&self.machine, mechanism, body, joint, motion));
         State {
             time,
             configuration: q.collect(),

@@ -10,7 +10,10 @@ use hamel_sweep::{Cells, Mover, Movers, Row, Sweep, Watch};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// Which way rows went.
+/// Why a motion that began side by side goes by the tree.
+const LEFT: &str = "its numbers do not stay finite, or a joint turns far in one step";
+
+/// Which way rows went that have a scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Ways {
     /// How many went side by side.
@@ -48,10 +51,13 @@ impl<'a> Lanes<'a> {
 
     /// Which way the rows went that were moved so far.
     pub fn ways(&self) -> Ways {
-        self.ways.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.ways
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone()
     }
 
-    /// Operations of a step, and rows of numbers that they take.
+    /// How many operations a step takes, and how many rows of numbers these take.
     pub fn size(&self) -> [usize; 2] {
         [self.plan.program.step.len(), self.plan.program.rows]
     }
@@ -114,7 +120,9 @@ impl Own<'_> {
     fn block(&self, rows: &[Cells], watch: Watch<'_>) -> Option<Vec<Row>> {
         let lanes = self.lanes;
         let mut ways: Vec<Way> = rows.iter().map(|cells| self.way(cells)).collect();
-        let (mut starts, mut places) = (vec![], vec![]);
+        let refused = ways.iter().filter(|way| matches!(way, Way::Done(_)));
+        (watch.done)(refused.count());
+        let (mut starts, mut places, mut moved_here) = (vec![], vec![], 0);
         for (place, way) in ways.iter().enumerate() {
             if let Way::Lane(row, numbers) = way {
                 places.push(place);
@@ -130,31 +138,34 @@ impl Own<'_> {
         for (place, end) in places.into_iter().zip(ends) {
             let told = match (&ways[place], end) {
                 (Way::Lane(row, _), Some(end)) => {
-                    let row = lanes.sweep.ended(&row.scene, &end.state, end.steps, &end.turns);
+                    let row = lanes
+                        .sweep
+                        .ended(&row.scene, &end.state, end.steps, &end.turns);
                     Way::Done(row)
                 }
-                _ => Way::Tree("its numbers do not stay finite, or a joint turns far in one step".into()),
+                _ => Way::Tree(LEFT.to_owned()),
             };
-            (watch.done)(usize::from(matches!(told, Way::Done(_))));
+            let is_done = matches!(told, Way::Done(_));
+            (watch.done)(usize::from(is_done));
+            moved_here += u64::from(is_done);
             ways[place] = told;
         }
-        let mut results = Vec::with_capacity(rows.len());
         let mut counted = Ways::default();
-        for (way, cells) in ways.into_iter().zip(rows) {
-            results.push(match way {
-                Way::Done(row) => {
-                    counted.lanes += 1;
-                    row
-                }
-                Way::Lane(..) => continue,
-                Way::Tree(reason) => {
-                    *counted.tree.entry(reason).or_default() += 1;
-                    let row = lanes.sweep.motion_until(cells, lanes.registry, watch.stop)?;
-                    (watch.done)(1);
-                    row
-                }
-            });
-        }
+        let results = ways.into_iter().zip(rows).map(|(way, cells)| {
+            let reason = match way {
+                Way::Done(row) => return Some(row),
+                Way::Tree(reason) => reason,
+                Way::Lane(..) => LEFT.to_owned(),
+            };
+            *counted.tree.entry(reason).or_default() += 1;
+            let row = lanes
+                .sweep
+                .motion_until(cells, lanes.registry, watch.stop)?;
+            (watch.done)(1);
+            Some(row)
+        });
+        let results = results.collect::<Option<Vec<Row>>>()?;
+        counted.lanes = moved_here;
         lanes.count(counted);
         Some(results)
     }

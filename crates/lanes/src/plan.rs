@@ -38,7 +38,9 @@ impl Plan {
         sample: &[Cells],
     ) -> Result<Self, String> {
         if sweep.estimates() {
-            return Err("errors of motions are estimated; --no-error-estimate leaves that out".into());
+            return Err(
+                "errors of motions are estimated; --no-error-estimate leaves that out".into(),
+            );
         }
         let mut rows: Vec<Described> = vec![];
         let mut reason = "no row of a sample has a scene".to_owned();
@@ -85,7 +87,9 @@ impl Plan {
         let mut differing = self.differing.iter().peekable();
         for (place, (own, known)) in row.numbers.iter().zip(&self.numbers).enumerate() {
             if differing.next_if_eq(&&place).is_none() && own.to_bits() != known.to_bits() {
-                return Err("it differs from the sample in a number in which the rows of that agree".into());
+                return Err(
+                    "it differs from the sample in a number in which the rows of that agree".into(),
+                );
             }
         }
         let numbers = self.differing.iter().map(|&place| row.numbers[place]);
@@ -107,7 +111,9 @@ fn step(row: &Described, differing: &[usize]) -> Result<Stepping, String> {
         weights: row.tableau.weights,
     };
     let made = |set: usize| {
-        let marks: Vec<f64> = (0..differing.len()).map(|number| mark(set, number)).collect();
+        let marks: Vec<f64> = (0..differing.len())
+            .map(|number| mark(set, number))
+            .collect();
         let (mut model, mut links) = (row.model.clone(), row.links.clone());
         let mut all = row.numbers.clone();
         for (&place, &mark) in differing.iter().zip(&marks) {

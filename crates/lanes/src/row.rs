@@ -2,12 +2,12 @@
 
 use crate::joints::Joints;
 use hamel::integrate::{Form, Method, Tableau};
+use hamel::registry::JointRegistry;
 use hamel::scene::{Arithmetic, Scene};
 use hamel_compiler::model::Model;
 use hamel_compiler::numbers::{self, Shape};
 use hamel_compiler::prune::{Link, Pruning, prune};
 use hamel_sweep::{Cells, Row, Sweep};
-use hamel::registry::JointRegistry;
 
 /// Steps of a motion at most: longer ones are left to the tree, which refuses what does not come to an end.
 const MOST_STEPS: f64 = 1e9;
@@ -79,7 +79,10 @@ fn method(scene: &Scene) -> Result<(&'static Tableau, f64), String> {
         return refused("its method controls the length of steps");
     };
     let Some(tableau) = scheme.tableau() else {
-        return Err(format!("its method `{}` is no explicit Runge-Kutta method", scheme.name()));
+        return Err(format!(
+            "its method `{}` is no explicit Runge-Kutta method",
+            scheme.name()
+        ));
     };
     if settings.chooses || settings.accuracy.is_some() {
         return refused("its method is chosen on the way");
@@ -107,7 +110,10 @@ fn method(scene: &Scene) -> Result<(&'static Tableau, f64), String> {
     }
     let mut joints = mechanism.joints();
     if let Some((_, body)) = joints.find(|(_, body)| !body.joint().singularities().is_empty()) {
-        return Err(format!("joint `{}` has singular configurations", body.joint_name()));
+        return Err(format!(
+            "joint `{}` has singular configurations",
+            body.joint_name()
+        ));
     }
     if settings.t_end / dt > MOST_STEPS {
         return refused("it has more than 1e9 steps");

@@ -43,13 +43,17 @@ fn rows(starts: &[f64], count: usize) -> Vec<Cells> {
 }
 
 fn swept(text: &str, columns: &[&str]) -> Sweep {
-    Sweep::new(text, "scene.toml", columns, &hamel_sweep::joints()).expect("a scene and its columns")
+    Sweep::new(text, "scene.toml", columns, &hamel_sweep::joints())
+        .expect("a scene and its columns")
 }
 
 fn side_by_side(sweep: &Sweep, sample: &[Cells], rows: &[Cells]) -> (Vec<Row>, hamel_lanes::Ways) {
     let joints = hamel_sweep::joints();
     let lanes = Lanes::new(sweep, &joints, sample).expect("a sweep that goes side by side");
-    let moved = lanes.mover().rows(rows, Watch::NONE).expect("nobody stops it");
+    let moved = lanes
+        .mover()
+        .rows(rows, Watch::NONE)
+        .expect("nobody stops it");
     (moved, lanes.ways())
 }
 
@@ -62,7 +66,10 @@ fn difference(sweep: &Sweep, rows: &[Cells], moved: &[Row]) -> f64 {
         assert_eq!(own.outcome, tree.outcome);
         for ((name, a), b) in sweep.results().iter().zip(&own.numbers).zip(&tree.numbers) {
             let part = (a - b).abs() / b.abs().max(1.0);
-            assert!(part < ROUNDING, "{name}: {a:e} side by side, {b:e} by the tree");
+            assert!(
+                part < ROUNDING,
+                "{name}: {a:e} side by side, {b:e} by the tree"
+            );
             most = most.max(part);
         }
     }
@@ -95,7 +102,11 @@ fn a_double_pendulum_moves_as_by_the_tree() {
         ("body.lower.initial.speeds.1", 1.0),
         ("body.upper.inertia.1.1", 0.02),
     ];
-    check("double pendulum, all kinds of columns", &double_pendulum(), &all);
+    check(
+        "double pendulum, all kinds of columns",
+        &double_pendulum(),
+        &all,
+    );
 }
 
 #[test]
@@ -112,19 +123,36 @@ fn balls_move_as_by_the_tree() {
 fn a_free_body_moves_as_by_the_tree() {
     let initial = "com = [0.02, 0.0, 0.01]\ninitial = { twist = { angular = [0.5, 6.0, 0.0], linear = [0.3, 0.0, 0.1], frame = \"child\" } }";
     let text = described(&body("racket", "world", "{ type = \"free\" }", initial));
-    check("free body", &text, &[("body.racket.mass", 2.0), ("body.racket.com.1", 0.1)]);
+    check(
+        "free body",
+        &text,
+        &[("body.racket.mass", 2.0), ("body.racket.com.1", 0.1)],
+    );
 }
 
 #[test]
 fn a_knife_edge_moves_as_by_the_tree() {
     let initial = "body_at = { position = [0.2, 0.0, 0.0] }\ninitial = { phi = [0.25, 0.0, 0.0], speeds = [5.0, 0.8] }";
-    let text = described(&body("sleigh", "world", "{ type = \"knife_edge\" }", initial));
-    check("knife edge", &text, &[("body.sleigh.mass", 2.0), ("body.sleigh.body_at.position.1", 0.3)]);
+    let text = described(&body(
+        "sleigh",
+        "world",
+        "{ type = \"knife_edge\" }",
+        initial,
+    ));
+    check(
+        "knife edge",
+        &text,
+        &[
+            ("body.sleigh.mass", 2.0),
+            ("body.sleigh.body_at.position.1", 0.3),
+        ],
+    );
 }
 
 #[test]
 fn springs_and_dampers_move_as_by_the_tree() {
-    let upper = format!("{PENDULUM}\nspring = {{ stiffness = 20.0 }}\ndamping = 0.3\narmature = 0.02");
+    let upper =
+        format!("{PENDULUM}\nspring = {{ stiffness = 20.0 }}\ndamping = 0.3\narmature = 0.02");
     let text = described(&body("upper", "world", "{ type = \"revolute\" }", &upper));
     let text = text.replace(
         "[simulation]",
@@ -143,14 +171,19 @@ fn springs_and_dampers_move_as_by_the_tree() {
 }
 
 fn bits(rows: &[Row]) -> Vec<Vec<u64>> {
-    let all = rows.iter().map(|row| row.numbers.iter().map(|x| x.to_bits()).collect());
+    let all = rows
+        .iter()
+        .map(|row| row.numbers.iter().map(|x| x.to_bits()).collect());
     all.collect()
 }
 
 #[test]
 fn a_row_has_the_same_bits_wherever_it_stands() {
     let columns = MASSES.map(|(name, _)| name);
-    let (sweep, rows) = (swept(&double_pendulum(), &columns), rows(&[1.3, 0.9, 0.2], 70));
+    let (sweep, rows) = (
+        swept(&double_pendulum(), &columns),
+        rows(&[1.3, 0.9, 0.2], 70),
+    );
     let (all, _) = side_by_side(&sweep, &rows, &rows);
     for place in [0, 5, 63, 64, 69] {
         let (alone, _) = side_by_side(&sweep, &rows, &rows[place..=place]);
@@ -193,7 +226,10 @@ fn rows_of_other_lengths_end_where_they_should() {
 #[test]
 fn a_row_that_is_refused_fails_alone() {
     let columns = MASSES.map(|(name, _)| name);
-    let (sweep, mut rows) = (swept(&double_pendulum(), &columns), rows(&[1.3, 0.9, 0.2], 5));
+    let (sweep, mut rows) = (
+        swept(&double_pendulum(), &columns),
+        rows(&[1.3, 0.9, 0.2], 5),
+    );
     rows[1].numbers[0] = -1.0;
     rows[3].fault = Some("a cell is no number".into());
     let (moved, _) = side_by_side(&sweep, &rows, &rows);
@@ -202,6 +238,8 @@ fn a_row_that_is_refused_fails_alone() {
         let tree = sweep.motion(&rows[place], &joints);
         assert_eq!(moved[place].outcome, tree.outcome);
     }
-    let whole: Vec<usize> = (0..5).filter(|place| moved[*place].outcome == Outcome::Ended).collect();
+    let whole: Vec<usize> = (0..5)
+        .filter(|place| moved[*place].outcome == Outcome::Ended)
+        .collect();
     assert_eq!(whole, [0, 2, 4]);
 }

@@ -1,9 +1,9 @@
 //! A scene whose numbers rows change, and the motion of one row.
 
+use crate::columns::Turns;
 use crate::document::Document;
 use crate::results::{Outcome, Results, Row, outcome};
 use crate::run::Cells;
-use crate::columns::Turns;
 use hamel::integrate::State;
 use hamel::registry::JointRegistry;
 use hamel::scene::{Diagnostics, Scene, SceneDescription};
@@ -142,7 +142,9 @@ impl Sweep {
 
     /// The result of such a motion that came to the end of its time in so many steps.
     pub fn ended(&self, scene: &Scene, state: &State, steps: usize, turns: &Turns) -> Row {
-        let row = self.results.row(&scene.mechanism, state, (steps, None), turns);
+        let row = self
+            .results
+            .row(&scene.mechanism, state, (steps, None), turns);
         match row {
             Ok(numbers) => Row {
                 outcome: Outcome::Ended,

@@ -33,7 +33,11 @@ impl<'a> Moving<'a> {
         if args.equations == Equations::Tree {
             return Ok(Self::Tree(by_tree, None));
         }
-        match Lanes::new(sweep, registry, &sample(args, rows)?) {
+        let sample = match sweep.estimates() {
+            true => vec![],
+            false => sample(args, rows)?,
+        };
+        match Lanes::new(sweep, registry, &sample) {
             Ok(lanes) => Ok(Self::Lanes(Box::new(lanes))),
             Err(why) if args.equations == Equations::Lanes => Err(Failure::Options(format!(
                 "no row can move by --equations lanes: {why}"
@@ -64,7 +68,11 @@ impl<'a> Moving<'a> {
             Self::Lanes(lanes) => lanes.ways(),
             Self::Tree(_, why) => Ways {
                 lanes: 0,
-                tree: why.iter().map(|why| (why.clone(), moved)).collect(),
+                tree: why
+                    .iter()
+                    .filter(|_| moved > 0)
+                    .map(|why| (why.clone(), moved))
+                    .collect(),
             },
         }
     }

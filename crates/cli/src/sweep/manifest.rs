@@ -3,6 +3,7 @@
 use super::args::{Equations, Format};
 use hamel_console::output::Failure;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Its name in the folder.
@@ -38,6 +39,18 @@ pub struct Manifest {
     /// By which equations rows move.
     #[serde(default = "tree")]
     pub equations: String,
+    /// Which way the rows went that the last command moved; nothing before one has come to its end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub moved: Option<Moved>,
+}
+
+/// Which way rows went.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Moved {
+    /// How many went side by side.
+    pub lanes: u64,
+    /// How many went by the tree, by reason.
+    pub tree: BTreeMap<String, u64>,
 }
 
 /// By which they moved before there was a choice.
@@ -75,6 +88,7 @@ impl Manifest {
             format: format.name().to_owned(),
             error_estimate,
             equations: equations.name().to_owned(),
+            moved: None,
         }
     }
 

@@ -34,10 +34,13 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     };
     let rows = table.count()?;
     let moving = Moving::new(args, &sweep, registry, rows)?;
-    let folder = folder(args, &text, (rows, moving.least_block()), output)?;
+    let mut folder = folder(args, &text, (rows, moving.least_block()), output)?;
     let start = Instant::now();
     let moved = move_missing(args, &sweep, &folder, moving.movers())?;
     let work = (moved, start.elapsed(), moving.ways(moved));
+    if moved > 0 {
+        folder.tell(work.2.clone())?;
+    }
     let summary = Summary::of(&folder, &sweep, work)?;
     summary.write(&folder)?;
     match (args.json, args.quiet) {

@@ -40,7 +40,11 @@ impl Summary {
     ///
     /// # Errors
     /// A part that cannot be read.
-    pub fn of(folder: &Folder, sweep: &Sweep, moved: (u64, Duration, Ways)) -> Result<Self, Failure> {
+    pub fn of(
+        folder: &Folder,
+        sweep: &Sweep,
+        moved: (u64, Duration, Ways),
+    ) -> Result<Self, Failure> {
         let names = sweep.results();
         let (mut selection, mut causes) = (Selection::new(names.len()), Causes::default());
         for pass in 0..PASSES {
@@ -250,7 +254,11 @@ fn told_ways(ways: &Ways, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "equations {} side by side", ways.lanes)?;
     }
     for (number, (why, count)) in ways.tree.iter().enumerate() {
-        let word = if ways.lanes == 0 && number == 0 { "equations" } else { "" };
+        let word = if ways.lanes == 0 && number == 0 {
+            "equations"
+        } else {
+            ""
+        };
         writeln!(f, "{word:9} {count} one by one, by the tree: {why}")?;
     }
     Ok(())

@@ -11,8 +11,8 @@ mod rotation;
 
 pub(crate) use across::Element;
 pub(crate) use frames::Freedom;
-pub(crate) use remembered::Remembered;
 pub use frames::{Placed, clean};
+pub(crate) use remembered::Remembered;
 
 use super::model::{Inertia, Model};
 use hamel_runtime::spatial::Pose;
