@@ -110,6 +110,14 @@ fn a_double_pendulum_moves_as_by_the_tree() {
 }
 
 #[test]
+fn other_explicit_methods_move_as_by_the_tree() {
+    for method in ["dopri5", "dop853", "verner9"] {
+        let text = double_pendulum().replace("rk4", method);
+        check(method, &text, &MASSES);
+    }
+}
+
+#[test]
 fn balls_move_as_by_the_tree() {
     let initial = "at = { position = [0.0, 0.1, 0.3] }\nbody_at = { position = [0.2, 0.05, 0.1] }\ninitial.speeds = [1.5, -0.5, 3.0]";
     let text = described(
