@@ -203,12 +203,12 @@ impl Run<'_> {
 
     #[inline(always)]
     fn two(&self, to: &Row, a: impl At, b: impl At, f: impl Fn(f64, f64) -> f64) {
-        for group in 0..self.groups.min(GROUPS) {
+        for (group, to) in to.iter().enumerate().take(self.groups) {
             let (a, b, mut c) = (a.at(group), b.at(group), [0.0; LANES]);
             for i in 0..LANES {
                 c[i] = f(a[i], b[i]);
             }
-            to[group].set(Group(c));
+            to.set(Group(c));
         }
     }
 
@@ -221,13 +221,13 @@ impl Run<'_> {
         c: impl At,
         f: impl Fn(f64, f64, f64) -> f64,
     ) {
-        for group in 0..self.groups.min(GROUPS) {
+        for (group, to) in to.iter().enumerate().take(self.groups) {
             let (a, b, c) = (a.at(group), b.at(group), c.at(group));
             let mut d = [0.0; LANES];
             for i in 0..LANES {
                 d[i] = f(a[i], b[i], c[i]);
             }
-            to[group].set(Group(d));
+            to.set(Group(d));
         }
     }
 
@@ -240,13 +240,13 @@ impl Run<'_> {
         d: impl At,
         f: impl Fn(f64, f64, f64, f64) -> f64,
     ) {
-        for group in 0..self.groups.min(GROUPS) {
+        for (group, to) in to.iter().enumerate().take(self.groups) {
             let (a, b, c, d) = (a.at(group), b.at(group), c.at(group), d.at(group));
             let mut e = [0.0; LANES];
             for i in 0..LANES {
                 e[i] = f(a[i], b[i], c[i], d[i]);
             }
-            to[group].set(Group(e));
+            to.set(Group(e));
         }
     }
 
