@@ -19,6 +19,8 @@
 //! module
 //! ```
 //!
+//! [`stepping`] makes one step of a motion of the same model, with [`numbers`] that are given later, for programs that evaluate the graph themselves.
+//!
 //! [`Build`] is for build scripts; `hamel compile` does the same from the command line.
 
 mod acting;
@@ -37,10 +39,12 @@ pub mod graph;
 mod joint;
 mod linkage;
 pub mod model;
+pub mod numbers;
 pub mod pairs;
 mod products;
 pub mod prune;
 mod spatial;
+pub mod stepping;
 mod ties;
 
 pub use build::{Build, Error, Language, Module, scene, scene_of};

@@ -4,13 +4,14 @@
 //! The runtime forms the same products in numbers: `hamel_runtime::joint::Products`.
 
 use super::linkage::Linkage;
-use super::prune::Element;
+use super::prune::{Element, Freedom, Remembered};
 use hamel_codegen::WORK_LIMIT;
 use hamel_codegen::derived::{Derived, KernelKind, Step, Word};
 use hamel_codegen::expr::budget::{self, Exhausted};
 use hamel_codegen::expr::{Expr, Role, Symbol};
 use hamel_codegen::formula::Program;
 use hamel_codegen::matrix::Matrix;
+use hamel_runtime::spatial::Pose;
 use std::cell::{OnceCell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
@@ -39,6 +40,10 @@ pub struct JointType {
     pub more: Vec<Rc<JointType>>,
     /// Inertias that do not affect the joint, of all its bodies together, for the numbers that were asked for.
     pub(crate) across: RefCell<BTreeMap<Vec<u64>, Option<Vec<Element>>>>,
+    /// How the frame of its body may move.
+    pub(crate) frames: Remembered<Freedom>,
+    /// Its pose at home.
+    pub(crate) homes: Remembered<Pose<f64>>,
     /// The links of the joint of a coupling or a loop, as the body sees them: its kernels are theirs.
     pub(crate) linkage: Option<Linkage>,
 }
@@ -56,6 +61,8 @@ impl JointType {
             products: Products::new(&derived)?,
             derived,
             across: RefCell::default(),
+            frames: Remembered::default(),
+            homes: Remembered::default(),
             linkage: None,
         })
     }
@@ -67,6 +74,7 @@ impl JointType {
             // What it does not feel is not known then.
             derived.unidentifiable.clear();
         }
+        (self.frames, self.homes) = (Remembered::default(), Remembered::default());
         let freedoms = linkage.freedoms();
         (derived.shape.freedoms, derived.shape.speeds) = (freedoms, freedoms);
         derived.spec.freedoms.value.truncate(freedoms);

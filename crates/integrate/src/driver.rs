@@ -31,7 +31,7 @@ use hamel_runtime::dynamics::Dynamics;
 use num_traits::Float;
 
 /// A remainder that exceeds a fixed step by less than this is taken as that step: it is rounding of the step count.
-const FIXED_STRETCH: f64 = 1.0 + 1e-9;
+pub(super) const FIXED_STRETCH: f64 = 1.0 + 1e-9;
 
 /// A remainder that exceeds a controlled step by less than this is taken at once: it saves a sliver of a step.
 const CONTROLLED_STRETCH: f64 = 1.01;

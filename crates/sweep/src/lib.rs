@@ -12,7 +12,7 @@ pub mod summary;
 
 pub use motion::{Sweep, SweepError};
 pub use results::{Outcome, Row};
-pub use run::{Block, Cells, Watch, Write, run};
+pub use run::{Block, ByTree, Cells, Mover, Movers, Watch, Write, run, run_by};
 
 use hamel::registry::JointRegistry;
 

@@ -1,10 +1,12 @@
 //! A scene whose numbers rows change, and the motion of one row.
 
+use crate::columns::Turns;
 use crate::document::Document;
-use crate::results::{Results, Row};
+use crate::results::{Outcome, Results, Row, outcome};
 use crate::run::Cells;
+use hamel::integrate::State;
 use hamel::registry::JointRegistry;
-use hamel::scene::{Diagnostics, Scene};
+use hamel::scene::{Diagnostics, Scene, SceneDescription};
 use hamel::{Error, Model};
 use std::cell::RefCell;
 
@@ -108,6 +110,50 @@ impl Sweep {
         }
     }
 
+    /// Whether errors of motions are estimated.
+    pub const fn estimates(&self) -> bool {
+        self.has_error
+    }
+
+    /// What the scene of a row says, and what is built of it.
+    ///
+    /// # Errors
+    /// The result of a row without such a scene.
+    pub fn described(
+        &self,
+        cells: &Cells,
+        registry: &JointRegistry,
+    ) -> Result<(SceneDescription, Scene), Row> {
+        let described = self.numbers(cells).and_then(|numbers| {
+            let text = self.document.with(numbers);
+            // Which mistake is told first depends on whether joints are known.
+            let refused = |_| self.scene(numbers, registry).err().unwrap_or_default();
+            let description = Scene::from_toml(&text, &self.source).map_err(refused)?;
+            let scene = description.build(registry).map_err(refused)?;
+            Ok((description, self.fitting(scene)?))
+        });
+        described.map_err(|cause| self.results.failure(cause))
+    }
+
+    /// What follows the angles over a motion that moves otherwise than by [`Sweep::motion`].
+    pub fn turns(&self) -> Turns {
+        self.results.turns()
+    }
+
+    /// The result of such a motion that came to the end of its time in so many steps.
+    pub fn ended(&self, scene: &Scene, state: &State, steps: usize, turns: &Turns) -> Row {
+        let row = self
+            .results
+            .row(&scene.mechanism, state, (steps, None), turns);
+        match row {
+            Ok(numbers) => Row {
+                outcome: Outcome::Ended,
+                numbers,
+            },
+            Err(cause) => self.results.failure(cause),
+        }
+    }
+
     /// One for each column.
     fn numbers<'c>(&self, cells: &'c Cells) -> Result<&'c [f64], String> {
         let Cells { numbers, fault } = cells;
@@ -124,7 +170,11 @@ impl Sweep {
     fn scene(&self, numbers: &[f64], registry: &JointRegistry) -> Result<Scene, String> {
         let text = self.document.with(numbers);
         let scene = Scene::parse(&text, &self.source, registry);
-        let scene = scene.map_err(|mistakes| self.refusal(numbers, &mistakes))?;
+        self.fitting(scene.map_err(|mistakes| self.refusal(numbers, &mistakes))?)
+    }
+
+    /// The scene, where results can tell of its joints.
+    fn fitting(&self, scene: Scene) -> Result<Scene, String> {
         match self.results.fit(&scene.mechanism) {
             true => Ok(scene),
             false => Err("its loops move by other coordinates than those of the file: name them by `independent`".into()),
@@ -165,8 +215,14 @@ impl Sweep {
             }
             false => (simulation.run().map_err(told)?, None),
         };
-        self.results
-            .row(scene, &solution, error.as_ref(), &turns.borrow())
+        let work = (solution.statistics.steps, error.as_ref());
+        let numbers = self
+            .results
+            .row(&scene.mechanism, &solution.state, work, &turns.borrow())?;
+        Ok(Row {
+            outcome: outcome(scene, &solution),
+            numbers,
+        })
     }
 }
 

@@ -1,7 +1,7 @@
 //! What is told of one motion: its last state in columns, and how it ended.
 
 use crate::columns::{Factor, Turns, coordinate_endings, speed_endings, suffix, turns};
-use hamel::integrate::{GlobalError, Solution};
+use hamel::integrate::{GlobalError, Solution, State};
 use hamel::mechanism::Mechanism;
 use hamel::scene::Scene;
 use std::fmt;
@@ -116,19 +116,17 @@ impl Results {
         )
     }
 
-    /// What a motion came to.
+    /// What a motion came to: its last state, its steps and its error.
     ///
     /// # Errors
     /// A last state that has no finite energy.
     pub fn row(
         &self,
-        scene: &Scene,
-        solution: &Solution,
-        error: Option<&GlobalError>,
+        mechanism: &Arc<Mechanism>,
+        state: &State,
+        (steps, error): (usize, Option<&GlobalError>),
         angles: &Turns,
-    ) -> Result<Row, String> {
-        let mechanism: &Arc<Mechanism> = &scene.mechanism;
-        let state = &solution.state;
+    ) -> Result<Vec<f64>, String> {
         let (q, speeds) = (&*state.configuration, &*state.speeds);
         let found = mechanism.kinematics(q, speeds);
         let found = found.map_err(|error| error.to_string())?;
@@ -140,7 +138,7 @@ impl Results {
         ];
         numbers.push(state.time);
         numbers.extend(energies);
-        numbers.push(solution.statistics.steps as f64);
+        numbers.push(steps as f64);
         if self.has_error {
             numbers.push(error.map_or(f64::NAN, |error| error.end.total()));
             let is_reliable = error.is_some_and(|error| error.doubt.is_none());
@@ -156,10 +154,7 @@ impl Results {
             }
             numbers.extend(&speeds[body.ranges().speeds.clone()]);
         }
-        Ok(Row {
-            outcome: outcome(scene, solution),
-            numbers,
-        })
+        Ok(numbers)
     }
 
     /// What is told of a motion that failed.
@@ -172,7 +167,7 @@ impl Results {
 }
 
 /// A motion that the scene stops ends at the last crossing of an event that does so.
-fn outcome(scene: &Scene, solution: &Solution) -> Outcome {
+pub(crate) fn outcome(scene: &Scene, solution: &Solution) -> Outcome {
     let stops = |name: &str| {
         let mut events = scene.events.iter();
         events.any(|event| event.stops && event.name == name)

@@ -10,6 +10,49 @@ use std::thread;
 /// Rows that a thread takes at once: few, so that all threads end a table together.
 const TAKEN: usize = 4;
 
+/// What moves rows on many threads.
+pub trait Movers: Sync {
+    /// What one thread moves them by.
+    fn mover(&self) -> Box<dyn Mover + '_>;
+
+    /// How many rows a thread takes at once.
+    fn taken(&self) -> usize {
+        TAKEN
+    }
+}
+
+/// What moves rows on one thread.
+pub trait Mover {
+    /// The results of rows, each of which depends on its row alone; none where `watch` tells to stop. Says on the way how many are done.
+    fn rows(&mut self, rows: &[Cells], watch: Watch<'_>) -> Option<Vec<Row>>;
+}
+
+/// Rows that move one by one, by the equations of the tree.
+#[derive(Clone, Copy, Debug)]
+pub struct ByTree<'a> {
+    /// What moves.
+    pub sweep: &'a Sweep,
+    /// Its joints.
+    pub registry: &'a JointRegistry,
+}
+
+impl Movers for ByTree<'_> {
+    fn mover(&self) -> Box<dyn Mover + '_> {
+        Box::new(*self)
+    }
+}
+
+impl Mover for ByTree<'_> {
+    fn rows(&mut self, rows: &[Cells], watch: Watch<'_>) -> Option<Vec<Row>> {
+        let moved = rows.iter().map(|row| {
+            let moved = self.sweep.motion_until(row, self.registry, watch.stop);
+            (watch.done)(usize::from(moved.is_some()));
+            moved
+        });
+        moved.collect()
+    }
+}
+
 /// One row of a table.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cells {
@@ -75,6 +118,8 @@ struct Open {
 /// Where blocks come from, and the one whose rows are being taken.
 struct Feed<N, E> {
     next: N,
+    /// Rows that a thread takes at once.
+    taken: usize,
     open: Option<(Arc<Open>, usize)>,
     /// Whether nothing more is to be taken, and what went wrong.
     is_over: bool,
@@ -94,8 +139,23 @@ pub fn run<E: Send>(
     write: &Write<'_, E>,
     watch: Watch<'_>,
 ) -> Result<(), E> {
+    run_by(&ByTree { sweep, registry }, workers, next, write, watch)
+}
+
+/// The same with rows that `movers` move.
+///
+/// # Errors
+/// Those of [`run`].
+pub fn run_by<E: Send>(
+    movers: &dyn Movers,
+    workers: Option<NonZero<usize>>,
+    next: impl FnMut() -> Result<Option<Block>, E> + Send,
+    write: &Write<'_, E>,
+    watch: Watch<'_>,
+) -> Result<(), E> {
     let feed = Mutex::new(Feed {
         next,
+        taken: movers.taken().max(1),
         open: None,
         is_over: false,
         failure: None,
@@ -103,42 +163,36 @@ pub fn run<E: Send>(
     let workers = workers.or_else(|| thread::available_parallelism().ok());
     thread::scope(|scope| {
         for _ in 1..workers.map_or(1, NonZero::get) {
-            let work = || work(sweep, registry, &feed, write, watch);
+            let work = || work(movers, &feed, write, watch);
             if thread::Builder::new().spawn_scoped(scope, work).is_err() {
                 // Where the system has no more threads, those that there are do the work.
                 break;
             }
         }
-        work(sweep, registry, &feed, write, watch);
+        work(movers, &feed, write, watch);
     });
     let feed = feed.into_inner().unwrap_or_else(PoisonError::into_inner);
     feed.failure.map_or(Ok(()), Err)
 }
 
 fn work<E: Send, N: FnMut() -> Result<Option<Block>, E> + Send>(
-    sweep: &Sweep,
-    registry: &JointRegistry,
+    movers: &dyn Movers,
     feed: &Mutex<Feed<N, E>>,
     write: &Write<'_, E>,
     watch: Watch<'_>,
 ) {
+    let (mut mover, taken) = (movers.mover(), movers.taken().max(1));
     loop {
         // The lock is given back before anything moves.
-        let taken = locked(feed).take(watch.pause);
-        let Some((open, first)) = taken else {
+        let next = locked(feed).take(watch.pause);
+        let Some((open, first)) = next else {
             return;
         };
         let rows = &open.block.rows[first..];
-        let rows = &rows[..rows.len().min(TAKEN)];
-        let mut moved = Vec::with_capacity(rows.len());
-        for row in rows {
-            let Some(result) = sweep.motion_until(row, registry, watch.stop) else {
-                locked(feed).is_over = true;
-                return;
-            };
-            moved.push(result);
-            (watch.done)(1);
-        }
+        let Some(moved) = mover.rows(&rows[..rows.len().min(taken)], watch) else {
+            locked(feed).is_over = true;
+            return;
+        };
         if let Some(results) = open.put(first, moved)
             && let Err(error) = write(&open.block, &results)
         {
@@ -166,7 +220,7 @@ impl<E, N: FnMut() -> Result<Option<Block>, E>> Feed<N, E> {
             self.is_over = true;
             return None;
         };
-        let rest = first + TAKEN;
+        let rest = first + self.taken;
         if rest < open.block.rows.len() {
             self.open = Some((Arc::clone(&open), rest));
         }

@@ -28,6 +28,9 @@ A column that names no number of the scene is refused before anything moves.
 
 The folder holds part-N.csv (or .parquet): for each row its number, from 1, the outcome (`ended`, `event NAME`, `failed: CAUSE`), the last time, energies, steps, the estimated error, and coordinates and speeds of all
 joints, under the names that `hamel simulate` gives them. summary.csv has quantiles of them, failures.csv failures by cause, summary.html pictures; sweep.json says what was swept.
+Rows of a scene that moves by an explicit method of steps of one length (method rk4 with dt), without events, controllers, friction, limits of joints and functions of time, move side by side with
+--no-error-estimate: a few dozen times as many a second. Their numbers differ from those of the tree by rounding. --equations tree moves all rows one by one.
+
 Parts are written whole. Stopped by Ctrl-C (after the rows that it has begun to write) or killed, the same command goes on where it was. A folder of another sweep is left as it is. Numbers do not depend on workers, blocks or
 interruptions.
 
@@ -70,6 +73,10 @@ pub struct Args {
     #[arg(long)]
     pub no_error_estimate: bool,
 
+    /// By which equations rows move: many rows side by side, in a fraction of the time, where scene and rows allow it (auto, lanes), or one by one (tree)
+    #[arg(long, value_enum, default_value_t = Equations::Auto)]
+    pub equations: Equations,
+
     /// Print the scene of this row, from 1, and move nothing
     #[arg(long, value_name = "ROW", conflicts_with = "output")]
     pub scene_of: Option<NonZero<u64>>,
@@ -89,6 +96,28 @@ pub struct Args {
     /// Do not tell how far it is, and print no summary
     #[arg(long, conflicts_with = "json")]
     pub quiet: bool,
+}
+
+/// By which equations rows move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Equations {
+    /// Side by side what can; the summary says how many, and why others do not
+    Auto,
+    /// As auto, but a sweep of which no row can is refused
+    Lanes,
+    /// One by one, by the equations of the tree
+    Tree,
+}
+
+impl Equations {
+    /// What it is called.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Lanes => "lanes",
+            Self::Tree => "tree",
+        }
+    }
 }
 
 /// Formats of tables and results.

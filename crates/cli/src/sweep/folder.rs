@@ -1,10 +1,11 @@
 //! A folder of results: parts that are written whole, and the manifest that says of what.
 
 use super::args::Format;
-use super::manifest::{Manifest, NAME};
+use super::manifest::{Manifest, Moved, NAME};
 use super::table::{self, Part};
-use hamel_console::files::{Lock, new_file};
+use hamel_console::files::{IsOwn, Lock, admit, first_line, new_file};
 use hamel_console::output::Failure;
+use hamel_lanes::Ways;
 use hamel_sweep::{Block, Row};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -41,6 +42,7 @@ impl Folder {
             if is_block_open {
                 manifest.block = found.block;
             }
+            manifest.moved.clone_from(&found.moved);
             let differences = manifest.differences(found);
             if !differences.is_empty() {
                 return Err(Failure::Options(format!(
@@ -61,6 +63,21 @@ impl Folder {
             format,
             is_resumed,
         })
+    }
+
+    /// Tells in the manifest which way the rows went that this command moved.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn tell(&mut self, ways: Ways) -> Result<(), Failure> {
+        let Ways { lanes, tree } = ways;
+        self.manifest.moved = Some(Moved { lanes, tree });
+        let path = self.path.join(NAME);
+        let own: IsOwn = |file| first_line(file) == "{";
+        match &*admit([], [(&*path, own)], false)? {
+            [output] => output.write(self.manifest.text()),
+            _ => Ok(()),
+        }
     }
 
     /// The folder.

@@ -1,8 +1,9 @@
 //! `sweep.json`: what was swept, by which a folder of results is known.
 
-use super::args::Format;
+use super::args::{Equations, Format};
 use hamel_console::output::Failure;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Its name in the folder.
@@ -35,6 +36,26 @@ pub struct Manifest {
     pub format: String,
     /// Whether errors of motions are estimated.
     pub error_estimate: bool,
+    /// By which equations rows move.
+    #[serde(default = "tree")]
+    pub equations: String,
+    /// Which way the rows went that the last command moved; nothing before one has come to its end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub moved: Option<Moved>,
+}
+
+/// Which way rows went.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Moved {
+    /// How many went side by side.
+    pub lanes: u64,
+    /// How many went by the tree, by reason.
+    pub tree: BTreeMap<String, u64>,
+}
+
+/// By which they moved before there was a choice.
+fn tree() -> String {
+    Equations::Tree.name().to_owned()
 }
 
 /// A file that was read.
@@ -54,7 +75,7 @@ impl Manifest {
         [scene, table]: [Input; 2],
         rows: u64,
         block: u64,
-        (format, error_estimate): (Format, bool),
+        (format, error_estimate, equations): (Format, bool, Equations),
     ) -> Self {
         Self {
             hamel_sweep: LAYOUT,
@@ -66,6 +87,8 @@ impl Manifest {
             block,
             format: format.name().to_owned(),
             error_estimate,
+            equations: equations.name().to_owned(),
+            moved: None,
         }
     }
 
@@ -110,6 +133,7 @@ impl Manifest {
         note("the program's version", &other.version, &self.version);
         note("the processor", &other.architecture, &self.architecture);
         note("the format", &other.format, &self.format);
+        note("--equations", &other.equations, &self.equations);
         let block = |own: &Self| format!("{} rows", own.block);
         note("--block", &block(other), &block(self));
         let estimate = |own: &Self| match own.error_estimate {

@@ -2,6 +2,7 @@
 
 mod args;
 mod csv;
+mod equations;
 mod folder;
 mod manifest;
 mod page;

@@ -1,6 +1,7 @@
 //! The command itself: checks all that can be checked before anything moves, moves what is missing, and tells the summary.
 
 use super::args::{Args, Format};
+use super::equations::Moving;
 use super::folder::Folder;
 use super::manifest::{Input, Manifest};
 use super::progress::Progress;
@@ -11,7 +12,7 @@ use fnv::FnvHasher;
 use hamel::registry::JointRegistry;
 use hamel_console::interrupt::{self, Heed};
 use hamel_console::output::{self, Failure};
-use hamel_sweep::{Block, Sweep, SweepError, Watch};
+use hamel_sweep::{Block, Movers, Sweep, SweepError, Watch};
 use std::hash::Hasher;
 use std::path::Path;
 use std::time::Instant;
@@ -31,10 +32,16 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let Some(output) = &args.output else {
         return Err(Failure::Options("--output is missing".into()));
     };
-    let folder = folder(args, &text, table.count()?, output)?;
+    let rows = table.count()?;
+    let moving = Moving::new(args, &sweep, registry, rows)?;
+    let mut folder = folder(args, &text, (rows, moving.least_block()), output)?;
     let start = Instant::now();
-    let moved = move_missing(args, &sweep, &folder, registry)?;
-    let summary = Summary::of(&folder, &sweep, (moved, start.elapsed()))?;
+    let moved = move_missing(args, &sweep, &folder, moving.movers())?;
+    let work = (moved, start.elapsed(), moving.ways(moved));
+    if moved > 0 {
+        folder.tell(work.2.clone())?;
+    }
+    let summary = Summary::of(&folder, &sweep, work)?;
     summary.write(&folder)?;
     match (args.json, args.quiet) {
         (true, _) => output::print_json(&summary.told()),
@@ -67,7 +74,12 @@ fn sweep(
 }
 
 /// The folder for the results, new or gone on with.
-fn folder(args: &Args, scene: &str, rows: u64, output: &Path) -> Result<Folder, Failure> {
+fn folder(
+    args: &Args,
+    scene: &str,
+    (rows, least_block): (u64, u64),
+    output: &Path,
+) -> Result<Folder, Failure> {
     if rows == 0 {
         let shown = args.over.display();
         return Err(Failure::Options(format!("{shown} has no rows")));
@@ -94,14 +106,16 @@ fn folder(args: &Args, scene: &str, rows: u64, output: &Path) -> Result<Folder, 
     ];
     let block = args
         .block
-        .map_or_else(|| usual_block(rows), |block| block.get());
-    let manifest = Manifest::new(inputs, rows, block, (format, !args.no_error_estimate));
+        .map_or_else(|| usual_block(rows, least_block), |block| block.get());
+    let options = (format, !args.no_error_estimate, args.equations);
+    let manifest = Manifest::new(inputs, rows, block, options);
     Folder::open(output, manifest, format, args.block.is_none())
 }
 
-/// A 64th of the rows, so that a kill of a small sweep of long motions loses little, and not so many that a large one holds much in memory.
-fn usual_block(rows: u64) -> u64 {
-    rows.div_ceil(64).clamp(8, 5000)
+/// A 64th of the rows, so that a kill of a small sweep of long motions loses little, and not so many that a large one holds much in memory; a multiple of those that go side by side.
+fn usual_block(rows: u64, least: u64) -> u64 {
+    let block = rows.div_ceil(64).clamp(least, 5000.max(least));
+    block.next_multiple_of(least)
 }
 
 fn name(path: &Path) -> String {
@@ -122,7 +136,7 @@ fn move_missing(
     args: &Args,
     sweep: &Sweep,
     folder: &Folder,
-    registry: &JointRegistry,
+    movers: &dyn Movers,
 ) -> Result<u64, Failure> {
     let is_missing = |part: &u64| !folder.part(*part).exists();
     let missing = (0..folder.parts()).filter(is_missing);
@@ -156,7 +170,7 @@ fn move_missing(
         ..Watch::NONE
     };
     let write = |block: &Block, rows: &[_]| folder.write(sweep.results(), block, rows);
-    let moved = hamel_sweep::run(sweep, registry, args.workers, next, &write, watch);
+    let moved = hamel_sweep::run_by(movers, args.workers, next, &write, watch);
     progress.finish();
     drop(heed);
     moved?;

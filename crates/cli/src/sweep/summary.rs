@@ -7,6 +7,7 @@ use super::{csv, parquet};
 use hamel::shown::Number;
 use hamel_console::files::{IsOwn, Output, admit, first_line};
 use hamel_console::output::Failure;
+use hamel_lanes::Ways;
 use hamel_sweep::Sweep;
 use hamel_sweep::summary::{Causes, Failures, Figures, PASSES, QUANTILES, Selection};
 use serde_json::{Value, json};
@@ -27,8 +28,8 @@ pub struct Summary {
     figures: Vec<Figures>,
     causes: Causes,
     rows: u64,
-    /// Rows that this command moved, and how long it took.
-    moved: (u64, Duration),
+    /// Rows that this command moved, how long it took, and which way they went.
+    moved: (u64, Duration, Ways),
     is_resumed: bool,
     format: Format,
     histograms: Histograms,
@@ -39,7 +40,11 @@ impl Summary {
     ///
     /// # Errors
     /// A part that cannot be read.
-    pub fn of(folder: &Folder, sweep: &Sweep, moved: (u64, Duration)) -> Result<Self, Failure> {
+    pub fn of(
+        folder: &Folder,
+        sweep: &Sweep,
+        moved: (u64, Duration, Ways),
+    ) -> Result<Self, Failure> {
         let names = sweep.results();
         let (mut selection, mut causes) = (Selection::new(names.len()), Causes::default());
         for pass in 0..PASSES {
@@ -152,8 +157,12 @@ impl Summary {
             told.map(|one| json!({ key: one.cause, "count": one.count, "row": one.row }))
                 .collect()
         };
+        let ways = &self.moved.2;
+        let tree = ways.tree.iter();
+        let tree = tree.map(|(cause, count)| json!({ "cause": cause, "count": count }));
+        let ways = json!({ "lanes": ways.lanes, "tree": tree.collect::<Vec<_>>() });
         json!({
-            "folder": self.folder, "rows": self.rows, "ended": self.causes.ended(),
+            "folder": self.folder, "equations": ways, "rows": self.rows, "ended": self.causes.ended(),
             "events": causes("name", self.causes.events()),
             "failures": causes("cause", self.causes.failures()),
             "columns": columns, "moved": self.moved.0, "run_time_s": self.moved.1.as_secs_f64(),
@@ -187,7 +196,8 @@ fn is_own_text(file: &File) -> bool {
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (moved, time) = self.moved;
+        let (moved, time, ways) = &self.moved;
+        let moved = *moved;
         let failures = self.causes.failures();
         let failed: u64 = failures.iter().map(|one| one.count).sum();
         write!(f, "rows      {}: {} ended", self.rows, self.causes.ended())?;
@@ -216,6 +226,7 @@ impl fmt::Display for Summary {
                 moved as f64 / time
             )?,
         }
+        told_ways(ways, f)?;
         writeln!(f, "results   {}", self.folder)?;
         let width = self
             .names
@@ -235,6 +246,22 @@ impl fmt::Display for Summary {
         }
         writeln!(f)
     }
+}
+
+/// By which equations rows moved, and why not side by side.
+fn told_ways(ways: &Ways, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    if ways.lanes > 0 {
+        writeln!(f, "equations {} side by side", ways.lanes)?;
+    }
+    for (number, (why, count)) in ways.tree.iter().enumerate() {
+        let word = if ways.lanes == 0 && number == 0 {
+            "equations"
+        } else {
+            ""
+        };
+        writeln!(f, "{word:9} {count} one by one, by the tree: {why}")?;
+    }
+    Ok(())
 }
 
 /// Six digits.

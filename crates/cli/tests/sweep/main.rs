@@ -2,6 +2,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod equations;
 #[path = "../files/place.rs"]
 #[allow(dead_code, reason = "some of it is for other tests")]
 mod place;

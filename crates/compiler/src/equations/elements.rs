@@ -120,7 +120,7 @@ impl Tree<'_> {
             true => (child, product(&back, &rotation)),
             false => (parent, product(&rotation, &back)),
         };
-        let half = Sym::from(-0.5 * spring.stiffness);
+        let half = Sym::from(-0.5) * Sym::from(spring.stiffness);
         let moment = axial(&turn) * half;
         columns
             .iter()

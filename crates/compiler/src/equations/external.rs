@@ -1,12 +1,13 @@
 //! What springs between points and wrenches from outside exert on bodies.
 
 use super::{Tree, number};
-use crate::graph::{Sym, about, call, section};
+use crate::graph::{Sym, about, call, is_marked, section};
 use crate::prune::clean;
-use crate::spatial::{Step, Vec3, Wrench, cross, dot};
+use crate::spatial::{Step, Vec3, Wrench, apply, cross, dot};
 use hamel_codegen::expr::Function;
 use hamel_runtime::elements::{BodySpring, BodyWrench, WrenchAxes};
 use nalgebra::Vector3;
+use num_traits::Zero;
 
 /// Added to squares of lengths, m²: so far below what is measured that it changes no digit, and enough for a spring whose points coincide
 /// to exert no force instead of none that is a number. The smallest normal single.
@@ -55,7 +56,7 @@ impl Tree<'_> {
         let body = wrench.body;
         let own = |a: &Vector3<f64>| match wrench.axes {
             WrenchAxes::World => self.carried_down(None, body, &a.map(Sym::from)),
-            WrenchAxes::Body => clean(self.links[body].body.rotation * a).map(Sym::from),
+            WrenchAxes::Body => self.turned(body, a),
         };
         let (force, moment) = (own(&wrench.force), own(&wrench.moment));
         let arm = self.point(body, &wrench.point);
@@ -93,7 +94,20 @@ impl Tree<'_> {
 
     /// A point given in the body frame, in the frame of its equations.
     pub(super) fn point(&self, body: usize, point: &Vector3<f64>) -> Vec3 {
-        clean(self.links[body].body.transform_point(point)).map(Sym::from)
+        let pose = &self.links[body].body;
+        match is_marked() {
+            false => clean(pose.transform_point(point)).map(Sym::from),
+            true => self.turned(body, point) + pose.translation.map(Sym::from),
+        }
+    }
+
+    /// A vector given in the axes of the body, in those of its equations. Numbers that stand for others are not computed with.
+    fn turned(&self, body: usize, vector: &Vector3<f64>) -> Vec3 {
+        let rotation = &self.links[body].body.rotation;
+        match is_marked() {
+            false => clean(rotation * vector).map(Sym::from),
+            true => apply(&rotation.map(Sym::from), &vector.map(Sym::from)),
+        }
     }
 
     /// A point that is fixed in a body, seen from one that carries it, or from the world.
@@ -150,12 +164,12 @@ fn pull(spring: &BodySpring, between: &Vec3, rate: &Vec3) -> Vec3 {
     let (stiffness, damping) = (spring.stiffness, spring.damping);
     let one = Sym::Number(1.0);
     let square = dot(between, between) + Sym::from(NO_LENGTH);
-    let slack = stiffness * spring.length;
+    let slack = Sym::from(stiffness) * Sym::from(spring.length);
     let mut factor = Sym::from(stiffness);
     let mut inverse_square = one / square;
-    if slack != 0.0 {
+    if !slack.is_zero() {
         let inverse = (one / call(Function::Sqrt, square)).named("inverse_length");
-        factor -= Sym::from(slack) * inverse;
+        factor -= slack * inverse;
         inverse_square = inverse * inverse;
     }
     if damping != 0.0 {

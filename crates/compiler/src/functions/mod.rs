@@ -135,6 +135,12 @@ const COMPOSITE: &str = "composite bodies";
 /// Name of what constraints that couple joints take.
 const COUPLED: &str = "independent speeds of coupled joints";
 
+/// The recursions that compute v̄̇ from Q, v̄ and τ.
+pub(crate) fn ways_to_accelerations(model: &Model) -> Vec<fn(&Tree<'_>) -> Vec<Sym>> {
+    let ways = Kind::ForwardDynamics.ways(model).into_iter();
+    ways.map(|(_, way)| way).collect()
+}
+
 /// The ways to solve with M̄: joint by joint; of M̄ factorised, where it may be the shorter; and where constraints couple joints.
 fn solving(model: &Model, [articulated, factorised, coupled]: [Run; 3]) -> Vec<Way> {
     if !model.coupling.constraints.is_empty() {

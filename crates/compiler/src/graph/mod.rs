@@ -62,6 +62,8 @@ pub enum Argument {
     Efforts,
     /// v̄̇.
     Accelerations,
+    /// Numbers in an order of their own: what a step of a motion is given, [`stepping`](crate::stepping).
+    Given,
 }
 
 /// What a node computes. Operands are nodes before it; those of sums and products are in ascending order, numbers last: so the order does
@@ -138,6 +140,10 @@ pub struct Graph {
     element: Option<String>,
     /// What left the numbers.
     faults: Vec<Fault>,
+    /// What stands for entries of arguments.
+    bound: FxHashMap<(Argument, u32), Sym>,
+    /// Numbers, by their bits, that stand for entries of [`Argument::Given`].
+    marks: FxHashMap<u64, u32>,
 }
 
 thread_local! {
@@ -159,6 +165,34 @@ pub fn record_alike<R>(build: impl FnOnce() -> R) -> (R, Graph) {
         ..Graph::default()
     };
     record_in(graph, build)
+}
+
+/// The same, where numbers of the model stand for what is given later: those with the bits of a key of `marks`, and their opposites, become entries of [`Argument::Given`].
+/// Numbers that are computed with before they come on the graph are not known any more; who marks numbers compares the graphs of two sets of them.
+pub fn record_marked<R>(marks: FxHashMap<u64, u32>, build: impl FnOnce() -> R) -> (R, Graph) {
+    let graph = Graph {
+        marks,
+        ..Graph::default()
+    };
+    record_in(graph, build)
+}
+
+/// Whether numbers of the model stand for what is given later.
+pub fn is_marked() -> bool {
+    CURRENT.with_borrow(|graph| !graph.marks.is_empty())
+}
+
+/// What follows in `build` has these values in place of the entries of an argument.
+pub fn bound<R>(arguments: &[(Argument, &[Sym])], build: impl FnOnce() -> R) -> R {
+    let entries = arguments.iter().flat_map(|(argument, values)| {
+        let places = (0_u32..).map(|place| (*argument, place));
+        places.zip(values.iter().copied())
+    });
+    let own = entries.collect();
+    let before = CURRENT.with_borrow_mut(|graph| std::mem::replace(&mut graph.bound, own));
+    let result = build();
+    CURRENT.with_borrow_mut(|graph| graph.bound = before);
+    result
 }
 
 fn record_in<R>(empty: Graph, build: impl FnOnce() -> R) -> (R, Graph) {

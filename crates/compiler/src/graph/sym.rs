@@ -21,7 +21,8 @@ impl Sym {
     /// A scalar of an argument.
     pub fn input(argument: Argument, index: usize) -> Self {
         let index = u32::try_from(index).unwrap_or(u32::MAX);
-        make(Operation::Input(argument, index))
+        let bound = CURRENT.with_borrow(|graph| graph.bound.get(&(argument, index)).copied());
+        bound.unwrap_or_else(|| make(Operation::Input(argument, index)))
     }
 
     /// The number, if it is one.
@@ -365,7 +366,14 @@ impl One for Sym {
 impl From<f64> for Sym {
     /// A number from outside of the graph.
     fn from(number: f64) -> Self {
-        Self::Number(sound(number))
+        let marked = CURRENT.with_borrow(|graph| graph.marks.get(&number.abs().to_bits()).copied());
+        match marked {
+            None => Self::Number(sound(number)),
+            Some(place) => {
+                let given = make(Operation::Input(Argument::Given, place));
+                if number < 0.0 { -given } else { given }
+            }
+        }
     }
 }
 

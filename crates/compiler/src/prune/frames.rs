@@ -27,7 +27,7 @@ const ROUNDING: f64 = 1e-15;
 
 /// How a body's frame may move.
 #[derive(Clone, Copy, Debug, Default)]
-struct Freedom {
+pub(crate) struct Freedom {
     /// Along which axes, each with its direction in the joint's parent frame.
     shifts: [Option<Vector3<f64>>; 3],
     /// About z.
@@ -86,7 +86,12 @@ impl<'a> Placed<'a> {
         };
         let rounds = if may_move { ROUNDS } else { 0 };
         for _ in 0..rounds {
+            let before = placed.moved.clone();
             (0..model.bodies.len()).for_each(|body| placed.improve(body));
+            // What one round leaves as it is, all others would.
+            if placed.moved == before {
+                break;
+            }
         }
         placed
     }
@@ -267,6 +272,10 @@ fn tidy(inertia: &Inertia) -> Inertia {
 
 /// How the frame of a body may move.
 fn freedom(body: &Body) -> Freedom {
+    body.joint.frames.get(&body.parameters, || found(body))
+}
+
+fn found(body: &Body) -> Freedom {
     let shape = body.joint.derived.shape;
     let (freedom, _) = record(|| {
         let q: Vec<Sym> = (0..shape.configuration)

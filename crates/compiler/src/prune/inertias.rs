@@ -203,6 +203,10 @@ fn taken(links: &mut [Link], basis: &[(Place, Moved)]) -> (Vec<Inertia>, Inertia
 
 /// The joint's pose at home.
 fn home(body: &Body) -> Pose<f64> {
+    body.joint.homes.get(&body.parameters, || found(body))
+}
+
+fn found(body: &Body) -> Pose<f64> {
     let (pose, _) = record(|| {
         let joint = Joint::new(&body.joint, &body.parameters, &[], &[]);
         let home = joint.home();

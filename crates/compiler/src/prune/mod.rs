@@ -6,10 +6,13 @@
 mod across;
 mod frames;
 mod inertias;
+mod remembered;
 mod rotation;
 
 pub(crate) use across::Element;
+pub(crate) use frames::Freedom;
 pub use frames::{Placed, clean};
+pub(crate) use remembered::Remembered;
 
 use super::model::{Inertia, Model};
 use hamel_runtime::spatial::Pose;

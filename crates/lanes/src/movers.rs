@@ -1,0 +1,182 @@
+//! Rows of a sweep, moved side by side where they can be, and by the tree where not.
+
+use crate::joints::Joints;
+use crate::machine::WIDTH;
+use crate::motion::{Start, moved};
+use crate::plan::Plan;
+use crate::row::{Alone, Described, described};
+use hamel::registry::JointRegistry;
+use hamel_sweep::{Cells, Mover, Movers, Row, Sweep, Watch};
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
+/// Why a motion that began side by side goes by the tree.
+const LEFT: &str = "its numbers do not stay finite, or a joint turns far in one step";
+
+/// Which way rows went that have a scene.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Ways {
+    /// How many went side by side.
+    pub lanes: u64,
+    /// How many went by the tree, by reason.
+    pub tree: BTreeMap<String, u64>,
+}
+
+/// A sweep whose rows go side by side where they can.
+#[derive(Debug)]
+pub struct Lanes<'a> {
+    sweep: &'a Sweep,
+    registry: &'a JointRegistry,
+    plan: Plan,
+    ways: Mutex<Ways>,
+}
+
+impl<'a> Lanes<'a> {
+    /// The equations of `sweep` for rows like those of `sample`: which of their numbers differ, all rows may; a row that differs in another goes by the tree.
+    ///
+    /// # Errors
+    /// Why no row goes side by side, in words.
+    pub fn new(
+        sweep: &'a Sweep,
+        registry: &'a JointRegistry,
+        sample: &[Cells],
+    ) -> Result<Self, String> {
+        Ok(Self {
+            sweep,
+            registry,
+            plan: Plan::new(sweep, registry, &Joints::default(), sample)?,
+            ways: Mutex::default(),
+        })
+    }
+
+    /// Which way the rows went that were moved so far.
+    pub fn ways(&self) -> Ways {
+        self.ways
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone()
+    }
+
+    /// How many operations a step takes, and how many rows of numbers these take.
+    pub fn size(&self) -> [usize; 2] {
+        [self.plan.program.step.len(), self.plan.program.rows]
+    }
+}
+
+impl Movers for Lanes<'_> {
+    fn mover(&self) -> Box<dyn Mover + '_> {
+        Box::new(Own {
+            lanes: self,
+            joints: Joints::default(),
+        })
+    }
+
+    fn taken(&self) -> usize {
+        WIDTH
+    }
+}
+
+/// What one thread has.
+struct Own<'a> {
+    lanes: &'a Lanes<'a>,
+    joints: Joints,
+}
+
+/// A row on its way to a result.
+enum Way {
+    Lane(Box<Described>, Vec<f64>),
+    Tree(String),
+    Done(Row),
+}
+
+impl Mover for Own<'_> {
+    fn rows(&mut self, rows: &[Cells], watch: Watch<'_>) -> Option<Vec<Row>> {
+        let mut results = Vec::with_capacity(rows.len());
+        for rows in rows.chunks(WIDTH) {
+            results.extend(self.block(rows, watch)?);
+        }
+        Some(results)
+    }
+}
+
+impl Own<'_> {
+    fn way(&self, cells: &Cells) -> Way {
+        let Lanes {
+            sweep,
+            registry,
+            plan,
+            ..
+        } = self.lanes;
+        match described(sweep, registry, &self.joints, cells) {
+            Ok(row) => match plan.numbers(&row) {
+                Ok(numbers) => Way::Lane(Box::new(row), numbers),
+                Err(reason) => Way::Tree(reason),
+            },
+            Err(Alone::Refused(row)) => Way::Done(row),
+            Err(Alone::Tree(reason)) => Way::Tree(reason),
+        }
+    }
+
+    fn block(&self, rows: &[Cells], watch: Watch<'_>) -> Option<Vec<Row>> {
+        let lanes = self.lanes;
+        let mut ways: Vec<Way> = rows.iter().map(|cells| self.way(cells)).collect();
+        let refused = ways.iter().filter(|way| matches!(way, Way::Done(_)));
+        (watch.done)(refused.count());
+        let (mut starts, mut places, mut moved_here) = (vec![], vec![], 0);
+        for (place, way) in ways.iter().enumerate() {
+            if let Way::Lane(row, numbers) = way {
+                places.push(place);
+                starts.push(Start {
+                    scene: &row.scene,
+                    numbers: numbers.clone(),
+                    dt: row.dt,
+                    turns: lanes.sweep.turns(),
+                });
+            }
+        }
+        let ends = moved(&lanes.plan, starts, watch.stop)?;
+        for (place, end) in places.into_iter().zip(ends) {
+            let told = match (&ways[place], end) {
+                (Way::Lane(row, _), Some(end)) => {
+                    let row = lanes
+                        .sweep
+                        .ended(&row.scene, &end.state, end.steps, &end.turns);
+                    Way::Done(row)
+                }
+                _ => Way::Tree(LEFT.to_owned()),
+            };
+            let is_done = matches!(told, Way::Done(_));
+            (watch.done)(usize::from(is_done));
+            moved_here += u64::from(is_done);
+            ways[place] = told;
+        }
+        let mut counted = Ways::default();
+        let results = ways.into_iter().zip(rows).map(|(way, cells)| {
+            let reason = match way {
+                Way::Done(row) => return Some(row),
+                Way::Tree(reason) => reason,
+                Way::Lane(..) => LEFT.to_owned(),
+            };
+            *counted.tree.entry(reason).or_default() += 1;
+            let row = lanes
+                .sweep
+                .motion_until(cells, lanes.registry, watch.stop)?;
+            (watch.done)(1);
+            Some(row)
+        });
+        let results = results.collect::<Option<Vec<Row>>>()?;
+        counted.lanes = moved_here;
+        lanes.count(counted);
+        Some(results)
+    }
+}
+
+impl Lanes<'_> {
+    fn count(&self, own: Ways) {
+        let mut ways = self.ways.lock().unwrap_or_else(PoisonError::into_inner);
+        ways.lanes += own.lanes;
+        for (reason, count) in own.tree {
+            *ways.tree.entry(reason).or_default() += count;
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! The program of a sweep: one step of all rows whose scenes differ in numbers alone.
+
+use crate::joints::Joints;
+use crate::lower;
+use crate::program::Program;
+use crate::row::{Alone, Described, described};
+use hamel::integrate::Tableau;
+use hamel::registry::JointRegistry;
+use hamel_compiler::numbers::{self, Shape};
+use hamel_compiler::stepping::{Places, Scheme, Stepping, stepping};
+use hamel_sweep::{Cells, Sweep};
+
+/// A program with what a row must have for it.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// One step.
+    pub program: Program,
+    /// Where its numbers stand.
+    pub places: Places,
+    /// Of which method.
+    tableau: &'static Tableau,
+    shape: Shape,
+    /// All numbers of a row; those that differ stand for others.
+    numbers: Vec<f64>,
+    /// Which of them differ from row to row.
+    differing: Vec<usize>,
+}
+
+impl Plan {
+    /// The program for rows like those of `sample`, which decides which numbers differ.
+    ///
+    /// # Errors
+    /// Why there is none, in words.
+    pub fn new(
+        sweep: &Sweep,
+        registry: &JointRegistry,
+        joints: &Joints,
+        sample: &[Cells],
+    ) -> Result<Self, String> {
+        if sweep.estimates() {
+            return Err(
+                "errors of motions are estimated; --no-error-estimate leaves that out".into(),
+            );
+        }
+        let mut rows: Vec<Described> = vec![];
+        let mut reason = "no row of a sample has a scene".to_owned();
+        for cells in sample {
+            match described(sweep, registry, joints, cells) {
+                Ok(row) => rows.push(row),
+                Err(Alone::Refused(_)) => {}
+                Err(Alone::Tree(why)) => reason = why,
+            }
+        }
+        let Some(first) = rows.first() else {
+            return Err(reason);
+        };
+        let alike = |row: &&Described| row.shape == first.shape && row.tableau == first.tableau;
+        let same: Vec<&Described> = rows.iter().filter(alike).collect();
+        let differs = |place: &usize| {
+            let own = first.numbers[*place].to_bits();
+            same.iter().any(|row| row.numbers[*place].to_bits() != own)
+        };
+        let differing: Vec<usize> = (0..first.numbers.len()).filter(differs).collect();
+        let step = step(first, &differing)?;
+        let inputs = step.places.numbers + differing.len();
+        Ok(Self {
+            program: lower::program(&step, inputs),
+            places: step.places,
+            tableau: first.tableau,
+            shape: first.shape.clone(),
+            numbers: first.numbers.clone(),
+            differing,
+        })
+    }
+
+    /// The numbers of a row that differ from row to row.
+    ///
+    /// # Errors
+    /// In what it is not as the rows that the program is for, in words.
+    pub fn numbers(&self, row: &Described) -> Result<Vec<f64>, String> {
+        if row.tableau != self.tableau {
+            return Err("its method is another than that of the sample".into());
+        }
+        if row.shape != self.shape {
+            return Err("its equations have other terms than those of the sample".into());
+        }
+        let mut differing = self.differing.iter().peekable();
+        for (place, (own, known)) in row.numbers.iter().zip(&self.numbers).enumerate() {
+            if differing.next_if_eq(&&place).is_none() && own.to_bits() != known.to_bits() {
+                return Err(
+                    "it differs from the sample in a number in which the rows of that agree".into(),
+                );
+            }
+        }
+        let numbers = self.differing.iter().map(|&place| row.numbers[place]);
+        let numbers: Vec<f64> = numbers.collect();
+        match numbers.iter().all(|number| number.is_finite()) {
+            true => Ok(numbers),
+            false => Err("one of its numbers is not finite".into()),
+        }
+    }
+}
+
+/// One step of the row's model, where the numbers at `differing` are given.
+///
+/// Numbers that stand for those are put in their place, and found again on the graph. Were one of them computed with on the way, the graph would hold a number that comes of it; so the graphs of two
+/// sets of such numbers must be one.
+fn step(row: &Described, differing: &[usize]) -> Result<Stepping, String> {
+    let scheme = Scheme {
+        matrix: row.tableau.matrix,
+        weights: row.tableau.weights,
+    };
+    let made = |set: usize| {
+        let marks: Vec<f64> = (0..differing.len())
+            .map(|number| mark(set, number))
+            .collect();
+        let (mut model, mut links) = (row.model.clone(), row.links.clone());
+        let mut all = row.numbers.clone();
+        for (&place, &mark) in differing.iter().zip(&marks) {
+            all[place] = mark;
+        }
+        numbers::replace(&mut model, &mut links, &all);
+        stepping(&model, &links, scheme, &marks)
+    };
+    let (first, second) = (made(0)?, made(1)?);
+    let operations = |step: &Stepping| -> Vec<_> {
+        let nodes = step.graph.nodes.iter();
+        nodes.map(|node| node.operation.clone()).collect()
+    };
+    if first.outputs != second.outputs || operations(&first) != operations(&second) {
+        return Err("numbers that differ from row to row are computed with before its equations are written".into());
+    }
+    let outputs: Vec<_> = first.outputs.iter().map(|(_, value)| *value).collect();
+    match first.graph.faults(&outputs).is_empty() {
+        true => Ok(first),
+        false => Err("its equations hold what is no number".into()),
+    }
+}
+
+/// A number that stands for another: between 0.5 and 1.5, and such as no scene has.
+fn mark(set: usize, number: usize) -> f64 {
+    let seed = (set as u64) << 32 | number as u64;
+    // The finaliser of SplitMix64 (S. Vigna), a bijection: no two are the same.
+    let mut bits = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    0.5 + (bits >> 11) as f64 * 2_f64.powi(-53)
+}

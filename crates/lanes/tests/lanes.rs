@@ -1,0 +1,253 @@
+//! Rows side by side against the same rows by the tree, and against themselves in other company.
+
+use hamel_lanes::Lanes;
+use hamel_sweep::{Cells, Movers, Outcome, Row, Sweep, Watch};
+
+/// Largest difference between side by side and the tree, as a part of max(1, size). Both take the same steps of the same method, and round the equations of motion in another order: some 100 roundings of
+/// 1.1e-16 an evaluation, of which a step of length h keeps h times as much. Over a second that is 1e-14; the motions here make at most some thousand times as much of it.
+const ROUNDING: f64 = 1e-11;
+
+fn described(bodies: &str) -> String {
+    format!(
+        "hamel = 1\ngravity = [0.3, 0.0, -9.81]\n{bodies}\n[simulation]\nmethod = \"rk4\"\ndt = 0.004\nt_end = 1.0\n"
+    )
+}
+
+fn body(name: &str, parent: &str, joint: &str, more: &str) -> String {
+    format!(
+        "[[body]]\nname = \"{name}\"\nparent = \"{parent}\"\nmass = 1.3\ninertia = [[0.02, 0.001, 0.0], [0.001, 0.03, -0.002], [0.0, -0.002, 0.025]]\n\
+         joint = {joint}\n{more}\n"
+    )
+}
+
+const PENDULUM: &str = "at = { position = [0.1, 0.0, 0.3], rotation_vector = [1.2, 0.1, 0.0] }\nbody_at = { position = [0.2, 0.05, 0.0] }\n\
+                        initial = { configuration = [0.4], speeds = [0.7] }";
+
+fn double_pendulum() -> String {
+    let lower = "at = { position = [0.4, 0.0, 0.0] }\nbody_at = { position = [0.2, 0.0, 0.1] }\ninitial = { configuration = [-0.9], speeds = [0.0] }";
+    described(
+        &(body("upper", "world", "{ type = \"revolute\" }", PENDULUM)
+            + &body("lower", "upper", "{ type = \"revolute\" }", lower)),
+    )
+}
+
+/// Rows that move all columns by some of their numbers.
+fn rows(starts: &[f64], count: usize) -> Vec<Cells> {
+    let row = |number: usize| {
+        let cell = |(place, start): (usize, &f64)| {
+            start * (1.0 + 0.1 * (1.0 + 2.3 * number as f64 + 0.7 * place as f64).sin())
+        };
+        Cells::from(starts.iter().enumerate().map(cell).collect::<Vec<f64>>())
+    };
+    (0..count).map(row).collect()
+}
+
+fn swept(text: &str, columns: &[&str]) -> Sweep {
+    Sweep::new(text, "scene.toml", columns, &hamel_sweep::joints())
+        .expect("a scene and its columns")
+}
+
+fn side_by_side(sweep: &Sweep, sample: &[Cells], rows: &[Cells]) -> (Vec<Row>, hamel_lanes::Ways) {
+    let joints = hamel_sweep::joints();
+    let lanes = Lanes::new(sweep, &joints, sample).expect("a sweep that goes side by side");
+    let moved = lanes
+        .mover()
+        .rows(rows, Watch::NONE)
+        .expect("nobody stops it");
+    (moved, lanes.ways())
+}
+
+/// The largest difference from the tree, as a part of max(1, size).
+fn difference(sweep: &Sweep, rows: &[Cells], moved: &[Row]) -> f64 {
+    let joints = hamel_sweep::joints();
+    let mut most = 0.0_f64;
+    for (cells, own) in rows.iter().zip(moved) {
+        let tree = sweep.motion(cells, &joints);
+        assert_eq!(own.outcome, tree.outcome);
+        for ((name, a), b) in sweep.results().iter().zip(&own.numbers).zip(&tree.numbers) {
+            let part = (a - b).abs() / b.abs().max(1.0);
+            assert!(
+                part < ROUNDING,
+                "{name}: {a:e} side by side, {b:e} by the tree"
+            );
+            most = most.max(part);
+        }
+    }
+    most
+}
+
+fn check(name: &str, text: &str, columns: &[(&str, f64)]) {
+    let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
+    let starts: Vec<f64> = columns.iter().map(|(_, start)| *start).collect();
+    let (sweep, rows) = (swept(text, &names), rows(&starts, 19));
+    let (moved, ways) = side_by_side(&sweep, &rows, &rows);
+    assert_eq!((ways.lanes, ways.tree.len()), (19, 0), "{name}: {ways:?}");
+    assert!(moved.iter().all(|row| row.outcome == Outcome::Ended));
+    println!("{name}: {:e}", difference(&sweep, &rows, &moved));
+}
+
+const MASSES: [(&str, f64); 3] = [
+    ("body.upper.mass", 1.3),
+    ("body.lower.mass", 0.9),
+    ("body.lower.body_at.position.1", 0.2),
+];
+
+#[test]
+fn a_double_pendulum_moves_as_by_the_tree() {
+    check("double pendulum", &double_pendulum(), &MASSES);
+    let all = [
+        ("body.lower.at.position.1", 0.4),
+        ("gravity.3", -9.0),
+        ("body.upper.initial.configuration.1", 0.3),
+        ("body.lower.initial.speeds.1", 1.0),
+        ("body.upper.inertia.1.1", 0.02),
+    ];
+    check(
+        "double pendulum, all kinds of columns",
+        &double_pendulum(),
+        &all,
+    );
+}
+
+#[test]
+fn other_explicit_methods_move_as_by_the_tree() {
+    for method in ["dopri5", "dop853", "verner9"] {
+        let text = double_pendulum().replace("rk4", method);
+        check(method, &text, &MASSES);
+    }
+}
+
+#[test]
+fn balls_move_as_by_the_tree() {
+    let initial = "at = { position = [0.0, 0.1, 0.3] }\nbody_at = { position = [0.2, 0.05, 0.1] }\ninitial.speeds = [1.5, -0.5, 3.0]";
+    let text = described(
+        &(body("upper", "world", "{ type = \"ball\" }", initial)
+            + &body("lower", "upper", "{ type = \"ball_child\" }", initial)),
+    );
+    check("balls", &text, &MASSES);
+}
+
+#[test]
+fn a_free_body_moves_as_by_the_tree() {
+    let initial = "com = [0.02, 0.0, 0.01]\ninitial = { twist = { angular = [0.5, 6.0, 0.0], linear = [0.3, 0.0, 0.1], frame = \"child\" } }";
+    let text = described(&body("racket", "world", "{ type = \"free\" }", initial));
+    check(
+        "free body",
+        &text,
+        &[("body.racket.mass", 2.0), ("body.racket.com.1", 0.1)],
+    );
+}
+
+#[test]
+fn a_knife_edge_moves_as_by_the_tree() {
+    let initial = "body_at = { position = [0.2, 0.0, 0.0] }\ninitial = { phi = [0.25, 0.0, 0.0], speeds = [5.0, 0.8] }";
+    let text = described(&body(
+        "sleigh",
+        "world",
+        "{ type = \"knife_edge\" }",
+        initial,
+    ));
+    check(
+        "knife edge",
+        &text,
+        &[
+            ("body.sleigh.mass", 2.0),
+            ("body.sleigh.body_at.position.1", 0.3),
+        ],
+    );
+}
+
+#[test]
+fn springs_and_dampers_move_as_by_the_tree() {
+    let upper =
+        format!("{PENDULUM}\nspring = {{ stiffness = 20.0 }}\ndamping = 0.3\narmature = 0.02");
+    let text = described(&body("upper", "world", "{ type = \"revolute\" }", &upper));
+    let text = text.replace(
+        "[simulation]",
+        "[[spring]]\nfrom = { body = \"world\", point = [0.5, 0.0, 0.0] }\nto = { body = \"upper\", point = [0.1, 0.0, 0.0] }\nstiffness = 30.0\ndamping = 0.2\nlength = 0.2\n[simulation]",
+    );
+    let columns = [
+        ("body.upper.spring.stiffness", 20.0),
+        ("body.upper.damping", 0.3),
+        ("body.upper.armature", 0.2),
+        ("spring.1.stiffness", 30.0),
+        ("spring.1.damping", 0.5),
+        ("spring.1.length", 0.4),
+        ("spring.1.to.point.1", 0.2),
+    ];
+    check("springs", &text, &columns);
+}
+
+fn bits(rows: &[Row]) -> Vec<Vec<u64>> {
+    let all = rows
+        .iter()
+        .map(|row| row.numbers.iter().map(|x| x.to_bits()).collect());
+    all.collect()
+}
+
+#[test]
+fn a_row_has_the_same_bits_wherever_it_stands() {
+    let columns = MASSES.map(|(name, _)| name);
+    let (sweep, rows) = (
+        swept(&double_pendulum(), &columns),
+        rows(&[1.3, 0.9, 0.2], 70),
+    );
+    let (all, _) = side_by_side(&sweep, &rows, &rows);
+    for place in [0, 5, 63, 64, 69] {
+        let (alone, _) = side_by_side(&sweep, &rows, &rows[place..=place]);
+        assert_eq!(bits(&alone), bits(&all[place..=place]));
+    }
+    let backwards: Vec<Cells> = rows.iter().rev().cloned().collect();
+    let (mut moved, _) = side_by_side(&sweep, &rows, &backwards);
+    moved.reverse();
+    assert_eq!(bits(&moved), bits(&all));
+}
+
+#[test]
+fn a_number_may_be_0_in_the_first_row() {
+    let columns = ["body.lower.body_at.position.2", "body.upper.damping"];
+    let text = double_pendulum().replacen("initial =", "damping = 0.0\ninitial =", 1);
+    let sweep = swept(&text, &columns);
+    let rows: Vec<Cells> = [[0.0, 0.0], [0.1, 0.0], [0.1, 0.4], [0.0, 0.2]]
+        .map(Cells::from)
+        .into();
+    let (moved, ways) = side_by_side(&sweep, &rows, &rows);
+    println!("{ways:?}: {:e}", difference(&sweep, &rows, &moved));
+    // A row that the sample does not know goes by the tree, or with the others.
+    let (moved, ways) = side_by_side(&sweep, &rows[..1], &rows);
+    println!("{ways:?}: {:e}", difference(&sweep, &rows, &moved));
+    assert_eq!(ways.lanes, 1);
+}
+
+#[test]
+fn rows_of_other_lengths_end_where_they_should() {
+    let columns = ["simulation.t_end", "simulation.dt"];
+    let sweep = swept(&double_pendulum(), &columns);
+    let rows: Vec<Cells> = [[1.0, 0.004], [0.5, 0.004], [0.50001, 0.003], [0.0, 0.01]]
+        .map(Cells::from)
+        .into();
+    let (moved, ways) = side_by_side(&sweep, &rows, &rows);
+    assert_eq!(ways.lanes, 4);
+    difference(&sweep, &rows, &moved);
+}
+
+#[test]
+fn a_row_that_is_refused_fails_alone() {
+    let columns = MASSES.map(|(name, _)| name);
+    let (sweep, mut rows) = (
+        swept(&double_pendulum(), &columns),
+        rows(&[1.3, 0.9, 0.2], 5),
+    );
+    rows[1].numbers[0] = -1.0;
+    rows[3].fault = Some("a cell is no number".into());
+    let (moved, _) = side_by_side(&sweep, &rows, &rows);
+    let joints = hamel_sweep::joints();
+    for place in [1, 3] {
+        let tree = sweep.motion(&rows[place], &joints);
+        assert_eq!(moved[place].outcome, tree.outcome);
+    }
+    let whole: Vec<usize> = (0..5)
+        .filter(|place| moved[*place].outcome == Outcome::Ended)
+        .collect();
+    assert_eq!(whole, [0, 2, 4]);
+}
