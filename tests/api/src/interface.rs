@@ -28,6 +28,7 @@ pub const CRATES: &[Interface] = &[
     all("hamel_interpreted"),
     all("hamel_joints"),
     all("hamel_sweep"),
+    all("hamel_lanes"),
     Interface {
         name: "hamel_compiler",
         only: &[

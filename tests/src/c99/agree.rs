@@ -85,6 +85,8 @@ pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)]) {
                 Argument::Configuration => q,
                 Argument::Speeds | Argument::Momenta => v,
                 Argument::Efforts | Argument::Accelerations => u,
+                // Of steps of motions alone.
+                Argument::Given => &[],
             };
             let arguments = function.arguments.iter();
             let arguments: Vec<&[f64]> = arguments.map(|&(one, _)| given(one)).collect();

@@ -136,6 +136,8 @@ pub fn evaluate(
         Argument::Configuration => q.to_vec(),
         Argument::Speeds | Argument::Momenta => speeds.to_vec(),
         Argument::Efforts | Argument::Accelerations => inputs.to_vec(),
+        // Of steps of motions alone.
+        Argument::Given => vec![],
     })
 }
 

@@ -4,7 +4,7 @@
 //! `conditioning`, is the change of the final state per unit relative change of the initial velocities, ε/2 what one rounding does
 //! to them, and ω its `frequency`, where a stiff spring swings. No method in doubles can be expected to fall below it.
 
-use hamel::dynamics::{Dynamics, MassMatrix, Recursive};
+use hamel::dynamics::{Dynamics, InverseMassMatrix, Recursive};
 use hamel::integrate::{Form, Options, Solution, State, integrate, no_inputs, no_observer};
 use hamel::mechanism::BodyState;
 use hamel::nalgebra::{Matrix3, Vector3};
@@ -268,7 +268,7 @@ fn rounding_of_momenta(scene: &Scene, state: &State) -> f64 {
     let (q, speeds) = (&state.configuration, &state.speeds);
     let found = dynamics.momenta(q, speeds, &mut momenta);
     found.expect("sizes fit");
-    let mut inverse = MassMatrix::new(&scene.mechanism);
+    let mut inverse = InverseMassMatrix::new(&scene.mechanism);
     let found = dynamics.inverse_mass_matrix(q, &mut inverse);
     found.expect("every body has mass");
     let rounding = |i: usize| -> f64 {
