@@ -11,9 +11,10 @@ pub fn cell(text: &str) -> String {
     }
 }
 
-/// Whether a spreadsheet may take the text for a formula: some leave out blanks before it.
+/// Whether a spreadsheet may take the text for a formula: some leave out blanks before it. A number is none.
 fn is_run(text: &str) -> bool {
-    text.starts_with(FORMULAS) || text.trim_start().starts_with(FORMULAS)
+    let is_number = text.parse::<f64>().is_ok_and(f64::is_finite);
+    !is_number && (text.starts_with(FORMULAS) || text.trim_start().starts_with(FORMULAS))
 }
 
 /// The text of a cell.
@@ -46,13 +47,14 @@ mod tests {
     #[test]
     fn no_cell_is_a_formula_and_every_text_comes_back() {
         for formula in [
-            "=1+1", "+1", "-1", "@f()", "\t=1", "\r=1", "'=1", "''=1", "＝1", "＋1", " =1",
+            "=1+1", "+x", "-1+1", "-inf", "@f()", "\t=1", "\r=1", "'=1", "''=1", "＝1", "＋1",
+            " =1",
         ] {
             let cell = cell(formula);
             assert!(cell.starts_with('\''), "{formula}");
             assert_eq!(text(&cell), formula);
         }
-        for plain in ["arm.x_m", "'quoted'", "", "a=b"] {
+        for plain in ["arm.x_m", "'quoted'", "", "a=b", "-1", "-0.25e-3"] {
             assert_eq!((cell(plain).as_str(), text(plain)), (plain, plain));
         }
     }

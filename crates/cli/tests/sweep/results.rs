@@ -37,6 +37,20 @@ fn a_row_moves_as_its_scene() {
     }
 }
 
+/// Negative ones among them, as spreadsheets and pandas take them.
+#[test]
+fn the_summary_holds_numbers() {
+    let place = pendulums(40);
+    place.done("sweep pendulum.toml --over table.csv -o out --no-error-estimate --quiet");
+    let summary = String::from_utf8(place.read("out/summary.csv")).expect("text");
+    let cells = summary
+        .lines()
+        .skip(1)
+        .flat_map(|line| line.split(',').skip(1));
+    let numbers: Vec<f64> = cells.map(|cell| cell.parse().expect(cell)).collect();
+    assert!(numbers.iter().any(|number| *number < 0.0));
+}
+
 #[test]
 fn bits_do_not_depend_on_workers_and_blocks() {
     let place = pendulums(100);
