@@ -181,6 +181,8 @@ fn what_is_left_out_changes_no_effort() {
                         Argument::Configuration => q.clone(),
                         Argument::Speeds | Argument::Momenta => v.clone(),
                         Argument::Efforts | Argument::Accelerations => a.clone(),
+                        // Of steps of motions alone.
+                        Argument::Given => vec![],
                     })
                 };
                 let (found, expected) = (efforts(&pruned), efforts(&bare));
@@ -234,6 +236,8 @@ fn what_is_left_out_does_not_depend_on_the_size() {
                     Argument::Configuration => q.clone(),
                     Argument::Speeds | Argument::Momenta => v.clone(),
                     Argument::Efforts | Argument::Accelerations => a.clone(),
+                    // Of steps of motions alone.
+                    Argument::Given => vec![],
                 });
                 efforts[count - 1] /= unit * unit;
                 efforts
