@@ -140,7 +140,7 @@ fn step(row: &Described, differing: &[usize]) -> Result<Stepping, String> {
 /// A number that stands for another: between 0.5 and 1.5, and such as no scene has.
 fn mark(set: usize, number: usize) -> f64 {
     let seed = (set as u64) << 32 | number as u64;
-    // The finaliser of SplitMix64 (S. Vigna), a bijection: no two are the same.
+    // The finaliser of SplitMix64 (S. Vigna), of which 53 bits are kept.
     let mut bits = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

@@ -1,14 +1,12 @@
 //! [`Scalar`] for `f64` and `f32`.
 
-use super::{Native, Scalar, hyperbolic, rotation, series};
+use super::{Scalar, hyperbolic, rotation, series};
 use crate::curve::Curve;
 use nalgebra::{Matrix3, Vector3};
 use num_traits::Float;
 
 macro_rules! implement_scalar {
     ($float:ident, $($batch:tt)*) => {
-        impl Native for $float {}
-
         impl Scalar for $float {
             type Mask = bool;
 

@@ -141,10 +141,6 @@ pub trait Scalar:
     }
 }
 
-/// A number of the machine itself, in which mechanisms are solved and differentiated: `f64` or `f32`. [`Extended`] numbers tell what their
-/// solutions leave.
-pub trait Native: Scalar<Mask = bool> {}
-
 /// `a₁ b₁ + (a₂ b₂ + …)`, each product but the last fused with the sum of those after it, as emitted formulas write it.
 #[inline(always)]
 pub fn dot<T: Scalar, const N: usize>(a: [T; N], b: [T; N]) -> T {

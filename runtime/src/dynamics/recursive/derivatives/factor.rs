@@ -12,6 +12,9 @@ use crate::scalar::Scalar;
 use alloc::vec;
 use alloc::vec::Vec;
 
+/// Up to so many speeds a product with M̄⁻¹ costs less than sweeps.
+pub(super) const FEW: usize = 56;
+
 /// Room for L and R.
 #[derive(Clone, Debug)]
 pub(super) struct Factors {

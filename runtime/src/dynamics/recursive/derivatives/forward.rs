@@ -4,7 +4,7 @@ use super::acting::{Acting, Yielding, add_response};
 use super::coriolis::{ArticulatedCoriolis, Coriolis};
 use super::coupled::Coupled;
 use super::dense::Dense;
-use super::factor::Factors;
+use super::factor::{FEW, Factors};
 use super::fold::is_folded;
 use super::inverse::InverseDerivatives;
 use super::product::negative_product;
@@ -38,9 +38,6 @@ pub struct ForwardDerivatives {
     acting: Acting,
     yielding: Yielding,
 }
-
-/// Up to so many speeds a product with M̄⁻¹ costs less than sweeps.
-const FEW: usize = 56;
 
 /// What turns pushes into rates.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 //! Trees of few speeds take the product `RᵀR` of [`factor`](super::factor), others the symmetric responses to unit forces of [`sweep`](super::sweep),
 //! eight at a time. Joints that carry several bodies and slender bodies have factors of their own: their trees take one unit force after the other.
 
-use super::factor::Factors;
+use super::factor::{FEW, Factors};
 use super::fold::is_folded;
 use super::sweep::{Push, Sweep, Tree};
 use super::{Branch, Sensitivity, branches};
@@ -16,9 +16,6 @@ use crate::spatial::shift_wrench;
 use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, Vector3, Vector6};
-
-/// Up to so many speeds the product costs less than the sweeps.
-const FEW: usize = 56;
 
 /// M̄⁻¹ of one mechanism, and the workspace that computing it takes.
 #[derive(Clone, Debug)]
