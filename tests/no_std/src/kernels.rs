@@ -23,6 +23,8 @@ pub fn of_library<T: Scalar>(displacement: T) -> T {
     sum
 }
 
+// In one function, all kernels of the library take the compiler minutes.
+#[inline(never)]
 fn of_joint<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
     joint: &J,
     displacement: T,

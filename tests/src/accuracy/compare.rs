@@ -65,7 +65,7 @@ impl Worst {
         kernel: &'static str,
         got: T,
         want: &Tracked,
-        place: &impl Fn() -> String,
+        place: &dyn Fn() -> String,
     ) {
         let got = got.wide();
         let unit = T::ULP * want.scale;
@@ -103,15 +103,25 @@ impl Worst {
         kernel: &'static str,
         got: &SMatrix<T, R, C>,
         want: &Grid<Tracked>,
-        place: &impl Fn() -> String,
+        place: &dyn Fn() -> String,
     ) {
         assert_eq!((want.rows, want.columns), (R, C), "{kernel}: shapes differ");
-        for i in 0..R {
-            for j in 0..C {
-                self.meet(kernel, got[(i, j)], want.at(i, j), &|| {
-                    format!("({i}, {j}), {}", place())
-                });
-            }
+        self.entries(kernel, got.as_slice(), want, place);
+    }
+
+    /// The same for numbers column by column: compiled once for a type, not for each shape.
+    fn entries<T: Measured>(
+        &mut self,
+        kernel: &'static str,
+        got: &[T],
+        want: &Grid<Tracked>,
+        place: &dyn Fn() -> String,
+    ) {
+        for (at, number) in got.iter().enumerate() {
+            let (i, j) = (at % want.rows, at / want.rows);
+            self.meet(kernel, *number, want.at(i, j), &|| {
+                format!("({i}, {j}), {}", place())
+            });
         }
     }
 

@@ -125,7 +125,7 @@ impl Against<'_> {
         &mut self,
         kernel: &'static str,
         got: &SMatrix<T, R, C>,
-        place: &impl Fn() -> String,
+        place: &dyn Fn() -> String,
     ) {
         self.worst.matrix(kernel, got, self.at.get(kernel), place);
     }
@@ -134,7 +134,7 @@ impl Against<'_> {
         &mut self,
         kernel: &'static str,
         got: &[SMatrix<T, R, C>],
-        place: &impl Fn() -> String,
+        place: &dyn Fn() -> String,
     ) {
         for (k, (slice, want)) in got.iter().zip(self.at.all(kernel)).enumerate() {
             let place = || format!("slice {k}, {}", place());
