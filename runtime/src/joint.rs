@@ -158,7 +158,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     /// Which of them this is the joint of: 0 but for a [`Member`].
     const BODY: usize = 0;
 
-    /// What the constants of the trait tell, but of a joint that knows it when it is made.
+    /// The constants of the trait as a value. A joint that is built at run time overrides it.
     fn facts(&self) -> Facts {
         Facts::of::<Self, N, K, S, C>()
     }
@@ -184,8 +184,8 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
         Self::BODIES
     }
 
-    /// How many of the last of the N stored scalars this joint does not use, of a type that is larger than it is: they are 0 whatever happens, and no part of the
-    /// joint's [layout](crate::erased::AnyJoint::layout), and as many of the last [`Joint::RELATIONS`] hold them there.
+    /// The number of unused scalars at the end of Q, where the type is larger than the joint. They are always 0, are not part of the joint's
+    /// [layout](crate::erased::AnyJoint::layout), and as many of the last [`Joint::RELATIONS`] hold them there.
     fn idle(&self) -> usize {
         0
     }

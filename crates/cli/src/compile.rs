@@ -30,8 +30,8 @@ A module in Rust needs nothing but the crate `hamel`, allocates nothing and work
 integrator takes. A module in C needs nothing but <math.h>, and its functions take doubles; the header says which entry is what.
 docs/compile.md says more.
 
-Not compiled, and refused with the element's name: springs in local coordinates that have no closed form, rests and states to be found from a
-pose.
+Not compiled, and refused with the element's name: wrenches that change with time, springs in local coordinates that have no closed form,
+rests and states to be found from a pose.
 
 Exit codes: 0 success; 1 a scene with mistakes or that cannot be compiled, a file that cannot be written; 2 wrong options; 130 interrupted.";
 
@@ -47,7 +47,7 @@ pub struct Args {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
-    /// Write this function; may be given several times [default: all but derivatives, those that are not too long]
+    /// Write this function; may be given several times [default: all but derivatives and the inverse mass matrix, those that are not too long]
     #[arg(long = "function", value_name = "NAME")]
     pub functions: Vec<FunctionName>,
 

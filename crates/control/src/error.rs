@@ -71,11 +71,11 @@ pub enum ControlError {
         /// The limit.
         limit: f64,
     },
-    /// A motion that does not fade by itself is reached by no input: no feedback is stable.
-    #[error("no input reaches a motion that does not fade by itself: {0}")]
+    /// A motion that does not decay by itself is reached by no input: no feedback is stable.
+    #[error("not stabilizable: no input reaches the mode with {0}, which does not decay by itself")]
     BeyondReach(Motion),
-    /// A motion that does not fade by itself is seen by no weight: the least cost leaves it alone.
-    #[error("no weight sees a motion that does not fade by itself: {0}")]
+    /// A motion that does not decay by itself is seen by no weight: the least cost leaves it alone.
+    #[error("not detectable: no weight sees the mode with {0}, which does not decay by itself")]
     Unseen(Motion),
     /// One of these two, of a mechanism about its goal.
     #[error("about the goal, most of all at joint `{joint}`: {cause}")]
@@ -125,7 +125,7 @@ pub enum ControlError {
     },
     /// Steps of one period are too long to foresee a fast motion.
     #[error(
-        "the period of {period} s times the rate of {rate:.3e} 1/s of the fastest motion about the goal, most of all of joint `{joint}`, is {:.3e}, and steps of order 4, which foresee it, are stable up to {limit}: make the period at most {:.1e} s, or the springs and dampers that it is due to weaker",
+        "the period of {period} s is too long: times {rate:.3e} 1/s, the rate of the fastest mode about the goal, most of all of joint `{joint}`, it is {:.3e}, and the steps of order 4 that predict the motion are stable up to {limit}. Make the period at most {:.1e} s, or the springs and dampers of that mode weaker",
         period * rate, limit / rate, period = Number(*.period), limit = Number(*.limit))]
     PeriodTooLong {
         /// The joint that moves fastest in it.

@@ -28,7 +28,7 @@ pub struct Optimum {
 /// What is minimised: the sum or the integral of `½ xᵀ Q x + ½ uᵀ R u`.
 #[derive(Clone, Copy, Debug)]
 pub struct Weighting<'a> {
-    /// Q: symmetric, not negative, and it sees every motion that does not fade by itself.
+    /// Q: symmetric, not negative, and it sees every motion that does not decay by itself.
     pub state: &'a DMatrix<f64>,
     /// R: symmetric, positive.
     pub input: &'a DMatrix<f64>,
@@ -37,7 +37,7 @@ pub struct Weighting<'a> {
 /// The optimum for `x′ = A x + B u`: `P = Q + AᵀPA − AᵀPB (R + BᵀPB)⁻¹ BᵀPA`, `K = (R + BᵀPB)⁻¹ BᵀPA`.
 ///
 /// # Errors
-/// [`ControlError::BeyondReach`] and [`ControlError::Unseen`] where a motion that does not fade by itself is reached by no input, or not seen by Q;
+/// [`ControlError::BeyondReach`] and [`ControlError::Unseen`] where a motion that does not decay by itself is reached by no input, or not seen by Q;
 /// [`ControlError::NotStabilizable`] where no solution is found; sizes that do not fit.
 pub fn discrete(
     a: &DMatrix<f64>,
@@ -170,7 +170,7 @@ fn check(
     solvable(a, b, weighting.state, time)
 }
 
-/// Whether each motion that does not fade by itself is reached by an input, and seen by Q.
+/// Whether each motion that does not decay by itself is reached by an input, and seen by Q.
 pub(super) fn solvable(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,

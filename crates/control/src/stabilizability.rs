@@ -1,7 +1,7 @@
-//! Whether feedback can hold a linear system: every motion that does not fade by itself must be in reach of an input.
+//! Whether feedback can hold a linear system: every motion that does not decay by itself must be in reach of an input.
 //!
 //! By the test of M. L. J. Hautus (*Controllability and observability conditions of linear autonomous systems*, 1969): `[A − λ, B]` has full
-//! rank at every eigenvalue λ of A whose motion does not fade. Asked before a Riccati equation is solved, since rounding makes such a motion fade
+//! rank at every eigenvalue λ of A whose motion does not decay. Asked before a Riccati equation is solved, since rounding makes such a motion decay
 //! or grow by 1e-16 to 1e-8 of the rates of A, and the solver would find a huge cost for it instead of none.
 
 use super::scales;
@@ -21,7 +21,7 @@ const NEARER: f64 = 0.1;
 /// Sweeps that make norms of rows and columns alike, to a factor of two or so.
 const SWEEPS: usize = 8;
 
-/// How a motion of `ẋ = A x` or `x′ = A x` that does not fade goes on.
+/// How a motion of `ẋ = A x` or `x′ = A x` that does not decay goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     /// The state that has the largest part in it.
@@ -70,7 +70,7 @@ pub fn beyond(a: &DMatrix<f64>, b: &DMatrix<f64>, time: Time) -> Option<Motion> 
     })
 }
 
-/// Whether the motion of an eigenvalue does not fade, or might not but for rounding: whether `A − μ` is regular at the nearest μ that does not.
+/// Whether the motion of an eigenvalue does not decay, or might not but for rounding: whether `A − μ` is regular at the nearest μ that does not.
 /// Nearby eigenvalues are each far less certain than that, by the root of a rounding where two are one; those into which rounding parts one that is double lie
 /// around it at like distances, so that one much nearer to μ tells of another motion.
 fn lasts(a: &DMatrix<f64>, value: Complex<f64>, all: &[Complex<f64>], time: Time) -> bool {

@@ -50,7 +50,7 @@ impl Display for Approach {
     }
 }
 
-/// The part of its largest value from which on what vanishes at an excluded configuration is 0 as far as motions can tell, ε^(1/4): relations that alone give a joint's Q determine its distance d
+/// What vanishes at an excluded configuration counts as 0 below this part of its largest value, ε^(1/4): relations that alone give a joint's Q determine its distance d
 /// from there with an error of ε/d. Rates of the dependent coordinates grow as 1/d, and so lose ε/d² of themselves: half of their digits at that d.
 const AT_END: f64 = 1.220_703_125e-4;
 

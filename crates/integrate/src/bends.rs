@@ -15,7 +15,7 @@ use hamel_runtime::elements::Element;
 /// How near to a bend a step is to end, rad or m, or parts of a limit of inputs, for distances of 1: some roundings.
 const NEAR: f64 = 1e-14;
 
-/// A bend that comes in a smaller part of the step is taken as one at its beginning: what rests there would not move on.
+/// A bend within this part of the beginning of a step counts as one at its beginning; otherwise what rests on it would never move on.
 const LEAST_PART: f64 = 1e-6;
 
 /// Tries at most to end on a bend. Each has twice the digits of the last but one, or more.
@@ -212,7 +212,7 @@ impl Bracket {
         self.last = Some(is_beyond);
     }
 
-    /// Where to look next. A function that begins at its zero tells nothing of the other one: the middle then.
+    /// The next trial point: regula falsi, or bisection where the function is zero at the left end.
     fn next(&self) -> f64 {
         let Self { low, high, .. } = self;
         if low.value * self.side <= NEAR {

@@ -1,4 +1,4 @@
-//! What rounding takes from the state in one step is given back in the next.
+//! Compensated summation of the state (Kahan): what rounding takes in one step is given back in the next.
 //!
 //! Over n steps, rounding errors add up to n units in the last place, or √n at best. Here every y and
 //! every ϕ keeps what the sum was too coarse to take (W. Kahan; here with the exact remainder of D. E. Knuth). It belongs to the

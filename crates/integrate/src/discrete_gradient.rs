@@ -35,7 +35,7 @@ const NEAR: f64 = 1e-3;
 pub(super) struct Correction {
     dynamics: Recursive,
     lambda: f64,
-    /// Whether λ has shaped the increments that come next, and they are near enough to what they come to for an energy to tell of.
+    /// Whether the next increments were computed with λ, and have converged enough for their energy to mean something.
     is_in_force: bool,
     /// Whether λ needed no change when last looked at.
     is_settled: bool,

@@ -4,6 +4,7 @@ use super::approach::Watch;
 use super::bends::Bends;
 use super::carried::Carried;
 use super::clock::Clock;
+use super::fixed_steps::is_last;
 use super::flow::Flow;
 use super::hybrid::{Guards, Hybrid};
 use super::kinks::Kinks;
@@ -29,9 +30,6 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use hamel_runtime::dynamics::Dynamics;
 use num_traits::Float;
-
-/// A remainder that exceeds a fixed step by less than this is taken as that step: it is rounding of the step count.
-pub(super) const FIXED_STRETCH: f64 = 1.0 + 1e-9;
 
 /// A remainder that exceeds a controlled step by less than this is taken at once: it saves a sliver of a step.
 const CONTROLLED_STRETCH: f64 = 1.01;
@@ -339,7 +337,7 @@ impl<'a> Driver<'a> {
     fn choose_step(&self, step: f64) -> (f64, bool) {
         let (remaining, step) = (self.clock.until(self.target()), step.min(self.resolving));
         match self.options.method {
-            Method::Fixed { .. } if remaining <= step * FIXED_STRETCH => (remaining, true),
+            Method::Fixed { .. } if is_last(remaining, step) => (remaining, true),
             Method::Fixed { .. } => (step, false),
             _ if remaining <= step * CONTROLLED_STRETCH => (remaining, true),
             // Two equal steps rather than a full one and a sliver.
@@ -396,7 +394,7 @@ impl<'a> Driver<'a> {
         }
         pacing.rounding.accept(error, joint, tolerance);
         let factor = pacing.controller.accept(part);
-        // Of rounding a shorter step has the same part of what is allowed. Where relations make more of it than a look at it tells, as near an end of a joint, it would be followed by ever shorter ones.
+        // Rounding takes the same share of the tolerance at any length of step. Near the end of a joint, relations amplify it beyond what was measured; steps would shrink without end.
         let is_of_relations = has_ends(self.flow.mechanism.bodies()[joint].joint());
         let factor = match allowed > 1.0 && is_of_relations {
             true => factor.max(1.0),

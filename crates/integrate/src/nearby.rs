@@ -1,4 +1,4 @@
-//! What small changes of ϕ and y make of v̄, to first order.
+//! How v̄ changes with small changes of ϕ and y, to first order.
 //!
 //! In the Lagrangian form y is v̄. In the Hamiltonian form v̄ = M̄(Q)⁻¹ p̄ changes with p̄ and with Q: of a top that spins at Ω, a tilt of 1e-9 rad at the same
 //! p̄ is a change of some 1e-9 Ω of the speeds across its axis.

@@ -15,7 +15,7 @@ const PATIENCE: f64 = 2e7;
 /// So many times the work done so far is too much: a night or more.
 const HOPELESS: f64 = 3e3;
 
-/// As many steps are too many from the first look on, where the mechanism is stiff: of the smallest one, half a month.
+/// So many steps still to come are too many for a stiff mechanism, from the first look on: half a month for the smallest one.
 const ENDLESS: f64 = 1e13;
 
 /// Steps that are less than this part of those before still shrink.
@@ -44,7 +44,7 @@ impl Prospect {
     /// Whether the steps so far have led far enough to `time`.
     ///
     /// # Errors
-    /// As many steps more, at the pace of the last ones, as would take a night or more.
+    /// If the remaining steps, at the present pace, would take a night or longer.
     pub(super) fn check(
         &mut self,
         flow: &Flow<'_>,

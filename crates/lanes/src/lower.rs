@@ -138,7 +138,10 @@ impl Lowering<'_> {
         match self.graph.nodes[node as usize].operation {
             Of::Constant(bits) => self.number(f64::from_bits(bits)),
             Of::Input(_, place) => Operand::Row(place),
-            _ => Operand::Row(self.rows.get(&node.into()).copied().unwrap_or(0)),
+            _ => {
+                let row = self.rows.get(&node.into());
+                Operand::Row(*row.expect("nodes are computed before what reads them"))
+            }
         }
     }
 
@@ -188,11 +191,19 @@ impl Lowering<'_> {
     }
 
     /// The factors of a product that is computed within a sum.
-    fn factors(&mut self, node: u32) -> Option<[Operand; 2]> {
+    fn factors(&mut self, node: u32) -> Option<(u32, Operand)> {
         let Of::Product(a, b) = self.graph.nodes[node as usize].operation else {
             return None;
         };
-        self.inner[node as usize].then(|| [self.operand(a), self.operand(b)])
+        if !self.inner[node as usize] {
+            return None;
+        }
+        let (a, b) = (self.operand(a), self.operand(b));
+        let (first, second) = match a {
+            Operand::Row(_) => (a, b),
+            Operand::Number(_) => (b, a),
+        };
+        Some((self.in_row(first), second))
     }
 
     fn node(&mut self, node: u32) {
@@ -244,19 +255,19 @@ impl Lowering<'_> {
     /// a + b, or, with `minus`, a − b.
     fn sum(&mut self, node: u32, [a, b]: [u32; 2], minus: bool) {
         let operation = match (self.factors(a), self.factors(b)) {
-            (Some([a, b]), Some([c, d])) => {
+            (Some((a, b)), Some((c, d))) => {
                 let row = self.row(node);
-                Operation::Products(minus, [a, b, c, d], row)
+                Operation::Products(minus, [a, c], [b, d], row)
             }
-            (Some([first, second]), None) => {
+            (Some((first, second)), None) => {
                 let third = self.operand(b);
                 let what = if minus { Three::Less } else { Three::AddTo };
-                Operation::Three(what, [first, second, third], self.row(node))
+                Operation::Three(what, first, [second, third], self.row(node))
             }
-            (None, Some([first, second])) => {
+            (None, Some((first, second))) => {
                 let third = self.operand(a);
                 let what = if minus { Three::From } else { Three::AddTo };
-                Operation::Three(what, [first, second, third], self.row(node))
+                Operation::Three(what, first, [second, third], self.row(node))
             }
             (None, None) => {
                 let what = if minus { Two::Subtract } else { Two::Add };

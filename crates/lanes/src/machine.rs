@@ -163,21 +163,15 @@ impl Run<'_> {
                     Two::Larger => self.two(to, a, b, |a, b| Lane::<false>(a).larger(Lane(b)).0),
                 });
             }
-            Operation::Three(what, [a, b, c], to) => {
-                let (to, Operand::Row(a)) = (self.row(*to), a) else {
-                    return;
-                };
-                let a = self.row(*a);
+            Operation::Three(what, a, [b, c], to) => {
+                let (to, a) = (self.row(*to), self.row(*a));
                 with!(self, [b: *b, c: *c], match what {
                     Three::AddTo => self.three(to, a, b, c, |a, b, c| a * b + c),
                     Three::Less => self.three(to, a, b, c, |a, b, c| a * b - c),
                     Three::From => self.three(to, a, b, c, |a, b, c| c - a * b),
                 });
             }
-            Operation::Products(minus, [a, b, c, d], to) => {
-                let (Operand::Row(a), Operand::Row(c)) = (a, c) else {
-                    return;
-                };
+            Operation::Products(minus, [a, c], [b, d], to) => {
                 let (to, a, c) = (self.row(*to), self.row(*a), self.row(*c));
                 with!(self, [b: *b, d: *d], match minus {
                     false => self.four(to, [a, c], b, d, |a, b, c, d| a * b + c * d),

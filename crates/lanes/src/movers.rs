@@ -32,7 +32,7 @@ pub struct Lanes<'a> {
 }
 
 impl<'a> Lanes<'a> {
-    /// The equations of `sweep` for rows like those of `sample`: which of their numbers differ, all rows may; a row that differs in another goes by the tree.
+    /// The equations of `sweep` for rows like those of `sample`. Numbers that differ within `sample` may differ in every row. A row that changes another number moves by the tree.
     ///
     /// # Errors
     /// Why no row goes side by side, in words.

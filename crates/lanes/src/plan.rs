@@ -88,7 +88,7 @@ impl Plan {
         for (place, (own, known)) in row.numbers.iter().zip(&self.numbers).enumerate() {
             if differing.next_if_eq(&&place).is_none() && own.to_bits() != known.to_bits() {
                 return Err(
-                    "it differs from the sample in a number in which the rows of that agree".into(),
+                    "it changes a number that is the same in all rows of the sample".into(),
                 );
             }
         }
@@ -103,8 +103,8 @@ impl Plan {
 
 /// One step of the row's model, where the numbers at `differing` are given.
 ///
-/// Numbers that stand for those are put in their place, and found again on the graph. Were one of them computed with on the way, the graph would hold a number that comes of it; so the graphs of two
-/// sets of such numbers must be one.
+/// Numbers that stand for those are put in their place, and found again on the graph. Were one of them used in arithmetic before, the graph would hold a constant that was computed from it. Two graphs, of two
+/// sets of such numbers, show that: they must be the same.
 fn step(row: &Described, differing: &[usize]) -> Result<Stepping, String> {
     let scheme = Scheme {
         matrix: row.tableau.matrix,

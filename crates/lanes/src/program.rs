@@ -45,10 +45,10 @@ pub enum Three {
 pub enum Operation {
     /// Of two operands.
     Two(Two, [Operand; 2], u32),
-    /// Of a product and a third.
-    Three(Three, [Operand; 3], u32),
-    /// a b + c d, or, where true, a b − c d.
-    Products(bool, [Operand; 4], u32),
+    /// Of a product and a third: a, then b and c.
+    Three(Three, u32, [Operand; 2], u32),
+    /// a b + c d, or, where true, a b − c d: a and c, then b and d.
+    Products(bool, [u32; 2], [Operand; 2], u32),
     /// −a.
     Opposite(u32, u32),
     /// √a.
@@ -88,8 +88,8 @@ impl Operation {
         };
         match self {
             Self::Two(_, of, _) => rows(of),
-            Self::Three(_, of, _) => rows(of),
-            Self::Products(_, of, _) => rows(of),
+            Self::Three(_, first, others, _) => [vec![*first], rows(others)].concat(),
+            Self::Products(_, first, others, _) => [first.to_vec(), rows(others)].concat(),
             Self::Opposite(of, _) | Self::Root(of, _) | Self::SinCos(of, _) => vec![*of],
             Self::Call(_, first, second, _) => {
                 let both: Vec<Operand> = std::iter::once(*first).chain(*second).collect();
@@ -127,12 +127,14 @@ impl Operation {
                 of.iter_mut().for_each(&mut operand);
                 *to = place(*to);
             }
-            Self::Three(_, of, to) => {
-                of.iter_mut().for_each(&mut operand);
+            Self::Three(_, first, others, to) => {
+                others.iter_mut().for_each(&mut operand);
+                *first = place(*first);
                 *to = place(*to);
             }
-            Self::Products(_, of, to) => {
-                of.iter_mut().for_each(&mut operand);
+            Self::Products(_, first, others, to) => {
+                others.iter_mut().for_each(&mut operand);
+                first.iter_mut().for_each(|row| *row = place(*row));
                 *to = place(*to);
             }
             Self::Opposite(of, to) | Self::Root(of, to) => {

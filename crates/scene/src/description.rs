@@ -209,7 +209,7 @@ pub struct CouplingDescription {
 /// One of several bodies of a joint. They follow each other, in the order of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// What the joint calls the body; the body's own name is that of the joint, a point, and this.
+    /// The name of the body within its joint; its full name is `joint.name`.
     pub name: Located<String>,
     /// Its place among the bodies of the joint, from 0.
     pub number: usize,

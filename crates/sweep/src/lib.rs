@@ -11,7 +11,7 @@ mod run;
 pub mod summary;
 
 pub use motion::{Sweep, SweepError};
-pub use results::{Outcome, Row};
+pub use results::{Outcome, Row, UnknownOutcome};
 pub use run::{Block, ByTree, Cells, Mover, Movers, Watch, Write, run, run_by};
 
 use hamel::registry::JointRegistry;

@@ -29,6 +29,36 @@ impl fmt::Display for Outcome {
     }
 }
 
+/// What [`Outcome`] writes, read again.
+impl std::str::FromStr for Outcome {
+    type Err = UnknownOutcome;
+
+    fn from_str(text: &str) -> Result<Self, UnknownOutcome> {
+        if text == "ended" {
+            return Ok(Self::Ended);
+        }
+        if let Some(name) = text.strip_prefix("event ") {
+            return Ok(Self::Event(name.to_owned()));
+        }
+        match text.strip_prefix("failed: ") {
+            Some(cause) => Ok(Self::Failed(cause.to_owned())),
+            None => Err(UnknownOutcome),
+        }
+    }
+}
+
+/// A text that is no outcome.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UnknownOutcome;
+
+impl fmt::Display for UnknownOutcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "it is none of `ended`, `event NAME`, `failed: CAUSE`")
+    }
+}
+
+impl std::error::Error for UnknownOutcome {}
+
 /// What came of one row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {

@@ -23,7 +23,7 @@ pub trait Movers: Sync {
 
 /// What moves rows on one thread.
 pub trait Mover {
-    /// The results of rows, each of which depends on its row alone; none where `watch` tells to stop. Says on the way how many are done.
+    /// The results of rows, as many as there are rows, each of which depends on its row alone; none where `watch` tells to stop. Says on the way how many are done.
     fn rows(&mut self, rows: &[Cells], watch: Watch<'_>) -> Option<Vec<Row>>;
 }
 
@@ -146,6 +146,9 @@ pub fn run<E: Send>(
 ///
 /// # Errors
 /// Those of [`run`].
+///
+/// # Panics
+/// Where a mover gives fewer or more results than rows.
 pub fn run_by<E: Send>(
     movers: &dyn Movers,
     workers: Option<NonZero<usize>>,
@@ -189,10 +192,16 @@ fn work<E: Send, N: FnMut() -> Result<Option<Block>, E> + Send>(
             return;
         };
         let rows = &open.block.rows[first..];
-        let Some(moved) = mover.rows(&rows[..rows.len().min(taken)], watch) else {
+        let rows = &rows[..rows.len().min(taken)];
+        let Some(moved) = mover.rows(rows, watch) else {
             locked(feed).is_over = true;
             return;
         };
+        assert_eq!(
+            moved.len(),
+            rows.len(),
+            "a mover gives a result for each row"
+        );
         if let Some(results) = open.put(first, moved)
             && let Err(error) = write(&open.block, &results)
         {

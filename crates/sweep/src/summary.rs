@@ -2,9 +2,10 @@
 //!
 //! Memory is bounded by the number of columns: [`Figures`] are found in [`PASSES`] passes over the results, and are exact.
 
+use crate::Outcome;
 use std::collections::BTreeMap;
 
-/// The parts of all values that quantiles split off.
+/// The probabilities of the quantiles.
 pub const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 
 /// How often [`Selection`] sees all rows.
@@ -12,6 +13,9 @@ pub const PASSES: u32 = 64_u32.div_ceil(DIGIT);
 
 /// Bits of a number by which one pass narrows what a quantile may be.
 const DIGIT: u32 = 13;
+
+/// The sum of 2⁴⁰ doubles times this is a double. It is a power of two: products with it are exact but for values below 1e-295.
+const SCALE: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// Kinds of causes that are told apart.
 const MOST_CAUSES: usize = 1000;
@@ -25,7 +29,7 @@ pub struct Figures {
     pub mean: f64,
     /// The least.
     pub min: f64,
-    /// By [`QUANTILES`]: the least value that so many are not above.
+    /// By [`QUANTILES`]: the smallest value with at least that share of values at or below it.
     pub quantiles: [f64; 5],
     /// The greatest.
     pub max: f64,
@@ -41,6 +45,7 @@ pub struct Selection {
 #[derive(Clone, Debug)]
 struct Column {
     count: u64,
+    /// Of the values times [`SCALE`].
     sum: f64,
     rounding: f64,
     min: f64,
@@ -118,6 +123,7 @@ impl Column {
             self.min = self.min.min(value);
             self.max = self.max.max(value);
             // Neumaier's sum.
+            let value = value * SCALE;
             let sum = self.sum + value;
             self.rounding += match self.sum.abs() >= value.abs() {
                 true => (self.sum - sum) + value,
@@ -176,7 +182,7 @@ impl Column {
         }
         Figures {
             count: self.count,
-            mean: (self.sum + self.rounding) / self.count as f64,
+            mean: (self.sum + self.rounding) / self.count as f64 / SCALE,
             min: self.min,
             quantiles,
             max: self.max,
@@ -222,14 +228,14 @@ pub struct Causes {
 }
 
 impl Causes {
-    /// Takes the outcome of the row of this number, from 1, as tables have it.
-    pub fn see(&mut self, row: u64, outcome: &str) {
-        if let Some(cause) = outcome.strip_prefix("failed: ") {
-            note(&mut self.failures, without_numbers(cause), cause, row);
-        } else if let Some(name) = outcome.strip_prefix("event ") {
-            note(&mut self.events, name.to_owned(), name, row);
-        } else {
-            self.ended += 1;
+    /// Takes the outcome of the row of this number, from 1.
+    pub fn see(&mut self, row: u64, outcome: &Outcome) {
+        match outcome {
+            Outcome::Ended => self.ended += 1,
+            Outcome::Event(name) => note(&mut self.events, name.clone(), name, row),
+            Outcome::Failed(cause) => {
+                note(&mut self.failures, without_numbers(cause), cause, row);
+            }
         }
     }
 
@@ -332,6 +338,12 @@ mod tests {
     }
 
     #[test]
+    fn the_mean_of_large_values_is_a_number() {
+        let found = selected(&[1e308, 1e308, 1.5e308, 0.5e308]);
+        assert_eq!((found.count, found.mean), (4, 1e308));
+    }
+
+    #[test]
     fn causes_that_differ_by_numbers_are_one() {
         let mut causes = Causes::default();
         for (row, outcome) in [
@@ -345,7 +357,7 @@ mod tests {
         .into_iter()
         .enumerate()
         {
-            causes.see(row as u64 + 1, outcome);
+            causes.see(row as u64 + 1, &outcome.parse().expect("an outcome"));
         }
         let told = causes.failures();
         let told: Vec<_> = told.iter().map(|one| (one.count, one.row)).collect();

@@ -84,7 +84,7 @@ pub enum MechanismError {
         /// What is wrong with them.
         cause: MassError,
     },
-    /// Numbers that are finite each, and not what the mechanism makes of them.
+    /// A value computed from finite numbers overflows.
     #[error("body `{body}`: {what} is beyond the range of numbers")]
     Overflow {
         /// The body.

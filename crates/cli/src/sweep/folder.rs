@@ -6,7 +6,7 @@ use super::table::{self, Part};
 use hamel_console::files::{IsOwn, Lock, admit, first_line, new_file};
 use hamel_console::output::Failure;
 use hamel_lanes::Ways;
-use hamel_sweep::{Block, Row};
+use hamel_sweep::{Block, Outcome, Row};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -127,7 +127,7 @@ impl Folder {
     pub fn read(
         &self,
         columns: usize,
-        see: &mut dyn FnMut(u64, &str, &[f64]),
+        see: &mut dyn FnMut(u64, &Outcome, &[f64]),
     ) -> Result<(), Failure> {
         for number in 0..self.parts() {
             let path = self.part(number);
@@ -136,8 +136,10 @@ impl Folder {
             let mut fits = true;
             table::read_part(&path, self.format, columns, &mut |row, outcome, numbers| {
                 expected += 1;
-                fits &= row == expected;
-                see(row, outcome, numbers);
+                match outcome.parse() {
+                    Ok(outcome) if row == expected => see(row, &outcome, numbers),
+                    _ => fits = false,
+                }
             })?;
             if !fits || expected != end {
                 return Err(table::unreadable(

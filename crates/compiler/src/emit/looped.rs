@@ -174,7 +174,7 @@ impl Writer<'_> {
             .collect();
         let mut lines = lowering.lines;
         let row = (!values.is_empty()).then(|| {
-            let rows = group.iter().map(|&block| plan.rows[block].unwrap_or(0));
+            let rows = group.iter().map(|&block| row_of(plan, block));
             let place = tables.place(rows.collect());
             Line::Row(Row { place, values })
         });
@@ -207,7 +207,10 @@ impl Writer<'_> {
     fn leave_rows(&mut self, group: &[usize]) {
         for &block in group {
             let outputs = &self.plan.blocks.blocks[block].outputs;
-            let row = self.plan.rows[block].unwrap_or(0);
+            if outputs.is_empty() {
+                continue;
+            }
+            let row = row_of(self.plan, block);
             let entries = outputs.iter().enumerate();
             let formulas =
                 entries.map(|(entry, &node)| (node, Formula::Row(outputs.len(), row, entry)));
@@ -232,15 +235,19 @@ impl Writer<'_> {
                 std::cmp::Ordering::Equal => "own",
                 std::cmp::Ordering::Greater => "child",
             };
-            let rows = group.iter().map(|&member| {
-                let source = plan.interfaces[member].sources[ordinal];
-                plan.rows[source].unwrap_or(0)
-            });
+            let rows = group
+                .iter()
+                .map(|&member| row_of(plan, plan.interfaces[member].sources[ordinal]));
             let place = tables.place(rows.collect());
             (self.names.claim(name), source.outputs.len(), place)
         };
         sources.iter().enumerate().map(source).collect()
     }
+}
+
+/// The row in which a block leaves its values.
+fn row_of(plan: &Plan, block: usize) -> usize {
+    plan.rows[block].expect("a block that leaves values has a row")
 }
 
 /// What stands for a node that no block computes, outside of loops.

@@ -1,4 +1,4 @@
-//! What each joint follows: itself, and in the end.
+//! For each mimic joint: its direct leader, and the leader at the end of the chain.
 
 use super::graph::{Law, Node, name};
 use crate::description::MimicDescription;

@@ -37,11 +37,17 @@ pub(super) fn elastic(value: &Value<'_>, sink: &mut Sink) -> Option<Located<Elas
     };
     let rotor = fields.required("rotor", sink);
     let rotor = rotor.and_then(|rotor| per_freedom(&rotor, sink));
-    let mut number = |key, default| match fields.optional(key) {
-        Some(value) => value.not_negative(sink).map(|number| number.value),
-        None => Some(default),
+    let ratio = match fields.optional("ratio") {
+        // The inertia of the rotor as the joint feels it is ratio² times its own: a motor without inertia has no motion.
+        Some(value) => value
+            .number_within(|number| number > 0.0, "above 0", sink)
+            .map(|number| number.value),
+        None => Some(1.0),
     };
-    let (ratio, backlash) = (number("ratio", 1.0), number("backlash", 0.0));
+    let backlash = match fields.optional("backlash") {
+        Some(value) => value.not_negative(sink).map(|number| number.value),
+        None => Some(0.0),
+    };
     fields.finish(sink);
     let (stiffness, backlash, ratio) = (stiffness?.value, backlash?, ratio?);
     if backlash > 0.0 && matches!(stiffness, PerFreedom::Each(_)) {
