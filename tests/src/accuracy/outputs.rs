@@ -43,8 +43,21 @@ where
     J: Joint<N, K, S, C>,
 {
     let mut all = formulas(joint, at);
+    all.push(moved(joint, at));
     all.extend(solutions(joint, at).map(|solution| solution()));
     all
+}
+
+/// Φ(Q, ϕ): a formula, or, where relations alone give it, found by Newton's method.
+pub(crate) fn moved<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    joint: &J,
+    at: &Arguments<T, N, K, S>,
+) -> Output<T>
+where
+    T: Scalar,
+    J: Joint<N, K, S, C>,
+{
+    ("retract", flat(&joint.retract(&at.q, &at.phi)))
 }
 
 /// Kernels that are solutions of equations where Φ is not exp: each is computed when it is asked for.
@@ -109,7 +122,6 @@ where
             flat_all(&joint.speed_basis_gradient(q)),
         ),
         ("configuration_rate", flat(&joint.configuration_rate(q, v))),
-        ("retract", flat(&joint.retract(q, &at.phi))),
         ("residual", vec![joint.residual(q)]),
         ("singularity", vec![joint.singularity(q)]),
         (

@@ -1,7 +1,7 @@
 //! A joint of any type and any parameters, as the search sees it: numbers in, numbers out.
 
 use super::traced::{Traced, notes_of};
-use crate::accuracy::{Arguments, Case, Output, arguments, formulas, outputs, solutions};
+use crate::accuracy::{Arguments, Case, Output, arguments, formulas, moved, outputs, solutions};
 use hamel::joint::Joint;
 use hamel::nalgebra::SVector;
 use hamel::scalar::Scalar;
@@ -50,10 +50,14 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
 
     fn notes(&self, case: &Case) -> Vec<f64> {
         let at = self.arguments::<Traced>(case);
-        let mut notes = notes_of(|| formulas(&self.0, &at));
+        let mut notes = notes_of(usize::MAX, || formulas(&self.0, &at));
+        let of_retract = match J::RELATIONS {
+            [] => usize::MAX,
+            _ => OF_SOLUTION,
+        };
+        notes.extend(notes_of(of_retract, || moved(&self.0, &at)));
         for solution in solutions(&self.0, &at) {
-            let of_solution = notes_of(solution);
-            notes.extend(of_solution.into_iter().take(OF_SOLUTION));
+            notes.extend(notes_of(OF_SOLUTION, solution));
         }
         notes
     }

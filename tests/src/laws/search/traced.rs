@@ -11,7 +11,8 @@ use num_traits::{One, Zero};
 use std::cell::RefCell;
 
 thread_local! {
-    static NOTES: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
+    /// The notes, and how many are taken.
+    static NOTES: RefCell<(Vec<f64>, usize)> = const { RefCell::new((Vec::new(), 0)) };
 }
 
 /// A double whose operations are noted.
@@ -19,14 +20,18 @@ thread_local! {
 pub(super) struct Traced(pub f64);
 
 fn note(value: f64) {
-    NOTES.with_borrow_mut(|notes| notes.push(value));
+    NOTES.with_borrow_mut(|(notes, most)| {
+        if notes.len() < *most {
+            notes.push(value);
+        }
+    });
 }
 
-/// What `work` notes, in order: kernels do not branch, so that the same place means the same thing at every configuration.
-pub(super) fn notes_of<T>(work: impl FnOnce() -> T) -> Vec<f64> {
-    NOTES.with_borrow_mut(Vec::clear);
+/// The first `most` notes of `work`, in order: kernels do not branch, so that the same place means the same thing at every configuration.
+pub(super) fn notes_of<T>(most: usize, work: impl FnOnce() -> T) -> Vec<f64> {
+    NOTES.set((vec![], most));
     work();
-    NOTES.take()
+    NOTES.take().0
 }
 
 macro_rules! implement_operators {
