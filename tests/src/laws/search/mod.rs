@@ -55,7 +55,7 @@ const OF_ONE_PATTERN: usize = 2;
 /// How much is looked at.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Sets of parameters beside the example.
+    /// Sets of parameters beside the example, at least, in whole rounds over the parameters.
     pub sets: usize,
     /// Lines at the example of the parameters, those through home first; at each other set a third of it.
     pub lines: usize,
@@ -75,6 +75,14 @@ impl Effort {
         critical: 6,
         samples: 8,
         cases: 200,
+    };
+    /// What a plain test takes of a joint of relations, whose kernels solve equations. Its parameters are those of the example, and all lengths scaled.
+    pub const RELATIONS: Self = Self {
+        sets: 0,
+        lines: 2,
+        critical: 2,
+        samples: 4,
+        cases: 40,
     };
     /// What the sweep takes: minutes a joint.
     pub const SWEEP: Self = Self {
@@ -245,7 +253,11 @@ impl Search<'_> {
             [home, there].map(|q| joint.notes(&place.still(q))).concat()
         };
         let spec = &self.derived.spec;
-        let axes = (0..example.len()).map(|index| Axis {
+        let wanted = match self.effort.sets {
+            0 => 0,
+            _ => example.len(),
+        };
+        let axes = (0..wanted).map(|index| Axis {
             spec,
             start: example,
             index,
