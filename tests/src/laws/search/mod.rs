@@ -79,10 +79,10 @@ impl Effort {
     /// What a plain test takes of a joint of relations, whose kernels solve equations. Its parameters are those of the example, and all lengths scaled.
     pub const RELATIONS: Self = Self {
         sets: 0,
-        lines: 2,
-        critical: 2,
+        lines: 5,
+        critical: 4,
         samples: 4,
-        cases: 40,
+        cases: 100,
     };
     /// What the sweep takes: minutes a joint.
     pub const SWEEP: Self = Self {
