@@ -12,8 +12,8 @@ const LONGEST: usize = 36;
 #[derive(Clone, Debug, Default)]
 pub struct NameSet {
     taken: BTreeSet<String>,
-    /// The number that a name may have next: names in long files are wished for thousands of times.
-    next: BTreeMap<String, usize>,
+    /// For each wish the identifier that it becomes, and the number that this may have next: names in long files are wished for thousands of times.
+    next: BTreeMap<String, (String, usize)>,
 }
 
 impl NameSet {
@@ -29,17 +29,17 @@ impl NameSet {
 
     /// Takes a name: the one wished for, or that one with a number where it is taken or is a keyword.
     pub fn claim(&mut self, wish: &str) -> String {
-        if let Some(next) = self.next.get_mut(wish) {
+        if let Some((identifier, next)) = self.next.get_mut(wish) {
             loop {
-                let name = format!("{}_{next}", identifier(wish));
+                let name = format!("{identifier}_{next}");
                 *next += 1;
                 if self.taken.insert(name.clone()) {
                     return name;
                 }
             }
         }
-        self.next.insert(wish.to_owned(), 2);
         let name = identifier(wish);
+        self.next.insert(wish.to_owned(), (name.clone(), 2));
         match self.taken.insert(name.clone()) {
             true => name,
             false => self.claim(wish),

@@ -12,7 +12,7 @@ use hamel_compiler::model::Model;
 use hamel_compiler::{Error, scene_of};
 use hamel_scene::{Scene, SceneDescription};
 use hamel_tests::c99::agree;
-use hamel_tests::compiled::Point;
+use hamel_tests::compiled::{Functions, Point};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -329,10 +329,11 @@ fn compiled_scenes_in_c_are_the_tree() {
 fn compiled_scenes_are_the_tree() {
     let scene = scene("", ALL);
     let model = compiled(ALL).unwrap_or_else(|error| panic!("{error}"));
+    let functions = Functions::new(&model);
     for seed in 0..4 {
         let point = || Point::random(model.clone(), &scene.mechanism, seed);
-        point().agrees();
-        point().derivatives_agree();
+        point().agrees_with(&functions);
+        point().derivatives_agree_with(&functions);
     }
 }
 

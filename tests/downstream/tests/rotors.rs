@@ -9,7 +9,7 @@ use hamel::mechanism::Mechanism;
 use hamel_compiler::scene_of;
 use hamel_scene::{Scene, SceneDescription};
 use hamel_tests::c99::agree;
-use hamel_tests::compiled::Point;
+use hamel_tests::compiled::{Functions, Point};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -296,10 +296,11 @@ fn compiled_scenes_are_the_tree() {
         })
         .collect();
     for (mechanism, model) in &cases {
+        let functions = Functions::new(model);
         for seed in 0..4 {
             let point = || Point::random(model.clone(), mechanism, seed);
-            point().agrees();
-            point().derivatives_agree();
+            point().agrees_with(&functions);
+            point().derivatives_agree_with(&functions);
         }
     }
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c99/rotors");

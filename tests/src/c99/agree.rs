@@ -1,7 +1,7 @@
 //! Modules in C held against the lines that they are written from, bit by bit, and against the tree.
 
 use super::{Module, Program};
-use crate::compiled::Point;
+use crate::compiled::{Functions, Point};
 use hamel::mechanism::Mechanism;
 use hamel_compiler::emit::Function;
 use hamel_compiler::functions::{Kind, Loops, compile};
@@ -11,27 +11,33 @@ use std::cell::RefCell;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Operations of a module from which on it is not optimised here.
+/// Operations of a function of derivatives from which on a compiler is not done with it soon.
 const LONG: usize = 20_000;
+
+/// The same where many scenes are compiled.
+const LONG_OF_MANY: usize = 5_000;
+
+/// Operations of a module from which on it is not optimised: compilers take more time for a long function than for many short ones.
+const OPTIMISED: usize = 10_000;
 
 /// States of each scene whose values are compared.
 const STATES: u64 = 3;
 
 /// The functions of a model that are not too long, as a module has them; of derivatives those that a compiler is done with soon.
 pub fn functions(model: &Model) -> Vec<Function> {
-    functions_with(model, Loops::default())
+    functions_with(model, Loops::default(), LONG)
 }
 
-/// The same with loops as said.
-fn functions_with(model: &Model, loops: Loops) -> Vec<Function> {
+/// The same with loops as said, and derivatives of fewer operations than `long`.
+fn functions_with(model: &Model, loops: Loops, long: usize) -> Vec<Function> {
     let function = |kind: Kind| {
         let function = compile(model, kind, loops).ok()?.function;
-        let long = [
+        let derivatives = [
             Kind::ForwardDerivatives,
             Kind::InverseDerivatives,
             Kind::InverseMassMatrix,
         ];
-        let is_short = !long.contains(&kind) || function.written() < LONG;
+        let is_short = !derivatives.contains(&kind) || function.written() < long;
         is_short.then_some(function)
     };
     Kind::ALL.into_iter().filter_map(function).collect()
@@ -55,7 +61,7 @@ pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)]) {
         .iter()
         .map(|(_, model)| model)
         .zip(loops.into_iter().cycle());
-    let functions = models.map(|(model, loops)| functions_with(model, loops));
+    let functions = models.map(|(model, loops)| functions_with(model, loops, LONG_OF_MANY));
     let functions: Vec<Vec<Function>> = functions.collect();
     let named = scenes.iter().zip(&functions).enumerate();
     let modules: Vec<Module<'_>> = named
@@ -64,8 +70,7 @@ pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)]) {
             model,
             functions,
             optimisation: match functions.iter().map(Function::written).sum::<usize>() {
-                // Compilers take more time for a long function than for many short ones.
-                ..LONG => "-O1",
+                ..OPTIMISED => "-O1",
                 _ => "-O0",
             },
         })
@@ -75,11 +80,12 @@ pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)]) {
     };
     let program = RefCell::new(program);
     for (i, (mechanism, model)) in scenes.iter().enumerate() {
-        let by = |_: &Model, (kind, loops): (Kind, Loops), q: &[f64], v: &[f64], u: &[f64]| {
+        let others = Functions::new(model);
+        let by = |(kind, loops): (Kind, Loops), q: &[f64], v: &[f64], u: &[f64]| {
             let mut compiled = functions[i].iter();
             // What would be too long is not in the module.
             let Some(function) = compiled.find(|one| one.name == kind.name()) else {
-                return crate::compiled::evaluate(model, (kind, loops), q, v, u);
+                return others.evaluate((kind, loops), q, v, u);
             };
             let given = |argument| match argument {
                 Argument::Configuration => q,

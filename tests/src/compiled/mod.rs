@@ -1,8 +1,10 @@
 //! Mechanisms as the scene compiler takes them, and what it makes of them in double precision.
 
+mod functions;
 mod point;
 mod slopes;
 
+pub use functions::Functions;
 pub use point::{Evaluate, Point};
 
 use crate::random;
@@ -14,21 +16,25 @@ use hamel::elements::{
 use hamel::mechanism::{Body as TreeBody, Mechanism};
 use hamel::nalgebra::{DMatrix, Vector3};
 use hamel::time_function::Law;
-use hamel_codegen::derived::{KernelKind, Method};
+use hamel_codegen::derived::{Derived, KernelKind, Method};
 use hamel_compiler::JointType;
-use hamel_compiler::functions::{Kind, Loops, compile_with};
-use hamel_compiler::graph::Argument;
 use hamel_compiler::model::{Body, Coupling, Elements, Model};
-use hamel_compiler::prune::{Pruning, prune};
 use rand::RngExt;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::rc::Rc;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock, Mutex};
+
+/// The library's joints, each derived when it is first asked for.
+static DERIVED: LazyLock<BTreeMap<&'static str, Mutex<Option<Derived>>>> = LazyLock::new(|| {
+    hamel_joints::specs()
+        .map(|(name, _)| (name, Mutex::default()))
+        .collect()
+});
 
 thread_local! {
-    /// The library's joints, each derived when it is first asked for.
+    /// Their types, which are not shared by threads.
     static JOINTS: RefCell<BTreeMap<&'static str, Rc<JointType>>> = RefCell::default();
 }
 
@@ -40,9 +46,12 @@ pub fn joint(name: &str) -> Option<Rc<JointType>> {
     let (name, text) = hamel_joints::specs().find(|(known, _)| *known == name)?;
     JOINTS.with_borrow_mut(|joints| {
         let entry = joints.entry(name).or_insert_with(|| {
-            let derived = hamel_codegen::derive(text, &format!("{name}.joint"));
-            let derived = derived.unwrap_or_else(|errors| panic!("{errors}"));
-            Rc::new(JointType::new(derived).expect("its products take little work"))
+            let mut derived = DERIVED[name].lock().expect("no derivation panics");
+            let derived = derived.get_or_insert_with(|| {
+                let derived = hamel_codegen::derive(text, &format!("{name}.joint"));
+                derived.unwrap_or_else(|errors| panic!("{errors}"))
+            });
+            Rc::new(JointType::new(derived.clone()).expect("its products take little work"))
         });
         Some(Rc::clone(entry))
     })
@@ -120,25 +129,6 @@ fn body(body: &TreeBody, first: &Rc<JointType>, rotors: [&[f64]; 2], driven: boo
         effort: vec![],
         driven,
     }
-}
-
-/// The values of a compiled function at a state; `speeds` are the momenta where it takes these.
-pub fn evaluate(
-    model: &Model,
-    (kind, loops): (Kind, Loops),
-    q: &[f64],
-    speeds: &[f64],
-    inputs: &[f64],
-) -> Vec<f64> {
-    let links = prune(model, Pruning::ALL);
-    let function = compile_with(model, &links, kind, loops).function;
-    function.evaluate(|argument| match argument {
-        Argument::Configuration => q.to_vec(),
-        Argument::Speeds | Argument::Momenta => speeds.to_vec(),
-        Argument::Efforts | Argument::Accelerations => inputs.to_vec(),
-        // Of steps of motions alone.
-        Argument::Given => vec![],
-    })
 }
 
 /// Random elements for a mechanism: springs of both kinds at half of its joints each, in local coordinates where these have a closed form, springs between points of every third body and of any

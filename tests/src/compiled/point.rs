@@ -1,6 +1,6 @@
 //! A state of a mechanism at which compiled equations are held against the tree's.
 
-use super::evaluate;
+use super::Functions;
 use crate::random;
 use chacha20::ChaCha8Rng;
 use hamel::dynamics::{Dynamics, MassMatrix, Recursive, Reference};
@@ -28,8 +28,8 @@ fn loops(seed: u64) -> &'static [Loops] {
     }
 }
 
-/// What gives the values of a compiled function at a state: [`evaluate`], or what stands in for it.
-pub type Evaluate<'a> = &'a dyn Fn(&Model, (Kind, Loops), &[f64], &[f64], &[f64]) -> Vec<f64>;
+/// What gives the values of a compiled function at a state: [`Functions::evaluate`], or what stands in for it.
+pub type Evaluate<'a> = &'a dyn Fn((Kind, Loops), &[f64], &[f64], &[f64]) -> Vec<f64>;
 
 /// A state, and what the tree makes of it.
 pub struct Point {
@@ -129,14 +129,23 @@ impl Point {
     /// # Panics
     /// Where one has not.
     pub fn agrees(self) {
-        self.agrees_by(&evaluate);
+        let model = self.model.clone();
+        self.agrees_with(&Functions::new(&model));
+    }
+
+    /// The same of functions that are kept for further states.
+    ///
+    /// # Panics
+    /// Where one has not.
+    pub fn agrees_with(self, functions: &Functions<'_>) {
+        self.agrees_by(&|how, q, speeds, inputs| functions.evaluate(how, q, speeds, inputs));
     }
 
     /// What `by` gives agrees, however it is compiled.
     fn agree(&self, by: Evaluate<'_>, kind: Kind, inputs: &[f64], expected: &[f64], bound: f64) {
         for &loops in self.loops {
             let how = (kind, loops);
-            let found = by(&self.model, how, &self.q, &self.speeds, inputs);
+            let found = by(how, &self.q, &self.speeds, inputs);
             self.close(&format!("{how:?}"), &found, expected, bound);
         }
     }
@@ -190,8 +199,10 @@ impl Point {
             .forward_dynamics(q, speeds, &self.inputs, &mut expected)
             .expect("M̄ is regular");
         let inputs = &self.inputs;
-        self.agree(&evaluate, Kind::ForwardDynamics, inputs, &expected, bound);
-        self.forms_agree(&evaluate, &mut reference, bound);
+        let functions = Functions::new(&self.model);
+        let by: Evaluate<'_> = &|how, q, v, u| functions.evaluate(how, q, v, u);
+        self.agree(by, Kind::ForwardDynamics, inputs, &expected, bound);
+        self.forms_agree(by, &mut reference, bound);
     }
 
     /// The port-Hamiltonian form; `bound` is that of solutions with M̄.
@@ -205,8 +216,7 @@ impl Point {
             .expect("M̄ is regular");
         let energy = tree.hamiltonian(q, &momenta).expect("M̄ is regular");
         for &loops in self.loops {
-            let evaluate =
-                |kind, state: &[f64]| by(&self.model, (kind, loops), q, state, &self.inputs);
+            let evaluate = |kind, state: &[f64]| by((kind, loops), q, state, &self.inputs);
             self.close("momenta", &evaluate(Kind::Momenta, speeds), &momenta, BOUND);
             let found = evaluate(Kind::Speeds, &momenta);
             self.close("speeds", &found, speeds, bound);

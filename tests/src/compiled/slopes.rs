@@ -1,6 +1,6 @@
 //! Compiled derivatives against the tree's.
 
-use super::evaluate;
+use super::Functions;
 use super::point::{BOUND, Evaluate, Point, of_solutions};
 use hamel::dynamics::{
     Dynamics, ForwardDerivatives, InverseDerivatives, InverseMassMatrix, MassMatrix, Recursive,
@@ -25,7 +25,16 @@ impl Point {
     /// # Panics
     /// Where one has not.
     pub fn derivatives_agree(self) {
-        self.derivatives_agree_by(&evaluate);
+        let model = self.model.clone();
+        self.derivatives_agree_with(&Functions::new(&model));
+    }
+
+    /// The same of functions that are kept for further states.
+    ///
+    /// # Panics
+    /// Where one has not.
+    pub fn derivatives_agree_with(self, functions: &Functions<'_>) {
+        self.derivatives_agree_by(&|how, q, v, u| functions.evaluate(how, q, v, u));
     }
 
     /// The same of what stands in for them.
@@ -78,7 +87,7 @@ impl Point {
         let width: usize = parts.iter().map(|(columns, _)| columns).sum();
         for loops in self.loops_of_derivatives() {
             let how = (kind, loops);
-            let found = by(&self.model, how, &self.q, &self.speeds, inputs);
+            let found = by(how, &self.q, &self.speeds, inputs);
             assert_eq!(found.len(), width * self.speeds.len(), "{how:?}");
             let mut start = 0;
             for (number, (columns, entries)) in parts.iter().enumerate() {

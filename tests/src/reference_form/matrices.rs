@@ -1,10 +1,12 @@
 //! The matrices: M, its derivatives, Ĉ and Ĉ′.
 
-use super::points;
+use super::{LARGEST, Point, TREES, points};
 use crate::differences;
 use crate::figures::Largest;
+use crate::random::{Case, cases};
 use hamel::erased::AnyJoint;
 use hamel::nalgebra::{Cholesky, DMatrix};
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Sums over 12 bodies of products of 6-vectors, cancelling tenfold at most: 1000 roundings of 1.1e-16.
@@ -56,57 +58,62 @@ pub fn mass_matrix_is_symmetric_positive_and_gives_the_kinetic_energy(kinds: &[A
 /// # Panics
 /// With the figure and the case, where it does not hold.
 pub fn derivatives_in_phi_are_those_of_differences(kinds: &[Arc<dyn AnyJoint>]) {
-    let mut mass = Largest::new("∂M/∂ϕ against differences");
-    let mut potential = Largest::new("∂V/∂ϕ against differences");
-    let mut basis = Largest::new("∂S̄/∂ϕ against differences");
-    for point in points(kinds) {
-        let (mechanism, expansion) = (&point.case.mechanism, &point.expansion);
-        let (k, s) = expansion.speed_basis.shape();
-        // M, S̄ and V side by side, so that each moved configuration is expanded once.
-        let all = |q: &[f64]| {
-            let moved = point.reference.expansion(q).expect("sizes fit");
-            let mut all = DMatrix::zeros(k, k + s + 1);
-            all.view_mut((0, 0), (k, k)).copy_from(&moved.mass_matrix);
-            all.view_mut((0, k), (k, s)).copy_from(&moved.speed_basis);
-            all[(0, k + s)] = moved.potential;
-            all
-        };
-        let at = |step| differences::gradient_with(step, mechanism, &point.case.q, all);
-        let (coarse, fine) = (at(differences::STEP), at(differences::STEP / 2.0));
-        for (index, (slice, coarse)) in fine.iter().zip(&coarse).enumerate() {
-            // Half the step leaves 1/64 of the truncation, so that the difference of both is 63 times what is left; twice that for
-            // the orders above. A wrong derivative is as wrong at both steps, and gains nothing.
-            let truncation = (slice - coarse).map(|change| change.abs() / 31.0);
-            let beyond = |error: &DMatrix<f64>, (row, column): (usize, usize)| {
-                let allowed = truncation.view((row, column), error.shape());
-                let excess = error.zip_map(&allowed, |error, allowed| error.abs() - allowed);
-                // Not f64::max, which would drop a NaN.
-                let larger = |most: f64, x: &f64| if *x <= most { most } else { *x };
-                excess.iter().fold(0.0, larger)
-            };
-            let place = format!("case {}, ϕ_{index}", point.case.seed);
-            let error = slice.view((0, 0), (k, k)) - &expansion.mass_matrix_gradient[index];
-            mass.meet(
-                beyond(&error, (0, 0)) / expansion.mass_matrix.amax(),
-                &place,
-            );
-            let error = slice.view((0, k), (k, s)) - &expansion.speed_basis_gradient[index];
-            basis.meet(beyond(&error, (0, k)), &place);
-            let error = slice[(0, k + s)] - expansion.potential_gradient[index];
-            potential.meet(
-                beyond(&DMatrix::from_element(1, 1, error), (0, k + s))
-                    / expansion
-                        .potential_gradient
-                        .amax()
-                        .max(expansion.potential.abs()),
-                &place,
-            );
+    let mut laws = [
+        Largest::new("∂M/∂ϕ against differences"),
+        Largest::new("∂V/∂ϕ against differences"),
+        Largest::new("∂S̄/∂ϕ against differences"),
+    ];
+    let cases: Vec<Case> = cases(kinds, LARGEST, TREES).collect();
+    let errors = cases.into_par_iter().map(Point::new);
+    let errors = errors.flat_map_iter(|point| gradient_errors(&point));
+    for (errors, place) in errors.collect::<Vec<_>>() {
+        for (law, error) in laws.iter_mut().zip(errors) {
+            law.meet(error, &place);
         }
     }
     // Rounding of M, some 10 ε, over h = 1/256: 6e-13, and three terms of it.
-    mass.assert_within(2e-12);
-    potential.assert_within(2e-12);
-    basis.assert_within(2e-12);
+    laws.iter().for_each(|law| law.assert_within(2e-12));
+}
+
+/// Errors of ∂M/∂ϕ, ∂V/∂ϕ and ∂S̄/∂ϕ for each entry of ϕ, beyond what differences leave; and the place.
+fn gradient_errors(point: &Point) -> Vec<([f64; 3], String)> {
+    let (mechanism, expansion) = (&point.case.mechanism, &point.expansion);
+    let (k, s) = expansion.speed_basis.shape();
+    // M, S̄ and V side by side, so that each moved configuration is expanded once.
+    let all = |q: &[f64]| {
+        let moved = point.reference.expansion(q).expect("sizes fit");
+        let mut all = DMatrix::zeros(k, k + s + 1);
+        all.view_mut((0, 0), (k, k)).copy_from(&moved.mass_matrix);
+        all.view_mut((0, k), (k, s)).copy_from(&moved.speed_basis);
+        all[(0, k + s)] = moved.potential;
+        all
+    };
+    let at = |step| differences::gradient_with(step, mechanism, &point.case.q, all);
+    let (coarse, fine) = (at(differences::STEP), at(differences::STEP / 2.0));
+    let errors = |(index, (slice, coarse)): (usize, (&DMatrix<f64>, &DMatrix<f64>))| {
+        // Half the step leaves 1/64 of the truncation, so that the difference of both is 63 times what is left; twice that for
+        // the orders above. A wrong derivative is as wrong at both steps, and gains nothing.
+        let truncation = (slice - coarse).map(|change| change.abs() / 31.0);
+        let beyond = |error: &DMatrix<f64>, (row, column): (usize, usize)| {
+            let allowed = truncation.view((row, column), error.shape());
+            let excess = error.zip_map(&allowed, |error, allowed| error.abs() - allowed);
+            // Not f64::max, which would drop a NaN.
+            let larger = |most: f64, x: &f64| if *x <= most { most } else { *x };
+            excess.iter().fold(0.0, larger)
+        };
+        let mass = slice.view((0, 0), (k, k)) - &expansion.mass_matrix_gradient[index];
+        let potential = slice[(0, k + s)] - expansion.potential_gradient[index];
+        let basis = slice.view((0, k), (k, s)) - &expansion.speed_basis_gradient[index];
+        let gradient = &expansion.potential_gradient;
+        let errors = [
+            beyond(&mass, (0, 0)) / expansion.mass_matrix.amax(),
+            beyond(&DMatrix::from_element(1, 1, potential), (0, k + s))
+                / gradient.amax().max(expansion.potential.abs()),
+            beyond(&basis, (0, k)),
+        ];
+        (errors, format!("case {}, ϕ_{index}", point.case.seed))
+    };
+    fine.iter().zip(&coarse).enumerate().map(errors).collect()
 }
 
 /// `vᵀ(Ṁ − 2Ĉ)v = 0` for that v; `Ĉ′v = Ĉv`, and `Ṁ − 2Ĉ′` is skew, which `Ṁ − 2Ĉ` is not.

@@ -32,10 +32,11 @@ fn scenes_agree() {
     agree(&folder("scenes"), &scenes.collect::<Vec<_>>());
 }
 
-/// The same of loops that scenes and robots close.
+/// The same of loops that scenes and robots close. The same loops on a moving base have no other kinds of lines, and take a C compiler a minute more.
 #[test]
 fn loops_agree() {
     let scenes = closed::cases().into_iter();
+    let scenes = scenes.filter(|case| !case.name.ends_with(closed::ON_A_BASE));
     let scenes = scenes.map(|case| (case.scene.mechanism, case.model));
     agree(&folder("closed"), &scenes.collect::<Vec<_>>());
 }

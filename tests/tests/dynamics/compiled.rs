@@ -14,7 +14,7 @@ use hamel_compiler::Refused;
 use hamel_compiler::functions::{Kind, Loops, compile};
 use hamel_compiler::model::{Elements, Model};
 use hamel_scene::Scene;
-use hamel_tests::compiled::Point;
+use hamel_tests::compiled::{Functions, Point};
 use hamel_tests::peers::Reference;
 use hamel_tests::{compiled, random, scenes};
 use rand::SeedableRng;
@@ -129,28 +129,38 @@ fn robots() -> impl Iterator<Item = (&'static str, Arc<Mechanism>)> {
 #[test]
 fn robots_agree() {
     for (name, mechanism) in robots() {
+        let model = compiled::model(name, &mechanism);
+        let functions = Functions::new(&model);
         for seed in 0..3 {
-            Point::random(compiled::model(name, &mechanism), &mechanism, seed).agrees();
+            Point::random(model.clone(), &mechanism, seed).agrees_with(&functions);
         }
     }
 }
 
+/// Trees of 1 to `largest` joints, each of which `point` gives a state.
+fn trees_agree(largest: usize, count: u64, point: fn(random::Case) -> Point) {
+    let kinds = random::library();
+    let cases: Vec<random::Case> = random::cases(&kinds, largest, count).collect();
+    cases.into_par_iter().for_each(|case| point(case).agrees());
+}
+
+/// Each kind of joint is the root of two of them.
 #[test]
 fn random_trees_agree() {
-    let kinds = random::library();
-    let cases: Vec<random::Case> = random::cases(&kinds, 40, 200).collect();
-    cases
-        .into_par_iter()
-        .for_each(|case| Point::bare(case).agrees());
+    trees_agree(40, 80, Point::bare);
+}
+
+/// Each kind of joint is the root of one of them.
+#[test]
+fn random_trees_with_elements_agree() {
+    trees_agree(20, 40, Point::with_elements);
 }
 
 #[test]
-fn random_trees_with_elements_agree() {
-    let kinds = random::library();
-    let cases: Vec<random::Case> = random::cases(&kinds, 20, 100).collect();
-    cases
-        .into_par_iter()
-        .for_each(|case| Point::with_elements(case).agrees());
+#[ignore = "minutes: hundreds of trees are compiled"]
+fn many_random_trees_agree() {
+    trees_agree(40, 1000, Point::bare);
+    trees_agree(20, 500, Point::with_elements);
 }
 
 fn flops(model: &Model, kind: Kind) -> usize {

@@ -79,7 +79,7 @@ fn long_chains_have_all_functions() {
 #[test]
 fn derivatives_of_random_trees_agree() {
     let kinds = random::library();
-    for case in random::cases(&kinds, 8, 60) {
+    for case in random::cases(&kinds, 8, 40) {
         Point::bare(case).derivatives_agree();
     }
 }
@@ -87,7 +87,7 @@ fn derivatives_of_random_trees_agree() {
 #[test]
 fn derivatives_of_random_trees_with_elements_agree() {
     let kinds = random::library();
-    for case in random::cases(&kinds, 5, 60) {
+    for case in random::cases(&kinds, 5, 40) {
         Point::with_elements(case).derivatives_agree();
     }
 }

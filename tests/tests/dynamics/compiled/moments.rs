@@ -5,7 +5,7 @@ use hamel::mechanism::{BodySpec, Mechanism};
 use hamel::nalgebra::{Matrix3, Vector3};
 use hamel::spatial::{MassProperties, Pose};
 use hamel_compiler::functions::{Kind, Loops};
-use hamel_tests::compiled;
+use hamel_tests::compiled::{self, Functions};
 use std::sync::Arc;
 
 /// Principal moments of slender bodies, round and flat, with the small one last.
@@ -42,7 +42,7 @@ fn small_entry(bodies: Vec<BodySpec>) -> [f64; 2] {
     let mechanism = Arc::new(mechanism);
     let q = mechanism.home();
     let model = compiled::model("slender", &mechanism);
-    let found = compiled::evaluate(&model, (Kind::MassMatrix, Loops::Never), &q, &[], &[]);
+    let found = Functions::new(&model).evaluate((Kind::MassMatrix, Loops::Never), &q, &[], &[]);
     let mut mass = MassMatrix::new(&mechanism);
     let mut tree = Recursive::new(mechanism);
     tree.mass_matrix(&q, &mut mass).expect("sizes fit");

@@ -12,7 +12,7 @@ use hamel::integrate::{Form, Method, Options, State, integrate, no_inputs, no_ob
 use hamel::mechanism::{BodySpec, Mechanism};
 use hamel::nalgebra::Vector3;
 use hamel::spatial::{MassProperties, Pose};
-use hamel_tests::compiled::{self, Point};
+use hamel_tests::compiled::{self, Functions, Point};
 use linkages::{five_bar, parallel_ankle, wishbone};
 use oracle::{Linkage, inertia, with_multipliers};
 use robots::{ankle, rssr};
@@ -137,6 +137,7 @@ fn compiled_scenes_have_the_values_of_the_tree() {
         let joint = compiled::joint_in(&hamel_tests::spec_folder(), linkage.joint);
         let joints = |name: &str| (name == linkage.joint).then(|| joint.clone());
         let model = compiled::model_on(linkage.joint, &mechanism, joints);
+        let functions = Functions::new(&model);
         for (seed, state) in run(&linkage, &mechanism, Form::Lagrangian, 1.0)
             .into_iter()
             .enumerate()
@@ -145,8 +146,8 @@ fn compiled_scenes_have_the_values_of_the_tree() {
                 let q = state.configuration.clone();
                 Point::at(model.clone(), &mechanism, q, seed as u64)
             };
-            at().agrees();
-            at().derivatives_agree();
+            at().agrees_with(&functions);
+            at().derivatives_agree_with(&functions);
         }
     }
 }

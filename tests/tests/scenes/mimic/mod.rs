@@ -13,7 +13,7 @@ use hamel::joint::Coupled;
 use hamel::nalgebra::DVector;
 use hamel_compiler::model::Model;
 use hamel_scene::{Coupling, Located, Scene, SceneDescription};
-use hamel_tests::compiled::{self, Point};
+use hamel_tests::compiled::{self, Functions, Point};
 use hamel_tests::laws;
 use robots::{ROBOTS, build, numbers, read};
 use std::error::Error;
@@ -193,10 +193,11 @@ fn compiled_couplings_are_those_of_the_tree() {
         let model = Model::new(&description, compiled::joint);
         let model = model.unwrap_or_else(|refused| panic!("{refused}"));
         let mechanism = build(&description).mechanism;
+        let functions = Functions::new(&model);
         for seed in 0..2 {
             let point = || Point::random(model.clone(), &mechanism, seed);
-            point().agrees();
-            point().derivatives_agree();
+            point().agrees_with(&functions);
+            point().derivatives_agree_with(&functions);
         }
     }
 }
