@@ -33,12 +33,12 @@ fn whole(count: u64) {
 
 #[test]
 fn a_slice_through_the_parser() {
-    parser(20_000);
+    parser(10_000);
 }
 
 #[test]
 fn a_slice_through_the_pipeline() {
-    whole(100);
+    whole(50);
 }
 
 #[test]

@@ -79,10 +79,10 @@ impl Effort {
     /// What a plain test takes of a joint of relations, whose kernels solve equations. Its parameters are those of the example, and all lengths scaled.
     pub const RELATIONS: Self = Self {
         sets: 0,
-        lines: 5,
-        critical: 4,
+        lines: 4,
+        critical: 3,
         samples: 4,
-        cases: 100,
+        cases: 60,
     };
     /// What the sweep takes: minutes a joint.
     pub const SWEEP: Self = Self {
