@@ -159,8 +159,8 @@ fn random_trees_with_elements_agree() {
 #[test]
 #[ignore = "minutes: hundreds of trees are compiled"]
 fn many_random_trees_agree() {
-    trees_agree(40, 1000, Point::bare);
-    trees_agree(20, 500, Point::with_elements);
+    trees_agree(40, 400, Point::bare);
+    trees_agree(20, 200, Point::with_elements);
 }
 
 fn flops(model: &Model, kind: Kind) -> usize {
