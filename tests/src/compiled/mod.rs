@@ -43,14 +43,11 @@ thread_local! {
 /// # Panics
 /// Where its spec is not sound.
 pub fn joint(name: &str) -> Option<Rc<JointType>> {
-    let (name, text) = hamel_joints::specs().find(|(known, _)| *known == name)?;
+    let (name, _) = hamel_joints::specs().find(|(known, _)| *known == name)?;
     JOINTS.with_borrow_mut(|joints| {
         let entry = joints.entry(name).or_insert_with(|| {
             let mut derived = DERIVED[name].lock().expect("no derivation panics");
-            let derived = derived.get_or_insert_with(|| {
-                let derived = hamel_codegen::derive(text, &format!("{name}.joint"));
-                derived.unwrap_or_else(|errors| panic!("{errors}"))
-            });
+            let derived = derived.get_or_insert_with(|| crate::derived(name));
             Rc::new(JointType::new(derived.clone()).expect("its products take little work"))
         });
         Some(Rc::clone(entry))
