@@ -1,16 +1,17 @@
 //! `hamel import`: a robot in URDF or MJCF as a scene file.
 
 use crate::input::stops;
+use crate::meshes::locate;
 use fnv::FnvHasher;
 use hamel::registry::JointRegistry;
 use hamel_console::files::{Force, admit, named};
 use hamel_console::output::{self, Failure, tell};
-use hamel_scene::read_file;
 use hamel_scene::robot::{self, Stops};
+use hamel_scene::{Geometry, SceneDescription, read_file};
 use std::fs::File;
 use std::hash::Hasher;
 use std::io::Read;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf, absolute};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -22,9 +23,9 @@ Examples:
       edit between the two to add an initial state, springs or a motion
 
 The scene has a body for each link that moves by itself; fixed joints join links to one body, and keep their frames as [[frame]].
-Every joint is at home (angles and displacements 0) and at rest. Boxes, spheres, cylinders and capsules of <visual> become [[shape]],
-which pictures show; meshes and the shapes of <collision> do not. What the scene does not hold (limits, mimic joints, friction, meshes …)
-is told on stderr and in comments. scenes/README.md says how each element of URDF and MJCF is read.
+Every joint is at home (angles and displacements 0) and at rest. Boxes, spheres, cylinders, capsules and meshes of <visual> become
+[[shape]], which pages show; the shapes of <collision> do not. Files of meshes that are found below the folder of the scene are named
+from there, others by their whole path. What the scene does not hold (limits, mimic joints, friction …) is told on stderr and in comments. scenes/README.md says how each element of URDF and MJCF is read.
 
 The first line of the scene tells whether it was edited: an imported scene is replaced by another import, an edited one only with --force.
 
@@ -66,7 +67,8 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
         ..robot::Options::default()
     };
     let (text, name) = read_file(&args.robot)?;
-    let import = robot::read(&robot::completed(&args.robot, text)?, &name, &options)?;
+    let mut import = robot::read(&robot::completed(&args.robot, text)?, &name, &options)?;
+    rename_meshes(&mut import.scene, &args.robot, args.output.as_deref());
     let built = match import.build(registry) {
         Ok(scene) => {
             tell(&scene.notices);
@@ -84,6 +86,22 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
         Some(output) => output.write(text)?,
     }
     Ok(built?)
+}
+
+/// Names the files of meshes, which `robot` names from its own folder, so that they are found from the scene in `output`. Those that are not found keep their names.
+fn rename_meshes(scene: &mut SceneDescription, robot: &Path, output: Option<&Path>) {
+    let folder = |file: &Path| absolute(file).ok()?.parent().map(Path::to_owned);
+    let (Some(from), to) = (folder(robot), output.and_then(folder)) else {
+        return;
+    };
+    for shape in &mut scene.shapes {
+        if let Geometry::Mesh(mesh) = &mut shape.geometry
+            && let Some(path) = locate(&from, &mesh.file)
+        {
+            let inside = to.as_ref().and_then(|to| path.strip_prefix(to).ok());
+            mesh.file = inside.unwrap_or(&path).to_string_lossy().into_owned();
+        }
+    }
 }
 
 /// How the first line of an imported scene begins.

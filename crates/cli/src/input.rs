@@ -4,7 +4,7 @@ use hamel::registry::JointRegistry;
 use hamel_compiler::Build;
 use hamel_console::output::Failure;
 use hamel_scene::{Scene, SceneDescription, read_file, robot};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The text of a scene or of a robot.
 #[derive(Debug)]
@@ -14,6 +14,8 @@ pub struct Input {
     name: String,
     /// Name of the file without its folder.
     label: String,
+    /// The folder of the file, from which it names others.
+    folder: PathBuf,
     /// How to read a robot; absent for a scene.
     robot: Option<robot::Options>,
 }
@@ -51,6 +53,7 @@ impl Input {
             text,
             name,
             label: label.into_owned(),
+            folder: path.parent().unwrap_or(Path::new("")).to_owned(),
             robot: is_robot.then(|| robot::Options {
                 floating_base,
                 limits,
@@ -62,6 +65,11 @@ impl Input {
     /// Name of the file without its folder.
     pub fn label(&self) -> &str {
         &self.label
+    }
+
+    /// The folder of the file.
+    pub fn folder(&self) -> &Path {
+        &self.folder
     }
 
     /// The scene, with the joints of `registry`.

@@ -6,6 +6,7 @@ mod compile;
 mod import;
 mod input;
 mod joints;
+mod meshes;
 mod pace;
 #[cfg(not(feature = "report"))]
 #[path = "absent/report.rs"]

@@ -54,6 +54,6 @@ pub use notice::{Notice, Severity};
 pub use samples::SampleError;
 pub use scene::{Scene, read_file};
 pub use settings::Settings;
-pub use shape::{Geometry, ShapeDescription};
+pub use shape::{Geometry, Mesh, ShapeDescription};
 pub use source::{Located, Span};
 pub use start::StartError;

@@ -3,7 +3,7 @@
 use hamel_runtime::spatial::Pose;
 use nalgebra::Vector3;
 
-/// A simple shape fixed to a body, or to the world.
+/// A shape fixed to a body, or to the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShapeDescription {
     /// Index of the body that carries it; `None` is the world.
@@ -17,7 +17,7 @@ pub struct ShapeDescription {
 }
 
 /// A shape about the origin of its own frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Geometry {
     /// A box with sides along x, y and z, m.
     Box(Vector3<f64>),
@@ -37,9 +37,20 @@ pub enum Geometry {
         /// Of the cylinder, without the hemispheres, m.
         length: f64,
     },
+    /// The triangles of a file.
+    Mesh(Mesh),
+}
+
+/// A file of triangles. Reading a scene does not read it: what is not found is missing in pictures alone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    /// The file as the scene names it: a path from the folder of the scene, or a `package://` of ROS.
+    pub file: String,
+    /// Factors of the numbers of the file along x, y and z, none of them 0; where the file says its unit, of metres.
+    pub scale: Vector3<f64>,
 }
 
 impl Geometry {
     /// Names of the shapes, as scene files write them.
-    pub const NAMES: [&'static str; 4] = ["box", "sphere", "cylinder", "capsule"];
+    pub const NAMES: [&'static str; 5] = ["box", "sphere", "cylinder", "capsule", "mesh"];
 }

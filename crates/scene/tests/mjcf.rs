@@ -1,7 +1,7 @@
 //! Robots in MJCF: what becomes of each kind of element, what is left out with a notice, and what is refused.
 
 use hamel_scene::robot::{Import, Options, Stops, completed, load, read};
-use hamel_scene::{LimitKind, PerFreedom, Position, Scene};
+use hamel_scene::{Geometry, LimitKind, PerFreedom, Position, Scene};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -290,4 +290,48 @@ fn written_scenes_read_back() {
             (import.scene.springs.len(), import.scene.wrenches.len())
         );
     }
+}
+
+#[test]
+fn meshes_are_drawn_by_their_files_in_the_colours_of_materials() {
+    let text = r#"<mujoco>
+        <compiler meshdir="assets"/>
+        <default><material rgba="0 0 1 1"/><default class="mm"><mesh scale="1e-3 1e-3 1e-3"/></default></default>
+        <asset>
+          <mesh class="mm" file="sub/arm.obj"/> <mesh name="hand" file="hand.stl"/> <mesh name="moved" file="hand.stl" refpos="1 0 0"/>
+          <material name="red" rgba="1 0 0 1"/> <material name="blue"/>
+        </asset>
+        <worldbody><body><joint/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+          <geom type="mesh" mesh="arm" material="red"/> <geom type="mesh" mesh="hand" material="blue" pos="1 2 3"/>
+          <geom type="mesh" mesh="hand" material="red" rgba="0 1 0 1"/> <geom type="mesh" mesh="hand" group="3"/> <geom name="odd" type="mesh" mesh="moved"/>
+        </body></worldbody>
+      </mujoco>"#;
+    let import =
+        read(text, "robot.xml", &Options::default()).unwrap_or_else(|errors| panic!("{errors}"));
+    let shapes = import.scene.shapes.iter();
+    let shapes = shapes.map(|shape| match &shape.geometry {
+        Geometry::Mesh(mesh) => (
+            Path::new(&mesh.file),
+            mesh.scale.x,
+            shape.color,
+            shape.at.translation.z,
+        ),
+        other => panic!("{other:?}"),
+    });
+    let [arm, hand] = ["assets/sub/arm.obj", "assets/hand.stl"].map(Path::new);
+    let wanted = [
+        (arm, 1e-3, Some([255, 0, 0]), 0.0),
+        (hand, 1.0, Some([0, 0, 255]), 3.0),
+        (hand, 1.0, Some([0, 255, 0]), 0.0),
+    ];
+    assert!(shapes.eq(wanted));
+    let told = "note: ellipsoids, height fields, SDFs, meshes without a file and those with `refpos` or `refquat` are not drawn: geom `odd`";
+    assert!(
+        import
+            .notices
+            .iter()
+            .any(|notice| notice.to_string() == told),
+        "{:?}",
+        import.notices
+    );
 }

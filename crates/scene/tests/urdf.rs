@@ -2,7 +2,7 @@
 
 use hamel_runtime::spatial::Pose;
 use hamel_scene::urdf::{Import, Options, Stops, read};
-use hamel_scene::{BodyDescription, Geometry, LimitDescription, LimitKind, PerFreedom};
+use hamel_scene::{BodyDescription, Geometry, LimitDescription, LimitKind, Mesh, PerFreedom};
 use nalgebra::{Matrix3, Vector3};
 
 /// A few roundings of numbers around 1.
@@ -227,7 +227,6 @@ fn what_is_not_simulated_is_told_and_kept() {
         "note: safety controllers are not simulated: joint `joint`",
         "note: calibrations are not read: joint `joint`",
         "note: URDF does not say whether a planar joint turns: it turns about its axis and slides across it: joint `other`",
-        "note: meshes are not read: pictures show such links by their inertias: link `hand`",
     ];
     assert_eq!(notices(&import), wanted);
     let facts = &import.joints[0];
@@ -305,6 +304,39 @@ fn simple_visual_shapes_are_kept_for_pictures() {
         (block.color, pin.color),
         (Some([128; 3]), Some([255, 0, 0]))
     );
+    let told = "note: visual shapes that are not complete are not drawn: link `tip`, link `tip`";
+    assert!(notices(&import).iter().any(|notice| notice == told));
+    let text = import.to_toml();
+    let again = hamel_scene::Scene::from_toml(&text, "r.toml").expect("a sound text");
+    assert_eq!(again.shapes, import.scene.shapes);
+}
+
+#[test]
+fn meshes_are_kept_by_the_names_of_their_files() {
+    let visual = |mesh: &str| format!("<visual><geometry><mesh {mesh}/></geometry></visual>");
+    let visuals = [
+        "filename=\"package://arm/meshes/tip.dae\"",
+        "filename=\"tip.stl\" scale=\"0.001 0.001 -0.001\"",
+        "filename=\"tip.stl\" scale=\"1 0 1\"",
+        "scale=\"1 1 1\"",
+    ];
+    let more = format!(
+        "<link name=\"tip\">{}</link><joint name=\"end\" type=\"fixed\"><parent link=\"arm\"/><child link=\"tip\"/></joint>",
+        visuals.map(visual).concat()
+    );
+    let import = robot("revolute", "<axis xyz=\"0 0 1\"/>", &more);
+    let mesh = |file: &str, scale: [f64; 3]| {
+        Geometry::Mesh(Mesh {
+            file: file.to_owned(),
+            scale: scale.into(),
+        })
+    };
+    let shapes = import.scene.shapes.iter().map(|shape| &shape.geometry);
+    let wanted = [
+        mesh("package://arm/meshes/tip.dae", [1.0; 3]),
+        mesh("tip.stl", [1e-3, 1e-3, -1e-3]),
+    ];
+    assert!(shapes.eq(&wanted));
     let told = "note: visual shapes that are not complete are not drawn: link `tip`, link `tip`";
     assert!(notices(&import).iter().any(|notice| notice == told));
     let text = import.to_toml();

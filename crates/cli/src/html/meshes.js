@@ -32,6 +32,52 @@ function arc(from, to, steps, radius = 1, z = 0) {
   });
 }
 
+/** Cosine of the angle between faces from which on an edge is sharp: 40°. */
+const sharp = Math.cos((40 * Math.PI) / 180);
+
+const bytesOf = (base64) => Uint8Array.from(atob(base64), (character) => character.charCodeAt(0)).buffer;
+
+/** A mesh of the page, with corners for each triangle: their normals are the mean of those of the faces around that are not beyond a sharp edge. */
+function faceted({ low, step, corners, triangles, width }) {
+  const steps = new Uint16Array(bytesOf(corners));
+  const faces = new (width === 2 ? Uint16Array : Uint32Array)(bytesOf(triangles));
+  const places = Float32Array.from(steps, (own, k) => low[k % 3] + step[k % 3] * own);
+  const place = (k) => places.subarray(3 * faces[k], 3 * faces[k] + 3);
+  // Twice the area of each face along its normal, by which it counts, and that area.
+  const normals = new Float32Array(faces.length);
+  const areas = new Float32Array(faces.length / 3);
+  // The faces around each corner: where they begin in one list of all.
+  const begin = new Uint32Array(steps.length / 3 + 1);
+  for (const corner of faces) begin[corner + 1]++;
+  for (let corner = 0; corner + 1 < begin.length; corner++) begin[corner + 1] += begin[corner];
+  const around = new Uint32Array(faces.length);
+  const next = begin.slice();
+  for (let face = 0; face < areas.length; face++) {
+    const [a, b, c] = [0, 1, 2].map((k) => place(3 * face + k));
+    const normal = cross(sub(b, a), sub(c, a));
+    normals.set(normal, 3 * face);
+    areas[face] = length(normal);
+    for (let k = 0; k < 3; k++) around[next[faces[3 * face + k]]++] = face;
+  }
+  const numbers = new Float32Array(6 * faces.length);
+  for (let k = 0; k < faces.length; k++) {
+    const own = 3 * Math.floor(k / 3);
+    const least = sharp * areas[own / 3];
+    let [x, y, z] = [0, 0, 0];
+    for (let index = begin[faces[k]]; index < begin[faces[k] + 1]; index++) {
+      const other = 3 * around[index];
+      const [u, v, w] = [normals[other], normals[other + 1], normals[other + 2]];
+      if (u * normals[own] + v * normals[own + 1] + w * normals[own + 2] < least * areas[around[index]]) continue;
+      x += u;
+      y += v;
+      z += w;
+    }
+    numbers.set(place(k), 6 * k);
+    numbers.set([x, y, z], 6 * k + 3);
+  }
+  return { corners: numbers, triangles: Uint32Array.from(faces, (_, k) => k), open: true };
+}
+
 const meshes = {
   sphere: (around) => revolved([arc(-Math.PI / 2, Math.PI / 2, around / 2)], around),
 

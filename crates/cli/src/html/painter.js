@@ -41,7 +41,8 @@ void main() {
     shown = vec4(0.0, 0.0, 0.0, darkness);
     return;
   }
-  vec3 n = normalize(normal);
+  // Faces of meshes are seen from behind too.
+  vec3 n = normalize(gl_FrontFacing ? normal : -normal);
   float lit = 0.68 + 0.14 * dot(n, up) + 0.34 * max(dot(n, light), 0.0);
   // Octants of two tones show how a round body turns.
   if (paint.a > 0.5 && inside.x * inside.y * inside.z < 0.0) lit *= 0.8;
@@ -138,7 +139,7 @@ class Painter {
   mesh(key, make) {
     if (!this.meshes.has(key)) {
       const gl = this.gl;
-      const { corners, triangles } = make();
+      const { corners, triangles, open = false } = make();
       const array = gl.createVertexArray();
       gl.bindVertexArray(array);
       this.buffer(corners);
@@ -150,7 +151,8 @@ class Painter {
         this.attribute(place, size, 4 * Painter.stride, 4 * offset);
         gl.vertexAttribDivisor(place, 1);
       });
-      this.meshes.set(key, { array, corners: triangles.length, copies });
+      const type = triangles instanceof Uint32Array ? gl.UNSIGNED_INT : gl.UNSIGNED_SHORT;
+      this.meshes.set(key, { array, corners: triangles.length, type, open, copies });
     }
     return this.meshes.get(key);
   }
@@ -210,12 +212,14 @@ class Painter {
       gl.stencilOp(gl.KEEP, gl.KEEP, gl.INCR);
       gl.depthMask(false);
     }
-    gl.enable(gl.CULL_FACE);
     for (const [mesh, numbers] of groups) {
+      // Meshes from files may have holes and faces turned over.
+      if (mesh.open) gl.disable(gl.CULL_FACE);
+      else gl.enable(gl.CULL_FACE);
       gl.bindVertexArray(mesh.array);
       gl.bindBuffer(gl.ARRAY_BUFFER, mesh.copies);
       gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(numbers), gl.STREAM_DRAW);
-      gl.drawElementsInstanced(gl.TRIANGLES, mesh.corners, gl.UNSIGNED_SHORT, 0, numbers.length / Painter.stride);
+      gl.drawElementsInstanced(gl.TRIANGLES, mesh.corners, mesh.type, 0, numbers.length / Painter.stride);
     }
     gl.disable(gl.CULL_FACE);
     gl.disable(gl.STENCIL_TEST);

@@ -12,6 +12,13 @@ class Recording {
     this.duration = this.frames ? this.times[this.frames - 1] : 0;
     const g = length(this.gravity);
     this.up = g > 0 ? scaled(this.gravity, -1 / g) : [0, 0, 1];
+    // A shape that is a mesh has the sides of the box around it as its size, and where that box begins.
+    for (const shape of this.shapes)
+      if (shape.kind === "mesh") {
+        const { low, step } = this.meshes[shape.mesh];
+        shape.low = low;
+        shape.size = scaled(step, 65535);
+      }
     this.totalMass = this.bodies.reduce((sum, body) => sum + body.mass, 0);
   }
 

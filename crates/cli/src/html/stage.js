@@ -29,6 +29,7 @@ const corners = {
   sphere: ([r]) => [[[0, 0, 0], r]],
   cylinder: ([r, l]) => rim.flatMap(([c, s]) => [-l / 2, l / 2].map((z) => [[r * c, r * s, z], 0])),
   capsule: ([r, l]) => [[[0, 0, -l / 2], r], [[0, 0, l / 2], r]],
+  mesh: (size, low) => corners.box(size).map(([corner]) => [add(corner, add(low, scaled(size, 0.5))), 0]),
   ellipsoid: (half) => half.flatMap((axis, k) => [-axis, axis].map((part) => [[0, 1, 2].map((j) => (j === k ? part : 0)), 0])).concat([[[0, 0, 0], Math.min(...half)]]),
 };
 const signs = [-1, 1].flatMap((x) => [-1, 1].flatMap((y) => [-1, 1].map((z) => [x, y, z])));
@@ -79,11 +80,14 @@ class Stage {
   balls(poses) {
     this.around ??= this.recording.bodies.map((body, index) => {
       const shapes = this.recording.shapes.filter((shape) => shape.body === index);
-      const balls = shapes.flatMap((shape) => placed(poseOf(shape.pose), corners[shape.kind](shape.size)));
+      const balls = shapes.flatMap((shape) => placed(poseOf(shape.pose), corners[shape.kind](shape.size, shape.low)));
       if (balls.length === 0 && body.ellipsoid) balls.push(...placed(poseOf(body.ellipsoid.pose), corners.ellipsoid(body.ellipsoid.half)));
       return [...balls, [body.com, 0], [poseOf(body.joint_in_body).p, 0]];
     });
-    return this.around.flatMap((balls, index) => placed(poses[index], balls));
+    // Of what stands in the world, meshes: a robot's base, rather than a floor.
+    const still = this.recording.shapes.filter((shape) => shape.body === null && shape.kind === "mesh");
+    const fixed = still.flatMap((shape) => placed(poseOf(shape.pose), corners.mesh(shape.size, shape.low)));
+    return fixed.concat(this.around.flatMap((balls, index) => placed(poses[index], balls)));
   }
 
   /** The ground is level with the world's origin, or below everything; of what falls far, below where it starts. */
@@ -111,8 +115,9 @@ class Stage {
       sphere: ([r]) => () => r,
       cylinder: ([r, l]) => (along) => r * round(along) + 0.5 * l * Math.abs(along[2]),
       capsule: ([r, l]) => (along) => r + 0.5 * l * Math.abs(along[2]),
+      mesh: (size, low) => (along) => -along.reduce((sum, part, k) => sum + Math.min(part * low[k], part * (low[k] + size[k])), 0),
     };
-    const heights = shapes.map((shape) => below(poseOf(shape.pose), extents[shape.kind](shape.size)));
+    const heights = shapes.map((shape) => below(poseOf(shape.pose), extents[shape.kind](shape.size, shape.low)));
     const { ellipsoid, com } = recording.bodies[index];
     if (shapes.length === 0 && ellipsoid)
       heights.push(below(poseOf(ellipsoid.pose), (along) => Math.hypot(...along.map((part, k) => part * ellipsoid.half[k]))));
@@ -157,17 +162,24 @@ class Stage {
     const around = recording.bodies.length > 8 ? many : few;
     const solids = [];
     const least = 0.006 * this.size;
-    recording.shapes.forEach(({ body, kind, size, pose, color }) => {
-      const key = kind === "capsule" ? `capsule ${size}` : kind;
-      const mesh = painter.mesh(key, () => meshes[kind](few, ...size));
+    recording.shapes.forEach(({ body, kind, size, low, mesh: own, pose, color }) => {
+      const key = kind === "capsule" ? `capsule ${size}` : kind === "mesh" ? `mesh ${own}` : kind;
+      const mesh = painter.mesh(key, () => (kind === "mesh" ? faceted(recording.meshes[own]) : meshes[kind](few, ...size)));
       const scale = {
         box: () => scaled(size, 0.5),
         sphere: () => [size[0], size[0], size[0]],
         cylinder: () => [size[0], size[0], size[1]],
         capsule: () => [1, 1, 1],
+        mesh: () => [1, 1, 1],
       }[kind]();
-      const own = color?.map((part) => part / 255);
-      solids.push({ body, when: ["shape"], mesh, local: poseOf(pose), size: scale, own, octants: kind !== "box", reach: kind === "capsule" ? [size[0], size[0], size[0] + size[1] / 2] : kind === "cylinder" ? [size[0], size[0], size[1] / 2] : scale });
+      const reach = {
+        capsule: () => [size[0], size[0], size[0] + size[1] / 2],
+        cylinder: () => [size[0], size[0], size[1] / 2],
+        mesh: () => size.map((side) => Math.max(side / 2, least)),
+      }[kind]?.() ?? scale;
+      const middle = kind === "mesh" ? add(low, scaled(size, 0.5)) : [0, 0, 0];
+      const shade = color?.map((part) => part / 255);
+      solids.push({ body, when: ["shape"], mesh, local: poseOf(pose), size: scale, own: shade, octants: kind !== "box" && kind !== "mesh", reach, middle });
     });
     recording.bodies.forEach(({ ellipsoid }, body) => {
       if (!ellipsoid) return;
@@ -353,7 +365,7 @@ class Stage {
     for (const solid of this.shown(this.poses)) {
       const back = [solid.pose.q[0], -solid.pose.q[1], -solid.pose.q[2], -solid.pose.q[3]];
       const scale = (v) => v.map((part, k) => part / solid.reach[k]);
-      const from = scale(turned(back, sub(eye, solid.pose.p)));
+      const from = scale(sub(turned(back, sub(eye, solid.pose.p)), solid.middle ?? [0, 0, 0]));
       const along = scale(turned(back, direction));
       // Every solid is taken as the ellipsoid in its box, a little larger.
       const [a, b, c] = [dot(along, along), dot(from, along), dot(from, from) - 1.2];

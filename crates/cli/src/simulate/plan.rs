@@ -4,6 +4,7 @@ use super::args::Args;
 use super::request::Request;
 use super::{csv, metadata, page, parquet, picture, settings, times};
 use crate::input::Input;
+use crate::meshes::Meshes;
 use hamel::integrate::{Method, Options, Sampling};
 use hamel::registry::JointRegistry;
 use hamel::shown::Number;
@@ -41,6 +42,8 @@ pub struct Plan {
     pub parquet: Option<Output>,
     /// Where it goes as a page to look at, if anywhere.
     pub html: Option<Output>,
+    /// The meshes that the page shows.
+    pub meshes: Meshes,
     /// Whether the forces within joints are told.
     pub forces: bool,
     /// Whether it is printed as JSON.
@@ -81,6 +84,13 @@ impl Plan {
         };
         scene.check_start(&settings, control.as_ref())?;
         let [csv, metadata, parquet, html, picture] = outputs(args)?;
+        let meshes = match html {
+            Some(_) => Meshes::load(&scene.shapes, input.folder()),
+            None => Meshes::default(),
+        };
+        if !args.quiet {
+            tell(meshes.notices());
+        }
         let mut plan = Self {
             input,
             scene,
@@ -95,6 +105,7 @@ impl Plan {
             metadata,
             parquet,
             html,
+            meshes,
             forces: args.forces,
             json: args.json,
             picture,

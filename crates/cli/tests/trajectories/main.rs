@@ -3,6 +3,7 @@
 mod columns;
 mod forces;
 mod joints;
+mod meshes;
 mod recorded;
 
 use nalgebra::Vector3;

@@ -1,14 +1,14 @@
 //! Geoms: what they weigh, and how pictures show them. Contacts between them are not simulated.
 
+use super::assets::Assets;
 use super::element::Element;
-use super::mesh::Bulks;
 use super::placement;
 use super::settings::Settings;
 use super::solid::Solid;
 use crate::diagnostics::Diagnostic;
 use crate::read::Sink;
 use crate::robot::mass::moved;
-use crate::shape::Geometry;
+use crate::shape::{Geometry, Mesh};
 use crate::source::Span;
 use hamel_runtime::shown::Number;
 use hamel_runtime::spatial::{MassProperties, Pose};
@@ -32,6 +32,8 @@ pub(super) struct Geom {
     solid: Option<Solid>,
     /// What its mesh weighs with the density 1, if it is a mesh that has been read.
     bulk: Option<MassProperties>,
+    /// The file of its mesh, if it is a mesh that pictures show.
+    file: Option<Mesh>,
     /// The name of its type.
     kind: &'static str,
     /// Its frame in that of the body.
@@ -51,7 +53,7 @@ impl Geom {
         owner: String,
         element: &Element<'_>,
         frame: &Pose<f64>,
-        (settings, meshes): (&Settings, &Bulks),
+        (settings, assets): (&Settings, &Assets),
         sink: &mut Sink,
     ) -> Option<Self> {
         const KINDS: [&str; 9] = [
@@ -93,20 +95,20 @@ impl Geom {
                 sink.push(Diagnostic::new(element.span(name), message));
             }
         }
+        let mesh = element.text("mesh").filter(|_| said == "mesh");
+        let material = || assets.colors.get(element.text("material")?).copied();
         Some(Self {
             owner,
             solid,
-            bulk: element
-                .text("mesh")
-                .filter(|_| said == "mesh")
-                .and_then(|name| meshes.get(name).copied()),
+            bulk: mesh.and_then(|name| assets.bulks.get(name).copied()),
+            file: mesh.and_then(|name| assets.files.get(name).cloned()),
             kind,
             pose: *frame * pose,
             group: element.number("group").unwrap_or(0.0),
             mass: element.number("mass"),
             density: element.number("density").unwrap_or(WATER),
             hollow: element.switch("shellinertia").unwrap_or(false),
-            rgba: element.vector("rgba"),
+            rgba: element.vector("rgba").or_else(material),
             span: element.span("type"),
         })
     }
@@ -189,8 +191,8 @@ impl Geom {
             }),
             Some(Solid::Box(half)) => Ok(Geometry::Box(half * 2.0)),
             None if self.kind == "plane" => Err(None),
-            _ => Err(Some(
-                "geoms other than spheres, capsules, cylinders and boxes are not drawn",
+            _ => self.file.clone().map(Geometry::Mesh).ok_or(Some(
+                "ellipsoids, height fields, SDFs, meshes without a file and those with `refpos` or `refquat` are not drawn",
             )),
         }
     }

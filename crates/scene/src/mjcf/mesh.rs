@@ -1,11 +1,13 @@
-//! Meshes that bodies have their masses of: read from their files, STL, OBJ or MSH, or from the model itself.
+//! Meshes: the files that pictures show, and what those weigh that bodies have their masses of, read from their files, STL, OBJ or MSH, or from the model itself.
 
+use super::assets::assets;
 use super::bulk::{Filling, Triangles, bulk};
 use super::defaults::{Defaults, MAIN};
 use super::element::Element;
 use crate::parse::rotation;
 use crate::read::Sink;
 use crate::robot::xml::finite;
+use crate::shape::Mesh;
 use crate::source::Located;
 use hamel_runtime::spatial::MassProperties;
 use nalgebra::{Matrix3, Vector3, Vector4};
@@ -115,10 +117,31 @@ pub(super) fn bulks<'a>(root: Node<'a, 'a>, defaults: &Defaults<'a>, sink: &mut 
 }
 
 fn meshes<'a>(root: Node<'a, 'a>) -> impl Iterator<Item = Node<'a, 'a>> {
-    let assets = root.children().filter(|node| node.has_tag_name("asset"));
-    assets
-        .flat_map(|asset| asset.children())
-        .filter(|node| node.has_tag_name("mesh"))
+    assets(root, "mesh")
+}
+
+/// The files of meshes that stand in pictures as their files say, by the names of the meshes; paths are from the folder of the model.
+pub(super) fn files<'a>(
+    root: Node<'a, 'a>,
+    defaults: &Defaults<'a>,
+    sink: &mut Sink,
+) -> HashMap<String, Mesh> {
+    let folder = folder(Path::new(""), root);
+    let found = meshes(root).filter_map(|node| {
+        let element = defaults.element(node, MAIN, sink);
+        let file = folder.join(node.attribute("file")?);
+        let is_moved = ["refpos", "refquat"].map(|own| element.text(own).is_some());
+        let scale = element
+            .vector("scale")
+            .map_or(Vector3::repeat(1.0), Vector3::from);
+        let mesh = Mesh {
+            file: file.to_string_lossy().into_owned(),
+            scale,
+        };
+        let is_drawn = is_moved == [false; 2] && scale.iter().all(|factor| *factor != 0.0);
+        Some((name(node)?, mesh)).filter(|_| is_drawn)
+    });
+    found.collect()
 }
 
 /// The name of a mesh: its own, or that of its file.

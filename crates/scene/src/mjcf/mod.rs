@@ -18,6 +18,7 @@
 //! A robot begins as the file draws it: every joint is at its `ref`, free bodies are where they stand, and all are at rest.
 
 mod actuator;
+mod assets;
 mod audit;
 mod bulk;
 mod chain;
@@ -47,6 +48,7 @@ use crate::notice::Notices;
 use crate::read::Sink;
 use crate::robot::xml::tag;
 use crate::robot::{Import, Options};
+use assets::Assets;
 use defaults::Defaults;
 use element::Lines;
 use roxmltree::Document;
@@ -76,8 +78,8 @@ pub(crate) fn import(
     let mut notices = Notices::default();
     let settings = Settings::read(root, &mut notices, sink);
     let defaults = Defaults::read(root, sink);
-    let meshes = mesh::bulks(root, &defaults, sink);
-    let by = (&settings, &defaults, &lines, &meshes);
+    let assets = Assets::read(root, &defaults, sink);
+    let by = (&settings, &defaults, &lines, &assets);
     let mut bodies = Reader::new(by, &mut notices, sink).bodies(root);
     notes::tell(root, &bodies, &settings, &lines, &mut notices);
     let masses = inertia::masses(&bodies, &settings, sink);

@@ -1,10 +1,10 @@
 //! Bodies with what stands in them: the tree under `<worldbody>`, its frames resolved.
 
+use super::assets::Assets;
 use super::defaults::{Defaults, MAIN};
 use super::element::{Element, Lines, label};
 use super::geom::Geom;
 use super::joint::{Joint, Movement};
-use super::mesh::Bulks;
 use super::placement;
 use super::settings::Settings;
 use crate::diagnostics::Diagnostic;
@@ -56,7 +56,7 @@ pub(super) struct Reader<'r, 'a> {
     pub(super) settings: &'r Settings,
     pub(super) defaults: &'r Defaults<'a>,
     pub(super) lines: &'r Lines,
-    meshes: &'r Bulks,
+    assets: &'r Assets,
     pub(super) notices: &'r mut Notices,
     pub(super) sink: &'r mut Sink,
     bodies: Vec<Body<'a>>,
@@ -67,7 +67,12 @@ pub(super) struct Reader<'r, 'a> {
 impl<'r, 'a> Reader<'r, 'a> {
     /// A reader with what it reads by.
     pub(super) fn new(
-        (settings, defaults, lines, meshes): (&'r Settings, &'r Defaults<'a>, &'r Lines, &'r Bulks),
+        (settings, defaults, lines, assets): (
+            &'r Settings,
+            &'r Defaults<'a>,
+            &'r Lines,
+            &'r Assets,
+        ),
         notices: &'r mut Notices,
         sink: &'r mut Sink,
     ) -> Self {
@@ -75,7 +80,7 @@ impl<'r, 'a> Reader<'r, 'a> {
             settings,
             defaults,
             lines,
-            meshes,
+            assets,
             notices,
             sink,
             bodies: Vec::new(),
@@ -228,7 +233,7 @@ impl<'r, 'a> Reader<'r, 'a> {
         self.register("geoms", own.node);
         let owner = label(own.node, self.lines);
         let element = self.defaults.element(own.node, own.class, self.sink);
-        let by = (self.settings, self.meshes);
+        let by = (self.settings, self.assets);
         let geom = Geom::read(owner, &element, &own.frame, by, self.sink);
         self.bodies[own.body].geoms.extend(geom);
     }

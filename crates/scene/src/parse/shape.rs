@@ -4,7 +4,7 @@ use super::elements::Bodies;
 use super::placement;
 use crate::diagnostics::Diagnostic;
 use crate::read::{Fields, Sink, Value};
-use crate::shape::{Geometry, ShapeDescription};
+use crate::shape::{Geometry, Mesh, ShapeDescription};
 use hamel_runtime::spatial::Pose;
 use nalgebra::Vector3;
 
@@ -38,6 +38,7 @@ fn geometry_of(kind: usize, value: &Value<'_>, sink: &mut Sink) -> Option<Geomet
     match kind {
         0 => sides(value, sink).map(Geometry::Box),
         1 => positive(value, sink).map(Geometry::Sphere),
+        4 => mesh(value, sink).map(Geometry::Mesh),
         _ => {
             let mut fields = value.table(sink)?;
             let radius = fields.required("radius", sink);
@@ -52,6 +53,36 @@ fn geometry_of(kind: usize, value: &Value<'_>, sink: &mut Sink) -> Option<Geomet
             })
         }
     }
+}
+
+fn mesh(value: &Value<'_>, sink: &mut Sink) -> Option<Mesh> {
+    let mut fields = value.table(sink)?;
+    let file = fields.required("file", sink);
+    let file = file.and_then(|file| file.text(sink));
+    let scale = match fields.optional("scale") {
+        Some(scale) => self::scale(&scale, sink),
+        None => Some(Vector3::repeat(1.0)),
+    };
+    fields.finish(sink);
+    Some(Mesh {
+        file: file?.value,
+        scale: scale?,
+    })
+}
+
+/// One factor, or one along each axis. A negative one mirrors.
+fn scale(value: &Value<'_>, sink: &mut Sink) -> Option<Vector3<f64>> {
+    let factor = |value: &Value<'_>, sink: &mut Sink| {
+        let number = value.number_within(|number| number != 0.0, "other than 0", sink)?;
+        Some(number.value)
+    };
+    if !value.is_list() {
+        return factor(value, sink).map(Vector3::repeat);
+    }
+    let scale = value.vector(sink)?;
+    let items = value.items("entry", "a list of numbers", sink)?;
+    let checked: Vec<_> = items.iter().map(|item| factor(item, sink)).collect();
+    checked.iter().all(Option::is_some).then_some(scale.value)
 }
 
 fn sides(value: &Value<'_>, sink: &mut Sink) -> Option<Vector3<f64>> {

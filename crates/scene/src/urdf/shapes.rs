@@ -5,7 +5,7 @@ use super::document::{child, numbers, parse};
 use crate::notice::Notices;
 use crate::parse::rotation;
 use crate::read::Sink;
-use crate::shape::{Geometry, ShapeDescription};
+use crate::shape::{Geometry, Mesh, ShapeDescription};
 use crate::source::Located;
 use hamel_runtime::spatial::Pose;
 use nalgebra::{Matrix3, Vector3, Vector4};
@@ -57,13 +57,30 @@ fn shape(visual: Node<'_, '_>) -> Result<(Pose<f64>, Geometry), &'static str> {
         "sphere" => size("radius").map(Geometry::Sphere),
         "cylinder" => round().map(|(radius, length)| Geometry::Cylinder { radius, length }),
         "capsule" => round().map(|(radius, length)| Geometry::Capsule { radius, length }),
-        "mesh" => return Err("meshes are not read: pictures show such links by their inertias"),
+        "mesh" => mesh(found).map(Geometry::Mesh),
         _ => {
-            return Err("visual shapes other than box, sphere, cylinder and capsule are not drawn");
+            return Err(
+                "visual shapes other than box, sphere, cylinder, capsule and mesh are not drawn",
+            );
         }
     };
     let at = origin(visual).ok_or(ODD)?;
     Ok((at, geometry.ok_or(ODD)?))
+}
+
+/// The file of a mesh, with its factors.
+fn mesh(element: Node<'_, '_>) -> Option<Mesh> {
+    let scale = match element.attribute("scale") {
+        Some(scale) => Vector3::from(numbers::<3>(scale)?),
+        None => Vector3::repeat(1.0),
+    };
+    let is_sound = scale
+        .iter()
+        .all(|factor| factor.is_finite() && *factor != 0.0);
+    is_sound.then_some(Mesh {
+        file: element.attribute("filename")?.to_owned(),
+        scale,
+    })
 }
 
 /// The pose of the shape; the identity without an `<origin>`, `None` where it makes no sense.

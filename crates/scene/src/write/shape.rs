@@ -4,7 +4,8 @@ use super::body::name_of;
 use super::value::{list, number, table, text};
 use super::{entry, pose};
 use crate::description::SceneDescription;
-use crate::shape::Geometry;
+use crate::shape::{Geometry, Mesh};
+use nalgebra::Vector3;
 
 /// Appends the shapes.
 pub(super) fn shapes(out: &mut String, scene: &SceneDescription) {
@@ -28,7 +29,19 @@ fn geometry(geometry: &Geometry) -> (&'static str, String) {
     match *geometry {
         Geometry::Box(sides) => ("box", list(&sides)),
         Geometry::Sphere(radius) => ("sphere", number(radius)),
+        Geometry::Mesh(ref mesh) => ("mesh", self::mesh(mesh)),
         Geometry::Cylinder { radius, length } => ("cylinder", round(radius, length)),
         Geometry::Capsule { radius, length } => ("capsule", round(radius, length)),
     }
+}
+
+fn mesh(mesh: &Mesh) -> String {
+    let mut entries = vec![("file", text(&mesh.file))];
+    let scale = mesh.scale;
+    if scale != Vector3::repeat(scale.x) {
+        entries.push(("scale", list(&scale)));
+    } else if scale.x != 1.0 {
+        entries.push(("scale", number(scale.x)));
+    }
+    table(&entries)
 }

@@ -5,6 +5,8 @@ use super::super::plan::Plan;
 use super::super::sample::seven;
 use super::charts::Chart;
 use super::solids::{Ellipsoid, Shape};
+use super::triangles::Triangles;
+use crate::meshes::Meshes;
 use hamel::mechanism::Body;
 use hamel_scene::text::visible;
 use serde::Serialize;
@@ -24,6 +26,8 @@ pub struct Header<'a> {
     frames: usize,
     bodies: Vec<BodyHeader<'a>>,
     shapes: Vec<Shape>,
+    /// What shapes that are meshes show.
+    meshes: Vec<Triangles>,
     /// Named frames.
     marks: Vec<Mark<'a>>,
     charts: Vec<Chart>,
@@ -58,16 +62,18 @@ impl<'a> Header<'a> {
     pub fn new(
         plan: &'a Plan,
         (frames, accuracy): (usize, Option<&Accuracy>),
+        meshes: &Meshes,
         charts: Vec<Chart>,
     ) -> Self {
         let scene = &plan.scene;
+        let shapes = scene.shapes.iter();
         let marks = scene.mechanism.frames().iter().map(|frame| Mark {
             name: &frame.name,
             body: frame.body,
             pose: seven(&frame.at),
         });
         Self {
-            version: 2,
+            version: 3,
             name: &scene.name,
             description: visible(&scene.description),
             method: method(plan, accuracy),
@@ -79,7 +85,8 @@ impl<'a> Header<'a> {
                 .iter()
                 .map(BodyHeader::new)
                 .collect(),
-            shapes: scene.shapes.iter().map(Shape::from).collect(),
+            shapes: shapes.flat_map(|shape| Shape::of(shape, meshes)).collect(),
+            meshes: meshes.parts().iter().map(Triangles::from).collect(),
             marks: marks.collect(),
             charts,
         }

@@ -8,6 +8,7 @@ mod charts;
 mod header;
 mod solids;
 mod text;
+mod triangles;
 mod unwrapped;
 
 pub(super) use solids::Ellipsoid;
@@ -113,7 +114,12 @@ impl<'a> Page<'a> {
             self.charts.add_error();
         }
         let charts = self.charts.into_described();
-        let header = Header::new(self.plan, (self.blob.frames(), accuracy), charts);
+        let header = Header::new(
+            self.plan,
+            (self.blob.frames(), accuracy),
+            &self.plan.meshes,
+            charts,
+        );
         let page = text::page(&header, &self.blob.bytes())?;
         let written = self.file.write_all(page.as_bytes());
         written.map_err(|error| Failure::write(self.path, error))?;

@@ -1,6 +1,7 @@
 //! What stands for a body: the ellipsoid of its inertia, and simple shapes of the scene.
 
 use super::super::sample::seven;
+use crate::meshes::Meshes;
 use hamel::spatial::{MassProperties, Pose};
 use hamel_scene::{Geometry, ShapeDescription};
 use nalgebra::{Matrix3, Vector3};
@@ -59,29 +60,48 @@ fn proper(mut axes: Matrix3<f64>) -> Matrix3<f64> {
     axes
 }
 
-/// A shape of the scene.
+/// A shape of the scene, or a part of one.
 #[derive(Debug, Serialize)]
 pub struct Shape {
     body: Option<usize>,
     kind: &'static str,
-    /// Sides of a box; radius of a sphere; radius and length of the others, m.
+    /// Sides of a box; radius of a sphere; radius and length of a cylinder and a capsule, m; nothing for a mesh.
     size: Vec<f64>,
+    /// Which mesh of the page it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mesh: Option<usize>,
     pose: [f64; 7],
     color: Option<[u8; 3]>,
 }
 
-impl From<&ShapeDescription> for Shape {
-    fn from(shape: &ShapeDescription) -> Self {
-        let (kind, size) = match shape.geometry {
+impl Shape {
+    /// What the page shows of `shape`: one of these, one for each part of a mesh, or nothing of a mesh that is missing.
+    pub fn of(shape: &ShapeDescription, meshes: &Meshes) -> Vec<Self> {
+        let (kind, size) = match &shape.geometry {
             Geometry::Box(sides) => ("box", sides.iter().copied().collect()),
-            Geometry::Sphere(radius) => ("sphere", vec![radius]),
-            Geometry::Cylinder { radius, length } => ("cylinder", vec![radius, length]),
-            Geometry::Capsule { radius, length } => ("capsule", vec![radius, length]),
+            Geometry::Sphere(radius) => ("sphere", vec![*radius]),
+            Geometry::Cylinder { radius, length } => ("cylinder", vec![*radius, *length]),
+            Geometry::Capsule { radius, length } => ("capsule", vec![*radius, *length]),
+            Geometry::Mesh(mesh) => {
+                let parts = meshes.parts_of(mesh);
+                let of_part = |part: usize| Self {
+                    mesh: Some(part),
+                    // What a file says itself goes first, as in RViz.
+                    color: meshes.parts()[part].color.or(shape.color),
+                    ..Self::new(shape, "mesh", Vec::new())
+                };
+                return parts.map(of_part).collect();
+            }
         };
+        vec![Self::new(shape, kind, size)]
+    }
+
+    fn new(shape: &ShapeDescription, kind: &'static str, size: Vec<f64>) -> Self {
         Self {
             body: shape.body,
             kind,
             size,
+            mesh: None,
             pose: seven(&shape.at),
             color: shape.color,
         }

@@ -7,7 +7,7 @@ use super::view::Ball;
 use crate::simulate::page::Ellipsoid;
 use hamel::mechanism::Mechanism;
 use hamel::spatial::Pose;
-use hamel_scene::Scene;
+use hamel_scene::{Geometry, Scene, ShapeDescription};
 use nalgebra::{Matrix3, Vector3};
 
 /// A form fixed to a body, or to the world.
@@ -38,18 +38,21 @@ impl Scenery {
         let mechanism = &scene.mechanism;
         let bodies = mechanism.bodies();
         let mut fixed: Vec<Fixed> = vec![];
-        for shape in &scene.shapes {
+        let is_mesh = |shape: &ShapeDescription| matches!(shape.geometry, Geometry::Mesh(_));
+        // Faces are drawn from the farthest to the nearest, for which they have to be few and convex.
+        let shapes = || scene.shapes.iter().filter(|shape| !is_mesh(shape));
+        for shape in shapes() {
             let own = shape
                 .body
                 .map_or_else(|| colors::named("rod"), colors::of_body);
             fixed.push(Fixed {
                 body: shape.body,
                 at: shape.at,
-                form: Form::Shape(shape.geometry),
+                form: Form::Shape(shape.geometry.clone()),
                 color: shape.color.map_or(own, colors::bytes),
             });
         }
-        let is_bare = |body: usize| scene.shapes.iter().all(|shape| shape.body != Some(body));
+        let is_bare = |body: usize| shapes().all(|shape| shape.body != Some(body));
         let bare: Vec<usize> = (0..bodies.len()).filter(|body| is_bare(*body)).collect();
         for body in &bare {
             let ellipsoid = Ellipsoid::new(bodies[*body].mass());

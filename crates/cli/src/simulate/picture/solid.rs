@@ -23,8 +23,9 @@ pub struct Solid {
 }
 
 /// The shape of a solid about its own frame.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum Form {
+    /// A simple shape; a mesh has no faces here.
     Shape(Geometry),
     /// With these half axes.
     Ellipsoid(Vector3<f64>),
@@ -61,6 +62,7 @@ impl Form {
                 rows.extend(arc(0.0, FRAC_PI_2, around / 4, radius, length / 2.0));
                 revolved(&rows, around, &one)
             }
+            Self::Shape(Geometry::Mesh(_)) => Vec::new(),
             Self::Ellipsoid(half) => revolved(&sphere(), around, &half),
             Self::Rod(radius, length) => {
                 let (low, high) = (-length / 2.0, length / 2.0);

@@ -1,0 +1,104 @@
+//! glTF: the triangles of its scene. Its y axis points up, which is z here.
+
+use super::Part;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use gltf::buffer::Source;
+use gltf::mesh::Mode;
+use gltf::{Gltf, Node};
+use nalgebra::{Matrix4, Point3};
+use std::path::Path;
+
+/// The parts of the file at `path`, whose bytes these are.
+///
+/// # Errors
+/// What is no glTF, needs an extension that is not known, or has a buffer that cannot be read; in words.
+pub fn read(path: &Path, bytes: &[u8]) -> Result<Vec<Part>, String> {
+    let Gltf { document, blob } = Gltf::from_slice(bytes).map_err(|error| error.to_string())?;
+    if let Some(extension) = document.extensions_required().next() {
+        return Err(format!("it needs the extension {extension}"));
+    }
+    let buffers = document.buffers().map(|buffer| match buffer.source() {
+        Source::Bin => blob
+            .clone()
+            .ok_or_else(|| "its buffer is missing".to_owned()),
+        Source::Uri(uri) => self::buffer(path, uri),
+    });
+    let buffers = buffers.collect::<Result<Vec<_>, _>>()?;
+    let scene = document
+        .default_scene()
+        .or_else(|| document.scenes().next());
+    let roots = scene.map(|scene| scene.nodes().collect::<Vec<_>>());
+    let mut parts = Vec::new();
+    for node in roots.unwrap_or_default() {
+        add(&node, &Y_UP, &buffers, &mut parts);
+    }
+    Ok(parts)
+}
+
+/// Turns y to z.
+#[rustfmt::skip]
+const Y_UP: Matrix4<f32> = Matrix4::new(
+    1.0, 0.0, 0.0, 0.0,
+    0.0, 0.0, -1.0, 0.0,
+    0.0, 1.0, 0.0, 0.0,
+    0.0, 0.0, 0.0, 1.0,
+);
+
+/// A buffer that stands in the file itself or in another.
+fn buffer(path: &Path, uri: &str) -> Result<Vec<u8>, String> {
+    if let Some(data) = uri.strip_prefix("data:") {
+        let coded = data.split_once(";base64,").map(|(_, coded)| coded);
+        let bytes = coded.and_then(|coded| STANDARD.decode(coded).ok());
+        return bytes.ok_or_else(|| "a buffer is not in base64".to_owned());
+    }
+    let file = path.parent().unwrap_or(Path::new("")).join(uri);
+    std::fs::read(&file).map_err(|error| format!("its buffer `{uri}`: {error}"))
+}
+
+/// Adds the triangles of a node and of those below it, in the frame that `above` leads to.
+fn add(node: &Node<'_>, above: &Matrix4<f32>, buffers: &[Vec<u8>], parts: &mut Vec<Part>) {
+    let place = above * Matrix4::from(node.transform().matrix());
+    let primitives = node.mesh().into_iter().flat_map(|mesh| mesh.primitives());
+    for primitive in primitives.filter(|own| own.mode() == Mode::Triangles) {
+        let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
+        let Some(corners) = reader.read_positions() else {
+            continue;
+        };
+        let corners: Vec<_> = corners
+            .map(|corner| place.transform_point(&Point3::from(corner)).into())
+            .collect();
+        let places: Vec<u32> = match reader.read_indices() {
+            Some(indices) => indices.into_u32().collect(),
+            None => (0..corners.len() as u32).collect(),
+        };
+        let triangles = places
+            .chunks_exact(3)
+            .map(|own| match place.determinant() < 0.0 {
+                true => [own[0], own[2], own[1]],
+                false => [own[0], own[1], own[2]],
+            });
+        let material = primitive.material();
+        let color = material.index().map(|_| {
+            let [red, green, blue, _] = material.pbr_metallic_roughness().base_color_factor();
+            [red, green, blue].map(byte)
+        });
+        parts.push(Part {
+            triangles: triangles.collect(),
+            corners,
+            color,
+        });
+    }
+    for child in node.children() {
+        add(&child, &place, buffers, parts);
+    }
+}
+
+/// A linear intensity as sRGB (IEC 61966-2-1).
+fn byte(linear: f32) -> u8 {
+    let coded = match linear <= 0.003_130_8 {
+        true => 12.92 * linear,
+        false => 1.055 * linear.powf(1.0 / 2.4) - 0.055,
+    };
+    (coded.clamp(0.0, 1.0) * 255.0).round() as u8
+}

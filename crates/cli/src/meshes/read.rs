@@ -1,0 +1,106 @@
+//! Files of meshes: STL and OBJ, COLLADA (`.dae`), and glTF, told by their endings.
+
+use super::{Part, gltf};
+use mesh_loader::{Loader, Scene};
+use std::panic::{self, AssertUnwindSafe};
+use std::path::Path;
+
+/// Most bytes of a file.
+const MOST_BYTES: u64 = 256 << 20;
+
+/// The parts of the mesh in a file.
+///
+/// # Errors
+/// A file that is too large, cannot be read, or is in no such format; a mesh without a triangle. In words.
+pub fn read(path: &Path) -> Result<Vec<Part>, String> {
+    let size = std::fs::metadata(path).map_err(told)?.len();
+    if size > MOST_BYTES {
+        return Err(format!(
+            "{} MB, and at most {} are read",
+            size >> 20,
+            MOST_BYTES >> 20
+        ));
+    }
+    let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+    let mut bytes = std::fs::read(path).map_err(told)?;
+    if is_binary_stl(&bytes) {
+        // What stands there may look like the beginning of a text.
+        bytes[..HEADER].fill(0);
+    }
+    let loader = Loader::default();
+    let parts = guarded(|| match ending.to_str().unwrap_or_default() {
+        "stl" => loader
+            .load_stl_from_slice(&bytes, path)
+            .map(parts)
+            .map_err(told),
+        "obj" => loader
+            .load_obj_from_slice(&bytes, path)
+            .map(parts)
+            .map_err(told),
+        "dae" => loader
+            .load_collada_from_slice(&bytes, path)
+            .map(parts)
+            .map_err(told),
+        "gltf" | "glb" => gltf::read(path, &bytes),
+        _ => Err("it is none of .stl, .obj, .dae, .gltf and .glb".to_owned()),
+    })?;
+    let parts: Vec<Part> = parts.into_iter().filter_map(sound).collect();
+    match parts.is_empty() {
+        true => Err("it has no triangle".to_owned()),
+        false => Ok(parts),
+    }
+}
+
+/// Bytes before the number of triangles in a binary STL.
+const HEADER: usize = 80;
+
+/// Whether the length is that of a binary STL: of another format, that would be chance.
+fn is_binary_stl(bytes: &[u8]) -> bool {
+    let count = bytes.get(HEADER..).and_then(|rest| rest.first_chunk());
+    count.is_some_and(|count| {
+        let triangles = u64::from(u32::from_le_bytes(*count));
+        bytes.len() as u64 == HEADER as u64 + 4 + 50 * triangles
+    })
+}
+
+fn told(error: std::io::Error) -> String {
+    error.to_string()
+}
+
+/// What `load` gives. The reader of COLLADA panics where a file refers to an element that it does not have.
+fn guarded(load: impl FnOnce() -> Result<Vec<Part>, String>) -> Result<Vec<Part>, String> {
+    let hook = panic::take_hook();
+    panic::set_hook(Box::new(|_| {}));
+    let loaded = panic::catch_unwind(AssertUnwindSafe(load));
+    panic::set_hook(hook);
+    loaded.unwrap_or_else(|_| Err("it refers to what it does not have".to_owned()))
+}
+
+fn parts(scene: Scene) -> Vec<Part> {
+    let colors = scene.materials.iter().map(|own| own.color.diffuse);
+    let colors = colors.chain(std::iter::repeat(None));
+    let parts = scene.meshes.into_iter().zip(colors);
+    parts
+        .map(|(mesh, color)| Part {
+            corners: mesh.vertices,
+            triangles: mesh.faces,
+            color: color.map(bytes),
+        })
+        .collect()
+}
+
+/// A colour without its transparency.
+fn bytes([red, green, blue, _]: [f32; 4]) -> [u8; 3] {
+    [red, green, blue].map(|part| (part.clamp(0.0, 1.0) * 255.0).round() as u8)
+}
+
+/// The triangles of a part whose corners exist and are finite; `None` where there is none.
+fn sound(mut part: Part) -> Option<Part> {
+    let is_finite = |place: u32| {
+        let corner = part.corners.get(place as usize);
+        corner.is_some_and(|corner| corner.iter().all(|number| number.is_finite()))
+    };
+    part.triangles
+        .retain(|triangle| triangle.iter().all(|place| is_finite(*place)));
+    (!part.triangles.is_empty()).then_some(part)
+}
