@@ -22,27 +22,11 @@ pub fn read(path: &Path) -> Result<Vec<Part>, String> {
         ));
     }
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
-    let mut bytes = std::fs::read(path).map_err(told)?;
-    if is_binary_stl(&bytes) {
-        // What stands there may look like the beginning of a text.
-        bytes[..HEADER].fill(0);
-    }
-    let loader = Loader::default();
-    let parts = guarded(|| match ending.to_str().unwrap_or_default() {
-        "stl" => loader
-            .load_stl_from_slice(&bytes, path)
-            .map(parts)
-            .map_err(told),
-        "obj" => loader
-            .load_obj_from_slice(&bytes, path)
-            .map(parts)
-            .map_err(told),
-        "dae" => loader
-            .load_collada_from_slice(&bytes, path)
-            .map(parts)
-            .map_err(told),
+    let bytes = std::fs::read(path).map_err(told)?;
+    let ending = ending.to_str().unwrap_or_default();
+    let parts = guarded(|| match ending {
         "gltf" | "glb" => gltf::read(path, &bytes),
-        _ => Err("it is none of .stl, .obj, .dae, .gltf and .glb".to_owned()),
+        _ => by_loader(ending, path, bytes),
     })?;
     let parts: Vec<Part> = parts.into_iter().filter_map(sound).collect();
     match parts.is_empty() {
@@ -51,15 +35,33 @@ pub fn read(path: &Path) -> Result<Vec<Part>, String> {
     }
 }
 
-/// Bytes before the number of triangles in a binary STL.
-const HEADER: usize = 80;
+/// The parts of a file in the formats of `mesh_loader`.
+fn by_loader(ending: &str, path: &Path, mut bytes: Vec<u8>) -> Result<Vec<Part>, String> {
+    let loader = Loader::default();
+    let scene = match ending {
+        "stl" => {
+            if is_binary_stl(&bytes) {
+                // Its head is not read, though it may look like the beginning of a text.
+                bytes[..HEAD].fill(0);
+            }
+            loader.load_stl_from_slice(&bytes, path)
+        }
+        "obj" => loader.load_obj_from_slice(&bytes, path),
+        "dae" => loader.load_collada_from_slice(&bytes, path),
+        _ => return Err("it is none of .stl, .obj, .dae, .gltf and .glb".to_owned()),
+    };
+    scene.map(parts).map_err(told)
+}
 
-/// Whether the length is that of a binary STL: of another format, that would be chance.
+/// Bytes before the number of triangles in a binary STL.
+const HEAD: usize = 80;
+
+/// Whether the length is that of a binary STL; texts have it by chance at most.
 fn is_binary_stl(bytes: &[u8]) -> bool {
-    let count = bytes.get(HEADER..).and_then(|rest| rest.first_chunk());
+    let count = bytes.get(HEAD..).and_then(|rest| rest.first_chunk());
     count.is_some_and(|count| {
         let triangles = u64::from(u32::from_le_bytes(*count));
-        bytes.len() as u64 == HEADER as u64 + 4 + 50 * triangles
+        bytes.len() as u64 == HEAD as u64 + 4 + 50 * triangles
     })
 }
 
