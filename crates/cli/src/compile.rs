@@ -1,6 +1,6 @@
 //! `hamel compile`: a scene or a robot as Rust or C that holds nothing it does not need.
 
-use crate::input::{Input, stops};
+use crate::input::{Input, RobotArgs};
 use clap::ValueEnum;
 use hamel::mechanism::Mechanism;
 use hamel::registry::JointRegistry;
@@ -8,7 +8,6 @@ use hamel_compiler::functions::Kind;
 use hamel_compiler::{Build, Error, Language, explain};
 use hamel_console::files::{Force, admit, first_line, named};
 use hamel_console::output::{self, Failure};
-use hamel_scene::robot::Stops;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
@@ -59,14 +58,8 @@ pub struct Args {
     #[arg(long, conflicts_with = "explain")]
     pub lanes: bool,
 
-    /// Let the root link of a robot in URDF move freely; otherwise it is fixed to the world
-    #[arg(long)]
-    pub floating_base: bool,
-
-    /// Simulate the limits of position of a robot in URDF or MJCF as stops that give way: stiffness, N m/rad or N/m, and damping d, s/rad or s/m, of the effort
-    /// k x (1 + d ẋ) beyond them
-    #[arg(long, value_name = "STIFFNESS,DAMPING", value_parser = stops, allow_negative_numbers = true)]
-    pub limits: Option<Stops>,
+    #[command(flatten)]
+    pub robot: RobotArgs,
 
     #[command(flatten)]
     pub force: Force,
@@ -145,7 +138,7 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
         return Err(Failure::Options(Error::Lanes.to_string()));
     }
     // Read once: what is checked is what is compiled.
-    let input = Input::read(&args.scene, args.floating_base, args.limits)?;
+    let input = Input::read(&args.scene, &args.robot)?;
     // Checked as a whole, as for a simulation, with the joints of the registry: the compiler knows their specs alone.
     let scene = input.scene(registry)?;
     scene.check_start(&scene.settings, scene.control.as_ref())?;

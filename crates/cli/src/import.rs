@@ -1,12 +1,12 @@
 //! `hamel import`: a robot in URDF or MJCF as a scene file.
 
-use crate::input::stops;
+use crate::input::RobotArgs;
 use crate::meshes::locate;
 use fnv::FnvHasher;
 use hamel::registry::JointRegistry;
 use hamel_console::files::{Force, admit, named};
 use hamel_console::output::{self, Failure, tell};
-use hamel_scene::robot::{self, Stops};
+use hamel_scene::robot;
 use hamel_scene::{Geometry, SceneDescription, read_file};
 use std::fs::File;
 use std::hash::Hasher;
@@ -43,14 +43,8 @@ pub struct Args {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
-    /// Let the root link move freely; otherwise it is fixed to the world
-    #[arg(long)]
-    pub floating_base: bool,
-
-    /// Simulate the limits of position of a robot in URDF or MJCF as stops that give way: stiffness, N m/rad or N/m, and damping d, s/rad or s/m, of the effort
-    /// k x (1 + d ẋ) beyond them
-    #[arg(long, value_name = "STIFFNESS,DAMPING", value_parser = stops, allow_negative_numbers = true)]
-    pub limits: Option<Stops>,
+    #[command(flatten)]
+    pub options: RobotArgs,
 
     #[command(flatten)]
     pub force: Force,
@@ -61,13 +55,12 @@ pub struct Args {
 /// # Errors
 /// Mistakes in the robot; a file that cannot be written.
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
-    let options = robot::Options {
-        floating_base: args.floating_base,
-        limits: args.limits,
-        ..robot::Options::default()
-    };
     let (text, name) = read_file(&args.robot)?;
-    let mut import = robot::read(&robot::completed(&args.robot, text)?, &name, &options)?;
+    let mut import = robot::read(
+        &robot::completed(&args.robot, text)?,
+        &name,
+        &args.options.options(),
+    )?;
     rename_meshes(&mut import.scene, &args.robot, args.output.as_deref());
     let built = match import.build(registry) {
         Ok(scene) => {

@@ -3,8 +3,70 @@
 use hamel::registry::JointRegistry;
 use hamel_compiler::Build;
 use hamel_console::output::Failure;
+use hamel_scene::robot::Stops;
 use hamel_scene::{Scene, SceneDescription, read_file, robot};
 use std::path::{Path, PathBuf};
+
+/// What the file of a robot leaves open.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub struct RobotArgs {
+    /// Let the root link of a robot in URDF move freely; otherwise it is fixed to the world
+    #[arg(long)]
+    floating_base: bool,
+
+    /// Simulate the limits of position of a robot in URDF or MJCF as stops that give way: stiffness, N m/rad or N/m, and damping d, s/rad or s/m, of the effort
+    /// k x (1 + d ẋ) beyond them
+    #[arg(long, value_name = "STIFFNESS,DAMPING", value_parser = stops, allow_negative_numbers = true)]
+    limits: Option<Stops>,
+
+    /// Read a robot in URDF although no rigid body has its masses: such an inertia becomes that of a ball with the mean of its moments, and joints that move nothing with mass are fixed. What was changed is told
+    #[arg(long)]
+    lenient: bool,
+}
+
+impl RobotArgs {
+    /// How to read the file.
+    pub fn options(&self) -> robot::Options {
+        robot::Options {
+            floating_base: self.floating_base,
+            limits: self.limits,
+            lenient: self.lenient,
+            ..robot::Options::default()
+        }
+    }
+
+    /// The first option that was given, the formats that it is for, and why a scene does without it.
+    fn for_robots(&self) -> Option<(&'static str, &'static str, &'static str)> {
+        let options = [
+            (
+                self.floating_base,
+                (
+                    "--floating-base",
+                    "URDF",
+                    "a scene says itself how its bodies move",
+                ),
+            ),
+            (
+                self.limits.is_some(),
+                (
+                    "--limits",
+                    "URDF and MJCF",
+                    "a scene says itself what limits its joints",
+                ),
+            ),
+            (
+                self.lenient,
+                (
+                    "--lenient",
+                    "URDF",
+                    "what is wrong with its numbers is mended in the file",
+                ),
+            ),
+        ];
+        let mut given = options.into_iter().filter(|(is_given, _)| *is_given);
+        given.next().map(|(_, option)| option)
+    }
+}
 
 /// The text of a scene or of a robot.
 #[derive(Debug)]
@@ -24,23 +86,13 @@ impl Input {
     /// The scene, or the robot: what is XML is read as URDF or MJCF, whatever the file's ending, and so is what ends in `.urdf`.
     ///
     /// # Errors
-    /// A file that cannot be read; `floating_base` or `limits` for what is no robot.
-    pub fn read(
-        path: &Path,
-        floating_base: bool,
-        limits: Option<robot::Stops>,
-    ) -> Result<Self, Failure> {
+    /// A file that cannot be read; options of robots for what is none.
+    pub fn read(path: &Path, args: &RobotArgs) -> Result<Self, Failure> {
         let (text, name) = read_file(path)?;
         let is_robot = robot::is_robot(path, &text);
-        if floating_base && !is_robot {
+        if let Some((option, formats, why)) = args.for_robots().filter(|_| !is_robot) {
             return Err(Failure::Options(format!(
-                "--floating-base is for robots in URDF, and {} is none: a scene says itself how its bodies move",
-                path.display()
-            )));
-        }
-        if limits.is_some() && !is_robot {
-            return Err(Failure::Options(format!(
-                "--limits is for robots in URDF and MJCF, and {} is none: a scene says itself what limits its joints",
+                "{option} is for robots in {formats}, and {} is none: {why}",
                 path.display()
             )));
         }
@@ -54,11 +106,7 @@ impl Input {
             name,
             label: label.into_owned(),
             folder: path.parent().unwrap_or(Path::new("")).to_owned(),
-            robot: is_robot.then(|| robot::Options {
-                floating_base,
-                limits,
-                ..robot::Options::default()
-            }),
+            robot: is_robot.then(|| args.options()),
         })
     }
 
@@ -117,7 +165,7 @@ impl Input {
 ///
 /// # Errors
 /// What is not two numbers of at least 0.
-pub fn stops(text: &str) -> Result<robot::Stops, String> {
+fn stops(text: &str) -> Result<robot::Stops, String> {
     let number = |text: &str| {
         let number: f64 = text.trim().parse().ok()?;
         (number.is_finite() && number >= 0.0).then_some(number)

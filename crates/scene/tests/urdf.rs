@@ -282,6 +282,82 @@ fn what_rounding_leaves_of_an_inertia_is_no_mistake() {
     );
 }
 
+/// Moments 3, 1 and 1 kg m² break the triangle inequality; `tip` and `palm` have no mass, and `finger` follows what does not move.
+#[test]
+fn a_lenient_reader_mends_masses_and_tells_which() {
+    let hinge = |name: &str, parent: &str, inside: &str| {
+        format!(
+            "<joint name=\"{name}_joint\" type=\"revolute\"><parent link=\"{parent}\"/><child link=\"{name}\"/>{inside}</joint>"
+        )
+    };
+    let flat = "<link name=\"flat\"><inertial><origin xyz=\"0 0 1\"/><mass value=\"2\"/>\
+        <inertia ixx=\"3\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link>";
+    let empty = |name: &str| format!("<link name=\"{name}\"/>");
+    let more = [
+        flat.to_owned(),
+        hinge("flat", "arm", ""),
+        empty("palm"),
+        hinge("palm", "flat", ""),
+        empty("finger"),
+        hinge("finger", "palm", "<mimic joint=\"palm_joint\"/>"),
+        empty("between"),
+        hinge("between", "arm", ""),
+        format!("<link name=\"end\">{INERTIAL}</link>"),
+        hinge("end", "between", ""),
+    ]
+    .concat();
+    let options = Options {
+        lenient: true,
+        ..Options::default()
+    };
+    let import = robot_with("revolute", "", &more, &options);
+    let bodies = import.scene.bodies.iter();
+    let names = bodies.map(|body| &*body.name.value);
+    // What has no mass and carries some moves.
+    assert!(names.eq(["arm", "flat", "between", "end"]));
+    let flat = import.scene.bodies[1].mass;
+    assert_eq!((flat.mass, flat.com), (2.0, Vector3::z()));
+    let ball = Matrix3::from_diagonal_element(5.0 / 3.0);
+    assert!((flat.inertia_com - ball).amax() <= 5.0 * f64::EPSILON);
+    let told = notices(&import);
+    for wanted in [
+        "warning: joints that move nothing with mass are fixed: joint `palm_joint`, joint `finger_joint`",
+        "warning: no rigid body has such an inertia: it is taken as that of a ball with the mean of its moments: link `flat`",
+    ] {
+        assert!(told.iter().any(|notice| notice == wanted), "{told:?}");
+    }
+}
+
+/// A sound robot is the same to a lenient reader; what it cannot mend, it refuses.
+#[test]
+fn a_lenient_reader_changes_nothing_else() {
+    let options = Options {
+        lenient: true,
+        ..Options::default()
+    };
+    for name in ["anymal", "every_kind", "g1", "panda7", "pendulum"] {
+        let path = format!(
+            "{}/../../tests/data/urdf/{name}.urdf",
+            env!("CARGO_MANIFEST_DIR")
+        );
+        let text = std::fs::read_to_string(path).expect("a robot");
+        let [strict, lenient] = [Options::default(), options].map(|options| {
+            let import = read(&text, "r.urdf", &options);
+            let import = import.unwrap_or_else(|errors| panic!("{errors}"));
+            (import.to_toml(), notices(&import))
+        });
+        assert_eq!(strict, lenient, "{name}");
+    }
+    let negative = INERTIAL.replace("value=\"2\"", "value=\"-2\"");
+    let text = format!(
+        "<robot name=\"r\"><link name=\"base\"/><link name=\"arm\">{negative}</link><joint name=\"joint\" type=\"revolute\"><parent link=\"base\"/><child link=\"arm\"/></joint></robot>"
+    );
+    let refused = read(&text, "r.urdf", &options).map_err(|errors| errors.to_string());
+    assert!(
+        refused.is_err_and(|message| message.contains("mass is -2.0 kg: it must be at least 0"))
+    );
+}
+
 #[test]
 fn simple_visual_shapes_are_kept_for_pictures() {
     let more = "<material name=\"grey\"><color rgba=\"0.5 0.5 0.5 1\"/></material>\

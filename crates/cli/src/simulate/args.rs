@@ -1,12 +1,11 @@
 //! The options of `hamel simulate`.
 
-use crate::input::stops;
+use crate::input::RobotArgs;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, ValueEnum};
 use hamel::integrate::Scheme;
 use hamel_console::files::Force;
 use hamel_scene::Settings;
-use hamel_scene::robot::Stops;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -74,14 +73,8 @@ pub struct Args {
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
 
-    /// Let the root link of a robot in URDF move freely; otherwise it is fixed to the world
-    #[arg(long)]
-    pub floating_base: bool,
-
-    /// Simulate the limits of position of a robot in URDF or MJCF as stops that give way: stiffness, N m/rad or N/m, and damping d, s/rad or s/m, of the effort
-    /// k x (1 + d ẋ) beyond them
-    #[arg(long, value_name = "STIFFNESS,DAMPING", value_parser = stops, allow_negative_numbers = true)]
-    pub limits: Option<Stops>,
+    #[command(flatten)]
+    pub robot: RobotArgs,
 
     /// Take the [controller] of FILE, instead of the scene's own if it has one
     #[arg(long, value_name = "FILE")]

@@ -60,7 +60,7 @@ impl Plan {
     /// # Errors
     /// Mistakes in the scene; options out of range; a first state to which no method can be chosen; files that must not be written.
     pub fn new(args: &Args, registry: &JointRegistry) -> Result<Self, Failure> {
-        let input = Input::read(&args.scene, args.floating_base, args.limits)?;
+        let input = Input::read(&args.scene, &args.robot)?;
         let scene = input.scene(registry)?;
         let control = match &args.controller {
             Some(path) => Some(Control::load(path, &scene)?),

@@ -1,8 +1,7 @@
 //! The options of `hamel sweep`.
 
-use crate::input::stops;
+use crate::input::RobotArgs;
 use clap::ValueEnum;
-use hamel_scene::robot::Stops;
 use std::num::NonZero;
 use std::path::PathBuf;
 
@@ -81,13 +80,8 @@ pub struct Args {
     #[arg(long, value_name = "ROW", conflicts_with = "output")]
     pub scene_of: Option<NonZero<u64>>,
 
-    /// Let the root link of a robot in URDF move freely; otherwise it is fixed to the world
-    #[arg(long)]
-    pub floating_base: bool,
-
-    /// Simulate the limits of position of a robot as stops that give way, as `hamel simulate` does
-    #[arg(long, value_name = "STIFFNESS,DAMPING", value_parser = stops, allow_negative_numbers = true)]
-    pub limits: Option<Stops>,
+    #[command(flatten)]
+    pub robot: RobotArgs,
 
     /// Print the summary as JSON on stdout, and nothing else
     #[arg(long)]

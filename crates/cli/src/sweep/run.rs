@@ -22,7 +22,7 @@ use std::time::Instant;
 /// # Errors
 /// Mistakes in the scene, the columns or the options; files that cannot be read or written; an interrupt.
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
-    let input = input::Input::read(&args.scene, args.floating_base, args.limits)?;
+    let input = input::Input::read(&args.scene, &args.robot)?;
     let text = input.scene_text()?;
     let table = table::Table::open(&args.over)?;
     let sweep = sweep(args, &text, input.name(), table.names(), registry)?;

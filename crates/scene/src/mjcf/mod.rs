@@ -71,6 +71,17 @@ pub(crate) fn import(
         );
         sink.push(error.help("give the body a <freejoint/>"));
     }
+    if options.lenient {
+        let error = Diagnostic::new(
+            tag(root),
+            "broken masses are to be mended, but a robot in MJCF says itself what becomes of them",
+        );
+        sink.push(
+            error.help(
+                "set `balanceinertia=\"true\"`, `boundmass` and `boundinertia` of <compiler>",
+            ),
+        );
+    }
     audit::audit(root, &lines, sink);
     if sink.len() > 0 {
         return None;

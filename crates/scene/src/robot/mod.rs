@@ -27,6 +27,9 @@ pub struct Options {
     pub floating_base: bool,
     /// Acceleration of free fall, world axes, m/s²; an MJCF says its own.
     pub gravity: Vector3<f64>,
+    /// Whether a URDF is read although no rigid body has its masses: such an inertia becomes that of a ball with the mean of its principal moments, and joints that move
+    /// nothing with mass are fixed. Each is told by a warning. An MJCF says itself what becomes of its masses (`balanceinertia`, `boundmass`, `boundinertia`).
+    pub lenient: bool,
     /// What makes compliant limits of the joints' limits of position; `None` leaves these out.
     pub limits: Option<Stops>,
 }
@@ -45,6 +48,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             floating_base: false,
+            lenient: false,
             gravity: Vector3::new(0.0, 0.0, -9.81),
             limits: None,
         }
@@ -66,7 +70,7 @@ pub struct Import {
 ///
 /// # Errors
 /// Numbers of limits that are negative or not finite. All mistakes of the text: XML that is not well-formed, or in another format (xacro and SDF are told by name); missing or malformed elements and attributes; links and joints that
-/// make no tree; mass properties that no body can have; a body without mass at the end of a moving joint. A floating base of a robot in MJCF, which says itself what is free.
+/// make no tree; mass properties that no body can have; a body without mass at the end of a moving joint. A floating base and leniency for a robot in MJCF, which says itself what is free and what becomes of its masses.
 pub fn read(text: &str, source_name: &str, options: &Options) -> Result<Import, Diagnostics> {
     let mut sink = Sink::default();
     if let Some(Stops { stiffness, damping }) = options.limits {

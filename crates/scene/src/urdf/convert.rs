@@ -56,7 +56,8 @@ pub(super) fn convert(
     } = converter;
     // A mass that was refused is missing on what moves.
     let complete = sink.len() == errors_before_masses;
-    masses::settle(robot, &mut bodies, &parts, &mut notices, sink);
+    let bodies_and_parts = (&mut *bodies, &*parts);
+    masses::settle(robot, bodies_and_parts, options.lenient, &mut notices, sink);
     let anchored = |link: usize| anchors.get(link).copied().flatten();
     let joined = links.closed().map(|links| {
         let bodies = links.into_iter().filter_map(|link| anchored(link)?.body);

@@ -1,6 +1,7 @@
 //! What the links of each body weigh together, and whether that can move.
 
 use super::document::place;
+use super::lenient;
 use super::robot::Robot;
 use crate::description::BodyDescription;
 use crate::diagnostics::Diagnostic;
@@ -18,20 +19,26 @@ pub(super) struct Part {
     pub(super) mass: MassProperties,
 }
 
-/// Adds up the parts of each body, and checks the sums.
+/// Adds up the parts of each body, and checks the sums; a lenient reader mends those that no rigid body has.
 pub(super) fn settle(
     robot: &Robot<'_, '_>,
-    bodies: &mut [BodyDescription],
-    parts: &[Vec<Part>],
+    (bodies, parts): (&mut [BodyDescription], &[Vec<Part>]),
+    is_lenient: bool,
     notices: &mut Notices,
     sink: &mut Sink,
 ) {
     for (body, parts) in bodies.iter_mut().zip(parts) {
         let masses: Vec<MassProperties> = parts.iter().map(|part| part.mass).collect();
         body.mass = sum(&masses);
-        match body.mass.check() {
-            Err(error) => sink.push(refusal(robot, body, parts, &error)),
-            Ok(()) => tell_odd(robot, parts, notices),
+        if body.mass.check().is_ok() {
+            tell_odd(robot, parts, notices);
+            continue;
+        }
+        if is_lenient {
+            body.mass = sum(&lenient::balance(robot, parts, notices));
+        }
+        if let Err(error) = body.mass.check() {
+            sink.push(refusal(robot, body, parts, &error));
         }
     }
 }

@@ -24,6 +24,7 @@ mod document;
 mod extended;
 mod foreign;
 mod joint;
+mod lenient;
 mod mass;
 mod masses;
 mod robot;
@@ -81,10 +82,13 @@ pub(crate) fn import(
     if sink.len() > 0 {
         return None;
     }
-    let robot = Robot::read(root)?;
+    let mut robot = Robot::read(root)?;
     if robot.links.is_empty() {
         sink.push(Diagnostic::new(tag(root), "the robot has no link"));
         return None;
+    }
+    if options.lenient {
+        lenient::fix_massless(&mut robot, &mut notices);
     }
     convert::convert(&robot, version, source, options, notices, sink)
 }
