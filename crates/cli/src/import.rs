@@ -7,7 +7,7 @@ use hamel::registry::JointRegistry;
 use hamel_console::files::{Force, admit, named};
 use hamel_console::output::{self, Failure, tell};
 use hamel_scene::robot;
-use hamel_scene::{Geometry, SceneDescription, read_file};
+use hamel_scene::{Geometry, Mesh, SceneDescription, read_file};
 use std::fs::File;
 use std::hash::Hasher;
 use std::io::Read;
@@ -56,11 +56,8 @@ pub struct Args {
 /// Mistakes in the robot; a file that cannot be written.
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let (text, name) = read_file(&args.robot)?;
-    let mut import = robot::read(
-        &robot::completed(&args.robot, text)?,
-        &name,
-        &args.options.options(),
-    )?;
+    let text = robot::completed(&args.robot, text)?;
+    let mut import = args.options.robot(&text, &name)?;
     rename_meshes(&mut import.scene, &args.robot, args.output.as_deref());
     let built = match import.build(registry) {
         Ok(scene) => {
@@ -92,7 +89,11 @@ fn rename_meshes(scene: &mut SceneDescription, robot: &Path, output: Option<&Pat
             && let Some(path) = locate(&from, &mesh.file)
         {
             let inside = to.as_ref().and_then(|to| path.strip_prefix(to).ok());
-            mesh.file = inside.unwrap_or(&path).to_string_lossy().into_owned();
+            // What a scene cannot hold stays as it is.
+            let name = inside.unwrap_or(&path).to_str();
+            if let Some(name) = name.filter(|name| Mesh::is_name(name)) {
+                mesh.file = name.to_owned();
+            }
         }
     }
 }

@@ -4,11 +4,11 @@ use hamel::registry::JointRegistry;
 use hamel_compiler::Build;
 use hamel_console::output::Failure;
 use hamel_scene::robot::Stops;
-use hamel_scene::{Scene, SceneDescription, read_file, robot};
+use hamel_scene::{Diagnostics, Scene, SceneDescription, read_file, robot};
 use std::path::{Path, PathBuf};
 
 /// What the file of a robot leaves open.
-#[derive(Clone, Copy, Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 pub struct RobotArgs {
     /// Let the root link of a robot in URDF move freely; otherwise it is fixed to the world
     #[arg(long)]
@@ -22,17 +22,25 @@ pub struct RobotArgs {
     /// Read a robot in URDF although no rigid body has its masses: such an inertia becomes that of a ball with the mean of its moments, and joints that move nothing with mass are fixed. What was changed is told
     #[arg(long)]
     lenient: bool,
+
+    /// Begin where these joints of a robot have these coordinates: angles in rad, displacements in m, as in `elbow=1.2,lift=-0.05`
+    #[arg(long, value_name = "JOINT=VALUE,…", value_delimiter = ',', value_parser = coordinate)]
+    posture: Vec<(String, f64)>,
 }
 
 impl RobotArgs {
-    /// How to read the file.
-    pub fn options(&self) -> robot::Options {
-        robot::Options {
+    /// The robot that a text describes, which messages call `name`.
+    ///
+    /// # Errors
+    /// Mistakes in the text; a posture that the robot cannot take.
+    pub fn robot(&self, text: &str, name: &str) -> Result<robot::Import, Diagnostics> {
+        let options = robot::Options {
             floating_base: self.floating_base,
             limits: self.limits,
             lenient: self.lenient,
             ..robot::Options::default()
-        }
+        };
+        robot::read(text, name, &options)?.in_posture(&self.posture)
     }
 
     /// The first option that was given, the formats that it is for, and why a scene does without it.
@@ -62,6 +70,14 @@ impl RobotArgs {
                     "what is wrong with its numbers is mended in the file",
                 ),
             ),
+            (
+                !self.posture.is_empty(),
+                (
+                    "--posture",
+                    "URDF and MJCF",
+                    "a scene says itself where its joints begin",
+                ),
+            ),
         ];
         let mut given = options.into_iter().filter(|(is_given, _)| *is_given);
         given.next().map(|(_, option)| option)
@@ -79,7 +95,7 @@ pub struct Input {
     /// The folder of the file, from which it names others.
     folder: PathBuf,
     /// How to read a robot; absent for a scene.
-    robot: Option<robot::Options>,
+    robot: Option<RobotArgs>,
 }
 
 impl Input {
@@ -106,7 +122,7 @@ impl Input {
             name,
             label: label.into_owned(),
             folder: path.parent().unwrap_or(Path::new("")).to_owned(),
-            robot: is_robot.then(|| args.options()),
+            robot: is_robot.then(|| args.clone()),
         })
     }
 
@@ -126,7 +142,7 @@ impl Input {
     /// Mistakes in the text.
     pub fn scene(&self, registry: &JointRegistry) -> Result<Scene, Failure> {
         Ok(match &self.robot {
-            Some(options) => robot::read(&self.text, &self.name, options)?.build(registry)?,
+            Some(args) => args.robot(&self.text, &self.name)?.build(registry)?,
             None => Scene::parse(&self.text, &self.name, registry)?,
         })
     }
@@ -137,7 +153,7 @@ impl Input {
     /// Mistakes in the text of a robot.
     pub fn scene_text(&self) -> Result<String, Failure> {
         Ok(match &self.robot {
-            Some(options) => robot::read(&self.text, &self.name, options)?.to_toml(),
+            Some(args) => args.robot(&self.text, &self.name)?.to_toml(),
             None => self.text.clone(),
         })
     }
@@ -153,12 +169,26 @@ impl Input {
     /// Mistakes in the text.
     pub fn build(&self) -> Result<Build, Failure> {
         let description: SceneDescription = match &self.robot {
-            Some(options) => robot::read(&self.text, &self.name, options)?.scene,
+            Some(args) => args.robot(&self.text, &self.name)?.scene,
             None => Scene::from_toml(&self.text, &self.name)?,
         };
         let build = hamel_compiler::scene_of(&self.label, description);
         Ok(build.library(hamel_joints::specs()))
     }
+}
+
+/// A joint of `--posture` with its coordinate.
+///
+/// # Errors
+/// What is not a name, `=` and a number.
+fn coordinate(text: &str) -> Result<(String, f64), String> {
+    let pair = text.rsplit_once('=');
+    let parsed = pair.and_then(|(joint, number)| {
+        let joint = joint.trim();
+        let number = number.trim().parse().ok()?;
+        (!joint.is_empty()).then(|| (joint.to_owned(), number))
+    });
+    parsed.ok_or_else(|| "write JOINT=NUMBER, as in `elbow=1.2`".to_owned())
 }
 
 /// The numbers of `--limits`.

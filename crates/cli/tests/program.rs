@@ -229,6 +229,31 @@ fn mistakes_are_told_in_words() {
             "--floating-base is for robots in URDF",
         ),
         (
+            vec!["compile", "scenes/free_body.toml", "--lenient"],
+            2,
+            "--lenient is for robots in URDF",
+        ),
+        (
+            vec!["simulate", "scenes/free_body.toml", "--posture", "a=1"],
+            2,
+            "--posture is for robots in URDF and MJCF",
+        ),
+        (
+            vec!["simulate", "tests/data/urdf/panda7.urdf", "--posture", "a"],
+            2,
+            "write JOINT=NUMBER",
+        ),
+        (
+            vec![
+                "import",
+                "tests/data/urdf/pendulum.urdf",
+                "--posture",
+                "x=1",
+            ],
+            1,
+            "posture: there is no joint `x` that moves",
+        ),
+        (
             vec!["import", "tests/corpus/urdf-bad/mass_negative.urdf"],
             1,
             "mass is -2.0 kg",

@@ -1,5 +1,7 @@
 //! Shapes that stand for bodies in pictures; they have no effect on the motion.
 
+use crate::read::LONGEST_NAME;
+use crate::text::is_hidden;
 use hamel_runtime::spatial::Pose;
 use nalgebra::Vector3;
 
@@ -53,4 +55,11 @@ pub struct Mesh {
 impl Geometry {
     /// Names of the shapes, as scene files write them.
     pub const NAMES: [&'static str; 5] = ["box", "sphere", "cylinder", "capsule", "mesh"];
+}
+
+impl Mesh {
+    /// Whether a scene can hold the name of a file: one line of visible characters, of at most 1000 bytes.
+    pub fn is_name(file: &str) -> bool {
+        !file.is_empty() && file.len() <= LONGEST_NAME && !file.chars().any(is_hidden)
+    }
 }

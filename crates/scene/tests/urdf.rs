@@ -2,7 +2,9 @@
 
 use hamel_runtime::spatial::Pose;
 use hamel_scene::urdf::{Import, Options, Stops, read};
-use hamel_scene::{BodyDescription, Geometry, LimitDescription, LimitKind, Mesh, PerFreedom};
+use hamel_scene::{
+    BodyDescription, Geometry, LimitDescription, LimitKind, Mesh, PerFreedom, Position,
+};
 use nalgebra::{Matrix3, Vector3};
 
 /// A few roundings of numbers around 1.
@@ -348,6 +350,17 @@ fn a_lenient_reader_changes_nothing_else() {
         });
         assert_eq!(strict, lenient, "{name}");
     }
+    // A joint without mass that one with mass follows is not fixed, and so is refused as without leniency.
+    let follower = |options: &Options| {
+        let text = format!(
+            "<robot name=\"r\"><link name=\"base\"/><link name=\"led\"/><link name=\"arm\">{INERTIAL}</link><joint name=\"lead\" type=\"revolute\"><parent link=\"base\"/><child link=\"led\"/></joint>\
+             <joint name=\"joint\" type=\"revolute\"><parent link=\"base\"/><child link=\"arm\"/><mimic joint=\"lead\"/></joint></robot>"
+        );
+        let read = read(&text, "r.urdf", options);
+        read.map(|import| import.to_toml())
+            .map_err(|errors| errors.to_string())
+    };
+    assert_eq!(follower(&options), follower(&Options::default()));
     let negative = INERTIAL.replace("value=\"2\"", "value=\"-2\"");
     let text = format!(
         "<robot name=\"r\"><link name=\"base\"/><link name=\"arm\">{negative}</link><joint name=\"joint\" type=\"revolute\"><parent link=\"base\"/><child link=\"arm\"/></joint></robot>"
@@ -394,6 +407,7 @@ fn meshes_are_kept_by_the_names_of_their_files() {
         "filename=\"package://arm/meshes/tip.dae\"",
         "filename=\"tip.stl\" scale=\"0.001 0.001 -0.001\"",
         "filename=\"tip.stl\" scale=\"1 0 1\"",
+        "filename=\"a&#10;b.stl\"",
         "scale=\"1 1 1\"",
     ];
     let more = format!(
@@ -413,7 +427,7 @@ fn meshes_are_kept_by_the_names_of_their_files() {
         mesh("tip.stl", [1e-3, 1e-3, -1e-3]),
     ];
     assert!(shapes.eq(&wanted));
-    let told = "note: visual shapes that are not complete are not drawn: link `tip`, link `tip`";
+    let told = "note: visual shapes that are not complete are not drawn: link `tip`, link `tip`, link `tip`";
     assert!(notices(&import).iter().any(|notice| notice == told));
     let text = import.to_toml();
     let again = hamel_scene::Scene::from_toml(&text, "r.toml").expect("a sound text");
@@ -515,4 +529,54 @@ form = \"lagrangian\"
 sample_step = 0.01
 ";
     assert_eq!(written, wanted);
+}
+
+#[test]
+fn a_posture_says_where_joints_begin() {
+    let more = format!(
+        "<link name=\"hand\">{INERTIAL}</link><joint name=\"wrist\" type=\"continuous\"><parent link=\"arm\"/><child link=\"hand\"/></joint>\
+         <link name=\"thumb\">{INERTIAL}</link><joint name=\"grip\" type=\"revolute\"><parent link=\"hand\"/><child link=\"thumb\"/><mimic joint=\"wrist\"/></joint>\
+         <link name=\"bob\">{INERTIAL}</link><joint name=\"swing\" type=\"spherical\"><parent link=\"arm\"/><child link=\"bob\"/></joint>"
+    );
+    let import = robot("prismatic", "", &more);
+    let stand = |posture: &[(&str, f64)]| {
+        let posture = posture
+            .iter()
+            .map(|(joint, value)| ((*joint).to_owned(), *value));
+        import.clone().in_posture(&posture.collect::<Vec<_>>())
+    };
+    let stood =
+        stand(&[("wrist", 4.0), ("joint", -0.25)]).unwrap_or_else(|errors| panic!("{errors}"));
+    let begins = |index: usize| match &stood.scene.bodies[index].initial.position {
+        Position::Phi(phi) => Some(phi.value.clone()),
+        _ => None,
+    };
+    assert_eq!(
+        [0, 1, 2, 3].map(begins),
+        [Some(vec![-0.25]), Some(vec![4.0]), None, None]
+    );
+    assert!(
+        stood.to_toml().contains("initial = { phi = [-0.25] }"),
+        "{}",
+        stood.to_toml()
+    );
+    let refused = stand(&[
+        ("wirst", 1.0),
+        ("grip", 1.0),
+        ("swing", 1.0),
+        ("wrist", f64::NAN),
+        ("wrist", 1.0),
+        ("wrist", 1.0),
+    ]);
+    let told = refused.map_or_else(|errors| errors.to_string(), |_| String::new());
+    for wanted in [
+        "posture: there is no joint `wirst` that moves",
+        "help: did you mean `wrist`?",
+        "posture: joint `grip` follows joint `wrist`",
+        "posture: joint `swing` is a `ball_child`: one number does not say where it stands",
+        "posture: joint `wrist` is to stand at NaN",
+        "posture: joint `wrist` is named twice",
+    ] {
+        assert!(told.contains(wanted), "{wanted} is not in {told}");
+    }
 }

@@ -1,6 +1,6 @@
 //! glTF: the triangles of its scene. Its y axis points up, which is z here.
 
-use super::Part;
+use super::{MOST_PARTS, Part, bytes};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use gltf::buffer::Source;
@@ -30,8 +30,18 @@ pub fn read(path: &Path, bytes: &[u8]) -> Result<Vec<Part>, String> {
         .or_else(|| document.scenes().next());
     let roots = scene.map(|scene| scene.nodes().collect::<Vec<_>>());
     let mut parts = Vec::new();
-    for node in roots.unwrap_or_default() {
-        add(&node, &Y_UP, &buffers, &mut parts);
+    let roots = roots.unwrap_or_default().into_iter();
+    let mut waiting: Vec<_> = roots.map(|node| (node, Y_UP)).collect();
+    // Nodes may be below themselves by mistake: their number is limited.
+    let mut seen = 0;
+    while let Some((node, above)) = waiting.pop() {
+        seen += 1;
+        if seen > MOST_PARTS {
+            return Err(format!("it shows more than {MOST_PARTS} nodes"));
+        }
+        let place = above * Matrix4::from(node.transform().matrix());
+        add(&node, &place, &buffers, &mut parts);
+        waiting.extend(node.children().map(|child| (child, place)));
     }
     Ok(parts)
 }
@@ -52,13 +62,29 @@ fn buffer(path: &Path, uri: &str) -> Result<Vec<u8>, String> {
         let bytes = coded.and_then(|coded| STANDARD.decode(coded).ok());
         return bytes.ok_or_else(|| "a buffer is not in base64".to_owned());
     }
-    let file = path.parent().unwrap_or(Path::new("")).join(uri);
-    std::fs::read(&file).map_err(|error| format!("its buffer `{uri}`: {error}"))
+    let file = path.parent().unwrap_or(Path::new("")).join(plain(uri));
+    bytes::read(&file).map_err(|error| format!("its buffer `{uri}`: {error}"))
 }
 
-/// Adds the triangles of a node and of those below it, in the frame that `above` leads to.
-fn add(node: &Node<'_>, above: &Matrix4<f32>, buffers: &[Vec<u8>], parts: &mut Vec<Part>) {
-    let place = above * Matrix4::from(node.transform().matrix());
+/// A URI without its escapes: `%20` is a space.
+fn plain(uri: &str) -> String {
+    let mut pieces = uri.split('%');
+    let mut bytes = pieces.next().unwrap_or_default().as_bytes().to_vec();
+    for piece in pieces {
+        let code = piece.get(..2).map(|code| u8::from_str_radix(code, 16));
+        match code {
+            Some(Ok(byte)) => {
+                bytes.push(byte);
+                bytes.extend(&piece.as_bytes()[2..]);
+            }
+            _ => bytes.extend([b"%", piece.as_bytes()].concat()),
+        }
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+/// Adds the triangles of a node that stands at `place`.
+fn add(node: &Node<'_>, place: &Matrix4<f32>, buffers: &[Vec<u8>], parts: &mut Vec<Part>) {
     let primitives = node.mesh().into_iter().flat_map(|mesh| mesh.primitives());
     for primitive in primitives.filter(|own| own.mode() == Mode::Triangles) {
         let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
@@ -88,9 +114,6 @@ fn add(node: &Node<'_>, above: &Matrix4<f32>, buffers: &[Vec<u8>], parts: &mut V
             corners,
             color,
         });
-    }
-    for child in node.children() {
-        add(&child, &place, buffers, parts);
     }
 }
 

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 /// The file that a scene or robot in `folder` calls `file`: a path from there; `file://…`; or `package://NAME/…`, where the package is a folder of that name among those above,
 /// or in one of them, or in a folder of `ROS_PACKAGE_PATH`, or in `share` of one of `AMENT_PREFIX_PATH`. `None` where there is none.
 pub fn locate(folder: &Path, file: &str) -> Option<PathBuf> {
-    let folder = std::path::absolute(folder).ok()?;
+    // A path without a folder has an empty one.
+    let folder = std::path::absolute(Path::new(".").join(folder)).ok()?;
     let is_file = |path: &PathBuf| path.is_file();
     let package = ["package://", "model://"]
         .iter()
@@ -51,6 +52,7 @@ fn packages(folder: &Path, name: &str) -> Vec<PathBuf> {
 mod tests {
     use super::locate;
     use std::fs;
+    use std::path::Path;
 
     #[test]
     fn files_are_found_from_the_folder_and_in_packages() {
@@ -72,6 +74,8 @@ mod tests {
         }
         let relative = found("../meshes/link.stl").expect("it is there");
         assert_eq!(relative.canonicalize().ok(), mesh.canonicalize().ok());
+        // Tests run in the folder of their package.
+        assert!(locate(Path::new(""), "Cargo.toml").is_some_and(|path| path.is_absolute()));
         for file in [
             "package://arm_description",
             "package://other/link.stl",

@@ -1,5 +1,7 @@
 //! The meshes of a scene for pictures: found, read, and made smaller where they have many triangles.
 
+mod bytes;
+mod collada;
 mod gltf;
 mod locate;
 mod read;
@@ -8,11 +10,15 @@ mod reduce;
 pub use locate::locate;
 
 use hamel_scene::{Geometry, Mesh, Notice, Severity, ShapeDescription};
+use nalgebra::Vector3;
 use std::ops::Range;
 use std::path::Path;
 
 /// Triangles of all meshes together at most. On a page each takes about 12 bytes, in base64 16: 1.6 MB.
 const MOST_TRIANGLES: usize = 100_000;
+
+/// Parts of one file at most, and nodes that show them.
+const MOST_PARTS: usize = 10_000;
 
 /// Triangles of one colour.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -41,20 +47,22 @@ impl Meshes {
             if let Geometry::Mesh(mesh) = &shape.geometry
                 && own.files.iter().all(|(known, _)| known != mesh)
             {
-                let first = own.parts.len();
-                match locate(folder, &mesh.file).map(|path| read::read(&path)) {
-                    None => own.leave_out("files of meshes are not found", &mesh.file, ""),
-                    Some(Err(why)) => own.leave_out("meshes cannot be read", &mesh.file, &why),
-                    Some(Ok(parts)) => own.parts.extend(parts.into_iter().map(|mut part| {
-                        part.scale(mesh.scale.map(|factor| factor as f32).into());
-                        part
-                    })),
-                }
-                own.files.push((mesh.clone(), first..own.parts.len()));
+                own.add(mesh, folder);
             }
         }
         reduce::to(MOST_TRIANGLES, &mut own.parts);
         own
+    }
+
+    fn add(&mut self, mesh: &Mesh, folder: &Path) {
+        let first = self.parts.len();
+        let read = locate(folder, &mesh.file).map(|path| read::read(&path));
+        match read.map(|parts| scaled(parts?, mesh)) {
+            None => self.leave_out("files of meshes are not found", &mesh.file, ""),
+            Some(Err(why)) => self.leave_out("meshes cannot be read", &mesh.file, &why),
+            Some(Ok(parts)) => self.parts.extend(parts),
+        }
+        self.files.push((mesh.clone(), first..self.parts.len()));
     }
 
     fn leave_out(&mut self, message: &str, file: &str, why: &str) {
@@ -90,16 +98,48 @@ impl Meshes {
     }
 }
 
+/// The parts in the scale of `mesh`, equal corners joined.
+///
+/// # Errors
+/// Coordinates that are beyond those of a page; nothing left of the triangles.
+fn scaled(parts: Vec<Part>, mesh: &Mesh) -> Result<Vec<Part>, String> {
+    let mut left = Vec::new();
+    for mut part in parts {
+        part.scale(&mesh.scale)?;
+        reduce::weld(&mut part);
+        if !part.triangles.is_empty() {
+            left.push(part);
+        }
+    }
+    match left.is_empty() {
+        true => Err("its triangles have no area".to_owned()),
+        false => Ok(left),
+    }
+}
+
+/// Coordinates are below this, m: sizes of boxes around them are still f32.
+const LARGEST: f32 = 1e30;
+
 impl Part {
     /// Multiplies coordinates. A reflection turns the triangles over.
-    fn scale(&mut self, factors: [f32; 3]) {
+    ///
+    /// # Errors
+    /// Coordinates that are beyond those of a page.
+    fn scale(&mut self, factors: &Vector3<f64>) -> Result<(), String> {
         for corner in &mut self.corners {
-            *corner = std::array::from_fn(|axis| corner[axis] * factors[axis]);
+            *corner = std::array::from_fn(|axis| (f64::from(corner[axis]) * factors[axis]) as f32);
         }
-        if factors.iter().product::<f32>() < 0.0 {
+        // Corners that no triangle has may be anywhere.
+        let used = self.triangles.as_flattened().iter();
+        let mut used = used.flat_map(|place| self.corners[*place as usize]);
+        if let Some(far) = used.find(|number| number.abs() > LARGEST) {
+            return Err(format!("a coordinate is {far:e} m"));
+        }
+        if factors.product() < 0.0 {
             for triangle in &mut self.triangles {
                 triangle.swap(1, 2);
             }
         }
+        Ok(())
     }
 }

@@ -7,14 +7,16 @@ use std::collections::HashMap;
 /// Edges are collapsed as long as the surface moves by no more than this part of its extent. Where that does not do, what is near is put together.
 const LARGEST_ERROR: f32 = 0.02;
 
+/// Triangles that a part keeps in any case.
+const LEAST: usize = 8;
+
 /// Simplification may leave this many times as many triangles as are wanted.
 const NEARLY: f64 = 1.2;
 
-/// Joins equal corners, and reduces the triangles of all parts together to `most` or little more. Small parts stay as they are.
+/// Reduces the triangles of all parts together to `most` or little more. Small parts stay as they are, and none is left with less than [`LEAST`].
 pub fn to(most: usize, parts: &mut [Part]) {
-    parts.iter_mut().for_each(weld);
     let counts: Vec<usize> = parts.iter().map(|part| part.triangles.len()).collect();
-    let share = share(most, &counts);
+    let share = share(most, &counts).max(LEAST);
     for part in parts {
         if part.triangles.len() > share {
             reduce(part, share);
@@ -38,7 +40,7 @@ fn share(most: usize, counts: &[usize]) -> usize {
 }
 
 /// Makes equal corners one; triangles that have no area by it go.
-fn weld(part: &mut Part) {
+pub fn weld(part: &mut Part) {
     let mut places = HashMap::new();
     let mut corners = Vec::new();
     let mut joined = |corner: [f32; 3]| {
@@ -67,6 +69,10 @@ fn reduce(part: &mut Part, wanted: usize) {
         count = simplify_sloppy(&mut found, &fine, &part.corners, 3 * wanted);
     }
     found.truncate(count);
+    if found.is_empty() {
+        // It is thinner than what is put together.
+        return;
+    }
     part.triangles = found.as_chunks().0.to_vec();
     // Corners without a triangle go.
     weld(part);
@@ -74,7 +80,7 @@ fn reduce(part: &mut Part, wanted: usize) {
 
 #[cfg(test)]
 mod tests {
-    use super::{share, to};
+    use super::{share, to, weld};
     use crate::meshes::Part;
 
     /// A sphere of radius 1 of `2 n²` triangles, each with corners of its own.
@@ -109,6 +115,7 @@ mod tests {
     #[test]
     fn large_meshes_are_made_smaller_and_keep_their_form() {
         let mut parts = [sphere(100), sphere(6)];
+        parts.iter_mut().for_each(weld);
         to(3000, &mut parts);
         let counts = parts.each_ref().map(|part| part.triangles.len());
         assert!((2000..=3600).contains(&counts[0]), "{counts:?}");

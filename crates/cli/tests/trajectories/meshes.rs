@@ -181,6 +181,120 @@ fn every_format_shows_the_same_solid() {
     }
 }
 
+/// The low corners and colours of the parts of a COLLADA file with these nodes, in centimetres.
+fn shown(name: &str, nodes: &str) -> Vec<([i64; 3], Value)> {
+    let text = collada();
+    let (head, rest) = text.split_once("<node id=\"n\">").expect("a node");
+    let (_, tail) = rest.split_once("</node>").expect("its end");
+    let text = format!("{head}{nodes}{tail}").replace(
+        "<library_visual_scenes>",
+        "<library_nodes><node id=\"far\"><translate>700 0 0</translate><instance_geometry url=\"#g\"/></node><node id=\"loop\"><instance_node url=\"#loop\"/></node></library_nodes><library_visual_scenes>",
+    );
+    let robot = robot(name, &["nodes.dae"]);
+    fs::write(robot.with_file_name("nodes.dae"), text).expect("a file");
+    let robot = robot.to_str().expect("a path");
+    let page = Page::read(&simulate(robot, name, &["--t-end", "0.1"]).html);
+    let shapes = page.header["shapes"].as_array().expect("shapes").iter();
+    let parts = shapes.map(|shape| {
+        let mesh = &page.header["meshes"][shape["mesh"].as_u64().expect("a number") as usize];
+        let low = [0, 1, 2]
+            .map(|axis| (mesh["low"][axis].as_f64().expect("a number") * 1e4).round() as i64);
+        (low, shape["color"].clone())
+    });
+    parts.collect()
+}
+
+/// The solid is 3, 1 and 2 m long along x, y and z, in the scale 0.1, where z is turned over: in units of 0.1 mm.
+#[test]
+fn nodes_of_collada_place_what_they_show() {
+    let instance = "<instance_geometry url=\"#g\"/>";
+    let grey: Value = [51, 102, 153].as_slice().into();
+    let cases = [
+        (
+            "moved",
+            format!("<node><translate>100 0 0</translate>{instance}</node>"),
+            vec![[1000, 0, -2000]],
+        ),
+        (
+            "small",
+            format!("<node><translate>0.9 0 0</translate>{instance}</node>"),
+            vec![[9, 0, -2000]],
+        ),
+        (
+            "nested",
+            format!(
+                "<node><translate>100 0 0</translate><node><scale>10 10 10</scale>{instance}</node></node>"
+            ),
+            vec![[1000, 0, -20000]],
+        ),
+        (
+            "turned",
+            format!(
+                "<node><rotate>0 0 1 90</rotate><node><translate>1000 0 0</translate>{instance}</node></node>"
+            ),
+            vec![[-1000, 10000, -2000]],
+        ),
+        (
+            "twice",
+            format!(
+                "<node><translate>100 0 0</translate>{instance}</node><node><translate>500 0 0</translate>{instance}</node>"
+            ),
+            vec![[1000, 0, -2000], [5000, 0, -2000]],
+        ),
+        (
+            "library",
+            "<node><instance_node url=\"#far\"/></node>".to_owned(),
+            vec![[7000, 0, -2000]],
+        ),
+    ];
+    for (name, nodes, wanted) in cases {
+        let mut found = shown(name, &nodes);
+        found.sort_by_key(|(low, _)| *low);
+        let wanted: Vec<_> = wanted.into_iter().map(|low| (low, grey.clone())).collect();
+        assert_eq!(found, wanted, "{name}");
+    }
+    assert_eq!(
+        shown("circle", "<node><instance_node url=\"#loop\"/></node>"),
+        []
+    );
+    assert_eq!(shown("none", ""), []);
+}
+
+/// A file may name others, and begin with what has no end.
+#[cfg(target_os = "linux")]
+#[test]
+fn devices_are_no_files_of_meshes() {
+    let robot = robot("devices", &["zero.gltf", "zero.obj", "cycle.gltf"]);
+    let write =
+        |name: &str, text: String| fs::write(robot.with_file_name(name), text).expect("a file");
+    let (head, _) = gltf()
+        .split_once("\"data:")
+        .map(|(head, tail)| (head.to_owned(), tail.to_owned()))
+        .expect("a buffer");
+    write("zero.gltf", format!("{head}\"/dev/zero\"}}]}}"));
+    write("zero.obj", obj().replace("paint.mtl", "/dev/zero"));
+    write(
+        "cycle.gltf",
+        gltf().replace("{\"mesh\": 0}", "{\"mesh\": 0, \"children\": [0, 0]}"),
+    );
+    let html = robot.with_file_name("devices.html");
+    let [robot, html] = [&robot, &html].map(|path| path.to_str().expect("a path"));
+    let output = run(&[
+        "simulate", robot, "--t-end", "0.1", "--force", "--html", html,
+    ]);
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{told}");
+    for wanted in [
+        "`zero.gltf` (its buffer `/dev/zero`: it is not a file)",
+        "`cycle.gltf` (it shows more than 10000 nodes)",
+    ] {
+        assert!(told.contains(wanted), "{told}");
+    }
+    // Without its materials.
+    let shown = Page::read(Path::new(html));
+    assert_eq!(shown.header["shapes"].as_array().map(Vec::len), Some(1));
+}
+
 #[test]
 fn meshes_that_are_missing_are_told() {
     let files = [

@@ -139,6 +139,7 @@ pub(super) fn files<'a>(
             scale,
         };
         let is_drawn = is_moved == [false; 2] && scale.iter().all(|factor| *factor != 0.0);
+        let is_drawn = is_drawn && Mesh::is_name(&mesh.file);
         Some((name(node)?, mesh)).filter(|_| is_drawn)
     });
     found.collect()
@@ -220,11 +221,13 @@ fn solid(element: &Element<'_>, mut mesh: Triangles) -> Option<MassProperties> {
 
 /// The triangles in a file, by its ending.
 fn triangles(path: &Path) -> Option<Triangles> {
-    if std::fs::metadata(path).ok()?.len() > MOST_BYTES {
+    let ending = path.extension()?.to_ascii_lowercase();
+    // Devices and pipes may have no end.
+    let found = std::fs::metadata(path).ok()?;
+    if !found.is_file() || found.len() > MOST_BYTES {
         return None;
     }
     let bytes = std::fs::read(path).ok()?;
-    let ending = path.extension()?.to_ascii_lowercase();
     match ending.to_str()? {
         "stl" => stl(&bytes),
         "obj" => obj(std::str::from_utf8(&bytes).ok()?),

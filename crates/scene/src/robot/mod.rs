@@ -4,6 +4,7 @@
 
 mod facts;
 pub(crate) mod mass;
+mod posture;
 pub(crate) mod xml;
 
 pub use facts::{JointFacts, Limits};

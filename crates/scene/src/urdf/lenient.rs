@@ -1,5 +1,6 @@
 //! What [`Options::lenient`](super::Options::lenient) changes of a robot whose masses no rigid bodies have.
 
+use super::document::attribute;
 use super::mass;
 use super::masses::Part;
 use super::robot::{JointType, Robot};
@@ -9,26 +10,42 @@ use hamel_runtime::spatial::MassProperties;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::{HashMap, HashSet};
 
-/// Fixes the joints below which nothing has mass, and tells which. Loops and couplings may hold what hangs on them: those joints stay as they are.
+/// Fixes the joints below which nothing has mass, and tells which. Loops, couplings and followers may hold what hangs on them: those joints stay as they are.
 pub(super) fn fix_massless(robot: &mut Robot<'_, '_>, notices: &mut Notices) {
     let above: HashMap<&str, &str> = robot
         .joints
         .iter()
         .map(|joint| (joint.child, joint.parent))
         .collect();
-    let has_mass = robot.links.iter().filter(|link| {
-        let own = link.inertial().and_then(mass::of_inertial);
-        own.is_some_and(|own| !is_nothing(&own))
-    });
+    // A joint that another one follows moves what hangs on that.
+    let moved: HashMap<&str, &str> = robot
+        .joints
+        .iter()
+        .map(|joint| (joint.name, joint.child))
+        .collect();
+    let led_by: HashMap<&str, &str> = robot
+        .joints
+        .iter()
+        .filter_map(|joint| {
+            Some((
+                joint.child,
+                *moved.get(attribute(joint.node, "mimic", "joint")?)?,
+            ))
+        })
+        .collect();
     let ties = robot.loops.iter().chain(&robot.couplings);
     let tied = ties
         .flat_map(|tie| tie.children())
         .filter_map(|end| end.attribute("link"));
+    let links = robot.links.iter().filter(|link| {
+        let own = link.inertial().and_then(mass::of_inertial);
+        own.is_some_and(|own| !is_nothing(&own))
+    });
+    let mut waiting: Vec<&str> = links.map(|link| link.name).chain(tied).collect();
     let mut carried = HashSet::new();
-    for start in has_mass.map(|link| link.name).chain(tied) {
-        let mut link = Some(start);
-        while let Some(own) = link.filter(|own| carried.insert(*own)) {
-            link = above.get(own).copied();
+    while let Some(link) = waiting.pop() {
+        if carried.insert(link) {
+            waiting.extend([&above, &led_by].iter().filter_map(|next| next.get(link)));
         }
     }
     let moves_nothing = robot

@@ -77,8 +77,11 @@ fn mesh(element: Node<'_, '_>) -> Option<Mesh> {
     let is_sound = scale
         .iter()
         .all(|factor| factor.is_finite() && *factor != 0.0);
+    let file = element
+        .attribute("filename")
+        .filter(|file| Mesh::is_name(file))?;
     is_sound.then_some(Mesh {
-        file: element.attribute("filename")?.to_owned(),
+        file: file.to_owned(),
         scale,
     })
 }
