@@ -72,31 +72,18 @@ impl<'a> File<'a> {
             return;
         };
         for primitive in mesh.children().filter(Node::is_element) {
-            let Some((corners, mut triangles)) = self.primitive(primitive) else {
-                continue;
-            };
-            if place.determinant() < 0.0 {
-                triangles.iter_mut().for_each(|own| own.swap(1, 2));
+            if let Some(mut part) = self.primitive(primitive, place) {
+                let symbol = primitive.attribute("material");
+                part.color = symbol.and_then(|symbol| self.color(instance, symbol));
+                parts.push(part);
             }
-            let moved = |corner: &[f64]| {
-                let corner = place.transform_point(&Point3::new(corner[0], corner[1], corner[2]));
-                corner.coords.map(|number| number as f32).into()
-            };
-            parts.push(Part {
-                corners: corners.iter().map(|corner| moved(corner)).collect(),
-                triangles,
-                color: primitive
-                    .attribute("material")
-                    .and_then(|symbol| self.color(instance, symbol)),
-            });
         }
     }
 
-    /// Corners and triangles of a primitive; `None` for what is none, and where something is missing. Polygons are fans of triangles.
-    fn primitive(&self, primitive: Node<'a, 'a>) -> Option<(Vec<[f64; 3]>, Vec<[u32; 3]>)> {
+    /// The triangles of a primitive, without its colour; `None` for what is none, and where something is missing.
+    fn primitive(&self, primitive: Node<'a, 'a>, place: &Matrix4<f64>) -> Option<Part> {
         let kind = primitive.tag_name().name();
-        let is_list = matches!(kind, "triangles" | "polylist");
-        if !is_list && !matches!(kind, "polygons" | "trifans" | "tristrips") {
+        if !KINDS.contains(&kind) {
             return None;
         }
         let inputs = children(primitive, "input");
@@ -104,51 +91,36 @@ impl<'a> File<'a> {
             let offset = input.attribute("offset");
             offset.and_then(|own| own.parse().ok()).unwrap_or(0)
         };
-        let stride = inputs
-            .clone()
-            .map(|input| offset(&input))
-            .max()?
-            .checked_add(1)?;
-        let vertex = inputs
-            .clone()
-            .find(|own| own.attribute("semantic") == Some("VERTEX"))?;
+        let last = inputs.clone().map(|input| offset(&input)).max()?;
+        let vertex = with_semantic(inputs, "VERTEX")?;
         let first = offset(&vertex);
-        let vertices = self.target(vertex, "source")?;
-        let position = children(vertices, "input")
-            .find(|own| own.attribute("semantic") == Some("POSITION"))?;
+        let position = children(self.target(vertex, "source")?, "input");
+        let position = with_semantic(position, "POSITION")?;
         let corners = self.corners(self.target(position, "source")?)?;
         let mut triangles = Vec::new();
         for list in children(primitive, "p") {
             let places: Vec<u32> = numbers(list)?;
-            let places: Vec<u32> = places.chunks_exact(stride).map(|own| own[first]).collect();
-            let mut places = &*places;
-            let counts: Vec<usize> = match kind {
+            let places = places.chunks_exact(last.checked_add(1)?);
+            let places: Vec<u32> = places.map(|own| own[first]).collect();
+            let counts = match kind {
                 "triangles" => vec![3; places.len() / 3],
                 "polylist" => numbers(child(primitive, "vcount")?)?,
                 _ => vec![places.len()],
             };
-            for count in counts {
-                let (polygon, rest) = places.split_at_checked(count)?;
-                places = rest;
-                match kind {
-                    "tristrips" => {
-                        triangles.extend(polygon.windows(3).enumerate().map(|(index, own)| {
-                            match index % 2 {
-                                0 => [own[0], own[1], own[2]],
-                                _ => [own[1], own[0], own[2]],
-                            }
-                        }))
-                    }
-                    _ => {
-                        let Some((start, others)) = polygon.split_first() else {
-                            continue;
-                        };
-                        triangles.extend(others.windows(2).map(|own| [*start, own[0], own[1]]));
-                    }
-                }
-            }
+            triangles.extend(self::triangles(kind, &places, &counts)?);
         }
-        Some((corners, triangles))
+        if place.determinant() < 0.0 {
+            triangles.iter_mut().for_each(|own| own.swap(1, 2));
+        }
+        let moved = |corner: [f64; 3]| {
+            let corner = place.transform_point(&Point3::from(corner));
+            corner.coords.map(|number| number as f32).into()
+        };
+        Some(Part {
+            corners: corners.into_iter().map(moved).collect(),
+            triangles,
+            color: None,
+        })
     }
 
     /// The points of a source.
@@ -178,6 +150,36 @@ impl<'a> File<'a> {
         let rgb: [f32; 3] = *color.first_chunk()?;
         Some(rgb.map(|part| (part.clamp(0.0, 1.0) * 255.0).round() as u8))
     }
+}
+
+/// Primitives that have triangles.
+const KINDS: [&str; 5] = ["triangles", "polylist", "polygons", "trifans", "tristrips"];
+
+/// The triangles of polygons with so many corners each, as fans, or of strips.
+fn triangles(kind: &str, mut places: &[u32], counts: &[usize]) -> Option<Vec<[u32; 3]>> {
+    let mut found = Vec::new();
+    for &count in counts {
+        let (polygon, rest) = places.split_at_checked(count)?;
+        places = rest;
+        if kind == "tristrips" {
+            let strip = polygon.windows(3).enumerate();
+            found.extend(strip.map(|(index, own)| match index % 2 {
+                0 => [own[0], own[1], own[2]],
+                _ => [own[1], own[0], own[2]],
+            }));
+        } else if let Some((start, others)) = polygon.split_first() {
+            found.extend(others.windows(2).map(|own| [*start, own[0], own[1]]));
+        }
+    }
+    Some(found)
+}
+
+/// The first of some inputs that means this.
+fn with_semantic<'a>(
+    mut inputs: impl Iterator<Item = Node<'a, 'a>>,
+    semantic: &str,
+) -> Option<Node<'a, 'a>> {
+    inputs.find(|own| own.attribute("semantic") == Some(semantic))
 }
 
 /// The transformations of a node, one after the other.

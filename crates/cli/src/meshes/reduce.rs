@@ -89,7 +89,11 @@ mod tests {
             let angle = |k: u32| std::f32::consts::PI * k as f32 / n as f32;
             let (latitude, longitude) = (angle(i), 2.0 * angle(j % n));
             // The poles are one point each.
-            let s = if i % n == 0 { 0.0 } else { latitude.sin() };
+            let s = if i.is_multiple_of(n) {
+                0.0
+            } else {
+                latitude.sin()
+            };
             [s * longitude.cos(), s * longitude.sin(), latitude.cos()]
         };
         let mut part = Part::default();
