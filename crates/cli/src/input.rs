@@ -64,11 +64,7 @@ impl RobotArgs {
             ),
             (
                 self.lenient,
-                (
-                    "--lenient",
-                    "URDF",
-                    "what is wrong with its numbers is mended in the file",
-                ),
+                ("--lenient", "URDF", "its numbers are corrected in the file"),
             ),
             (
                 !self.posture.is_empty(),

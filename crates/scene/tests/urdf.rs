@@ -286,7 +286,7 @@ fn what_rounding_leaves_of_an_inertia_is_no_mistake() {
 
 /// Moments 3, 1 and 1 kg m² break the triangle inequality; `tip` and `palm` have no mass, and `finger` follows what does not move.
 #[test]
-fn a_lenient_reader_mends_masses_and_tells_which() {
+fn a_lenient_reader_replaces_masses_and_tells_which() {
     let hinge = |name: &str, parent: &str, inside: &str| {
         format!(
             "<joint name=\"{name}_joint\" type=\"revolute\"><parent link=\"{parent}\"/><child link=\"{name}\"/>{inside}</joint>"
@@ -330,7 +330,7 @@ fn a_lenient_reader_mends_masses_and_tells_which() {
     }
 }
 
-/// A sound robot is the same to a lenient reader; what it cannot mend, it refuses.
+/// A sound robot is the same to a lenient reader; what it cannot replace, it refuses.
 #[test]
 fn a_lenient_reader_changes_nothing_else() {
     let options = Options {

@@ -74,7 +74,7 @@ pub(crate) fn import(
     if options.lenient {
         let error = Diagnostic::new(
             tag(root),
-            "broken masses are to be mended, but a robot in MJCF says itself what becomes of them",
+            "the robot is to be read leniently, but MJCF has settings of its own for masses that no rigid body has",
         );
         sink.push(
             error.help(

@@ -19,7 +19,7 @@ pub(super) struct Part {
     pub(super) mass: MassProperties,
 }
 
-/// Adds up the parts of each body, and checks the sums; a lenient reader mends those that no rigid body has.
+/// Adds up the parts of each body, and checks the sums; a lenient reader replaces those that no rigid body has.
 pub(super) fn settle(
     robot: &Robot<'_, '_>,
     (bodies, parts): (&mut [BodyDescription], &[Vec<Part>]),
