@@ -25,7 +25,8 @@ Examples:
 The scene has a body for each link that moves by itself; fixed joints join links to one body, and keep their frames as [[frame]].
 Every joint is at home (angles and displacements 0) and at rest. Boxes, spheres, cylinders, capsules and meshes of <visual> become
 [[shape]], which pages show; the shapes of <collision> do not. Files of meshes that are found below the folder of the scene are named
-from there, others by their whole path. What the scene does not hold (limits, mimic joints, friction …) is told on stderr and in comments. scenes/README.md says how each element of URDF and MJCF is read.
+from there, others by their whole path. What the scene does not hold (limits, mimic joints, friction …) is told on stderr and in
+comments. scenes/README.md says how each element of URDF and MJCF is read.
 
 The first line of the scene tells whether it was edited: an imported scene is replaced by another import, an edited one only with --force.
 
@@ -80,15 +81,14 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
 
 /// Names the files of meshes, which `robot` names from its own folder, so that they are found from the scene in `output`. Those that are not found keep their names.
 fn rename_meshes(scene: &mut SceneDescription, robot: &Path, output: Option<&Path>) {
-    let folder = |file: &Path| absolute(file).ok()?.parent().map(Path::to_owned);
-    let (Some(from), to) = (folder(robot), output.and_then(folder)) else {
-        return;
-    };
+    let from = robot.parent().unwrap_or(Path::new(""));
+    let output = output.and_then(|output| absolute(output).ok());
+    let to = output.as_deref().and_then(Path::parent);
     for shape in &mut scene.shapes {
         if let Geometry::Mesh(mesh) = &mut shape.geometry
-            && let Some(path) = locate(&from, &mesh.file)
+            && let Some(path) = locate(from, &mesh.file)
         {
-            let inside = to.as_ref().and_then(|to| path.strip_prefix(to).ok());
+            let inside = to.and_then(|to| path.strip_prefix(to).ok());
             // What a scene cannot hold stays as it is.
             let name = inside.unwrap_or(&path).to_str();
             if let Some(name) = name.filter(|name| Mesh::is_name(name)) {

@@ -65,9 +65,10 @@ function faceted({ low, step, corners, triangles, width }) {
     const least = sharp * areas[own / 3];
     let [x, y, z] = [0, 0, 0];
     // About a corner of very many faces, as in the middle of a disk, each counts for itself.
-    const last = begin[faces[k] + 1] - begin[faces[k]] > 200 ? begin[faces[k]] : begin[faces[k] + 1];
-    if (last === begin[faces[k]]) [x, y, z] = normals.subarray(own, own + 3);
-    for (let index = begin[faces[k]]; index < last; index++) {
+    const [first, last] = [begin[faces[k]], begin[faces[k] + 1]];
+    const isCrowded = last - first > 200;
+    if (isCrowded) [x, y, z] = normals.subarray(own, own + 3);
+    for (let index = first; !isCrowded && index < last; index++) {
       const other = 3 * around[index];
       const [u, v, w] = [normals[other], normals[other + 1], normals[other + 2]];
       if (u * normals[own] + v * normals[own + 1] + w * normals[own + 2] < least * areas[around[index]]) continue;

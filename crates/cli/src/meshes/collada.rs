@@ -109,18 +109,19 @@ impl<'a> File<'a> {
             };
             triangles.extend(self::triangles(kind, &places, &counts)?);
         }
-        if place.determinant() < 0.0 {
-            triangles.iter_mut().for_each(|own| own.swap(1, 2));
-        }
         let moved = |corner: [f64; 3]| {
             let corner = place.transform_point(&Point3::from(corner));
             corner.coords.map(|number| number as f32).into()
         };
-        Some(Part {
+        let mut part = Part {
             corners: corners.into_iter().map(moved).collect(),
             triangles,
             color: None,
-        })
+        };
+        if place.determinant() < 0.0 {
+            part.turn_over();
+        }
+        Some(part)
     }
 
     /// The points of a source.
@@ -147,8 +148,7 @@ impl<'a> File<'a> {
             .children()
             .find(|own| matches!(own.tag_name().name(), "phong" | "lambert" | "blinn"))?;
         let color: Vec<f32> = numbers(child(child(shading, "diffuse")?, "color")?)?;
-        let rgb: [f32; 3] = *color.first_chunk()?;
-        Some(rgb.map(|part| (part.clamp(0.0, 1.0) * 255.0).round() as u8))
+        color.first_chunk().copied().map(super::color)
     }
 }
 

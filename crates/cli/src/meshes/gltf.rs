@@ -98,30 +98,27 @@ fn add(node: &Node<'_>, place: &Matrix4<f32>, buffers: &[Vec<u8>], parts: &mut V
             Some(indices) => indices.into_u32().collect(),
             None => (0..corners.len() as u32).collect(),
         };
-        let triangles = places
-            .chunks_exact(3)
-            .map(|own| match place.determinant() < 0.0 {
-                true => [own[0], own[2], own[1]],
-                false => [own[0], own[1], own[2]],
-            });
         let material = primitive.material();
         let color = material.index().map(|_| {
             let [red, green, blue, _] = material.pbr_metallic_roughness().base_color_factor();
-            [red, green, blue].map(byte)
+            super::color([red, green, blue].map(coded))
         });
-        parts.push(Part {
-            triangles: triangles.collect(),
+        let mut part = Part {
+            triangles: places.as_chunks().0.to_vec(),
             corners,
             color,
-        });
+        };
+        if place.determinant() < 0.0 {
+            part.turn_over();
+        }
+        parts.push(part);
     }
 }
 
 /// A linear intensity as sRGB (IEC 61966-2-1).
-fn byte(linear: f32) -> u8 {
-    let coded = match linear <= 0.003_130_8 {
+fn coded(linear: f32) -> f32 {
+    match linear <= 0.003_130_8 {
         true => 12.92 * linear,
         false => 1.055 * linear.powf(1.0 / 2.4) - 0.055,
-    };
-    (coded.clamp(0.0, 1.0) * 255.0).round() as u8
+    }
 }

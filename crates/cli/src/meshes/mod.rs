@@ -136,10 +136,20 @@ impl Part {
             return Err(format!("a coordinate is {far:e} m"));
         }
         if factors.product() < 0.0 {
-            for triangle in &mut self.triangles {
-                triangle.swap(1, 2);
-            }
+            self.turn_over();
         }
         Ok(())
     }
+
+    /// Makes the inside of each triangle its outside, as a reflection of its corners asks for.
+    fn turn_over(&mut self) {
+        for triangle in &mut self.triangles {
+            triangle.swap(1, 2);
+        }
+    }
+}
+
+/// Red, green and blue from 0 to 1 as bytes.
+fn color(rgb: [f32; 3]) -> [u8; 3] {
+    rgb.map(|part| (part.clamp(0.0, 1.0) * 255.0).round() as u8)
 }

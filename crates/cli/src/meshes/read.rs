@@ -65,14 +65,9 @@ fn parts(scene: mesh_loader::Scene) -> Vec<Part> {
         .map(|(mesh, color)| Part {
             corners: mesh.vertices,
             triangles: mesh.faces,
-            color: color.map(bytes),
+            color: color.map(|[red, green, blue, _]| super::color([red, green, blue])),
         })
         .collect()
-}
-
-/// A colour without its transparency.
-fn bytes([red, green, blue, _]: [f32; 4]) -> [u8; 3] {
-    [red, green, blue].map(|part| (part.clamp(0.0, 1.0) * 255.0).round() as u8)
 }
 
 /// The triangles of a part whose corners exist and are finite; `None` where there is none.
