@@ -71,10 +71,10 @@ fn names_of(joint: &str) -> BTreeSet<String> {
     let source = std::fs::read_to_string(&path).expect("the spec of a generated joint");
     let spec = spec::parse(&source, "library.joint").expect("a spec of the library");
     let mut names = BTreeSet::from(["q".to_owned()]);
-    names.extend(spec.parameters.iter().map(|p| p.symbol.name.to_string()));
+    names.extend(spec.parameters.iter().map(|p| p.symbol.name().to_string()));
     for factor in spec.manifold.value.factors() {
         names.insert(factor.name.to_ascii_lowercase());
-        names.extend(factor.coordinates.iter().map(|q| q.name.to_string()));
+        names.extend(factor.coordinates.iter().map(|q| q.name().to_string()));
     }
     names.extend(
         spec.freedoms
@@ -87,7 +87,7 @@ fn names_of(joint: &str) -> BTreeSet<String> {
         spec.worded
             .named
             .iter()
-            .map(|named| named.symbol.name.to_string()),
+            .map(|named| named.symbol.name().to_string()),
     );
     names
 }

@@ -105,7 +105,7 @@ impl Still {
 
     /// The names of the scalars, for statements: `steer, spin`.
     pub fn names(&self) -> String {
-        let names: Vec<&str> = self.scalars.iter().map(|symbol| &*symbol.name).collect();
+        let names: Vec<&str> = self.scalars.iter().map(|symbol| symbol.name()).collect();
         names.join(", ")
     }
 }

@@ -44,30 +44,48 @@ pub struct Symbol {
     pub role: Role,
     /// Position among the symbols of its role.
     pub index: u16,
-    /// Name, an ASCII Rust identifier.
-    pub name: Arc<str>,
-    /// How the spec writes it: `Q[1, 2]`, `phi.turn`. The name for what no spec writes.
-    pub spelling: Arc<str>,
+    names: Arc<Names>,
+}
+
+/// What a symbol is called.
+#[derive(Debug)]
+struct Names {
+    name: String,
+    /// In the spec, where that writes it in another way.
+    spelling: Option<String>,
 }
 
 impl Symbol {
     /// The symbol `name`, number `index` of its role.
     pub fn new(role: Role, index: usize, name: &str) -> Self {
-        let index = u16::try_from(index).unwrap_or(u16::MAX);
-        let name: Arc<str> = name.into();
         Self {
             role,
-            index,
-            spelling: Arc::clone(&name),
-            name,
+            index: u16::try_from(index).unwrap_or(u16::MAX),
+            names: Arc::new(Names {
+                name: name.to_owned(),
+                spelling: None,
+            }),
         }
+    }
+
+    /// Name, an ASCII Rust identifier.
+    pub fn name(&self) -> &str {
+        &self.names.name
+    }
+
+    /// How the spec writes it: `Q[1, 2]`, `phi.turn`. The name for what no spec writes.
+    pub fn spelling(&self) -> &str {
+        self.names.spelling.as_deref().unwrap_or(self.name())
     }
 
     /// The same symbol, which the spec writes so.
     #[must_use]
     pub fn spelled(self, spelling: &str) -> Self {
         Self {
-            spelling: spelling.into(),
+            names: Arc::new(Names {
+                name: self.name().to_owned(),
+                spelling: Some(spelling.to_owned()),
+            }),
             ..self
         }
     }
@@ -98,9 +116,9 @@ impl Ord for Symbol {
     fn cmp(&self, other: &Self) -> Ordering {
         (self.role, self.index)
             .cmp(&(other.role, other.index))
-            .then_with(|| match Arc::ptr_eq(&self.name, &other.name) {
+            .then_with(|| match Arc::ptr_eq(&self.names, &other.names) {
                 true => Ordering::Equal,
-                false => self.name.cmp(&other.name),
+                false => self.name().cmp(other.name()),
             })
     }
 }

@@ -117,7 +117,7 @@ fn divisor(atom: &Atom) -> Option<&Expr> {
 impl Display for Atom {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match self {
-            Self::Symbol(symbol) => f.write_str(&symbol.spelling),
+            Self::Symbol(symbol) => f.write_str(symbol.spelling()),
             Self::Apply(application) => {
                 if let (Function::Curve(curve, order), [argument]) =
                     (application.function, &application.arguments[..])

@@ -1,7 +1,7 @@
 //! Numerical evaluation of expressions in any arithmetic.
 
-use super::{Application, Atom, Expr, Function, Rational, Symbol};
-use num_traits::ToPrimitive;
+use super::{Application, Atom, Expr, Function, Monomial, Rational, Symbol};
+use num_traits::{One, ToPrimitive, Zero};
 
 /// The arithmetic in which an expression is evaluated.
 pub trait Number: Clone {
@@ -18,14 +18,14 @@ pub trait Number: Clone {
 
     /// The integer power.
     fn power(&self, exponent: i32) -> Self {
-        if exponent == 1 {
-            return self.clone();
+        let one = || self.rational(&Rational::one());
+        if exponent == 0 {
+            return one();
         }
-        let one = self.rational(&Rational::from_integer(1.into()));
         let power =
-            (0..exponent.unsigned_abs()).fold(one.clone(), |product, _| product.times(self));
+            (1..exponent.unsigned_abs()).fold(self.clone(), |product, _| product.times(self));
         match exponent < 0 {
-            true => one.over(&power),
+            true => one().over(&power),
             false => power,
         }
     }
@@ -34,16 +34,19 @@ pub trait Number: Clone {
 impl Expr {
     /// The value where `symbol` gives each symbol's. `unit` is any number of the arithmetic (it may carry a precision).
     pub fn evaluate<N: Number>(&self, unit: &N, symbol: &impl Fn(&Symbol) -> N) -> N {
-        self.terms().fold(
-            unit.rational(&Rational::default()),
-            |sum, (monomial, coefficient)| {
-                let start = unit.rational(coefficient);
-                let term = monomial.factors().fold(start, |product, (atom, power)| {
-                    product.times(&value_of_atom(atom, unit, symbol).power(power))
-                });
-                sum.plus(&term)
-            },
-        )
+        let term = |(monomial, coefficient): (&Monomial, &Rational)| {
+            let powers = monomial
+                .factors()
+                .map(|(atom, power)| value_of_atom(atom, unit, symbol).power(power));
+            let product = |product: N, power: N| product.times(&power);
+            match coefficient.is_one() {
+                true => powers.reduce(product),
+                false => Some(powers.fold(unit.rational(coefficient), product)),
+            }
+            .unwrap_or_else(|| unit.rational(coefficient))
+        };
+        let sum = self.terms().map(term).reduce(|sum, term| sum.plus(&term));
+        sum.unwrap_or_else(|| unit.rational(&Rational::zero()))
     }
 }
 
@@ -66,7 +69,7 @@ fn value_of_function<N: Number>(
         .collect();
     match (application.function, arguments.as_slice()) {
         (Function::Group, [x]) => x.clone(),
-        (Function::Recip, [x]) => unit.rational(&Rational::from_integer(1.into())).over(x),
+        (Function::Recip, [x]) => unit.rational(&Rational::one()).over(x),
         (function, _) => unit.function(function, &arguments),
     }
 }

@@ -16,22 +16,27 @@ mod hyperbolic;
 mod intern;
 mod monomial;
 mod rational;
+mod terms;
 
 pub use atom::{Application, Atom, Function, Role, Symbol};
 pub use evaluate::{Number, evaluate_f64};
 pub use monomial::Monomial;
 pub(crate) use monomial::reverse_lexicographic;
 pub use rational::Rational;
+pub(crate) use terms::Terms;
 
 use num_traits::{One, Zero};
 use rustc_hash::FxHashSet;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
+
+/// As many distinct atoms as most expressions have at most.
+const FEW_ATOMS: usize = 14;
 
 /// A polynomial with rational coefficients in [`Atom`]s.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Expr {
-    terms: BTreeMap<Monomial, Rational>,
+    terms: Terms<Monomial>,
 }
 
 impl Expr {
@@ -72,11 +77,9 @@ impl Expr {
 
     /// `coefficient · monomial`.
     pub fn term(coefficient: Rational, monomial: Monomial) -> Self {
-        let mut terms = BTreeMap::new();
-        if !coefficient.is_zero() {
-            terms.insert(monomial, coefficient);
+        Self {
+            terms: Terms::single(monomial, coefficient),
         }
-        Self { terms }
     }
 
     /// The terms, in ascending term order.
@@ -88,7 +91,7 @@ impl Expr {
 
     /// The largest term.
     pub fn leading(&self) -> Option<(&Monomial, &Rational)> {
-        self.terms.last_key_value()
+        self.terms.last()
     }
 
     /// Whether this is zero as it stands, without any relation.
@@ -141,14 +144,20 @@ impl Expr {
 
     /// Whether a name would say nothing more: a number, a parameter, a symbol, or the opposite of one.
     pub fn is_plain(&self) -> bool {
-        self.is_constant() || self.as_symbol().is_some() || (-self).as_symbol().is_some()
+        let is_signed_symbol = |(monomial, coefficient): (&Monomial, &Rational)| {
+            let is_symbol = matches!(monomial.main(), [(Atom::Symbol(_), 1)]);
+            is_symbol && monomial.units().is_empty() && coefficient.abs().is_one()
+        };
+        self.is_constant() || self.single_term().is_some_and(is_signed_symbol)
     }
 
     /// Whether this depends on no symbol but parameters.
     pub fn is_constant(&self) -> bool {
-        self.symbols()
-            .iter()
-            .all(|symbol| symbol.role == Role::Parameter)
+        let varies = |symbol: &Symbol| symbol.role != Role::Parameter;
+        !self.any_atom(|atom| match atom {
+            Atom::Symbol(symbol) => varies(symbol),
+            Atom::Apply(application) => application.symbols().iter().any(varies),
+        })
     }
 
     /// All symbols, those inside functions included.
@@ -198,7 +207,9 @@ impl Expr {
         budget::spend(self.work());
         let factors = self.terms.keys().flat_map(Monomial::factors);
         // Most occur in many terms: hashing finds that sooner than sorting.
-        factors.map(|(atom, _)| atom).collect()
+        let mut atoms = FxHashSet::with_capacity_and_hasher(FEW_ATOMS, Default::default());
+        atoms.extend(factors.map(|(atom, _)| atom));
+        atoms
     }
 
     /// The functions with relations that occur, those inside arguments of roots and quotients included.
@@ -267,59 +278,29 @@ impl Expr {
     /// Term operations that a pass over the terms takes: long monomials take longer to multiply and to compare, and so do long numbers.
     fn work(&self) -> u64 {
         let longest = self.leading().map_or(0, |(monomial, _)| monomial.len());
-        let ends = self
-            .terms
-            .first_key_value()
-            .into_iter()
-            .chain(self.leading());
+        let ends = self.terms.first().into_iter().chain(self.leading());
         let excess = ends.map(|(_, coefficient)| coefficient.excess()).max();
         self.terms.len() as u64 * (1 + longest as u64 / 4 + 4 * excess.unwrap_or(0))
     }
 
-    fn add_term(&mut self, monomial: Monomial, coefficient: Rational) {
-        use std::collections::btree_map::Entry;
-        match self.terms.entry(monomial) {
-            Entry::Vacant(entry) => {
-                entry.insert(coefficient);
-            }
-            Entry::Occupied(mut entry) => {
-                *entry.get_mut() += coefficient;
-                if entry.get().is_zero() {
-                    entry.remove();
-                }
-            }
-        }
-    }
-
     /// Adds `coefficient · monomial · other` in place.
     pub fn add_scaled(&mut self, coefficient: &Rational, monomial: &Monomial, other: &Self) {
-        if !budget::spend(other.work()) {
-            return;
-        }
-        for (m, c) in &other.terms {
-            self.add_term(m.times(monomial), c * coefficient);
-        }
+        self.terms += other.scaled(coefficient, monomial).terms;
     }
 }
 
 impl AddAssign<&Expr> for Expr {
     fn add_assign(&mut self, other: &Expr) {
-        if !budget::spend(other.work()) {
-            return;
-        }
-        for (monomial, coefficient) in &other.terms {
-            self.add_term(monomial.clone(), coefficient.clone());
+        if budget::spend(other.work()) {
+            self.terms += other.terms.clone();
         }
     }
 }
 
 impl SubAssign<&Expr> for Expr {
     fn sub_assign(&mut self, other: &Expr) {
-        if !budget::spend(other.work()) {
-            return;
-        }
-        for (monomial, coefficient) in &other.terms {
-            self.add_term(monomial.clone(), -coefficient);
+        if budget::spend(other.work()) {
+            self.terms += (-other).terms;
         }
     }
 }
@@ -349,11 +330,14 @@ impl Mul for &Expr {
             true => (self, other),
             false => (other, self),
         };
-        let mut product = Expr::zero();
-        for (monomial, coefficient) in &short.terms {
-            product.add_scaled(coefficient, monomial, long);
+        let products = short.terms.iter().map_while(|(monomial, coefficient)| {
+            let is_left = budget::spend(long.work());
+            let scaled = move |(m, c): (&Monomial, &Rational)| (m.times(monomial), c * coefficient);
+            is_left.then(|| long.terms.iter().map(scaled))
+        });
+        Expr {
+            terms: products.flatten().collect(),
         }
-        product
     }
 }
 

@@ -171,6 +171,9 @@ fn merge<P: Copy + PartialEq + Default>(
     both: impl Fn(P, P) -> P,
     only_b: impl Fn(P) -> P,
 ) -> Vec<(Atom, P)> {
+    if b.is_empty() {
+        return a.to_vec();
+    }
     let mut merged = Vec::with_capacity(a.len() + b.len());
     let (mut i, mut j) = (0, 0);
     while i < a.len() || j < b.len() {

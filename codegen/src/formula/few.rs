@@ -100,17 +100,17 @@ fn put_in(program: &mut Program, place: usize) {
 pub fn telling(value: &Node) -> Option<String> {
     match value {
         Node::Product(factors) => match factors.as_slice() {
-            [Node::Symbol(a), Node::Symbol(b)] if a == b => Some(format!("{}_squared", a.name)),
+            [Node::Symbol(a), Node::Symbol(b)] if a == b => Some(format!("{}_squared", a.name())),
             [Node::Symbol(a), Node::Symbol(b)]
                 if [a, b].map(|s| s.role) == [Role::Coordinate; 2] =>
             {
-                Some(format!("{}_{}", a.name, b.name))
+                Some(format!("{}_{}", a.name(), b.name()))
             }
-            [Node::Number(n), Node::Symbol(a)] => Some(format!("{}_{}", number_name(n), a.name)),
+            [Node::Number(n), Node::Symbol(a)] => Some(format!("{}_{}", number_name(n), a.name())),
             _ => None,
         },
         Node::Quotient(above, below) if above.is_one() => match below.as_ref() {
-            Node::Symbol(divisor) => Some(format!("inverse_{}", divisor.name)),
+            Node::Symbol(divisor) => Some(format!("inverse_{}", divisor.name())),
             _ => None,
         },
         _ => None,

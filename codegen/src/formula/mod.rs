@@ -9,6 +9,7 @@ mod exponential;
 mod factor;
 mod few;
 mod fused;
+mod layered;
 pub mod names;
 mod numbered;
 mod pairs;
@@ -201,8 +202,14 @@ impl Node {
     /// Calls `visit` for this formula and all its parts, outermost first.
     pub fn visit(&self, visit: &mut impl FnMut(&Self)) {
         visit(self);
-        for part in self.parts() {
-            part.visit(visit);
+        match self {
+            Self::Number(_) | Self::Symbol(_) | Self::Pi => {}
+            Self::Sum(terms) => terms.iter().for_each(|(_, term)| term.visit(visit)),
+            Self::Product(parts) | Self::Call(_, parts) => {
+                parts.iter().for_each(|part| part.visit(visit));
+            }
+            Self::Quotient(above, below) => [above, below].iter().for_each(|p| p.visit(visit)),
+            Self::Negative(inner) => inner.visit(visit),
         }
     }
 

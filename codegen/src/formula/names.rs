@@ -1,9 +1,9 @@
 //! Names for the values of formulas: telling ones, none used twice, none that Rust reserves.
 
 use super::Node;
+use super::layered::Layered;
 use crate::expr::{Function, Rational};
 use num_traits::{One, ToPrimitive};
-use std::collections::{BTreeMap, BTreeSet};
 
 /// Longest name made from a formula; longer formulas are named after the first symbols in them.
 const LONGEST: usize = 36;
@@ -11,9 +11,9 @@ const LONGEST: usize = 36;
 /// The names that are taken.
 #[derive(Clone, Debug, Default)]
 pub struct NameSet {
-    taken: BTreeSet<String>,
+    taken: Layered<String, ()>,
     /// For each wish the identifier that it becomes, and the number that this may have next: names in long files are wished for thousands of times.
-    next: BTreeMap<String, (String, usize)>,
+    next: Layered<String, (String, usize)>,
 }
 
 impl NameSet {
@@ -24,26 +24,36 @@ impl NameSet {
 
     /// Takes all of these names.
     pub(super) fn reserve(&mut self, names: impl IntoIterator<Item = String>) {
-        self.taken.extend(names);
+        for name in names {
+            self.taken.insert(name, ());
+        }
+    }
+
+    /// Makes later copies cheap: they share the names that are taken now.
+    pub(super) fn share(&mut self) {
+        self.taken.share();
+        self.next.share();
     }
 
     /// Takes a name: the one wished for, or that one with a number where it is taken or is a keyword.
     pub fn claim(&mut self, wish: &str) -> String {
-        if let Some((identifier, next)) = self.next.get_mut(wish) {
-            loop {
-                let name = format!("{identifier}_{next}");
-                *next += 1;
-                if self.taken.insert(name.clone()) {
-                    return name;
-                }
+        let (identifier, mut number) = match self.next.get(wish) {
+            Some(known) => known.clone(),
+            None => (identifier(wish), 1),
+        };
+        let name = loop {
+            let name = match number {
+                1 => identifier.clone(),
+                _ => format!("{identifier}_{number}"),
+            };
+            number += 1;
+            if self.is_free(&name) {
+                break name;
             }
-        }
-        let name = identifier(wish);
-        self.next.insert(wish.to_owned(), (name.clone(), 2));
-        match self.taken.insert(name.clone()) {
-            true => name,
-            false => self.claim(wish),
-        }
+        };
+        self.next.insert(wish.to_owned(), (identifier, number));
+        self.taken.insert(name.clone(), ());
+        name
     }
 }
 
@@ -153,9 +163,9 @@ fn distinct_symbols(node: &Node) -> Vec<String> {
     let mut symbols: Vec<String> = vec![];
     node.visit(&mut |part| {
         if let Node::Symbol(symbol) = part
-            && !symbols.iter().any(|known| **known == *symbol.name)
+            && !symbols.iter().any(|known| **known == *symbol.name())
         {
-            symbols.push(symbol.name.to_string());
+            symbols.push(symbol.name().to_string());
         }
     });
     symbols
@@ -164,7 +174,7 @@ fn distinct_symbols(node: &Node) -> Vec<String> {
 fn describe_fully(node: &Node) -> String {
     match node {
         Node::Number(value) => number_name(value),
-        Node::Symbol(symbol) => symbol.name.to_string(),
+        Node::Symbol(symbol) => symbol.name().to_string(),
         Node::Pi => "pi".into(),
         Node::Sum(terms) => {
             let mut text = String::new();

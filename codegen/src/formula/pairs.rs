@@ -11,6 +11,9 @@ const MOST_PAIRS: usize = 400;
 /// Pulls the most frequent pairs of factors out of all products of the formulas.
 pub fn extract_pairs(formulas: &mut [Node]) {
     let mut search = Search::new(formulas);
+    if search.most_frequent().is_none() {
+        return;
+    }
     for _ in 0..MOST_PAIRS {
         let Some(pair) = search.most_frequent() else {
             break;

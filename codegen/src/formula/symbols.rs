@@ -1,10 +1,10 @@
 //! The names that a joint's symbols have in every kernel; none is one that Rust or the emitted code reserves.
 
+use super::layered::Layered;
 use super::names::{NameSet, number_words};
 use crate::expr::{Role, Symbol};
 use crate::kernel::{Arguments, Word};
 use crate::model::Parameter;
-use std::collections::BTreeMap;
 
 /// Names that every kernel and `build` may use: their arguments, the constants, and what is imported.
 const RESERVED: &[&str] = &[
@@ -66,7 +66,7 @@ fn role_name(role: Role) -> &'static str {
 /// The identifiers of a joint's symbols in every kernel.
 #[derive(Clone, Debug)]
 pub struct Names {
-    by_symbol: BTreeMap<Symbol, String>,
+    by_symbol: Layered<Symbol, String>,
     taken: NameSet,
 }
 
@@ -89,6 +89,8 @@ impl Names {
             .chain(others.into_iter().flatten())
             .chain(words.iter().map(|word| &word.symbol))
             .for_each(|symbol| names.claim(symbol));
+        names.by_symbol.share();
+        names.taken.share();
         names
     }
 
@@ -105,7 +107,7 @@ impl Names {
         let reserved = RESERVED.iter().map(|name| (*name).to_owned());
         taken.reserve(reserved.chain(number_words()));
         Self {
-            by_symbol: BTreeMap::new(),
+            by_symbol: Layered::default(),
             taken,
         }
     }
@@ -113,8 +115,8 @@ impl Names {
     /// A single coordinate called `q` may shadow the argument that it is read from.
     fn claim_coordinates(&mut self, coordinates: &[Symbol]) {
         for symbol in coordinates {
-            match symbol.name.as_ref() == "q" {
-                true => _ = self.by_symbol.insert(symbol.clone(), "q".to_owned()),
+            match symbol.name() == "q" {
+                true => self.by_symbol.insert(symbol.clone(), "q".to_owned()),
                 false => self.claim(symbol),
             }
         }
@@ -122,12 +124,12 @@ impl Names {
 
     /// Gives a symbol its name.
     pub fn claim(&mut self, symbol: &Symbol) {
-        if !self.by_symbol.contains_key(symbol) {
-            let name = match self.taken.is_free(&symbol.name) {
-                true => self.taken.claim(&symbol.name),
+        if !self.by_symbol.contains(symbol) {
+            let name = match self.taken.is_free(symbol.name()) {
+                true => self.taken.claim(symbol.name()),
                 false => self
                     .taken
-                    .claim(&format!("{}_{}", symbol.name, role_name(symbol.role))),
+                    .claim(&format!("{}_{}", symbol.name(), role_name(symbol.role))),
             };
             self.by_symbol.insert(symbol.clone(), name);
         }
@@ -135,16 +137,17 @@ impl Names {
 
     /// Gives a symbol a name that is already its own.
     pub fn adopt(&mut self, symbol: &Symbol) {
-        self.by_symbol
-            .entry(symbol.clone())
-            .or_insert_with(|| symbol.name.to_string());
+        if !self.by_symbol.contains(symbol) {
+            let name = symbol.name().to_owned();
+            self.by_symbol.insert(symbol.clone(), name);
+        }
     }
 
     /// The name of a symbol.
     pub fn get<'a>(&'a self, symbol: &'a Symbol) -> &'a str {
         self.by_symbol
             .get(symbol)
-            .map_or(&symbol.name, String::as_str)
+            .map_or(symbol.name(), String::as_str)
     }
 
     /// All names that are taken.

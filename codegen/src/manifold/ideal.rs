@@ -382,7 +382,7 @@ impl Ideal {
 /// The expression with the parameters as indeterminates, which may be 0.
 fn indeterminate(expression: &Expr, parameters: &BTreeSet<Symbol>) -> Expr {
     let stand_in = |symbol: &Symbol| {
-        let name = format!("{}_or_zero", symbol.name);
+        let name = format!("{}_or_zero", symbol.name());
         Expr::symbol(&Symbol::new(Role::Constant, symbol.index.into(), &name))
     };
     let values = parameters.iter().map(|p| (p.clone(), stand_in(p)));

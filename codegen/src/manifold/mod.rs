@@ -140,7 +140,7 @@ impl Manifold {
                     *symbol = Symbol::new(
                         Role::Target,
                         original.index.into(),
-                        &format!("{}_target", original.name),
+                        &format!("{}_target", original.name()),
                     );
                 }
                 copy

@@ -140,7 +140,7 @@ fn nothing_is_divided_by_parameters_that_may_be_zero() {
 fn factors_are_named_after_themselves_where_there_are_several() {
     let named = |alone| {
         Factor::new("R", Kind::So3, Role::Coordinate, 0, alone).coordinates[1]
-            .name
+            .name()
             .to_string()
     };
     assert_eq!(

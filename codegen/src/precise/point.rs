@@ -1,10 +1,11 @@
 //! A random point of a joint: a value for every symbol.
 
 use super::Precise;
-use crate::expr::{Application, Atom, Expr, Function, Monomial, Number, Role, Symbol};
+use crate::expr::{Application, Atom, Expr, Function, Monomial, Number, Rational, Role, Symbol};
 use crate::matrix::Matrix;
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
+use num_traits::One;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
 
@@ -15,6 +16,8 @@ pub struct Point {
     seed: u64,
     bits: usize,
     bound: BTreeMap<Symbol, Precise>,
+    /// Symbols met so far that are not bound.
+    drawn: RefCell<BTreeMap<Symbol, Precise>>,
     /// Functions met so far: most expressions of a joint share theirs.
     functions: RefCell<HashMap<Atom, Precise>>,
 }
@@ -26,6 +29,7 @@ impl Point {
             seed,
             bits,
             bound: BTreeMap::new(),
+            drawn: RefCell::default(),
             functions: RefCell::default(),
         }
     }
@@ -38,14 +42,22 @@ impl Point {
     /// Gives a symbol its value.
     pub fn bind(&mut self, symbol: &Symbol, value: Precise) {
         self.bound.insert(symbol.clone(), value);
-        self.functions.borrow_mut().clear();
+        let is_other = |atom: &Atom| match atom {
+            Atom::Symbol(own) => own != symbol,
+            Atom::Apply(application) => !application.symbols().contains(symbol),
+        };
+        self.functions.borrow_mut().retain(|atom, _| is_other(atom));
     }
 
     /// The value of a symbol.
     pub fn value(&self, symbol: &Symbol) -> Precise {
         match self.bound.get(symbol) {
             Some(value) => value.clone(),
-            None => self.random(symbol),
+            None => {
+                let mut drawn = self.drawn.borrow_mut();
+                let value = drawn.entry(symbol.clone());
+                value.or_insert_with(|| self.random(symbol)).clone()
+            }
         }
     }
 
@@ -61,26 +73,21 @@ impl Point {
 
     /// The value of an expression.
     pub fn evaluate(&self, expression: &Expr) -> Precise {
-        let start = self.constant(0);
-        expression
-            .terms()
-            .fold(start, |sum, (monomial, coefficient)| {
-                sum + self.constant(1).rational(coefficient) * self.monomial(monomial)
-            })
+        let terms = expression.terms().map(|term| self.term(term));
+        let sum = terms.reduce(|sum, term| sum + term);
+        sum.unwrap_or_else(|| self.constant(0))
     }
 
     /// The value of an expression, and the size of its largest term: what a residual is small against.
     pub fn evaluate_with_scale(&self, expression: &Expr) -> (Precise, f64) {
         let start = (self.constant(0), 0.0);
-        expression
-            .terms()
-            .fold(start, |(sum, scale), (monomial, coefficient)| {
-                let term = self.constant(1).rational(coefficient) * self.monomial(monomial);
-                let size = term.to_f64().abs();
-                // Not f64::max, which would drop a NaN.
-                let scale = if size <= scale { scale } else { size };
-                (sum + term, scale)
-            })
+        expression.terms().fold(start, |(sum, scale), term| {
+            let term = self.term(term);
+            let size = term.to_f64().abs();
+            // Not f64::max, which would drop a NaN.
+            let scale = if size <= scale { scale } else { size };
+            (sum + term, scale)
+        })
     }
 
     /// The values of a matrix, row by row.
@@ -96,12 +103,15 @@ impl Point {
         Precise::integer(value, self.bits)
     }
 
-    fn monomial(&self, monomial: &Monomial) -> Precise {
-        monomial
-            .factors()
-            .fold(self.constant(1), |product, (atom, power)| {
-                product * self.atom(atom).power(power)
-            })
+    fn term(&self, (monomial, coefficient): (&Monomial, &Rational)) -> Precise {
+        let powers = monomial.factors();
+        let powers = powers.map(|(atom, power)| self.atom(atom).power(power));
+        let product = powers.reduce(|product, power| product * power);
+        let coefficient = (!coefficient.is_one()).then(|| self.constant(1).rational(coefficient));
+        match (coefficient, product) {
+            (Some(coefficient), Some(product)) => coefficient * product,
+            (coefficient, product) => coefficient.or(product).unwrap_or_else(|| self.constant(1)),
+        }
     }
 
     fn atom(&self, atom: &Atom) -> Precise {
@@ -137,7 +147,7 @@ fn hash_of_symbol(symbol: &Symbol) -> u64 {
     let role = role_number(symbol.role);
     let bytes = [role].into_iter().chain(symbol.index.to_le_bytes());
     bytes
-        .chain(symbol.name.bytes())
+        .chain(symbol.name().bytes())
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
         })

@@ -264,7 +264,7 @@ fn in_words(expression: &Expr) -> String {
         return text;
     }
     let symbols = expression.symbols();
-    let names: Vec<&str> = symbols.iter().map(|symbol| &*symbol.spelling).collect();
+    let names: Vec<&str> = symbols.iter().map(|symbol| symbol.spelling()).collect();
     let count = expression.terms().len();
     format!("a sum of {count} terms in {}", names.join(", "))
 }

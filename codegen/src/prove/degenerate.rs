@@ -21,7 +21,7 @@ pub fn zero(function: &Expr, joint: &Prepared, domain: &Domain<'_>) -> Option<St
     })?;
     let values = found.iter().filter(|(symbol, _)| held.contains(symbol));
     let texts: Vec<String> = values
-        .map(|(symbol, value)| format!("{} = {value}", symbol.spelling))
+        .map(|(symbol, value)| format!("{} = {value}", symbol.spelling()))
         .collect();
     (!texts.is_empty()).then(|| texts.join(", "))
 }

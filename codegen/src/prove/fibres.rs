@@ -254,7 +254,7 @@ fn reduced(expression: &Expr, span: &[Expr]) -> Expr {
 }
 
 fn names(symbols: &[Symbol]) -> String {
-    let names: Vec<&str> = symbols.iter().map(|symbol| &*symbol.name).collect();
+    let names: Vec<&str> = symbols.iter().map(|symbol| symbol.name()).collect();
     names.join(", ")
 }
 

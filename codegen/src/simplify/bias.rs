@@ -124,7 +124,7 @@ impl Maker<'_> {
         let bound = shortened
             .filter(|(_, rate)| !rate.is_zero())
             .map(|(symbol, rate)| {
-                let name = format!("{}_rate", symbol.name);
+                let name = format!("{}_rate", symbol.name());
                 (symbol.clone(), steps.bind(&name, rate))
             });
         bound.collect()

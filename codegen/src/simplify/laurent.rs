@@ -1,15 +1,16 @@
 //! Sums of terms whose powers may be negative, over numbered variables.
 
-use crate::expr::{Atom, Expr, Function, Monomial, Rational, Symbol};
-use num_traits::{One, Zero};
+use crate::expr::{Atom, Expr, Function, Monomial, Rational, Symbol, Terms};
+use num_traits::One;
 use rustc_hash::FxHashMap;
+use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A product of powers of variables, ascending by variable; no power is 0.
 pub(super) type Product = Vec<(u16, i16)>;
 
 /// A sum of terms.
-pub type Sum = BTreeMap<Product, Rational>;
+pub type Sum = Terms<Product>;
 
 /// A sum that is 0.
 pub struct Relation {
@@ -59,7 +60,7 @@ impl Ring {
 
     /// The expression over these variables.
     pub fn sum(&mut self, expression: &Expr) -> Sum {
-        let mut sum = Sum::new();
+        let mut sum = Sum::default();
         for (monomial, coefficient) in expression.terms() {
             let mut coefficient = coefficient.clone();
             let mut powers: BTreeMap<u16, i16> = BTreeMap::new();
@@ -68,7 +69,7 @@ impl Ring {
                 *powers.entry(variable).or_default() += power;
             }
             let product = powers.into_iter().filter(|(_, power)| *power != 0);
-            add(&mut sum, product.collect(), coefficient);
+            sum.add(product.collect(), coefficient);
         }
         sum
     }
@@ -132,7 +133,7 @@ impl Ring {
             .collect();
         let definition = |(number, sum): (u16, Expr)| {
             let mut definition = self.sum(&sum);
-            add(&mut definition, vec![(number, 1)], -Rational::one());
+            definition.add(vec![(number, 1)], -Rational::one());
             Relation {
                 sum: definition,
                 defined: Some(number),
@@ -162,15 +163,6 @@ impl Ring {
     }
 }
 
-/// Adds a term.
-pub(super) fn add(sum: &mut Sum, product: Product, coefficient: Rational) {
-    let value = sum.entry(product.clone()).or_insert_with(Rational::zero);
-    *value += coefficient;
-    if value.is_zero() {
-        sum.remove(&product);
-    }
-}
-
 /// The product of two.
 pub(super) fn times(a: &Product, b: &Product) -> Product {
     merged(a, b, 1)
@@ -183,23 +175,24 @@ pub(super) fn over(a: &Product, b: &Product) -> Product {
 
 fn merged(a: &Product, b: &Product, sign: i16) -> Product {
     let mut merged = Product::with_capacity(a.len() + b.len());
-    let (mut a, mut b) = (a.iter().peekable(), b.iter().peekable());
-    loop {
-        let (variable, power) = match (a.peek(), b.peek()) {
-            (None, None) => return merged,
-            (Some(x), Some(y)) if x.0 == y.0 => (x.0, x.1 + sign * y.1),
-            (Some(x), Some(y)) if x.0 < y.0 => (x.0, x.1),
-            (Some(x), None) => (x.0, x.1),
-            (_, Some(y)) => (y.0, sign * y.1),
-        };
-        if a.peek().is_some_and(|x| x.0 == variable) {
-            a.next();
+    let (mut i, mut j) = (0, 0);
+    while let (Some(&(variable, power)), Some(&(other, change))) = (a.get(i), b.get(j)) {
+        match variable.cmp(&other) {
+            Ordering::Less => merged.push((variable, power)),
+            Ordering::Greater => merged.push((other, sign * change)),
+            Ordering::Equal if power + sign * change != 0 => {
+                merged.push((variable, power + sign * change));
+            }
+            Ordering::Equal => {}
         }
-        if b.peek().is_some_and(|y| y.0 == variable) {
-            b.next();
-        }
-        if power != 0 {
-            merged.push((variable, power));
-        }
+        i += usize::from(variable <= other);
+        j += usize::from(other <= variable);
     }
+    merged.extend(&a[i..]);
+    merged.extend(
+        b[j..]
+            .iter()
+            .map(|(variable, power)| (*variable, sign * power)),
+    );
+    merged
 }

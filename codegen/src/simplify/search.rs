@@ -1,6 +1,6 @@
 //! The search for a shorter sum: multiples of relations that are subtracted one after the other.
 
-use super::laurent::{Product, Relation, Sum, add, over, times};
+use super::laurent::{Product, Relation, Sum, over, times};
 use crate::expr::{Rational, budget};
 use num_traits::{One, Zero};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -34,10 +34,10 @@ pub fn shortened(mut sum: Sum, relations: &[Relation]) -> Sum {
 }
 
 fn subtract(sum: &mut Sum, relations: &[Relation], multiple: &Multiple) {
-    for (product, coefficient) in &relations[multiple.relation].sum {
+    for (product, coefficient) in relations[multiple.relation].sum.iter() {
         let change = -(coefficient * &multiple.coefficient);
         budget::spend(1 + change.excess());
-        add(sum, times(product, &multiple.product), change);
+        sum.add(times(product, &multiple.product), change);
     }
 }
 
@@ -101,10 +101,7 @@ fn remainder(
     budget::spend(sum.len() as u64 / 4);
     sum.keys().filter(divisible).nth(1)?;
     let (mut rest, mut steps) = (sum.clone(), 0);
-    while let Some((product, factor)) = rest.iter().find_map(|(term, factor)| {
-        let product = over(term, lead);
-        (!is_below(&product, floor)).then(|| (product, factor.clone()))
-    }) {
+    while let Some((product, factor)) = first_divided(&rest, lead, floor) {
         let coefficient = &factor / &relations[relation].sum[lead];
         let multiple = Multiple {
             relation,
@@ -120,6 +117,18 @@ fn remainder(
         }
     }
     (steps > 1).then_some(rest)
+}
+
+/// The quotient by the leading term of the first term that it divides, and the coefficient of that.
+fn first_divided(
+    sum: &Sum,
+    lead: &Product,
+    floor: &FxHashMap<u16, i16>,
+) -> Option<(Product, Rational)> {
+    sum.iter().find_map(|(term, factor)| {
+        let product = over(term, lead);
+        (!is_below(&product, floor)).then(|| (product, factor.clone()))
+    })
 }
 
 /// Operations to write the sum term by term.
@@ -150,7 +159,7 @@ fn best(sum: &Sum, relations: &[Relation], floor: &FxHashMap<u16, i16>) -> Optio
     let present: FxHashSet<&Product> = sum.keys().collect();
     let mut seen = FxHashSet::default();
     let mut best: Option<(i64, Multiple)> = None;
-    for (term, factor) in sum {
+    for (term, factor) in sum.iter() {
         for (
             relation,
             Relation {
@@ -159,7 +168,7 @@ fn best(sum: &Sum, relations: &[Relation], floor: &FxHashMap<u16, i16>) -> Optio
             },
         ) in relations.iter().enumerate()
         {
-            for (part, coefficient) in terms {
+            for (part, coefficient) in terms.iter() {
                 let product = over(term, part);
                 budget::spend(1);
                 if is_below(&product, floor) || !covers_half(&present, terms, &product) {
@@ -190,16 +199,15 @@ fn best(sum: &Sum, relations: &[Relation], floor: &FxHashMap<u16, i16>) -> Optio
 /// Whether at least half of the relation's terms are in the sum, once multiplied: else more come than go.
 fn covers_half(present: &FxHashSet<&Product>, relation: &Sum, factor: &Product) -> bool {
     budget::spend(relation.len() as u64 / 2);
-    let found = relation
-        .keys()
-        .filter(|part| present.contains(&times(part, factor)));
-    2 * found.count() >= relation.len()
+    let is_found = |part: &&Product| present.contains(&times(part, factor));
+    let needed = relation.len().div_ceil(2);
+    relation.keys().filter(is_found).take(needed).count() == needed
 }
 
 /// The operations that subtracting the multiple saves; none where a name would stand for a part of its sum: of five terms it may lack one.
 fn gain(sum: &Sum, relation: &Sum, multiple: &Multiple, defined: Option<u16>) -> i64 {
     let (mut saved, mut lacking) = (0, 0);
-    for (part, coefficient) in relation {
+    for (part, coefficient) in relation.iter() {
         let product = times(part, &multiple.product);
         let before = sum.get(&product);
         let change = coefficient * &multiple.coefficient;

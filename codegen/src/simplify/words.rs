@@ -132,7 +132,7 @@ impl<'a> Words<'a> {
 
     fn add(&mut self, base: &Symbol, along: Vec<usize>, value: Expr) -> Symbol {
         let number = self.number(base, &along);
-        let symbol = Symbol::new(Role::Intermediate, number, &self.name(&base.name, &along));
+        let symbol = Symbol::new(Role::Intermediate, number, &self.name(base.name(), &along));
         self.push(symbol.clone(), base, along, value);
         symbol
     }

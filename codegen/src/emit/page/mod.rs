@@ -27,10 +27,7 @@ pub fn page(derived: &Derived, label: &str, accuracy: &Accuracy) -> tera::TeraRe
     let report = Report::new(derived).with_accuracy(accuracy);
     let mut context = context(&report, Medium::Markdown);
     context.insert("header", &header(label));
-    context.insert(
-        "has_drawing",
-        &Drawing::new(derived, &report.freedoms).is_some(),
-    );
+    context.insert("has_drawing", &Drawing::exists(derived));
     render("page.md", PAGE, &context)
 }
 

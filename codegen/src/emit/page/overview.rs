@@ -26,11 +26,7 @@ pub fn overview(
     let report = |joint: &Derived| Report::brief(joint).with_accuracy(accuracy);
     let mut reports: Vec<(Report, bool)> = joints
         .iter()
-        .map(|joint| {
-            let report = report(joint);
-            let drawn = Drawing::new(joint, &report.freedoms).is_some();
-            (report, drawn)
-        })
+        .map(|joint| (report(joint), Drawing::exists(joint)))
         .collect();
     reports.sort_by(|(a, _), (b, _)| a.name.cmp(&b.name));
     let mut context = Context::new();

@@ -47,14 +47,14 @@ impl Notation {
         }
         let mut notation = Self { by_symbol };
         for parameter in &derived.spec.parameters {
-            let name = notation.unused(&parameter.symbol.name);
+            let name = notation.unused(parameter.symbol.name());
             notation.name(&parameter.symbol, name);
         }
         let mut bases = BTreeMap::new();
         for word in &derived.words {
             let base = bases.entry(&word.base);
             let base = base
-                .or_insert_with(|| notation.unused(&word.base.name))
+                .or_insert_with(|| notation.unused(word.base.name()))
                 .clone();
             notation.name_word(word, base, &arguments.local);
         }
@@ -85,7 +85,7 @@ impl Notation {
     /// A symbol, set.
     pub fn set_symbol(&self, symbol: &Symbol) -> Math {
         let known = self.by_symbol.get(symbol).cloned();
-        known.unwrap_or_else(|| named(&symbol.name))
+        known.unwrap_or_else(|| named(symbol.name()))
     }
 
     /// A symbol as text.

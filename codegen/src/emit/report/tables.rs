@@ -104,14 +104,14 @@ impl CountRow {
 
 pub(super) fn parameters(derived: &Derived) -> Vec<ParameterRow> {
     let row = |parameter: &Parameter| ParameterRow {
-        name: parameter.symbol.name.to_string(),
+        name: parameter.symbol.name().to_string(),
         unit: parameter.unit.clone(),
         description: parameter
             .docs
             .split_whitespace()
             .collect::<Vec<_>>()
             .join(" "),
-        range: ranges::in_words(&parameter.symbol.name, &parameter.range),
+        range: ranges::in_words(parameter.symbol.name(), &parameter.range),
     };
     derived.spec.parameters.iter().map(row).collect()
 }

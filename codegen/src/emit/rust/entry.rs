@@ -19,7 +19,7 @@ pub fn tokens(derived: &Derived) -> TokenStream {
     let build = build(derived);
     let infos = spec.parameters.iter().map(|parameter| {
         let (name, unit, description) = (
-            parameter.symbol.name.as_ref(),
+            parameter.symbol.name(),
             &parameter.unit,
             parameter.docs.trim(),
         );

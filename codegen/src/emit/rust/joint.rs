@@ -88,13 +88,14 @@ fn definition(derived: &Derived) -> TokenStream {
     let fields: Vec<_> = spec
         .parameters
         .iter()
-        .map(|parameter| ident(&parameter.symbol.name))
+        .map(|parameter| ident(parameter.symbol.name()))
         .collect();
     let field_docs = spec.parameters.iter().map(|parameter| {
         let text = match parameter.docs.trim() {
             "" => format!(
                 "Parameter `{}`, in {}.",
-                parameter.symbol.name, parameter.unit
+                parameter.symbol.name(),
+                parameter.unit
             ),
             text => format!("{} In {}.", inline(text), parameter.unit),
         };
@@ -201,12 +202,12 @@ fn parameters(derived: &Derived) -> TokenStream {
         .spec
         .parameters
         .iter()
-        .map(|parameter| parameter.symbol.name.to_string());
+        .map(|parameter| parameter.symbol.name().to_string());
     let fields = derived
         .spec
         .parameters
         .iter()
-        .map(|parameter| ident(&parameter.symbol.name));
+        .map(|parameter| ident(parameter.symbol.name()));
     quote! {
         fn parameters(&self) -> impl Iterator<Item = (&'static str, f64)> {
             [#((#names, self.#fields)),*].into_iter()
@@ -231,7 +232,7 @@ fn constants(derived: &Derived) -> TokenStream {
         .arguments
         .configuration
         .iter()
-        .map(|symbol| symbol.name.to_string())
+        .map(|symbol| symbol.name().to_string())
         .collect();
     let freedoms = spec
         .freedoms

@@ -85,10 +85,7 @@ fn requirements(derived: &Derived, names: &Names) -> TokenStream {
 
 fn nonzero(derived: &Derived, parameter: &Parameter, names: &Names) -> TokenStream {
     let joint = &derived.spec.name.value;
-    let (text, field) = (
-        parameter.symbol.name.as_ref(),
-        ident(names.get(&parameter.symbol)),
-    );
+    let (text, field) = (parameter.symbol.name(), ident(names.get(&parameter.symbol)));
     quote! {
         if #field == 0.0 {
             return Err(ParameterError::OutOfRange {

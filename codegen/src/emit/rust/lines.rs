@@ -28,7 +28,12 @@ pub fn joined(text: &str) -> String {
 }
 
 fn indent(line: &str) -> usize {
-    line.len() - line.trim_start().len()
+    line.bytes().take_while(|byte| *byte == b' ').count()
+}
+
+/// The line without what it is indented by.
+fn content(line: &str) -> &str {
+    &line[indent(line)..]
 }
 
 fn width(line: &str) -> usize {
@@ -36,7 +41,7 @@ fn width(line: &str) -> usize {
 }
 
 fn is_comment(line: &str) -> bool {
-    line.trim_start().starts_with("//")
+    content(line).starts_with("//")
 }
 
 /// The line that closes the bracket that the line `i` opens at its end.
@@ -49,7 +54,7 @@ fn closing(lines: &[String], i: usize) -> Option<usize> {
     let level = indent(&lines[i]);
     let rest = lines.iter().enumerate().skip(i + 1);
     let (end, line) = rest.into_iter().find(|(_, line)| indent(line) <= level)?;
-    (indent(line) == level && line.trim_start().starts_with(close)).then_some(end)
+    (indent(line) == level && content(line).starts_with(close)).then_some(end)
 }
 
 /// Moves lines one level out.
@@ -81,7 +86,7 @@ fn hugged(lines: &mut Vec<String>, i: usize) {
     let Some(end) = closing(lines, i).filter(|end| *end > i + 2) else {
         return;
     };
-    let is_open = |line: &String| ["[", "&["].contains(&line.trim_start());
+    let is_open = |line: &String| ["[", "&["].contains(&content(line));
     let Some(array) = (i + 1..end).find(|&at| is_open(&lines[at])) else {
         return;
     };
@@ -96,7 +101,7 @@ fn hugged(lines: &mut Vec<String>, i: usize) {
     if are_short && closing(lines, array) == Some(end - 1) && width(&head) <= WIDTH {
         shift(&mut lines[array + 1..end]);
         let last = lines[end - 1].trim_end_matches(',').to_owned();
-        lines[end - 1] = last + lines[end].trim_start();
+        lines[end - 1] = last + content(&lines[end]);
         lines.remove(end);
         lines.splice(i..=array, [head]);
     }
@@ -110,8 +115,8 @@ fn continued(lines: &mut Vec<String>, i: usize) {
     let level = indent(&lines[i]);
     let mut last = i;
     while let Some(next) = lines.get(last + 1) {
-        let text = next.trim_start().to_owned();
-        let Some(space) = going_on(&text) else {
+        let text = content(next);
+        let Some(space) = going_on(text) else {
             return;
         };
         let joined = format!("{}{space}{text}", lines[last]);
@@ -170,13 +175,13 @@ fn bracketed(lines: &mut Vec<String>, i: usize) {
 /// Moves the methods and operators that go on below the line `i` one level in, where they stand below a bracket that has become that line. Those
 /// below a method or operator stand as it does.
 fn moved_in(lines: &mut [String], i: usize) {
-    if going_on(lines[i].trim_start()).is_some() {
+    if going_on(content(&lines[i])).is_some() {
         return;
     }
     let level = indent(&lines[i]);
     let mut at = i + 1;
     while let Some(next) = lines.get(at) {
-        if indent(next) != level || going_on(next.trim_start()).is_none() {
+        if indent(next) != level || going_on(content(next)).is_none() {
             return;
         }
         let end = closing(lines, at).unwrap_or(at);
@@ -199,9 +204,9 @@ fn going_on(text: &str) -> Option<&'static str> {
 /// The line that closes the pattern of an array, which the printer breaks after names.
 fn pattern_end(lines: &[String], i: usize) -> Option<usize> {
     let level = indent(&lines[i]);
-    let begins = lines[i].trim_start().starts_with("let [") && lines[i].ends_with(',');
+    let begins = content(&lines[i]).starts_with("let [") && lines[i].ends_with(',');
     let mut rest = lines.iter().enumerate().skip(i + 1);
-    let (end, _) = rest.find(|(_, line)| line.trim_start().starts_with(']'))?;
+    let (end, _) = rest.find(|(_, line)| content(line).starts_with(']'))?;
     let within = lines[i + 1..=end].iter().all(|line| indent(line) == level);
     (begins && within).then_some(end)
 }

@@ -34,7 +34,7 @@ impl Lines<'_> {
         let used = self.program.symbols();
         let is_parameter = |symbol: &&Symbol| symbol.role == Role::Parameter;
         let parameters = used.iter().filter(is_parameter).map(|symbol| {
-            let (local, field) = (writer.symbol(symbol), ident(&symbol.name));
+            let (local, field) = (writer.symbol(symbol), ident(symbol.name()));
             quote! { let #local = T::from_f64(self.#field); }
         });
         let arguments = self

@@ -165,7 +165,7 @@ pub fn freely(joint: &Prepared) -> Prepared {
     });
     let named = directions.zip(displacement(joint));
     let freedoms = named.map(|((factor, generator), local)| Freedom {
-        name: local.name.to_string(),
+        name: local.name().to_string(),
         local,
         factor,
         generator,

@@ -40,7 +40,7 @@ impl Place {
             .filter(|symbol| held.contains(symbol));
         Self {
             values: symbols
-                .map(|s| (s.spelling.to_string(), point.value(&s)))
+                .map(|s| (s.spelling().to_string(), point.value(&s)))
                 .collect(),
             residual: residual.nearest_to_zero(),
             size: size.high().clone(),

@@ -109,7 +109,7 @@ fn has_divisor(value: &Expr, symbol: &Symbol) -> bool {
 }
 
 fn error(parameter: &Parameter, span: &Range<usize>) -> Diagnostic {
-    let name = &parameter.symbol.name;
+    let name = parameter.symbol.name();
     let message = format!("division by `{name}`, which may be zero by its range");
     Diagnostic::new(code::MAY_VANISH, span.clone(), message)
         .label(format!("divides by `{name}`"))

@@ -184,7 +184,7 @@ fn coordinates(factor: &Factor, index: usize, size: usize, first: usize) -> Vec<
     let unit = |n: usize| (0..size).map(|i| Expr::integer((i == n).into())).collect();
     let symbols = factor.coordinates.iter().enumerate();
     symbols
-        .map(|(n, symbol)| freedom(&symbol.name, first + n, index, unit(n)))
+        .map(|(n, symbol)| freedom(symbol.name(), first + n, index, unit(n)))
         .collect()
 }
 

@@ -47,7 +47,7 @@ fn generator_names(freedoms: &Freedoms, factors: &[Factor]) -> Vec<(String, Valu
             factor
                 .coordinates
                 .iter()
-                .any(|symbol| &*symbol.name == name)
+                .any(|symbol| symbol.name() == name)
         })
     };
     list.filter(|freedom| !is_coordinate(&freedom.name))

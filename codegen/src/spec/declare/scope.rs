@@ -132,9 +132,9 @@ impl<'s, 'e, 'a> Scope<'s, 'e, 'a> {
         let span = &name.span;
         let mut symbols = factor.coordinates.iter();
         _ = symbols.all(|symbol| {
-            let is_factor = *symbol.name == *name.text;
-            (is_factor || self.claim_text(&symbol.name, span, &owner))
-                && self.claim_text(&format!("{}_target", symbol.name), span, &of_target)
+            let is_factor = *symbol.name() == *name.text;
+            (is_factor || self.claim_text(symbol.name(), span, &owner))
+                && self.claim_text(&format!("{}_target", symbol.name()), span, &of_target)
         });
     }
 

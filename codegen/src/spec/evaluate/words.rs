@@ -88,7 +88,7 @@ impl Words {
     fn free(&self, name: &str) -> String {
         let is_free = |name: &String| {
             let mut named = self.named.iter();
-            !self.taken.contains(name) && named.all(|named| *named.symbol.name != **name)
+            !self.taken.contains(name) && named.all(|named| *named.symbol.name() != **name)
         };
         let others = (2..).map(|n| format!("{name}{n}"));
         let mut candidates = std::iter::once(name.to_owned()).chain(others);

@@ -146,7 +146,7 @@ impl Analysis<'_> {
     fn entries(&mut self, blame: &Blame, scalars: &[Expr], coordinates: &[Form]) {
         let names = self.spec.manifold.value.coordinates();
         for ((scalar, unit), name) in scalars.iter().zip(coordinates).zip(names) {
-            let element = format!("`{}` in {}", name.spelling, blame.element);
+            let element = format!("`{}` in {}", name.spelling(), blame.element);
             self.fixed(&Blame::new(element, &blame.span), scalar, unit);
         }
     }

@@ -21,7 +21,8 @@ impl Statements {
                 // Rows of matrices end with a semicolon as well.
                 _ if depth > 0 => {}
                 _ => {
-                    all.push((start, text[start..at].to_owned()));
+                    let statement = text[start..at].trim_start();
+                    all.push((at - statement.len(), statement.to_owned()));
                     start = at + 1;
                 }
             }
@@ -57,8 +58,8 @@ impl Statements {
 
     /// The `let` of that name.
     fn definition(&self, name: &str) -> Option<&str> {
-        let texts = self.all.iter().map(|(_, text)| text.trim_start());
-        let mut lets = texts.filter_map(|text| text.strip_prefix("let "));
+        let texts = self.all.iter();
+        let mut lets = texts.filter_map(|(_, text)| text.strip_prefix("let "));
         lets.find(|text| text.split('=').next().is_some_and(|own| own.trim() == name))
     }
 }

@@ -38,6 +38,16 @@ struct Panel {
 }
 
 impl Drawing {
+    /// Whether the joint has one.
+    pub fn exists(derived: &Derived) -> bool {
+        let Some(sampler) = parameters::sampler(derived) else {
+            return false;
+        };
+        let home = sampler.home();
+        let mut directions = Direction::all(derived.shape).into_iter();
+        directions.any(|direction| Sweep::exists(&sampler, &home, direction))
+    }
+
     /// The drawing of a joint; nothing where its pose cannot be evaluated at home for any parameters that were tried.
     pub fn new(derived: &Derived, freedoms: &[FreedomRow]) -> Option<Self> {
         let sampler = parameters::sampler(derived)?;

@@ -2,9 +2,9 @@
 
 use crate::derived::{Derived, KernelKind, Step};
 use crate::expr::{Expr, Symbol, evaluate_f64};
-use std::collections::BTreeMap;
+use rustc_hash::FxHashMap;
 
-type Values = BTreeMap<Symbol, f64>;
+type Values<'a> = FxHashMap<&'a Symbol, f64>;
 
 /// Rounds of projection onto the relations: enough for a picture, since each comes nearer by a factor.
 const PROJECTIONS: usize = 200;
@@ -31,13 +31,13 @@ impl Frame {
 /// A joint with values for its parameters.
 pub struct Sampler<'a> {
     derived: &'a Derived,
-    parameters: Values,
+    parameters: Values<'a>,
 }
 
 impl<'a> Sampler<'a> {
     /// The joint with the given parameters, in the order of the spec.
     pub fn new(derived: &'a Derived, parameters: &[f64]) -> Self {
-        let symbols = derived.spec.parameters.iter().map(|p| p.symbol.clone());
+        let symbols = derived.spec.parameters.iter().map(|p| &p.symbol);
         Self {
             derived,
             parameters: symbols.zip(parameters.iter().copied()).collect(),
@@ -130,14 +130,8 @@ impl<'a> Sampler<'a> {
     /// Q̇(Q, v).
     pub fn rate(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
         let mut values = self.at(q);
-        values.extend(
-            self.derived
-                .arguments
-                .velocity
-                .iter()
-                .cloned()
-                .zip(v.iter().copied()),
-        );
+        let velocity = self.derived.arguments.velocity.iter();
+        values.extend(velocity.zip(v.iter().copied()));
         let outputs = self.outputs(KernelKind::ConfigurationRate, values);
         outputs.into_iter().next().unwrap_or_default()
     }
@@ -185,15 +179,15 @@ impl<'a> Sampler<'a> {
         self.outputs(kind, self.at(q)).into_iter().next()
     }
 
-    fn at(&self, q: &[f64]) -> Values {
+    fn at(&self, q: &[f64]) -> Values<'a> {
         let mut values = self.parameters.clone();
-        let symbols = self.derived.arguments.configuration.iter().cloned();
+        let symbols = self.derived.arguments.configuration.iter();
         values.extend(symbols.zip(q.iter().copied()));
         values
     }
 
     /// Every output of a kernel, row by row; none for kernels that call the runtime.
-    fn outputs(&self, kind: KernelKind, mut values: Values) -> Vec<Vec<f64>> {
+    fn outputs(&self, kind: KernelKind, mut values: Values<'a>) -> Vec<Vec<f64>> {
         let Some(kernel) = self.derived.kernel(kind) else {
             return vec![];
         };
@@ -202,7 +196,7 @@ impl<'a> Sampler<'a> {
                 return vec![];
             };
             let value = self.value(value, &values);
-            values.insert(symbol.clone(), value);
+            values.insert(symbol, value);
         }
         let entries = kernel.outputs.iter().map(|matrix| {
             let entries = matrix.entries().iter();
@@ -211,7 +205,7 @@ impl<'a> Sampler<'a> {
         entries.collect()
     }
 
-    fn value(&self, expression: &Expr, values: &Values) -> f64 {
+    fn value(&self, expression: &Expr, values: &Values<'_>) -> f64 {
         evaluate_f64(expression, &|symbol| {
             values.get(symbol).copied().unwrap_or(f64::NAN)
         })

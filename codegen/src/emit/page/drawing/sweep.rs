@@ -66,9 +66,14 @@ pub struct Sweep {
 }
 
 impl Sweep {
+    /// Whether there is one: whether the direction moves anything at home.
+    pub fn exists(sampler: &Sampler<'_>, home: &[f64], direction: Direction) -> bool {
+        duration_of(sampler, home, direction).is_some() && sampler.poses(home).is_some()
+    }
+
     /// The frames along a direction; nothing where it moves nothing at home.
     pub fn new(sampler: &Sampler<'_>, home: &[f64], direction: Direction) -> Option<Self> {
-        let duration = duration(&sampler.twists(home, &direction.velocity(sampler, home)?)?)?;
+        let duration = duration_of(sampler, home, direction)?;
         let side = |sign: f64| {
             let mut q = home.to_vec();
             let mut poses = vec![];
@@ -97,6 +102,10 @@ impl Sweep {
             bodies: (0..sampler.bodies()).map(track).collect(),
         })
     }
+}
+
+fn duration_of(sampler: &Sampler<'_>, home: &[f64], direction: Direction) -> Option<f64> {
+    duration(&sampler.twists(home, &direction.velocity(sampler, home)?)?)
 }
 
 /// How long to sweep at these twists, so that no turn and no slide gets out of the picture.
