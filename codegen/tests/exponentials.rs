@@ -34,7 +34,7 @@ struct At {
 
 impl At {
     fn value(&self, symbol: &Symbol) -> f64 {
-        match &*symbol.name() {
+        match symbol.name() {
             "scale" => self.scale,
             "x" => self.place,
             _ => 0.75 - 0.25 * f64::from(symbol.index),
@@ -107,7 +107,7 @@ fn ulp(number: f64) -> f64 {
 fn check(height: &str, scale: f64, exact: bool) {
     let derived = ramp(height);
     let mut faults = vec![];
-    let place = |s: &&Symbol| &*s.name() == "x";
+    let place = |s: &&Symbol| s.name() == "x";
     for kernel in &derived.kernels {
         for (i, entry) in entries(kernel).iter().enumerate() {
             let by_place = entry
@@ -222,7 +222,7 @@ fn sums_over_a_plane_stay_finite() {
                 .into_iter()
                 .flat_map(|u| [-1e4, -720.0, 7.2, 800.0].map(|w| (u, w)))
             {
-                let at = |s: &Symbol| match &*s.name() {
+                let at = |s: &Symbol| match s.name() {
                     "u" => u,
                     "w" => w,
                     _ => 0.75 - 0.25 * f64::from(s.index),

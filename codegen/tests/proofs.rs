@@ -19,7 +19,7 @@ fn value(expression: &Expr, joint: &Derived, at: f64) -> f64 {
     let coordinates = &joint.arguments.configuration;
     evaluate_f64(expression, &|symbol| match coordinates.contains(symbol) {
         true => at,
-        false if &*symbol.name() == "gain" => 0.0,
+        false if symbol.name() == "gain" => 0.0,
         false => 1.0,
     })
 }

@@ -73,7 +73,7 @@ fn the_ball_joint_is_that_of_example_1() {
         .freedoms
         .value
         .iter()
-        .map(|freedom| &*freedom.local.name())
+        .map(|freedom| freedom.local.name())
         .collect();
     assert_eq!(names, ["phi_e1", "phi_e2", "phi_e3"]);
 }
@@ -118,7 +118,7 @@ fn parameters_keep_their_units_and_docs() {
     let units: Vec<(&str, &str)> = spec
         .parameters
         .iter()
-        .map(|p| (&*p.symbol.name(), p.unit.as_str()))
+        .map(|p| (p.symbol.name(), p.unit.as_str()))
         .collect();
     assert_eq!(units, [("lead", "m"), ("pitch", "m/rad")]);
     assert_eq!(spec.parameters[0].docs, "Advance of one turn.");

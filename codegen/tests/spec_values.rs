@@ -246,7 +246,7 @@ fn expressions_are_shown_as_a_spec_writes_them() {
         }
     }
     let spec = joint("config q: R1; local slide; Phi = q + phi.slide; H = trans_z(q);");
-    assert_eq!(&*spec.freedoms.value[0].local.spelling(), "phi.slide");
+    assert_eq!(spec.freedoms.value[0].local.spelling(), "phi.slide");
 }
 
 #[test]

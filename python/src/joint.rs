@@ -192,7 +192,7 @@ impl Joint {
     fn coordinates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         self.named(py, |own| {
             let symbols = own.arguments.configuration.iter();
-            symbols.map(|symbol| symbol.name.to_string()).collect()
+            symbols.map(|symbol| symbol.name().to_owned()).collect()
         })
     }
 
@@ -225,7 +225,7 @@ impl Joint {
         let end = |end: &Option<End>| end.as_ref().and_then(|end| end.value.to_f64());
         let told = self.ask(py, |own| {
             let all = own.spec.parameters.iter().map(|own| {
-                let (name, unit) = (own.symbol.name.to_string(), own.unit.clone());
+                let (name, unit) = (own.symbol.name().to_owned(), own.unit.clone());
                 let (lower, upper) = (end(&own.range.lower), end(&own.range.upper));
                 (name, unit, own.docs.trim().to_owned(), lower, upper)
             });

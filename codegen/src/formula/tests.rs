@@ -238,7 +238,7 @@ fn a_shared_name_gives_way_to_a_name_that_is_taken() {
         .bindings
         .iter()
         .flat_map(Binding::names)
-        .map(|name| name.name().as_ref())
+        .map(|name| name.name())
         .collect();
     assert_eq!(names, ["t2"]);
 }

@@ -85,7 +85,7 @@ fn a_kernel_with_another_value_is_found() {
     view.kernels.extend(of_all);
     let derived = view.kernels.clone();
     let ((written, words), _) = super::in_words(&joint, &view, &[]);
-    assert!(words.iter().any(|word| &*word.symbol.name() == "length"));
+    assert!(words.iter().any(|word| word.symbol.name() == "length"));
     let is_right =
         |kernels: &[Kernel]| verify::have_values_of(kernels, &derived, &joint, &expansion);
     assert!(is_right(&written));

@@ -284,7 +284,7 @@ fn parameters(body: &BodyDescription, joint: &JointType, reasons: &mut Vec<Strin
         .spec
         .parameters
         .iter()
-        .map(|known| &*known.symbol.name)
+        .map(|known| known.symbol.name())
         .collect();
     for (given, _) in &body.joint.parameters {
         if !known.contains(&given.value.as_str()) {

@@ -173,7 +173,7 @@ impl<'a> Names<'a> {
         for word in &self.derived.named {
             if word.rates.is_empty() {
                 let rate = word.value.along(&|symbol| self.rate(symbol, k));
-                let name = format!("{}_along_{}", word.symbol.name, k + 1);
+                let name = format!("{}_along_{}", word.symbol.name(), k + 1);
                 let symbol =
                     Symbol::new(Role::Intermediate, FIRST_INDEX + self.values.len(), &name);
                 self.rates[k].insert(word.symbol.clone(), Expr::symbol(&symbol));

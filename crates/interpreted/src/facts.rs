@@ -63,7 +63,7 @@ pub(crate) fn of(derived: &Derived, room: usize) -> Facts {
         name: kept(&spec.name.value),
         coordinates: padded(
             configuration
-                .map(|symbol| symbol.name.to_string())
+                .map(|symbol| symbol.name().to_owned())
                 .collect(),
         ),
         freedoms: names(freedoms.map(|freedom| freedom.name.as_str())),
@@ -191,7 +191,7 @@ pub(crate) fn parameters(derived: &Derived) -> &'static [ParameterInfo] {
         lower: parameter.range.lower.as_ref().map(limit),
         upper: parameter.range.upper.as_ref().map(limit),
         ..ParameterInfo::new(
-            kept(&parameter.symbol.name),
+            kept(parameter.symbol.name()),
             kept(&parameter.unit),
             kept(parameter.docs.trim()),
         )

@@ -72,7 +72,7 @@ impl Kernels {
             ports: facts::ports(derived),
             body_names: facts::names(derived.spec.bodies.iter().map(String::as_str)),
             parameters: parameters
-                .map(|parameter| facts::kept(&parameter.symbol.name))
+                .map(|parameter| facts::kept(parameter.symbol.name()))
                 .collect(),
             stored: derived.shape.configuration,
             displacements: derived.shape.displacements,

@@ -51,7 +51,7 @@ fn kernels<T: Scalar>(width: f64, place: T) -> [SMatrix<T, 6, 1>; 3] {
 /// The same from their expressions: the place is what ϕ is added to, and c is ∂X^c/∂ϕ at a speed of 1.
 fn expected(derived: &Derived, width: f64, place: f64) -> [Vec<Precise>; 3] {
     let value = |symbol: &Symbol| {
-        let value = match &*symbol.name {
+        let value = match symbol.name() {
             "width" => width,
             "lift" => LIFT,
             "x" => place,

@@ -93,7 +93,7 @@ fn row(
         let terms = along.iter().zip(moved.entries());
         let velocity: Expr = terms.map(|(a, b)| a * b).sum();
         match less {
-            Some((name, factor)) if &*q.name == name => velocity - parameter(derived, factor),
+            Some((name, factor)) if q.name() == name => velocity - parameter(derived, factor),
             _ => velocity,
         }
     };
@@ -116,7 +116,7 @@ pub fn pose(derived: &Derived, body: usize) -> (&Matrix, &Matrix) {
 /// Where the spec has none of that name.
 pub fn parameter(derived: &Derived, name: &str) -> Expr {
     let parameters = &derived.space.parameters;
-    let found = parameters.iter().find(|own| &*own.symbol.name == name);
+    let found = parameters.iter().find(|own| own.symbol.name() == name);
     Expr::symbol(&found.expect("a parameter of the spec").symbol)
 }
 
@@ -126,6 +126,6 @@ pub fn parameter(derived: &Derived, name: &str) -> Expr {
 /// Where the spec has none of that name.
 pub fn coordinate(derived: &Derived, name: &str) -> Expr {
     let coordinates = derived.space.manifold.coordinates();
-    let found = coordinates.iter().find(|own| &*own.name == name);
+    let found = coordinates.iter().find(|own| own.name() == name);
     Expr::symbol(found.unwrap_or_else(|| panic!("{name} is none of {coordinates:?}")))
 }

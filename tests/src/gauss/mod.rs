@@ -104,7 +104,7 @@ impl Gauss {
         let place = self
             .coordinates
             .iter()
-            .position(|own| &*own.name == coordinate);
+            .position(|own| own.name() == coordinate);
         self.rotors.push((place.expect("a stored scalar"), inertia));
         self
     }

@@ -61,7 +61,7 @@ fn entry(joint: &Derived) -> Entry {
         .iter()
         .map(|factor| format!("{}: {}", factor.name, factor.kind.name()));
     let parameter = |p: &hamel_codegen::model::Parameter| Parameter {
-        name: p.symbol.name.to_string(),
+        name: p.symbol.name().to_owned(),
         unit: p.unit.clone(),
     };
     let port = |p: &Declared<Port>| Parameter {

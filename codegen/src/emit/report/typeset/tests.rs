@@ -11,7 +11,7 @@ fn symbol(name: &str) -> Expr {
 
 fn set(expression: &Expr) -> Math {
     let node = factored(expression).polished();
-    composed(&node, &|symbol| named(&symbol.name()))
+    composed(&node, &|symbol| named(symbol.name()))
 }
 
 fn recip(expression: &Expr) -> Expr {

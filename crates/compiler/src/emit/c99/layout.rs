@@ -78,7 +78,7 @@ fn stored(derived: &Derived) -> Vec<String> {
     let units = units.map(|unit| if unit == "1" { String::new() } else { unit });
     let scalars = coordinates.iter().zip(units);
     scalars
-        .map(|(symbol, unit)| named(&symbol.name, &unit))
+        .map(|(symbol, unit)| named(symbol.name(), &unit))
         .collect()
 }
 
