@@ -82,6 +82,19 @@ impl Expr {
         }
     }
 
+    /// The sum of terms in any order.
+    pub(crate) fn of_terms(terms: impl IntoIterator<Item = (Monomial, Rational)>) -> Self {
+        Self {
+            terms: terms.into_iter().collect(),
+        }
+    }
+
+    /// Takes the largest term away.
+    pub(crate) fn pop_leading(&mut self) -> Option<(Monomial, Rational)> {
+        budget::spend(2);
+        self.terms.pop()
+    }
+
     /// The terms, in ascending term order.
     pub fn terms(
         &self,

@@ -69,6 +69,11 @@ impl<K: Clone + Ord> Terms<K> {
         Some(&self.entries[place].1)
     }
 
+    /// Takes the term with the largest key away.
+    pub fn pop(&mut self) -> Option<(K, Rational)> {
+        Arc::make_mut(&mut self.entries).pop()
+    }
+
     /// Adds a term.
     pub fn add(&mut self, key: K, coefficient: Rational) {
         let place = self.place(&key);

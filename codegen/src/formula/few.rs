@@ -39,8 +39,10 @@ pub fn named(
     is_shared: impl Fn(&Symbol) -> bool,
 ) -> Program {
     let mut index = 0;
-    for place in 0..program.bindings.len() {
-        let Binding::Value { name, value } = &program.bindings[place] else {
+    let mut renamed = FxHashMap::default();
+    for binding in &mut program.bindings {
+        binding.change(&mut |node| node.rename(&renamed));
+        let Binding::Value { name, value } = binding else {
             continue;
         };
         if !is_shared(name) {
@@ -56,12 +58,11 @@ pub fn named(
             }
         });
         let symbol = Symbol::new(name.role, name.index.into(), &taken.claim(&wish));
-        let value = Node::Symbol(symbol.clone());
-        if let Binding::Value { name, .. } = &mut program.bindings[place] {
-            let before = std::mem::replace(name, symbol);
-            program.change(&mut |node| _ = node.put(&before, &value));
-        }
+        let before = std::mem::replace(name, symbol.clone());
+        renamed.insert(before, symbol);
     }
+    let outputs = program.outputs.iter_mut();
+    outputs.for_each(|node| node.rename(&renamed));
     program
 }
 

@@ -28,6 +28,7 @@ pub use symbols::Names;
 
 use crate::expr::{Function, Rational, Symbol};
 use num_traits::{One, Zero};
+use rustc_hash::FxHashMap;
 
 /// A formula.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -243,6 +244,18 @@ impl Node {
                 other.change_parts(&mut |part| occurs |= part.put(symbol, value));
                 occurs
             }
+        }
+    }
+
+    /// Puts symbols in the places of others.
+    pub(super) fn rename(&mut self, names: &FxHashMap<Symbol, Symbol>) {
+        match self {
+            Self::Symbol(own) => {
+                if let Some(name) = names.get(own) {
+                    *own = name.clone();
+                }
+            }
+            other => other.change_parts(&mut |part| part.rename(names)),
         }
     }
 

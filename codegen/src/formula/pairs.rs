@@ -20,9 +20,9 @@ pub fn extract_pairs(formulas: &mut [Node]) {
         };
         search.pull_out(pair);
     }
-    let mut rewritten = HashMap::default();
+    let mut done = HashMap::default();
     for formula in formulas {
-        *formula = search.rewritten(formula, &mut rewritten);
+        search.rewrite(formula, &mut done);
     }
 }
 
@@ -82,26 +82,19 @@ impl Search {
             });
         }
         let numbers = search.number(distinct.iter().flatten());
-        for product in distinct {
-            let list = product.iter().map(|factor| numbers[factor]).collect();
-            search.by_value.insert(product, search.products.len());
-            search.products.push(list);
-        }
+        let list = |product: &Vec<Node>| product.iter().map(|factor| numbers[factor]).collect();
+        search.products = distinct.iter().map(list).collect();
+        search.by_value = distinct.into_iter().zip(0..).collect();
         (0..search.products.len()).for_each(|product| search.count(product, true));
         search
     }
 
     /// Numbers the factors in ascending order.
-    fn number<'a>(&mut self, factors: impl Iterator<Item = &'a Node>) -> HashMap<Node, usize> {
+    fn number<'a>(&mut self, factors: impl Iterator<Item = &'a Node>) -> HashMap<&'a Node, usize> {
         let distinct: BTreeSet<&Node> = factors.collect();
-        for (number, factor) in distinct.iter().enumerate() {
-            debug_assert_eq!(number, self.factors.len());
-            self.factors.push(Factor::Formula((*factor).clone()));
-        }
-        let numbered = distinct.into_iter().enumerate();
-        numbered
-            .map(|(number, factor)| (factor.clone(), number))
-            .collect()
+        let formulas = distinct.iter().copied().cloned();
+        self.factors.extend(formulas.map(Factor::Formula));
+        distinct.into_iter().zip(0..).collect()
     }
 
     /// Adds the pairs of a product to the uses, or takes them away.
@@ -155,26 +148,37 @@ impl Search {
         }
     }
 
-    /// The formula with pairs as products of their own.
-    fn rewritten(&self, node: &Node, done: &mut HashMap<usize, Node>) -> Node {
-        let Node::Product(factors) = node else {
-            return node.map_parts(&mut |part| self.rewritten(part, done));
+    /// Makes pairs in the formula products of their own.
+    fn rewrite(&self, node: &mut Node, done: &mut HashMap<usize, Node>) {
+        let product = match node {
+            Node::Product(factors) => self.by_value.get(factors).copied(),
+            _ => None,
         };
-        let Some(product) = self.by_value.get(factors) else {
-            return node.clone();
+        let Some(product) = product.filter(|product| self.holds_pair(*product)) else {
+            node.change_parts(&mut |part| self.rewrite(part, done));
+            return;
         };
-        if let Some(known) = done.get(product) {
-            return known.clone();
+        if let Some(known) = done.get(&product) {
+            *node = known.clone();
+            return;
         }
-        let factors = self.products[*product].iter();
-        let node = Node::Product(factors.map(|factor| self.factor(*factor, done)).collect());
-        done.insert(*product, node.clone());
-        node
+        let factors = self.products[product].iter();
+        *node = Node::Product(factors.map(|factor| self.factor(*factor, done)).collect());
+        done.insert(product, node.clone());
+    }
+
+    fn holds_pair(&self, product: usize) -> bool {
+        let mut factors = self.products[product].iter();
+        factors.any(|factor| matches!(self.factors[*factor], Factor::Pair(_)))
     }
 
     fn factor(&self, factor: usize, done: &mut HashMap<usize, Node>) -> Node {
         match &self.factors[factor] {
-            Factor::Formula(node) => self.rewritten(node, done),
+            Factor::Formula(node) => {
+                let mut node = node.clone();
+                self.rewrite(&mut node, done);
+                node
+            }
             Factor::Pair((a, b)) => {
                 Node::Product(vec![self.factor(*a, done), self.factor(*b, done)])
             }

@@ -58,6 +58,15 @@ impl Binding {
         }
     }
 
+    /// Calls `change` for every formula that it evaluates, in order.
+    pub(super) fn change(&mut self, change: &mut impl FnMut(&mut Node)) {
+        match self {
+            Self::Value { value, .. } => change(value),
+            Self::SinCos { angle, .. } => change(angle),
+            Self::Call { argument, .. } => argument.iter_mut().for_each(change),
+        }
+    }
+
     /// The formulas that it evaluates.
     pub fn formulas(&self) -> Vec<&Node> {
         match self {
@@ -148,13 +157,8 @@ impl Program {
 
     /// Calls `change` for every formula in it, in order.
     pub(super) fn change(&mut self, change: &mut impl FnMut(&mut Node)) {
-        for binding in &mut self.bindings {
-            match binding {
-                Binding::Value { value, .. } => change(value),
-                Binding::SinCos { angle, .. } => change(angle),
-                Binding::Call { argument, .. } => argument.iter_mut().for_each(&mut *change),
-            }
-        }
+        let bindings = self.bindings.iter_mut();
+        bindings.for_each(|binding| binding.change(change));
         self.outputs.iter_mut().for_each(change);
     }
 

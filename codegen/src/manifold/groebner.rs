@@ -60,7 +60,7 @@ fn completed(mut basis: Vec<Expr>, mut pairs: Pairs) -> Result<Vec<Expr>, NotMon
 /// The normal form of `expression` modulo a Gröbner basis of monic polynomials.
 pub fn reduce<E: Borrow<Expr>>(expression: &Expr, basis: &[E]) -> Expr {
     let mut rest = expression.clone();
-    let mut normal = Expr::zero();
+    let mut normal = vec![];
     while let Some((monomial, coefficient)) = rest.leading().map(|(m, c)| (m.clone(), c.clone())) {
         // Searching the basis costs more than the subtraction that follows.
         if !budget::spend(1 + basis.len() as u64) {
@@ -76,14 +76,10 @@ pub fn reduce<E: Borrow<Expr>>(expression: &Expr, basis: &[E]) -> Expr {
                 budget::spend(weight(&coefficient) * g.terms().len() as u64);
                 rest.add_scaled(&-coefficient, &quotient, g);
             }
-            None => {
-                let term = Expr::term(coefficient, monomial);
-                rest -= &term;
-                normal += &term;
-            }
+            None => normal.extend(rest.pop_leading()),
         }
     }
-    normal
+    Expr::of_terms(normal.into_iter().rev())
 }
 
 /// Work of an operation on the number beyond that on a small one: reducing a fraction takes some 64 steps for each machine word.
