@@ -379,13 +379,14 @@ impl Robot {
             name,
             text,
             is_robot,
-            floating_base,
+            options,
             joints,
         } = self.source.clone();
         let parse = py.import("hamel._hamel")?.getattr("parse")?;
-        let source = (name, text, is_robot, floating_base).into_pyobject(py)?;
+        let source = (name, text, is_robot);
+        let options = (options.floating_base, options.lenient, options.posture);
         let joints: Vec<String> = joints.into_iter().map(|joint| joint.spec).collect();
-        Ok((parse, (source, joints).into_pyobject(py)?))
+        Ok((parse, (source, options, joints).into_pyobject(py)?))
     }
 
     fn __repr__(&self) -> String {

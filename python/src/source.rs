@@ -19,10 +19,45 @@ pub struct Source {
     pub text: String,
     /// Whether it is a robot in URDF or MJCF rather than a scene, by its ending or by how it begins.
     pub is_robot: bool,
-    /// Whether the root link of a URDF moves freely.
-    pub floating_base: bool,
+    /// How to read a robot.
+    pub options: RobotOptions,
     /// Joint types beside those of the library.
     pub joints: Vec<OwnJoint>,
+}
+
+/// What the file of a robot leaves open.
+#[derive(Clone, Default)]
+pub struct RobotOptions {
+    /// Whether the root link of a URDF moves freely.
+    pub floating_base: bool,
+    /// Whether masses of a URDF that no rigid body has are changed.
+    pub lenient: bool,
+    /// Where joints begin, rad or m.
+    pub posture: BTreeMap<String, f64>,
+}
+
+impl RobotOptions {
+    /// The first option that was given, and why a scene does without it.
+    fn given(&self) -> Option<(&'static str, &'static str)> {
+        match self {
+            Self {
+                floating_base: true,
+                ..
+            } => Some((
+                "floating_base is True: only robots in URDF have a base that it frees",
+                "a scene has a joint `free`",
+            )),
+            Self { lenient: true, .. } => Some((
+                "lenient is True: only robots in URDF are read so",
+                "the numbers of a scene are corrected in its text",
+            )),
+            Self { posture, .. } if !posture.is_empty() => Some((
+                "posture is for robots in URDF and MJCF",
+                "the joints of a scene begin where their `initial` says",
+            )),
+            _ => None,
+        }
+    }
 }
 
 /// A joint type that was made by a `Joint`.
@@ -55,12 +90,12 @@ impl Source {
     ///
     /// # Errors
     /// What is neither `str` nor a path; a file that cannot be read.
-    pub fn of(given: &Bound<'_, PyAny>, floating_base: bool) -> PyResult<Self> {
+    pub fn of(given: &Bound<'_, PyAny>, options: RobotOptions) -> PyResult<Self> {
         let py = given.py();
         if let Ok(text) = given.extract::<String>()
             && is_text(&text)
         {
-            return Ok(Self::of_text(text, floating_base));
+            return Ok(Self::of_text(text, options));
         }
         let path: PathBuf = given.extract().map_err(|_| {
             errors::argument(
@@ -81,7 +116,7 @@ impl Source {
             name,
             text,
             is_robot,
-            floating_base,
+            options,
             joints: vec![],
         })
     }
@@ -91,21 +126,35 @@ impl Source {
         Self { joints, ..self }
     }
 
-    fn of_text(text: String, floating_base: bool) -> Self {
+    fn of_text(text: String, options: RobotOptions) -> Self {
         Self {
             name: String::from("text"),
             is_robot: robot::is_robot(&PathBuf::new(), &text),
             text,
-            floating_base,
+            options,
             joints: vec![],
         }
     }
 
-    fn options(&self) -> robot::Options {
-        robot::Options {
-            floating_base: self.floating_base,
-            ..robot::Options::default()
+    /// Refuses options of robots for a scene.
+    ///
+    /// # Errors
+    /// The option that was given.
+    pub fn fits(self, py: Python<'_>) -> PyResult<Self> {
+        match self.options.given().filter(|_| !self.is_robot) {
+            Some((fault, why)) => Err(errors::argument(py, format!("{fault}; {why}"))),
+            None => Ok(self),
         }
+    }
+
+    fn import(&self) -> Result<Import, Diagnostics> {
+        let options = robot::Options {
+            floating_base: self.options.floating_base,
+            lenient: self.options.lenient,
+            ..robot::Options::default()
+        };
+        let posture: Vec<(String, f64)> = self.options.posture.clone().into_iter().collect();
+        robot::read(&self.text, &self.name, &options)?.in_posture(&posture)
     }
 
     /// The text of the scene; of a robot that of the scene that is made of it.
@@ -114,7 +163,7 @@ impl Source {
     /// Mistakes in the text of a robot.
     pub fn scene_text(&self) -> Result<String, Diagnostics> {
         match self.is_robot {
-            true => Ok(robot::read(&self.text, &self.name, &self.options())?.to_toml()),
+            true => Ok(self.import()?.to_toml()),
             false => Ok(self.text.clone()),
         }
     }
@@ -126,7 +175,7 @@ impl Source {
     pub fn model(&self, joints: &JointRegistry) -> Result<(Model, AllLimits), Diagnostics> {
         let (scene, limits) = match self.is_robot {
             true => {
-                let import = robot::read(&self.text, &self.name, &self.options())?;
+                let import = self.import()?;
                 (import.build(joints)?, limits_of_robot(&import))
             }
             false => {

@@ -2,7 +2,7 @@
 
 use crate::errors;
 use crate::robot::Robot;
-use crate::source::Source;
+use crate::source::{RobotOptions, Source};
 use hamel_sweep::{Block, Cells, Row, Sweep, SweepError, Watch};
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -31,7 +31,13 @@ pub fn sweep<'py>(
     let (workers, estimate, floating_base) = options;
     let source = match scene.cast::<Robot>() {
         Ok(robot) => robot.get().origin().clone(),
-        Err(_) => Source::of(scene, floating_base)?,
+        Err(_) => {
+            let options = RobotOptions {
+                floating_base,
+                ..RobotOptions::default()
+            };
+            Source::of(scene, options)?.fits(py)?
+        }
     };
     let count = columns
         .first()

@@ -1,5 +1,6 @@
 """Files and texts, what is known of robots, and what is said of bad files."""
 
+import pickle
 from pathlib import Path
 
 import hamel
@@ -75,6 +76,35 @@ def test_a_base_moves_freely_where_that_is_asked_for():
     assert free.sizes.speeds == fixed.sizes.speeds + 6
     with pytest.raises(hamel.ArgumentError, match="floating_base is True: only robots in URDF"):
         hamel.load(SCENES / "mixed_tree.toml", floating_base=True)
+
+
+def test_a_robot_begins_in_its_posture():
+    robot = hamel.load(PANDA, posture={"panda_joint2": -0.5, "panda_joint4": -2.0})
+    begun = robot.positions(robot.state().configuration)
+    assert begun.tolist() == [0.0, -0.5, 0.0, -2.0, 0.0, 0.0, 0.0]
+    kept = pickle.loads(pickle.dumps(robot))
+    assert kept.state().configuration.tolist() == robot.state().configuration.tolist()
+    with pytest.raises(hamel.FileError, match="there is no joint `panda_joint9`"):
+        hamel.load(PANDA, posture={"panda_joint9": 1.0})
+    with pytest.raises(hamel.ArgumentError, match="posture is .* it must be a dict"):
+        hamel.load(PANDA, posture=[1.0])
+    with pytest.raises(hamel.ArgumentError, match="posture is for robots in URDF and MJCF"):
+        hamel.load(SCENES / "mixed_tree.toml", posture={"rail": 1.0})
+
+
+def test_broken_masses_are_read_leniently():
+    text = '''<robot name="a">
+<link name="base"/>
+<link name="arm"><inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="9"/></inertial></link>
+<joint name="turn" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/><limit effort="1" velocity="1" lower="-1" upper="1"/></joint>
+</robot>'''
+    with pytest.raises(hamel.FileError):
+        hamel.load(text)
+    robot = hamel.load(text, lenient=True)
+    assert robot.mass_matrix([0.0])[0, 0] == pytest.approx(11 / 3)
+    assert any("arm" in notice for notice in robot.notices)
+    with pytest.raises(hamel.ArgumentError, match="lenient is True: only robots in URDF"):
+        hamel.load(SCENES / "mixed_tree.toml", lenient=True)
 
 
 def test_mistakes_are_told_with_their_lines():
