@@ -33,6 +33,9 @@ use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 /// As many distinct atoms as most expressions have at most.
 const FEW_ATOMS: usize = 14;
 
+/// Products of terms that are not combined before there are as many.
+const MANY_PRODUCTS: usize = 4096;
+
 /// A polynomial with rational coefficients in [`Atom`]s.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Expr {
@@ -343,14 +346,20 @@ impl Mul for &Expr {
             true => (self, other),
             false => (other, self),
         };
-        let products = short.terms.iter().map_while(|(monomial, coefficient)| {
-            let is_left = budget::spend(long.work());
-            let scaled = move |(m, c): (&Monomial, &Rational)| (m.times(monomial), c * coefficient);
-            is_left.then(|| long.terms.iter().map(scaled))
-        });
-        Expr {
-            terms: products.flatten().collect(),
+        let (mut product, mut products) = (Expr::zero(), vec![]);
+        for (monomial, coefficient) in short.terms.iter() {
+            if !budget::spend(long.work()) {
+                break;
+            }
+            let scaled = |(m, c): (&Monomial, &Rational)| (m.times(monomial), c * coefficient);
+            products.extend(long.terms.iter().map(scaled));
+            // Combined when they are as many as the terms so far: memory holds no more than twice the product, and each merge doubles it.
+            if products.len() >= product.terms.len().max(MANY_PRODUCTS) {
+                product.terms += products.drain(..).collect();
+            }
         }
+        product.terms += products.into_iter().collect();
+        product
     }
 }
 

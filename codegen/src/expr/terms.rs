@@ -1,11 +1,20 @@
 //! Terms of a sum: keys in ascending order, each with a coefficient that is not 0.
 //!
-//! Nearly all sums are short. A sorted list then takes a tenth of the memory of a tree, and half of the time.
+//! Nearly all sums are short: a sorted list holds as many terms as there are, where the first node of a B-tree has room for eleven.
 
-use super::Rational;
+use super::{Rational, budget};
 use num_traits::Zero;
 use std::ops::{AddAssign, Index};
 use std::sync::Arc;
+
+/// As many terms are moved in the time of one term operation.
+const MOVED: u64 = 64;
+
+/// As many terms are merged in the time of one term operation.
+const MERGED: u64 = 16;
+
+/// Most terms that are added one by one.
+const FEW: usize = 8;
 
 /// The coefficients by their keys, ascending; none is 0.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -77,6 +86,7 @@ impl<K: Clone + Ord> Terms<K> {
     /// Adds a term.
     pub fn add(&mut self, key: K, coefficient: Rational) {
         let place = self.place(&key);
+        budget::spend(self.entries.len() as u64 / MOVED);
         let entries = Arc::make_mut(&mut self.entries);
         match place {
             Ok(place) => {
@@ -121,12 +131,13 @@ impl<K: Clone + Ord> AddAssign for Terms<K> {
         }
         let other = Arc::unwrap_or_clone(other.entries);
         // Few among many are looked for one by one.
-        if other.len() == 1 || 4 * other.len() < self.len() {
+        if other.len() == 1 || other.len() <= FEW && 4 * other.len() < self.len() {
             for (key, value) in other {
                 self.add(key, value);
             }
             return;
         }
+        budget::spend(self.entries.len() as u64 / MERGED);
         let own = Arc::unwrap_or_clone(std::mem::take(&mut self.entries));
         self.entries = Arc::new(merged(own, other));
     }

@@ -48,3 +48,22 @@ impl<K: Clone + Ord, V: Clone> Layered<K, V> {
         Arc::make_mut(&mut self.shared).extend(own);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Layered;
+
+    #[test]
+    fn copies_share_what_was_there_and_keep_their_own() {
+        let mut map = Layered::<String, u8>::default();
+        map.insert("a".into(), 1);
+        map.share();
+        let mut copy = map.clone();
+        copy.insert("b".into(), 2);
+        copy.insert("a".into(), 3);
+        assert_eq!((map.get("a"), map.get("b")), (Some(&1), None));
+        assert_eq!((copy.get("a"), copy.get("b")), (Some(&3), Some(&2)));
+        copy.share();
+        assert_eq!((copy.get("a"), map.get("a")), (Some(&3), Some(&1)));
+    }
+}
