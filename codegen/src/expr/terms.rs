@@ -7,11 +7,11 @@ use num_traits::Zero;
 use std::ops::{AddAssign, Index};
 use std::sync::Arc;
 
-/// As many terms are moved in the time of one term operation.
-const MOVED: u64 = 64;
+/// Terms for which moving them spends one term operation: it takes the time of some twenty, so that only very long sums spend anything.
+const MOVED: u64 = 1024;
 
-/// As many terms are merged in the time of one term operation.
-const MERGED: u64 = 16;
+/// The same for merging them into another sum.
+const MERGED: u64 = 256;
 
 /// Most terms that are added one by one.
 const FEW: usize = 8;
