@@ -30,7 +30,7 @@ use rustc_hash::FxHashSet;
 use std::collections::BTreeSet;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
-/// As many distinct atoms as most expressions have at most.
+/// Distinct atoms for which a set has room from the beginning: growing from nothing, it would move them three times.
 const FEW_ATOMS: usize = 14;
 
 /// Products of terms that are not combined before there are as many.
@@ -94,6 +94,7 @@ impl Expr {
 
     /// Takes the largest term away.
     pub(crate) fn pop_leading(&mut self) -> Option<(Monomial, Rational)> {
+        // As for taking the term from one sum and putting it into another.
         budget::spend(2);
         self.terms.pop()
     }

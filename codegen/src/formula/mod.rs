@@ -188,18 +188,6 @@ impl Node {
         }
     }
 
-    /// The direct parts, in order.
-    pub fn parts(&self) -> Vec<&Self> {
-        match self {
-            Self::Number(_) | Self::Symbol(_) | Self::Pi => vec![],
-            Self::Sum(terms) => terms.iter().map(|(_, term)| term).collect(),
-            Self::Product(factors) => factors.iter().collect(),
-            Self::Quotient(above, below) => vec![above, below],
-            Self::Negative(inner) => vec![inner],
-            Self::Call(_, arguments) => arguments.iter().collect(),
-        }
-    }
-
     /// Calls `visit` for this formula and all its parts, outermost first.
     pub fn visit(&self, visit: &mut impl FnMut(&Self)) {
         visit(self);
