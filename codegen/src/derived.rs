@@ -6,6 +6,7 @@ use crate::formula::{Names, Program};
 use crate::matrix::Matrix;
 use crate::model::{ConfigurationSpace, JointSpec};
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 pub use crate::kernel::{
     Arguments, Kernel, KernelKind, Method, Primitive, Shape, Step, Structure, Word,
@@ -60,20 +61,28 @@ pub struct Derived {
     /// All that was proved, and what was checked instead.
     pub claims: Vec<Claim>,
     /// The formulas of each kernel, as they are written everywhere.
-    pub(crate) programs: BTreeMap<KernelKind, Program>,
+    pub(crate) programs: Programs,
 }
 
-/// The formulas of kernels in the names of their joint.
+/// The formulas of kernels. Of a further body, those of Q and v alone are made when they are first asked for: they are seldom needed twice.
+pub(crate) type Programs = BTreeMap<KernelKind, OnceLock<Program>>;
+
+/// The formulas of kernels in the names of their joint, those of all kinds that are `written` here.
 pub(crate) fn programs(
     spec: &JointSpec,
     arguments: &Arguments,
     words: &[Word],
     kernels: &[Kernel],
-) -> BTreeMap<KernelKind, Program> {
+    written: impl Fn(KernelKind) -> bool,
+) -> Programs {
     let names = Names::new(&spec.parameters, arguments, words);
     let program = |kernel: &Kernel| {
-        let program = Program::in_names(&kernel.steps, &kernel.outputs, names.clone());
-        (kernel.kind, program)
+        let program = || Program::in_names(&kernel.steps, &kernel.outputs, names.clone());
+        let program = written(kernel.kind).then(program);
+        (
+            kernel.kind,
+            program.map_or_else(OnceLock::new, OnceLock::from),
+        )
     };
     kernels.iter().map(program).collect()
 }
@@ -97,7 +106,12 @@ impl Derived {
 
     /// The formulas of one of its kernels.
     pub fn program(&self, kernel: &Kernel) -> &Program {
-        self.programs.get(&kernel.kind).unwrap_or(NOTHING)
+        let (Some(program), Some(own)) =
+            (self.programs.get(&kernel.kind), self.kernel(kernel.kind))
+        else {
+            return NOTHING;
+        };
+        program.get_or_init(|| Program::in_names(&own.steps, &own.outputs, self.names()))
     }
 
     /// The names of its symbols in every kernel.
@@ -108,7 +122,7 @@ impl Derived {
     /// Puts a kernel in the place of that of its kind, with its formulas.
     pub fn replace(&mut self, kernel: Kernel) {
         let program = Program::in_names(&kernel.steps, &kernel.outputs, self.names());
-        self.programs.insert(kernel.kind, program);
+        self.programs.insert(kernel.kind, program.into());
         self.kernels.retain(|other| other.kind != kernel.kind);
         self.kernels.push(kernel);
         self.kernels.sort_by_key(|kernel| kernel.kind);

@@ -7,7 +7,7 @@ use crate::expand::{self, Expansion};
 use crate::expr::budget::{self, Exhausted};
 use crate::expr::curve::Curve;
 use crate::expr::{Expr, Rational};
-use crate::kernel::Kernel;
+use crate::kernel::{Kernel, KernelKind};
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
 use crate::model::{ConfigurationSpace, Declared, JointSpec, Locus};
@@ -160,6 +160,7 @@ impl Known {
     fn of_body(&self, body: usize, (kernels, words): Written) -> Derived {
         let (joint, expansion) = (self.joint.carrying(body), self.expansion.carrying(body));
         let ideal = joint.space.manifold.ideal();
+        let written = |kind: KernelKind| body == 0 || kind.is_of_body();
         Derived {
             body,
             more: vec![],
@@ -171,7 +172,7 @@ impl Known {
             speed_map: expand::speed_map(&joint, &expansion),
             velocity_map_series: series(ideal, &expansion),
             unidentifiable: expand::unidentifiable(&expansion, ideal),
-            programs: programs(&joint.spec, &expansion.arguments, &words, &kernels),
+            programs: programs(&joint.spec, &expansion.arguments, &words, &kernels, written),
             named: expansion.named().to_vec(),
             arguments: expansion.arguments,
             still: expansion.still.freedoms,

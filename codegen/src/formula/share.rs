@@ -93,10 +93,10 @@ impl Program {
     pub fn new(steps: &[Step], outputs: &[Matrix], taken: &NameSet) -> Self {
         let expressions = expressions(steps, outputs);
         let alone: Vec<Node> = expressions.iter().map(factored).collect();
-        let together = shared_sums(&expressions);
-        if alone == together {
-            return Self::of_formulas(steps, alone, taken);
-        }
+        let together = match shared_sums(&expressions) {
+            Some(together) if together != alone => together,
+            _ => return Self::of_formulas(steps, alone, taken),
+        };
         let [alone, together] =
             [alone, together].map(|formulas| Self::of_formulas(steps, formulas, taken));
         let [work_alone, work_together] =

@@ -4,7 +4,7 @@
 //! meanings would pass the algebra.
 
 use crate::expand::Expansion;
-use crate::kernel::{Kernel, KernelKind, Method, Step};
+use crate::kernel::{Arguments, Kernel, KernelKind, Method, Step};
 use crate::matrix::Matrix;
 use crate::precise::{Point, Precise, Sampler};
 use crate::prepare::Prepared;
@@ -39,10 +39,24 @@ fn agree(written: &[Kernel], derived: &[Kernel], expansion: &Expansion, point: &
         named.bind(&word.symbol, value);
     }
     let named = &named;
+    let is_bias = |kernel: &Kernel| {
+        kernel.kind == KernelKind::BiasAcceleration || kernel.kind == KernelKind::BiasMomentum
+    };
+    let rate = match written.iter().any(is_bias) {
+        true => rate(derived, expansion, named),
+        false => None,
+    };
+    let vector = |symbols| Numbers::of(&Matrix::symbols(symbols), named);
+    let Arguments { speeds, wrench, .. } = &expansion.arguments;
     written.iter().all(|kernel| {
         let expected = match kernel.kind {
-            KernelKind::BiasAcceleration | KernelKind::BiasMomentum => {
-                bias(kernel.kind, derived, expansion, named)
+            KernelKind::BiasAcceleration => {
+                let bias = rate.as_ref().map(|rate| rate.times(&vector(speeds)));
+                bias.map(|bias| bias.entries)
+            }
+            KernelKind::BiasMomentum => {
+                let transposed = rate.as_ref().map(Numbers::transpose);
+                transposed.map(|rate| rate.times(&vector(wrench)).entries)
             }
             kind => derived
                 .iter()
@@ -73,14 +87,8 @@ fn value(kernel: &Kernel, point: &Point) -> Option<Vec<Precise>> {
     Some(entries.flatten().collect())
 }
 
-/// `Ẋ̄^c v̄` or `Ẋ̄^cᵀ h`, with `Ẋ̄^c = Σ_k (∂X^c/∂ϕ_k S̄ + X^c ∂S̄/∂ϕ_k) ϕ̇_k` and `ϕ̇ = S₀⁻¹ S̄ v̄`.
-fn bias(
-    kind: KernelKind,
-    derived: &[Kernel],
-    expansion: &Expansion,
-    point: &Point,
-) -> Option<Vec<Precise>> {
-    let arguments = &expansion.arguments;
+/// `Ẋ̄^c = Σ_k (∂X^c/∂ϕ_k S̄ + X^c ∂S̄/∂ϕ_k) ϕ̇_k` with `ϕ̇ = S₀⁻¹ S̄ v̄`: its products are c and the dual of c.
+fn rate(derived: &[Kernel], expansion: &Expansion, point: &Point) -> Option<Numbers> {
     let numbers = |matrix: &Matrix| Numbers::of(matrix, point);
     let all = |kind| -> Option<Vec<Numbers>> {
         let kernel = derived.iter().find(|kernel| kernel.kind == kind)?;
@@ -91,10 +99,9 @@ fn bias(
         one(KernelKind::TwistMapChild)?,
         one(KernelKind::SpeedBasis)?,
     );
-    let speeds = numbers(&Matrix::symbols(&arguments.speeds));
     let local = one(KernelKind::VelocityMapInverse)?
         .times(&basis)
-        .times(&speeds);
+        .times(&numbers(&Matrix::symbols(&expansion.arguments.speeds)));
     let of_map = all(KernelKind::TwistMapChildGradient)?.into_iter();
     let of_basis = all(KernelKind::SpeedBasisGradient)?;
     let slices = of_map.zip(&of_basis).zip(&local.entries);
@@ -102,14 +109,7 @@ fn bias(
         let moved = of_map.times(&basis);
         moved.plus(&map.times(of_basis)).scale(rate)
     });
-    let rate = slices.reduce(|sum, slice| sum.plus(&slice))?;
-    let result = match kind {
-        KernelKind::BiasAcceleration => rate.times(&speeds),
-        _ => rate
-            .transpose()
-            .times(&numbers(&Matrix::symbols(&arguments.wrench))),
-    };
-    Some(result.entries)
+    slices.reduce(|sum, slice| sum.plus(&slice))
 }
 
 /// Whether two lists of numbers agree; numbers that are not finite agree with all, as there the formulas have no value.

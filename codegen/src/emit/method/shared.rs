@@ -35,7 +35,10 @@ impl Function {
 pub fn functions(derived: &Derived) -> Vec<Function> {
     let is_long = |body: &Derived| {
         let counts = |kernel: &Kernel| Counts::of_program(body.program(kernel));
-        formulas(body).any(|kernel| counts(kernel).total() > LONG)
+        // Those of Q and v alone are the same for all bodies.
+        let own = |kernel: &&Kernel| body.body == 0 || kernel.kind.is_of_body();
+        let mut own = formulas(body).filter(own);
+        own.any(|kernel| counts(kernel).total() > LONG)
     };
     let is_long = derived.bodies().any(is_long);
     if !is_long && derived.named.is_empty() {

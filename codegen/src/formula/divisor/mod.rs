@@ -14,9 +14,10 @@ use super::Node;
 use crate::expr::Expr;
 use pool::Pool;
 
-/// Formulas of the expressions, with equal parts where sums are shared; in the order given.
-pub fn shared_sums(expressions: &[Expr]) -> Vec<Node> {
+/// Formulas of the expressions, with equal parts where sums are shared; in the order given. `None` where no sum is shared, and each is
+/// factored alone.
+pub fn shared_sums(expressions: &[Expr]) -> Option<Vec<Node>> {
     let mut pool = Pool::new(expressions);
     greedy::extract(&mut pool);
-    pool.formulas()
+    (!pool.is_plain()).then(|| pool.formulas())
 }

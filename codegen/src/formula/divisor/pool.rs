@@ -78,14 +78,26 @@ impl Pool {
 
     /// The terms; those of a long sum collected by their functions and arguments.
     fn collected(&mut self, sum: &Expr) -> Vec<Term> {
-        let is_long = sum.terms().len() > LONG;
-        let mut groups = groups(sum, |atom| !is_long || is_function_or_argument(atom));
-        if groups.len() == 1 {
-            groups = self::groups(sum, |_| true);
+        if sum.terms().len() <= LONG {
+            return self.separate(sum);
         }
-        let terms = groups.iter();
+        let groups = groups(sum, is_function_or_argument);
+        match groups.len() {
+            1 => self.separate(sum),
+            _ => {
+                let terms = groups.iter();
+                terms
+                    .map(|(outside, inside)| self.group(outside, inside))
+                    .collect()
+            }
+        }
+    }
+
+    /// The terms one by one.
+    fn separate(&mut self, sum: &Expr) -> Vec<Term> {
+        let terms = sum.terms();
         terms
-            .map(|(outside, inside)| self.group(outside, inside))
+            .map(|(monomial, coefficient)| self.term(coefficient, monomial))
             .collect()
     }
 
@@ -155,6 +167,12 @@ impl Pool {
     pub fn divisor(&mut self, terms: [Term; 2]) -> Option<u16> {
         let room = self.meanings.len() < usize::from(u16::MAX);
         room.then(|| self.add(Meaning::Divisor(terms)))
+    }
+
+    /// Whether its sums are those of the expressions, over symbols alone.
+    pub fn is_plain(&self) -> bool {
+        let mut meanings = self.meanings.iter();
+        meanings.all(|meaning| matches!(meaning, Meaning::Atom(_)))
     }
 
     /// The formulas of the expressions.
