@@ -11,11 +11,11 @@ use std::collections::BTreeMap;
 /// The robot or the scene in a file or a text, as a `Robot`.
 ///
 /// Args:
-///     file_or_text: path of a robot in URDF or MJCF or of a scene in TOML, or its text: a `str` with several lines, or one that begins as XML does, is a text.
+///     file_or_text: path of a robot in URDF, MJCF or SDF or of a scene in TOML, or its text: a `str` with several lines, or one that begins as XML does, is a text.
 ///     floating_base: whether the root link of a URDF moves freely; otherwise it is fixed to the world.
 ///     lenient: whether a URDF is read although no rigid body has its masses: such an inertia becomes that of a ball with the mean of its moments, and joints that move nothing
 ///         with mass are fixed. `Robot.notices` tells what was changed.
-///     posture: where joints of a robot in URDF or MJCF begin, by their names: angles in rad, displacements in m. Others begin at home.
+///     posture: where joints of a robot in URDF, MJCF or SDF begin, by their names: angles in rad, displacements in m. Others begin at home.
 ///     joints: joint types beside those of the library, as `Joint`s: a scene names them. They are interpreted, which is slower.
 ///
 /// Raises:

@@ -150,7 +150,7 @@ impl Robot {
         self.info(py, body)
     }
 
-    /// The initial state of the file: a `State`. A robot in URDF is at home and at rest, one in MJCF where its file draws it.
+    /// The initial state of the file: a `State`. A robot in URDF is at home and at rest, one in MJCF or SDF where its file draws it.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         static CLASS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
         let start = self.model.state();

@@ -17,7 +17,7 @@ pub struct Source {
     pub name: String,
     /// The text.
     pub text: String,
-    /// Whether it is a robot in URDF or MJCF rather than a scene, by its ending or by how it begins.
+    /// Whether it is a robot in URDF, MJCF or SDF rather than a scene, by its ending or by how it begins.
     pub is_robot: bool,
     /// How to read a robot.
     pub options: RobotOptions,
@@ -52,7 +52,7 @@ impl RobotOptions {
                 "the numbers of a scene are corrected in its text",
             )),
             Self { posture, .. } if !posture.is_empty() => Some((
-                "posture is for robots in URDF and MJCF",
+                "posture is for robots in URDF, MJCF and SDF",
                 "the joints of a scene begin where their `initial` says",
             )),
             _ => None,

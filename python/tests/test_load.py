@@ -88,7 +88,7 @@ def test_a_robot_begins_in_its_posture():
         hamel.load(PANDA, posture={"panda_joint9": 1.0})
     with pytest.raises(hamel.ArgumentError, match="posture is .* it must be a dict"):
         hamel.load(PANDA, posture=[1.0])
-    with pytest.raises(hamel.ArgumentError, match="posture is for robots in URDF and MJCF"):
+    with pytest.raises(hamel.ArgumentError, match="posture is for robots in URDF, MJCF and SDF"):
         hamel.load(SCENES / "mixed_tree.toml", posture={"rail": 1.0})
 
 

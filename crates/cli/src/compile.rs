@@ -38,7 +38,7 @@ Exit codes: 0 success; 1 a scene with mistakes or that cannot be compiled, a fil
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Scene file (TOML), or a robot in URDF or MJCF
+    /// Scene file (TOML), or a robot in URDF, MJCF or SDF
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
 

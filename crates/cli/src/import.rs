@@ -1,4 +1,4 @@
-//! `hamel import`: a robot in URDF or MJCF as a scene file.
+//! `hamel import`: a robot in URDF, MJCF or SDF as a scene file.
 
 use crate::input::RobotArgs;
 use crate::meshes::locate;
@@ -26,17 +26,17 @@ The scene has a body for each link that moves by itself; fixed joints join links
 Every joint is at home (angles and displacements 0) and at rest. Boxes, spheres, cylinders, capsules and meshes of <visual> become
 [[shape]], which pages show; the shapes of <collision> do not. Files of meshes that are found below the folder of the scene are named
 from there, others by their whole path. What the scene does not hold (limits, mimic joints, friction …) is told on stderr and in
-comments. scenes/README.md says how each element of URDF and MJCF is read.
+comments. scenes/README.md says how each element of URDF, MJCF and SDF is read.
 
 The first line of the scene tells whether it was edited: an imported scene is replaced by another import, an edited one only with --force.
 
 Exit codes: 0 success; 1 a robot with mistakes, a file that cannot be written; 2 wrong options; 130 interrupted.";
 
-/// Turn a robot in URDF or MJCF into a scene file.
+/// Turn a robot in URDF, MJCF or SDF into a scene file.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Robot in URDF, or in MJCF
+    /// Robot in URDF, MJCF or SDF
     #[arg(value_name = "ROBOT")]
     pub robot: PathBuf,
 

@@ -1,4 +1,4 @@
-//! What commands read: a scene file, or a robot in URDF or MJCF. It is read once, whatever is made of it.
+//! What commands read: a scene file, or a robot in URDF, MJCF or SDF. It is read once, whatever is made of it.
 
 use hamel::registry::JointRegistry;
 use hamel_compiler::Build;
@@ -14,7 +14,7 @@ pub struct RobotArgs {
     #[arg(long)]
     floating_base: bool,
 
-    /// Simulate the limits of position of a robot in URDF or MJCF as stops that give way: stiffness, N m/rad or N/m, and damping d, s/rad or s/m, of the effort
+    /// Simulate the limits of position of a robot in URDF, MJCF or SDF as stops that give way: stiffness, N m/rad or N/m, and damping d, s/rad or s/m, of the effort
     /// k x (1 + d ẋ) beyond them
     #[arg(long, value_name = "STIFFNESS,DAMPING", value_parser = stops, allow_negative_numbers = true)]
     limits: Option<Stops>,
@@ -58,7 +58,7 @@ impl RobotArgs {
                 self.limits.is_some(),
                 (
                     "--limits",
-                    "URDF and MJCF",
+                    "URDF, MJCF and SDF",
                     "a scene says itself what limits its joints",
                 ),
             ),
@@ -70,7 +70,7 @@ impl RobotArgs {
                 !self.posture.is_empty(),
                 (
                     "--posture",
-                    "URDF and MJCF",
+                    "URDF, MJCF and SDF",
                     "a scene says itself where its joints begin",
                 ),
             ),
@@ -95,7 +95,7 @@ pub struct Input {
 }
 
 impl Input {
-    /// The scene, or the robot: what is XML is read as URDF or MJCF, whatever the file's ending, and so is what ends in `.urdf`.
+    /// The scene, or the robot: what is XML is read as URDF, MJCF or SDF, whatever the file's ending, and so is what ends in `.urdf`.
     ///
     /// # Errors
     /// A file that cannot be read; options of robots for what is none.

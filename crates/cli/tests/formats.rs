@@ -87,13 +87,28 @@ fn mjcf_is_read_whatever_its_ending_with_what_it_includes() {
     }
 }
 
+/// By every ending.
+#[test]
+fn robots_in_sdf_are_read() {
+    let text = include_str!("../../../tests/data/sdf/pendulum.sdf");
+    for name in ["pendulum.sdf", "model.xml", "other.urdf"] {
+        let file = write(&format!("sdf_{name}"), text);
+        let simulated = hamel(&["simulate", &file, "--t-end", "0.1", "--json"]);
+        let said = String::from_utf8_lossy(&simulated.stderr).into_owned();
+        assert!(simulated.status.success(), "{said}");
+        let imported = hamel(&["import", &file]);
+        let scene = String::from_utf8_lossy(&imported.stdout).into_owned();
+        assert!(scene.contains("name = \"rod\""), "{scene}");
+    }
+}
+
 #[test]
 fn other_formats_are_named() {
-    let sdf = "<?xml version='1.0'?>\n<sdf version='1.9'><model name='arm'/></sdf>\n";
+    let old = "<?xml version='1.0'?>\n<gazebo version='1.0'><model name='arm'/></gazebo>\n";
     let part = "\u{feff}<mujocoinclude><worldbody/></mujocoinclude>\n";
     for (name, text, wanted) in [
-        ("arm.sdf", sdf, ["SDF, the format of Gazebo", "sdf2urdf.py"]),
-        ("sdf.urdf", sdf, ["SDF, the format of Gazebo", "gz sdf -p"]),
+        ("arm.sdf", old, ["SDF before version 1.2", "gz sdf -p"]),
+        ("old.urdf", old, ["SDF before version 1.2", "gz sdf -p"]),
         (
             "part.xml",
             part,

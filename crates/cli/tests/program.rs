@@ -236,7 +236,7 @@ fn mistakes_are_told_in_words() {
         (
             vec!["simulate", "scenes/free_body.toml", "--posture", "a=1"],
             2,
-            "--posture is for robots in URDF and MJCF",
+            "--posture is for robots in URDF, MJCF and SDF",
         ),
         (
             vec!["simulate", "tests/data/urdf/panda7.urdf", "--posture", "a"],

@@ -14,7 +14,7 @@ use nalgebra::{DMatrix, DVector, Vector3, Vector6};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The model in a file: a robot in URDF, on a fixed base, or in MJCF, or a scene in TOML. Joints are those of the library. What a file says and a model does not have
+/// The model in a file: a robot in URDF, on a fixed base, or in MJCF or SDF, or a scene in TOML. Joints are those of the library. What a file says and a model does not have
 /// (limits, friction, meshes) is listed in the `notices` of [`Model::scene`]; [`scene::robot`](hamel_scene::robot) reads robots in URDF that move freely.
 ///
 /// # Errors

@@ -1,5 +1,5 @@
 //! Scene files of Hamel: a mechanism, its initial state, what acts on it and how to simulate it, in TOML; and robots in
-//! [URDF](urdf) and [MJCF](mjcf), by [`robot`].
+//! [URDF](urdf), [MJCF](mjcf) and [SDF](sdf), by [`robot`].
 //!
 //! A file is read in two steps. [`Scene::from_toml`] reads what the text says by itself and gives a
 //! [`SceneDescription`]; [`SceneDescription::build`] looks the joints up in a [`JointRegistry`](hamel_runtime::registry::JointRegistry),
@@ -22,6 +22,7 @@ mod read;
 pub mod robot;
 mod samples;
 mod scene;
+pub mod sdf;
 mod settings;
 mod shape;
 mod source;

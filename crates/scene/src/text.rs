@@ -2,6 +2,8 @@
 //!
 //! Two names that look alike would otherwise be two, a name could turn the direction of what stands beside it, and a terminal would obey it.
 
+use crate::read::LONGEST_NAME;
+
 /// Characters that take no room and that the standard library counts as printed: joiners of marks, fillers, selectors of variants.
 const WITHOUT_WIDTH: [(char, char); 9] = [
     ('\u{34f}', '\u{34f}'),
@@ -51,6 +53,32 @@ pub fn visible_line(text: &str) -> String {
     visible(text)
         .replace('\n', "\\u{a}")
         .replace('\t', "\\u{9}")
+}
+
+/// A text as messages show it: in one line, without control characters, not too long.
+pub(crate) fn quoted(text: &str) -> String {
+    const LONGEST: usize = 60;
+    match text.chars().count() {
+        0..=LONGEST => format!("{text:?}"),
+        _ => format!("{:?}…", text.chars().take(LONGEST).collect::<String>()),
+    }
+}
+
+/// Why a text is no name; `None` where it is one.
+pub(crate) fn no_name(text: &str) -> Option<String> {
+    let why = match text {
+        "" => "but must be a name",
+        text if text.contains(char::is_control) => "with a control character",
+        text if text.contains(is_hidden) => "with a character that is not seen",
+        text if text.len() > LONGEST_NAME => {
+            let length = text.len();
+            return Some(format!(
+                "of {length} bytes, but {LONGEST_NAME} are possible"
+            ));
+        }
+        _ => return None,
+    };
+    Some(why.to_owned())
 }
 
 /// Where bytes stop being UTF-8, in words; the text where they do not.

@@ -33,7 +33,7 @@ Examples:
   hamel simulate scenes/free_body.toml --at 1,2.5,20 --json
       the state at three times, as JSON on stdout
   hamel simulate anymal.urdf --floating-base --t-end 0.5
-      a robot in URDF, from its home position at rest, as one in MJCF (`robot.xml`) from where its file draws it; `hamel import` makes a scene of it that can be edited
+      a robot in URDF, from its home position at rest, as one in MJCF (`robot.xml`) or SDF from where its file draws it; `hamel import` makes a scene of it that can be edited
   hamel simulate scenes/panda7_tracking.toml
       with the controller that the scene has; the summary says how well it did
   hamel simulate panda7.urdf --controller hold.toml --t-end 2
@@ -69,7 +69,7 @@ Exit codes: 0 success; 1 a scene with mistakes, a simulation that stopped, a fil
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES, group = ArgGroup::new("steps"))]
 pub struct Args {
-    /// Scene file (TOML; the format is described in scenes/README.md), or a robot in URDF or MJCF
+    /// Scene file (TOML; the format is described in scenes/README.md), or a robot in URDF, MJCF or SDF
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
 

@@ -20,7 +20,7 @@ The table. Each column names a number of the scene file by the way to it, keys b
   body.link2.initial.configuration.1     where its joint starts; initial.speeds.1 how fast
   controller.frequency, gravity.3, simulation.t_end
 Elements of a list have their name (or that of their joint or body), or their place, from 1; a key that holds dots stands in quotes. All numbers have the units of the file, and a number that
-a column shall change has to stand there. Of a robot in URDF or MJCF they are those of the scene that `hamel import` makes.
+a column shall change has to stand there. Of a robot in URDF, MJCF or SDF they are those of the scene that `hamel import` makes.
 
 Each row is the scene with its numbers, moved as its [simulation] says. A row whose cell is no number, whose scene is refused or whose motion fails has its cause in the results; all others go on.
 A column that names no number of the scene is refused before anything moves.
@@ -39,7 +39,7 @@ Exit codes: 0 success, also where rows failed; 1 a scene with mistakes, a file t
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Scene file (TOML), or a robot in URDF or MJCF
+    /// Scene file (TOML), or a robot in URDF, MJCF or SDF
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
 

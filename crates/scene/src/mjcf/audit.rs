@@ -3,10 +3,10 @@
 use super::element::Lines;
 use super::schema::{self, Kind, Tag};
 use crate::diagnostics::Diagnostic;
-use crate::read::{LONGEST_NAME, Sink};
+use crate::read::Sink;
 use crate::robot::xml::{finite, tag};
 use crate::suggest::{nearest, one_of};
-use crate::text::{is_hidden, visible_line};
+use crate::text::{no_name, quoted, visible_line};
 use roxmltree::{Attribute, Node};
 
 /// Elements that make bodies out of what they say, in ways that are not read: without them this would be another mechanism.
@@ -131,16 +131,8 @@ fn unknown(element: &str, attribute: Attribute<'_, '_>, schema: &Tag, sink: &mut
 
 /// Why the text of an attribute is refused, and a hint.
 fn refusal(text: &str, kind: Kind) -> Option<(String, Option<String>)> {
-    let plain = |why: &str| Some((why.to_owned(), None));
     match kind {
-        Kind::Name if text.is_empty() => plain("but must be a name"),
-        Kind::Name if text.contains(char::is_control) => plain("with a control character"),
-        Kind::Name if text.contains(is_hidden) => plain("with a character that is not seen"),
-        Kind::Name if text.len() > LONGEST_NAME => plain(&format!(
-            "of {} bytes, but {LONGEST_NAME} are possible",
-            text.len()
-        )),
-        Kind::Name => None,
+        Kind::Name => no_name(text).map(|why| (why, None)),
         Kind::Numbers(least, most) => {
             let sound = finite(text).is_some_and(|all| (least..=most).contains(&all.len()));
             let why = match (least, most) {
@@ -165,14 +157,5 @@ fn refusal(text: &str, kind: Kind) -> Option<(String, Option<String>)> {
                 )
             })
         }
-    }
-}
-
-/// A text as messages show it: in one line, without control characters, not too long.
-fn quoted(text: &str) -> String {
-    const LONGEST: usize = 60;
-    match text.chars().count() {
-        0..=LONGEST => format!("{text:?}"),
-        _ => format!("{:?}…", text.chars().take(LONGEST).collect::<String>()),
     }
 }

@@ -1,7 +1,6 @@
 //! From the bodies of a model to those of a scene: each joint makes one, bodies without joints are parts of others.
 
 use super::chain;
-use super::couple;
 use super::equality::Followers;
 use super::geom::Geom;
 use super::joint::Movement;
@@ -15,7 +14,7 @@ use crate::notice::Notices;
 use crate::read::Sink;
 use crate::robot::mass::{moved, sum};
 use crate::robot::xml::tag;
-use crate::robot::{Import, JointFacts, Stops};
+use crate::robot::{Import, JointFacts, Stops, couple};
 use crate::scene::stem;
 use crate::shape::ShapeDescription;
 use crate::source::Located;
@@ -103,7 +102,8 @@ pub(super) fn convert(
         sink.push(error.help("with a <freejoint/> a body can move as a whole"));
     }
     couple::couple(&mut scene, &mut notices, sink);
-    couple::refuse_massless(&scene, sink);
+    let help = "give the body an <inertial> or a geom with mass, or take the joint away";
+    couple::refuse_massless(&scene, help, sink);
     (sink.len() == 0).then(|| Import {
         scene,
         notices: notices.into_vec(),

@@ -23,7 +23,6 @@ mod audit;
 mod bulk;
 mod chain;
 mod convert;
-mod couple;
 mod defaults;
 mod element;
 mod equality;

@@ -1,7 +1,8 @@
-//! Robots in the formats of others: [URDF](crate::urdf) and [MJCF](crate::mjcf), read to the same description as a scene file.
+//! Robots in the formats of others: [URDF](crate::urdf), [MJCF](crate::mjcf) and [SDF](crate::sdf), read to the same description as a scene file.
 //!
 //! What is XML is a robot, and its root element tells the format. [`completed`] brings in what stands in other files, [`read`] reads the text.
 
+pub(crate) mod couple;
 mod facts;
 pub(crate) mod mass;
 mod posture;
@@ -14,7 +15,7 @@ use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::notice::Notice;
 use crate::read::Sink;
 use crate::scene::{Scene, read_file};
-use crate::{mjcf, urdf};
+use crate::{mjcf, sdf, urdf};
 use hamel_runtime::registry::JointRegistry;
 use nalgebra::Vector3;
 use roxmltree::Document;
@@ -26,7 +27,7 @@ use std::path::Path;
 pub struct Options {
     /// Whether the root link of a URDF moves freely; otherwise it is fixed to the world.
     pub floating_base: bool,
-    /// Acceleration of free fall, world axes, m/s²; an MJCF says its own.
+    /// Acceleration of free fall, world axes, m/s²; an MJCF and a world in SDF say their own.
     pub gravity: Vector3<f64>,
     /// Whether a URDF is read although no rigid body has its masses: such an inertia becomes that of a ball with the mean of its principal moments, and joints that move
     /// nothing with mass are fixed. Each is told by a warning. An MJCF says itself what becomes of its masses (`balanceinertia`, `boundmass`, `boundinertia`).
@@ -67,11 +68,11 @@ pub struct Import {
     pub joints: Vec<JointFacts>,
 }
 
-/// The robot that a text describes, in URDF or MJCF, told by its root element. Messages call the text `source_name`.
+/// The robot that a text describes, in URDF, MJCF or SDF, told by its root element. Messages call the text `source_name`.
 ///
 /// # Errors
-/// Numbers of limits that are negative or not finite. All mistakes of the text: XML that is not well-formed, or in another format (xacro and SDF are told by name); missing or malformed elements and attributes; links and joints that
-/// make no tree; mass properties that no body can have; a body without mass at the end of a moving joint. A floating base and leniency for a robot in MJCF, which says itself what is free and what becomes of its masses.
+/// Numbers of limits that are negative or not finite. All mistakes of the text: XML that is not well-formed, or in another format (xacro is told by name); missing or malformed elements and attributes; links and joints that
+/// make no tree; mass properties that no body can have; a body without mass at the end of a moving joint. A floating base and leniency for a robot in MJCF or SDF, which say themselves what is free.
 pub fn read(text: &str, source_name: &str, options: &Options) -> Result<Import, Diagnostics> {
     let mut sink = Sink::default();
     if let Some(Stops { stiffness, damping }) = options.limits {
@@ -90,9 +91,10 @@ pub fn read(text: &str, source_name: &str, options: &Options) -> Result<Import, 
             name: source_name.to_owned(),
             text: text.to_owned(),
         };
-        match is_mjcf(&document) {
-            true => mjcf::import(&document, source, options, &mut sink),
-            false => urdf::import(&document, source, options, &mut sink),
+        match document.root_element().tag_name().name() {
+            MJCF => mjcf::import(&document, source, options, &mut sink),
+            "sdf" => sdf::import(&document, source, options, &mut sink),
+            _ => urdf::import(&document, source, options, &mut sink),
         }
     });
     match import {
@@ -101,14 +103,17 @@ pub fn read(text: &str, source_name: &str, options: &Options) -> Result<Import, 
     }
 }
 
+/// The root element of MJCF.
+const MJCF: &str = "mujoco";
+
 /// Whether the root element is that of MJCF.
 fn is_mjcf(document: &Document<'_>) -> bool {
-    document.root_element().has_tag_name("mujoco")
+    document.root_element().has_tag_name(MJCF)
 }
 
 /// Whether a file holds a robot rather than a scene: what is XML is read as one, whatever the file's ending, and so is what ends in `.urdf`.
 ///
-/// No scene begins as XML does; other formats than URDF and MJCF do, and [`read`] names them.
+/// No scene begins as XML does; other formats than URDF, MJCF and SDF do, and [`read`] names them.
 pub fn is_robot(path: &Path, text: &str) -> bool {
     let is_before_xml = |c: char| c.is_whitespace() || c == '\u{feff}';
     let ending = path.extension().unwrap_or_default();

@@ -5,10 +5,9 @@ use super::document::{finite, parse, tag};
 use super::schema::{Attribute, Child, Element, Kind, NOT_READ, Need, SHOWN, STRICT};
 use crate::diagnostics::Diagnostic;
 use crate::notice::Notices;
-use crate::read::LONGEST_NAME;
 use crate::read::Sink;
 use crate::suggest::{nearest, one_of};
-use crate::text::{is_hidden, visible_line};
+use crate::text::{no_name, quoted, visible_line};
 use hamel_runtime::shown::Number;
 use roxmltree::Node;
 use std::collections::HashMap;
@@ -249,14 +248,7 @@ fn named(node: Node<'_, '_>, place: usize) -> String {
 fn refusal(text: &str, kind: Kind) -> Option<(String, Option<String>)> {
     let plain = |why: &str| Some((why.to_owned(), None));
     match kind {
-        Kind::Name if text.is_empty() => plain("but must be a name"),
-        Kind::Name if text.contains(char::is_control) => plain("with a control character"),
-        Kind::Name if text.contains(is_hidden) => plain("with a character that is not seen"),
-        Kind::Name if text.len() > LONGEST_NAME => plain(&format!(
-            "of {} bytes, but {LONGEST_NAME} are possible",
-            text.len()
-        )),
-        Kind::Name => None,
+        Kind::Name => no_name(text).map(|why| (why, None)),
         Kind::Number => match parse(text) {
             Some(number) if number.is_finite() => None,
             _ => plain("not a finite number"),
@@ -275,14 +267,5 @@ fn refusal(text: &str, kind: Kind) -> Option<(String, Option<String>)> {
             let why = format!("but must be {}", one_of(words.iter().copied()));
             Some((why, near.map(|near| format!("did you mean `{near}`?"))))
         }
-    }
-}
-
-/// A text as messages show it: in one line, without control characters, not too long.
-fn quoted(text: &str) -> String {
-    const LONGEST: usize = 60;
-    match text.chars().count() {
-        0..=LONGEST => format!("{text:?}"),
-        _ => format!("{:?}…", text.chars().take(LONGEST).collect::<String>()),
     }
 }

@@ -1,4 +1,4 @@
-//! Other formats in XML that files of robots come in: they are not read, but for MJCF, and errors say what makes a URDF of them.
+//! Other formats in XML that files of robots come in, but for MJCF and SDF: they are not read, and errors say what makes a URDF of them.
 
 use super::document::tag;
 use crate::diagnostics::Diagnostic;
@@ -19,10 +19,9 @@ pub(super) fn refusal(document: &Document<'_>) -> Option<Diagnostic> {
         return unexpanded(document);
     }
     let (format, advice) = match name {
-        "sdf" | "gazebo" => (
-            "SDF, the format of Gazebo, which is not read",
-            "Hamel reads URDF and MJCF: `gz sdf -p robot.urdf` only goes from URDF to SDF; pysdf's `sdf2urdf.py` goes the other way, \
-             or take the URDF or xacro that the model was made of",
+        "gazebo" => (
+            "SDF before version 1.2, which is not read",
+            "`gz sdf -p model.sdf` writes it in a later version",
         ),
         "mujocoinclude" => (
             "a part of a robot in MJCF, the format of MuJoCo",
@@ -30,7 +29,8 @@ pub(super) fn refusal(document: &Document<'_>) -> Option<Diagnostic> {
         ),
         _ => {
             let name = visible_line(name);
-            let message = format!("the document is a <{name}>, not a <robot> or a <mujoco>");
+            let message =
+                format!("the document is a <{name}>, not a <robot>, a <mujoco> or an <sdf>");
             return Some(Diagnostic::new(tag(root), message));
         }
     };

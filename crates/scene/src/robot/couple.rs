@@ -1,6 +1,6 @@
-//! Joints that follow others: the bodies of a coupling stand side by side, and what a coupling cannot have is left out. And bodies without mass.
+//! Joints that follow others, and those that loops close: the bodies of a coupling stand side by side, and what a coupling cannot have is left out. And bodies without mass.
 
-use crate::coupling::{Group, Node, groups, order};
+use crate::coupling::{Group, Node, Tie, groups, order};
 use crate::description::{BodyDescription, SceneDescription};
 use crate::diagnostics::Diagnostic;
 use crate::notice::Notices;
@@ -8,9 +8,10 @@ use crate::read::Sink;
 use crate::robot::mass::is_nothing;
 
 /// Puts the bodies of each coupling side by side.
-pub(super) fn couple(scene: &mut SceneDescription, notices: &mut Notices, sink: &mut Sink) {
+pub(crate) fn couple(scene: &mut SceneDescription, notices: &mut Notices, sink: &mut Sink) {
     let nodes: Vec<Node<'_>> = scene.bodies.iter().map(Node::of).collect();
-    let Some(found) = groups(&nodes, &[], "robot", sink) else {
+    let ties: Vec<Tie<'_>> = scene.loops.iter().map(Tie::of_loop).collect();
+    let Some(found) = groups(&nodes, &ties, "robot", sink) else {
         return;
     };
     if found.is_empty() {
@@ -67,6 +68,9 @@ fn settle(scene: &mut SceneDescription, found: &[Group]) {
         .shapes
         .iter_mut()
         .for_each(|shape| ranked(&mut shape.body));
+    for end in scene.loops.iter_mut().flat_map(|own| &mut own.ends) {
+        ranked(&mut end.body);
+    }
     for spring in &mut scene.springs {
         ranked(&mut spring.from.body);
         ranked(&mut spring.to.body);
@@ -77,8 +81,8 @@ fn settle(scene: &mut SceneDescription, found: &[Group]) {
         .for_each(|wrench| wrench.body = rank[wrench.body]);
 }
 
-/// Refuses bodies that move without mass on them or on what hangs on them, and without an armature: M would be singular.
-pub(super) fn refuse_massless(scene: &SceneDescription, sink: &mut Sink) {
+/// Refuses bodies that move without mass on them or on what hangs on them, and without an armature: M would be singular. Errors end with `help`.
+pub(crate) fn refuse_massless(scene: &SceneDescription, help: &str, sink: &mut Sink) {
     let bodies = &scene.bodies;
     let massive = bodies.iter().map(|body| !is_nothing(&body.mass));
     let mut massive: Vec<bool> = massive.collect();
@@ -96,8 +100,6 @@ pub(super) fn refuse_massless(scene: &SceneDescription, sink: &mut Sink) {
             "body `{name}` moves on joint `{joint}`, but neither it nor what hangs on it has mass: its acceleration would not be determined"
         );
         let error = Diagnostic::new(body.name.span.clone(), message);
-        sink.push(
-            error.help("give the body an <inertial> or a geom with mass, or take the joint away"),
-        );
+        sink.push(error.help(help));
     }
 }

@@ -1,0 +1,74 @@
+//! What links weigh.
+
+use super::content::{Content, Kind};
+use super::document::{child, number, pose};
+use crate::diagnostics::Diagnostic;
+use crate::notice::Notices;
+use crate::read::Sink;
+use crate::robot::mass::moved;
+use crate::robot::xml::tag;
+use hamel_runtime::spatial::{MassProperties, Pose};
+use nalgebra::{Matrix3, Vector3};
+
+/// The mass properties of a link in its frame. What the file does not say is 1 kg at the origin and 1 kg m² about each axis, as SDF has it.
+pub(super) fn of_link(
+    content: &Content<'_, '_>,
+    link: usize,
+    notices: &mut Notices,
+    sink: &mut Sink,
+) -> Option<MassProperties> {
+    let (owner, node) = (content.called(link), content.entities[link].node);
+    debug_assert_eq!(content.entities[link].kind, Kind::Link);
+    let Some(inertial) = child(node, "inertial") else {
+        notices.warn(
+            "links without <inertial> weigh 1 kg, with 1 kg m² about each axis, as SDF has it",
+            owner,
+        );
+        return Some(of_default());
+    };
+    if inertial.attribute("auto").and_then(super::document::switch) == Some(true) {
+        let message = format!("{owner}: masses of collision shapes are not computed");
+        let error = Diagnostic::new(tag(inertial), message);
+        sink.push(error.help("say <mass> and <inertia>, and leave `auto` out"));
+        return None;
+    }
+    let inertia = child(inertial, "inertia");
+    if inertia.is_none() {
+        notices.warn(
+            "inertias that are not said are 1 kg m² about each axis, as SDF has it",
+            owner.clone(),
+        );
+    }
+    let moment = |name: &str, default: f64| {
+        inertia
+            .and_then(|inertia| number(inertia, name))
+            .unwrap_or(default)
+    };
+    let [xx, yy, zz] = ["ixx", "iyy", "izz"].map(|name| moment(name, 1.0));
+    let [xy, xz, yz] = ["ixy", "ixz", "iyz"].map(|name| moment(name, 0.0));
+    let own = MassProperties {
+        mass: number(inertial, "mass").unwrap_or(1.0),
+        com: Vector3::zeros(),
+        inertia_com: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
+    };
+    let at = pose(&format!("{owner}: <inertial>"), inertial, sink)?;
+    let mass = moved(&own, &at);
+    if let Err(error) = mass.check() {
+        sink.push(Diagnostic::new(tag(inertial), format!("{owner}: {error}")));
+        return None;
+    }
+    Some(mass)
+}
+
+fn of_default() -> MassProperties {
+    MassProperties {
+        mass: 1.0,
+        com: Vector3::zeros(),
+        inertia_com: Matrix3::identity(),
+    }
+}
+
+/// The mass of a link that a pose moves.
+pub(super) fn on_body(mass: &MassProperties, pose: &Pose<f64>) -> MassProperties {
+    moved(mass, pose)
+}
