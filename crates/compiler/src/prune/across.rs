@@ -8,7 +8,8 @@
 //!
 //! and on the world, which does not move, already where the last one holds and the potential energy is constant. That is linear in ten parameters a body. The conditions are written down at
 //! random configurations in 192 bits, in units of length of the size of the joint and with twists of size 1, until further configurations say nothing new. What meets them there meets them everywhere, unless a non-zero analytic function vanished at random
-//! points to 64 bits. Curves are analytic between their knots alone: joints with curves take what each body has for itself.
+//! points to 64 bits. Where relations define the joint that holds of each part of its manifold by itself: a parallelogram can be assembled crossed as well, beyond where it folds flat. Such parts are looked for far from
+//! home and beside the loci, and an inertia is left out where it affects none of them. Curves are analytic between their knots alone: joints with curves take what each body has for itself.
 
 use crate::model::{Body, Inertia, Model};
 use hamel_codegen::precise::{Point, Precise, Sampler};
@@ -29,6 +30,8 @@ const ROUNDING: f64 = -64.0;
 /// Configurations at most; after two that say nothing new no more are asked for.
 const SAMPLES: usize = 16;
 const IN_VAIN: usize = 2;
+/// Configurations far from home, of which about every other one lies beyond a locus.
+const FAR: usize = 12;
 
 /// Inertias that do not affect a joint together.
 #[derive(Clone, Debug)]
@@ -117,35 +120,37 @@ impl Question {
     }
 
     fn answer(&self, bodies: &[Body]) -> Option<Vec<Element>> {
-        let sampler = Sampler::new(&bodies[0].joint.derived.space, BITS).single();
-        let mut sampler = sampler.with_parameters(bodies[0].parameters.clone());
-        let unit = self.unit(bodies, &sampler.point()?);
-        let mut echelon = Echelon::new(10 * bodies.len());
-        let mut start: Option<(Vec<Vec<Precise>>, Vec<Sample>)> = None;
-        let mut in_vain = 0;
-        for _ in 0..SAMPLES {
-            let point = sampler.point()?;
+        let space = &bodies[0].joint.derived.space;
+        let sampler = || {
+            let sampler = Sampler::new(space, BITS).single();
+            sampler.with_parameters(bodies[0].parameters.clone())
+        };
+        let mut near = sampler();
+        let unit = self.unit(bodies, &near.point()?);
+        let sampled = |point: &Point| {
             let samples = bodies.iter().zip(&self.placements);
             let mut samples: Vec<Sample> = samples
                 .map(|(body, placement)| Sample::new(body, placement, point.clone(), unit))
                 .collect();
             even(&mut samples);
-            let constant = constants(&samples, self.gravity.as_ref());
-            let vanishing = vanishing(&samples, self.gravity.is_some());
-            let size = constant.iter().chain(&vanishing).flatten().map(size);
-            let size = size.fold(f64::NEG_INFINITY, f64::max);
-            let (first, places) = start.get_or_insert_with(|| (constant.clone(), samples));
-            let changes = constant.iter().zip(&*first).map(|(row, first)| {
-                let pairs = row.iter().zip(first);
-                pairs.map(|(a, b)| a - b).collect()
-            });
-            let changes: Vec<Vec<Precise>> = changes.collect();
-            let rows = changes.iter().chain(&vanishing);
-            let news = rows.filter(|row| echelon.add(row, size)).count();
-            in_vain = if news == 0 { in_vain + 1 } else { 0 };
+            samples
+        };
+        let first = sampled(&near.point()?);
+        let mut conditions = Conditions::new(self.gravity.as_ref(), &first);
+        if !space.manifold.declared().is_empty() {
+            let mut far = sampler().far();
+            let points = std::iter::repeat_with(|| far.point()).take(FAR);
+            points
+                .flatten()
+                .for_each(|point| _ = conditions.add(&sampled(&point)));
+        }
+        let mut in_vain = 0;
+        for _ in 0..SAMPLES {
+            let is_new = conditions.add(&sampled(&near.point()?));
+            in_vain = if is_new { 0 } else { in_vain + 1 };
             if in_vain == IN_VAIN {
-                let basis = echelon.null_space().into_iter();
-                return Some(basis.map(|own| element(&own, places, unit)).collect());
+                let basis = conditions.echelon.null_space().into_iter();
+                return Some(basis.map(|own| element(&own, &first, unit)).collect());
             }
         }
         None
@@ -160,6 +165,42 @@ impl Question {
             0.0 => 1.0,
             distance => distance.log2().round().exp2(),
         }
+    }
+}
+
+/// The conditions on inertias at the configurations that have been looked at.
+struct Conditions<'a> {
+    gravity: Option<&'a Vector3<f64>>,
+    /// What is constant, where it was seen first.
+    first: Vec<Vec<Precise>>,
+    echelon: Echelon,
+}
+
+impl<'a> Conditions<'a> {
+    /// Those at a first configuration.
+    fn new(gravity: Option<&'a Vector3<f64>>, samples: &[Sample]) -> Self {
+        let mut conditions = Self {
+            gravity,
+            first: constants(samples, gravity),
+            echelon: Echelon::new(10 * samples.len()),
+        };
+        conditions.add(samples);
+        conditions
+    }
+
+    /// Adds those at another configuration, and says whether they are new.
+    fn add(&mut self, samples: &[Sample]) -> bool {
+        let constant = constants(samples, self.gravity);
+        let vanishing = vanishing(samples, self.gravity.is_some());
+        let size = constant.iter().chain(&vanishing).flatten().map(size);
+        let size = size.fold(f64::NEG_INFINITY, f64::max);
+        let changes = constant.iter().zip(&self.first).map(|(row, first)| {
+            let pairs = row.iter().zip(first);
+            pairs.map(|(a, b)| a - b).collect()
+        });
+        let changes: Vec<Vec<Precise>> = changes.collect();
+        let rows = changes.iter().chain(&vanishing);
+        rows.filter(|row| self.echelon.add(row, size)).count() > 0
     }
 }
 
