@@ -25,6 +25,8 @@ pub struct State {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Scalar,
+    /// An angle, of which Hamel stores cosine and sine.
+    Circle,
     Ball,
     Free,
 }
@@ -114,8 +116,9 @@ impl Peer {
                 "-" => unnamed.next().map(|(_, place)| place),
                 name => named(&model, name),
             };
-            let place = place.ok_or_else(|| format!("no joint `{name}`"))?;
-            Ok((*kind, place))
+            let (place, is_circle) = place.ok_or_else(|| format!("no joint `{name}`"))?;
+            let kind = if is_circle { Kind::Circle } else { *kind };
+            Ok((kind, place))
         });
         let joints = found.collect::<Result<_, Box<dyn Error>>>()?;
         Ok(Self { model, joints })
@@ -131,7 +134,7 @@ impl Peer {
             let own = &mut state.configuration[*at..];
             let speeds = &mut state.speeds[*speed..];
             let (positions, rates) = match kind {
-                Kind::Scalar => (1, 1),
+                Kind::Scalar | Kind::Circle => (1, 1),
                 Kind::Ball => (4, 3),
                 Kind::Free => (7, 6),
             };
@@ -141,6 +144,7 @@ impl Peer {
             let mut r = Matrix3::identity();
             match kind {
                 Kind::Scalar => own[0] = here[0],
+                Kind::Circle => (own[1], own[0]) = here[0].sin_cos(),
                 Kind::Ball => {
                     r = rotation(here);
                     own[..9].copy_from_slice(r.transpose().as_slice());
@@ -169,7 +173,7 @@ impl Peer {
         for ((kind, (_, speed)), r) in self.joints.iter().zip(turned) {
             let own = &rates.as_slice()[*speed..];
             match kind {
-                Kind::Scalar => a.push(own[0]),
+                Kind::Scalar | Kind::Circle => a.push(own[0]),
                 Kind::Ball => a.extend(&own[..3]),
                 Kind::Free => {
                     let [turning, moving] = [0, 3].map(|from| {
@@ -196,21 +200,23 @@ fn rotation(wxyz: &[f64]) -> Matrix3<f64> {
         .into_inner()
 }
 
-fn places(model: &Model) -> Vec<(String, Place)> {
+/// Joints by name, and whether each turns on a circle.
+fn places(model: &Model) -> Vec<(String, (Place, bool))> {
     let joints = model.mechanism().joints();
     let places = joints.map(|(_, body)| {
         let ranges = body.ranges();
-        (
-            body.joint_name().to_owned(),
-            (ranges.configuration.start, ranges.speeds.start),
-        )
+        let place = (ranges.configuration.start, ranges.speeds.start);
+        let is_circle = body.joint().name() == "revolute_circle";
+        (body.joint_name().to_owned(), (place, is_circle))
     });
     places.collect()
 }
 
-fn named(model: &Model, name: &str) -> Option<Place> {
-    places(model).into_iter().find_map(|(own, (q, v))| {
-        let number = own.split('+').position(|own| own == name)?;
-        Some((q + number, v + number))
-    })
+fn named(model: &Model, name: &str) -> Option<(Place, bool)> {
+    places(model)
+        .into_iter()
+        .find_map(|(own, ((q, v), is_circle))| {
+            let number = own.split('+').position(|own| own == name)?;
+            Some(((q + number, v + number), is_circle))
+        })
 }

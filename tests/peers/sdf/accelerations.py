@@ -33,7 +33,11 @@ class Robot:
         self.gravity = np.array(world.text.split(), float) if world is not None else np.array([0, 0, -9.81])
         self.plant.mutable_gravity_field().set_gravity_vector(self.gravity)
         self.plant.Finalize()
-        self.only = len(self.tree.findall('model')) == 1 or len(self.tree.findall('world/model')) == 1
+        top = self.tree.find('world') if self.tree.find('world') is not None else self.tree
+        models = top.findall('model')
+        self.names = {}
+        for model in models:
+            self.collect(model, '' if len(models) == 1 else f'{model.get("name")}::')
         self.joints = [self.plant.get_joint(index) for index in self.plant.GetJointIndices()]
         self.joints = [joint for joint in self.joints if joint.num_velocities() > 0]
         self.follows = {joint.get('name'): self.law(joint) for joint in self.tree.iter('joint') if joint.find('axis/mimic') is not None}
@@ -44,13 +48,16 @@ class Robot:
         multiplier, offset, reference = (float(mimic.findtext(name, '0')) for name in ('multiplier', 'offset', 'reference'))
         return mimic.get('joint'), multiplier, offset - multiplier * reference
 
-    def name(self, thing):
-        """With its model where there are several; a free joint is called as its link."""
-        owner = self.plant.GetModelInstanceName(thing.model_instance())
-        name = thing.child_body().name() if self.kind(thing) == 'free' else thing.name()
-        if self.only:
-            owner = '::'.join(owner.split('::')[1:])
-        return f'{owner}::{name}' if owner else name
+    def collect(self, model, scope):
+        """Names of links and joints with those of their models, as Hamel has them; Drake knows a joint by the model of its child."""
+        for element in model.findall('link') + model.findall('joint'):
+            self.names[element.get('name')] = scope + element.get('name')
+        for inner in model.findall('model'):
+            self.collect(inner, f'{scope}{inner.get("name")}::')
+
+    def name(self, joint):
+        """A free joint is called as its link."""
+        return self.names[joint.child_body().name() if self.kind(joint) == 'free' else joint.name()]
 
     @staticmethod
     def kind(joint):
