@@ -4,6 +4,7 @@ use hamel::registry::JointRegistry;
 use hamel_compiler::Build;
 use hamel_console::output::Failure;
 use hamel_scene::robot::Stops;
+use hamel_scene::robot::srdf::{self, Coordinates};
 use hamel_scene::{Diagnostics, Scene, SceneDescription, read_file, robot};
 use std::path::{Path, PathBuf};
 
@@ -23,9 +24,26 @@ pub struct RobotArgs {
     #[arg(long)]
     lenient: bool,
 
-    /// Begin where these joints of a robot have these coordinates: angles in rad, displacements in m, as in `elbow=1.2,lift=-0.05`
-    #[arg(long, value_name = "JOINT=VALUE,…", value_delimiter = ',', value_parser = coordinate)]
-    posture: Vec<(String, f64)>,
+    /// Begin where these joints of a robot have these coordinates: angles in rad, displacements in m, as in `elbow=1.2,lift=-0.05`; or in a state that an SRDF names, as in `ready` or `ready,elbow=1.2`
+    #[arg(long, value_name = "JOINT=VALUE,…", value_delimiter = ',', value_parser = stance)]
+    posture: Vec<Stance>,
+
+    /// The SRDF with the states that `--posture` names; without it the file of the robot's name that ends in `.srdf`
+    #[arg(long, value_name = "FILE")]
+    srdf: Option<PathBuf>,
+
+    /// The coordinates of these states.
+    #[arg(skip)]
+    state: Coordinates,
+}
+
+/// A part of a posture.
+#[derive(Clone, Debug)]
+enum Stance {
+    /// A joint with its coordinate.
+    Joint(String, f64),
+    /// A state by its name.
+    State(String),
 }
 
 impl RobotArgs {
@@ -40,7 +58,47 @@ impl RobotArgs {
             lenient: self.lenient,
             ..robot::Options::default()
         };
-        robot::read(text, name, &options)?.in_posture(&self.posture)
+        let import = robot::read(text, name, &options)?;
+        import.in_state(&self.state)?.in_posture(&self.posture())
+    }
+
+    /// The joints of the posture.
+    fn posture(&self) -> Coordinates {
+        let joints = self.posture.iter().filter_map(|part| match part {
+            Stance::Joint(joint, coordinate) => Some((joint.clone(), *coordinate)),
+            Stance::State(_) => None,
+        });
+        joints.collect()
+    }
+
+    /// The same with the states of the posture read, for the robot in the file `path`.
+    ///
+    /// # Errors
+    /// States without an SRDF; those of reading it.
+    fn with_states(&self, path: &Path) -> Result<Self, Failure> {
+        let mut state = Coordinates::new();
+        for part in &self.posture {
+            let Stance::State(name) = part else { continue };
+            let beside = path.with_extension("srdf");
+            let file = self
+                .srdf
+                .clone()
+                .or(Some(beside).filter(|file| file.is_file()));
+            let file = file.ok_or_else(|| {
+                Failure::Options(format!(
+                    "--posture {name}: write JOINT=NUMBER, as in `elbow=1.2`, or say by --srdf which SRDF has a state of that name"
+                ))
+            })?;
+            let (text, shown) = read_file(&file)?;
+            state.extend(srdf::state(&text, &shown, name)?);
+        }
+        // What is said of a joint itself counts.
+        let said = self.posture();
+        state.retain(|(joint, _)| said.iter().all(|(own, _)| own != joint));
+        Ok(Self {
+            state,
+            ..self.clone()
+        })
     }
 
     /// The first option that was given, the formats that it is for, and why a scene does without it.
@@ -70,6 +128,14 @@ impl RobotArgs {
                 !self.posture.is_empty(),
                 (
                     "--posture",
+                    "URDF, MJCF and SDF",
+                    "a scene says itself where its joints begin",
+                ),
+            ),
+            (
+                self.srdf.is_some(),
+                (
+                    "--srdf",
                     "URDF, MJCF and SDF",
                     "a scene says itself where its joints begin",
                 ),
@@ -112,13 +178,14 @@ impl Input {
             true => robot::completed(path, text)?,
             false => text,
         };
+        let robot = is_robot.then(|| args.with_states(path)).transpose()?;
         let label = path.file_name().unwrap_or_default().to_string_lossy();
         Ok(Self {
             text,
             name,
             label: label.into_owned(),
             folder: path.parent().unwrap_or(Path::new("")).to_owned(),
-            robot: is_robot.then(|| args.clone()),
+            robot,
         })
     }
 
@@ -173,18 +240,20 @@ impl Input {
     }
 }
 
-/// A joint of `--posture` with its coordinate.
+/// A part of `--posture`.
 ///
 /// # Errors
-/// What is not a name, `=` and a number.
-fn coordinate(text: &str) -> Result<(String, f64), String> {
-    let pair = text.rsplit_once('=');
-    let parsed = pair.and_then(|(joint, number)| {
-        let joint = joint.trim();
-        let number = number.trim().parse().ok()?;
-        (!joint.is_empty()).then(|| (joint.to_owned(), number))
-    });
-    parsed.ok_or_else(|| "write JOINT=NUMBER, as in `elbow=1.2`".to_owned())
+/// What is neither a name, nor a name, `=` and a number.
+fn stance(text: &str) -> Result<Stance, String> {
+    let parsed = match text.rsplit_once('=') {
+        None => Some(Stance::State(text.trim().to_owned())).filter(|_| !text.trim().is_empty()),
+        Some((joint, number)) => {
+            let joint = joint.trim();
+            let number = number.trim().parse().ok().filter(|_| !joint.is_empty());
+            number.map(|number| Stance::Joint(joint.to_owned(), number))
+        }
+    };
+    parsed.ok_or_else(|| "write JOINT=NUMBER, as in `elbow=1.2`, or the name of a state".to_owned())
 }
 
 /// The numbers of `--limits`.

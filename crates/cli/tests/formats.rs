@@ -132,3 +132,40 @@ fn broken_xml_is_refused_as_such() {
         assert!(said.starts_with("error: "), "{said}");
     }
 }
+
+/// A state of an SRDF, beside the robot or elsewhere; what is said of a joint itself counts.
+#[test]
+fn robots_begin_in_states_of_an_srdf() {
+    let file = write(
+        "with_states.urdf",
+        include_str!("../../../tests/data/urdf/pendulum.urdf"),
+    );
+    let joint = "hinge";
+    let states = format!(
+        "<robot><group_state name='up' group='g'><joint name='{joint}' value='0.7'/></group_state></robot>"
+    );
+    write("with_states.srdf", &states);
+    let elsewhere = write(
+        "elsewhere.srdf",
+        &states.replace("0.7", "0.9").replace("'up'", "'down'"),
+    );
+    let said = format!("up,{joint}=0.3");
+    for (arguments, wanted) in [
+        (vec!["--posture", "up"], "phi = [0.7]"),
+        (
+            vec!["--posture", "down", "--srdf", &elsewhere],
+            "phi = [0.9]",
+        ),
+        (vec!["--posture", &said], "phi = [0.3]"),
+    ] {
+        let imported = hamel(&[&["import", &*file], &arguments[..]].concat());
+        let scene = String::from_utf8_lossy(&imported.stdout).into_owned();
+        assert!(scene.contains(wanted), "{arguments:?}: {scene}");
+    }
+    let refused = hamel(&["import", &file, "--posture", "dwon", "--srdf", &elsewhere]);
+    let told = String::from_utf8_lossy(&refused.stderr);
+    assert!(
+        told.contains("the SRDF has no state `dwon`") && told.contains("did you mean `down`?"),
+        "{told}"
+    );
+}

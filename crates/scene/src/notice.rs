@@ -72,7 +72,13 @@ impl Notices {
 
     fn add_as(&mut self, severity: Severity, message: String, element: String) {
         match self.places.get(&message) {
-            Some(&place) => self.notices[place].elements.push(element),
+            Some(&place) => {
+                let elements = &mut self.notices[place].elements;
+                // What is told twice of one element is told once.
+                if elements.last() != Some(&element) {
+                    elements.push(element);
+                }
+            }
             None => {
                 self.places.insert(message.clone(), self.notices.len());
                 self.notices.push(Notice {

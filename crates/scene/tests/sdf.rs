@@ -109,7 +109,7 @@ fn old_pitches_of_threads_count_the_other_way() {
     // libsdformat, `Joint::ThreadPitch`: −2π / ScrewThreadPitch.
     let turn = 2.0 * std::f64::consts::PI;
     assert_eq!(screw("<thread_pitch>-100</thread_pitch>"), turn / 100.0);
-    assert_eq!(screw(""), -turn);
+    assert_eq!(screw(""), 1.0);
     assert_eq!(screw("<screw_thread_pitch>0.02</screw_thread_pitch>"), 0.02);
 }
 
@@ -358,4 +358,237 @@ fn depth_is_no_danger() {
     let import = said(&text);
     assert_eq!(import.scene.bodies.len(), 3000);
     assert_eq!(import.scene.bodies[2999].at.translation, Vector3::z());
+}
+
+const MASS: &str =
+    "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial>";
+
+/// A link of a mass, at a place on the x axis.
+fn link(name: &str, x: f64) -> String {
+    format!("<link name='{name}'><pose>{x} 0 0 0 0 0</pose>{MASS}</link>")
+}
+
+fn joint(name: &str, kind: &str, parent: &str, child: &str, more: &str) -> String {
+    format!(
+        "<joint name='{name}' type='{kind}'><parent>{parent}</parent><child>{child}</child>{more}</joint>"
+    )
+}
+
+/// A model of these elements.
+fn of(version: &str, elements: &[&str]) -> String {
+    let all = elements.concat();
+    format!("<sdf version='{version}' xmlns:my='u'><model name='m'>{all}</model></sdf>")
+}
+
+/// Where a body that moves freely begins.
+fn begins(import: &Import, name: &str) -> Vector3<f64> {
+    let mut bodies = import.scene.bodies.iter();
+    let body = bodies.find(|body| body.name.value == name).expect("a body");
+    match &body.initial.position {
+        Position::Pose(pose) => pose.value.translation,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn the_frame_of_a_model_is_fixed_to_the_canonical_link_of_the_first_model_in_it() {
+    let inner = format!(
+        "<model name='n'><model name='k' canonical_link='l2'>{}{}{}</model></model>",
+        link("l1", 0.0),
+        link("l2", 1.0),
+        joint("q", "revolute", "l1", "l2", "")
+    );
+    let import = said(&of(
+        "1.9",
+        &[
+            &link("base", 0.0),
+            &inner,
+            &joint("j", "fixed", "base", "n", ""),
+        ],
+    ));
+    // l1 hangs on l2, as nothing else holds it: about the axis turned round.
+    assert_eq!(names(&import)[1], ("n::k::l1", "n::k::q", "revolute"));
+    let frame = import.scene.frames.iter().map(|frame| &*frame.name.value);
+    assert!(
+        frame.clone().any(|name| name == "n::k::l2"),
+        "{:?}",
+        frame.collect::<Vec<_>>()
+    );
+}
+
+#[test]
+fn old_versions_have_their_own_rules() {
+    let framed = of(
+        "1.6",
+        &[
+            &link("a", 1.0),
+            &format!("<link name='b'><pose frame='a'>0 1 0 0 0 0</pose>{MASS}</link>"),
+        ],
+    );
+    assert_eq!(begins(&said(&framed), "b"), Vector3::new(1.0, 1.0, 0.0));
+    let world = |version: &str| {
+        let link = link("a", 0.0);
+        said(&format!(
+            "<sdf version='{version}'><world name='w'><physics type='ode'><gravity>0 0 -1.62</gravity></physics>\
+             <model name='m'>{link}</model></world></sdf>"
+        ))
+    };
+    assert_eq!(world("1.5").scene.gravity.z, -1.62);
+    assert_eq!(world("1.6").scene.gravity.z, -9.8);
+    let turned = joint(
+        "j",
+        "revolute",
+        "world",
+        "a",
+        "<axis><xyz>1 0 0</xyz><use_parent_model_frame>true</use_parent_model_frame></axis>",
+    );
+    let told = refused(&of("1.7", &[&link("a", 0.0), &turned]), &Options::default());
+    assert!(
+        told.contains("<use_parent_model_frame> is of SDF before 1.7"),
+        "{told}"
+    );
+}
+
+#[test]
+fn comments_and_other_namespaces_are_passed_over() {
+    let text = of(
+        "1.9",
+        &[
+            "<link name='a' my:name='zz'><pose my:degrees='true'><!-- x y z --> 1 2 3 0 0 0</pose><my:pose>9 9 9 0 0 0</my:pose>",
+            MASS,
+            "<my:inertial/></link><my:static>true</my:static>",
+        ],
+    );
+    let import = said(&text);
+    assert_eq!(begins(&import, "a"), Vector3::new(1.0, 2.0, 3.0));
+    assert_eq!(
+        notices(&import),
+        ["note: elements of other namespaces are not read: model `m`, link `a`"]
+    );
+}
+
+#[test]
+fn a_joint_with_a_spring_counts_its_turns() {
+    let sprung = "<axis><xyz>1 0 0</xyz><dynamics><spring_stiffness>1</spring_stiffness><spring_reference>4</spring_reference></dynamics></axis>";
+    let import = said(&of(
+        "1.9",
+        &[
+            &link("a", 0.0),
+            &joint("j", "continuous", "world", "a", sprung),
+        ],
+    ));
+    assert_eq!(names(&import), [("a", "j", "revolute")]);
+}
+
+#[test]
+fn second_axes_have_names_of_their_own() {
+    let axes = "<axis><xyz>1 0 0</xyz></axis><axis2><xyz>0 1 0</xyz></axis2>";
+    let follows =
+        "<axis><xyz>1 0 0</xyz><mimic joint='b_2'><multiplier>2</multiplier></mimic></axis>";
+    let import = said(&of(
+        "1.11",
+        &[
+            &link("c", 0.0),
+            &link("a", 1.0),
+            &link("d", 2.0),
+            &joint("b_2", "revolute", "world", "c", ""),
+            &joint("b", "universal", "world", "a", axes),
+            &joint("e", "revolute", "world", "d", follows),
+        ],
+    ));
+    let all: Vec<(&str, &str, &str)> = names(&import);
+    assert!(all.contains(&("a", "b_2_", "revolute")), "{all:?}");
+    assert!(all.contains(&("c", "b_2", "revolute")), "{all:?}");
+    let mut followers = import
+        .scene
+        .bodies
+        .iter()
+        .filter_map(|body| body.mimic.as_ref());
+    assert_eq!(
+        followers.next().map(|own| &*own.value.joint.value),
+        Some("b_2")
+    );
+}
+
+#[test]
+fn names_beside_a_model_keep_those_in_it_apart() {
+    let inner = [
+        link("a", 0.0),
+        link("b", 1.0),
+        joint("j", "revolute", "a", "b", ""),
+    ];
+    let outer = joint("j", "revolute", "world", "m::a", "");
+    let import = said(&format!(
+        "<sdf version='1.10'><world name='w'><gravity>0 0 0</gravity><model name='m'>{}</model>{outer}<frame name='a'/></world></sdf>",
+        inner.concat()
+    ));
+    assert_eq!(
+        names(&import),
+        [("m::a", "j", "revolute"), ("m::b", "m::j", "revolute")]
+    );
+    assert_eq!(import.scene.frames[0].name.value, "a");
+}
+
+#[test]
+fn what_balls_and_loops_cannot_have_is_told() {
+    let of_ball = "<axis><dynamics><friction>3</friction><spring_stiffness>2</spring_stiffness></dynamics><limit><lower>-0.1</lower></limit></axis>";
+    let import = said(&of(
+        "1.9",
+        &[&link("a", 0.0), &joint("j", "ball", "world", "a", of_ball)],
+    ));
+    assert_eq!(
+        notices(&import),
+        [
+            "warning: springs of ball joints are not simulated: joint `j`",
+            "warning: limits of position are not simulated: the joint moves past them: joint `j`",
+            "warning: dry friction is simulated of joints with angles or displacements between limits alone: joint `j`",
+        ]
+    );
+    let follows =
+        "<axis><xyz>0 1 0</xyz><mimic joint='motor'><multiplier>2</multiplier></mimic></axis>";
+    let text = fs::read_to_string(folder("data/sdf/four_bar.sdf")).expect("a text");
+    let (before, closing) = text
+        .split_once("<pose relative_to=\"pillar\"/>")
+        .expect("it");
+    let closing = closing.replace("<axis><xyz>0 1 0</xyz></axis>", follows);
+    let told = refused(
+        &format!("{before}<pose relative_to=\"pillar\"/>{closing}"),
+        &Options::default(),
+    );
+    assert!(
+        told.contains("joint `hinge` closes a loop, and cannot follow another joint as well"),
+        "{told}"
+    );
+}
+
+/// Whichever joint comes first, what hangs on the world hangs on it in the tree.
+#[test]
+fn the_order_of_joints_does_not_make_a_cycle() {
+    let text = fs::read_to_string(folder("data/sdf/four_bar.sdf")).expect("a text");
+    let (start, rest) = text.split_once("    <joint name=\"motor\"").expect("it");
+    let lines: Vec<&str> = rest.lines().collect();
+    let ring = "    <joint name=\"back\" type=\"revolute\"><pose relative_to=\"pillar\"/><parent>rocker</parent><child>crank</child></joint>\n";
+    let motor = format!("    <joint name=\"motor\"{}\n", lines[0]);
+    let others = lines[1..3].join("\n");
+    let import = read(
+        &format!("{start}{ring}{others}\n{motor}  </model>\n</sdf>\n"),
+        "ring.sdf",
+        &Options::default(),
+    );
+    // The ring closes nowhere, which is told later: it is no cycle.
+    let import = import.unwrap_or_else(|errors| panic!("{errors}"));
+    assert_eq!(names(&import)[0], ("crank", "motor", "revolute"));
+    assert_eq!(import.scene.loops[0].name.value, "back");
+}
+
+#[test]
+fn frames_of_models_are_known_by_both_names() {
+    let inner = format!(
+        "<model name='n'><pose>1 0 0 0 0 0</pose>{}</model>",
+        link("a", 0.0)
+    );
+    let outer =
+        format!("<link name='b'><pose relative_to='n::__model__'>0 1 0 0 0 0</pose>{MASS}</link>");
+    let import = said(&of("1.9", &[&inner, &outer]));
+    assert_eq!(begins(&import, "b"), Vector3::new(1.0, 1.0, 0.0));
 }

@@ -6,6 +6,7 @@ pub(crate) mod couple;
 mod facts;
 pub(crate) mod mass;
 mod posture;
+pub mod srdf;
 pub(crate) mod xml;
 
 pub use facts::{JointFacts, Limits};

@@ -40,6 +40,20 @@ impl Import {
         }
     }
 
+    /// The same, but that joints which follow others stand where these have them, whatever is said of them: named postures of robots often say both.
+    ///
+    /// # Errors
+    /// Those of [`Import::in_posture`].
+    pub fn in_state(self, state: &[(String, f64)]) -> Result<Self, Diagnostics> {
+        let follows = |joint: &str| {
+            let mut bodies = self.scene.bodies.iter();
+            bodies.any(|body| body.joint.name.value == *joint && body.mimic.is_some())
+        };
+        let own = state.iter().filter(|(joint, _)| !follows(joint));
+        let own: Vec<(String, f64)> = own.cloned().collect();
+        self.in_posture(&own)
+    }
+
     fn place(&mut self, joint: &str, coordinate: f64, sink: &mut Sink) {
         let bodies = &mut self.scene.bodies;
         let found = bodies

@@ -24,7 +24,7 @@ fn refusal(text: &str, error: &Error) -> Diagnostic {
     let refusal = Diagnostic::new(span, format!("not valid XML: {message}"));
     match error {
         Error::UnknownNamespace(prefix, _) => {
-            let declared = "a prefix is declared by an attribute `xmlns:prefix` of <robot>";
+            let declared = "a prefix is declared by an attribute `xmlns:prefix` of the root";
             refusal.help(of_prefix(prefix).unwrap_or(declared))
         }
         Error::DtdDetected => refusal.help("the file of a robot has no document type"),

@@ -1,6 +1,6 @@
 //! Compares a document with the schema: all errors at once, and notices of what is not read. What it finds sound is then read from the same tree.
 
-use super::document::{switch, text, text_span};
+use super::document::{attribute, attribute_node, is, is_of_sdf, switch, text, text_span};
 use super::schema::{self, Kind, NOT_READ, REFUSED, SEVERAL, SILENT, Tag};
 use crate::diagnostics::Diagnostic;
 use crate::notice::Notices;
@@ -8,7 +8,7 @@ use crate::read::Sink;
 use crate::robot::xml::{finite, parse, tag};
 use crate::suggest::nearest;
 use crate::text::{no_name, quoted, visible_line};
-use roxmltree::Node;
+use roxmltree::{Attribute, Node};
 use std::collections::HashMap;
 
 /// Models in models beyond which a file is refused.
@@ -28,6 +28,15 @@ pub(super) fn audit(root: Node<'_, '_>, notices: &mut Notices, sink: &mut Sink) 
         let mut below = Vec::new();
         for child in node.children().filter(Node::is_element) {
             let name = child.tag_name().name();
+            if !is_of_sdf(child) {
+                let owner = if owner.is_empty() {
+                    "<sdf>"
+                } else {
+                    owner.trim_end_matches(": ")
+                };
+                notices.add("elements of other namespaces are not read", owner);
+                continue;
+            }
             let known = words(schema.children).any(|known| known == name);
             let tag_of = schema::of(name, schema.name).filter(|_| known);
             let Some(found) = tag_of else {
@@ -73,7 +82,7 @@ fn second(node: Node<'_, '_>, first: Node<'_, '_>, owner: &str, sink: &mut Sink)
 
 fn missing(node: Node<'_, '_>, schema: &Tag, owner: &str, sink: &mut Sink) {
     for name in required(schema.children) {
-        if !node.children().any(|child| child.has_tag_name(name)) {
+        if !node.children().any(|child| is(child, name)) {
             let message = format!("{owner}<{}> has no <{name}>", schema.name);
             sink.push(Diagnostic::new(tag(node), message));
         }
@@ -87,7 +96,6 @@ fn not_read(node: Node<'_, '_>, schema: &Tag, owner: &str, notices: &mut Notices
         "" => format!("<{}>", schema.name),
         owner => owner.trim_end_matches(": ").to_owned(),
     };
-    // Elements of others (`gz:…`, `drake:…`) have namespaces, or a prefix that nothing declares, with which the document is none.
     if SILENT.contains(&name) {
         return;
     }
@@ -95,7 +103,7 @@ fn not_read(node: Node<'_, '_>, schema: &Tag, owner: &str, notices: &mut Notices
         return notices.add(*message, element);
     }
     if name == "include" && schema.name == "world" {
-        let uri = node.children().find(|child| child.has_tag_name("uri"));
+        let uri = node.children().find(|child| is(*child, "uri"));
         let file = uri.map_or("", text);
         let message = "models that <include> names in a world are left out";
         return notices.warn(message, format!("`{}`", visible_line(file)));
@@ -128,7 +136,7 @@ fn attributes(
 ) {
     let element = schema.name;
     for name in required(schema.attributes) {
-        match node.attribute_node(name) {
+        match attribute_node(node, name) {
             None => {
                 let message = format!("{owner}<{element}> has no attribute `{name}`");
                 sink.push(Diagnostic::new(tag(node), message));
@@ -142,15 +150,14 @@ fn attributes(
             }
         }
     }
-    for attribute in node.attributes() {
+    let own = |found: &Attribute<'_, '_>| found.namespace().is_none();
+    for attribute in node.attributes().filter(own) {
         let name = attribute.name();
         let refused = REFUSED.iter().find(|(known, _, _)| *known == name);
         if let Some((_, why, help)) = refused.filter(|_| !attribute.value().is_empty()) {
             let error = Diagnostic::new(attribute.range_value(), format!("{owner}{why}"));
             sink.push(error.help(*help));
-        } else if !words(schema.attributes).any(|known| known == name)
-            && attribute.namespace().is_none()
-        {
+        } else if !words(schema.attributes).any(|known| known == name) {
             let hint = match nearest(name, words(schema.attributes)) {
                 Some(near) => format!(" (did you mean `{near}`?)"),
                 None => String::new(),
@@ -191,7 +198,7 @@ fn refusal(node: Node<'_, '_>, said: &str, kind: Kind) -> Option<String> {
         Kind::Switch => refused(switch(said).is_some(), "but must be true or false"),
         Kind::Vector => refused(count(said) == Some(3), "not 3 finite numbers"),
         Kind::Pose => {
-            let turned = node.attribute("rotation_format").unwrap_or("euler_rpy");
+            let turned = attribute(node, "rotation_format").unwrap_or("euler_rpy");
             let wanted = match turned {
                 "euler_rpy" => 6,
                 "quat_xyzw" => 7,
@@ -211,7 +218,7 @@ fn refusal(node: Node<'_, '_>, said: &str, kind: Kind) -> Option<String> {
 /// Links, joints, frames and models begin the messages about what is in them.
 fn owner_of(node: Node<'_, '_>, owner: &str) -> String {
     let kind = node.tag_name().name();
-    match (SEVERAL.contains(&kind), node.attribute("name")) {
+    match (SEVERAL.contains(&kind), attribute(node, "name")) {
         (true, Some(name)) => format!("{kind} `{}`: ", visible_line(name)),
         _ => owner.to_owned(),
     }

@@ -1,7 +1,9 @@
 //! What a file holds: its models with their links, joints and frames, by their names.
 
-use super::document::child;
-use super::document::{children, flag, name_span, place, text_span, value};
+use super::Version;
+use super::document::{
+    attribute, attribute_node, child, children, flag, is_of_sdf, name_span, place, text_span, value,
+};
 use crate::diagnostics::Diagnostic;
 use crate::read::Sink;
 use crate::robot::xml::tag;
@@ -9,8 +11,8 @@ use crate::source::Span;
 use crate::suggest::nearest;
 use crate::text::visible_line;
 use roxmltree::Node;
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
 
 /// The place of the world among the entities.
 pub(super) const WORLD: usize = 0;
@@ -54,14 +56,20 @@ pub(super) struct Content<'a, 'i> {
     names: HashMap<String, usize>,
     /// What names begin with where all is in one model.
     prefix: String,
+    /// The names of what the second axes of joints become.
+    second: HashMap<usize, String>,
+    /// The version of SDF.
+    pub(super) version: Version,
 }
 
 impl<'a, 'i> Content<'a, 'i> {
     /// What the element holds: a world, or the whole with one model.
-    pub(super) fn read(top: Node<'a, 'i>, sink: &mut Sink) -> Self {
+    pub(super) fn read(top: Node<'a, 'i>, version: Version, sink: &mut Sink) -> Self {
         let models: Vec<Node<'_, '_>> = children(top, "model").collect();
+        let has_own = child(top, "joint").or(child(top, "frame")).is_some();
         let prefix = match models.as_slice() {
-            [only] => format!("{}::", only.attribute("name").unwrap_or_default()),
+            // Names beside a model may be those of what is in it.
+            [only] if !has_own => format!("{}::", attribute(*only, "name").unwrap_or_default()),
             _ => String::new(),
         };
         let world = Entity {
@@ -75,6 +83,8 @@ impl<'a, 'i> Content<'a, 'i> {
             entities: vec![world],
             names: HashMap::new(),
             prefix,
+            second: HashMap::new(),
+            version,
         };
         let mut open = vec![WORLD];
         while let Some(model) = open.pop() {
@@ -84,14 +94,45 @@ impl<'a, 'i> Content<'a, 'i> {
             let models = inner.filter(|&place| content.entities[place].kind == Kind::Model);
             open.extend(models.rev().collect::<Vec<_>>());
         }
+        content.name_second_axes();
         content
+    }
+
+    /// Names for what the second axes of joints become, which nothing else has.
+    fn name_second_axes(&mut self) {
+        let all = 0..self.entities.len();
+        let mut taken: HashSet<String> = all.map(|own| self.shown(own).to_owned()).collect();
+        let joints: Vec<usize> = self.of(Kind::Joint).collect();
+        for joint in joints {
+            if child(self.entities[joint].node, "axis2").is_none() {
+                continue;
+            }
+            let mut name = format!("{}_2", self.shown(joint));
+            while !taken.insert(name.clone()) {
+                name.push('_');
+            }
+            self.second.insert(joint, name);
+        }
+    }
+
+    /// The name of what an axis of a joint becomes.
+    pub(super) fn axis_name(&self, joint: usize, axis: &str) -> &str {
+        let second = self.second.get(&joint).filter(|_| axis == "axis2");
+        second.map_or_else(|| self.shown(joint), String::as_str)
+    }
+
+    /// All names that are given.
+    pub(super) fn all_names(&self) -> HashSet<String> {
+        let all = 0..self.entities.len();
+        let names = all.map(|own| self.shown(own).to_owned());
+        names.chain(self.second.values().cloned()).collect()
     }
 
     /// Adds what stands in a model.
     fn fill(&mut self, model: usize, sink: &mut Sink) {
         let (node, is_static) = (self.entities[model].node, self.entities[model].is_static);
         let scope = self.scope(model);
-        for child in node.children().filter(Node::is_element) {
+        for child in node.children().filter(|child| is_of_sdf(*child)) {
             let kind = match child.tag_name().name() {
                 "model" => Kind::Model,
                 "link" if model != WORLD => Kind::Link,
@@ -99,9 +140,17 @@ impl<'a, 'i> Content<'a, 'i> {
                 "frame" => Kind::Frame,
                 _ => continue,
             };
-            let Some(own) = child.attribute("name") else {
+            let Some(own) = attribute(child, "name") else {
                 continue;
             };
+            if own == "world" || own.starts_with("__") && own.ends_with("__") {
+                let message = format!(
+                    "`{}` is a name that SDF keeps for itself",
+                    visible_line(own)
+                );
+                sink.push(Diagnostic::new(name_span(child), message));
+                continue;
+            }
             let name = format!("{scope}{own}");
             let place = self.entities.len();
             match self.names.entry(name.clone()) {
@@ -175,7 +224,11 @@ impl<'a, 'i> Content<'a, 'i> {
             _ => {}
         }
         let scope = self.scope(model);
-        if let Some(&found) = self.names.get(&format!("{scope}{name}")) {
+        // The frame of a model is told as the model itself.
+        let own = name.strip_suffix("::__model__").unwrap_or(name);
+        let found = self.names.get(&format!("{scope}{own}"));
+        let is_model = |found: &&usize| self.entities[**found].kind == Kind::Model;
+        if let Some(&found) = found.filter(|found| own == name || is_model(found)) {
             return Some(found);
         }
         let message = format!("{what} `{}`, which is not there", visible_line(name));
@@ -201,56 +254,49 @@ impl<'a, 'i> Content<'a, 'i> {
         self.find(name, own.model, (&what, place(own.node, element)), sink)
     }
 
-    /// The entity that an attribute of a child element names; `None` where nothing is said.
-    pub(super) fn named_by(
+    /// The entity in whose frame the `<pose>` inside `node` stands, which belongs to `entity`; `None` where that does not say it. Until SDF 1.6 `frame` says it.
+    pub(super) fn base_of_pose(
         &self,
         entity: usize,
-        (element, attribute): (&str, &str),
+        node: Node<'_, '_>,
         sink: &mut Sink,
     ) -> Option<usize> {
-        let own = &self.entities[entity];
-        let found = child(own.node, element)?.attribute_node(attribute)?;
+        let pose = child(node, "pose")?;
+        let of_old = || attribute_node(pose, "frame").filter(|_| self.version < (1, 7));
+        let found = attribute_node(pose, "relative_to").or_else(of_old)?;
         if found.value().is_empty() {
             return None;
         }
-        let what = format!("{}: its <{element}> is relative to", self.called(entity));
+        let what = format!("{}: its <pose> is relative to", self.called(entity));
         // The pose of a model is told in what it is in.
-        self.find(found.value(), own.model, (&what, found.range_value()), sink)
+        let model = self.entities[entity].model;
+        self.find(found.value(), model, (&what, found.range_value()), sink)
     }
 
     /// What a frame says that it is attached to.
     pub(super) fn attached(&self, frame: usize, sink: &mut Sink) -> Option<usize> {
         let own = &self.entities[frame];
         let what = format!("{}: it is attached to", self.called(frame));
-        let found = own.node.attribute_node("attached_to")?;
+        let found = attribute_node(own.node, "attached_to")?;
         let is_said = !found.value().is_empty();
         is_said.then(|| self.find(found.value(), own.model, (&what, found.range_value()), sink))?
     }
 
-    /// The link that a model's frame is fixed to: the one that it names, or its first, or that of a model in it; the world where it has none.
+    /// The link that a model's frame is fixed to: the one that it names, or its first, or that of the first model in it; the world where it has none.
     pub(super) fn canonical(&self, model: usize, sink: &mut Sink) -> Option<usize> {
-        let own = &self.entities[model];
-        if let Some(found) = own
-            .node
-            .attribute_node("canonical_link")
-            .filter(|found| !found.value().is_empty())
-        {
+        let said = attribute_node(self.entities[model].node, "canonical_link");
+        if let Some(said) = said.filter(|said| !said.value().is_empty()) {
             let what = format!("{}: its canonical link is", self.called(model));
-            let link = self.find(found.value(), model, (&what, found.range_value()), sink)?;
+            let link = self.find(said.value(), model, (&what, said.range_value()), sink)?;
             if self.entities[link].kind != Kind::Link {
-                sink.push(Diagnostic::new(
-                    found.range_value(),
-                    format!("{what} {}", self.called(link)),
-                ));
+                let message = format!("{what} {}", self.called(link));
+                sink.push(Diagnostic::new(said.range_value(), message));
             }
             return Some(link);
         }
-        let scope = self.scope(model);
-        let inner = |link: &usize| self.entities[*link].name.starts_with(&scope);
-        let direct = self
-            .of(Kind::Link)
-            .find(|&link| self.entities[link].model == model);
-        direct.or_else(|| self.of(Kind::Link).find(inner))
+        let first = |kind: Kind| self.of(kind).find(|&own| self.entities[own].model == model);
+        // What is wrong in a model within is told of that.
+        first(Kind::Link).or_else(|| self.canonical(first(Kind::Model)?, &mut Sink::default()))
     }
 
     /// Where an entity stands in the file.

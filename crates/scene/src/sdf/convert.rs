@@ -2,9 +2,10 @@
 
 use super::content::{Content, Kind, WORLD};
 use super::document::{child, flag, number};
-use super::joint::{Joint, JointType, axis_name};
+use super::joint::{Joint, JointType};
 use super::poses::Poses;
-use super::{Version, mass, shapes};
+use super::tree::{self, Hangs};
+use super::{mass, shapes};
 use crate::description::{
     BodyDescription, InitialDescription, JointDescription, LoopDescription, LoopEnd, Motion,
     Position, SceneDescription,
@@ -12,14 +13,14 @@ use crate::description::{
 use crate::diagnostics::Diagnostic;
 use crate::forces::{FrameDescription, JointForces, WrenchAxes, WrenchDescription};
 use crate::notice::Notices;
-use crate::parse::{cycles, order};
+use crate::parse::order;
 use crate::read::Sink;
 use crate::robot::mass::sum;
 use crate::robot::{JointFacts, Stops};
 use crate::source::{Located, Span};
 use hamel_runtime::spatial::{MassProperties, Pose};
 use hamel_runtime::time_function::TimeFunction;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use std::collections::HashSet;
 
 /// What is read of a file.
@@ -28,7 +29,6 @@ pub(super) struct Model<'m, 'a, 'i> {
     pub(super) content: &'m Content<'a, 'i>,
     pub(super) poses: &'m Poses,
     pub(super) joints: &'m [Joint<'a, 'i>],
-    pub(super) version: Version,
     pub(super) gravity: Vector3<f64>,
     pub(super) stops: Option<Stops>,
 }
@@ -57,13 +57,13 @@ pub(super) fn fill(
     notices: &mut Notices,
     sink: &mut Sink,
 ) -> Vec<JointFacts> {
-    let hangs_on = joints_of_links(model);
-    let parents = hangs_on.iter().map(|joint| model.joints[(*joint)?].ends[0]);
+    let hangs_on = tree::hangs_on(model.content, model.joints);
+    let parents = hangs_on.iter().map(|hangs| {
+        let Hangs { joint, reversed } = (*hangs)?;
+        model.joints[joint].ends[usize::from(reversed)]
+    });
     let parents: Vec<Option<usize>> = parents.collect();
     let order = order(&parents);
-    for cycle in cycles(&parents, &order) {
-        sink.push(cycle_error(model, &hangs_on, &cycle));
-    }
     let mut converter = Converter {
         model,
         scene,
@@ -72,18 +72,17 @@ pub(super) fn fill(
         anchors: vec![None; model.content.entities.len()],
         parts: Vec::new(),
         facts: Vec::new(),
-        taken: HashSet::new(),
+        taken: model.content.all_names(),
     };
-    let all = 0..model.content.entities.len();
-    converter.taken = all.map(|own| model.content.shown(own).to_owned()).collect();
     let is_link = |own: &usize| model.content.entities[*own].kind == Kind::Link;
     for link in order.into_iter().filter(is_link) {
         match hangs_on[link] {
-            Some(joint) => converter.hang(link, &model.joints[joint]),
+            Some(hangs) => converter.hang(link, &model.joints[hangs.joint], hangs.reversed),
             None => converter.stand(link),
         }
     }
-    let in_tree: HashSet<usize> = hangs_on.into_iter().flatten().collect();
+    let in_tree = hangs_on.into_iter().flatten();
+    let in_tree: HashSet<usize> = in_tree.map(|hangs| hangs.joint).collect();
     for (place, joint) in model.joints.iter().enumerate() {
         if !in_tree.contains(&place) {
             converter.close(joint);
@@ -91,42 +90,6 @@ pub(super) fn fill(
     }
     converter.frames();
     converter.finish()
-}
-
-/// The joint that each entity hangs on, where it is a link that hangs on one: a fixed one before those that move, and the first in the file otherwise.
-fn joints_of_links(model: Model<'_, '_, '_>) -> Vec<Option<usize>> {
-    let mut found = vec![None; model.content.entities.len()];
-    for moves in [false, true] {
-        for (place, joint) in model.joints.iter().enumerate() {
-            let child = joint.ends[1].filter(|child| found[*child].is_none());
-            if let Some(child) = child.filter(|_| moves == (joint.kind != JointType::Fixed)) {
-                found[child] = Some(place);
-            }
-        }
-    }
-    found
-}
-
-fn cycle_error(
-    model: Model<'_, '_, '_>,
-    hangs_on: &[Option<usize>],
-    cycle: &[usize],
-) -> Diagnostic {
-    const MOST_SHOWN: usize = 12;
-    let content = model.content;
-    let name = |link: &usize| format!("`{}`", content.shown(*link));
-    let mut chain: Vec<String> = cycle.iter().take(MOST_SHOWN).map(name).collect();
-    if cycle.len() > MOST_SHOWN {
-        chain.push(format!("({} more)", cycle.len() - MOST_SHOWN));
-    }
-    chain.extend(cycle.first().map(name));
-    let message = format!("the links' parents form a cycle: {}", chain.join(" → "));
-    let joint = cycle.first().and_then(|&link| hangs_on[link]);
-    let span = joint.map_or(0..0, |joint| {
-        content.place(model.joints[joint].entity, "parent")
-    });
-    Diagnostic::new(span, message)
-        .help("exchange parent and child of one of their joints, and turn its axis round")
 }
 
 struct Converter<'c, 'm, 'a, 'i> {
@@ -177,11 +140,11 @@ impl Converter<'_, '_, '_, '_> {
         self.begin(link);
     }
 
-    /// A link that hangs on a joint.
-    fn hang(&mut self, link: usize, joint: &Joint<'_, '_>) {
+    /// A link that hangs on a joint: its child, or where it is reversed its parent, whose motion in the child is the opposite one about the same axis.
+    fn hang(&mut self, link: usize, joint: &Joint<'_, '_>, reversed: bool) {
         let (content, poses) = (self.model.content, self.model.poses);
         // Where the link is, of a joint on the world: the world itself.
-        let parent = joint.ends[0];
+        let parent = joint.ends[usize::from(reversed)];
         let anchor = match parent {
             Some(parent) => self.anchors[parent],
             None => Some(Anchor::of_world()),
@@ -200,12 +163,25 @@ impl Converter<'_, '_, '_, '_> {
                 },
             );
         }
-        self.tell(joint);
-        let axes = joint.kind.axes();
-        let turns: Vec<Option<Pose<f64>>> = axes
+        self.tell(joint, self.model.stops.is_some());
+        if reversed && joint.kind == JointType::Ball {
+            let message = "the parent hangs on the child: orientation and velocities of the joint are those of the parent in it";
+            self.notices.add(message, content.called(joint.entity));
+        }
+        let mut axes = joint.kind.axes().to_vec();
+        let mut turns: Vec<Option<Pose<f64>>> = axes
             .iter()
-            .map(|axis| joint.turned(axis, (content, poses), self.model.version, self.sink))
+            .map(|axis| joint.turned(axis, (content, poses), self.sink))
             .collect();
+        if reversed {
+            let over = Pose::from_rotation(Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)));
+            axes.reverse();
+            turns.reverse();
+            turns
+                .iter_mut()
+                .flatten()
+                .for_each(|turned| *turned = *turned * over);
+        }
         let kinds = joint.kind.of_library();
         let (mut body, mut at) = (anchor.body, at);
         for (number, kind) in kinds.iter().enumerate() {
@@ -220,10 +196,13 @@ impl Converter<'_, '_, '_, '_> {
                 false => Located::new(self.between(joint), content.span(joint.entity)),
             };
             let axis = axes.get(number).copied().unwrap_or("axis");
-            let own = axis_name(content.shown(joint.entity), axis);
+            let own = content.axis_name(joint.entity, axis).to_owned();
             let facts = joint.facts(axis, &own, self.sink);
             let forces = joint.forces(axis, &facts, self.model.stops);
             self.facts.push(facts);
+            // A spring knows how often it has been wound up, which a circle does not.
+            let is_wound = joint.kind == JointType::Continuous && forces.spring.is_some();
+            let kind = if is_wound { "revolute" } else { kind };
             let after = if is_last { back } else { Pose::identity() };
             let own = Located::new(own, content.span(joint.entity));
             self.body(
@@ -238,7 +217,8 @@ impl Converter<'_, '_, '_, '_> {
                 made.mimic = mimic;
                 if joint.kind == JointType::Screw {
                     let lead = Located::new("lead".to_owned(), content.span(joint.entity));
-                    made.joint.parameters = vec![(lead, joint.lead(content, self.sink))];
+                    let number = joint.lead(content, self.notices, self.sink);
+                    made.joint.parameters = vec![(lead, number)];
                 }
             }
             (body, at) = (Some(self.scene.bodies.len() - 1), Pose::identity());
@@ -366,9 +346,18 @@ impl Converter<'_, '_, '_, '_> {
         };
         let axes = joint.kind.axes();
         let turned = |axis: Option<&&str>, sink: &mut Sink| match axis {
-            Some(axis) => joint.turned(axis, (content, poses), self.model.version, sink),
+            Some(axis) => joint.turned(axis, (content, poses), sink),
             None => Some(Pose::identity()),
         };
+        if let Some(mimic) = axes
+            .iter()
+            .find_map(|axis| child(joint.axis(axis)?, "mimic"))
+        {
+            let message = format!("{owner} closes a loop, and cannot follow another joint as well");
+            self.sink
+                .push(Diagnostic::new(crate::robot::xml::tag(mimic), message));
+            return;
+        }
         let turns = [
             turned(axes.first(), self.sink),
             turned(axes.last(), self.sink),
@@ -385,7 +374,11 @@ impl Converter<'_, '_, '_, '_> {
         let [Some(first), Some(second)] = ends else {
             return;
         };
-        self.tell(joint);
+        if first.body == second.body {
+            let message = "joints between what is one body are left out";
+            return self.notices.add(message, owner);
+        }
+        self.tell(joint, false);
         let acts = axes.iter().any(|axis| {
             let forces = joint.facts(axis, content.shown(joint.entity), self.sink);
             forces.damping != 0.0
@@ -425,12 +418,28 @@ impl Converter<'_, '_, '_, '_> {
     }
 
     /// Tells what of a joint is not simulated.
-    fn tell(&mut self, joint: &Joint<'_, '_>) {
+    fn tell(&mut self, joint: &Joint<'_, '_>, stops: bool) {
         let owner = self.model.content.called(joint.entity);
-        for axis in joint.kind.axes() {
+        let is_ball = joint.kind == JointType::Ball;
+        // A ball has no axis, but what is said of one acts there.
+        let axes = if is_ball {
+            &["axis"]
+        } else {
+            joint.kind.axes()
+        };
+        for axis in axes {
+            let dynamics = joint.axis(axis).and_then(|axis| child(axis, "dynamics"));
+            if is_ball
+                && dynamics.is_some_and(|dynamics| {
+                    number(dynamics, "spring_stiffness").is_some_and(|k| k != 0.0)
+                })
+            {
+                self.notices
+                    .warn("springs of ball joints are not simulated", &owner);
+            }
             let facts = joint.facts(axis, "", &mut Sink::default());
             let limits = facts.limits.as_ref();
-            let stops = self.model.stops.is_some() && joint.has_one_coordinate();
+            let stops = stops && joint.has_one_coordinate();
             let stands_beyond = limits
                 .and_then(|limits| limits.position)
                 .is_some_and(|[lower, upper]| lower > 0.0 || upper < 0.0);
@@ -450,7 +459,7 @@ impl Converter<'_, '_, '_, '_> {
             if facts.friction != 0.0 && !joint.has_one_coordinate() {
                 self.notices.warn("dry friction is simulated of joints with angles or displacements between limits alone", &owner);
             }
-            if joint.axis(axis).is_none() {
+            if joint.axis(axis).is_none() && !is_ball {
                 self.notices
                     .add("the axis is not given: it is z, the default of SDF", &owner);
             }

@@ -6,11 +6,33 @@ use crate::robot::xml::{finite, parse, tag};
 use crate::source::{Located, Span};
 use hamel_runtime::spatial::Pose;
 use nalgebra::{Vector3, Vector4};
-use roxmltree::Node;
+use roxmltree::{Attribute, Node};
+
+/// Whether this is the element of SDF of that name; those of others have namespaces of their own.
+pub(super) fn is(node: Node<'_, '_>, name: &str) -> bool {
+    node.tag_name().name() == name && is_of_sdf(node)
+}
+
+/// Whether this is an element of SDF: in the namespace of the root, if that has one.
+pub(super) fn is_of_sdf(node: Node<'_, '_>) -> bool {
+    let root = node.document().root_element();
+    node.is_element() && node.tag_name().namespace() == root.tag_name().namespace()
+}
+
+/// An attribute of SDF, which has no namespace.
+pub(super) fn attribute_node<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Attribute<'a, 'i>> {
+    let mut all = node.attributes();
+    all.find(|found| found.name() == name && found.namespace().is_none())
+}
+
+/// The text of an attribute of SDF.
+pub(super) fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
+    attribute_node(node, name).map(|found| found.value())
+}
 
 /// The first child element of that name.
 pub(super) fn child<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
-    node.children().find(|child| child.has_tag_name(name))
+    node.children().find(|child| is(*child, name))
 }
 
 /// The child elements of that name.
@@ -18,13 +40,14 @@ pub(super) fn children<'a, 'i>(
     node: Node<'a, 'i>,
     name: &'static str,
 ) -> impl Iterator<Item = Node<'a, 'i>> {
-    node.children()
-        .filter(move |child| child.has_tag_name(name))
+    node.children().filter(move |child| is(*child, name))
 }
 
-/// The text of an element, without the white space around it.
+/// The text of an element, without comments before it and white space around it.
 pub(super) fn text<'a>(node: Node<'a, '_>) -> &'a str {
-    node.text().unwrap_or_default().trim()
+    let texts = node.children().filter(|child| child.is_text());
+    let mut texts = texts.filter_map(|text| text.text().map(str::trim));
+    texts.find(|text| !text.is_empty()).unwrap_or_default()
 }
 
 /// The text of a child element.
@@ -81,7 +104,7 @@ pub(super) fn text_span(node: Node<'_, '_>) -> Span {
 
 /// Where the name of an element stands.
 pub(super) fn name_span(node: Node<'_, '_>) -> Span {
-    let name = node.attribute_node("name");
+    let name = attribute_node(node, "name");
     name.map_or_else(|| tag(node), |name| name.range_value())
 }
 
@@ -95,7 +118,7 @@ pub(super) fn pose(owner: &str, node: Node<'_, '_>, sink: &mut Sink) -> Option<P
     match finite(text(element))?.as_slice() {
         [] => Some(Pose::identity()),
         &[x, y, z, roll, pitch, yaw] => {
-            let degrees = element.attribute("degrees").and_then(switch) == Some(true);
+            let degrees = attribute(element, "degrees").and_then(switch) == Some(true);
             let scale = if degrees { 1f64.to_radians() } else { 1.0 };
             let rpy = Located::new(Vector3::new(roll, pitch, yaw) * scale, at);
             let rotation = rotation::from_roll_pitch_yaw(&path, rpy, sink)?;

@@ -1,7 +1,7 @@
 //! A joint of an SDF: how it moves, and what acts there.
 
 use super::content::{Content, Kind, WORLD};
-use super::document::{child, flag, number, place, value, vector};
+use super::document::{attribute, attribute_node, child, flag, number, place, value, vector};
 use super::poses::Poses;
 use crate::description::{Closing, MimicDescription, Position};
 use crate::diagnostics::Diagnostic;
@@ -9,6 +9,7 @@ use crate::forces::{
     FrictionDescription, JointForces, JointSpring, LimitDescription, LimitKind, PerFreedom,
     SpringEnergy,
 };
+use crate::notice::Notices;
 use crate::parse::rotation;
 use crate::read::Sink;
 use crate::robot::xml::parse;
@@ -116,6 +117,7 @@ pub(super) struct Joint<'a, 'i> {
 pub(super) fn joints<'a, 'i>(
     content: &Content<'a, 'i>,
     poses: &Poses,
+    notices: &mut Notices,
     sink: &mut Sink,
 ) -> Vec<Joint<'a, 'i>> {
     let of_kind = content.of(Kind::Joint).collect::<Vec<_>>();
@@ -125,11 +127,14 @@ pub(super) fn joints<'a, 'i>(
         let parent = content.named_in(entity, "parent", sink)?;
         let ends = [parent, entity].map(|end| poses.link(end));
         if ends[0] == ends[1] && kind.is_some() {
-            // Within a static model nothing moves.
-            if ends[0].is_none() && content.entities[entity].is_static {
+            if ends[0].is_none() {
+                notices.add(
+                    "joints between what does not move are left out",
+                    content.called(entity),
+                );
                 return None;
             }
-            let on = ends[0].map_or("the world".to_owned(), |link| content.called(link));
+            let on = ends[0].map_or_else(String::new, |link| content.called(link));
             let message = format!(
                 "{}: its parent and its child are both on {on}",
                 content.called(entity)
@@ -138,7 +143,10 @@ pub(super) fn joints<'a, 'i>(
             return None;
         }
         if ends[1].is_none() && kind.is_some() {
-            let message = format!("{}: its child is the world", content.called(entity));
+            let message = format!(
+                "{}: its child does not move: it is the world, or in a static model",
+                content.called(entity)
+            );
             let error = Diagnostic::new(place(node, "child"), message);
             sink.push(error.help(
                 "what a joint hangs on is its parent: exchange the two, and turn the axis round",
@@ -156,7 +164,7 @@ pub(super) fn joints<'a, 'i>(
 }
 
 fn kind(content: &Content<'_, '_>, entity: usize, sink: &mut Sink) -> Option<JointType> {
-    let said = content.entities[entity].node.attribute_node("type")?;
+    let said = attribute_node(content.entities[entity].node, "type")?;
     let found = JointType::of(said.value());
     if found.is_none() {
         let names = || JointType::ALL.iter().map(|(name, _)| *name);
@@ -185,14 +193,13 @@ impl<'a> Joint<'a, '_> {
         &self,
         name: &str,
         (content, poses): (&Content<'_, '_>, &Poses),
-        version: (u32, u32),
         sink: &mut Sink,
     ) -> Option<Pose<f64>> {
         let axis = self.axis(name);
         let said = axis
             .and_then(|axis| vector(axis, "xyz"))
             .unwrap_or_else(Vector3::z);
-        let frame = self.frame_of_axis(axis, content, version, sink)?;
+        let frame = self.frame_of_axis(axis, content, sink)?;
         let in_joint = poses.of(frame, self.entity).rotation * said;
         let span = axis.map_or_else(|| content.span(self.entity), |axis| place(axis, "xyz"));
         let path = format!("{}: its {name}", content.called(self.entity));
@@ -204,35 +211,50 @@ impl<'a> Joint<'a, '_> {
         &self,
         axis: Option<Node<'_, '_>>,
         content: &Content<'_, '_>,
-        version: (u32, u32),
         sink: &mut Sink,
     ) -> Option<usize> {
         let model = content.entities[self.entity].model;
         let xyz = axis.and_then(|axis| child(axis, "xyz"));
-        let said = xyz.and_then(|xyz| xyz.attribute_node("expressed_in"));
+        let said = xyz.and_then(|xyz| attribute_node(xyz, "expressed_in"));
         if let Some(said) = said.filter(|said| !said.value().is_empty()) {
             let what = format!("{}: its axis is expressed in", content.called(self.entity));
             return content.find(said.value(), model, (&what, said.range_value()), sink);
         }
         let of_model = axis.and_then(|axis| flag(axis, "use_parent_model_frame"));
-        Some(match of_model.unwrap_or(version < (1, 5)) {
+        if of_model == Some(true) && content.version >= (1, 7) {
+            let message = format!(
+                "{}: <use_parent_model_frame> is of SDF before 1.7",
+                content.called(self.entity)
+            );
+            let span = axis.map_or(0..0, |axis| place(axis, "use_parent_model_frame"));
+            let help = "say `expressed_in=\"__model__\"` of <xyz>";
+            sink.push(Diagnostic::new(span, message).help(help));
+        }
+        Some(match of_model.unwrap_or(content.version < (1, 5)) {
             true => model,
             false => self.entity,
         })
     }
 
-    /// The lead of a screw, m in one turn.
-    pub(super) fn lead(&self, content: &Content<'_, '_>, sink: &mut Sink) -> f64 {
-        let pitch = number(self.node, "screw_thread_pitch");
-        // What Gazebo has called `thread_pitch` is −2π / lead, 1 where nothing is said.
-        let of_gazebo = || -2.0 * PI / number(self.node, "thread_pitch").unwrap_or(1.0);
-        let lead = pitch.unwrap_or_else(of_gazebo);
-        if !lead.is_finite() {
+    /// The lead of a screw, m in one turn; 1 where nothing is said, as libsdformat has it.
+    pub(super) fn lead(
+        &self,
+        content: &Content<'_, '_>,
+        notices: &mut Notices,
+        sink: &mut Sink,
+    ) -> f64 {
+        let of_gazebo = || Some(-2.0 * PI / number(self.node, "thread_pitch")?);
+        let said = number(self.node, "screw_thread_pitch").or_else(of_gazebo);
+        if said.is_some_and(|lead| !lead.is_finite()) {
             let message = format!("{}: its <thread_pitch> is 0", content.called(self.entity));
             let error = Diagnostic::new(place(self.node, "thread_pitch"), message);
             sink.push(error.help("it is −2π rad over the advance in one turn; say `screw_thread_pitch`, which is that advance in m"));
         }
-        lead
+        said.unwrap_or_else(|| {
+            let message = "screws without a pitch advance by 1 m in a turn, as SDF has it";
+            notices.warn(message, content.called(self.entity));
+            1.0
+        })
     }
 
     /// What the file says of an axis beyond its motion; `name` is that of the joint in the scene. Negative losses are errors.
@@ -257,6 +279,17 @@ impl<'a> Joint<'a, '_> {
         let limit = node.and_then(|axis| child(axis, "limit"));
         let bound = |what: &str| parse(value(limit?, what)?).filter(|bound| bound.abs() < NO_LIMIT);
         let position = [bound("lower"), bound("upper")];
+        if let [Some(lower), Some(upper)] = position
+            && lower > upper
+        {
+            let message = format!(
+                "joint `{name}`: <lower> is {:?}, above <upper>, which is {:?}",
+                Number(lower),
+                Number(upper)
+            );
+            let span = limit.map_or(0..0, |limit| place(limit, "lower"));
+            sink.push(Diagnostic::new(span, message));
+        }
         let position = (position != [None; 2] && self.kind != JointType::Continuous).then(|| {
             [
                 position[0].unwrap_or(f64::NEG_INFINITY),
@@ -299,7 +332,8 @@ impl<'a> Joint<'a, '_> {
                 .and_then(|dynamics| number(dynamics, what))
                 .filter(|found| *found != 0.0)
         };
-        let spring = said("spring_stiffness").map(|stiffness| {
+        let spring = said("spring_stiffness").filter(|_| self.kind != JointType::Ball);
+        let spring = spring.map(|stiffness| {
             let rest = said("spring_reference");
             JointSpring {
                 rest: rest.map_or(Position::Home, |rest| {
@@ -360,7 +394,7 @@ impl<'a> Joint<'a, '_> {
         sink: &mut Sink,
     ) -> Option<Located<MimicDescription>> {
         let mimic = child(self.axis(axis)?, "mimic")?;
-        let followed = mimic.attribute_node("joint")?;
+        let followed = attribute_node(mimic, "joint")?;
         let model = content.entities[self.entity].model;
         let what = format!("{}: it follows", content.called(self.entity));
         let leader = content.find(
@@ -374,10 +408,22 @@ impl<'a> Joint<'a, '_> {
             sink.push(Diagnostic::new(followed.range_value(), message));
             return None;
         }
-        let name = axis_name(
-            content.shown(leader),
-            mimic.attribute("axis").unwrap_or("axis"),
-        );
+        let followed_axis = attribute(mimic, "axis")
+            .filter(|axis| !axis.is_empty())
+            .unwrap_or("axis");
+        let has_axis = followed_axis == "axis"
+            || child(content.entities[leader].node, followed_axis).is_some();
+        if !["axis", "axis2"].contains(&followed_axis) || !has_axis {
+            let message = format!(
+                "{what} {} of {}, which has no such axis",
+                quoted(followed_axis),
+                content.called(leader)
+            );
+            let span = attribute_node(mimic, "axis").map_or(0..0, |axis| axis.range_value());
+            sink.push(Diagnostic::new(span, message));
+            return None;
+        }
+        let name = content.axis_name(leader, followed_axis).to_owned();
         let multiplier = number(mimic, "multiplier")?;
         let [offset, reference] =
             ["offset", "reference"].map(|what| number(mimic, what).unwrap_or(0.0));
@@ -387,13 +433,5 @@ impl<'a> Joint<'a, '_> {
             offset: offset - multiplier * reference,
         };
         Some(Located::new(description, crate::robot::xml::tag(mimic)))
-    }
-}
-
-/// The name of what an axis of a joint becomes.
-pub(super) fn axis_name(joint: &str, axis: &str) -> String {
-    match axis {
-        "axis2" => format!("{joint}_2"),
-        _ => joint.to_owned(),
     }
 }

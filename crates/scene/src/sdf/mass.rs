@@ -1,7 +1,7 @@
 //! What links weigh.
 
 use super::content::{Content, Kind};
-use super::document::{child, number, pose};
+use super::document::{attribute, attribute_node, child, number, pose, switch};
 use crate::diagnostics::Diagnostic;
 use crate::notice::Notices;
 use crate::read::Sink;
@@ -26,16 +26,31 @@ pub(super) fn of_link(
         );
         return Some(of_default());
     };
-    if inertial.attribute("auto").and_then(super::document::switch) == Some(true) {
+    if attribute(inertial, "auto").and_then(switch) == Some(true) {
         let message = format!("{owner}: masses of collision shapes are not computed");
         let error = Diagnostic::new(tag(inertial), message);
         sink.push(error.help("say <mass> and <inertia>, and leave `auto` out"));
         return None;
     }
+    let base = child(inertial, "pose").and_then(|pose| attribute_node(pose, "relative_to"));
+    if let Some(base) = base.filter(|base| !base.value().is_empty()) {
+        let message = format!(
+            "{owner}: the <pose> of <inertial> is that in the link, and relative to nothing else"
+        );
+        sink.push(Diagnostic::new(base.range_value(), message));
+        return None;
+    }
     let inertia = child(inertial, "inertia");
-    if inertia.is_none() {
+    let says = |name: &str| inertia.is_some_and(|inertia| child(inertia, name).is_some());
+    if !["ixx", "iyy", "izz"].into_iter().all(says) {
         notices.warn(
-            "inertias that are not said are 1 kg m² about each axis, as SDF has it",
+            "moments of inertia that are not said are 1 kg m², as SDF has it",
+            owner.clone(),
+        );
+    }
+    if child(inertial, "mass").is_none() {
+        notices.warn(
+            "masses that are not said are 1 kg, as SDF has it",
             owner.clone(),
         );
     }

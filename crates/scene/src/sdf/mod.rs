@@ -5,10 +5,11 @@
 //! | `<model>` alone, or those of a `<world>` | one scene; names are those of links, with `model::` before them where there are several models |
 //! | `<model>` in a model | its links, joints and frames, with `model::` before their names |
 //! | `revolute`, `continuous`, `prismatic`, `ball`, `screw` | `revolute`, `revolute_circle`, `prismatic`, `ball_child`, `screw`; body frames are link frames |
+//! | `continuous` with a spring | `revolute`: it counts turns |
 //! | `universal`, `revolute2` | two `revolute` joints, the second with `_2` behind the name; the body between them has no mass |
 //! | `fixed` | the child becomes a part of its parent's body: masses and inertias add up, its frame stays as a named frame |
 //! | a link that is the child of no joint | moves on a `free` joint of its name, and begins where it stands; in a `<static>` model it is part of the world |
-//! | a second joint of a child | closes a loop, which the scene has as one joint of several bodies |
+//! | a joint whose child hangs on another already | closes a loop, which the scene has as one joint of several bodies; or holds its parent, where nothing else does |
 //! | `<pose>` with `relative_to`, `rotation_format` and `degrees`, `<frame>`, `expressed_in`, `use_parent_model_frame` | resolved; frames are named frames of the scene |
 //! | `<inertial>` | mass, centre of mass and inertia; what is not said is 1 kg, and 1 kg m² about each axis |
 //! | `damping`, `friction`, `spring_stiffness`, `spring_reference` | the joint's damping, dry friction and spring |
@@ -30,6 +31,7 @@ mod mass;
 mod poses;
 mod schema;
 mod shapes;
+mod tree;
 
 use crate::description::{SceneDescription, Source};
 use crate::diagnostics::Diagnostic;
@@ -39,9 +41,9 @@ use crate::robot::couple;
 use crate::robot::xml::tag;
 use crate::robot::{Import, Options};
 use crate::scene::stem;
-use crate::text::visible_line;
+use crate::text::{quoted, visible_line};
 use content::Content;
-use document::{child, children, vector};
+use document::{attribute, child, children, is, place, value, vector};
 use nalgebra::Vector3;
 use poses::Poses;
 use roxmltree::{Document, Node};
@@ -72,10 +74,10 @@ pub(crate) fn import(
     if sink.len() > 0 {
         return None;
     }
-    let content = Content::read(top, sink);
+    let content = Content::read(top, version, sink);
     let poses = Poses::read(&content, sink)?;
-    let joints = joint::joints(&content, &poses, sink);
-    let gravity = gravity(top, options, &mut notices);
+    let joints = joint::joints(&content, &poses, &mut notices, sink);
+    let gravity = gravity(top, version, options, (&mut notices, sink));
     let file = Path::new(&source.name).file_name().unwrap_or_default();
     let description = format!("Imported from the SDF {}", file.to_string_lossy());
     let named = children(top, "model")
@@ -84,9 +86,7 @@ pub(crate) fn import(
         .unwrap_or(top);
     let mut scene = SceneDescription {
         description: visible_line(&description),
-        name: named
-            .attribute("name")
-            .map_or_else(|| stem(&source.name), str::to_owned),
+        name: attribute(named, "name").map_or_else(|| stem(&source.name), str::to_owned),
         gravity,
         ..SceneDescription::empty(source)
     };
@@ -94,7 +94,6 @@ pub(crate) fn import(
         content: &content,
         poses: &poses,
         joints: &joints,
-        version,
         gravity,
         stops: options.limits,
     };
@@ -143,7 +142,7 @@ fn refuse_options(root: Node<'_, '_>, options: &Options, sink: &mut Sink) {
 fn top<'a, 'i>(root: Node<'a, 'i>, sink: &mut Sink) -> Option<Node<'a, 'i>> {
     let tops: Vec<Node<'a, 'i>> = root
         .children()
-        .filter(|node| node.has_tag_name("world") || node.has_tag_name("model"))
+        .filter(|node| is(*node, "world") || is(*node, "model"))
         .collect();
     match tops.as_slice() {
         [] => {
@@ -153,7 +152,7 @@ fn top<'a, 'i>(root: Node<'a, 'i>, sink: &mut Sink) -> Option<Node<'a, 'i>> {
             ));
             None
         }
-        [one] if one.has_tag_name("world") => Some(*one),
+        [one] if is(*one, "world") => Some(*one),
         [_] => Some(root),
         [first, second, ..] => {
             let message = "the file has several models or worlds beside each other";
@@ -170,7 +169,7 @@ fn top<'a, 'i>(root: Node<'a, 'i>, sink: &mut Sink) -> Option<Node<'a, 'i>> {
 
 /// The version that a file says.
 fn version(root: Node<'_, '_>, notices: &mut Notices) -> Version {
-    let said = root.attribute("version").map(str::trim);
+    let said = attribute(root, "version").map(str::trim);
     let parts = said.and_then(|said| said.split_once('.'));
     let numbers = parts.and_then(|(major, minor)| major.parse().ok().zip(minor.parse().ok()));
     let known = numbers.filter(|version: &Version| version.0 == 1);
@@ -184,16 +183,28 @@ fn version(root: Node<'_, '_>, notices: &mut Notices) -> Version {
     })
 }
 
-/// Free fall: what the world says; for a model alone what is asked for.
-fn gravity(top: Node<'_, '_>, options: &Options, notices: &mut Notices) -> Vector3<f64> {
-    if !top.has_tag_name("world") {
+/// Free fall: what the world says, until SDF 1.5 in its `<physics>`; for a model alone what is asked for.
+fn gravity(
+    top: Node<'_, '_>,
+    version: Version,
+    options: &Options,
+    (notices, sink): (&mut Notices, &mut Sink),
+) -> Vector3<f64> {
+    if !is(top, "world") {
         return options.gravity;
     }
-    vector(top, "gravity").unwrap_or_else(|| {
-        notices.add(
-            "the world does not say its gravity: it is 9.8 m/s² against z, as SDF has it",
-            "<world>",
-        );
+    let of_old = child(top, "physics")
+        .filter(|physics| version < (1, 6) && child(*physics, "gravity").is_some());
+    let says = child(top, "gravity").map_or(of_old, |_| Some(top));
+    let Some(says) = says else {
+        let message = "the world does not say its gravity: it is 9.8 m/s² against z, as SDF has it";
+        notices.add(message, "<world>");
+        return OF_WORLDS;
+    };
+    vector(says, "gravity").unwrap_or_else(|| {
+        let said = quoted(value(says, "gravity").unwrap_or_default());
+        let message = format!("<gravity> is {said}, not 3 finite numbers");
+        sink.push(Diagnostic::new(place(says, "gravity"), message));
         OF_WORLDS
     })
 }

@@ -1,7 +1,7 @@
 //! Where the frames of a file stand: each in another one, and on what it is fixed.
 
 use super::content::{Content, Kind, WORLD};
-use super::document::{child, pose};
+use super::document::{attribute_node, child, pose};
 use crate::diagnostics::Diagnostic;
 use crate::read::Sink;
 use hamel_runtime::spatial::Pose;
@@ -25,7 +25,7 @@ impl Poses {
         let held = (0..count).map(|own| holder(content, own, sink).unwrap_or(WORLD));
         let held: Vec<usize> = held.collect();
         let bases = (0..count).map(|own| {
-            let base = content.named_by(own, ("pose", "relative_to"), sink);
+            let base = content.base_of_pose(own, content.entities[own].node, sink);
             let base = base.unwrap_or_else(|| default_base(content, own, &held));
             let said = pose(&content.called(own), content.entities[own].node, sink);
             (base, said.unwrap_or_else(Pose::identity))
@@ -145,12 +145,18 @@ fn refuse_cycles(
         if seen[at] != start + 1 || rests(at) {
             continue;
         }
-        let cycle = way.iter().skip_while(|own| **own != at).chain([&at]);
-        let names: Vec<String> = cycle.map(|own| content.called(*own)).collect();
+        const MOST_SHOWN: usize = 12;
+        let cycle: Vec<usize> = way.into_iter().skip_while(|own| *own != at).collect();
+        let shown = cycle.iter().take(MOST_SHOWN);
+        let mut names: Vec<String> = shown.map(|own| content.called(*own)).collect();
+        if cycle.len() > MOST_SHOWN {
+            names.push(format!("({} more)", cycle.len() - MOST_SHOWN));
+        }
+        names.push(content.called(at));
         let message = format!("{what} go round in a cycle: {}", names.join(" → "));
         let node = content.entities[at].node;
-        let place = child(node, "pose").and_then(|pose| pose.attribute_node(attribute));
-        let place = place.or(node.attribute_node(attribute));
+        let place = child(node, "pose").and_then(|pose| attribute_node(pose, attribute));
+        let place = place.or(attribute_node(node, attribute));
         let span = place.map_or_else(|| content.span(at), |found| found.range_value());
         sink.push(Diagnostic::new(span, message));
     }

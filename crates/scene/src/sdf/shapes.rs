@@ -48,11 +48,9 @@ fn place(
 ) -> Option<Pose<f64>> {
     let quiet = &mut Sink::default();
     let own = pose("", visual, quiet)?;
-    let base = child(visual, "pose").and_then(|pose| pose.attribute("relative_to"));
-    let base = match base.filter(|base| !base.is_empty()) {
-        Some(base) => content.find(base, content.entities[link].model, ("", 0..0), quiet)?,
-        None => link,
-    };
+    let mut told = Sink::default();
+    let base = content.base_of_pose(link, visual, &mut told);
+    let base = base.or((told.len() == 0).then_some(link))?;
     Some(poses.of(base, link) * own)
 }
 

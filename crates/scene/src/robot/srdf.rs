@@ -1,0 +1,134 @@
+//! Postures that have names: the states of an SRDF, the XML format in which MoveIt says of a robot what its URDF does not.
+//!
+//! Of an SRDF only its `<group_state>` elements are read: `name`, and for each `<joint>` in it `name` and `value`, rad or m. Several groups may have a state of one name, such as an arm and its
+//! hand; it is then that of all of them.
+
+use super::xml;
+use super::xml::{finite, tag};
+use crate::diagnostics::{Diagnostic, Diagnostics};
+use crate::read::Sink;
+use crate::suggest::{nearest, one_of};
+use crate::text::{quoted, visible_line};
+use roxmltree::Node;
+
+/// Joints with their coordinates, rad or m.
+pub type Coordinates = Vec<(String, f64)>;
+
+/// Where the state of that name in an SRDF has the joints of the robot. Messages call the text `source_name`.
+///
+/// # Errors
+/// All mistakes: text that is no SRDF, no state of that name, joints of it without a name or a number.
+pub fn state(text: &str, source_name: &str, state: &str) -> Result<Coordinates, Diagnostics> {
+    let mut sink = Sink::default();
+    let found = xml::tree(text, &mut sink)
+        .map(|document| of_document(document.root_element(), state, &mut sink));
+    match found {
+        Some(found) if sink.len() == 0 => Ok(found),
+        _ => Err(sink.refuse(source_name, text, "the SRDF cannot be read")),
+    }
+}
+
+fn of_document(root: Node<'_, '_>, state: &str, sink: &mut Sink) -> Coordinates {
+    if !root.has_tag_name("robot") {
+        let name = visible_line(root.tag_name().name());
+        let message = format!("the document is a <{name}>, not the <robot> of an SRDF");
+        sink.push(Diagnostic::new(tag(root), message));
+        return Vec::new();
+    }
+    let states = || {
+        let children = root.children();
+        children.filter(|child| child.has_tag_name("group_state"))
+    };
+    let mut own = states()
+        .filter(|found| found.attribute("name") == Some(state))
+        .peekable();
+    if own.peek().is_none() {
+        sink.push(unknown(root, state, states()));
+    }
+    let joints = own.flat_map(|found| found.children().filter(|child| child.has_tag_name("joint")));
+    joints.filter_map(|joint| coordinate(joint, sink)).collect()
+}
+
+fn unknown<'a>(
+    root: Node<'_, '_>,
+    state: &str,
+    states: impl Iterator<Item = Node<'a, 'a>>,
+) -> Diagnostic {
+    let message = format!("the SRDF has no state `{}`", visible_line(state));
+    let mut names: Vec<&str> = states.filter_map(|state| state.attribute("name")).collect();
+    names.dedup();
+    let error = Diagnostic::new(tag(root), message);
+    match (nearest(state, names.iter().copied()), names.is_empty()) {
+        (Some(near), _) => error.help(format!("did you mean `{near}`?")),
+        (None, true) => error.help("it has no <group_state>"),
+        (None, false) => error.help(format!("a state is {}", one_of(names.into_iter()))),
+    }
+}
+
+fn coordinate(joint: Node<'_, '_>, sink: &mut Sink) -> Option<(String, f64)> {
+    let mut attribute = |name: &str| {
+        let found = joint.attribute_node(name);
+        if found.is_none() {
+            let message = format!("<joint> of a state has no attribute `{name}`");
+            sink.push(Diagnostic::new(tag(joint), message));
+        }
+        found
+    };
+    let (name, value) = (attribute("name"), attribute("value"));
+    let (name, value) = (name?, value?);
+    match finite(value.value()).as_deref() {
+        Some([number]) => Some((name.value().to_owned(), *number)),
+        _ => {
+            let shown = quoted(value.value());
+            let message = format!(
+                "joint `{}` stands at {shown}, not at one finite number",
+                visible_line(name.value())
+            );
+            sink.push(Diagnostic::new(value.range_value(), message));
+            None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::state;
+
+    const TEXT: &str = "<robot name='panda'>
+  <group name='arm'/>
+  <group_state name='ready' group='arm'><joint name='a' value='0.5'/><joint name='b' value=' -1e-1 '/></group_state>
+  <group_state name='ready' group='hand'><joint name='f' value='0.04'/></group_state>
+  <group_state name='odd' group='hand'><joint name='f' value='1 2'/><joint value='0'/></group_state>
+</robot>";
+
+    #[test]
+    fn states_of_one_name_are_put_together() {
+        let found = state(TEXT, "panda.srdf", "ready").expect("a state");
+        let wanted = [("a", 0.5), ("b", -0.1), ("f", 0.04)];
+        assert_eq!(
+            found,
+            wanted.map(|(name, number)| (name.to_owned(), number))
+        );
+    }
+
+    #[test]
+    fn mistakes_are_told_all_at_once() {
+        let said = |text: &str, name: &str| {
+            let errors = state(text, "panda.srdf", name).expect_err("a mistake");
+            errors.to_string()
+        };
+        let odd = said(TEXT, "odd");
+        assert!(
+            odd.contains("joint `f` stands at \"1 2\", not at one finite number"),
+            "{odd}"
+        );
+        assert!(
+            odd.contains("<joint> of a state has no attribute `name`"),
+            "{odd}"
+        );
+        assert!(said(TEXT, "raedy").contains("did you mean `ready`?"));
+        assert!(said("<sdf/>", "ready").contains("a <sdf>, not the <robot> of an SRDF"));
+        assert!(said("<robot/>", "ready").contains("it has no <group_state>"));
+        assert!(said("<robot>", "ready").contains("not valid XML"));
+    }
+}
