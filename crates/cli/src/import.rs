@@ -58,7 +58,7 @@ pub struct Args {
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let (text, name) = read_file(&args.robot)?;
     let text = robot::completed(&args.robot, text)?;
-    let mut import = args.options.robot(&text, &name)?;
+    let mut import = args.options.of_file(&args.robot)?.robot(&text, &name)?;
     rename_meshes(&mut import.scene, &args.robot, args.output.as_deref());
     let built = match import.build(registry) {
         Ok(scene) => {

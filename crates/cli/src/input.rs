@@ -31,10 +31,26 @@ pub struct RobotArgs {
     /// The SRDF with the states that `--posture` names; without it the file of the robot's name that ends in `.srdf`
     #[arg(long, value_name = "FILE")]
     srdf: Option<PathBuf>,
+}
 
-    /// The coordinates of these states.
-    #[arg(skip)]
+/// How a robot in some file is read.
+#[derive(Clone, Debug)]
+pub struct Reading {
+    options: robot::Options,
+    /// The states of its posture, and what is said of joints themselves.
     state: Coordinates,
+    posture: Coordinates,
+}
+
+impl Reading {
+    /// The robot that a text describes, which messages call `name`.
+    ///
+    /// # Errors
+    /// Mistakes in the text; a posture that the robot cannot take.
+    pub fn robot(&self, text: &str, name: &str) -> Result<robot::Import, Diagnostics> {
+        let import = robot::read(text, name, &self.options)?;
+        import.in_state(&self.state)?.in_posture(&self.posture)
+    }
 }
 
 /// A part of a posture.
@@ -47,58 +63,54 @@ enum Stance {
 }
 
 impl RobotArgs {
-    /// The robot that a text describes, which messages call `name`.
+    /// How the robot in the file `path` is read, with the states of the posture.
     ///
     /// # Errors
-    /// Mistakes in the text; a posture that the robot cannot take.
-    pub fn robot(&self, text: &str, name: &str) -> Result<robot::Import, Diagnostics> {
+    /// States without an SRDF; those of reading it.
+    pub fn of_file(&self, path: &Path) -> Result<Reading, Failure> {
+        let posture: Coordinates = self
+            .posture
+            .iter()
+            .filter_map(|part| match part {
+                Stance::Joint(joint, coordinate) => Some((joint.clone(), *coordinate)),
+                Stance::State(_) => None,
+            })
+            .collect();
+        let mut state = Coordinates::new();
+        for part in &self.posture {
+            if let Stance::State(name) = part {
+                state.extend(self.state(path, name)?);
+            }
+        }
+        // What is said of a joint itself counts.
+        state.retain(|(joint, _)| posture.iter().all(|(own, _)| own != joint));
         let options = robot::Options {
             floating_base: self.floating_base,
             limits: self.limits,
             lenient: self.lenient,
             ..robot::Options::default()
         };
-        let import = robot::read(text, name, &options)?;
-        import.in_state(&self.state)?.in_posture(&self.posture())
-    }
-
-    /// The joints of the posture.
-    fn posture(&self) -> Coordinates {
-        let joints = self.posture.iter().filter_map(|part| match part {
-            Stance::Joint(joint, coordinate) => Some((joint.clone(), *coordinate)),
-            Stance::State(_) => None,
-        });
-        joints.collect()
-    }
-
-    /// The same with the states of the posture read, for the robot in the file `path`.
-    ///
-    /// # Errors
-    /// States without an SRDF; those of reading it.
-    fn with_states(&self, path: &Path) -> Result<Self, Failure> {
-        let mut state = Coordinates::new();
-        for part in &self.posture {
-            let Stance::State(name) = part else { continue };
-            let beside = path.with_extension("srdf");
-            let file = self
-                .srdf
-                .clone()
-                .or(Some(beside).filter(|file| file.is_file()));
-            let file = file.ok_or_else(|| {
-                Failure::Options(format!(
-                    "--posture {name}: write JOINT=NUMBER, as in `elbow=1.2`, or say by --srdf which SRDF has a state of that name"
-                ))
-            })?;
-            let (text, shown) = read_file(&file)?;
-            state.extend(srdf::state(&text, &shown, name)?);
-        }
-        // What is said of a joint itself counts.
-        let said = self.posture();
-        state.retain(|(joint, _)| said.iter().all(|(own, _)| own != joint));
-        Ok(Self {
+        Ok(Reading {
+            options,
             state,
-            ..self.clone()
+            posture,
         })
+    }
+
+    /// A state by its name, of the SRDF that is given or beside the robot in the file `path`.
+    fn state(&self, path: &Path, name: &str) -> Result<Coordinates, Failure> {
+        let beside = path.with_extension("srdf");
+        let file = self
+            .srdf
+            .clone()
+            .or(Some(beside).filter(|file| file.is_file()));
+        let file = file.ok_or_else(|| {
+            Failure::Options(format!(
+                "--posture {name}: write JOINT=NUMBER, as in `elbow=1.2`, or say by --srdf which SRDF has a state of that name"
+            ))
+        })?;
+        let (text, shown) = read_file(&file)?;
+        Ok(srdf::state(&text, &shown, name)?)
     }
 
     /// The first option that was given, the formats that it is for, and why a scene does without it.
@@ -157,7 +169,7 @@ pub struct Input {
     /// The folder of the file, from which it names others.
     folder: PathBuf,
     /// How to read a robot; absent for a scene.
-    robot: Option<RobotArgs>,
+    robot: Option<Reading>,
 }
 
 impl Input {
@@ -178,7 +190,7 @@ impl Input {
             true => robot::completed(path, text)?,
             false => text,
         };
-        let robot = is_robot.then(|| args.with_states(path)).transpose()?;
+        let robot = is_robot.then(|| args.of_file(path)).transpose()?;
         let label = path.file_name().unwrap_or_default().to_string_lossy();
         Ok(Self {
             text,
@@ -205,7 +217,7 @@ impl Input {
     /// Mistakes in the text.
     pub fn scene(&self, registry: &JointRegistry) -> Result<Scene, Failure> {
         Ok(match &self.robot {
-            Some(args) => args.robot(&self.text, &self.name)?.build(registry)?,
+            Some(reading) => reading.robot(&self.text, &self.name)?.build(registry)?,
             None => Scene::parse(&self.text, &self.name, registry)?,
         })
     }
@@ -216,7 +228,7 @@ impl Input {
     /// Mistakes in the text of a robot.
     pub fn scene_text(&self) -> Result<String, Failure> {
         Ok(match &self.robot {
-            Some(args) => args.robot(&self.text, &self.name)?.to_toml(),
+            Some(reading) => reading.robot(&self.text, &self.name)?.to_toml(),
             None => self.text.clone(),
         })
     }
@@ -232,7 +244,7 @@ impl Input {
     /// Mistakes in the text.
     pub fn build(&self) -> Result<Build, Failure> {
         let description: SceneDescription = match &self.robot {
-            Some(args) => args.robot(&self.text, &self.name)?.scene,
+            Some(reading) => reading.robot(&self.text, &self.name)?.scene,
             None => Scene::from_toml(&self.text, &self.name)?,
         };
         let build = hamel_compiler::scene_of(&self.label, description);
