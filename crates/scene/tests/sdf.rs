@@ -1,5 +1,7 @@
 //! Robots in SDF: what becomes of each kind of element, what is left out with a notice, and what is refused.
 
+mod corpus;
+
 use hamel_runtime::spatial::Pose;
 use hamel_scene::robot::{Import, Options, Stops, load, read};
 use hamel_scene::{Closing, Geometry, LimitKind, Position, Severity};
@@ -44,38 +46,9 @@ fn notices(import: &Import) -> Vec<String> {
     import.notices.iter().map(ToString::to_string).collect()
 }
 
-/// Every file of the corpus is refused as is written beside it; `UPDATE_EXPECT=1` writes what is said.
 #[test]
 fn broken_models_are_refused_in_these_words() {
-    let mut files: Vec<PathBuf> = fs::read_dir(folder("corpus/sdf-bad"))
-        .expect("the corpus")
-        .map(|entry| entry.expect("a file").path())
-        .filter(|path| path.extension().is_some_and(|ending| ending == "sdf"))
-        .collect();
-    files.sort();
-    assert!(files.len() >= 14, "{} files", files.len());
-    let mut wrong = Vec::new();
-    for path in files {
-        let text = fs::read_to_string(&path).expect("a text");
-        let name = path
-            .file_name()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
-        let said = match read(&text, &name, &Options::default()) {
-            Ok(_) => String::from("it is read\n"),
-            Err(errors) => errors.to_string(),
-        };
-        let expected = path.with_extension("expected");
-        if std::env::var_os("UPDATE_EXPECT").is_some() {
-            fs::write(&expected, &said).expect("a folder that can be written");
-        }
-        let wanted = fs::read_to_string(&expected).unwrap_or_default();
-        if said != wanted || said == "it is read\n" {
-            wrong.push(format!("{name}:\n{said}"));
-        }
-    }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    corpus::check(&folder("corpus/sdf-bad"), "sdf", 14);
 }
 
 #[test]

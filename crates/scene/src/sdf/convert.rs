@@ -15,7 +15,8 @@ use crate::forces::{FrameDescription, JointForces, WrenchAxes, WrenchDescription
 use crate::notice::Notices;
 use crate::parse::order;
 use crate::read::Sink;
-use crate::robot::mass::sum;
+use crate::robot::mass::{moved, sum};
+use crate::robot::xml::tag;
 use crate::robot::{JointFacts, Stops};
 use crate::source::{Located, Span};
 use hamel_runtime::spatial::{MassProperties, Pose};
@@ -320,7 +321,7 @@ impl Converter<'_, '_, '_, '_> {
         let Some(own) = mass::of_link(content, link, self.notices, self.sink) else {
             return;
         };
-        let own = mass::on_body(&own, &anchor.pose);
+        let own = moved(&own, &anchor.pose);
         self.parts[body].push(own);
         let lift = -self.model.gravity * own.mass;
         if flag(node, "gravity") == Some(false) && lift != Vector3::zeros() {
@@ -354,8 +355,7 @@ impl Converter<'_, '_, '_, '_> {
             .find_map(|axis| child(joint.axis(axis)?, "mimic"))
         {
             let message = format!("{owner} closes a loop, and cannot follow another joint as well");
-            self.sink
-                .push(Diagnostic::new(crate::robot::xml::tag(mimic), message));
+            self.sink.push(Diagnostic::new(tag(mimic), message));
             return;
         }
         let turns = [

@@ -1,13 +1,13 @@
 //! What links weigh.
 
-use super::content::{Content, Kind};
+use super::content::Content;
 use super::document::{attribute, attribute_node, child, number, pose, switch};
 use crate::diagnostics::Diagnostic;
 use crate::notice::Notices;
 use crate::read::Sink;
 use crate::robot::mass::moved;
 use crate::robot::xml::tag;
-use hamel_runtime::spatial::{MassProperties, Pose};
+use hamel_runtime::spatial::MassProperties;
 use nalgebra::{Matrix3, Vector3};
 
 /// The mass properties of a link in its frame. What the file does not say is 1 kg at the origin and 1 kg m² about each axis, as SDF has it.
@@ -18,7 +18,6 @@ pub(super) fn of_link(
     sink: &mut Sink,
 ) -> Option<MassProperties> {
     let (owner, node) = (content.called(link), content.entities[link].node);
-    debug_assert_eq!(content.entities[link].kind, Kind::Link);
     let Some(inertial) = child(node, "inertial") else {
         notices.warn(
             "links without <inertial> weigh 1 kg, with 1 kg m² about each axis, as SDF has it",
@@ -81,9 +80,4 @@ fn of_default() -> MassProperties {
         com: Vector3::zeros(),
         inertia_com: Matrix3::identity(),
     }
-}
-
-/// The mass of a link that a pose moves.
-pub(super) fn on_body(mass: &MassProperties, pose: &Pose<f64>) -> MassProperties {
-    moved(mass, pose)
 }
