@@ -26,6 +26,8 @@ Examples:
       one page to open in a browser, with no network: the motion in three dimensions, and plots along the time
   hamel simulate scenes/heavy_top.toml --picture top.svg --instants 6
       a still picture: the last sample, and five before it, paler
+  hamel simulate scenes/humanoid.toml --gif humanoid.gif --sample-step 0.04
+      the motion as a moving picture, for a README or a talk
   hamel simulate scenes/snake.toml --parquet snake.parquet
       the trajectory for pandas, polars, MATLAB or PlotJuggler
   hamel simulate scenes/report/chain_8.toml --compiled
@@ -67,7 +69,7 @@ Exit codes: 0 success; 1 a scene with mistakes, a simulation that stopped, a fil
 ///
 /// Options override the `[simulation]` table of the scene.
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES, group = ArgGroup::new("steps"))]
+#[command(after_help = EXAMPLES, group = ArgGroup::new("steps"), group = ArgGroup::new("stills").multiple(true))]
 pub struct Args {
     /// Scene file (TOML; the format is described in scenes/README.md), or a robot in URDF, MJCF or SDF
     #[arg(value_name = "SCENE")]
@@ -161,11 +163,19 @@ pub struct Args {
     pub html: Option<PathBuf>,
 
     /// Write a picture to FILE as SVG: the bodies at the last sample, as the page shows them
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", group = "stills")]
     pub picture: Option<PathBuf>,
 
-    /// Show the motion in the picture by so many instants from the first sample to the last, the earlier ones paler
-    #[arg(long, value_name = "COUNT", default_value_t = 1, requires = "picture", value_parser = clap::value_parser!(u8).range(1..=50))]
+    /// Write a picture to FILE as PNG, 960 by 640 pixels, with the meshes of a robot
+    #[arg(long, value_name = "FILE", group = "stills")]
+    pub png: Option<PathBuf>,
+
+    /// Write the motion to FILE as GIF, 640 by 426 pixels, with the meshes of a robot: at most 25 pictures a second, for 2 to 20 s
+    #[arg(long, value_name = "FILE")]
+    pub gif: Option<PathBuf>,
+
+    /// Show the motion in still pictures by so many instants from the first sample to the last, the earlier ones paler
+    #[arg(long, value_name = "COUNT", default_value_t = 1, requires = "stills", value_parser = clap::value_parser!(u8).range(1..=50))]
     pub instants: u8,
 
     /// Print the samples as JSON on stdout, and nothing else; no CSV unless asked for

@@ -42,16 +42,16 @@ pub struct Plan {
     pub parquet: Option<Output>,
     /// Where it goes as a page to look at, if anywhere.
     pub html: Option<Output>,
-    /// The meshes that the page shows.
+    /// The meshes that the page and pictures of pixels show.
     pub meshes: Meshes,
     /// Whether the forces within joints are told.
     pub forces: bool,
     /// Whether it is printed as JSON.
     pub json: bool,
-    /// Where a picture of it goes, if anywhere.
-    pub picture: Option<Output>,
-    /// How many instants the picture shows.
-    pub instants: usize,
+    /// Where pictures of it go.
+    pub pictures: picture::Outputs,
+    /// Whether nothing but failures is told.
+    pub quiet: bool,
 }
 
 impl Plan {
@@ -83,10 +83,16 @@ impl Plan {
             times
         };
         scene.check_start(&settings, control.as_ref())?;
-        let [csv, metadata, parquet, html, picture] = outputs(args)?;
-        let meshes = match html {
-            Some(_) => Meshes::load(&scene.shapes, input.folder()),
-            None => Meshes::default(),
+        let [csv, metadata, parquet, html, svg, png, gif] = outputs(args)?;
+        let pictures = picture::Outputs {
+            svg,
+            png,
+            gif,
+            instants: args.instants.into(),
+        };
+        let meshes = match html.is_some() || pictures.has_meshes() {
+            true => Meshes::load(&scene.shapes, input.folder()),
+            false => Meshes::default(),
         };
         if !args.quiet {
             tell(meshes.notices());
@@ -108,8 +114,8 @@ impl Plan {
             meshes,
             forces: args.forces,
             json: args.json,
-            picture,
-            instants: args.instants.into(),
+            pictures,
+            quiet: args.quiet,
         };
         // For an accuracy, the tolerance is searched for first.
         if settings.accuracy.is_none() {
@@ -171,8 +177,8 @@ impl Plan {
     }
 
     fn outputs(&self) -> impl Iterator<Item = &Output> {
-        let files = [&self.csv, &self.parquet, &self.html, &self.picture];
-        files.into_iter().flatten()
+        let files = [&self.csv, &self.parquet, &self.html];
+        files.into_iter().flatten().chain(self.pictures.files())
     }
 
     /// Whether anything asks for the numbers of all columns.
@@ -225,11 +231,19 @@ fn refused(error: SampleError) -> Failure {
     Failure::Options(format!("{error}: choose a larger --sample-step"))
 }
 
-/// The files of the trajectory: as CSV with its metadata, as Parquet, as a page and as a picture.
-fn outputs(args: &Args) -> Result<[Option<Output>; 5], Failure> {
+/// The files of the trajectory: as CSV with its metadata, as Parquet, as a page and as pictures.
+fn outputs(args: &Args) -> Result<[Option<Output>; 7], Failure> {
     let csv = csv_path(args);
     let metadata = csv.as_deref().and_then(metadata::path);
-    let paths = [&csv, &metadata, &args.parquet, &args.html, &args.picture];
+    let paths = [
+        &csv,
+        &metadata,
+        &args.parquet,
+        &args.html,
+        &args.picture,
+        &args.png,
+        &args.gif,
+    ];
     let paths = paths.map(Option::as_deref);
     if args.json && paths.into_iter().flatten().any(is_stdout) {
         let both =
@@ -242,6 +256,8 @@ fn outputs(args: &Args) -> Result<[Option<Output>; 5], Failure> {
         parquet::is_own,
         page::is_own,
         picture::is_own,
+        picture::is_own_png,
+        picture::is_own_gif,
     ];
     let written = paths.into_iter().zip(known);
     let written = written.filter_map(|(path, is_own)| Some((path?, is_own as _)));
@@ -263,7 +279,13 @@ fn csv_path(args: &Args) -> Option<PathBuf> {
     match &args.csv {
         Some(path) => Some(path.clone()),
         None => {
-            let others = [&args.parquet, &args.html, &args.picture];
+            let others = [
+                &args.parquet,
+                &args.html,
+                &args.picture,
+                &args.png,
+                &args.gif,
+            ];
             let is_alone = others.into_iter().all(Option::is_none);
             (!args.json && is_alone).then(default)
         }

@@ -6,7 +6,7 @@ use super::csv::Trajectory;
 use super::metadata::Metadata;
 use super::page::Page;
 use super::parquet::Parquet;
-use super::picture::Picture;
+use super::picture::Pictures;
 use super::plan::Plan;
 use super::progress::Progress;
 use super::sample;
@@ -45,7 +45,7 @@ struct Files<'a> {
     metadata: Option<Metadata<'a>>,
     parquet: Option<Parquet<'a>>,
     page: Option<Page<'a>>,
-    picture: Option<Picture<'a>>,
+    pictures: Option<Pictures<'a>>,
 }
 
 /// What a recorder leaves.
@@ -63,7 +63,7 @@ impl<'a> Files<'a> {
             metadata: Metadata::create(plan, columns)?,
             parquet: Parquet::create(plan, columns)?,
             page: Page::create(plan)?,
-            picture: Picture::create(plan)?,
+            pictures: Pictures::create(plan)?,
         })
     }
 
@@ -83,9 +83,9 @@ impl<'a> Files<'a> {
         let metadata = self.metadata.map(|metadata| metadata.finish(accuracy));
         let parquet = self.parquet.map(|parquet| parquet.finish(accuracy));
         let page = self.page.map(|page| page.finish(accuracy));
-        let picture = self.picture.map_or(Ok(()), Picture::finish);
+        let pictures = self.pictures.map_or(Ok(()), Pictures::finish);
         let told = [metadata, parquet, page].into_iter().flatten();
-        told.fold(csv.and(picture), Result::and)
+        told.fold(csv.and(pictures), Result::and)
     }
 }
 
@@ -151,8 +151,8 @@ impl<'a> Recorder<'a> {
         if let Some(page) = &mut files.page {
             page.sample(step, &found, efforts);
         }
-        if let Some(picture) = &mut files.picture {
-            picture.sample(step.time, &found);
+        if let Some(pictures) = &mut files.pictures {
+            pictures.sample(step.time, &found);
         }
         self.has_samples = true;
         Ok(())

@@ -4,11 +4,13 @@ use super::place::{Place, said};
 use std::fs;
 
 /// Commands that read the first file and write the second; `IN` and `OUT` stand for them.
-const COMMANDS: [(&str, &str); 7] = [
+const COMMANDS: [(&str, &str); 9] = [
     ("top.toml", "simulate IN --t-end 0.01 --csv OUT"),
     ("top.toml", "simulate IN --t-end 0.01 --parquet OUT"),
     ("top.toml", "simulate IN --t-end 0.01 --html OUT"),
     ("top.toml", "simulate IN --t-end 0.01 --picture OUT"),
+    ("top.toml", "simulate IN --t-end 0.01 --png OUT"),
+    ("top.toml", "simulate IN --t-end 0.01 --gif OUT"),
     ("top.toml", "compile IN --function momenta -o OUT"),
     ("panda.urdf", "import IN -o OUT"),
     ("ball.joint", "joints explain ./IN -o OUT"),

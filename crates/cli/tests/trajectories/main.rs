@@ -4,6 +4,7 @@ mod columns;
 mod forces;
 mod joints;
 mod meshes;
+mod pictures;
 mod recorded;
 
 use nalgebra::Vector3;
@@ -176,52 +177,15 @@ fn texts_of_a_scene_cannot_break_its_page() {
 }
 
 #[test]
-fn a_picture_is_small_and_the_same_each_time() {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("picture.svg");
-    let draw = |options: &[&str]| {
-        let output = Command::new(env!("CARGO_BIN_EXE_hamel"))
-            .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../.."))
-            .args(["simulate", "--quiet", "--picture"])
-            .arg(&path)
-            .args(options)
-            .output()
-            .expect("the program starts");
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.status.success(), "{told}");
-        fs::read_to_string(&path).expect("a picture")
-    };
-    let disk = [
-        "scenes/rolling_disk.toml",
-        "--t-end",
-        "1",
-        "--instants",
-        "4",
-    ];
-    let picture = draw(&disk);
-    assert_eq!(picture, draw(&disk));
-    let lines = |start: &str| {
-        picture
-            .lines()
-            .filter(|line| line.starts_with(start))
-            .count()
-    };
-    // The disk in full is two circles of four sectors and a rim; each instant before it is one outline.
-    assert_eq!(lines("<g stroke-width=\"6\" opacity"), 3);
-    assert!(lines("<path fill") > 3 + 4, "{picture}");
-    assert!(picture.ends_with("</svg>\n") && !picture.contains("NaN"));
-    let robot = [
-        "tests/data/urdf/g1.urdf",
-        "--floating-base",
-        "--t-end",
-        "0.5",
-    ];
-    let robot = draw(&[&robot[..], &["--dt", "0.005"]].concat());
-    assert!(robot.len() < 200_000, "{} bytes", robot.len());
-}
-
-#[test]
 fn what_cannot_be_written_is_told() {
-    for option in ["--html", "--parquet", "--csv", "--picture"] {
+    for option in [
+        "--html",
+        "--parquet",
+        "--csv",
+        "--picture",
+        "--png",
+        "--gif",
+    ] {
         let output = Command::new(env!("CARGO_BIN_EXE_hamel"))
             .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../.."))
             .args([

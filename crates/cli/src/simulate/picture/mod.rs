@@ -1,37 +1,74 @@
-//! A still picture of a motion as SVG: bodies as the page draws them, at one instant or at several.
+//! Pictures of a motion: bodies as the page draws them, at one instant or at several, as SVG or PNG, or moving as GIF.
 //!
-//! Solids are convex, so that the faces of one never hide each other: it is solids that are put in order, and cut where they go through each other.
+//! For SVG the faces of a solid must never hide each other: it is convex solids that are put in order, and cut where they go through each other. A picture of pixels
+//! compares distances in each of them, and so shows meshes too.
 
 mod colors;
 mod order;
+mod raster;
 mod scenery;
 mod solid;
+mod stage;
 mod svg;
 mod view;
 
 use super::plan::Plan;
+use crate::meshes::Meshes;
 use hamel::mechanism::Kinematics;
 use hamel::spatial::Pose;
-use hamel_console::files::{Draft, first_line};
-use hamel_console::output::Failure;
+use hamel_console::files::{Draft, Output, first_line};
+use hamel_console::output::{Failure, tell};
+use hamel_scene::{Notice, Severity};
+use raster::Playing;
 use scenery::Scenery;
 use std::fs::File;
-use std::io::Write;
-use std::path::Path;
+use std::io::{self, Write};
+
+/// Width and height of a still picture, pixels.
+const SIZE: (u16, u16) = (960, 640);
 
 /// Instants that are kept at most to choose from.
 const MOST_KEPT: usize = 512;
 
-/// Whether a file is a picture that was written before.
+/// Whether a file is a picture as SVG that was written before.
 pub fn is_own(file: &File) -> bool {
     first_line(file) == svg::FIRST_LINE
 }
 
-/// A picture being recorded.
-pub struct Picture<'a> {
+/// Whether a file is a picture as PNG that was written before.
+pub use raster::is_own_png;
+
+/// Whether a file is a motion as GIF that was written before.
+pub use raster::is_own_gif;
+
+/// Where pictures of a motion go, as far as they are asked for.
+#[derive(Debug)]
+pub struct Outputs {
+    pub svg: Option<Output>,
+    pub png: Option<Output>,
+    pub gif: Option<Output>,
+    /// How many instants a still picture shows.
+    pub instants: usize,
+}
+
+impl Outputs {
+    /// Those that are asked for.
+    pub fn files(&self) -> impl Iterator<Item = &Output> {
+        [&self.svg, &self.png, &self.gif].into_iter().flatten()
+    }
+
+    /// Whether one of them shows meshes.
+    pub const fn has_meshes(&self) -> bool {
+        self.png.is_some() || self.gif.is_some()
+    }
+}
+
+/// Pictures being recorded.
+pub struct Pictures<'a> {
     plan: &'a Plan,
-    file: Draft,
-    path: &'a Path,
+    svg: Option<Draft>,
+    png: Option<Draft>,
+    gif: Option<Draft>,
     kept: Kept,
 }
 
@@ -52,19 +89,22 @@ struct Kept {
     last: Option<Instant>,
 }
 
-impl<'a> Picture<'a> {
-    /// Begins the file that `plan` asks for, if it asks for one.
+impl<'a> Pictures<'a> {
+    /// Begins the files that `plan` asks for, if it asks for one.
     ///
     /// # Errors
     /// A file that cannot be written.
     pub fn create(plan: &'a Plan) -> Result<Option<Self>, Failure> {
-        let Some(output) = &plan.picture else {
+        let outputs = &plan.pictures;
+        if outputs.files().next().is_none() {
             return Ok(None);
-        };
+        }
+        let open = |output: &Option<Output>| output.as_ref().map(Output::open).transpose();
         Ok(Some(Self {
             plan,
-            file: output.open()?,
-            path: output.path(),
+            svg: open(&outputs.svg)?,
+            png: open(&outputs.png)?,
+            gif: open(&outputs.gif)?,
             kept: Kept::new(),
         }))
     }
@@ -75,18 +115,60 @@ impl<'a> Picture<'a> {
         self.kept.push(Instant { time, poses });
     }
 
-    /// Writes the picture, and gives the file its name.
+    /// Draws the pictures, and gives the files their names.
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn finish(mut self) -> Result<(), Failure> {
-        let instants = self.kept.chosen(self.plan.instants);
-        let scenery = Scenery::new(&self.plan.scene);
-        let picture = svg::picture(&self.plan.scene.name, &scenery, &instants);
-        let written = self.file.write_all(picture.as_bytes());
-        written.map_err(|error| Failure::write(self.path, error))?;
-        self.file.finish()
+    pub fn finish(self) -> Result<(), Failure> {
+        let (scene, outputs) = (&self.plan.scene, &self.plan.pictures);
+        let instants = self.kept.chosen(outputs.instants);
+        let svg = finished(self.svg, &outputs.svg, |file| {
+            // Faces are drawn from the farthest to the nearest, for which they have to be few and convex.
+            let no_meshes = Meshes::default();
+            let scenery = Scenery::new(scene, &no_meshes);
+            file.write_all(svg::picture(&scene.name, &scenery, &instants).as_bytes())
+        });
+        let scenery = Scenery::new(scene, &self.plan.meshes);
+        let png = finished(self.png, &outputs.png, |file| {
+            raster::write_png(&scenery, &instants, file)
+        });
+        let gif = finished(self.gif, &outputs.gif, |file| {
+            let playing = Playing::of(self.kept.duration(), self.kept.some.len());
+            if !self.plan.quiet {
+                tell(note(playing).as_slice());
+            }
+            let mut instants = self.kept.chosen(playing.count);
+            // One sample may be the nearest of two times.
+            instants.dedup_by(|a, b| a.time == b.time);
+            raster::write_gif(&scenery, &instants, playing, file)
+        });
+        svg.and(png).and(gif)
     }
+}
+
+/// Writes a file that was asked for, and gives it its name.
+fn finished(
+    draft: Option<Draft>,
+    output: &Option<Output>,
+    write: impl FnOnce(&mut Draft) -> io::Result<()>,
+) -> Result<(), Failure> {
+    let (Some(mut file), Some(output)) = (draft, output) else {
+        return Ok(());
+    };
+    write(&mut file).map_err(|error| Failure::write(output.path(), error))?;
+    file.finish()
+}
+
+/// What to tell of how a motion plays, if it plays at another speed than its own.
+fn note(playing: Playing) -> Option<Notice> {
+    (playing.speed != 1.0).then(|| Notice {
+        severity: Severity::Note,
+        message: format!(
+            "the GIF plays at {:.3} times the speed of the motion",
+            playing.speed
+        ),
+        elements: vec![],
+    })
 }
 
 impl Kept {
@@ -115,6 +197,12 @@ impl Kept {
         }
         self.seen += 1;
         self.last = Some(instant);
+    }
+
+    /// From the first instant to the last, s.
+    fn duration(&self) -> f64 {
+        let ends = self.some.first().zip(self.last.as_ref());
+        ends.map_or(0.0, |(first, last)| last.time - first.time)
     }
 
     /// So many instants at equal distances from the first to the last, which is always there.

@@ -192,7 +192,7 @@ fn split(solid: &Solid, plane: &Face) -> (Solid, Solid) {
 }
 
 /// The part of a polygon before a plane.
-fn clipped(
+pub fn clipped(
     corners: &[Vector3<f64>],
     normal: &Vector3<f64>,
     origin: &Vector3<f64>,

@@ -4,6 +4,7 @@ use super::Instant;
 use super::colors::{self, Color};
 use super::solid::{Form, Solid, from_axis};
 use super::view::Ball;
+use crate::meshes::Meshes;
 use crate::simulate::page::Ellipsoid;
 use hamel::mechanism::Mechanism;
 use hamel::spatial::Pose;
@@ -12,10 +13,10 @@ use nalgebra::{Matrix3, Vector3};
 
 /// A form fixed to a body, or to the world.
 #[derive(Debug)]
-struct Fixed {
+struct Fixed<'a> {
     body: Option<usize>,
     at: Pose<f64>,
-    form: Form,
+    form: Form<'a>,
     color: Color,
 }
 
@@ -24,8 +25,8 @@ type Point = (Option<usize>, Vector3<f64>);
 
 /// All that a picture shows.
 #[derive(Debug)]
-pub struct Scenery {
-    fixed: Vec<Fixed>,
+pub struct Scenery<'a> {
+    fixed: Vec<Fixed<'a>>,
     rods: Vec<[Point; 2]>,
     joints: Vec<Point>,
     /// Corners around round solids.
@@ -33,27 +34,15 @@ pub struct Scenery {
     pub up: Vector3<f64>,
 }
 
-impl Scenery {
-    pub fn new(scene: &Scene) -> Self {
+impl<'a> Scenery<'a> {
+    /// Of a scene, with those of its meshes.
+    pub fn new(scene: &Scene, meshes: &'a Meshes) -> Self {
         let mechanism = &scene.mechanism;
         let bodies = mechanism.bodies();
-        let mut fixed: Vec<Fixed> = vec![];
-        let is_mesh = |shape: &ShapeDescription| matches!(shape.geometry, Geometry::Mesh(_));
-        // Faces are drawn from the farthest to the nearest, for which they have to be few and convex.
-        let shapes = || scene.shapes.iter().filter(|shape| !is_mesh(shape));
-        for shape in shapes() {
-            let own = shape
-                .body
-                .map_or_else(|| colors::named("rod"), colors::of_body);
-            fixed.push(Fixed {
-                body: shape.body,
-                at: shape.at,
-                form: Form::Shape(shape.geometry.clone()),
-                color: shape.color.map_or(own, colors::bytes),
-            });
-        }
-        let is_bare = |body: usize| shapes().all(|shape| shape.body != Some(body));
-        let bare: Vec<usize> = (0..bodies.len()).filter(|body| is_bare(*body)).collect();
+        let shapes = scene.shapes.iter();
+        let mut fixed: Vec<Fixed<'_>> = shapes.flat_map(|shape| of_shape(shape, meshes)).collect();
+        let is_bare = |body: &usize| fixed.iter().all(|fixed| fixed.body != Some(*body));
+        let bare: Vec<usize> = (0..bodies.len()).filter(is_bare).collect();
         for body in &bare {
             let ellipsoid = Ellipsoid::new(bodies[*body].mass());
             fixed.extend(ellipsoid.map(|ellipsoid| Fixed {
@@ -127,6 +116,26 @@ impl Scenery {
         }
         solids
     }
+}
+
+/// What stands for a shape: of a mesh its parts.
+fn of_shape<'a>(shape: &ShapeDescription, meshes: &'a Meshes) -> Vec<Fixed<'a>> {
+    let of_body = shape
+        .body
+        .map_or_else(|| colors::named("rod"), colors::of_body);
+    let fixed = |form, color: Option<[u8; 3]>| Fixed {
+        body: shape.body,
+        at: shape.at,
+        form,
+        color: color.map_or(of_body, colors::bytes),
+    };
+    let Geometry::Mesh(mesh) = &shape.geometry else {
+        return vec![fixed(Form::Shape(shape.geometry.clone()), shape.color)];
+    };
+    let parts = meshes.parts()[meshes.parts_of(mesh)].iter();
+    parts
+        .map(|part| fixed(Form::mesh(part), part.color.or(shape.color)))
+        .collect()
 }
 
 /// Flat ellipsoids keep two sides.

@@ -1,7 +1,8 @@
-//! Convex solids as faces: those of the page's meshes.
+//! Solids as faces: those of the page's. All but meshes are convex.
 
 use super::colors::Color;
 use super::view::{Ball, across};
+use crate::meshes::Part;
 use hamel::spatial::Pose;
 use hamel_scene::Geometry;
 use nalgebra::{Matrix3, Vector3};
@@ -16,7 +17,7 @@ pub struct Face {
     pub color: Color,
 }
 
-/// A convex solid, or a part of one.
+/// A solid, or a part of one.
 #[derive(Clone, Debug)]
 pub struct Solid {
     pub faces: Vec<Face>,
@@ -24,19 +25,34 @@ pub struct Solid {
 
 /// The shape of a solid about its own frame.
 #[derive(Clone, Debug)]
-pub enum Form {
+pub enum Form<'a> {
     /// A simple shape; a mesh has no faces here.
     Shape(Geometry),
     /// With these half axes.
     Ellipsoid(Vector3<f64>),
     /// A rod of that radius and length along z.
     Rod(f64, f64),
+    /// A part of a mesh, and the corners of a box around it.
+    Mesh(&'a Part, [Vector3<f64>; 8]),
 }
 
 /// Numbers at one height of a round solid: radius and z.
 type Row = (f64, f64);
 
-impl Form {
+impl<'a> Form<'a> {
+    /// A part of a mesh.
+    pub fn mesh(part: &'a Part) -> Self {
+        let corners = || part.corners.iter().map(|corner| corner.map(f64::from));
+        let end = |pick: fn(f64, f64) -> f64| {
+            let ends = corners().reduce(|a, b| std::array::from_fn(|axis| pick(a[axis], b[axis])));
+            ends.unwrap_or_default()
+        };
+        let ends = [end(f64::min), end(f64::max)];
+        let corner =
+            |index: usize| Vector3::from(std::array::from_fn(|axis| ends[index >> axis & 1][axis]));
+        Self::Mesh(part, std::array::from_fn(corner))
+    }
+
     /// Its faces, with so many around where it is round, a multiple of four.
     pub fn solid(&self, pose: &Pose<f64>, color: Color, around: usize) -> Solid {
         let one = Vector3::repeat(1.0);
@@ -69,12 +85,16 @@ impl Form {
                 let rows = [(0.0, low), (radius, low), (radius, high), (0.0, high)];
                 revolved(&rows, 8, &one)
             }
+            Self::Mesh(part, _) => triangles(part),
         };
-        let two_tones = !matches!(self, Self::Shape(Geometry::Box(_)) | Self::Rod(..));
+        let plain = matches!(
+            self,
+            Self::Shape(Geometry::Box(_)) | Self::Rod(..) | Self::Mesh(..)
+        );
         let faces = faces.into_iter().map(|corners| {
             let middle: Vector3<f64> = corners.iter().sum::<Vector3<f64>>() / corners.len() as f64;
             // Octants of two tones show how a round body turns.
-            let tone = match two_tones && middle.product() < 0.0 {
+            let tone = match !plain && middle.product() < 0.0 {
                 true => 0.8,
                 false => 1.0,
             };
@@ -100,6 +120,9 @@ impl Form {
             Self::Shape(Geometry::Sphere(radius)) => vec![(at(0.0), radius)],
             Self::Shape(Geometry::Capsule { radius, length }) => [-length / 2.0, length / 2.0]
                 .map(|z| (at(z), radius))
+                .into(),
+            Self::Mesh(_, corners) => corners
+                .map(|corner| (pose.translation + pose.rotation * corner, 0.0))
                 .into(),
             _ => {
                 let faces = self.solid(pose, [0.0; 3], 8).faces;
@@ -197,6 +220,14 @@ fn revolved(rows: &[Row], around: usize, stretch: &Vector3<f64>) -> Vec<Vec<Vect
         }
     }
     faces
+}
+
+fn triangles(part: &Part) -> Vec<Vec<Vector3<f64>>> {
+    let corner = |place: &u32| Vector3::from(part.corners[*place as usize]).cast();
+    let triangles = part.triangles.iter();
+    triangles
+        .map(|triangle| triangle.iter().map(corner).collect())
+        .collect()
 }
 
 fn cuboid(half: &Vector3<f64>) -> Vec<Vec<Vector3<f64>>> {

@@ -93,6 +93,18 @@ impl View {
         Vector2::new(self.right.dot(&from) * scale, self.up.dot(&from) * scale)
     }
 
+    /// What is nearer than this is not drawn, m.
+    pub fn near(&self) -> f64 {
+        0.1 * self.distance()
+    }
+
+    /// Rightwards and downwards from the corner of a picture of that width and height, pixels.
+    pub fn pixel(&self, place: &Vector3<f64>, (width, height): (u16, u16)) -> Vector2<f64> {
+        let (width, height) = (f64::from(width), f64::from(height));
+        let seen = self.seen(place) * (height / 2.0);
+        Vector2::new(width / 2.0, height / 2.0) + Vector2::new(seen.x, -seen.y)
+    }
+
     /// Direction to the light: above the viewer's left shoulder.
     pub fn light(&self, upwards: &Vector3<f64>) -> Vector3<f64> {
         let level = (self.back - upwards * self.back.dot(upwards)).normalize();
