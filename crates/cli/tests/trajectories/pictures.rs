@@ -126,8 +126,27 @@ fn a_png_shows_bodies_their_shadows_and_earlier_instants() {
 fn falling(folder: &Path, mesh: &str) -> PathBuf {
     let scene = folder.join("falling.toml");
     let text = format!(
-        "hamel = 1\nname = \"falling\"\n[[body]]\nname = \"stone\"\njoint = {{ type = \"free\" }}\nmass = 1.0\ninertia = [0.1, 0.1, 0.1]\n\
-         [[shape]]\nbody = \"stone\"\nmesh = {{ file = \"{mesh}\", scale = 1 }}\ncolor = \"#ff0000\"\n[simulation]\nt_end = 0.5\nsample_step = 0.02\n"
+        r##"
+hamel = 1
+name = "falling"
+gravity = [0.0, 0.0, -9.81]
+
+[[body]]
+name = "stone"
+parent = "world"
+joint = {{ type = "free" }}
+mass = 1.0
+inertia = [[0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1]]
+
+[[shape]]
+body = "stone"
+mesh = {{ file = "{mesh}" }}
+color = "#ff0000"
+
+[simulation]
+t_end = 0.5
+sample_step = 0.02
+"##
     );
     fs::write(&scene, text).expect("a file");
     scene

@@ -128,7 +128,7 @@ impl<'a> Pictures<'a> {
             let scenery = Scenery::new(scene, &no_meshes);
             file.write_all(svg::picture(&scene.name, &scenery, &instants).as_bytes())
         });
-        let scenery = Scenery::new(scene, &self.plan.meshes);
+        let scenery = Scenery::new(scene, &self.plan.meshes).round();
         let png = finished(self.png, &outputs.png, |file| {
             raster::write_png(&scenery, &instants, file)
         });

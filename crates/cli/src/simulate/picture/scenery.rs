@@ -71,6 +71,11 @@ impl<'a> Scenery<'a> {
         }
     }
 
+    /// With as many corners around as a picture of pixels has room for.
+    pub fn round(self) -> Self {
+        Self { around: 48, ..self }
+    }
+
     /// Balls around all that moves at an instant.
     pub fn balls(&self, instant: &Instant) -> Vec<Ball> {
         let moving = self.fixed.iter().filter(|fixed| fixed.body.is_some());

@@ -22,7 +22,7 @@ const RATE: f64 = 25.0;
 
 /// Pictures of which colours are chosen at most, and of how many of their pixels one is looked at.
 const MOST_LOOKED_AT: usize = 16;
-const ONE_OF: usize = 7;
+const ONE_OF: usize = 31;
 
 /// Hundredths of a second that programs show each picture at least: shorter ones are taken for no time at all.
 const LEAST: f64 = 2.0;

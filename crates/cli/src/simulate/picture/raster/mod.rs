@@ -38,25 +38,27 @@ struct Painter<'a> {
     stage: Stage,
     /// Width and height, pixels.
     size: (u16, u16),
+    /// Sky and ground.
+    empty: Layer,
 }
 
 impl<'a> Painter<'a> {
     /// For pictures of that size, in which all `instants` are seen.
     fn new(scenery: &'a Scenery<'a>, instants: &[Instant], size: (u16, u16)) -> Self {
         let aspect = f64::from(size.0) / f64::from(size.1);
-        Self {
+        let mut painter = Self {
             scenery,
             stage: Stage::of(scenery, instants, aspect),
             size,
-        }
+            empty: Layer::new(size, bytes(named("sky"))),
+        };
+        painter.grid();
+        painter
     }
 
     /// The last of some instants in full, and those before it paler; row by row.
     fn picture(&self, instants: &[Instant]) -> Vec<Rgb> {
-        let mut picture = Layer::new(self.size, bytes(named("sky")));
-        if let Some(ground) = self.stage.ground {
-            self.grid(&mut picture, ground);
-        }
+        let mut picture = self.empty.clone();
         let Some((last, earlier)) = instants.split_last() else {
             return picture.reduced();
         };
@@ -94,6 +96,7 @@ impl<'a> Painter<'a> {
         }
     }
 
+    /// The shadows of solids on the ground.
     fn shadow(&self, picture: &mut Layer, solids: &[Solid], ground: f64) {
         let mut shadow = self.layer();
         for face in solids.iter().flat_map(|solid| &solid.faces) {
@@ -106,14 +109,18 @@ impl<'a> Painter<'a> {
         picture.cover(&shadow, SHADOW);
     }
 
-    fn grid(&self, picture: &mut Layer, ground: f64) {
+    /// Draws the squares on the ground.
+    fn grid(&mut self) {
+        let Some(ground) = self.stage.ground else {
+            return;
+        };
         let color = bytes(named("grid"));
         for lines in self.stage.grid(ground) {
             let mut grid = self.layer();
             for line in lines {
                 grid.face(&self.stroke(&line), color);
             }
-            picture.cover(&grid, GRID * GRID_PART);
+            self.empty.cover(&grid, GRID * GRID_PART);
         }
     }
 
