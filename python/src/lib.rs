@@ -9,6 +9,7 @@ mod inputs;
 mod joint;
 mod joint_source;
 mod joint_values;
+mod level;
 mod load;
 mod positions;
 mod results;
@@ -28,11 +29,13 @@ mod _hamel {
     #[pymodule_export]
     use crate::joint::Joint;
     #[pymodule_export]
+    use crate::level::arithmetic;
+    #[pymodule_export]
     use crate::load::{load, parse};
     #[pymodule_export]
     use crate::robot::Robot;
     #[pymodule_export]
     use crate::simulation::simulate;
     #[pymodule_export]
-    use crate::sweep::sweep;
+    use crate::sweep::{Sweep, scene_text};
 }

@@ -1,12 +1,13 @@
-//! Many motions of one scene: what `hamel.sweep` asks for, as a dictionary of arrays.
+//! Many motions of one scene: what `hamel.sweep` asks for, in one process or in many.
 
 use crate::errors;
 use crate::robot::Robot;
 use crate::source::{RobotOptions, Source};
-use hamel_sweep::{Block, Cells, Row, Sweep, SweepError, Watch};
+use hamel::registry::JointRegistry;
+use hamel_sweep::{Block, Cells, Row, SweepError, Watch};
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple, PyType};
 use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -19,16 +20,13 @@ const LOOK: Duration = Duration::from_millis(20);
 /// Rows that are handed out together.
 const BLOCK: usize = 1000;
 
-/// The motions of all rows of a table of columns, as `hamel.sweep` puts it into words.
+/// The text of the scene of a file, a text or a robot, and what messages call it.
 #[pyfunction]
-pub fn sweep<'py>(
-    scene: &Bound<'py, PyAny>,
-    names: Vec<String>,
-    columns: Vec<PyReadonlyArray1<'py, f64>>,
-    options: (Option<usize>, bool, bool),
-) -> PyResult<Bound<'py, PyDict>> {
-    let py = scene.py();
-    let (workers, estimate, floating_base) = options;
+pub fn scene_text(
+    py: Python<'_>,
+    scene: &Bound<'_, PyAny>,
+    floating_base: bool,
+) -> PyResult<(String, String)> {
     let source = match scene.cast::<Robot>() {
         Ok(robot) => robot.get().origin().clone(),
         Err(_) => {
@@ -39,79 +37,140 @@ pub fn sweep<'py>(
             Source::of(scene, options)?.fits(py)?
         }
     };
+    let text = source.scene_text();
+    let text = text.map_err(|mistakes| errors::file(py, &source.name, &mistakes))?;
+    Ok((text, source.name))
+}
+
+/// A scene, the numbers of it that rows change, and what is told of its motions. Pickles as the text of the scene.
+#[pyclass(frozen, module = "hamel._hamel")]
+pub struct Sweep {
+    text: String,
+    source: String,
+    moved: hamel_sweep::Sweep,
+    joints: JointRegistry,
+}
+
+#[pymethods]
+impl Sweep {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        text: String,
+        source: String,
+        columns: Vec<String>,
+        estimate: bool,
+    ) -> PyResult<Self> {
+        let joints = hamel_sweep::joints();
+        let moved = hamel_sweep::Sweep::new(&text, &source, &columns, &joints);
+        let moved = moved.and_then(|moved| match estimate {
+            true => moved.estimating(&joints),
+            false => Ok(moved),
+        });
+        let moved = moved.map_err(|error| refusal(py, &source, error))?;
+        Ok(Self {
+            text,
+            source,
+            moved,
+            joints,
+        })
+    }
+
+    /// Names of the numbers that each row gives.
+    #[getter]
+    fn results(&self) -> Vec<String> {
+        self.moved.results().to_vec()
+    }
+
+    /// The motions of the rows of these columns, by so many threads: a dictionary of arrays, and `outcome`, a list.
+    fn rows<'py>(
+        &self,
+        py: Python<'py>,
+        columns: Vec<PyReadonlyArray1<'py, f64>>,
+        workers: Option<NonZero<usize>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let rows = rows_of(&columns);
+        let listener = Listener::new();
+        let moved = py.detach(|| self.run(rows, workers, &listener));
+        if let Some(exception) = listener.into_exception() {
+            return Err(exception);
+        }
+        let rows = moved.map_err(|error| refusal(py, &self.source, error))?;
+        let all = PyDict::new(py);
+        let outcomes: Vec<String> = rows.iter().map(|row| row.outcome.to_string()).collect();
+        all.set_item("outcome", outcomes)?;
+        for (place, name) in self.moved.results().iter().enumerate() {
+            let numbers: Vec<f64> = rows.iter().map(|row| row.numbers[place]).collect();
+            all.set_item(name, numbers.into_pyarray(py))?;
+        }
+        Ok(all)
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyType>, Bound<'py, PyTuple>)> {
+        let columns = self.moved.columns().to_vec();
+        let (text, source, estimate) = (&self.text, &self.source, self.moved.estimates());
+        let arguments = (text, source, columns, estimate).into_pyobject(py)?;
+        Ok((py.get_type::<Self>(), arguments))
+    }
+}
+
+impl Sweep {
+    fn run(
+        &self,
+        rows: Vec<Cells>,
+        workers: Option<NonZero<usize>>,
+        listener: &Listener,
+    ) -> Result<Vec<Row>, SweepError> {
+        let count = rows.len();
+        let (mut first, mut rest) = (0, rows.into_iter());
+        let next = || {
+            let rows: Vec<Cells> = rest.by_ref().take(BLOCK).collect();
+            let block = (!rows.is_empty()).then_some(Block { first, rows });
+            first += BLOCK as u64;
+            Ok::<_, SweepError>(block)
+        };
+        let all = Mutex::new(vec![None; count]);
+        let write = |block: &Block, rows: &[Row]| {
+            let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
+            let places = all.iter_mut().skip(block.first as usize);
+            places
+                .zip(rows)
+                .for_each(|(place, row)| *place = Some(row.clone()));
+            Ok(())
+        };
+        let watch = Watch {
+            pause: &|| listener.is_over(),
+            stop: &|| listener.is_over(),
+            ..Watch::NONE
+        };
+        hamel_sweep::run(&self.moved, &self.joints, workers, next, &write, watch)?;
+        let all = all.into_inner().unwrap_or_else(PoisonError::into_inner);
+        // Those that an exception has ended are not told.
+        Ok(all.into_iter().flatten().collect())
+    }
+}
+
+/// Columns as rows.
+fn rows_of(columns: &[PyReadonlyArray1<'_, f64>]) -> Vec<Cells> {
     let count = columns
         .first()
         .map_or(0, |column| column.len().unwrap_or(0));
     let mut rows = vec![Cells::default(); count];
-    for column in &columns {
+    for column in columns {
         let cells = rows.iter_mut().zip(column.as_array());
         cells.for_each(|(row, number)| row.numbers.push(*number));
     }
-    let workers = workers.and_then(NonZero::new);
-    let listener = Listener::new();
-    let moved = py.detach(|| run(&source, &names, rows, (workers, estimate), &listener));
-    if let Some(exception) = listener.into_exception() {
-        return Err(exception);
-    }
-    let (results, rows) = moved.map_err(|error| match error {
-        SweepError::Scene(mistakes) => errors::file(py, &source.name, &mistakes),
-        other => errors::argument(py, other.to_string()),
-    })?;
-    let all = PyDict::new(py);
-    let outcomes: Vec<String> = rows.iter().map(|row| row.outcome.to_string()).collect();
-    all.set_item("outcome", outcomes)?;
-    for (place, name) in results.iter().enumerate() {
-        let numbers: Vec<f64> = rows.iter().map(|row| row.numbers[place]).collect();
-        all.set_item(name, numbers.into_pyarray(py))?;
-    }
-    Ok(all)
+    rows
 }
 
-type Moved = (Vec<String>, Vec<Row>);
-
-fn run(
-    source: &Source,
-    names: &[String],
-    rows: Vec<Cells>,
-    (workers, estimate): (Option<NonZero<usize>>, bool),
-    listener: &Listener,
-) -> Result<Moved, SweepError> {
-    let joints = hamel_sweep::joints();
-    let text = source.scene_text()?;
-    let sweep = Sweep::new(&text, &source.name, names, &joints)?;
-    let sweep = match estimate {
-        true => sweep.estimating(&joints)?,
-        false => sweep,
-    };
-    let count = rows.len();
-    let (mut first, mut rest) = (0, rows.into_iter());
-    let next = || {
-        let rows: Vec<Cells> = rest.by_ref().take(BLOCK).collect();
-        let block = (!rows.is_empty()).then_some(Block { first, rows });
-        first += BLOCK as u64;
-        Ok::<_, SweepError>(block)
-    };
-    let all = Mutex::new(vec![None; count]);
-    let write = |block: &Block, rows: &[Row]| {
-        let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
-        let places = all.iter_mut().skip(block.first as usize);
-        places
-            .zip(rows)
-            .for_each(|(place, row)| *place = Some(row.clone()));
-        Ok(())
-    };
-    let watch = Watch {
-        pause: &|| listener.is_over(),
-        stop: &|| listener.is_over(),
-        ..Watch::NONE
-    };
-    hamel_sweep::run(&sweep, &joints, workers, next, &write, watch)?;
-    let all = all.into_inner().unwrap_or_else(PoisonError::into_inner);
-    // Those that an exception has ended are not told.
-    Ok((
-        sweep.results().to_vec(),
-        all.into_iter().flatten().collect(),
-    ))
+fn refusal(py: Python<'_>, source: &str, error: SweepError) -> PyErr {
+    match error {
+        SweepError::Scene(mistakes) => errors::file(py, source, &mistakes),
+        other => errors::argument(py, other.to_string()),
+    }
 }
 
 /// Hears the signals of the process, in the thread that was called from Python.

@@ -4,13 +4,42 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from os import PathLike
-from typing import Any
+from typing import Any, Literal, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _hamel
 from ._errors import ArgumentError
+from ._level import LEVELS, check_level
+
+
+@overload
+def sweep(
+    scene: _hamel.Robot | str | PathLike[str],
+    table: Any,
+    workers: int | None = None,
+    *,
+    estimate: bool = True,
+    floating_base: bool = False,
+    level: str | None = None,
+    engine: Literal["ray"] | None = None,
+    output: None = None,
+) -> dict[str, NDArray[Any]]: ...
+
+
+@overload
+def sweep(
+    scene: _hamel.Robot | str | PathLike[str],
+    table: Any,
+    workers: int | None = None,
+    *,
+    estimate: bool = True,
+    floating_base: bool = False,
+    level: str | None = None,
+    engine: Literal["ray"],
+    output: str | PathLike[str],
+) -> None: ...
 
 
 def sweep(
@@ -20,26 +49,63 @@ def sweep(
     *,
     estimate: bool = True,
     floating_base: bool = False,
-) -> dict[str, NDArray[Any]]:
+    level: str | None = None,
+    engine: Literal["ray"] | None = None,
+    output: str | PathLike[str] | None = None,
+) -> dict[str, NDArray[Any]] | None:
     """Moves a scene once for each row of a table, with the numbers of the row in place of those of its file.
 
     Args:
-        scene: path of a scene in TOML or of a robot in URDF or MJCF, its text, or a ``Robot``.
+        scene: path of a scene in TOML or of a robot in URDF, MJCF or SDF, its text, or a ``Robot``.
         table: a dict of arrays, a data frame of pandas or polars, or a table of pyarrow. A column names a number of the scene file by the way to it, keys between dots:
             ``body.arm.mass``, ``body.arm.initial.speeds.1`` (places count from 1), ``controller.frequency``. Of a robot they are those of the scene that ``hamel import`` makes.
-        workers: threads; all cores where it is None. No bit depends on them.
+            With ``engine="ray"`` also a Parquet file, a list of such files, a folder of them (in the order of their names), as paths or addresses such as ``s3://…``, or a ``ray.data.Dataset``.
+        workers: threads; all cores where it is None. With ``engine="ray"`` actors of one core each; as many as the cluster has cores where it is None. No bit depends on them.
         estimate: whether to estimate the errors of motions, which takes about as long again.
         floating_base: whether the root link of a URDF moves freely.
+        level: instructions to compute by, on which last bits depend: ``x86-64-v3`` or ``x86-64``, which has no fused products; other processors have one level. Where it is None, that of this
+            process, and with ``engine="ray"`` the lowest of the nodes.
+        engine: ``"ray"`` moves rows on the cluster that Ray is connected to, or on one of this machine that it starts. None moves them in this process.
+        output: with ``engine="ray"``, a folder that is empty or is not there, on storage that all nodes share. Results are written there as Parquet files, in no order, and ``sweep.json`` says what
+            was swept at which level of instructions. None gathers the results here.
 
     Returns:
         A dict of arrays with an entry for each row: ``outcome`` (``ended``, ``event NAME``, ``failed: CAUSE``), ``t_s``, ``energy_J``, ``kinetic_energy_J``,
         ``potential_energy_J``, ``steps``, with ``estimate`` also ``error`` and ``error_is_reliable`` (1 or 0), and coordinates and speeds of all joints at the end, such as
-        ``elbow.q.q_rad``. Numbers of a row that failed are NaN. The bits are those of ``hamel sweep``.
+        ``elbow.q.q_rad``. Numbers of a row that failed are NaN. The bits are those of ``hamel sweep --equations tree``. With ``output`` None: the files have these columns after ``row``, the place of the row in the table,
+        from 1.
 
     Raises:
-        FileError: a scene with mistakes as it is written. What a row makes wrong is in its ``outcome``.
-        ArgumentError: columns that name no number of the scene; columns that are no arrays of numbers, of one length.
+        FileError: a scene with mistakes as it is written; a table that cannot be read. What a row makes wrong is in its ``outcome``.
+        ArgumentError: columns that name no number of the scene; columns that are no arrays of numbers, of one length; a level that a node does not have; an ``output`` that holds files.
+        Error: Ray is not installed; nodes with another version of hamel, or that compute otherwise; a cluster that fails for good.
         KeyboardInterrupt: Ctrl-C; there are no results then.
+    """
+    if workers is not None and (not isinstance(workers, int) or isinstance(workers, bool) or workers < 1):
+        raise ArgumentError(f"workers is {workers!r}: it must be a whole number of at least 1")
+    if level is not None and level not in LEVELS:
+        raise ArgumentError(f"level is {level!r}: it must be one of {', '.join(LEVELS)}")
+    if engine == "ray":
+        from . import _ray
+
+        request = _ray.Request(lambda: _hamel.scene_text(scene, bool(floating_base)), workers, bool(estimate), level)
+        return _ray.sweep(request, table, output)
+    if engine is not None:
+        raise ArgumentError(f"engine is {engine!r}: it must be None or 'ray'")
+    if output is not None:
+        raise ArgumentError("output is for engine='ray': without it results are returned")
+    columns = numbers(table)
+    check_level(level)
+    found = _hamel.Sweep(*_hamel.scene_text(scene, bool(floating_base)), list(columns), bool(estimate)).rows(list(columns.values()), workers)
+    found["outcome"] = np.array(found["outcome"], dtype=str)
+    return found
+
+
+def numbers(table: Any) -> dict[str, NDArray[np.float64]]:
+    """The columns of a table in memory by name, as doubles.
+
+    Raises:
+        ArgumentError: what is no table; columns that are no arrays of numbers, of one length.
     """
     columns = {str(name): _column(str(name), values) for name, values in _columns(table).items()}
     if not columns:
@@ -47,11 +113,7 @@ def sweep(
     lengths = {name: len(values) for name, values in columns.items()}
     if len(set(lengths.values())) > 1:
         raise ArgumentError(f"table has columns of different lengths: {lengths}")
-    if workers is not None and (not isinstance(workers, int) or isinstance(workers, bool) or workers < 1):
-        raise ArgumentError(f"workers is {workers!r}: it must be a whole number of at least 1")
-    found = _hamel.sweep(scene, list(columns), list(columns.values()), (workers, bool(estimate), bool(floating_base)))
-    found["outcome"] = np.array(found["outcome"], dtype=str)
-    return found
+    return columns
 
 
 def _columns(table: Any) -> Mapping[Any, Any]:

@@ -1,0 +1,344 @@
+"""Sweeps on a cluster. Ray Data reads the rows, hands them to actors that hold the scene, starts actors again that die, and writes the results; here stands what it does so with."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import json
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _hamel, _parquet
+from ._errors import ArgumentError, Error
+from ._level import LEVELS, lowest
+
+#: Rows that an actor moves at once, which are done again where it dies: as many parts as this, within bounds.
+_PARTS, _LEAST, _MOST = 64, 8, 5000
+
+#: What says in the output what was swept.
+_MANIFEST = "sweep.json"
+
+_INSTALL = "pip install 'ray[data]'"
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is to be swept, but for the table."""
+
+    scene: Callable[[], tuple[str, str]]
+    """Its text, and what messages call it."""
+    workers: int | None
+    estimate: bool
+    level: str | None
+
+
+class Fixed(NamedTuple):
+    """What all actors of a sweep have in common."""
+
+    version: str
+    """Of the package."""
+    level: str
+    """Of instructions."""
+    sum: str
+    """Of the bits of mathematical functions."""
+
+
+class Rows(NamedTuple):
+    """Rows of a table, numbered, as Ray Data has them."""
+
+    columns: list[str]
+    count: int
+    dataset: Callable[[], Any]
+    """Of tables of pyarrow: ``row``, from 1, and the columns."""
+
+
+def sweep(request: Request, table: Any, output: str | PathLike[str] | None) -> dict[str, NDArray[Any]] | None:
+    """What ``hamel.sweep`` tells of ``engine="ray"``."""
+    ray = _ray()
+    folder = None if output is None else _parquet.address(output)
+    if folder is not None and not _parquet.is_empty(folder):
+        raise ArgumentError(f"output is {folder}, which holds files: name a folder of its own for the results")
+    with _quiet(ray):
+        rows = _rows(ray, table)
+        scene = (*request.scene(), rows.columns, request.estimate)
+        names = _hamel.Sweep(*scene).results
+        fixed, environment = _fixed(ray, request.level)
+        results = rows.dataset().map_batches(
+            Actor,
+            batch_size=None,
+            batch_format="pyarrow",
+            fn_constructor_args=(scene, fixed),
+            compute=_pool(ray, request.workers),
+            num_cpus=1,
+            **({"runtime_env": {"env_vars": environment}} if environment else {}),
+        )
+        with _errors(ray):
+            if folder is None:
+                return _gathered(results, rows.count, names)
+            _write(results, folder, _told(scene, fixed, rows.count), _nodes(ray))
+    return None
+
+
+class Actor:
+    """Moves rows in a process of its own, which has one core."""
+
+    def __init__(self, scene: tuple[str, str, list[str], bool], fixed: Fixed) -> None:
+        own = _own()
+        if own != fixed:
+            raise Error(f"an actor is {_shown(own)}, and the sweep {_shown(fixed)}: bits of results would depend on the node")
+        self.columns = scene[2]
+        self.sweep = _hamel.Sweep(*scene)
+
+    def __call__(self, rows: Any) -> Any:
+        """The results of rows, which have their numbers."""
+        found = self.sweep.rows([_doubles(rows[name]) for name in self.columns], 1)
+        return _arrow().table({"row": rows["row"], **found})
+
+
+def _ray() -> Any:
+    """Ray, connected to a cluster."""
+    try:
+        ray = importlib.import_module("ray")
+        importlib.import_module("ray.data")
+    except ImportError as error:
+        raise Error(f"engine is 'ray', and Ray is not installed ({error}): {_INSTALL}") from None
+    if not ray.is_initialized():
+        # A cluster that the environment names, or one of this machine.
+        ray.init(ignore_reinit_error=True, logging_level="ERROR", log_to_driver=False)
+    return ray
+
+
+def _arrow() -> Any:
+    return importlib.import_module("pyarrow")
+
+
+@contextlib.contextmanager
+def _quiet(ray: Any) -> Iterator[None]:
+    """Without bars of progress."""
+    context = ray.data.DataContext.get_current()
+    before = context.enable_progress_bars
+    context.enable_progress_bars = False
+    try:
+        yield
+    finally:
+        context.enable_progress_bars = before
+
+
+@contextlib.contextmanager
+def _errors(ray: Any) -> Iterator[None]:
+    """What happens on the cluster, as exceptions of this package."""
+    try:
+        yield
+    except ray.exceptions.RayError as error:
+        cause = getattr(error, "cause", None) or error
+        raise cause if isinstance(cause, Error) else Error(f"the sweep by Ray has failed: {cause}") from error
+
+
+def _pool(ray: Any, workers: int | None) -> Any:
+    """As many actors as there are to be, or as the cluster has room for."""
+    if workers is not None:
+        return ray.data.ActorPoolStrategy(size=workers)
+    cores = int(ray.cluster_resources().get("CPU", 1))
+    return ray.data.ActorPoolStrategy(min_size=1, max_size=max(1, cores))
+
+
+def _nodes(ray: Any) -> int:
+    """How many there are now."""
+    return max(1, sum(node["Alive"] for node in ray.nodes()))
+
+
+# The level of instructions
+
+
+def _own() -> Fixed:
+    """What this process has."""
+    from . import __version__
+
+    return Fixed(__version__, *_hamel.arithmetic())
+
+
+def _shown(fixed: Fixed) -> str:
+    return f"hamel {fixed.version} at {fixed.level} (sum {fixed.sum})"
+
+
+def _fixed(ray: Any, level: str | None) -> tuple[Fixed, dict[str, str]]:
+    """What all nodes have in common, and the environment in which their processes have it."""
+    found = _of_nodes(ray, {})
+    versions = {own.version for own in found.values()}
+    if versions != {_own().version}:
+        raise Error(f"nodes have other versions of hamel than this process, {_own().version}: {_listed(found)}")
+    common = lowest({own.level for own in found.values()})
+    if common is None:
+        raise Error(f"nodes have processors of different kinds, which have no level of instructions in common: {_listed(found)}")
+    if level is not None and level != common:
+        if level != lowest({level, common}):
+            raise ArgumentError(f"level is {level!r}, and not all nodes have it: {_listed(found)}")
+        common = level
+    environment: dict[str, str] = {}
+    if {own.level for own in found.values()} != {common}:
+        environment = LEVELS[common]
+        found = _of_nodes(ray, environment)
+    if len(set(found.values())) > 1:
+        raise Error(f"nodes compute otherwise, by another C library or build of hamel: {_listed(found)}")
+    return next(iter(found.values())), environment
+
+
+def _of_nodes(ray: Any, environment: dict[str, str]) -> dict[str, Fixed]:
+    """What a process of each node has that begins with this environment, by the node's address."""
+    strategies: Any = importlib.import_module("ray.util.scheduling_strategies")
+    started = {"runtime_env": {"env_vars": environment}} if environment else {}
+    nodes = [node for node in ray.nodes() if node["Alive"] and node["Resources"].get("CPU", 0) >= 1]
+    own = ray.remote(num_cpus=0)(_own)
+    asked = []
+    for node in nodes:
+        there = strategies.NodeAffinitySchedulingStrategy(node["NodeID"], soft=False)
+        asked.append(own.options(scheduling_strategy=there, **started).remote())
+    with _errors(ray):
+        found = ray.get(asked)
+    return {f"{node['NodeManagerAddress']} ({node['NodeID'][:8]})": Fixed(*own) for node, own in zip(nodes, found, strict=True)}
+
+
+def _listed(found: dict[str, Fixed]) -> str:
+    return "; ".join(f"{node} has {_shown(own)}" for node, own in found.items())
+
+
+# Tables
+
+
+def _rows(ray: Any, table: Any) -> Rows:
+    """The rows of whatever is a table, numbered."""
+    if isinstance(table, ray.data.Dataset):
+        return _rows_of_dataset(ray, table)
+    if isinstance(table, (str, PathLike)) or (isinstance(table, Sequence) and all(isinstance(own, (str, PathLike)) for own in table)):
+        return _rows_of_files(ray, _parquet.opened(table))
+    return _rows_of_memory(ray, table)
+
+
+def _rows_of_files(ray: Any, table: _parquet.Table) -> Rows:
+    """Those of files: what is handed out is where they stand."""
+    if not table.columns:
+        raise ArgumentError("table has no columns")
+    pieces = list(table.pieces(_part(table.rows)))
+
+    def read(pieces: Any) -> Any:
+        [piece] = pieces.to_pylist()
+        return _with_numbers(_parquet.read(piece, table.columns), piece["first"])
+
+    def dataset() -> Any:
+        places = [_arrow().Table.from_pylist([piece]) for piece in pieces]
+        # A reader for each node is enough: motions take far longer.
+        readers = ray.data.TaskPoolStrategy(size=_nodes(ray))
+        return ray.data.from_arrow(places).map_batches(read, batch_size=1, batch_format="pyarrow", num_cpus=0, compute=readers)
+
+    return Rows(table.columns, table.rows, dataset)
+
+
+def _rows_of_memory(ray: Any, table: Any) -> Rows:
+    from ._sweep import numbers
+
+    columns = numbers(table)
+    count = len(next(iter(columns.values())))
+    most = _part(count)
+
+    def dataset() -> Any:
+        whole = _arrow().table(columns)
+        return ray.data.from_arrow([_with_numbers(whole.slice(start, most), start + 1) for start in range(0, count, most)])
+
+    return Rows(list(columns), count, dataset)
+
+
+def _rows_of_dataset(ray: Any, table: Any) -> Rows:
+    """Those of a dataset, in its order: it is held by the cluster, not here, until all of its blocks are counted."""
+    options = table.context.execution_options
+    before, options.preserve_order = options.preserve_order, True
+    try:
+        held = table.materialize()
+    finally:
+        options.preserve_order = before
+    blocks = held.to_arrow_refs()
+    count, number = ray.remote(num_cpus=0)(_count), ray.remote(num_cpus=0)(_with_numbers)
+    counts = ray.get([count.remote(block) for block in blocks])
+
+    def dataset() -> Any:
+        firsts = np.cumsum([1, *counts]).tolist()
+        numbered = [number.remote(block, first) for block, first in zip(blocks, firsts, strict=False)]
+        return ray.data.from_arrow_refs(numbered).repartition(target_num_rows_per_block=_part(sum(counts)))
+
+    schema = held.schema()
+    if schema is None:
+        raise ArgumentError("table has no columns")
+    return Rows([str(name) for name in schema.names], sum(counts), dataset)
+
+
+def _part(rows: int) -> int:
+    """Rows that are moved at once."""
+    return min(max(rows // _PARTS, _LEAST), _MOST)
+
+
+def _count(table: Any) -> int:
+    return len(table)
+
+
+def _with_numbers(table: Any, first: int) -> Any:
+    """The rows of a table of pyarrow with their places in the whole table."""
+    return table.append_column("row", _arrow().array(np.arange(first, first + len(table))))
+
+
+def _doubles(column: Any) -> NDArray[np.float64]:
+    return np.array(column.to_numpy(), dtype=float)
+
+
+# Results
+
+
+def _gathered(results: Any, count: int, names: list[str]) -> dict[str, NDArray[Any]]:
+    """Results in the order of the table."""
+    outcomes = np.full(count, None, dtype=object)
+    found = {name: np.full(count, np.nan) for name in names}
+    batches = results.iter_batches(batch_size=None, batch_format="pyarrow") if count > 0 else ()
+    for some in batches:
+        places = some["row"].to_numpy() - 1
+        outcomes[places] = some["outcome"].to_pylist()
+        for name, values in found.items():
+            values[places] = some[name].to_numpy()
+    _check_count(count - sum(outcome is None for outcome in outcomes), count)
+    return {"outcome": np.array(outcomes, dtype=str), **found}
+
+
+def _write(results: Any, folder: str, told: dict[str, Any], nodes: int) -> None:
+    """Results as files, by one writer for each node, and what was swept: first, and again when all of them are there."""
+    _parquet.write_text(folder, _MANIFEST, _json({**told, "is_complete": False}))
+    if told["rows"] > 0:
+        results.write_parquet(folder, ray_remote_args={"num_cpus": 0}, concurrency=nodes)
+    _check_count(_parquet.rows_in(folder), told["rows"])
+    _parquet.write_text(folder, _MANIFEST, _json({**told, "is_complete": True}))
+
+
+def _check_count(found: int, expected: int) -> None:
+    if found != expected:
+        raise Error(f"the sweep by Ray has {found} results, and the table {expected} rows")
+
+
+def _told(scene: tuple[str, str, list[str], bool], fixed: Fixed, rows: int) -> dict[str, Any]:
+    """What decides on the results."""
+    text, source, columns, estimate = scene
+    return {
+        "version": fixed.version,
+        "engine": "ray",
+        "equations": "tree",
+        "level": fixed.level,
+        "sum_of_functions": fixed.sum,
+        "error_estimate": estimate,
+        "rows": rows,
+        "columns": columns,
+        "scene": {"name": source, "text": text},
+    }
+
+
+def _json(told: dict[str, Any]) -> str:
+    return json.dumps(told, indent=2, ensure_ascii=False) + "\n"
