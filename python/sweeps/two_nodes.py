@@ -18,20 +18,19 @@ from pathlib import Path
 import hamel
 import numpy as np
 import pyarrow
-import pyarrow.compute
 import pyarrow.parquet
 import ray
 from ray.cluster_utils import Cluster
 
 SCENE = Path(__file__).resolve().parents[2] / "scenes/sweep/arm.toml"
-COLUMNS = ["body.hand.mass", "body.fore.mass", "body.fore.spring.stiffness", "body.upper.initial.configuration.1"]
+COLUMNS = ["body.hand.mass", "body.fore.mass", "body.fore.spring.stiffness", "body.upper.initial.configuration.1", "simulation.t_end"]
 FILE_ROWS = 20_000
 
 
 def rows_of(first, count):
     """Rows that depend on their places alone."""
     random = np.random.default_rng(first)
-    ranges = [(0.3, 0.9), (1.0, 1.4), (150.0, 210.0), (-0.02, 0.02)]
+    ranges = [(0.3, 0.9), (1.0, 1.4), (150.0, 210.0), (-0.02, 0.02), (0.1, 0.15)]
     return {name: random.uniform(*own, count) for name, own in zip(COLUMNS, ranges, strict=True)}
 
 
@@ -93,7 +92,8 @@ def sweep(table, output, rows, estimate, kill):
 def compare(output, rows, estimate):
     """Compares the sorted results with those of a process without Ray, a file of the table at a time."""
     program = "import hamel, pickle, sys; a, k = pickle.load(sys.stdin.buffer); pickle.dump(hamel.sweep(*a, **k), sys.stdout.buffer)"
-    results = pyarrow.parquet.read_table(output).sort_by("row")
+    files = [pyarrow.parquet.read_table(path) for path in output.glob("*.parquet")]
+    results = pyarrow.concat_tables(files).sort_by("row")
     assert results["row"].to_pylist() == list(range(1, rows + 1)), "rows are missing, or there twice"
     count = same = 0
     start = time.perf_counter()

@@ -1,5 +1,10 @@
 """Many motions of one scene, beside single ones and the program's."""
 
+import os
+import pickle
+import subprocess
+import sys
+
 import hamel
 import numpy as np
 import pytest
@@ -71,3 +76,42 @@ def test_tables_that_are_none_are_refused(rows, message):
 def test_workers_are_counted():
     with pytest.raises(hamel.ArgumentError, match="workers is 0: it must be a whole number of at least 1"):
         hamel.sweep(ARM, table(1), 0)
+
+
+def test_sweeps_pickle_as_their_scenes():
+    sweep = hamel._hamel.Sweep(*hamel._hamel.scene_text(ARM, False), [MASS], False)
+    again = pickle.loads(pickle.dumps(sweep))
+    rows = [np.array([0.5, 0.7])]
+    for name, values in sweep.rows(rows, 1).items():
+        assert np.array_equal(values, again.rows(rows, 1)[name])
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"engine": "dask"}, "engine is 'dask': it must be None or 'ray'"),
+        ({"output": "results"}, "output is for engine='ray': without it results are returned"),
+        ({"level": "x86-64-v9"}, "level is 'x86-64-v9': it must be one of x86-64, x86-64-v3"),
+    ],
+)
+def test_options_that_are_none_are_refused(options, message):
+    with pytest.raises(hamel.ArgumentError) as raised:
+        hamel.sweep(ARM, table(1), **options)
+    assert str(raised.value) == message
+
+
+def test_a_missing_ray_is_told(monkeypatch):
+    monkeypatch.setitem(sys.modules, "ray", None)
+    with pytest.raises(hamel.Error, match=r"engine is 'ray', and Ray is not installed \(.*\): pip install 'ray\[data\]>=2.60'"):
+        hamel.sweep(ARM, table(1), engine="ray")
+
+
+@pytest.mark.skipif(hamel._hamel.arithmetic()[0] != "x86-64-v3", reason="this processor has one level of instructions")
+def test_a_process_has_one_level():
+    with pytest.raises(hamel.ArgumentError, match="level is 'x86-64', and this process computes at 'x86-64-v3': start Python with GLIBC_TUNABLES=") as raised:
+        hamel.sweep(ARM, table(1), level="x86-64")
+    name, value = str(raised.value).split(" with ")[1].split(" ")[0].split("=", 1)
+    program = "import hamel; print(*hamel._hamel.arithmetic())"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env={**os.environ, name: value}, timeout=60)
+    level, sum_of_functions = done.stdout.split()
+    assert level == "x86-64" and sum_of_functions != hamel._hamel.arithmetic()[1], done.stderr

@@ -18,12 +18,15 @@ from ._errors import ArgumentError, Error
 from ._level import LEVELS, lowest
 
 #: Rows that an actor moves at once, which are done again where it dies: as many parts as this, within bounds.
-_PARTS, _LEAST, _MOST = 64, 8, 5000
+_PARTS, _LEAST, _MOST = 64, 100, 5000
+
+#: Parts that go into one file: to start what writes it takes longer than to write.
+_FILE = 4
 
 #: What says in the output what was swept.
 _MANIFEST = "sweep.json"
 
-_INSTALL = "pip install 'ray[data]'"
+_INSTALL = "pip install 'ray[data]>=2.60'"
 
 
 @dataclass(frozen=True)
@@ -52,7 +55,8 @@ class Rows(NamedTuple):
     """Rows of a table, numbered, as Ray Data has them."""
 
     columns: list[str]
-    count: int
+    total: int
+    """How many there are."""
     dataset: Callable[[], Any]
     """Of tables of pyarrow: ``row``, from 1, and the columns."""
 
@@ -63,24 +67,23 @@ def sweep(request: Request, table: Any, output: str | PathLike[str] | None) -> d
     folder = None if output is None else _parquet.address(output)
     if folder is not None and not _parquet.is_empty(folder):
         raise ArgumentError(f"output is {folder}, which holds files: name a folder of its own for the results")
-    with _quiet(ray):
-        rows = _rows(ray, table)
-        scene = (*request.scene(), rows.columns, request.estimate)
-        names = _hamel.Sweep(*scene).results
-        fixed, environment = _fixed(ray, request.level)
-        results = rows.dataset().map_batches(
-            Actor,
-            batch_size=None,
-            batch_format="pyarrow",
-            fn_constructor_args=(scene, fixed),
-            compute=_pool(ray, request.workers),
-            num_cpus=1,
-            **({"runtime_env": {"env_vars": environment}} if environment else {}),
-        )
-        with _errors(ray):
-            if folder is None:
-                return _gathered(results, rows.count, names)
-            _write(results, folder, _told(scene, fixed, rows.count), _nodes(ray))
+    rows = _rows(ray, table)
+    scene = (*request.scene(), rows.columns, request.estimate)
+    names = _hamel.Sweep(*scene).results
+    fixed, environment = _fixed(ray, request.level)
+    results = rows.dataset().map_batches(
+        Actor,
+        batch_size=None,
+        batch_format="pyarrow",
+        fn_constructor_args=(scene, fixed),
+        compute=_pool(ray, request.workers),
+        num_cpus=1,
+        **({"runtime_env": {"env_vars": environment}} if environment else {}),
+    )
+    with _errors(ray):
+        if folder is None:
+            return _gathered(results, rows.total, names)
+        _write(results, folder, _told(scene, fixed, rows.total), _nodes(ray))
     return None
 
 
@@ -118,18 +121,6 @@ def _arrow() -> Any:
 
 
 @contextlib.contextmanager
-def _quiet(ray: Any) -> Iterator[None]:
-    """Without bars of progress."""
-    context = ray.data.DataContext.get_current()
-    before = context.enable_progress_bars
-    context.enable_progress_bars = False
-    try:
-        yield
-    finally:
-        context.enable_progress_bars = before
-
-
-@contextlib.contextmanager
 def _errors(ray: Any) -> Iterator[None]:
     """What happens on the cluster, as exceptions of this package."""
     try:
@@ -149,7 +140,7 @@ def _pool(ray: Any, workers: int | None) -> Any:
 
 def _nodes(ray: Any) -> int:
     """How many there are now."""
-    return max(1, sum(node["Alive"] for node in ray.nodes()))
+    return max(1, len([node for node in ray.nodes() if node["Alive"]]))
 
 
 # The level of instructions
@@ -314,7 +305,7 @@ def _write(results: Any, folder: str, told: dict[str, Any], nodes: int) -> None:
     """Results as files, by one writer for each node, and what was swept: first, and again when all of them are there."""
     _parquet.write_text(folder, _MANIFEST, _json({**told, "is_complete": False}))
     if told["rows"] > 0:
-        results.write_parquet(folder, ray_remote_args={"num_cpus": 0}, concurrency=nodes)
+        results.write_parquet(folder, ray_remote_args={"num_cpus": 0}, concurrency=nodes, min_rows_per_file=_FILE * _part(told["rows"]))
     _check_count(_parquet.rows_in(folder), told["rows"])
     _parquet.write_text(folder, _MANIFEST, _json({**told, "is_complete": True}))
 
