@@ -10,7 +10,7 @@ from ._errors import ArgumentError
 
 _HIDDEN = ",".join(f"-{name}{ending}" for name in ("AVX2", "FMA", "FMA4") for ending in ("", "_Usable"))
 
-#: What a process must have in its environment when it starts, by level; the lowest level first. Where processors have one level there is nothing to choose.
+# What a process must have in its environment when it starts, by level; the lowest level first. Where processors have one level there is nothing to choose.
 LEVELS: dict[str, dict[str, str]] = {
     # The names with `_Usable` are those before glibc 2.33.
     "x86-64": {"GLIBC_TUNABLES": f"glibc.cpu.hwcaps={_HIDDEN}"},

@@ -17,13 +17,13 @@ from . import _hamel, _parquet
 from ._errors import ArgumentError, Error
 from ._level import LEVELS, lowest
 
-#: Rows that an actor moves at once, which are done again where it dies: as many parts as this, within bounds.
+# Rows that an actor moves at once, which are done again where it dies: as many parts as this, within bounds.
 _PARTS, _LEAST, _MOST = 64, 100, 5000
 
-#: Parts that go into one file: to start what writes it takes longer than to write.
+# Parts that go into one file: to start what writes it takes longer than to write.
 _FILE = 4
 
-#: What says in the output what was swept.
+# What says in the output what was swept.
 _MANIFEST = "sweep.json"
 
 _INSTALL = "pip install 'ray[data]>=2.60'"
