@@ -4,9 +4,11 @@ use crate::errors;
 use crate::joint::Joint;
 use crate::joint_source::SpecSource;
 use crate::robot::Robot;
-use crate::source::{RobotOptions, Source};
+use crate::source::{RobotOptions, Source, State};
+use hamel::scene::robot::srdf::Coordinates;
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 /// The robot or the scene in a file or a text, as a `Robot`.
 ///
@@ -15,18 +17,20 @@ use std::collections::BTreeMap;
 ///     floating_base: whether the root link of a URDF moves freely; otherwise it is fixed to the world.
 ///     lenient: whether a URDF is read although no rigid body has its masses: such an inertia becomes that of a ball with the mean of its moments, and joints that move nothing
 ///         with mass are fixed. `Robot.notices` tells what was changed.
-///     posture: where joints of a robot in URDF, MJCF or SDF begin, by their names: angles in rad, displacements in m. Others begin at home.
+///     posture: where joints of a robot in URDF, MJCF or SDF begin, by their names: angles in rad, displacements in m; others begin at home. Or the name of a state of an SRDF.
+///     srdf: path of the SRDF with that state; without it the file of the robot's name that ends in ``.srdf``.
 ///     joints: joint types beside those of the library, as `Joint`s: a scene names them. They are interpreted, which is slower.
 ///
 /// Raises:
 ///     FileError: a file that cannot be read, and all mistakes of its text, each with its line.
 #[pyfunction]
-#[pyo3(signature = (file_or_text, *, floating_base=false, lenient=false, posture=None, joints=None))]
+#[pyo3(signature = (file_or_text, *, floating_base=false, lenient=false, posture=None, srdf=None, joints=None))]
 pub fn load(
     file_or_text: &Bound<'_, PyAny>,
     floating_base: bool,
     lenient: bool,
     posture: Option<&Bound<'_, PyAny>>,
+    srdf: Option<PathBuf>,
     joints: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Robot> {
     let py = file_or_text.py();
@@ -49,23 +53,43 @@ pub fn load(
     let options = RobotOptions {
         floating_base,
         lenient,
-        posture: coordinates(posture)?,
+        ..begun(posture)?
     };
-    robot(py, Source::of(file_or_text, options)?.with_joints(own))
+    if srdf.is_some() && options.state.is_none() {
+        let message = "srdf is for a posture that is the name of a state";
+        return Err(errors::argument(py, message));
+    }
+    let source = Source::of(file_or_text, options)?.with_joints(own);
+    robot(py, source.fits(py)?.in_state(py, srdf)?)
 }
 
-/// Coordinates by the names of joints.
-fn coordinates(posture: Option<&Bound<'_, PyAny>>) -> PyResult<BTreeMap<String, f64>> {
+/// Where a robot begins: the name of a state, or coordinates by the names of joints.
+fn begun(posture: Option<&Bound<'_, PyAny>>) -> PyResult<RobotOptions> {
+    let mut options = RobotOptions::default();
     let Some(posture) = posture else {
-        return Ok(BTreeMap::new());
+        return Ok(options);
     };
-    posture.extract().map_err(|_| {
+    if let Ok(name) = posture.extract::<String>() {
+        let coordinates = vec![];
+        options.state = Some(State { name, coordinates });
+        return Ok(options);
+    }
+    options.posture = posture.extract().map_err(|_| {
         let message = format!(
-            "posture is {posture:?}: it must be a dict of numbers by the names of joints, in rad or m"
+            "posture is {posture:?}: it must be a dict of numbers by the names of joints, in rad or m, or the name of a state of an SRDF"
         );
         errors::argument(posture.py(), message)
-    })
+    })?;
+    Ok(options)
 }
+
+/// What a pickle holds of the options of a robot.
+pub type Options = (
+    bool,
+    bool,
+    BTreeMap<String, f64>,
+    Option<(String, Coordinates)>,
+);
 
 /// The robot of a text that was read before, for pickles.
 #[pyfunction]
@@ -73,11 +97,11 @@ fn coordinates(posture: Option<&Bound<'_, PyAny>>) -> PyResult<BTreeMap<String, 
 pub fn parse(
     py: Python<'_>,
     source: (String, String, bool),
-    options: (bool, bool, BTreeMap<String, f64>),
+    options: Options,
     joints: Vec<String>,
 ) -> PyResult<Robot> {
     let (name, text, is_robot) = source;
-    let (floating_base, lenient, posture) = options;
+    let (floating_base, lenient, posture, state) = options;
     let mut own = vec![];
     for joint in joints {
         own.push(Joint::of(py, SpecSource::of_text(joint))?.registered(py)?);
@@ -86,12 +110,14 @@ pub fn parse(
         py,
         Source {
             name,
+            path: None,
             text,
             is_robot,
             options: RobotOptions {
                 floating_base,
                 lenient,
                 posture,
+                state: state.map(|(name, coordinates)| State { name, coordinates }),
             },
             joints: own,
         },
@@ -99,7 +125,6 @@ pub fn parse(
 }
 
 fn robot(py: Python<'_>, source: Source) -> PyResult<Robot> {
-    let source = source.fits(py)?;
     let mut registry = hamel::joints::registry();
     for joint in &source.joints {
         let added = joint.kind.register(&mut registry);

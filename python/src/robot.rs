@@ -377,6 +377,7 @@ impl Robot {
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let Source {
             name,
+            path: _,
             text,
             is_robot,
             options,
@@ -384,7 +385,13 @@ impl Robot {
         } = self.source.clone();
         let parse = py.import("hamel._hamel")?.getattr("parse")?;
         let source = (name, text, is_robot);
-        let options = (options.floating_base, options.lenient, options.posture);
+        let state = options.state.map(|state| (state.name, state.coordinates));
+        let options = (
+            options.floating_base,
+            options.lenient,
+            options.posture,
+            state,
+        );
         let joints: Vec<String> = joints.into_iter().map(|joint| joint.spec).collect();
         Ok((parse, (source, options, joints).into_pyobject(py)?))
     }

@@ -3,6 +3,7 @@
 use crate::errors;
 use hamel::Model;
 use hamel::registry::JointRegistry;
+use hamel::scene::robot::srdf::{self, Coordinates};
 use hamel::scene::robot::{self, Import};
 use hamel::scene::{Diagnostics, Scene, SceneDescription, read_file};
 use hamel_interpreted::JointType;
@@ -15,6 +16,8 @@ use std::path::PathBuf;
 pub struct Source {
     /// What messages call it.
     pub name: String,
+    /// The file that it was read from, if it was.
+    pub path: Option<PathBuf>,
     /// The text.
     pub text: String,
     /// Whether it is a robot in URDF, MJCF or SDF rather than a scene, by its ending or by how it begins.
@@ -34,6 +37,17 @@ pub struct RobotOptions {
     pub lenient: bool,
     /// Where joints begin, rad or m.
     pub posture: BTreeMap<String, f64>,
+    /// The state of an SRDF in which it begins.
+    pub state: Option<State>,
+}
+
+/// A state of an SRDF.
+#[derive(Clone)]
+pub struct State {
+    /// Its name.
+    pub name: String,
+    /// Where it has joints, rad or m.
+    pub coordinates: Coordinates,
 }
 
 impl RobotOptions {
@@ -51,7 +65,7 @@ impl RobotOptions {
                 "lenient is True: only robots in URDF are read so",
                 "the numbers of a scene are corrected in its text",
             )),
-            Self { posture, .. } if !posture.is_empty() => Some((
+            Self { posture, state, .. } if !posture.is_empty() || state.is_some() => Some((
                 "posture is for robots in URDF, MJCF and SDF",
                 "the joints of a scene begin where their `initial` says",
             )),
@@ -114,11 +128,35 @@ impl Source {
         };
         Ok(Self {
             name,
+            path: Some(path),
             text,
             is_robot,
             options,
             joints: vec![],
         })
+    }
+
+    /// With the state of its posture, which the file `srdf` has, or the one beside the robot.
+    ///
+    /// # Errors
+    /// No such file, and its mistakes; no state of that name in it.
+    pub fn in_state(mut self, py: Python<'_>, given: Option<PathBuf>) -> PyResult<Self> {
+        let Some(state) = &mut self.options.state else {
+            return Ok(self);
+        };
+        let beside = self.path.as_ref().map(|path| path.with_extension("srdf"));
+        let file = given.or(beside.filter(|file| file.is_file())).ok_or_else(|| {
+            let name = &state.name;
+            errors::argument(
+                py,
+                format!("posture is {name:?}: say by srdf which SRDF has a state of that name, or write a dict of numbers by the names of joints"),
+            )
+        })?;
+        let (text, shown) =
+            read_file(&file).map_err(|error| errors::file(py, &file.to_string_lossy(), &error))?;
+        state.coordinates = srdf::state(&text, &shown, &state.name)
+            .map_err(|mistakes| errors::file(py, &shown, &mistakes))?;
+        Ok(self)
     }
 
     /// With joint types beside those of the library.
@@ -129,6 +167,7 @@ impl Source {
     fn of_text(text: String, options: RobotOptions) -> Self {
         Self {
             name: String::from("text"),
+            path: None,
             is_robot: robot::is_robot(&PathBuf::new(), &text),
             text,
             options,
@@ -154,7 +193,12 @@ impl Source {
             ..robot::Options::default()
         };
         let posture: Vec<(String, f64)> = self.options.posture.clone().into_iter().collect();
-        robot::read(&self.text, &self.name, &options)?.in_posture(&posture)
+        let import = robot::read(&self.text, &self.name, &options)?;
+        let import = match &self.options.state {
+            Some(state) => import.in_state(&state.coordinates)?,
+            None => import,
+        };
+        import.in_posture(&posture)
     }
 
     /// The text of the scene; of a robot that of the scene that is made of it.

@@ -92,6 +92,27 @@ def test_a_robot_begins_in_its_posture():
         hamel.load(SCENES / "mixed_tree.toml", posture={"rail": 1.0})
 
 
+def test_a_robot_begins_in_a_state_of_an_srdf(tmp_path):
+    file = tmp_path / "panda.urdf"
+    file.write_text(PANDA.read_text())
+    state = '<robot name="panda"><group_state name="ready" group="arm"><joint name="panda_joint4" value="-2"/></group_state></robot>'
+    elsewhere = tmp_path / "states.srdf"
+    elsewhere.write_text(state)
+    with pytest.raises(hamel.ArgumentError, match="posture is .ready.: say by srdf which SRDF"):
+        hamel.load(file, posture="ready")
+    given = hamel.load(PANDA.read_text(), posture="ready", srdf=elsewhere)
+    file.with_suffix(".srdf").write_text(state)
+    beside = hamel.load(file, posture="ready")
+    for robot in (given, beside, pickle.loads(pickle.dumps(beside))):
+        assert robot.positions(robot.state().configuration).tolist() == [0.0, 0.0, 0.0, -2.0, 0.0, 0.0, 0.0]
+    with pytest.raises(hamel.FileError, match="the SRDF has no state `reddy`"):
+        hamel.load(file, posture="reddy")
+    with pytest.raises(hamel.ArgumentError, match="srdf is for a posture that is the name of a state"):
+        hamel.load(file, posture={"panda_joint4": -2.0}, srdf=elsewhere)
+    with pytest.raises(hamel.ArgumentError, match="posture is for robots in URDF, MJCF and SDF"):
+        hamel.load(SCENES / "mixed_tree.toml", posture="ready")
+
+
 def test_broken_masses_are_read_leniently():
     text = '''<robot name="a">
 <link name="base"/>

@@ -18,7 +18,8 @@ def load(
     *,
     floating_base: bool = False,
     lenient: bool = False,
-    posture: Mapping[str, float] | None = None,
+    posture: Mapping[str, float] | str | None = None,
+    srdf: str | PathLike[str] | None = None,
     joints: Iterable[Joint] | None = None,
 ) -> Robot: ...
 def parse(source: tuple[str, str, bool], options: tuple[bool, bool, dict[str, float]], joints: Sequence[str] = ...) -> Robot: ...
