@@ -173,6 +173,15 @@ def test_a_motion_that_does_not_go_on_tells_the_time():
     assert caught.value.time == 3.0
 
 
+@pytest.fixture
+def ctrl_c():
+    """Ctrl-C raises, also where the shell that runs this in the background ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("ctrl_c")
 def test_an_interrupt_is_heard_at_once():
     """Ctrl-C in the middle of a motion, of its estimate, and of a batch."""
     robot = hamel.load(PENDULUM)
