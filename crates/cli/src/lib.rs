@@ -40,7 +40,8 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    Simulate(simulate::Args),
+    // The only one with so many options.
+    Simulate(Box<simulate::Args>),
     Compile(compile::Args),
     Import(import::Args),
     Joints(joints::Args),

@@ -49,8 +49,7 @@ impl Layer {
     fn triangle(&mut self, corners: [Corner; 3], color: Rgb) {
         let [a, b, c] = corners;
         let area = cross(&a, &b, [c[0], c[1]]);
-        // Also where a number is none.
-        if !(area.abs() > 1e-9) {
+        if area.is_nan() || area.abs() < 1e-9 {
             return;
         }
         let (columns, rows) = (
