@@ -13,6 +13,7 @@ mod svg;
 mod view;
 
 use super::plan::Plan;
+use super::progress;
 use crate::meshes::Meshes;
 use hamel::mechanism::Kinematics;
 use hamel::spatial::Pose;
@@ -140,7 +141,14 @@ impl<'a> Pictures<'a> {
             let mut instants = self.kept.chosen(playing.count);
             // One sample may be the nearest of two times.
             instants.dedup_by(|a, b| a.time == b.time);
-            raster::write_gif(&scenery, &instants, playing, file)
+            let bar = progress::working("choosing the colours of the GIF", self.plan.quiet);
+            let told = |drawn| {
+                let count = instants.len();
+                bar.set_message(format!("drawing the GIF: {drawn} of {count} pictures"));
+            };
+            let written = raster::write_gif(&scenery, &instants, playing, file, &told);
+            bar.finish_and_clear();
+            written
         });
         svg.and(png).and(gif)
     }

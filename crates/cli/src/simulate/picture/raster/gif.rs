@@ -62,7 +62,7 @@ impl Playing {
     }
 }
 
-/// Writes the motion through `instants`, again and again.
+/// Writes the motion through `instants`, again and again; `told` hears of how many pictures are drawn.
 ///
 /// # Errors
 /// What cannot be written.
@@ -71,6 +71,7 @@ pub fn write(
     instants: &[Instant],
     playing: Playing,
     file: &mut impl Write,
+    told: &dyn Fn(usize),
 ) -> io::Result<()> {
     let painter = Painter::new(scenery, instants, SIZE);
     let mut colors = Colors::of(&painter, instants);
@@ -91,6 +92,7 @@ pub fn write(
         frame.delay = delay(instants, index, playing.speed);
         encoder.write_frame(&frame).map_err(written)?;
         before = Some(indices);
+        told(index + 1);
     }
     Ok(())
 }

@@ -52,6 +52,7 @@ impl Layer {
         if area.is_nan() || area.abs() < 1e-9 {
             return;
         }
+        let share = 1.0 / area;
         let (columns, rows) = (
             pixels(corners.map(|corner| corner[0]), self.width),
             pixels(corners.map(|corner| corner[1]), self.height),
@@ -64,7 +65,7 @@ impl Layer {
             for column in columns.clone() {
                 let at = [column as f64 + 0.5, row as f64 + 0.5];
                 let parts = [cross(&b, &c, at), cross(&c, &a, at), cross(&a, &b, at)]
-                    .map(|part| part / area);
+                    .map(|part| part * share);
                 // Those on an edge belong to the faces on both sides, so that no seam is left.
                 if parts.iter().any(|part| *part < 0.0) {
                     continue;
