@@ -1,6 +1,8 @@
 //! The files of one motion say the same: the CSV, the Parquet and the page, each read back.
 
 mod columns;
+#[path = "../common/mod.rs"]
+mod common;
 mod forces;
 mod joints;
 mod meshes;

@@ -1,19 +1,15 @@
 //! Pictures as SVG, PNG and GIF.
 
+use super::common::hamel;
 use gif::{ColorOutput, DecodeOptions};
 use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 /// Runs `hamel simulate` in the root of the repository.
 fn run(words: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_hamel"))
-        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../.."))
-        .arg("simulate")
-        .args(words)
-        .output()
-        .expect("the program starts")
+    hamel(&[&["simulate"], words].concat())
 }
 
 /// What it tells on stderr where it succeeds.

@@ -24,6 +24,8 @@ pub type Line = [Vector3<f64>; 2];
 pub struct Stage {
     pub view: View,
     pub up: Vector3<f64>,
+    /// Direction to the light.
+    light: Vector3<f64>,
     /// Of the mechanism at the last instant, m.
     pub size: f64,
     /// Height of the ground, m; none where it is far below.
@@ -44,8 +46,10 @@ impl Stage {
             .last()
             .map_or(1.0, |last| radius(&scenery.balls(last)));
         let up = scenery.up;
+        let view = View::on(&balls, &up, aspect);
         Self {
-            view: View::on(&balls, &up, aspect),
+            light: view.light(&up),
+            view,
             size,
             ground: ground(&balls, &up, size),
             up,
@@ -54,15 +58,13 @@ impl Stage {
 
     /// The factor of a colour in the light, of a face with this unit vector outwards.
     pub fn lit(&self, normal: &Vector3<f64>) -> f64 {
-        let light = self.view.light(&self.up);
-        0.68 + 0.14 * normal.dot(&self.up) + 0.34 * normal.dot(&light).max(0.0)
+        0.68 + 0.14 * normal.dot(&self.up) + 0.34 * normal.dot(&self.light).max(0.0)
     }
 
     /// Where the shadow of a point is.
     pub fn shadow(&self, point: &Vector3<f64>, ground: f64) -> Vector3<f64> {
-        let light = self.view.light(&self.up);
         let height = (self.up.dot(point) - ground).max(0.0);
-        point - light * (height / light.dot(&self.up))
+        point - self.light * (height / self.light.dot(&self.up))
     }
 
     /// Squares on the ground, 1, 2 or 5 times a power of ten wide. The lines are in three parts, each nearer to the middle, which are drawn one over the other.
