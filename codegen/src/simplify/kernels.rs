@@ -156,18 +156,20 @@ pub(super) fn least_work(first: Kernel, others: impl IntoIterator<Item = Kernel>
         let counts = Counts::of_program(&program);
         (counts.work(), counts.total())
     };
-    let others: Vec<Kernel> = others.into_iter().filter(|other| *other != first).collect();
-    if others.is_empty() {
-        return first;
-    }
-    let mut best = (work(&first), first);
+    let mut ways = vec![first];
+    // Different ways often lead to the same kernel.
     for other in others {
-        let own = work(&other);
-        if own < best.0 {
-            best = (own, other);
+        if !ways.contains(&other) {
+            ways.push(other);
         }
     }
-    best.1
+    if ways.len() == 1 {
+        return ways.remove(0);
+    }
+    // Of equally short ones the first.
+    let least = ways.iter().enumerate().min_by_key(|(_, way)| work(way));
+    let least = least.map_or(0, |(n, _)| n);
+    ways.swap_remove(least)
 }
 
 fn output(kernels: &[Kernel], kind: KernelKind) -> Matrix {
