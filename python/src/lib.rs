@@ -29,7 +29,7 @@ mod _hamel {
     #[pymodule_export]
     use crate::joint::Joint;
     #[pymodule_export]
-    use crate::level::arithmetic;
+    use crate::level::{arithmetic, levels};
     #[pymodule_export]
     use crate::load::{load, parse};
     #[pymodule_export]

@@ -4,6 +4,7 @@
 
 pub mod columns;
 mod document;
+pub mod level;
 mod motion;
 mod path;
 mod results;

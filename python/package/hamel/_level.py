@@ -8,14 +8,8 @@ from __future__ import annotations
 from . import _hamel
 from ._errors import ArgumentError
 
-_HIDDEN = ",".join(f"-{name}{ending}" for name in ("AVX2", "FMA", "FMA4") for ending in ("", "_Usable"))
-
 # What a process must have in its environment when it starts, by level; the lowest level first. Where processors have one level there is nothing to choose.
-LEVELS: dict[str, dict[str, str]] = {
-    # The names with `_Usable` are those before glibc 2.33.
-    "x86-64": {"GLIBC_TUNABLES": f"glibc.cpu.hwcaps={_HIDDEN}"},
-    "x86-64-v3": {},
-}
+LEVELS: dict[str, dict[str, str]] = {level: dict([hidden] if hidden else []) for level, hidden in _hamel.levels()}
 
 
 def check_level(level: str | None) -> None:

@@ -2,6 +2,7 @@
 
 use crate::input::RobotArgs;
 use clap::ValueEnum;
+use hamel_sweep::level::LEVELS;
 use std::num::NonZero;
 use std::path::PathBuf;
 
@@ -31,7 +32,7 @@ Rows of a scene that moves by an explicit method of steps of one length (method 
 --no-error-estimate: about a dozen times as many a second of a double pendulum. Their numbers differ from those of the tree by rounding. --equations tree moves all rows one by one.
 
 Parts are written whole. Stopped by Ctrl-C (after the rows that it has begun to write) or killed, the same command goes on where it was. A folder of another sweep is left as it is. Numbers do not depend on workers, blocks or
-interruptions.
+interruptions; their last bits depend on --level, which sweep.json tells: name x86-64 where machines of several kinds shall have the same ones.
 
 Exit codes: 0 success, also where rows failed; 1 a scene with mistakes, a file that cannot be read or written; 2 wrong options, columns or folder; 130 interrupted.";
 
@@ -75,6 +76,10 @@ pub struct Args {
     /// By which equations rows move: many rows side by side, in a fraction of the time, where scene and rows allow it (auto, lanes), or one by one (tree)
     #[arg(long, value_enum, default_value_t = Equations::Auto)]
     pub equations: Equations,
+
+    /// Instructions of mathematical functions, on which last bits depend: x86-64 (no fused products) or x86-64-v3; other processors have one level [default: that of this machine]
+    #[arg(long, value_name = "LEVEL", value_parser = LEVELS)]
+    pub level: Option<String>,
 
     /// Print the scene of this row, from 1, and move nothing
     #[arg(long, value_name = "ROW", conflicts_with = "output")]

@@ -2,6 +2,7 @@
 
 use super::args::{Equations, Format};
 use hamel_console::output::Failure;
+use hamel_sweep::level::Arithmetic;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -22,8 +23,14 @@ pub struct Manifest {
     pub hamel_sweep: u32,
     /// Version of the program.
     pub version: String,
-    /// The processor's architecture. Motions are computed one by one in doubles, with the instructions that all processors of it have.
+    /// The processor's architecture.
     pub architecture: String,
+    /// The level of instructions; folders of earlier versions do not tell it.
+    #[serde(default)]
+    pub level: String,
+    /// Sum of the bits of mathematical functions at that level.
+    #[serde(default)]
+    pub functions: String,
     /// The scene file.
     pub scene: Input,
     /// The table.
@@ -77,10 +84,13 @@ impl Manifest {
         block: u64,
         (format, error_estimate, equations): (Format, bool, Equations),
     ) -> Self {
+        let Arithmetic { level, sum } = Arithmetic::own();
         Self {
             hamel_sweep: LAYOUT,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             architecture: std::env::consts::ARCH.to_owned(),
+            level: level.to_owned(),
+            functions: sum,
             scene,
             table,
             rows,
@@ -132,6 +142,15 @@ impl Manifest {
         note("the layout of the folder", &layout(other), &layout(self));
         note("the program's version", &other.version, &self.version);
         note("the processor", &other.architecture, &self.architecture);
+        let level = |own: &Self| match own.level.is_empty() {
+            true => "not told".to_owned(),
+            false => own.level.clone(),
+        };
+        note("the level of instructions", &level(other), &level(self));
+        if self.level == other.level {
+            let what = "the sum of mathematical functions of the C library";
+            note(what, &other.functions, &self.functions);
+        }
         note("the format", &other.format, &self.format);
         note("--equations", &other.equations, &self.equations);
         let block = |own: &Self| format!("{} rows", own.block);

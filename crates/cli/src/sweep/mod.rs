@@ -4,6 +4,7 @@ mod args;
 mod csv;
 mod equations;
 mod folder;
+mod level;
 mod manifest;
 mod page;
 #[cfg(feature = "parquet")]

@@ -6,7 +6,7 @@ use super::folder::Folder;
 use super::manifest::{Input, Manifest};
 use super::progress::Progress;
 use super::summary::Summary;
-use super::{parquet, table};
+use super::{level, parquet, table};
 use crate::input;
 use fnv::FnvHasher;
 use hamel::registry::JointRegistry;
@@ -22,6 +22,9 @@ use std::time::Instant;
 /// # Errors
 /// Mistakes in the scene, the columns or the options; files that cannot be read or written; an interrupt.
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
+    if let Some(wanted) = &args.level {
+        level::ensure(wanted)?;
+    }
     let input = input::Input::read(&args.scene, &args.robot)?;
     let text = input.scene_text()?;
     let table = table::Table::open(&args.over)?;

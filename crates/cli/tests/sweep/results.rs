@@ -170,3 +170,36 @@ fn the_arm_with_tolerances_moves_in_all_rows() {
     let first = "rows      200: 190 ended, 10 at the event table, 0 failed\n";
     assert!(told.starts_with(first), "{told}");
 }
+
+/// A folder has one level of instructions, and tells it.
+#[test]
+#[cfg(all(target_os = "linux", target_env = "gnu", target_arch = "x86_64"))]
+fn the_level_of_instructions_is_fixed() {
+    let place = pendulums(20);
+    let sweep = |out: &str, level: &str| {
+        place.run(&format!(
+            "sweep pendulum.toml --over table.csv -o {out} --no-error-estimate --quiet {level}"
+        ))
+    };
+    let level_of = |out: &str| -> String {
+        let manifest = place.read(&format!("{out}/sweep.json"));
+        let manifest: Value = serde_json::from_slice(&manifest).expect("JSON");
+        manifest["level"].as_str().expect("a level").to_owned()
+    };
+    assert!(sweep("lowest", "--level x86-64").status.success());
+    assert_eq!(level_of("lowest"), "x86-64");
+    assert!(sweep("own", "").status.success());
+    let own = level_of("own");
+    let again = sweep("lowest", "");
+    if own == "x86-64" {
+        assert!(again.status.success());
+        return;
+    }
+    assert_eq!(own, "x86-64-v3");
+    assert_eq!(again.status.code(), Some(2));
+    let told = String::from_utf8_lossy(&again.stderr);
+    let difference = "the level of instructions was x86-64, and is x86-64-v3\n";
+    assert!(told.contains(difference), "{told}");
+    // At the level it had, the same command goes on.
+    assert!(sweep("lowest", "--level x86-64").status.success());
+}
