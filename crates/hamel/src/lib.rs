@@ -9,6 +9,8 @@ mod error;
 #[cfg(feature = "scene")]
 mod model;
 #[cfg(feature = "scene")]
+mod parameters;
+#[cfg(feature = "scene")]
 mod ports;
 #[cfg(feature = "scene")]
 mod simulation;

@@ -3,11 +3,13 @@
 //! * [`Reference`]: Theorems 2 and 3 literally, matrices and all. For reading, checking and small mechanisms.
 //! * [`Recursive`]: the same in O(n), by recursions that share no formula with the former. For everything else.
 //! * [`Refined`]: the same to the last digit where doubles cancel; slower.
+//! * [`parameters`]: the combinations of inertial parameters on which the equations depend.
 //! * [`quasi`]: Theorem 1, for systems in quasi-coordinates that a caller writes down.
 //!
 //! Whatever integrates or compares equations of motion does so through [`Dynamics`].
 
 mod error;
+pub mod parameters;
 pub mod quasi;
 pub mod recursive;
 pub mod reference;
@@ -16,7 +18,8 @@ pub use error::DynamicsError;
 pub use recursive::LoadedMass;
 pub use recursive::{
     ForwardDerivatives, Frame, FrameReadings, HamiltonianDerivatives, InverseDerivatives,
-    InverseMassMatrix, MassMatrix, PinError, PinForce, Readings, Recursive, Refined, Sensitivity,
+    InverseMassMatrix, JointTorqueRegressor, MassMatrix, PinError, PinForce, Readings, Recursive,
+    Refined, Sensitivity,
 };
 pub use reference::Reference;
 

@@ -53,6 +53,15 @@ pub enum MassError {
         /// The mass given.
         mass: f64,
     },
+    /// First moments of a body without mass.
+    #[error(
+        "mass is 0 and a first moment of size {moment} kg m is not: it is the mass times the position of the centre of mass",
+        moment = Number(*.moment)
+    )]
+    MomentWithoutMass {
+        /// The largest of them.
+        moment: f64,
+    },
     /// The inertia matrix differs from its transpose.
     #[error(
         "inertia is not symmetric: its ({row}, {column}) entry {upper} and its ({column}, {row}) entry {lower} differ by \

@@ -8,6 +8,7 @@ mod check;
 pub mod fused;
 mod inertia;
 mod mass;
+mod parameters;
 mod pose;
 pub mod se3;
 pub mod so3;
@@ -18,6 +19,10 @@ pub use articulated::{ArticulatedInertia, add_weighted, shift_twist, shift_wrenc
 pub use check::{PoseError, ROTATION_TOLERANCE};
 pub use inertia::SpatialInertia;
 pub use mass::{MassError, MassProperties};
+pub use parameters::{
+    INERTIAL_PARAMETER_NAMES, INERTIAL_PARAMETER_UNITS, INERTIAL_PARAMETERS, body_regressor,
+    energy_row,
+};
 pub use pose::Pose;
 pub use so3::nearest as nearest_rotation;
 pub use symmetric::Symmetric3;

@@ -26,6 +26,7 @@ mod operational;
 mod pins;
 mod readings;
 mod refined;
+mod regressor;
 mod rotors;
 mod rows;
 mod several;
@@ -41,6 +42,7 @@ pub use mass::MassMatrix;
 pub use pins::{PinError, PinForce};
 pub use readings::{Frame, Readings};
 pub use refined::Refined;
+pub use regressor::JointTorqueRegressor;
 
 use super::{Dynamics, DynamicsError};
 use crate::mechanism::{Body, Mechanism, Space, StateError};

@@ -213,7 +213,7 @@ impl Recursive {
 
     /// Adds the wrench of a body's node to its parent's.
     #[inline(always)]
-    fn add_to_parent(&mut self, index: usize) {
+    pub(super) fn add_to_parent(&mut self, index: usize) {
         if let Some(parent) = self.links[index].parent {
             let own = &self.nodes[index];
             let carried = shift_wrench(&own.wrench, &own.motion.placement.offset);
