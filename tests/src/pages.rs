@@ -5,3 +5,6 @@ mod control {}
 
 #[doc = include_str!("../../docs/library.md")]
 mod library {}
+
+#[doc = include_str!("../../docs/parameters.md")]
+mod parameters {}

@@ -8,6 +8,7 @@ mod input;
 mod joints;
 mod meshes;
 mod pace;
+mod parameters;
 #[cfg(not(feature = "report"))]
 #[path = "absent/report.rs"]
 mod report;
@@ -45,6 +46,7 @@ enum Command {
     Compile(compile::Args),
     Import(import::Args),
     Joints(joints::Args),
+    Parameters(parameters::Args),
     Report(report::Args),
     Sweep(sweep::Args),
 }
@@ -65,6 +67,7 @@ pub fn main() -> ExitCode {
         Command::Compile(args) => compile::run(&args, &registry),
         Command::Import(args) => import::run(&args, &registry),
         Command::Joints(args) => joints::run(&args),
+        Command::Parameters(args) => parameters::run(&args, &registry),
         Command::Report(args) => report::run(&args, &registry),
         Command::Sweep(args) => sweep::run(&args, &registry),
     };

@@ -211,7 +211,7 @@ fn wrong_input_is_told() {
     let error = refused(&[0.0], &[0.0, 1.0], &[0.0], &mut regressor);
     assert_eq!(
         error.to_string(),
-        "the mechanism: speeds has 2 numbers, not 1"
+        "speeds of the mechanism has 2 entries: it must have 1"
     );
     let error = refused(&[0.0], &[0.0], &[f64::NAN], &mut regressor);
     assert!(matches!(error, StateError::NotFinite { .. }), "{error}");
@@ -220,14 +220,14 @@ fn wrong_input_is_told() {
     let error = refused(&[0.0], &[0.0], &[0.0], &mut other);
     assert_eq!(
         error.to_string(),
-        "the mechanism: regressor has 6 numbers, not 1"
+        "regressor of the mechanism has 6 entries: it must have 1"
     );
     let error = regressor
         .efforts(&[0.0; 9], &mut [0.0])
         .expect_err("one is missing");
     assert_eq!(
         error.to_string(),
-        "the mechanism: inertial parameters has 9 numbers, not 10"
+        "inertial parameters of the mechanism has 9 entries: it must have 10"
     );
     // What no row and no column has.
     assert_eq!(regressor.entry(1, 0), 0.0);

@@ -40,9 +40,10 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    /// Whether the base parameters are independent: the smallest singular value is a thousand times the rounding.
+    /// Whether the base parameters are independent: the smallest singular value is a thousand times the rounding, or there are none of them.
     pub fn is_minimal(&self) -> bool {
-        self.smallest > MARGIN * self.rounding
+        // Without base parameters both are 0.
+        self.smallest >= MARGIN * self.rounding
     }
 }
 

@@ -20,7 +20,9 @@ impl Motions {
     /// The world: it stands still.
     pub(super) fn world(gravity: &Vector3<f64>) -> Self {
         let gravity = match gravity.norm() > 0.0 {
-            true => alloc::vec![Row::new(DVector::from_column_slice(gravity.as_slice()))],
+            true => alloc::vec![Row::new(DVector::from_column_slice(
+                gravity.normalize().as_slice()
+            ))],
             false => Vec::new(),
         };
         Self {

@@ -10,9 +10,9 @@ pub(super) struct Row {
 }
 
 impl Row {
-    /// A row in which nothing cancelled.
+    /// A row made of numbers of size 1: one that is smaller is what remained of them.
     pub(super) fn new(entries: DVector<f64>) -> Self {
-        let size = entries.norm();
+        let size = entries.norm().max(1.0);
         Self { entries, size }
     }
 

@@ -21,6 +21,7 @@ use nalgebra::{DMatrix, Vector6};
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointTorqueRegressor {
     rows: usize,
+    columns: usize,
     /// Column by column.
     entries: Vec<f64>,
     rest: Vec<f64>,
@@ -30,9 +31,11 @@ impl JointTorqueRegressor {
     /// Room for the regressor of `mechanism`.
     pub fn new(mechanism: &Mechanism) -> Self {
         let rows = mechanism.layout().speeds;
+        let columns = INERTIAL_PARAMETERS * mechanism.bodies().len();
         Self {
             rows,
-            entries: vec![0.0; rows * INERTIAL_PARAMETERS * mechanism.bodies().len()],
+            columns,
+            entries: vec![0.0; rows * columns],
             rest: vec![0.0; rows],
         }
     }
@@ -44,10 +47,7 @@ impl JointTorqueRegressor {
 
     /// Number of columns: of inertial parameters, ten a body.
     pub const fn columns(&self) -> usize {
-        match self.rows {
-            0 => 0,
-            rows => self.entries.len() / rows,
-        }
+        self.columns
     }
 
     /// The effort on a speed by one unit of a parameter; zero for an index out of range.
@@ -111,8 +111,8 @@ impl Recursive {
     ) -> Result<(), StateError> {
         let bodies = self.links.len();
         self.check_room("regressor", &out.rest)?;
-        let size = INERTIAL_PARAMETERS * bodies * out.rows;
-        check_size(WHOLE, "regressor", size, out.entries.len())?;
+        let columns = INERTIAL_PARAMETERS * bodies;
+        check_size(WHOLE, "regressor columns", columns, out.columns)?;
         let vectors: [(&'static str, &[f64]); 2] =
             [("speeds", speeds), ("accelerations", accelerations)];
         self.with_inputs(q, &vectors, |dynamics| {
