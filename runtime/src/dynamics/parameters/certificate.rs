@@ -61,15 +61,17 @@ pub(super) fn certificate(
     let sizes = sizes(&norms);
     let effect = left_out.iter().map(|row| effect(&regressors, &sizes, row));
     let effect = effect.fold(0.0, f64::max);
+    let depth = depth(mechanism) as f64;
+    let of_entry = effect.max(ROUNDINGS * depth * f64::EPSILON);
     let scaled = DMatrix::from_fn(regressors.nrows(), kept.len(), |i, j| {
-        match norms[kept[j]] > 0.0 {
-            true => regressors[(i, kept[j])] / norms[kept[j]],
+        let place = kept[j];
+        // A column of rounding alone must not become one of length 1.
+        match norms[place] > MARGIN * of_entry * sizes[place] {
+            true => regressors[(i, place)] / norms[place],
             false => 0.0,
         }
     });
     let (smallest, largest) = singular_values(scaled);
-    let depth = depth(mechanism) as f64;
-    let of_entry = effect.max(ROUNDINGS * depth * f64::EPSILON);
     Ok(Certificate {
         states,
         smallest,

@@ -12,8 +12,8 @@
 //! What is proved, and what is measured. That an element of N_X does not act is an identity in the joint's coordinates, found over the rationals. That
 //! other elements do not act is found at two dozen configurations of the joint, in doubles, to a tolerance, and measured at the random states of the
 //! [`Certificate`]. That no further combination is without effect is what its smallest singular value says. Of nonholonomic joints X is taken whole, as if they could
-//! move in every way: what is left out then does not act, but where such a joint carries several bodies there may be fewer base parameters than are found.
-//! [`Certificate::is_minimal`] says so.
+//! move in every way: what is left out then does not act, but they may feel less than that (a joint that points without spin does not feel I_zz).
+//! [`Certificate::is_minimal`] is false then.
 
 mod certificate;
 mod combination;
