@@ -1,11 +1,11 @@
 //! Base inertial parameters: the fewest combinations of inertial parameters on which a mechanism's dynamics depend.
 //!
 //! Found joint by joint, from the structure of the tree. From the world outward: which twists, which kinetic energies and which directions of
-//! gravity a body can have at all ([`motions`]). At each joint: which inertias of its bodies can be moved to its parent without a difference
-//! ([`transfer`]); where the parent can move in every way that is N_X of the joint, which the generator derived from its spec, and nearer to the
+//! gravity a body can have at all (`motions.rs`). At each joint: which inertias of its bodies can be moved to its parent without a difference
+//! (`transfer.rs`); where the parent can move in every way that is N_X of the joint, which the generator derived from its spec, and nearer to the
 //! world there is more. Each such inertia is a combination of parameters without effect: so much on the bodies, and as much less on the parent. These combinations
 //! are independent, and for holonomic joints there are no others: of a combination without effect take the part on a body that carries none; it meets the conditions of
-//! [`transfer`] since nothing else changes with the coordinates and speeds of its joint; moved to the parent it leaves a combination on a smaller tree.
+//! `transfer.rs` since nothing else changes with the coordinates and speeds of its joint; moved to the parent it leaves a combination on a smaller tree.
 //!
 //! Solving the combinations for one parameter each, their pivots, gives the base parameters `B π`: every other parameter, plus multiples of the pivots.
 //!
