@@ -66,7 +66,7 @@ fn efforts_are_those_of_the_base_parameters_for_every_joint() {
     met.assert_within(ROUNDING);
     not_minimal.dedup();
     // Nonholonomic joints that feel less than X tells.
-    assert_eq!(not_minimal, ["car", "differential_drive", "pointing"]);
+    assert_eq!(not_minimal, ["car", "pointing"]);
 }
 
 fn robot(name: &str, floating_base: bool) -> Arc<Mechanism> {
