@@ -5,7 +5,7 @@ use crate::batch::evaluate;
 use crate::errors;
 use crate::robot::Robot;
 use hamel::UnknownName;
-use hamel::dynamics::{Dynamics, Frame, FrameReadings, Sensitivity};
+use hamel::dynamics::{Frame, FrameReadings, Sensitivity};
 use hamel::scene::suggest::nearest;
 use hamel::spatial::Pose;
 use numpy::PyArrayDyn;
@@ -46,7 +46,7 @@ impl Robot {
             self.workspaces(),
             arguments,
             [&[speeds]],
-            |own, [q, v, tau], [rates]| Ok(own.dynamics.forward_dynamics(q, v, tau, rates)?),
+            |own, [q, v, tau], [rates]| own.equations.forward_dynamics([q, v, tau], rates),
         )?;
         Ok(rates)
     }
@@ -61,7 +61,7 @@ impl Robot {
             self.workspaces(),
             arguments,
             [&[speeds]],
-            |own, [q, v, a], [efforts]| Ok(own.dynamics.inverse_dynamics(q, v, a, efforts)?),
+            |own, [q, v, a], [efforts]| own.equations.inverse_dynamics([q, v, a], efforts),
         )?;
         Ok(efforts)
     }
@@ -75,7 +75,7 @@ impl Robot {
             self.workspaces(),
             arguments,
             [&[speeds]],
-            |own, [q, v], [bias]| Ok(own.dynamics.bias_forces(q, v, bias)?),
+            |own, [q, v], [bias]| own.equations.bias_forces([q, v], bias),
         )?;
         Ok(bias)
     }
@@ -88,15 +88,7 @@ impl Robot {
             self.workspaces(),
             [self.q(q)?],
             [&[size, size]],
-            |own, [q], [mass]| {
-                own.dynamics.mass_matrix(q, &mut own.mass)?;
-                for (i, row) in mass.chunks_exact_mut(size.max(1)).enumerate() {
-                    for (j, entry) in row.iter_mut().enumerate() {
-                        *entry = own.mass.entry(i, j);
-                    }
-                }
-                Ok(())
-            },
+            |own, [q], [mass]| own.equations.mass_matrix(q, mass),
         )?;
         Ok(mass)
     }
@@ -116,8 +108,8 @@ impl Robot {
             arguments,
             shapes,
             |own, [q, v, tau], results| {
-                let (dynamics, found) = own.forward();
-                dynamics.forward_dynamics_derivatives(q, v, tau, found)?;
+                let (equations, found) = own.forward();
+                equations.forward_derivatives([q, v, tau], found)?;
                 let [rates, by_local, by_speeds, by_efforts] = results;
                 rates.copy_from_slice(found.rates());
                 copy(found.by_local(), by_local);
@@ -143,8 +135,8 @@ impl Robot {
             arguments,
             shapes,
             |own, [q, v, a], [by_local, by_speeds]| {
-                let (dynamics, found) = own.inverse();
-                dynamics.inverse_dynamics_derivatives(q, v, a, found)?;
+                let (equations, found) = own.inverse();
+                equations.inverse_derivatives([q, v, a], found)?;
                 copy(found.by_local(), by_local);
                 copy(found.by_speeds(), by_speeds);
                 Ok(())
@@ -167,7 +159,7 @@ impl Robot {
             [self.q(q)?],
             [&[6, speeds]],
             |own, [q], [out]| {
-                let readings = own.dynamics.readings(q, &own.rest)?;
+                let readings = own.equations.tree().readings(q, &own.rest)?;
                 place.of(&readings)?.jacobian(axes, &mut own.jacobian)?;
                 for (column, entries) in own.jacobian.chunks_exact(6).enumerate() {
                     for (row, entry) in entries.iter().enumerate() {
@@ -195,7 +187,7 @@ impl Robot {
             arguments,
             [&[6]],
             |own, [q, v], [out]| {
-                let readings = own.dynamics.readings(q, v)?;
+                let readings = own.equations.tree().readings(q, v)?;
                 out.copy_from_slice(place.of(&readings)?.twist(axes).as_slice());
                 Ok(())
             },
@@ -213,7 +205,7 @@ impl Robot {
             [self.q(q)?],
             [&[4, 4]],
             |own, [q], [out]| {
-                let readings = own.dynamics.readings(q, &own.rest)?;
+                let readings = own.equations.tree().readings(q, &own.rest)?;
                 write_pose(&place.of(&readings)?.pose(), out);
                 Ok(())
             },
@@ -229,13 +221,7 @@ impl Robot {
             self.workspaces(),
             [self.q(q)?],
             [&[bodies, 4, 4]],
-            |own, [q], [out]| {
-                let readings = own.dynamics.readings(q, &own.rest)?;
-                for (body, out) in out.chunks_exact_mut(16).enumerate() {
-                    write_pose(&readings.pose(body)?, out);
-                }
-                Ok(())
-            },
+            |own, [q], [out]| own.equations.poses(q, &own.rest, out),
         )?;
         Ok(poses)
     }
@@ -248,10 +234,8 @@ impl Robot {
             self.workspaces(),
             arguments,
             [&[], &[]],
-            |_, [q, v], [kinetic, potential]| {
-                let found = self.mechanism().kinematics(q, v)?;
-                kinetic[0] = found.kinetic_energy();
-                potential[0] = found.potential_energy();
+            |own, [q, v], [kinetic, potential]| {
+                [kinetic[0], potential[0]] = own.equations.energies([q, v])?;
                 Ok(())
             },
         )
@@ -265,8 +249,9 @@ impl Robot {
             self.workspaces(),
             arguments,
             [&[]],
-            |_, [q, v], [energy]| {
-                energy[0] = self.mechanism().kinematics(q, v)?.energy();
+            |own, [q, v], [energy]| {
+                let [kinetic, potential] = own.equations.energies([q, v])?;
+                energy[0] = kinetic + potential;
                 Ok(())
             },
         )?;
@@ -281,7 +266,7 @@ impl Robot {
             [self.q(q)?],
             [&[3]],
             |own, [q], [out]| {
-                let readings = own.dynamics.readings(q, &own.rest)?;
+                let readings = own.equations.tree().readings(q, &own.rest)?;
                 out.copy_from_slice(readings.center_of_mass().as_slice());
                 Ok(())
             },

@@ -15,6 +15,7 @@ use pyo3::types::{PyDict, PyType};
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Other,
+    Compilation,
     File,
     Argument,
     Dynamics,
@@ -25,6 +26,7 @@ impl Kind {
     const fn class(self) -> &'static str {
         match self {
             Self::Other => "Error",
+            Self::Compilation => "CompilationError",
             Self::File => "FileError",
             Self::Argument => "ArgumentError",
             Self::Dynamics => "DynamicsError",
@@ -142,6 +144,11 @@ fn of_file(
         Ok(facts) => raise(py, Kind::File, text, &facts),
         Err(error) => error,
     }
+}
+
+/// Equations that cannot be compiled.
+pub fn compilation(py: Python<'_>, message: &str) -> PyErr {
+    raise(py, Kind::Compilation, message, &PyDict::new(py))
 }
 
 /// Something of no other kind.

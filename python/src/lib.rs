@@ -2,7 +2,9 @@
 
 mod arguments;
 mod batch;
+mod compile;
 mod dynamics;
+mod equations;
 mod errors;
 mod info;
 mod inputs;

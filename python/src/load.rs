@@ -91,14 +91,15 @@ pub type Options = (
     Option<(String, Coordinates)>,
 );
 
-/// The robot of a text that was read before, for pickles.
+/// The robot of a text that was read before, for pickles; compiled again where it was.
 #[pyfunction]
-#[pyo3(signature = (source, options, joints=vec![]))]
+#[pyo3(signature = (source, options, joints=vec![], compilation=None))]
 pub fn parse(
     py: Python<'_>,
     source: (String, String, bool),
     options: Options,
     joints: Vec<String>,
+    compilation: Option<(Option<Vec<String>>,)>,
 ) -> PyResult<Robot> {
     let (name, text, is_robot) = source;
     let (floating_base, lenient, posture, state) = options;
@@ -106,7 +107,7 @@ pub fn parse(
     for joint in joints {
         own.push(Joint::of(py, SpecSource::of_text(joint))?.registered(py)?);
     }
-    robot(
+    let robot = robot(
         py,
         Source {
             name,
@@ -121,7 +122,11 @@ pub fn parse(
             },
             joints: own,
         },
-    )
+    )?;
+    match compilation {
+        Some((functions,)) => robot.compiled_with(py, functions),
+        None => Ok(robot),
+    }
 }
 
 fn robot(py: Python<'_>, source: Source) -> PyResult<Robot> {
@@ -132,5 +137,5 @@ fn robot(py: Python<'_>, source: Source) -> PyResult<Robot> {
     }
     let read = py.detach(|| source.model(&registry));
     let (model, limits) = read.map_err(|error| errors::file(py, &source.name, &error))?;
-    Ok(Robot::new(source, model, limits))
+    Ok(Robot::new(source, model, limits, None))
 }

@@ -3,6 +3,7 @@
 use crate::errors;
 use crate::inputs::Listener;
 use crate::robot::Robot;
+use hamel::compiled::Compiled;
 use hamel::integrate::{Form, GlobalError, Scheme, Solution, State};
 use hamel::scene::{Arithmetic, Settings};
 use hamel::{Error, Model, Simulation};
@@ -48,8 +49,8 @@ pub fn simulate<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let request: Request = request.extract()?;
     let plan = Plan::new(&request).map_err(|message| errors::argument(py, message))?;
-    let model = robot.get().model();
-    let moved = py.detach(|| run(model, &request, plan));
+    let (model, compiled) = (robot.get().model(), robot.get().workspaces().compiled());
+    let moved = py.detach(|| run((model, compiled), &request, plan));
     let motion = match moved {
         Ok(motion) => motion,
         Err(Ended::Exception(error)) => return Err(error),
@@ -202,9 +203,16 @@ fn prepared<'a>(model: &'a Model, request: &Request, plan: Plan) -> Simulation<'
     }
 }
 
-fn run(model: &Model, request: &Request, plan: Plan) -> Result<Motion, Ended> {
+fn run(
+    (model, compiled): (&Model, Option<&Compiled>),
+    request: &Request,
+    plan: Plan,
+) -> Result<Motion, Ended> {
     let listener = Listener::new(request.inputs.as_ref());
     let mut simulation = prepared(model, request, plan).stopping(|| listener.is_over());
+    if let Some(compiled) = compiled {
+        simulation = simulation.equations(|| Box::new(compiled.clone()));
+    }
     if request.inputs.is_some() {
         simulation = simulation.inputs(|time, q, v, tau| listener.fill(time, q, v, tau));
     }

@@ -212,6 +212,17 @@ impl Source {
         }
     }
 
+    /// The scene as it is described; of a robot the one that is made of it.
+    ///
+    /// # Errors
+    /// Mistakes in the text.
+    pub fn description(&self) -> Result<SceneDescription, Diagnostics> {
+        match self.is_robot {
+            true => Ok(self.import()?.scene),
+            false => Scene::from_toml(&self.text, &self.name),
+        }
+    }
+
     /// The model of joints of these types, and the limits of its joints.
     ///
     /// # Errors

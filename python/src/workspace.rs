@@ -1,16 +1,17 @@
 //! Memory for the equations of motion of one robot: one workspace for each thread that asks, kept for the next call.
 
 use crate::batch::lock;
-use hamel::dynamics::{Dynamics, ForwardDerivatives, InverseDerivatives, MassMatrix, Recursive};
+use crate::equations::Equations;
+use hamel::compiled::Compiled;
+use hamel::dynamics::{ForwardDerivatives, InverseDerivatives};
 use hamel::mechanism::{Body, CONFIGURATION_TOLERANCE, Mechanism, StateError};
 use std::sync::{Arc, Mutex};
 
 /// Memory of one thread.
 pub struct Workspace {
+    mechanism: Arc<Mechanism>,
     /// The equations of motion.
-    pub dynamics: Recursive,
-    /// M̄.
-    pub mass: MassMatrix,
+    pub equations: Equations,
     /// Speeds of a mechanism at rest.
     pub rest: Vec<f64>,
     /// A Jacobian, column by column.
@@ -20,11 +21,11 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    fn new(mechanism: &Arc<Mechanism>) -> Self {
+    fn new(mechanism: &Arc<Mechanism>, equations: Equations) -> Self {
         let speeds = mechanism.layout().speeds;
         Self {
-            dynamics: Recursive::new(Arc::clone(mechanism)),
-            mass: MassMatrix::new(mechanism),
+            mechanism: Arc::clone(mechanism),
+            equations,
             rest: vec![0.0; speeds],
             jacobian: vec![0.0; 6 * speeds],
             forward: None,
@@ -33,21 +34,19 @@ impl Workspace {
     }
 
     /// The equations of motion, and room for derivatives of forward dynamics.
-    pub fn forward(&mut self) -> (&mut Recursive, &mut ForwardDerivatives) {
-        let mechanism = Arc::clone(self.dynamics.mechanism());
+    pub fn forward(&mut self) -> (&mut Equations, &mut ForwardDerivatives) {
         let room = self
             .forward
-            .get_or_insert_with(|| Box::new(ForwardDerivatives::new(&mechanism)));
-        (&mut self.dynamics, room)
+            .get_or_insert_with(|| Box::new(ForwardDerivatives::new(&self.mechanism)));
+        (&mut self.equations, room)
     }
 
     /// The equations of motion, and room for derivatives of inverse dynamics.
-    pub fn inverse(&mut self) -> (&mut Recursive, &mut InverseDerivatives) {
-        let mechanism = Arc::clone(self.dynamics.mechanism());
+    pub fn inverse(&mut self) -> (&mut Equations, &mut InverseDerivatives) {
         let room = self
             .inverse
-            .get_or_insert_with(|| Box::new(InverseDerivatives::new(&mechanism)));
-        (&mut self.dynamics, room)
+            .get_or_insert_with(|| Box::new(InverseDerivatives::new(&self.mechanism)));
+        (&mut self.equations, room)
     }
 }
 
@@ -56,6 +55,8 @@ pub struct Workspaces {
     mechanism: Arc<Mechanism>,
     /// The bodies of joints whose Q is not free: rotations, circles, loops.
     bound: Vec<usize>,
+    /// Equations that were compiled for it.
+    compiled: Option<Compiled>,
     #[expect(
         clippy::vec_box,
         reason = "they change hands at each call, and are hundreds of bytes long"
@@ -64,8 +65,8 @@ pub struct Workspaces {
 }
 
 impl Workspaces {
-    /// Those of a mechanism: none yet.
-    pub fn new(mechanism: &Arc<Mechanism>) -> Self {
+    /// Those of a mechanism, with the equations that were compiled for it, if any: none yet.
+    pub fn new(mechanism: &Arc<Mechanism>, compiled: Option<Compiled>) -> Self {
         let is_bound = |body: &Body| {
             let ranges = body.ranges();
             ranges.configuration.len() != ranges.freedoms.len()
@@ -76,6 +77,7 @@ impl Workspaces {
         Self {
             mechanism: Arc::clone(mechanism),
             bound: bound.collect(),
+            compiled,
             free: Mutex::default(),
         }
     }
@@ -99,6 +101,11 @@ impl Workspaces {
         })
     }
 
+    /// The equations that were compiled for its mechanism.
+    pub const fn compiled(&self) -> Option<&Compiled> {
+        self.compiled.as_ref()
+    }
+
     /// How many speeds its mechanism has.
     pub fn speeds(&self) -> usize {
         self.mechanism.layout().speeds
@@ -107,7 +114,13 @@ impl Workspaces {
     /// One that no other thread has.
     pub fn take(&self) -> Box<Workspace> {
         let free = lock(&self.free).pop();
-        free.unwrap_or_else(|| Box::new(Workspace::new(&self.mechanism)))
+        free.unwrap_or_else(|| {
+            let equations = match &self.compiled {
+                Some(compiled) => Equations::compiled(compiled),
+                None => Equations::tree_of(&self.mechanism),
+            };
+            Box::new(Workspace::new(&self.mechanism, equations))
+        })
     }
 
     /// Keeps one for the next call.

@@ -46,10 +46,10 @@ def test_the_lines_of_use_in_the_pages_run(tmp_path, monkeypatch):
     pytest.importorskip("pandas")
     text = (ROOT / "python/README.md").read_text()
     program = text.split("```python\n")[1].split("```")[0]
-    more = (ROOT / "docs/python.md").read_text().split("```python\n")[1].split("```")[0]
+    more = [part.split("```")[0] for part in (ROOT / "docs/python.md").read_text().split("```python\n")[1:3]]
     (tmp_path / "panda.urdf").write_text((ROOT / "tests/data/urdf/panda7.urdf").read_text())
     monkeypatch.chdir(tmp_path)
     names = {}
     exec(compile(program, "README.md", "exec"), names)
     names["q"] = names["q"][0]
-    exec(compile(more, "python.md", "exec"), names)
+    exec(compile("\n".join(more), "python.md", "exec"), names)

@@ -1,16 +1,16 @@
 //! Whether compiled equations are those of a mechanism: their rates at one state beside those of the tree.
 
-use super::Equations;
+use super::states::poses_of;
 use super::tree::{Compiled, CompiledError};
 use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 use hamel_runtime::dynamics::{
-    Dynamics, DynamicsError, ForwardDerivatives, InverseDerivatives, Refined,
+    Dynamics, DynamicsError, ForwardDerivatives, InverseDerivatives, MassMatrix, Refined,
 };
 use hamel_runtime::joint::MOST_FREEDOMS;
-use hamel_runtime::mechanism::Mechanism;
+use hamel_runtime::mechanism::{Mechanism, StateError};
 use nalgebra::Vector6;
 
 /// Why two forms do not agree at one configuration.
@@ -22,8 +22,36 @@ enum Unlike {
         expected: f64,
         found: f64,
     },
+    /// Other numbers differ.
+    Value {
+        quantity: &'static str,
+        expected: f64,
+        found: f64,
+    },
     /// The tree has no value there.
     NoValue(DynamicsError),
+}
+
+impl Unlike {
+    /// What was said of an entry of v̄, of an entry of something else.
+    fn of(self, quantity: &'static str) -> Self {
+        match self {
+            Self::Rate {
+                expected, found, ..
+            } => Self::Value {
+                quantity,
+                expected,
+                found,
+            },
+            other => other,
+        }
+    }
+}
+
+impl From<StateError> for Unlike {
+    fn from(cause: StateError) -> Self {
+        Self::NoValue(cause.into())
+    }
 }
 
 impl From<DynamicsError> for Unlike {
@@ -88,6 +116,12 @@ impl Rates {
     }
 }
 
+/// The error unless numbers that take no solution are near those of the tree.
+fn meet((expected, found): (&[f64], &[f64]), quantity: &'static str) -> Result<(), Unlike> {
+    let met = Rates::of(expected).meet(found);
+    met.map_err(|unlike| unlike.of(quantity))
+}
+
 /// Numbers that differ among themselves.
 fn numbers(count: usize) -> Vec<f64> {
     (0..count).map(|i| 0.1 + 0.01 * i as f64).collect()
@@ -145,6 +179,19 @@ impl Compiled {
                     expected,
                     found,
                 }) => return Err(self.other(place, entry, expected, found)),
+                Err(Unlike::Value {
+                    quantity,
+                    expected,
+                    found,
+                }) => {
+                    return Err(CompiledError::Value {
+                        scene: self.functions.scene,
+                        place,
+                        quantity,
+                        expected,
+                        found,
+                    });
+                }
                 Err(Unlike::NoValue(cause)) => {
                     first.get_or_insert((place, cause));
                 }
@@ -153,7 +200,7 @@ impl Compiled {
         match first {
             None => Ok(self),
             Some((place, cause)) => Err(CompiledError::NoValue {
-                scene: self.equations.scene,
+                scene: self.functions.scene,
                 place,
                 cause,
             }),
@@ -164,24 +211,27 @@ impl Compiled {
     fn compare(&mut self, q: &[f64]) -> Result<(), Unlike> {
         let mechanism = Arc::clone(self.tree.mechanism());
         let mut speeds = speeds_at(&mechanism, q);
-        let efforts = numbers(self.equations.freedoms);
+        let efforts = numbers(self.functions.freedoms);
         self.tree.complete_speeds(q, &mut speeds)?;
         let mut exact = Refined::new(Arc::clone(&mechanism));
         let mut rates = Rates::new(speeds.len());
         self.tree
             .forward_dynamics(q, &speeds, &efforts, &mut rates.doubles)?;
         exact.forward_dynamics(q, &speeds, &efforts, &mut rates.exact)?;
-        if let Some(forward) = self.equations.forward_dynamics {
+        if let Some(forward) = &self.functions.forward_dynamics {
             let mut found = vec![0.0; speeds.len()];
-            forward(q, &speeds, self.with_timed(q, &efforts), &mut found);
+            let efforts = self.timed.added(&mechanism, q, &efforts);
+            forward(q, &speeds, efforts, &mut found);
             rates.meet(&found)?;
         }
-        if self.equations.forward_dynamics_derivatives.is_some() {
+        if self.functions.forward_dynamics_derivatives.is_some() {
             let mut found = ForwardDerivatives::new(&mechanism);
             self.forward_dynamics_derivatives(q, &speeds, &efforts, &mut found)?;
             rates.meet(found.rates())?;
         }
+        self.compare_inverse(q, &speeds)?;
         self.compare_inverse_derivatives(q, &speeds)?;
+        self.compare_places(q, &speeds)?;
         self.compare_momenta((&mut exact, q), &mut speeds, &efforts)
     }
 
@@ -192,41 +242,85 @@ impl Compiled {
         speeds: &mut [f64],
         efforts: &[f64],
     ) -> Result<(), Unlike> {
-        let Equations {
-            momenta: by_speeds,
-            speeds_from_momenta: by_momenta,
-            momentum_rates,
-            ..
-        } = *self.equations;
+        let functions = Arc::clone(&self.functions);
         let size = speeds.len();
         let [mut momenta, mut found] = [(); 2].map(|()| vec![0.0; size]);
         self.tree.momenta(q, speeds, &mut momenta)?;
-        if let Some(map) = by_speeds {
-            map(q, speeds, &mut found);
+        if let Some(map) = &functions.momenta {
+            map(q, speeds, &[], &mut found);
             Rates::of(&momenta).meet(&found)?;
         }
-        if let Some(map) = by_momenta {
+        if let Some(map) = &functions.speeds_from_momenta {
             let mut expected = Rates::new(size);
             self.tree.speeds(q, &momenta, &mut expected.doubles)?;
             exact.speeds(q, &momenta, &mut expected.exact)?;
-            map(q, &momenta, &mut found);
+            map(q, &momenta, &[], &mut found);
             expected.meet(&found)?;
         }
-        if let Some(momentum_rates) = momentum_rates {
+        if let Some(momentum_rates) = &functions.momentum_rates {
             let mut expected = Rates::new(size);
             let mut given = |_: &[f64], tau: &mut [f64]| tau.copy_from_slice(efforts);
             self.tree
                 .momentum_rates(q, &momenta, &mut given, speeds, &mut expected.doubles)?;
             exact.momentum_rates(q, &momenta, &mut given, speeds, &mut expected.exact)?;
-            momentum_rates(q, &momenta, self.with_timed(q, efforts), speeds, &mut found);
-            expected.meet(&found)?;
+            let mechanism = Arc::clone(self.tree.mechanism());
+            let efforts = self.timed.added(&mechanism, q, efforts);
+            let mut both = vec![0.0; 2 * size];
+            momentum_rates(q, &momenta, efforts, &mut both);
+            expected.meet(&both[size..])?;
+        }
+        Ok(())
+    }
+
+    /// The same of inverse dynamics, at accelerations that are the speeds, and of M̄.
+    fn compare_inverse(&mut self, q: &[f64], speeds: &[f64]) -> Result<(), Unlike> {
+        let functions = Arc::clone(&self.functions);
+        let size = speeds.len();
+        let [mut expected, mut found] = [(); 2].map(|()| vec![0.0; size]);
+        if functions.inverse_dynamics.is_some() {
+            self.tree
+                .inverse_dynamics(q, speeds, speeds, &mut expected)?;
+            self.inverse_dynamics(q, speeds, speeds, &mut found)?;
+            meet((&expected, &found), "inverse dynamics")?;
+        }
+        if functions.bias_forces.is_some() {
+            self.tree.bias_forces(q, speeds, &mut expected)?;
+            self.bias_forces(q, speeds, &mut found)?;
+            meet((&expected, &found), "the bias force")?;
+        }
+        if functions.mass_matrix.is_some() {
+            let mut mass = MassMatrix::new(self.tree.mechanism());
+            self.tree.mass_matrix(q, &mut mass)?;
+            let entries = (0..size * size).map(|index| mass.entry(index / size, index % size));
+            let expected: Vec<f64> = entries.collect();
+            let mut found = vec![0.0; size * size];
+            self.mass_matrix(q, &mut found)?;
+            meet((&expected, &found), "the mass matrix")?;
+        }
+        Ok(())
+    }
+
+    /// The same of energies and poses.
+    fn compare_places(&mut self, q: &[f64], speeds: &[f64]) -> Result<(), Unlike> {
+        let functions = Arc::clone(&self.functions);
+        if functions.energies.is_some() {
+            let tree = self.tree.mechanism().kinematics(q, speeds)?;
+            let expected = [tree.kinetic_energy(), tree.potential_energy()];
+            let found = self.energies(q, speeds)?;
+            meet((&expected, &found), "the energy")?;
+        }
+        if functions.poses.is_some() {
+            let expected = poses_of(self.tree.mechanism(), q)?;
+            let mut found = vec![0.0; expected.len()];
+            self.poses(q, &mut found)?;
+            meet((&expected, &found), "a pose")?;
         }
         Ok(())
     }
 
     /// The same of the derivatives of inverse dynamics: how efforts change as all of ϕ and v̄ grow alike.
     fn compare_inverse_derivatives(&mut self, q: &[f64], speeds: &[f64]) -> Result<(), Unlike> {
-        if self.equations.inverse_dynamics_derivatives.is_none() {
+        if self.functions.inverse_dynamics_derivatives.is_none() {
             return Ok(());
         }
         let mechanism = Arc::clone(self.tree.mechanism());
@@ -257,7 +351,7 @@ impl Compiled {
             });
         let (joint, speed) = named.next().unwrap_or_default();
         CompiledError::Other {
-            scene: self.equations.scene,
+            scene: self.functions.scene,
             place,
             joint,
             speed,

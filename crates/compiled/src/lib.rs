@@ -14,10 +14,14 @@ mod agreement;
 mod batch;
 #[cfg(feature = "alloc")]
 mod entry;
+#[cfg(feature = "alloc")]
+mod functions;
 mod instructions;
 mod lanes;
 mod layout;
 mod pairs;
+#[cfg(feature = "alloc")]
+mod states;
 mod transpose;
 #[cfg(feature = "alloc")]
 mod tree;
@@ -26,6 +30,8 @@ mod tree;
 pub use batch::{Batch, BatchError};
 #[cfg(feature = "alloc")]
 pub use entry::Entry;
+#[cfg(feature = "alloc")]
+pub use functions::{Function, Functions};
 pub use lanes::{LANES, Level, ManyStates, OfState, many_states};
 pub use layout::{Lanes, Quantities, States};
 pub use pairs::{Carrying, Pairing, Pairs};

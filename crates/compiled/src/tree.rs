@@ -1,12 +1,12 @@
 //! Compiled equations of a mechanism, with the tree for what they do not hold.
 
-use super::Equations;
+use super::functions::Functions;
 use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec;
+use alloc::vec::Vec;
 use hamel_runtime::dynamics::{
-    Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives,
-    Recursive,
+    Dynamics, DynamicsError, ForwardDerivatives, HamiltonianDerivatives, Recursive,
 };
 use hamel_runtime::joint::MOST_FREEDOMS;
 use hamel_runtime::mechanism::{Mechanism, Space, StateError};
@@ -50,6 +50,23 @@ pub enum CompiledError {
         /// By the module.
         found: f64,
     },
+    /// Other numbers differ.
+    #[error(
+        "the equations compiled for `{scene}` are those of another mechanism: {place}, {quantity} has an entry {found:e}, not {expected:e}; \
+         compile its scene again"
+    )]
+    Value {
+        /// The scene that was compiled.
+        scene: &'static str,
+        /// Where they were compared.
+        place: &'static str,
+        /// Of what they are.
+        quantity: &'static str,
+        /// By the mechanism.
+        expected: f64,
+        /// By the module.
+        found: f64,
+    },
     /// The mechanism itself has no rates wherever they were to be compared.
     #[error(
         "the equations compiled for `{scene}` cannot be compared with those of the mechanism, which have no value {place}, nor near home: {cause}"
@@ -67,28 +84,62 @@ pub enum CompiledError {
 /// Compiled equations of a mechanism: what the module does not have, the tree computes.
 #[derive(Clone, Debug)]
 pub struct Compiled {
-    pub(super) equations: &'static Equations,
+    pub(super) functions: Arc<Functions>,
     pub(super) tree: Recursive,
-    /// τ of the inputs, none, and τ with the efforts at ports that change with time.
-    inputs: [vec::Vec<f64>; 3],
-    /// When these act.
+    /// τ of the inputs, and none.
+    inputs: [Vec<f64>; 2],
+    pub(super) timed: Timed,
+    /// Rows of derivatives.
+    pub(super) rows: Vec<f64>,
+    /// v̄ and p̄̇ one after the other.
+    both: Vec<f64>,
+}
+
+/// Efforts at ports that change with time, of which the functions are not told.
+#[derive(Clone, Debug)]
+pub(super) struct Timed {
+    pub are_there: bool,
+    /// When they act.
     moment: Moment,
-    /// Whether there are any.
-    is_timed: bool,
-    /// Rows of derivatives of forward dynamics.
-    rows: vec::Vec<f64>,
+    /// τ with them.
+    efforts: Vec<f64>,
+}
+
+impl Timed {
+    fn new(mechanism: &Mechanism) -> Self {
+        Self {
+            are_there: mechanism.has_timed_port_efforts(),
+            moment: Moment::default(),
+            efforts: vec![0.0; mechanism.layout().freedoms],
+        }
+    }
+
+    /// τ with them.
+    pub(super) fn added<'t>(
+        &'t mut self,
+        mechanism: &Mechanism,
+        q: &[f64],
+        efforts: &'t [f64],
+    ) -> &'t [f64] {
+        if !self.are_there {
+            return efforts;
+        }
+        self.efforts.copy_from_slice(efforts);
+        mechanism.add_timed_port_efforts(self.moment, q, &mut self.efforts);
+        &self.efforts
+    }
 }
 
 impl Compiled {
-    /// The equations for `mechanism`, compared with its own at home; where home has no value, near it.
+    /// The equations for `mechanism`, of an emitted module or a library, compared with its own at home; where home has no value, near it.
     ///
     /// # Errors
-    /// A module of another mechanism; a mechanism without a value there.
+    /// Equations of another mechanism; a mechanism without a value there.
     pub fn new(
         mechanism: Arc<Mechanism>,
-        equations: &'static Equations,
+        functions: impl Into<Functions>,
     ) -> Result<Self, CompiledError> {
-        Self::sized(mechanism, equations)?.compared(None)
+        Self::sized(mechanism, functions.into())?.compared(None)
     }
 
     /// The same, compared at the configuration `q` first, where a motion begins: home may be a place where the mechanism has no value.
@@ -97,31 +148,33 @@ impl Compiled {
     /// Those of [`Compiled::new`].
     pub fn starting_at(
         mechanism: Arc<Mechanism>,
-        equations: &'static Equations,
+        functions: impl Into<Functions>,
         q: &[f64],
     ) -> Result<Self, CompiledError> {
-        Self::sized(mechanism, equations)?.compared(Some(q))
+        Self::sized(mechanism, functions.into())?.compared(Some(q))
+    }
+
+    /// The general algorithms over the mechanism, for what the functions do not tell.
+    pub const fn tree(&mut self) -> &mut Recursive {
+        &mut self.tree
     }
 
     /// Equations that have the sizes of `mechanism`.
-    fn sized(
-        mechanism: Arc<Mechanism>,
-        equations: &'static Equations,
-    ) -> Result<Self, CompiledError> {
+    fn sized(mechanism: Arc<Mechanism>, functions: Functions) -> Result<Self, CompiledError> {
         let layout = mechanism.layout();
         let sizes = [
             (
                 "stored scalars",
                 layout.configuration,
-                equations.configuration,
+                functions.configuration,
             ),
-            ("freedoms", layout.freedoms, equations.freedoms),
-            ("speeds", layout.speeds, equations.speeds),
+            ("freedoms", layout.freedoms, functions.freedoms),
+            ("speeds", layout.speeds, functions.speeds),
         ];
         for (quantity, expected, found) in sizes {
             if expected != found {
                 return Err(CompiledError::Size {
-                    scene: equations.scene,
+                    scene: functions.scene,
                     quantity,
                     expected,
                     found,
@@ -129,42 +182,17 @@ impl Compiled {
             }
         }
         Ok(Self {
-            equations,
             rows: vec![0.0; ForwardDerivatives::entries(&mechanism)],
-            moment: Moment::default(),
-            is_timed: mechanism.has_timed_port_efforts(),
+            both: vec![0.0; 2 * layout.speeds],
+            timed: Timed::new(&mechanism),
+            inputs: [(); 2].map(|()| vec![0.0; layout.freedoms]),
             tree: Recursive::new(mechanism),
-            inputs: core::array::from_fn(|_| vec![0.0; equations.freedoms]),
+            functions: Arc::new(functions),
         })
     }
 
-    /// The derivatives of inverse dynamics in ϕ and v̄ at (q, v̄, v̄̇) into `out`, as [`Recursive::inverse_dynamics_derivatives`] has them.
-    ///
-    /// # Errors
-    /// A wrong size; results that were made for another mechanism; something that acts on the mechanism whose derivatives are not known.
-    pub fn inverse_dynamics_derivatives(
-        &mut self,
-        q: &[f64],
-        speeds: &[f64],
-        accelerations: &[f64],
-        out: &mut InverseDerivatives,
-    ) -> Result<(), DynamicsError> {
-        let inverse = self.equations.inverse_dynamics_derivatives;
-        if let Some(inverse) = inverse.filter(|_| !self.is_timed) {
-            self.check(q, [("speeds", speeds), ("accelerations", accelerations)])?;
-            let count = speeds.len() * (self.equations.freedoms + speeds.len());
-            let rows = &mut self.rows[..count];
-            inverse(q, speeds, accelerations, rows);
-            if all_finite(rows) {
-                return out.read(rows);
-            }
-        }
-        self.tree
-            .inverse_dynamics_derivatives(q, speeds, accelerations, out)
-    }
-
     /// Whether `q` and vectors with one entry per speed have their sizes, and are finite.
-    fn check<const N: usize>(
+    pub(super) fn check<const N: usize>(
         &self,
         q: &[f64],
         vectors: [(&'static str, &[f64]); N],
@@ -176,7 +204,11 @@ impl Compiled {
     }
 
     /// Whether `room` for results has one entry per speed.
-    fn check_room(&self, quantity: &'static str, room: &[f64]) -> Result<(), StateError> {
+    pub(super) fn check_room(
+        &self,
+        quantity: &'static str,
+        room: &[f64],
+    ) -> Result<(), StateError> {
         let mechanism = self.tree.mechanism();
         mechanism.check_room(quantity, Space::Speeds, room)
     }
@@ -185,18 +217,6 @@ impl Compiled {
     fn check_efforts(&self, efforts: &[f64]) -> Result<(), StateError> {
         let mechanism = self.tree.mechanism();
         mechanism.check_vector("efforts", Space::Freedoms, efforts)
-    }
-
-    /// τ with the efforts at ports that change with time, of which the module is not told.
-    pub(super) fn with_timed<'t>(&'t mut self, q: &[f64], efforts: &'t [f64]) -> &'t [f64] {
-        if !self.is_timed {
-            return efforts;
-        }
-        let [.., all] = &mut self.inputs;
-        all.copy_from_slice(efforts);
-        let mechanism = self.tree.mechanism();
-        mechanism.add_timed_port_efforts(self.moment, q, all);
-        all
     }
 
     /// `p̄̇ += S̄ᵀτ`: they are affine in τ, which depends on the v̄ that come with them.
@@ -225,7 +245,7 @@ impl Dynamics for Compiled {
     }
 
     fn set_moment(&mut self, moment: Moment) {
-        self.moment = moment;
+        self.timed.moment = moment;
         self.tree.set_moment(moment);
     }
 
@@ -240,13 +260,14 @@ impl Dynamics for Compiled {
         efforts: &[f64],
         rates: &mut [f64],
     ) -> Result<(), DynamicsError> {
-        let Some(forward) = self.equations.forward_dynamics else {
+        let Some(forward) = &self.functions.forward_dynamics else {
             return self.tree.forward_dynamics(q, speeds, efforts, rates);
         };
         self.check(q, [("speeds", speeds)])?;
         self.check_efforts(efforts)?;
         self.check_room("rates", rates)?;
-        forward(q, speeds, self.with_timed(q, efforts), rates);
+        let efforts_now = self.timed.added(self.tree.mechanism(), q, efforts);
+        forward(q, speeds, efforts_now, rates);
         if all_finite(rates) {
             return Ok(());
         }
@@ -260,12 +281,12 @@ impl Dynamics for Compiled {
         speeds: &[f64],
         momenta: &mut [f64],
     ) -> Result<(), DynamicsError> {
-        let Some(map) = self.equations.momenta else {
+        let Some(map) = &self.functions.momenta else {
             return self.tree.momenta(q, speeds, momenta);
         };
         self.check(q, [("speeds", speeds)])?;
         self.check_room("momenta", momenta)?;
-        map(q, speeds, momenta);
+        map(q, speeds, &[], momenta);
         if all_finite(momenta) {
             return Ok(());
         }
@@ -278,12 +299,12 @@ impl Dynamics for Compiled {
         momenta: &[f64],
         speeds: &mut [f64],
     ) -> Result<(), DynamicsError> {
-        let Some(map) = self.equations.speeds_from_momenta else {
+        let Some(map) = &self.functions.speeds_from_momenta else {
             return self.tree.speeds(q, momenta, speeds);
         };
         self.check(q, [("momenta", momenta)])?;
         self.check_room("speeds", speeds)?;
-        map(q, momenta, speeds);
+        map(q, momenta, &[], speeds);
         if all_finite(speeds) {
             return Ok(());
         }
@@ -298,41 +319,48 @@ impl Dynamics for Compiled {
         speeds: &mut [f64],
         rates: &mut [f64],
     ) -> Result<(), DynamicsError> {
-        let Some(momentum_rates) = self.equations.momentum_rates else {
+        let Some(momentum_rates) = &self.functions.momentum_rates else {
             return self.tree.momentum_rates(q, momenta, efforts, speeds, rates);
         };
         self.check(q, [("momenta", momenta)])?;
         self.check_room("speeds", speeds)?;
         self.check_room("rates", rates)?;
-        let [inputs, none, _] = &mut self.inputs;
-        momentum_rates(q, momenta, none, speeds, rates);
-        if !(all_finite(speeds) && all_finite(rates)) {
+        let size = speeds.len();
+        let [inputs, none] = &mut self.inputs;
+        momentum_rates(q, momenta, none, &mut self.both);
+        if !all_finite(&self.both) {
             return self.tree.momentum_rates(q, momenta, efforts, speeds, rates);
         }
+        speeds.copy_from_slice(&self.both[..size]);
+        rates.copy_from_slice(&self.both[size..]);
         inputs.fill(0.0);
         efforts(speeds, inputs);
-        self.check_efforts(&self.inputs[0])?;
-        if self.is_timed {
-            let mechanism = self.tree.mechanism();
-            mechanism.add_timed_port_efforts(self.moment, q, &mut self.inputs[0]);
+        let mechanism = self.tree.mechanism();
+        mechanism.check_vector("efforts", Space::Freedoms, inputs)?;
+        if self.timed.are_there {
+            mechanism.add_timed_port_efforts(self.timed.moment, q, inputs);
         }
-        let [inputs, ..] = &self.inputs;
-        match self.tree.mechanism().constraints() {
+        match mechanism.constraints() {
             [] => self.add_inputs(q, rates),
-            // What inputs make of dependent speeds falls to others: the module knows how.
-            _ => momentum_rates(q, momenta, inputs, speeds, rates),
+            // What inputs make of dependent speeds falls to others: the functions know how.
+            _ => {
+                momentum_rates(q, momenta, inputs, &mut self.both);
+                speeds.copy_from_slice(&self.both[..size]);
+                rates.copy_from_slice(&self.both[size..]);
+            }
         }
         Ok(())
     }
 
     fn hamiltonian(&mut self, q: &[f64], momenta: &[f64]) -> Result<f64, DynamicsError> {
-        let Some(hamiltonian) = self.equations.hamiltonian else {
+        let Some(hamiltonian) = &self.functions.hamiltonian else {
             return self.tree.hamiltonian(q, momenta);
         };
         self.check(q, [("momenta", momenta)])?;
-        let energy = hamiltonian(q, momenta);
-        match energy.is_finite() {
-            true => Ok(energy),
+        let mut energy = [0.0];
+        hamiltonian(q, momenta, &[], &mut energy);
+        match energy[0].is_finite() {
+            true => Ok(energy[0]),
             false => self.tree.hamiltonian(q, momenta),
         }
     }
@@ -344,8 +372,8 @@ impl Dynamics for Compiled {
         efforts: &[f64],
         out: &mut ForwardDerivatives,
     ) -> Result<(), DynamicsError> {
-        let forward = self.equations.forward_dynamics_derivatives;
-        if let Some(forward) = forward.filter(|_| !self.is_timed) {
+        let forward = self.functions.forward_dynamics_derivatives.as_ref();
+        if let Some(forward) = forward.filter(|_| !self.timed.are_there) {
             self.check(q, [("speeds", speeds)])?;
             self.check_efforts(efforts)?;
             forward(q, speeds, efforts, &mut self.rows);

@@ -20,8 +20,8 @@ pub fn compiler() -> Result<Compiler, Failure> {
 /// The functions `kinds` of `scene`, which is that of `build`, in C by a compiler.
 ///
 /// # Errors
-/// A scene that the scene compiler refuses; a compiler that fails; a folder for temporary files that cannot be written; equations of another scene that are
-/// still in use; an interrupt.
+/// A scene that the scene compiler refuses; a compiler that fails; a folder for temporary files that cannot be written; equations that are not those of the
+/// mechanism; an interrupt.
 pub fn compiled(
     build: Build,
     label: &str,

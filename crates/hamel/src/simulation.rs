@@ -13,6 +13,9 @@ use std::ops::ControlFlow;
 /// Efforts τ, one per entry of v, from time (s), Q and v̄; they are zero when it is called.
 type Inputs<'a> = Box<dyn FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a>;
 
+/// Makes the equations of motion of one motion.
+type Equations<'a> = Box<dyn Fn() -> Box<dyn Dynamics> + 'a>;
+
 /// Sees the steps of a motion.
 type Sight<'a> = Box<dyn FnMut(&Step<'_>) + 'a>;
 
@@ -24,6 +27,7 @@ pub struct Simulation<'a> {
     start: State,
     times: Option<Vec<f64>>,
     inputs: Option<Inputs<'a>>,
+    equations: Option<Equations<'a>>,
     events: Vec<Event<'a>>,
     stop: Option<Box<dyn Fn() -> bool + 'a>>,
     sight: Option<Sight<'a>>,
@@ -37,6 +41,7 @@ impl<'a> Simulation<'a> {
             start: scene.start(),
             times: None,
             inputs: None,
+            equations: None,
             events: Vec::new(),
             stop: None,
             sight: None,
@@ -98,6 +103,12 @@ impl<'a> Simulation<'a> {
     /// With equations of motion in this arithmetic. Where it is [`Arithmetic::Auto`], a motion in doubles comes first, and inputs are asked for its efforts too.
     pub const fn arithmetic(mut self, arithmetic: Arithmetic) -> Self {
         self.settings.arithmetic = arithmetic;
+        self
+    }
+
+    /// With equations of motion that `make` gives to each motion, such as compiled ones, in place of the tree in doubles. Refined arithmetic is the tree's all the same.
+    pub fn equations(mut self, make: impl Fn() -> Box<dyn Dynamics> + 'a) -> Self {
+        self.equations = Some(Box::new(make));
         self
     }
 
@@ -241,7 +252,10 @@ impl<'a> Simulation<'a> {
     }
 
     fn dynamics(&self) -> Box<dyn Dynamics> {
-        self.settings.arithmetic.dynamics(&self.scene.mechanism)
+        match (&self.equations, self.settings.arithmetic) {
+            (Some(make), Arithmetic::Doubles | Arithmetic::Auto) => make(),
+            (_, arithmetic) => arithmetic.dynamics(&self.scene.mechanism),
+        }
     }
 
     /// The motion itself, with its events.

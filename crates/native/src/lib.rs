@@ -18,7 +18,7 @@ use hamel::integrate::{Form, Scheme};
 use hamel::mechanism::Mechanism;
 use hamel_compiler::functions::{Kind, TooLong};
 use hamel_compiler::{Build, Language, Module};
-use library::{Library, Sizes};
+use library::Sizes;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -50,7 +50,7 @@ const HAMILTONIAN: &[Kind] = &[
 /// The name of the module.
 const NAME: &str = "scene";
 
-/// Compiled equations, and what it took to have them. One scene at a time: while this stands, no other is loaded.
+/// Compiled equations, and what it took to have them.
 #[derive(Debug)]
 pub struct Equations {
     /// The dynamics.
@@ -63,7 +63,6 @@ pub struct Equations {
     pub left_out: Vec<TooLong>,
     /// Those of the module.
     pub functions: Vec<Kind>,
-    _library: Library,
 }
 
 /// What compiled equations cost, once.
@@ -123,7 +122,7 @@ impl Source {
     /// may write the folder, whose files are not needed any more when this returns. The compiler is ended when `is_ended` says so.
     ///
     /// # Errors
-    /// A compiler that fails, or that was ended; a folder that cannot be written; equations of another scene that are still in use.
+    /// A compiler that fails, or that was ended; a folder that cannot be written; equations that are not those of the mechanism.
     pub fn load(
         self,
         compiler: &Compiler,
@@ -135,8 +134,8 @@ impl Source {
         let built = compiler.build(folder, NAME, &self.module, is_ended)?;
         let compilation = clock.elapsed().as_secs_f64();
         let names: Vec<&str> = self.functions.iter().map(|kind| kind.name()).collect();
-        let library = Library::load(&built, NAME, &names, sizes(mechanism))?;
-        let dynamics = Compiled::starting_at(Arc::clone(mechanism), library.equations(), start)?;
+        let functions = library::load(&built, NAME, &names, sizes(mechanism))?;
+        let dynamics = Compiled::starting_at(Arc::clone(mechanism), functions, start)?;
         Ok(Equations {
             dynamics,
             compiler: compiler.to_string(),
@@ -148,7 +147,6 @@ impl Source {
             },
             left_out: self.left_out,
             functions: self.functions,
-            _library: library,
         })
     }
 }

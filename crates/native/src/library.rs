@@ -1,32 +1,21 @@
-//! The library, loaded, behind the functions that [`hamel::compiled::Compiled`] calls.
-//!
-//! Those are plain functions without data, so what they call stands in a static: one scene at a time.
+//! The library, loaded, as functions that [`hamel::compiled::Compiled`] calls. They hold it: it is unloaded with the last of them.
 
 #![allow(
     unsafe_code,
     reason = "functions of another language are called: see the safety comments"
 )]
 
-use hamel::compiled::{Equations, InLanes};
-use std::cell::RefCell;
+use hamel::compiled::{Function, Functions};
 use std::ffi::c_long;
 use std::path::Path;
-use std::ptr;
-use std::sync::atomic::{AtomicPtr, Ordering};
+use std::sync::Arc;
 
-/// A function of two arrays.
+/// A function of one array, Q.
+type One = unsafe extern "C" fn(*const f64, *mut f64);
+/// A function of two arrays, Q and v̄ or p̄.
 type Two = unsafe extern "C" fn(*const f64, *const f64, *mut f64);
-/// A function of three arrays.
+/// A function of three arrays, with inputs.
 type Three = unsafe extern "C" fn(*const f64, *const f64, *const f64, *mut f64);
-
-/// What is in use, or null. What was loaded stays in memory to the end of the program, so that a call of it can never meet nothing.
-static IN_USE: AtomicPtr<Loaded> = AtomicPtr::new(ptr::null_mut());
-
-/// A library in use: while this stands, its [`Equations`] call it.
-#[derive(Debug)]
-pub struct Library {
-    equations: &'static Equations,
-}
 
 /// Numbers of bodies, of stored scalars, of degrees of freedom, of speeds, and of results of the derivatives of forward dynamics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,80 +53,44 @@ pub enum LoadError {
         /// That which was expected.
         expected: String,
     },
-    /// Functions are without data, so that there is one at a time.
-    #[error("another one is in use")]
-    InUse,
 }
 
-/// The functions of a library, and the sizes for which they were written.
-struct Loaded {
+/// The functions `functions` of the library at `path`, which was built of the module `name`; its own sizes are compared with `sizes` before any is called.
+///
+/// # Errors
+/// A file that cannot be loaded; a library that lacks one of the functions, or the sizes; other sizes.
+pub fn load(
+    path: &Path,
+    name: &str,
+    functions: &[&str],
     sizes: Sizes,
-    forward_dynamics: Option<Three>,
-    derivatives: Option<Three>,
-    momenta: Option<Two>,
-    speeds_from_momenta: Option<Two>,
-    momentum_rates: Option<Three>,
-    hamiltonian: Option<Two>,
-    equations: Equations,
-    /// Keeps the functions where they are.
-    _library: libloading::Library,
-}
-
-impl Library {
-    /// The functions `functions` of the library at `path`, which was built of the module `name`; its own sizes are compared with `sizes` before any is called.
-    ///
-    /// # Errors
-    /// A file that cannot be loaded; a library that lacks one of the functions, or the sizes; other sizes; another library in use.
-    pub fn load(
-        path: &Path,
-        name: &str,
-        functions: &[&str],
-        sizes: Sizes,
-    ) -> Result<Self, LoadError> {
-        let module = Module::open(path, name, sizes)?;
-        let loaded = Box::leak(Box::new(module.loaded(functions)?));
-        let equations = &raw const loaded.equations;
-        IN_USE
-            .compare_exchange(ptr::null_mut(), loaded, Ordering::AcqRel, Ordering::Acquire)
-            .map_err(|_| LoadError::InUse)?;
-        // SAFETY: what it points to is never freed and never written again.
-        let equations = unsafe { &*equations };
-        Ok(Self { equations })
-    }
-
-    /// Functions that call it.
-    pub const fn equations(&self) -> &'static Equations {
-        self.equations
-    }
-}
-
-impl Drop for Library {
-    fn drop(&mut self) {
-        IN_USE.store(ptr::null_mut(), Ordering::Release);
-    }
-}
-
-/// What is in use.
-fn in_use() -> Option<&'static Loaded> {
-    // SAFETY: null, or what `Library::load` has leaked.
-    unsafe { IN_USE.load(Ordering::Acquire).as_ref() }
+) -> Result<Functions, LoadError> {
+    Module::open(path, name, functions, sizes)?.functions()
 }
 
 /// A library whose functions are being looked up.
 struct Module<'a> {
-    library: libloading::Library,
+    library: Arc<libloading::Library>,
     name: &'a str,
+    /// Those that are wanted.
+    wanted: &'a [&'a str],
     sizes: Sizes,
 }
 
 impl<'a> Module<'a> {
     /// Loads a library and compares its sizes.
-    fn open(path: &Path, name: &'a str, sizes: Sizes) -> Result<Self, LoadError> {
+    fn open(
+        path: &Path,
+        name: &'a str,
+        wanted: &'a [&'a str],
+        sizes: Sizes,
+    ) -> Result<Self, LoadError> {
         // SAFETY: the library was built of a module that this program wrote, which has no code that runs when it is loaded.
         let library = unsafe { libloading::Library::new(path) };
         let module = Self {
-            library: library.map_err(|error| LoadError::System(cause(&error)))?,
+            library: Arc::new(library.map_err(|error| LoadError::System(cause(&error)))?),
             name,
+            wanted,
             sizes,
         };
         let symbol = format!("{name}_sizes");
@@ -162,7 +115,7 @@ impl<'a> Module<'a> {
     /// What has this name, which must have the type `T`: a pointer to data or to a function.
     ///
     /// # Safety
-    /// What has the name must have the type.
+    /// What has the name must have the type, and is not to be used without the library.
     unsafe fn find<T: Copy>(&self, symbol: &str) -> Result<T, LoadError> {
         // SAFETY: the caller's.
         let found = unsafe { self.library.get::<T>(symbol) };
@@ -173,17 +126,16 @@ impl<'a> Module<'a> {
         })
     }
 
-    /// A function that writes so many results, where it is among `functions`.
+    /// A function that writes so many results, where it is wanted.
     ///
     /// # Safety
     /// As of [`Module::find`].
     unsafe fn function<T: Copy>(
         &self,
-        functions: &[&str],
         function: &str,
         results: usize,
     ) -> Result<Option<T>, LoadError> {
-        if !functions.contains(&function) {
+        if !self.wanted.contains(&function) {
             return Ok(None);
         }
         let symbol = format!("{}_{function}_results", self.name);
@@ -200,53 +152,99 @@ impl<'a> Module<'a> {
         unsafe { self.find::<T>(&format!("{}_{function}", self.name)) }.map(Some)
     }
 
-    /// Its functions, all of `functions`.
-    fn loaded(self, functions: &[&str]) -> Result<Loaded, LoadError> {
-        let sizes = self.sizes;
+    /// A function of Q; of slices of other sizes the results are NaN, as of the next two.
+    fn of_configuration(&self, name: &str, count: usize) -> Result<Option<Function>, LoadError> {
+        // SAFETY: the module has these functions of one array, and what calls it holds the library.
+        let Some(own) = (unsafe { self.function::<One>(name, count)? }) else {
+            return Ok(None);
+        };
+        let (held, size) = (Arc::clone(&self.library), self.sizes.configuration);
+        Ok(Some(Box::new(move |q, _, _, results| {
+            let _held = &held;
+            match q.len() == size && results.len() == count {
+                // SAFETY: the sizes are those for which the function was written, and what it writes overlaps nothing that it reads.
+                true => unsafe { own(q.as_ptr(), results.as_mut_ptr()) },
+                false => results.fill(f64::NAN),
+            }
+        })))
+    }
+
+    /// A function of Q and v̄ or p̄.
+    fn of_state(&self, name: &str, count: usize) -> Result<Option<Function>, LoadError> {
+        // SAFETY: the module has these functions of two arrays, and what calls it holds the library.
+        let Some(own) = (unsafe { self.function::<Two>(name, count)? }) else {
+            return Ok(None);
+        };
+        let (held, sizes) = (Arc::clone(&self.library), self.sizes);
+        Ok(Some(Box::new(move |q, v, _, results| {
+            let _held = &held;
+            let fits = q.len() == sizes.configuration && v.len() == sizes.speeds;
+            match fits && results.len() == count {
+                // SAFETY: as of functions of Q.
+                true => unsafe { own(q.as_ptr(), v.as_ptr(), results.as_mut_ptr()) },
+                false => results.fill(f64::NAN),
+            }
+        })))
+    }
+
+    /// A function of Q, v̄ or p̄, and so many inputs.
+    fn of_inputs(
+        &self,
+        name: &str,
+        inputs: usize,
+        count: usize,
+    ) -> Result<Option<Function>, LoadError> {
+        // SAFETY: the module has these functions of three arrays, and what calls it holds the library.
+        let Some(own) = (unsafe { self.function::<Three>(name, count)? }) else {
+            return Ok(None);
+        };
+        let (held, sizes) = (Arc::clone(&self.library), self.sizes);
+        Ok(Some(Box::new(move |q, v, u, results| {
+            let _held = &held;
+            let fits = q.len() == sizes.configuration && v.len() == sizes.speeds;
+            match fits && u.len() == inputs && results.len() == count {
+                // SAFETY: as of functions of Q.
+                true => unsafe { own(q.as_ptr(), v.as_ptr(), u.as_ptr(), results.as_mut_ptr()) },
+                false => results.fill(f64::NAN),
+            }
+        })))
+    }
+
+    /// All that are wanted.
+    fn functions(self) -> Result<Functions, LoadError> {
         let Sizes {
+            bodies,
             configuration,
             freedoms,
             speeds,
             derivatives,
-            ..
-        } = sizes;
-        // SAFETY: every function of a module has the type that its arguments tell: these take three arrays …
-        let three = |name, results| unsafe { self.function::<Three>(functions, name, results) };
-        // SAFETY: … and these take two.
-        let two = |name, results| unsafe { self.function::<Two>(functions, name, results) };
-        let forward_dynamics = three("forward_dynamics", speeds)?;
-        let derivatives = three("forward_dynamics_derivatives", derivatives)?;
-        let momentum_rates = three("momentum_rates", 2 * speeds)?;
-        let momenta = two("momenta", speeds)?;
-        let speeds_from_momenta = two("speeds_from_momenta", speeds)?;
-        let hamiltonian = two("hamiltonian", 1)?;
-        Ok(Loaded {
-            sizes,
-            equations: Equations {
-                scene: "the scene",
-                configuration,
+        } = self.sizes;
+        let slopes = speeds * (freedoms + speeds);
+        Ok(Functions {
+            scene: "the scene",
+            configuration,
+            freedoms,
+            speeds,
+            forward_dynamics: self.of_inputs("forward_dynamics", freedoms, speeds)?,
+            inverse_dynamics: self.of_inputs("inverse_dynamics", speeds, speeds)?,
+            bias_forces: self.of_state("bias_forces", speeds)?,
+            mass_matrix: self.of_configuration("mass_matrix", speeds * speeds)?,
+            energies: self.of_state("energies", 2)?,
+            poses: self.of_configuration("poses", 12 * bodies)?,
+            momenta: self.of_state("momenta", speeds)?,
+            speeds_from_momenta: self.of_state("speeds_from_momenta", speeds)?,
+            momentum_rates: self.of_inputs("momentum_rates", freedoms, 2 * speeds)?,
+            hamiltonian: self.of_state("hamiltonian", 1)?,
+            forward_dynamics_derivatives: self.of_inputs(
+                "forward_dynamics_derivatives",
                 freedoms,
+                derivatives,
+            )?,
+            inverse_dynamics_derivatives: self.of_inputs(
+                "inverse_dynamics_derivatives",
                 speeds,
-                forward_dynamics: forward_dynamics.map(|_| call_forward_dynamics as _),
-                inverse_dynamics: None,
-                forward_dynamics_derivatives: derivatives.map(|_| call_derivatives as _),
-                inverse_dynamics_derivatives: None,
-                forward_slopes: derivatives.map_or(0, |_| sizes.derivatives),
-                mass_matrix: None,
-                inverse_mass_matrix: None,
-                momenta: momenta.map(|_| call_momenta as _),
-                speeds_from_momenta: speeds_from_momenta.map(|_| call_speeds as _),
-                momentum_rates: momentum_rates.map(|_| call_momentum_rates as _),
-                hamiltonian: hamiltonian.map(|_| call_hamiltonian as _),
-                in_lanes: InLanes::NONE,
-            },
-            forward_dynamics,
-            derivatives,
-            momenta,
-            speeds_from_momenta,
-            momentum_rates,
-            hamiltonian,
-            _library: self.library,
+                slopes,
+            )?,
         })
     }
 }
@@ -261,114 +259,4 @@ fn cause(error: &libloading::Error) -> String {
     use std::error::Error;
     let source = error.source().map(ToString::to_string);
     source.unwrap_or_else(|| error.to_string())
-}
-
-impl Loaded {
-    /// Whether these are a Q, v̄ or p̄, and results of those lengths.
-    fn fits(&self, q: &[f64], speeds: &[f64], results: (&[f64], usize)) -> bool {
-        let sizes = self.sizes;
-        q.len() == sizes.configuration
-            && speeds.len() == sizes.speeds
-            && results.0.len() == results.1
-    }
-
-    /// Calls a function of Q and v̄ or p̄; of slices of other sizes the results are NaN.
-    fn two(&self, function: Option<Two>, q: &[f64], speeds: &[f64], results: (&mut [f64], usize)) {
-        let (results, count) = results;
-        results.fill(f64::NAN);
-        if let Some(function) = function
-            && self.fits(q, speeds, (results, count))
-        {
-            // SAFETY: the sizes are those for which the function was written, and what it writes overlaps nothing that it reads.
-            unsafe { function(q.as_ptr(), speeds.as_ptr(), results.as_mut_ptr()) }
-        }
-    }
-
-    /// The same with τ.
-    fn three(
-        &self,
-        function: Option<Three>,
-        q: &[f64],
-        speeds: &[f64],
-        efforts: &[f64],
-        results: (&mut [f64], usize),
-    ) {
-        let (results, count) = results;
-        results.fill(f64::NAN);
-        if let Some(function) = function
-            && self.fits(q, speeds, (results, count))
-            && efforts.len() == self.sizes.freedoms
-        {
-            let results = results.as_mut_ptr();
-            // SAFETY: as in `two`.
-            unsafe { function(q.as_ptr(), speeds.as_ptr(), efforts.as_ptr(), results) }
-        }
-    }
-}
-
-fn call_forward_dynamics(q: &[f64], v: &[f64], tau: &[f64], rates: &mut [f64]) {
-    if let Some(loaded) = in_use() {
-        loaded.three(
-            loaded.forward_dynamics,
-            q,
-            v,
-            tau,
-            (rates, loaded.sizes.speeds),
-        );
-    }
-}
-
-fn call_derivatives(q: &[f64], v: &[f64], tau: &[f64], rows: &mut [f64]) {
-    if let Some(loaded) = in_use() {
-        loaded.three(
-            loaded.derivatives,
-            q,
-            v,
-            tau,
-            (rows, loaded.sizes.derivatives),
-        );
-    }
-}
-
-fn call_momenta(q: &[f64], v: &[f64], p: &mut [f64]) {
-    if let Some(loaded) = in_use() {
-        loaded.two(loaded.momenta, q, v, (p, loaded.sizes.speeds));
-    }
-}
-
-fn call_speeds(q: &[f64], p: &[f64], v: &mut [f64]) {
-    if let Some(loaded) = in_use() {
-        loaded.two(loaded.speeds_from_momenta, q, p, (v, loaded.sizes.speeds));
-    }
-}
-
-thread_local! {
-    /// v̄ and p̄̇, which the function writes one after the other.
-    static BOTH: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
-}
-
-fn call_momentum_rates(q: &[f64], p: &[f64], tau: &[f64], v: &mut [f64], rates: &mut [f64]) {
-    let Some(loaded) = in_use() else {
-        return;
-    };
-    BOTH.with_borrow_mut(|both| {
-        let count = 2 * loaded.sizes.speeds;
-        both.resize(count, f64::NAN);
-        loaded.three(loaded.momentum_rates, q, p, tau, (both, count));
-        let (speeds, changes) = both.split_at(loaded.sizes.speeds);
-        for (result, found) in [(v, speeds), (rates, changes)] {
-            result
-                .iter_mut()
-                .zip(found)
-                .for_each(|(to, from)| *to = *from);
-        }
-    });
-}
-
-fn call_hamiltonian(q: &[f64], p: &[f64]) -> f64 {
-    let mut energy = [f64::NAN];
-    if let Some(loaded) = in_use() {
-        loaded.two(loaded.hamiltonian, q, p, (&mut energy, 1));
-    }
-    energy[0]
 }

@@ -4,7 +4,7 @@
 dimensions are a batch. Units are SI, angles radians; twists have the angular velocity first.
 """
 
-from ._errors import ArgumentError, DynamicsError, Error, FileError, IntegrationError, Mistake
+from ._errors import ArgumentError, CompilationError, DynamicsError, Error, FileError, IntegrationError, Mistake
 from ._hamel import Joint, Robot, load, set_threads
 from ._motion import Motion, simulate
 from ._sweep import sweep
@@ -15,6 +15,7 @@ __version__ = "0.1.0"
 __all__ = [
     "ArgumentError",
     "Claim",
+    "CompilationError",
     "DynamicsError",
     "Error",
     "FileError",

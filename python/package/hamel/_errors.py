@@ -56,6 +56,10 @@ class DynamicsError(Error):
         self.index = index
 
 
+class CompilationError(Error):
+    """Equations of motion that cannot be compiled: the machine has no C compiler, or the scene has something of which the scene compiler does not write equations."""
+
+
 class IntegrationError(Error):
     """A motion that does not go on, or whose accuracy is not reached.
 
