@@ -48,6 +48,12 @@ fn main() -> Result<(), Error> {
     .lanes()
     .compile()?;
     compiled(
+        "data/scenes/linkages.toml",
+        [Kind::ForwardDynamics, Kind::InverseDynamics],
+    )
+    .lanes()
+    .compile()?;
+    compiled(
         "data/urdf/loops/ankle.urdf",
         [
             Kind::ForwardDynamics,

@@ -107,20 +107,25 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
         ParameterError::Tolerance { .. } => Failure::Options(format!("--tolerance: {error}")),
         _ => Failure::Refused(error.to_string()),
     })?;
+    let values = values(&scene.mechanism, &base)?;
     match args.json {
-        true => output::print_json(&report(input.label(), &scene.mechanism, &base)),
-        false => output::print(&text(&scene.mechanism, &base)),
+        true => output::print_json(&report(input.label(), &values, &base)),
+        false => output::print(&text(&scene.mechanism, &values, &base)),
     }
 }
 
-fn values(mechanism: &Mechanism, base: &BaseParameters) -> Vec<f64> {
-    let all = nalgebra::DVector::from_vec(mechanism.inertial_parameters());
-    (base.matrix() * all).as_slice().to_vec()
+/// Values of the base parameters.
+///
+/// # Errors
+/// None for parameters of the mechanism that they were found for.
+fn values(mechanism: &Mechanism, base: &BaseParameters) -> Result<Vec<f64>, Failure> {
+    let values = base.values(&mechanism.inertial_parameters());
+    let values = values.map_err(|error| Failure::Refused(error.to_string()))?;
+    Ok(values.as_slice().to_vec())
 }
 
-fn report<'a>(scene: &'a str, mechanism: &Mechanism, base: &BaseParameters) -> Report<'a> {
-    let values = values(mechanism, base).into_iter().enumerate();
-    let of_base = values.map(|(number, value)| Base {
+fn report<'a>(scene: &'a str, values: &[f64], base: &BaseParameters) -> Report<'a> {
+    let of_base = values.iter().enumerate().map(|(number, &value)| Base {
         value,
         unit: INERTIAL_PARAMETER_UNITS[base.kept()[number] % INERTIAL_PARAMETERS],
         terms: (base.combination(number).terms())
@@ -162,9 +167,8 @@ fn derived(base: &BaseParameters) -> usize {
 }
 
 /// What is printed for people.
-fn text(mechanism: &Mechanism, base: &BaseParameters) -> String {
+fn text(mechanism: &Mechanism, values: &[f64], base: &BaseParameters) -> String {
     let mut text = String::new();
-    let values = values(mechanism, base);
     for (index, body) in mechanism.bodies().iter().enumerate() {
         let of_body = |place: &usize| place / INERTIAL_PARAMETERS == index;
         _ = writeln!(text, "{} on joint {}", body.name(), body.joint_name());

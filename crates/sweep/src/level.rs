@@ -47,18 +47,18 @@ pub fn environment(level: &str) -> Option<&'static str> {
     (level == LEVELS[0]).then_some(HIDDEN)
 }
 
-/// Fused products need FMA, and the C library asks for AVX2 besides: both belong to x86-64-v3. [`VARIABLE`] can hide them from it.
+/// The level of this process. Fused products need FMA, and the C library asks for AVX2 besides: both belong to x86-64-v3. [`VARIABLE`] can hide them from it.
 #[cfg(target_arch = "x86_64")]
-fn level() -> &'static str {
+pub fn level() -> &'static str {
     let hidden = env::var(VARIABLE).unwrap_or_default();
     let is_hidden = ["-FMA", "-AVX2"].iter().any(|name| hidden.contains(name));
     let is_there = is_x86_feature_detected!("fma") && is_x86_feature_detected!("avx2");
     LEVELS[usize::from(is_there && !is_hidden)]
 }
 
-/// Other processors have one level.
+/// The level of this process: other processors have one.
 #[cfg(not(target_arch = "x86_64"))]
-fn level() -> &'static str {
+pub fn level() -> &'static str {
     env::consts::ARCH
 }
 

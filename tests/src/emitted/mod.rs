@@ -29,6 +29,10 @@ pub mod geodesic_springs {
 pub mod humanoid {
     include!(concat!(env!("OUT_DIR"), "/humanoid.rs"));
 }
+/// `tests/data/scenes/linkages.toml`, with lanes: loops within joints, and rotors at their ports.
+pub mod linkages {
+    include!(concat!(env!("OUT_DIR"), "/linkages.rs"));
+}
 /// `tests/data/scenes/loops.toml`, with lanes: loops that `[[loop]]` closes.
 pub mod loops {
     include!(concat!(env!("OUT_DIR"), "/loops.rs"));

@@ -6,7 +6,7 @@ use hamel::compiled::{Batch, Entry, Equations, InLanes, LANES, Lanes, Level};
 use hamel::dynamics::{Dynamics, MassMatrix, Recursive};
 use hamel::mechanism::Mechanism;
 use hamel_scene::Scene;
-use hamel_tests::emitted::{loops, plate_cart_arm as module};
+use hamel_tests::emitted::{linkages, loops, plate_cart_arm as module};
 use hamel_tests::{random, scenes};
 use rand::SeedableRng;
 use std::path::Path;
@@ -27,27 +27,28 @@ struct Subject {
     mechanism: Arc<Mechanism>,
 }
 
-/// A scene of the library's joints, and loops on a base that moves.
-fn subjects() -> [Subject; 2] {
-    static ONE_BY_ONE: [Equations; 2] =
-        [one_by_one(module::EQUATIONS), one_by_one(loops::EQUATIONS)];
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let closed = Scene::load(
-        folder.join("data/scenes/loops.toml"),
-        &hamel_joints::registry(),
-    );
-    let closed = closed.unwrap_or_else(|errors| panic!("{errors}"));
+/// A scene of the library's joints, loops on a base that moves, and loops within joints with rotors at ports.
+fn subjects() -> [Subject; 3] {
+    static ONE_BY_ONE: [Equations; 3] = [
+        one_by_one(module::EQUATIONS),
+        one_by_one(loops::EQUATIONS),
+        one_by_one(linkages::EQUATIONS),
+    ];
+    let own = |name: &str| {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");
+        let scene = Scene::load(folder.join(name), &hamel_joints::registry());
+        scene.unwrap_or_else(|errors| panic!("{errors}")).mechanism
+    };
+    let subject = |number: usize, equations, mechanism| Subject {
+        equations,
+        one_by_one: &ONE_BY_ONE[number],
+        mechanism,
+    };
+    let arm = scenes::load("plate_cart_arm").mechanism;
     [
-        Subject {
-            equations: &module::EQUATIONS,
-            one_by_one: &ONE_BY_ONE[0],
-            mechanism: scenes::load("plate_cart_arm").mechanism,
-        },
-        Subject {
-            equations: &loops::EQUATIONS,
-            one_by_one: &ONE_BY_ONE[1],
-            mechanism: closed.mechanism,
-        },
+        subject(0, &module::EQUATIONS, arm),
+        subject(1, &loops::EQUATIONS, own("loops.toml")),
+        subject(2, &linkages::EQUATIONS, own("linkages.toml")),
     ]
 }
 

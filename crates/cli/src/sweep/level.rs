@@ -3,7 +3,7 @@
 //! The C library chooses its functions when a process starts. For a lower level than that of the machine the program starts itself anew, with what hides the others from it.
 
 use hamel_console::output::Failure;
-use hamel_sweep::level::{Arithmetic, LEVELS, VARIABLE, environment};
+use hamel_sweep::level::{LEVELS, VARIABLE, environment, level};
 use std::ffi::{OsStr, OsString};
 
 /// Returns in a process that computes at the level.
@@ -11,7 +11,7 @@ use std::ffi::{OsStr, OsString};
 /// # Errors
 /// A level that the machine does not have, or that the program cannot start itself anew at.
 pub fn ensure(wanted: &str) -> Result<(), Failure> {
-    let own = Arithmetic::own().level;
+    let own = level();
     if own == wanted {
         return Ok(());
     }
