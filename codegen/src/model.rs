@@ -398,6 +398,8 @@ pub const CHECKABLE: &[&str] = &[
     "speeds_meet_constraint",
     "port_angles",
     "port_rates",
+    "pins_meet",
+    "pins_hold",
 ];
 
 /// A claim that the author wants to rest on evaluation at points.

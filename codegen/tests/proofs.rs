@@ -215,3 +215,23 @@ fn an_exception_may_be_a_multiple_of_what_must_not_vanish() {
     let refused = delta("p.z").expect_err("it vanishes elsewhere too");
     assert!(refused.contains("E0401"), "{refused}");
 }
+
+/// A linkage on a sphere whose arcs are several parts of one turn: what its relation holds of these, its exception need not hold.
+#[test]
+fn an_exception_may_have_other_multiples_of_an_angle() {
+    let linkage = |ground: &str, coupler: &str| {
+        let source = format!(
+            "hamel = 1; joint spherical {{ config a: S1, c: S1; bodies crank, rocker;\n\
+             let frame = rot_y({ground} * pi);\n\
+             let p = rot_z(a) * [1/2, 0, sqrt(3)/2]; let q = frame * rot_z(c) * [sqrt(3)/2, 0, 1/2];\n\
+             relation dot(p, q) = cos({coupler} * pi); basis turn of so2(a);\n\
+             except dot(cross(frame * [0, 0, 1], q), p) = 0; home near [1, 0], [0, 1];\n\
+             H.crank = rot_z(a); H.rocker = pose(frame * rot_z(c), [0, 0, 0]); }}"
+        );
+        derive(&source, "spherical.joint").map_err(|errors| errors.to_string())
+    };
+    for (ground, coupler) in [("2/5", "1/5"), ("1/5", "1/10"), ("4/9", "7/18")] {
+        let found = linkage(ground, coupler);
+        assert!(found.is_ok(), "{:?}", found.err());
+    }
+}

@@ -23,7 +23,7 @@ pub use self::squares::squares;
 
 use self::sign::Signs;
 use crate::expr::{Atom, Expr, Function, Monomial, Rational, Role, Symbol, budget};
-use crate::manifold::{Ideal, cleared_by_squares};
+use crate::manifold::{Ideal, cleared_by_squares, unified_all};
 use crate::matrix::combinations;
 use crate::model::ConfigurationSpace;
 use num_traits::One;
@@ -260,7 +260,24 @@ impl<'a> Domain<'a> {
         parallel::is_excluded(functions, self.declared, &self.circles, is_never_zero)
     }
 
+    /// Looks for a certificate with one base angle in all that is compared: `cos 2x` in a locus is `2 cos² x − 1` beside `cos x`.
     fn search(&self, expressions: &[Expr]) -> Option<Certificate> {
+        let all = [expressions, &self.loci].concat();
+        let all = unified_all(&all);
+        let (expressions, loci) = all.split_at(expressions.len());
+        match loci == self.loci {
+            true => self.found(expressions),
+            false => {
+                let unified = Self {
+                    loci: loci.to_vec(),
+                    ..self.clone()
+                };
+                unified.found(expressions)
+            }
+        }
+    }
+
+    fn found(&self, expressions: &[Expr]) -> Option<Certificate> {
         let normal = |e: &Expr| self.ideal.normal_form(e);
         let all: Vec<Expr> = expressions
             .iter()

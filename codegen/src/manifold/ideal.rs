@@ -7,7 +7,7 @@ use super::{angles, canonical};
 use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, Role, Symbol, budget};
 use crate::matrix::Matrix;
 use rustc_hash::FxHashMap;
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 
@@ -28,8 +28,8 @@ pub struct Ideal {
     own: Arc<Reduction>,
     /// The relations as they are stated, among which short ones are found sooner than in the basis.
     stated: Arc<[Expr]>,
-    /// Whether it is that of some of these alone.
-    is_incomplete: bool,
+    /// Where it is that of some of these alone: rules by which to rewrite modulo all of them, found when they are first needed.
+    incomplete: Option<OnceCell<Arc<Reduction>>>,
     /// Parameters that are positive, so that the root of their square is the parameter itself.
     positive: BTreeSet<Symbol>,
     /// Parameters that may be 0, by which nothing is divided.
@@ -53,11 +53,11 @@ impl Ideal {
     }
 
     /// The ideal of `known` relations alone, where a basis of all would take too long: what vanishes modulo these does so on the manifold, but
-    /// of what does not nothing is said.
+    /// of what does not nothing is said. The others rewrite: sums of them, times numbers, vanish.
     pub fn incomplete(known: &[Expr], all: &[Expr]) -> Self {
         Self {
             stated: all.into(),
-            is_incomplete: true,
+            incomplete: Some(OnceCell::new()),
             ..Self::new(known)
         }
     }
@@ -91,6 +91,7 @@ impl Ideal {
     pub fn with_signs(mut self, positive: BTreeSet<Symbol>, vanishing: BTreeSet<Symbol>) -> Self {
         self.positive = positive;
         self.vanishing = vanishing;
+        self.incomplete = self.incomplete.map(|_| OnceCell::new());
         self.extended = RefCell::default();
         self.settled = RefCell::default();
         self
@@ -177,8 +178,20 @@ impl Ideal {
         normal.is_zero() || {
             let numerator = self.numerator(&normal);
             let normal = self.normal_form(&numerator);
-            normal.is_zero() || self.vanishes_by_laws(&normal)
+            normal.is_zero() || self.vanishes_as_stated(&normal) || self.vanishes_by_laws(&normal)
         }
+    }
+
+    /// The same by the relations that are no part of the basis, as they are stated.
+    fn vanishes_as_stated(&self, numerator: &Expr) -> bool {
+        let Some(rules) = &self.incomplete else {
+            return false;
+        };
+        let rules = rules.get_or_init(|| {
+            let rules = self.own.with(&[], &self.stated, &self.vanishing);
+            Arc::new(rules.in_echelon())
+        });
+        rules.normal_form(numerator).is_zero()
     }
 
     /// The same by laws between several functions.
@@ -355,7 +368,7 @@ impl Ideal {
 
     /// Whether its basis holds where those parameters are 0, too: whether it follows from the relations without division by them.
     pub fn follows_undivided(&self, relations: &[Expr], vanishing: &BTreeSet<Symbol>) -> bool {
-        if self.is_incomplete {
+        if self.incomplete.is_some() {
             // Those of known factors hold no parameters.
             return true;
         }

@@ -11,6 +11,7 @@ mod reduction;
 #[cfg(test)]
 mod tests;
 
+pub use angles::unified_all;
 pub use factor::{Factor, Kind, LARGEST_CONSTRAINED_REAL, LARGEST_REAL};
 pub use ideal::Ideal;
 pub(crate) use ideal::weight;

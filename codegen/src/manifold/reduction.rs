@@ -55,6 +55,17 @@ impl Reduction {
         reduction
     }
 
+    /// The same with each rule reduced by those before it, so that a sum of rules, each times a number, has normal form 0.
+    #[must_use]
+    pub fn in_echelon(mut self) -> Self {
+        for rule in std::mem::take(&mut self.rules) {
+            let known: Vec<&Expr> = self.basis.iter().chain(&self.rules).collect();
+            let reduced = groebner::reduce(&rule, &known);
+            self.rules.extend(groebner::rule(&reduced));
+        }
+        self
+    }
+
     /// The basis of a basis and further relations, with those parameters as indeterminates.
     fn with_freed(
         own: &[Expr],

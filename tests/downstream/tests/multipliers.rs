@@ -167,7 +167,7 @@ fn assert_forces(ports: &str, effort: f64, acting: Acting) {
             true => assert_pins(&told.expect("they are known"), &forces),
             false => assert_eq!(
                 told.expect_err("a lift is no pin's").to_string(),
-                "port `lift` of joint `linkage` has an effort, and is the motion of none of its pins: where it acts, and so what the pins carry, is not known"
+                "an effort acts at port `lift` of joint `linkage`, of an input, a spring, a damper or a rotor, and none of the joint's pins moves as it does: where it acts, and so what the pins carry, is not known"
             ),
         }
     }

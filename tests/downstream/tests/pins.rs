@@ -267,7 +267,7 @@ fn refusal(acting: &str) -> String {
 fn efforts_elsewhere_leave_it_open() {
     assert_eq!(
         refusal("ports.rod.effort = 1.0"),
-        "port `rod` of joint `press` has an effort, and is the motion of none of its pins: where it acts, and so what the pins carry, is not known"
+        "an effort acts at port `rod` of joint `press`, of an input, a spring, a damper or a rotor, and none of the joint's pins moves as it does: where it acts, and so what the pins carry, is not known"
     );
 }
 

@@ -50,7 +50,7 @@ impl<'a> Places<'a> {
             | MechanismError::Mass { body, .. } => self.body(body),
             MechanismError::Frame { frame, .. } => self.frame(frame),
             MechanismError::Element(ElementError::Value { element, .. }) => {
-                self.constraint(element)
+                self.constraint(element).or_else(|| self.joint_of(element))
             }
             // Of gravity, of all constraints together, or of the configuration.
             _ => None,
@@ -76,6 +76,13 @@ impl<'a> Places<'a> {
     fn joint(&self, name: &str) -> Option<Span> {
         let names = || self.description.bodies.iter().map(|body| &body.joint.name);
         found(&self.joints, names, name)
+    }
+
+    /// The joint at which an element acts: the name of the element ends with it.
+    fn joint_of(&self, element: &str) -> Option<Span> {
+        let mut names = self.description.bodies.iter().map(|body| &body.joint.name);
+        let own = names.find(|name| element.ends_with(&format!("of joint `{}`", name.value)));
+        own.map(|name| name.span.clone())
     }
 
     fn frame(&self, name: &str) -> Option<Span> {

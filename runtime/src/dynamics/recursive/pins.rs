@@ -36,7 +36,7 @@ pub enum PinError {
     State(#[from] StateError),
     /// An effort acts on the joint, and nothing says at which pin.
     #[error(
-        "{what} of joint `{joint}` has an effort, and is the motion of none of its pins: where it acts, and so what the pins carry, is not known"
+        "an effort acts at {what} of joint `{joint}`, of an input, a spring, a damper or a rotor, and none of the joint's pins moves as it does: where it acts, and so what the pins carry, is not known"
     )]
     Unplaced {
         /// The joint.
