@@ -54,7 +54,7 @@ pub struct Args {
     #[arg(long, conflicts_with = "output")]
     pub explain: bool,
 
-    /// Let forward and inverse dynamics of a module in Rust, their derivatives, the mass matrix and its inverse take many states at a time, in SIMD lanes (`hamel::compiled::Batch`); compiling takes longer
+    /// Let forward and inverse dynamics, their derivatives, the mass matrix and its inverse take many states at a time, in SIMD lanes (`hamel::compiled::Batch`; in C functions whose names end in `_lanes` and `_rows`); compiling takes longer
     #[arg(long, conflicts_with = "explain")]
     pub lanes: bool,
 
@@ -133,9 +133,6 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     if let Some(stem) = stem.filter(|stem| header.is_some() && stem.to_str().is_none()) {
         let name = stem.to_string_lossy().into_owned();
         return Err(Failure::Refused(Error::Name(name).to_string()));
-    }
-    if args.lanes && header.is_some() {
-        return Err(Failure::Options(Error::Lanes.to_string()));
     }
     // Read once: what is checked is what is compiled.
     let input = Input::read(&args.scene, &args.robot)?;

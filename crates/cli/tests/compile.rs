@@ -75,18 +75,6 @@ fn a_header_tells_units_axes_and_order_of_all_entries() {
 fn what_c_cannot_have_is_refused() {
     let folder = folder("compile_refused");
     let scene = "scenes/snakeboard.toml";
-    let lanes = folder.join("lanes.c");
-    let lanes = hamel(&[
-        "compile",
-        scene,
-        "--lanes",
-        "-o",
-        lanes.to_str().expect("text"),
-    ]);
-    let said = String::from_utf8_lossy(&lanes.stderr);
-    assert_eq!(lanes.status.code(), Some(2), "{said}");
-    assert!(said.contains("lanes are of modules in Rust"), "{said}");
-
     let quoted = folder.join("a\"b.c");
     let quoted = hamel(&["compile", scene, "-o", quoted.to_str().expect("text")]);
     let said = String::from_utf8_lossy(&quoted.stderr);

@@ -109,8 +109,6 @@ pub enum Error {
     Template(tera::Error),
     /// A name under which C cannot include a header.
     Name(String),
-    /// Lanes are of modules in Rust.
-    Lanes,
 }
 
 impl std::fmt::Display for Error {
@@ -120,7 +118,10 @@ impl std::fmt::Display for Error {
             Self::Scene(errors) => write!(f, "{errors}"),
             Self::Spec(errors) => write!(f, "{errors}"),
             Self::Work(joint, Exhausted { limit, task }) => {
-                write!(f, "joint type `{joint}`: {task}: more than {limit} term operations")
+                write!(
+                    f,
+                    "joint type `{joint}`: {task}: more than {limit} term operations"
+                )
             }
             Self::Refused(refused) => write!(f, "{refused}"),
             Self::TooLong(long) => write!(f, "{long}"),
@@ -129,9 +130,6 @@ impl std::fmt::Display for Error {
             Self::Name(name) => write!(
                 f,
                 "the module is named {name:?}, and C cannot include `{name}.h`: quotes, backslashes, ends of lines, bytes that are not UTF-8 and characters that are not seen must not be in a name"
-            ),
-            Self::Lanes => f.write_str(
-                "lanes are of modules in Rust, whose functions are generic over scalars: a module in C takes one state at a time",
             ),
         }
     }
@@ -215,8 +213,9 @@ impl Build {
         self
     }
 
-    /// Lets forward and inverse dynamics, their derivatives, the mass matrix and its inverse take many states at a time (`hamel_compiled::Batch`), in SIMD lanes. They are compiled once for each level of
-    /// instructions, which takes the Rust compiler its time.
+    /// Lets forward and inverse dynamics, their derivatives, the mass matrix and its inverse take many states at a time, in SIMD lanes: in Rust behind
+    /// `hamel_compiled::Batch`, compiled once for each level of instructions, which takes the Rust compiler its time; in C by functions
+    /// `NAME_forward_dynamics_lanes` of eight states and `NAME_forward_dynamics_rows` of any number.
     #[must_use]
     pub fn lanes(mut self) -> Self {
         self.lanes = true;
@@ -317,13 +316,12 @@ impl Build {
                 let text = emit::module(model, functions, label, lanes);
                 Ok((text.map_err(Error::Write)?, None))
             }
-            Language::C99 if self.lanes => Err(Error::Lanes),
             Language::C99 => {
                 let name = self.module_name();
                 if name.contains(['"', '\\', '\n', '\t']) || !is_visible(&name) {
                     return Err(Error::Name(name));
                 }
-                let texts = emit::c99::module(model, functions, label, &name);
+                let texts = emit::c99::module(model, (functions, lanes), label, &name);
                 let texts = texts.map_err(Error::Template)?;
                 Ok((texts.source, Some(texts.header)))
             }

@@ -69,6 +69,7 @@ pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)]) {
             name: format!("scene_{i}"),
             model,
             functions,
+            lanes: &[],
             optimisation: match functions.iter().map(Function::written).sum::<usize>() {
                 ..OPTIMISED => "-O1",
                 _ => "-O0",

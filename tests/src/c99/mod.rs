@@ -39,6 +39,8 @@ pub struct Module<'a> {
     pub model: &'a Model,
     /// Its functions.
     pub functions: &'a [Function],
+    /// Those of them that take many states at a time.
+    pub lanes: &'a [Function],
     /// The compiler's option for optimisation.
     pub optimisation: &'static str,
 }
@@ -49,8 +51,61 @@ pub struct Program {
     /// Closed before the program is waited for.
     requests: Option<ChildStdin>,
     results: BufReader<ChildStdout>,
-    /// Of each function of each module its number and how many results it has.
-    functions: Vec<(String, &'static str, usize)>,
+    entries: Vec<Entry>,
+}
+
+/// States that functions of many states are given: a whole group, and one that is not.
+pub const STATES: usize = 11;
+
+/// A function of the program.
+struct Entry {
+    module: String,
+    /// In the module.
+    name: String,
+    /// Whether it is given how many states there are.
+    is_of_many: bool,
+    /// Entries of each argument.
+    arguments: Vec<usize>,
+    results: usize,
+}
+
+impl Entry {
+    fn all(module: &Module<'_>) -> Vec<Self> {
+        let entry = |function: &Function, is_of_many: bool| {
+            let (ending, states) = if is_of_many {
+                ("_rows", STATES)
+            } else {
+                ("", 1)
+            };
+            let arguments = function.arguments.iter().map(|(_, size)| states * size);
+            Self {
+                module: module.name.clone(),
+                name: format!("{}{ending}", function.name),
+                is_of_many,
+                arguments: arguments.collect(),
+                results: states * function.results(),
+            }
+        };
+        let single = module.functions.iter().map(|one| entry(one, false));
+        let many = module.lanes.iter().map(|one| entry(one, true));
+        single.chain(many).collect()
+    }
+
+    fn arguments(&self) -> usize {
+        self.arguments.iter().sum()
+    }
+
+    /// The call of the function, at arguments that lie in `x` one after the other.
+    fn call(&self) -> String {
+        let count = self.is_of_many.then(|| format!("{STATES}, "));
+        let mut end = 0;
+        let starts = self.arguments.iter().map(|size| {
+            end += size;
+            format!("x + {}, ", end - size)
+        });
+        let starts: String = count.into_iter().chain(starts).collect();
+        format!("{}_{}({starts}y)", self.module, self.name)
+    }
 }
 
 impl Program {
@@ -62,7 +117,8 @@ impl Program {
         std::fs::create_dir_all(folder).expect("the folder can be made");
         let mut objects: Vec<PathBuf> = vec![];
         for module in modules {
-            let texts = c99::module(module.model, module.functions, "a test", &module.name);
+            let functions = (module.functions, module.lanes);
+            let texts = c99::module(module.model, functions, "a test", &module.name);
             let texts = texts.unwrap_or_else(|error| panic!("{error}"));
             write(folder, &format!("{}.h", module.name), &texts.header);
             let source = write(folder, &format!("{}.c", module.name), &texts.source);
@@ -70,7 +126,8 @@ impl Program {
             compile(&[module.optimisation, "-c"], &[source], &object)?;
             objects.push(object);
         }
-        objects.push(write(folder, "main.c", &main(modules)));
+        let entries: Vec<Entry> = modules.iter().flat_map(Entry::all).collect();
+        objects.push(write(folder, "main.c", &main(modules, &entries)));
         let program = folder.join("program");
         compile(&[], &objects, &program)?;
         let child = Command::new(&program)
@@ -78,31 +135,27 @@ impl Program {
             .stdout(Stdio::piped())
             .spawn();
         let mut child = child.expect("what was built runs");
-        let functions = modules.iter().flat_map(|module| {
-            let functions = module.functions.iter();
-            functions.map(|one| (module.name.clone(), one.name, one.results()))
-        });
         Some(Self {
             requests: child.stdin.take(),
             results: BufReader::new(child.stdout.take().expect("a pipe")),
-            functions: functions.collect(),
+            entries,
             child,
         })
     }
 
-    /// The results of a function of a module; `arguments` one after the other.
+    /// The results of a function of a module; `arguments` one after the other. With the ending `_rows` those of [`STATES`] states, in rows.
     ///
     /// # Panics
     /// Where the program does not have it, or has stopped.
     pub fn call(&mut self, module: &str, function: &str, arguments: &[&[f64]]) -> Vec<f64> {
-        let mut functions = self.functions.iter();
-        let found = functions.position(|(of, name, _)| of == module && *name == function);
+        let mut entries = self.entries.iter();
+        let found = entries.position(|entry| entry.module == module && entry.name == function);
         let number = found.unwrap_or_else(|| panic!("no {function} of {module}"));
         let numbers = std::iter::once(number as f64).chain(arguments.concat());
         let request: Vec<u8> = numbers.flat_map(f64::to_ne_bytes).collect();
         let requests = self.requests.as_mut().expect("it is open");
         requests.write_all(&request).expect("the program reads");
-        let mut bytes = vec![0; 8 * self.functions[number].2];
+        let mut bytes = vec![0; 8 * self.entries[number].results];
         self.results
             .read_exact(&mut bytes)
             .expect("the program answers");
@@ -156,15 +209,9 @@ fn write(folder: &Path, name: &str, text: &str) -> PathBuf {
 }
 
 /// The program that answers.
-fn main(modules: &[Module<'_>]) -> String {
-    let all = || {
-        modules.iter().flat_map(|module| {
-            let functions = module.functions.iter();
-            functions.map(move |function| (&module.name, function))
-        })
-    };
-    let most = |size: fn(&Function) -> usize| all().map(|(_, one)| size(one)).max().unwrap_or(0);
-    let (inputs, outputs) = (most(arguments), most(|one| one.results()));
+fn main(modules: &[Module<'_>], entries: &[Entry]) -> String {
+    let most = |size: fn(&Entry) -> usize| entries.iter().map(size).max().unwrap_or(0);
+    let (inputs, outputs) = (most(Entry::arguments), most(|entry| entry.results));
     let mut text = String::from("#include <stdio.h>\n");
     for module in modules {
         let _ = writeln!(text, "#include \"{}.h\"", module.name);
@@ -175,26 +222,14 @@ fn main(modules: &[Module<'_>]) -> String {
          int main(void)\n{{\n    static double number, x[{inputs} + 1], y[{outputs} + 1];\n    while (take(&number, 1)) {{\n        \
          size_t count = 0;\n        switch ((int)number) {{\n"
     );
-    for (number, (module, function)) in all().enumerate() {
-        let mut end = 0;
-        let starts = function.arguments.iter().map(|&(_, size)| {
-            end += size;
-            format!("x + {}, ", end - size)
-        });
-        let starts: String = starts.collect();
+    for (number, entry) in entries.iter().enumerate() {
         let _ = write!(
             text,
-            "        case {number}:\n            if (!take(x, {})) return 1;\n            {module}_{}({starts}y);\n            \
-             count = {};\n            break;\n",
-            arguments(function),
-            function.name,
-            function.results()
+            "        case {number}:\n            if (!take(x, {})) return 1;\n            {};\n            count = {};\n            break;\n",
+            entry.arguments(),
+            entry.call(),
+            entry.results
         );
     }
     text + "        }\n        if (fwrite(y, sizeof *y, count, stdout) != count || fflush(stdout)) return 1;\n    }\n    return 0;\n}\n"
-}
-
-/// Entries of all arguments of a function.
-fn arguments(function: &Function) -> usize {
-    function.arguments.iter().map(|(_, size)| size).sum()
 }

@@ -7,10 +7,11 @@ use hamel::scalar::{Dual, Scalar};
 use hamel_codegen::derived::Primitive;
 use hamel_codegen::expr::Function as Known;
 use hamel_compiler::emit::Function;
+use hamel_compiler::functions::{Kind, compile_in_lanes};
 use hamel_compiler::graph::{Argument, Sym, atan2, call, call_two, primitive, record};
 use hamel_compiler::scene;
 use hamel_scene::Scene;
-use hamel_tests::c99::{Module, Program, agree, functions, same};
+use hamel_tests::c99::{Module, Program, STATES, agree, functions, same};
 use hamel_tests::emitted::{ball_chain, chain_8, geodesic_springs, plate_cart_arm, snakeboard};
 use hamel_tests::random;
 use rand::SeedableRng;
@@ -192,6 +193,7 @@ fn committed_modules_agree() {
         name: name.clone(),
         model,
         functions,
+        lanes: &[],
         // The highest level that build systems commonly ask for: more is inlined, and other warnings are looked for.
         optimisation: "-O2",
     });
@@ -226,6 +228,81 @@ fn committed_modules_agree() {
                 same(&found, &expected),
                 "{module}, {function}: {found:?} and {expected:?}"
             );
+        }
+    }
+}
+
+/// Roundings by which states side by side may differ from single ones, relative to the largest entry of a state: some hundred operations of a well-conditioned
+/// system, and sines and cosines of another accuracy, as in the test `batches`.
+const ROUNDINGS: f64 = 1e3 * f64::EPSILON;
+
+/// Functions of many states are those of one state to rounding, of a whole group and of one that is not; a state beyond what the polynomials of angles
+/// serve has the bits of the function of one state.
+#[test]
+fn many_states_agree() {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let load = |file: &str| {
+        let model = scene(here.join(file))
+            .library(hamel_joints::specs())
+            .model();
+        let model = model.unwrap_or_else(|error| panic!("{error}"));
+        let scene = Scene::load(here.join(file), &hamel_joints::registry());
+        let scene = scene.unwrap_or_else(|errors| panic!("{errors}"));
+        let kinds = Kind::ALL.into_iter().filter(|kind| kind.is_batched());
+        let lanes: Vec<Function> = kinds
+            .filter_map(|kind| compile_in_lanes(&model, kind).ok())
+            .collect();
+        let mut single = functions(&model);
+        single.retain(|one| lanes.iter().any(|other| other.name == one.name));
+        (scene.mechanism, single, lanes, model)
+    };
+    let loaded = ["../scenes/plate_cart_arm.toml", "data/scenes/linkages.toml"].map(load);
+    let modules = loaded.iter().zip(["cart", "bars"]);
+    let modules: Vec<Module<'_>> = modules
+        .map(|((_, functions, lanes, model), name)| Module {
+            name: name.to_owned(),
+            model,
+            functions,
+            lanes,
+            optimisation: "-O2",
+        })
+        .collect();
+    let Some(mut program) = Program::new(&folder("many"), &modules) else {
+        return;
+    };
+    for ((mechanism, _, lanes, _), Module { name, .. }) in loaded.iter().zip(&modules) {
+        assert!(lanes.len() >= 4, "{name}: {}", lanes.len());
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let mut q: Vec<Vec<f64>> = (0..STATES)
+            .map(|_| random::configuration(&mut random, mechanism))
+            .collect();
+        // The table of the one and the arm of the other turn with what they store.
+        let far = if name == "cart" { q[0].len() - 1 } else { 0 };
+        q[3][far] = 1.0e6 + 0.3;
+        for function in lanes {
+            let rest = function.arguments.iter().skip(1);
+            let rest: Vec<Vec<f64>> = rest
+                .map(|(_, size)| random::numbers(&mut random, STATES * size))
+                .collect();
+            let rows = [vec![q.concat()], rest].concat();
+            let given: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+            let found = program.call(name, &format!("{}_rows", function.name), &given);
+            for (state, found) in found.chunks(function.results()).enumerate() {
+                let own = |(rows, (_, size)): (&Vec<f64>, &(Argument, usize))| {
+                    rows[state * size..(state + 1) * size].to_vec()
+                };
+                let own: Vec<Vec<f64>> = rows.iter().zip(&function.arguments).map(own).collect();
+                let own: Vec<&[f64]> = own.iter().map(Vec::as_slice).collect();
+                let expected = program.call(name, function.name, &own);
+                let largest = expected.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+                let bound = if state == 3 { 0.0 } else { ROUNDINGS * largest };
+                let close = found
+                    .iter()
+                    .zip(&expected)
+                    .all(|(a, b)| (a - b).abs() <= bound);
+                let what = format!("{name}, {}, state {state}", function.name);
+                assert!(close, "{what}: {found:?} and {expected:?}");
+            }
         }
     }
 }
@@ -314,6 +391,7 @@ fn helpers_agree() {
         name: "helpers".to_owned(),
         model: &model,
         functions: &functions,
+        lanes: &[],
         optimisation: "-O2",
     };
     let Some(mut program) = Program::new(&folder("helpers"), &[module]) else {

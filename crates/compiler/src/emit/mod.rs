@@ -108,7 +108,7 @@ impl Lowered {
 }
 
 /// The curves that functions call, in one order on every machine.
-fn curves(functions: &[Function]) -> BTreeSet<Curve> {
+fn curves<'f>(functions: impl IntoIterator<Item = &'f Function>) -> BTreeSet<Curve> {
     let mut found = BTreeSet::new();
     for function in functions {
         let uses = function.graph.uses(&function.outputs);

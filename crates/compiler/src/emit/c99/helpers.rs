@@ -77,6 +77,11 @@ impl Used {
             .extend(function.pairs.as_ref().map(|pairs| pairs.product));
     }
 
+    /// Takes note of functions of many states: their sines and cosines are polynomials.
+    pub fn note_lanes(&mut self) {
+        self.mul_add = true;
+    }
+
     fn of(&mut self, formula: &Formula) {
         match formula {
             Formula::Name(name) => {

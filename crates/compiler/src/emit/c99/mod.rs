@@ -1,13 +1,14 @@
 //! A module of functions in C99: a source that needs nothing but `<math.h>`, and its header.
 //!
 //! Templates lay the texts out (`crates/compiler/templates`); what they are filled with is made here, operation by operation as in Rust. Sums of
-//! products are multiply–adds, fused only where the target does that in hardware. Sines and cosines are those of the C library, one by one:
-//! the polynomials of the Rust runtime pay where a compiler vectorises them across angles, which ISO C has no means to ask for.
+//! products are multiply–adds, fused only where the target does that in hardware. Sines and cosines are those of the C library, one by one;
+//! functions of many states ([`lanes`]) take the polynomials of the Rust runtime, in loops that compilers vectorise.
 
 mod breaks;
 mod curve;
 mod formula;
 mod helpers;
+mod lanes;
 mod layout;
 mod pairs;
 mod results;
@@ -24,26 +25,33 @@ use serde::Serialize;
 use statement::{Array, Statement};
 use tera::{Context, Tera};
 
-const TEMPLATES: [(&str, &str); 4] = [
+const TEMPLATES: [(&str, &str); 5] = [
     ("module.h", include_str!("../../../templates/module.h.tera")),
     ("module.c", include_str!("../../../templates/module.c.tera")),
     (
         "helpers.c",
         include_str!("../../../templates/helpers.c.tera"),
     ),
+    ("lanes.c", include_str!("../../../templates/lanes.c.tera")),
     ("line.c", include_str!("../../../templates/line.c.tera")),
 ];
 
 /// Names that lines must not take: arguments, what the functions bind themselves, helpers, and what `<math.h>` defines.
-const RESERVED: [&str; 35] = [
+const RESERVED: [&str; 41] = [
     "q",
     "v",
     "p",
     "tau",
     "a",
     "i",
+    "lane",
+    "lanes",
+    "angles",
     "sines",
     "cosines",
+    "sin_cos",
+    "side_by_side",
+    "apart",
     "results",
     "work",
     "matrix",
@@ -82,24 +90,31 @@ pub struct Texts {
     pub header: String,
 }
 
-/// The module `name` that holds `functions` of the model: its functions begin with the name, its header is `NAME.h`. `label` names the scene's
-/// file.
+/// The module `name` that holds `functions` of the model, and those `in_lanes` of many states as well: its functions begin with the name, its header is
+/// `NAME.h`. `label` names the scene's file.
 ///
 /// # Errors
 /// A fault in a template, which is part of this crate.
 pub fn module(
     model: &Model,
-    functions: &[Function],
+    (functions, in_lanes): (&[Function], &[Function]),
     label: &str,
     name: &str,
 ) -> tera::TeraResult<Texts> {
     let bodies = identifiers(model);
-    let lowered = functions
-        .iter()
-        .map(|function| Lowered::new(function, &bodies, &RESERVED));
-    let lowered: Vec<Lowered> = lowered.collect();
+    let lines = |functions: &[Function]| -> Vec<Lowered> {
+        let lowered = functions.iter();
+        lowered
+            .map(|function| Lowered::new(function, &bodies, &RESERVED))
+            .collect()
+    };
+    let (lowered, side_by_side) = (lines(functions), lines(in_lanes));
     let mut used = Used::default();
-    lowered.iter().for_each(|lowered| used.note(lowered));
+    let all = lowered.iter().chain(&side_by_side);
+    all.for_each(|lowered| used.note(lowered));
+    if !in_lanes.is_empty() {
+        used.note_lanes();
+    }
     functions
         .iter()
         .for_each(|function| used.note_pairs(function));
@@ -108,6 +123,11 @@ pub fn module(
     let written = functions.iter().zip(&lowered);
     let written: Vec<Written> = written
         .map(|(function, lowered)| Written::new(function, lowered, &macros))
+        .collect();
+
+    let lanes = in_lanes.iter().zip(&side_by_side);
+    let lanes: Vec<lanes::Written> = lanes
+        .map(|(function, lowered)| lanes::Written::new(function, lowered))
         .collect();
 
     let mut context = Context::new();
@@ -126,7 +146,9 @@ pub fn module(
     context.insert("is_coupled", &is_coupled);
     context.insert("bodies", &layout::layout(model));
     context.insert("functions", &written);
-    let curves = curves(functions);
+    context.insert("lanes", &lanes);
+    context.insert("count_of_lanes", &lanes::LANES);
+    let curves = curves(functions.iter().chain(in_lanes));
     let curves = curves.into_iter().map(curve::Table::new);
     context.insert("curves", &curves.collect::<Vec<_>>());
     context.insert("used", &used.helpers());
