@@ -77,23 +77,25 @@ law_tests! {
 /// The law suite alone. Definitions in high precision know Φ as a formula, which relations alone are not, and S by X, which does not tell what
 /// moves no body.
 macro_rules! laws_alone {
-    ($($name:ident: $joint:expr;)*) => {
+    ($($name:ident: $joint:expr, $reach:expr;)*) => {
         const WITHOUT_DEFINITION: &[&str] = &[$(stringify!($name)),*];
         $(
             #[test]
             fn $name() {
-                check_within(&$joint, Entries(0.5));
+                check_within(&$joint, $reach);
             }
         )*
     };
 }
 
 laws_alone! {
-    car_steering: CarSteering::new(0.7);
-    differential_drive: DifferentialDrive::new(0.7, 0.85);
-    gear_train: GearTrain;
-    leaning_body: LeaningBody;
-    motor_platform: MotorPlatform;
+    car_steering: CarSteering::new(0.7), Entries(0.5);
+    differential_drive: DifferentialDrive::new(0.7, 0.85), Entries(0.5);
+    gear_train: GearTrain, Entries(0.5);
+    leaning_body: LeaningBody, Entries(0.5);
+    motor_platform: MotorPlatform, Entries(0.5);
+    stephenson: Stephenson::new(3.5, 1.0, 3.0, 2.5, 2.0, 1.0, 4.0, 4.0, 3.5), Around(0.1);
+    watt: Watt, Around(0.1);
 }
 
 #[test]
