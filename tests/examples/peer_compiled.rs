@@ -5,11 +5,11 @@
 //! peer_compiled [--build] [--limit OPERATIONS] FOLDER MODEL.txt[:ALGO,ALGO...] ...
 //! ```
 //!
-//! ALGO is one of rnea, nle, crba, minverse, aba, rnea_deriv, aba_deriv; all of them by default, and with them those for 8 lanes, of rnea and aba for 4 as well. With `--build` the program is not started: its path is
-//! printed. A function of more operations than the limit (30000) is left out; of a model that has none left, or that the compiler refuses, the
+//! ALGO is one of rnea, nle, crba, minverse, aba, rnea_deriv, aba_deriv; all of them by default, and with them those for 8 lanes, of rnea and aba for 4 as well,
+//! and those for 8 lanes in C by each compiler of C that is there. With `--build` the program is not started: its path is printed. A function of more operations than the limit (30000) is left out; of a model that has none left, or that the compiler refuses, the
 //! program says `skip` and why.
 
-use hamel_compiler::emit::{self, Function};
+use hamel_compiler::emit::{self, Function, c99};
 use hamel_compiler::functions::{Kind, Loops, compile, compile_in_lanes};
 use hamel_tests::compiled;
 use hamel_tests::peers::Model;
@@ -31,6 +31,15 @@ const KINDS: [(&str, Kind); 7] = [
     ("aba_deriv", Kind::ForwardDerivatives),
 ];
 
+/// Compilers of C, with the names that each may have.
+const C: [(&str, &[&str]); 2] = [
+    ("gcc", &["gcc"]),
+    ("clang", &["clang", "clang-19", "clang-18"]),
+];
+
+/// What functions in C are compiled with.
+const C_OPTIONS: [&str; 5] = ["-std=c99", "-O3", "-march=native", "-fno-math-errno", "-c"];
+
 struct Options {
     build: bool,
     limit: usize,
@@ -44,18 +53,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut arms = String::new();
     let folder = options.folder.join("src/models");
     std::fs::create_dir_all(&folder)?;
+    let mut objects = vec![];
     for asked in &options.models {
         let (path, algorithms) = asked.split_once(':').unwrap_or((asked, ""));
         let name = Path::new(path).file_stem().unwrap_or_default();
         let name = name.to_string_lossy().replace('-', "_");
         match module(path, &name, algorithms, options.limit) {
-            Ok((text, functions)) => {
-                std::fs::write(folder.join(format!("{name}.rs")), text)?;
+            Ok(written) => {
+                std::fs::write(folder.join(format!("{name}.rs")), &written.text)?;
                 writeln!(list, "mod {name};")?;
-                let functions = functions.join(" ");
+                let functions = written.functions.join(" ");
+                let in_c = written.in_c(&name, &folder, &mut list, &mut objects)?;
                 writeln!(
                     arms,
-                    "        {name:?} => Ok(crate::functions!({name}: {functions})),"
+                    "        {name:?} => Ok(crate::functions!({name}: {functions}).in_c([{in_c}])),"
                 )?;
             }
             Err(reason) => {
@@ -70,7 +81,87 @@ fn main() -> Result<(), Box<dyn Error>> {
     list += &arms;
     list += "        _ => Err(\"not among the models that were compiled\".into()),\n    }\n}\n";
     std::fs::write(folder.join("mod.rs"), list)?;
+    let link = objects.iter().map(|object| {
+        let object = object.display();
+        format!("    println!(\"cargo::rustc-link-arg={object}\");\n")
+    });
+    let link: String = link.collect();
+    std::fs::write(
+        options.folder.join("build.rs"),
+        format!("fn main() {{\n{link}}}\n"),
+    )?;
     start(&options)
+}
+
+/// The module of a model.
+struct Module {
+    model: hamel_compiler::model::Model,
+    text: String,
+    /// Names of its functions.
+    functions: Vec<&'static str>,
+    /// Forward and inverse dynamics of one state and of many, where there are both of many.
+    dynamics: Option<[Vec<Function>; 2]>,
+}
+
+impl Module {
+    /// Forward and inverse dynamics of eight states in C by each compiler, as an expression; writes and compiles them, and declares them in `list`.
+    fn in_c(
+        &self,
+        name: &str,
+        folder: &Path,
+        list: &mut String,
+        objects: &mut Vec<PathBuf>,
+    ) -> Result<String, Box<dyn Error>> {
+        let mut found = vec![];
+        for (compiler, commands) in C {
+            let prefix = format!("{name}_{compiler}");
+            let object = match &self.dynamics {
+                Some(functions) => self.object(functions, &prefix, folder, commands)?,
+                None => None,
+            };
+            let Some(object) = object else {
+                found.push("None".to_owned());
+                continue;
+            };
+            objects.push(object);
+            writeln!(list, "unsafe extern \"C\" {{")?;
+            for function in ["forward_dynamics", "inverse_dynamics"] {
+                writeln!(
+                    list,
+                    "    fn {prefix}_{function}_lanes(q: *const f64, v: *const f64, u: *const f64, results: *mut f64);"
+                )?;
+            }
+            writeln!(list, "}}")?;
+            found.push(format!("Some([{prefix}_forward_dynamics_lanes as crate::InC, {prefix}_inverse_dynamics_lanes])"));
+        }
+        Ok(found.join(", "))
+    }
+
+    /// The object of the module in C; nothing where the compiler is not there.
+    fn object(
+        &self,
+        [single, many]: &[Vec<Function>; 2],
+        prefix: &str,
+        folder: &Path,
+        commands: &[&str],
+    ) -> Result<Option<PathBuf>, Box<dyn Error>> {
+        let texts = c99::module(&self.model, (single, many), prefix, prefix)?;
+        let source = folder.join(format!("{prefix}.c"));
+        std::fs::write(&source, texts.source)?;
+        std::fs::write(source.with_extension("h"), texts.header)?;
+        let object = source.with_extension("o");
+        for command in commands {
+            let mut compile = Command::new(command);
+            compile.args(C_OPTIONS).arg(&source).arg("-o").arg(&object);
+            match compile.status() {
+                Ok(status) if status.success() => return Ok(Some(object)),
+                Ok(_) => return Err(format!("{command} does not compile {prefix}").into()),
+                Err(_) => {}
+            }
+        }
+        eprintln!("none of {} is there", commands.join(", "));
+        Ok(None)
+    }
 }
 
 fn options() -> Result<Options, Box<dyn Error>> {
@@ -101,7 +192,7 @@ fn module(
     name: &str,
     algorithms: &str,
     limit: usize,
-) -> Result<(String, Vec<&'static str>), Box<dyn Error>> {
+) -> Result<Module, Box<dyn Error>> {
     let asked: Vec<&str> = algorithms
         .split(',')
         .filter(|name| !name.is_empty())
@@ -145,10 +236,19 @@ fn module(
         }
     }
     let text = emit::module(&model, &functions, &format!("{name}.txt"), &lanes)?;
-    Ok((
+    let of_dynamics = |all: &[Function]| -> Vec<Function> {
+        let kinds = [Kind::ForwardDynamics, Kind::InverseDynamics];
+        let chosen = all.iter();
+        let chosen = chosen.filter(|one| kinds.iter().any(|kind| kind.name() == one.name));
+        chosen.cloned().collect()
+    };
+    let dynamics = [of_dynamics(&functions), of_dynamics(&lanes)];
+    Ok(Module {
         text,
-        functions.iter().map(|function| function.name).collect(),
-    ))
+        functions: functions.iter().map(|function| function.name).collect(),
+        dynamics: (dynamics[1].len() == 2).then_some(dynamics),
+        model,
+    })
 }
 
 /// Builds the project and starts it.

@@ -47,6 +47,7 @@ if a.robots:
 nvs = {r['name']: r['nv'] for r in index}
 LANES = [f'{al}_{lanes}' for al in ('aba', 'rnea') for lanes in ('x4', 'x8', 'x8_rows')]
 LANES += [f'{al}_x8' for al in ('aba_deriv', 'rnea_deriv', 'crba', 'minverse')]
+LANES += [f'{al}_x8_{cc}' for al in ('aba', 'rnea') for cc in ('gcc', 'clang')]
 # algorithms whose results are compared, with what they are compared as
 CHECKED = dict.fromkeys(('aba', 'aba_world', 'forward', 'fd_crba_chol'), 'aba') | {'rnea': 'rnea'}
 CHECKED |= {al: al.split('_')[0] for al in LANES}

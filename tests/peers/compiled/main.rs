@@ -31,7 +31,15 @@ pub struct Functions {
     bias_forces: Option<fn(&[f64], &[f64], &mut [f64])>,
     forward_x4: Option<Four>,
     inverse_x4: Option<Four>,
+    /// Forward and inverse dynamics of eight states in C, by gcc and by clang.
+    in_c: [Option<[InC; 2]>; 2],
 }
+
+/// A function of eight states side by side in C.
+pub type InC = unsafe extern "C" fn(*const f64, *const f64, *const f64, *mut f64);
+
+/// The algorithms of those.
+const IN_C: [[&str; 2]; 2] = [["aba_x8_gcc", "rnea_x8_gcc"], ["aba_x8_clang", "rnea_x8_clang"]];
 
 /// A function of four states side by side.
 type Four = fn(&[F64x4], &[F64x4], &[F64x4], &mut [F64x4]);
@@ -89,7 +97,23 @@ impl Functions {
             bias_forces: None,
             forward_x4: None,
             inverse_x4: None,
+            in_c: [None; 2],
         }
+    }
+
+    /// The same with functions in C.
+    const fn in_c(self, in_c: [Option<[InC; 2]>; 2]) -> Self {
+        Self { in_c, ..self }
+    }
+
+    /// The function of an algorithm in C.
+    fn of_c(&self, algorithm: &str) -> Option<InC> {
+        let all = IN_C.iter().zip(&self.in_c);
+        let mut all = all.filter_map(|(names, own)| Some((names, own.as_ref()?)));
+        all.find_map(|(names, own)| {
+            let place = names.iter().position(|name| *name == algorithm)?;
+            Some(own[place])
+        })
     }
 
     /// The algorithms that there are, by the harness's names.
@@ -116,7 +140,10 @@ impl Functions {
             ("minverse_x8", lanes.inverse_mass_matrix.is_some()),
         ];
         let there = all.iter().filter(|(_, there)| *there);
-        there.map(|(name, _)| format!(" {name}")).collect()
+        let there = there.map(|(name, _)| *name);
+        let in_c = IN_C.iter().flatten().copied();
+        let there = there.chain(in_c.filter(|name| self.of_c(name).is_some()));
+        there.map(|name| format!(" {name}")).collect()
     }
 }
 
@@ -234,6 +261,18 @@ impl Loaded {
                 let [q, v, u] = group(&self.fours, &self.states, k, 1);
                 function.ok_or_else(missing)?(q, v, u, &mut self.out_four);
             }
+            _ if functions.of_c(algorithm).is_some() => {
+                let rows = states / LANES;
+                let [q, v, u] = group(&self.eights, &self.states, k, rows);
+                let own = functions.of_c(algorithm).ok_or_else(missing)?;
+                let widths = [q, v, u].map(|lanes| lanes.len() / rows);
+                for (row, out) in self.out_eight.chunks_exact_mut(size).take(rows).enumerate() {
+                    let [q, v, u] = [q, v, u].map(|lanes| lanes.as_ptr().cast::<f64>());
+                    let at = |lanes: *const f64, i: usize| lanes.wrapping_add(row * widths[i] * LANES);
+                    // SAFETY: groups of eight lie entry after entry; the function reads those of one group, and writes as many results as there are speeds.
+                    unsafe { own(at(q, 0), at(v, 1), at(u, 2), out.as_mut_ptr().cast()) };
+                }
+            }
             _ if algorithm.ends_with("_x8") => {
                 let rows = states / LANES;
                 let [q, v, u] = group(&self.eights, &self.states, k, rows);
@@ -346,7 +385,7 @@ impl Loaded {
                 let lanes = order.iter().map(|&i| self.out_four[i].to_array());
                 lanes.map(|lanes| lanes[lane]).collect()
             }
-            "aba_x8" | "rnea_x8" => {
+            _ if algorithm.contains("_x8") && !algorithm.ends_with("_rows") => {
                 let row = &self.out_eight[lane / LANES * size..];
                 order.iter().map(|&i| row[i].0[lane % LANES]).collect()
             }

@@ -77,8 +77,8 @@ impl Used {
             .extend(function.pairs.as_ref().map(|pairs| pairs.product));
     }
 
-    /// Takes note of functions of many states: their sines and cosines are polynomials.
-    pub fn note_lanes(&mut self) {
+    /// Takes note of sines and cosines of many states, which are polynomials.
+    pub fn note_turns(&mut self) {
         self.mul_add = true;
     }
 

@@ -68,6 +68,11 @@ impl Written {
             outputs: outputs.map(|output| value(&in_lane(output))).collect(),
         }
     }
+
+    /// Whether it takes sines and cosines beforehand.
+    pub fn turns(&self) -> bool {
+        !self.angles.is_empty()
+    }
 }
 
 /// Lines of one state as those of a lane.

@@ -112,8 +112,13 @@ pub fn module(
     let mut used = Used::default();
     let all = lowered.iter().chain(&side_by_side);
     all.for_each(|lowered| used.note(lowered));
-    if !in_lanes.is_empty() {
-        used.note_lanes();
+    let lanes = in_lanes.iter().zip(&side_by_side);
+    let lanes: Vec<lanes::Written> = lanes
+        .map(|(function, lowered)| lanes::Written::new(function, lowered))
+        .collect();
+    let turns = lanes.iter().any(lanes::Written::turns);
+    if turns {
+        used.note_turns();
     }
     functions
         .iter()
@@ -123,11 +128,6 @@ pub fn module(
     let written = functions.iter().zip(&lowered);
     let written: Vec<Written> = written
         .map(|(function, lowered)| Written::new(function, lowered, &macros))
-        .collect();
-
-    let lanes = in_lanes.iter().zip(&side_by_side);
-    let lanes: Vec<lanes::Written> = lanes
-        .map(|(function, lowered)| lanes::Written::new(function, lowered))
         .collect();
 
     let mut context = Context::new();
@@ -147,6 +147,7 @@ pub fn module(
     context.insert("bodies", &layout::layout(model));
     context.insert("functions", &written);
     context.insert("lanes", &lanes);
+    context.insert("turns", &turns);
     context.insert("count_of_lanes", &lanes::LANES);
     let curves = curves(functions.iter().chain(in_lanes));
     let curves = curves.into_iter().map(curve::Table::new);
