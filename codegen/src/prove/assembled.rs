@@ -25,8 +25,9 @@ impl Prover<'_> {
             let message = "no configuration was found that meets the relations";
             let error = refuted(code::RELATIONS, span, message, "in this joint");
             return Some(Box::new(error.note(
-                "Newton's method was started from many places around home, with values of the parameters from their ranges; it finds none as well where \
-                 the derivatives of a relation are 0 wherever it is met, as those of a square are",
+                "Newton's method was started from many places around home, with values of the parameters from their ranges",
+            ).note(
+                "nor does it find any where the derivatives of a relation are 0 wherever it is met, as those of a square are",
             ).help("check signs and units of the relations; `home near …;` says around which configuration they are met")));
         }
         let home = Sampler::new(space, BITS).single();
