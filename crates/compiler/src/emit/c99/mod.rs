@@ -2,7 +2,7 @@
 //!
 //! Templates lay the texts out (`crates/compiler/templates`); what they are filled with is made here, operation by operation as in Rust. Sums of
 //! products are multiply–adds, fused only where the target does that in hardware. Sines and cosines are those of the C library, one by one;
-//! functions of many states ([`lanes`]) take the polynomials of the Rust runtime, in loops that compilers vectorise.
+//! functions of many states take the polynomials of the Rust runtime, in loops that compilers vectorise.
 
 mod breaks;
 mod curve;
