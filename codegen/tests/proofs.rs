@@ -235,3 +235,14 @@ fn an_exception_may_have_other_multiples_of_an_angle() {
         assert!(found.is_ok(), "{:?}", found.err());
     }
 }
+
+/// A second loop on the coupler of a first one: the pins that close either hold by its own relations.
+#[test]
+fn pins_may_close_several_loops() {
+    let source = include_str!("proved/stephenson.joint");
+    let joint = derive(source, "stephenson.joint").unwrap_or_else(|errors| panic!("{errors}"));
+    for name in ["pins_meet", "pins_hold"] {
+        let found = claim(&joint, name).map(|claim| claim.proof);
+        assert_eq!(found, Some(Proof::NormalForm), "{name}");
+    }
+}

@@ -94,7 +94,6 @@ laws_alone! {
     gear_train: GearTrain, Entries(0.5);
     leaning_body: LeaningBody, Entries(0.5);
     motor_platform: MotorPlatform, Entries(0.5);
-    stephenson: Stephenson::new(3.5, 1.0, 3.0, 2.5, 2.0, 1.0, 4.0, 4.0, 3.5), Around(0.1);
     watt: Watt, Around(0.1);
 }
 
