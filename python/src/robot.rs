@@ -143,9 +143,10 @@ impl Robot {
     /// The same robot with equations of motion that are compiled for it alone: as C, which holds nothing the robot does not need, by the C compiler that the variable `CC` names, else
     /// the first of `cc`, `gcc` and `clang`. That takes from a tenth of a second to a minute; calls take a fraction of the time then.
     ///
-    /// It has the same methods with the same results to rounding, compared once where the file begins; where `[[constraint]]`s couple joints, v has to meet them. What is not in `compiled`, jacobians and frames for example, is answered by
-    /// the general algorithms, and so are all states at which compiled functions have no finite value, derivatives that take efforts which change with time, and all functions that would be
-    /// too long. `hamel.simulate` takes it too. It pickles, and is compiled again where it is read.
+    /// It has the same methods, with the same results to rounding. They are compared once, where the file begins. Where `[[constraint]]`s couple joints, v has to meet them.
+    ///
+    /// What is not in `compiled` is answered by the general algorithms: Jacobians and frames, and functions that would be too long. So are states at which a compiled function
+    /// has no finite value, and derivatives where efforts change with time. `hamel.simulate` takes the robot too. It pickles, and is compiled again where it is read.
     ///
     /// Args:
     ///     functions: names of methods to be compiled, of `forward_dynamics`, `inverse_dynamics`, `bias_forces`, `mass_matrix`, `energy` (with its parts), `poses`,
