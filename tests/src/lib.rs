@@ -5,7 +5,6 @@ pub mod c99;
 pub mod compiled;
 pub mod derivatives;
 pub mod differences;
-pub mod emitted;
 pub mod enclosure;
 pub mod extended;
 pub mod figures;

@@ -17,7 +17,7 @@ const CATEGORIES: [&str; 9] = [
     "simulation",
 ];
 /// Members that are of use in the repository alone.
-const UNPUBLISHED: [&str; 2] = ["hamel-downstream", "hamel-tests"];
+const UNPUBLISHED: [&str; 3] = ["hamel-downstream", "hamel-emitted", "hamel-tests"];
 
 fn members() -> Vec<Value> {
     let mut cargo = Command::new(env!("CARGO"));
@@ -57,6 +57,41 @@ fn what_is_of_use_here_alone_is_not_published() {
     let mut names: Vec<&str> = kept.map(|package| text(package, "name")).collect();
     names.sort_unstable();
     assert_eq!(names, UNPUBLISHED);
+}
+
+/// A library is compiled a second time for tests of its own. One that has none says `test = false`; one that has some must not, or they would never run.
+#[test]
+fn libraries_with_tests_of_their_own_and_no_others_are_compiled_for_them() {
+    for package in members() {
+        let name = text(&package, "name");
+        let targets = package["targets"].as_array().expect("a list");
+        let is_library = |target: &&Value| texts(target, "kind") == ["lib"];
+        for library in targets.iter().filter(is_library) {
+            let source = Path::new(text(library, "src_path")).parent();
+            let has_tests = holds_tests(source.expect("a folder"));
+            assert_eq!(
+                library["test"],
+                Value::Bool(has_tests),
+                "{name}: `[lib] test`"
+            );
+        }
+    }
+}
+
+fn holds_tests(folder: &Path) -> bool {
+    let entries = std::fs::read_dir(folder).expect("a folder of sources");
+    entries
+        .map(|entry| entry.expect("an entry").path())
+        .any(|path| {
+            if path.is_dir() {
+                return holds_tests(&path);
+            }
+            let is_rust = path.extension().is_some_and(|extension| extension == "rs");
+            is_rust && {
+                let text = std::fs::read_to_string(&path).expect("a source");
+                text.lines().any(|line| line.trim() == "#[test]")
+            }
+        })
 }
 
 #[test]

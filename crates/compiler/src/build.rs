@@ -7,7 +7,8 @@
 //! }
 //! ```
 //!
-//! and in the crate `mod arm { include!(concat!(env!("OUT_DIR"), "/arm.rs")); }`. With [`Language::C99`] it is `arm.c` and `arm.h`, for the crate `cc`.
+//! and in the crate `mod arm { include!(concat!(env!("OUT_DIR"), "/arm.rs")); }`. With [`Language::C99`] it is `arm.c` and `arm.h`, for the crate `cc`; with
+//! [`Language::Cuda`] `arm.cu`.
 
 use super::check;
 use super::describe::Refused;
@@ -33,6 +34,8 @@ pub enum Language {
     Rust,
     /// C as of 1999, in doubles: a source that needs `<math.h>` alone, and a header.
     C99,
+    /// CUDA C++, in doubles: a source that needs no header, with a kernel of many states for each function.
+    Cuda,
 }
 
 impl Language {
@@ -41,6 +44,7 @@ impl Language {
         match self {
             Self::Rust => "rs",
             Self::C99 => "c",
+            Self::Cuda => "cu",
         }
     }
 }
@@ -192,7 +196,7 @@ impl Build {
         self
     }
 
-    /// The module's name, with which its files and, in C, its functions and macros begin; without this the scene's file name.
+    /// The module's name, with which its files and, in C and CUDA, its functions and macros begin; without this the scene's file name.
     #[must_use]
     pub fn name(mut self, name: impl Into<String>) -> Self {
         self.name = Some(name.into());
@@ -215,14 +219,15 @@ impl Build {
 
     /// Lets forward and inverse dynamics, their derivatives, the mass matrix and its inverse take many states at a time, in SIMD lanes: in Rust behind
     /// `hamel_compiled::Batch`, compiled once for each level of instructions, which takes the Rust compiler its time; in C by functions
-    /// `NAME_forward_dynamics_lanes` of eight states and `NAME_forward_dynamics_rows` of any number.
+    /// `NAME_forward_dynamics_lanes` of eight states and `NAME_forward_dynamics_rows` of any number. In CUDA each function has a kernel of many states, with
+    /// this or without.
     #[must_use]
     pub fn lanes(mut self) -> Self {
         self.lanes = true;
         self
     }
 
-    /// Writes the module into `OUT_DIR`, under its name with the ending `.rs`, or `.c` and `.h`. Prints the instructions to cargo that make
+    /// Writes the module into `OUT_DIR`, under its name with the ending `.rs`, `.c` and `.h`, or `.cu`. Prints the instructions to cargo that make
     /// it run again when the scene or a spec changes.
     ///
     /// # Errors
@@ -284,8 +289,9 @@ impl Build {
             let scene = model.name;
             return Err(Error::Refused(Refused { scene, reasons }));
         }
+        let lanes_asked = self.lanes && self.language != Language::Cuda;
         let mut lanes = vec![];
-        for kind in kinds.iter().filter(|kind| self.lanes && kind.is_batched()) {
+        for kind in kinds.iter().filter(|kind| lanes_asked && kind.is_batched()) {
             if functions
                 .iter()
                 .any(|function| function.name == kind.name())
@@ -324,6 +330,10 @@ impl Build {
                 let texts = emit::c99::module(model, (functions, lanes), label, &name);
                 let texts = texts.map_err(Error::Template)?;
                 Ok((texts.source, Some(texts.header)))
+            }
+            Language::Cuda => {
+                let text = emit::c99::cuda(model, functions, label, &self.module_name());
+                Ok((text.map_err(Error::Template)?, None))
             }
         }
     }

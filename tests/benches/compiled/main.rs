@@ -7,7 +7,7 @@
 mod states;
 
 use hamel::compiled::Batch;
-use hamel_tests::emitted::plate_cart_arm;
+use hamel_emitted::plate_cart_arm;
 use states::{STATES, States};
 
 const REPETITIONS: usize = 21;

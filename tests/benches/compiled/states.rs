@@ -5,7 +5,7 @@ use chacha20::ChaCha8Rng;
 use cpu_time::ThreadTime;
 use hamel::compiled::{Batch, Entry, Lanes, OneState};
 use hamel::dynamics::{Dynamics, Recursive};
-use hamel_tests::emitted::plate_cart_arm as module;
+use hamel_emitted::plate_cart_arm as module;
 use hamel_tests::{random, scenes};
 use rand::SeedableRng;
 use std::hint::black_box;

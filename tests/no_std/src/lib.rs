@@ -5,7 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod kernels;
-#[path = "../../src/emitted/snakeboard.rs"]
+#[path = "../../emitted/src/snakeboard.rs"]
 #[rustfmt::skip]
 pub mod scene;
 

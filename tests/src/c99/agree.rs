@@ -70,6 +70,7 @@ pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)]) {
             model,
             functions,
             lanes: &[],
+            kernels: &[],
             optimisation: match functions.iter().map(Function::written).sum::<usize>() {
                 ..OPTIMISED => "-O1",
                 _ => "-O0",

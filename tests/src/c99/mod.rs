@@ -4,6 +4,7 @@
 //! bit by bit.
 
 mod agree;
+mod kernels;
 
 pub use agree::{agree, functions, same};
 
@@ -41,6 +42,8 @@ pub struct Module<'a> {
     pub functions: &'a [Function],
     /// Those of them that take many states at a time.
     pub lanes: &'a [Function],
+    /// Those of them of which the kernels in CUDA are built as well, for the processor.
+    pub kernels: &'a [Function],
     /// The compiler's option for optimisation.
     pub optimisation: &'static str,
 }
@@ -57,6 +60,10 @@ pub struct Program {
 /// States that functions of many states are given: a whole group, and one that is not.
 pub const STATES: usize = 11;
 
+/// How names of functions of many states end: those of states in rows, and what calls a kernel.
+const ROWS: &str = "_rows";
+const KERNEL: &str = "_grid";
+
 /// A function of the program.
 struct Entry {
     module: String,
@@ -64,6 +71,7 @@ struct Entry {
     name: String,
     /// Whether it is given how many states there are.
     is_of_many: bool,
+    is_kernel: bool,
     /// Entries of each argument.
     arguments: Vec<usize>,
     results: usize,
@@ -71,24 +79,23 @@ struct Entry {
 
 impl Entry {
     fn all(module: &Module<'_>) -> Vec<Self> {
-        let entry = |function: &Function, is_of_many: bool| {
-            let (ending, states) = if is_of_many {
-                ("_rows", STATES)
-            } else {
-                ("", 1)
-            };
+        let entry = |function: &Function, ending: &str| {
+            let is_of_many = !ending.is_empty();
+            let states = if is_of_many { STATES } else { 1 };
             let arguments = function.arguments.iter().map(|(_, size)| states * size);
             Self {
                 module: module.name.clone(),
                 name: format!("{}{ending}", function.name),
                 is_of_many,
+                is_kernel: ending == KERNEL,
                 arguments: arguments.collect(),
                 results: states * function.results(),
             }
         };
-        let single = module.functions.iter().map(|one| entry(one, false));
-        let many = module.lanes.iter().map(|one| entry(one, true));
-        single.chain(many).collect()
+        let single = module.functions.iter().map(|one| entry(one, ""));
+        let many = module.lanes.iter().map(|one| entry(one, ROWS));
+        let kernels = module.kernels.iter().map(|one| entry(one, KERNEL));
+        single.chain(many).chain(kernels).collect()
     }
 
     fn arguments(&self) -> usize {
@@ -123,8 +130,16 @@ impl Program {
             write(folder, &format!("{}.h", module.name), &texts.header);
             let source = write(folder, &format!("{}.c", module.name), &texts.source);
             let object = source.with_extension("o");
-            compile(&[module.optimisation, "-c"], &[source], &object)?;
+            let fused: &[&str] = match module.kernels {
+                [] => &[],
+                _ => &[kernels::FUSED],
+            };
+            let options = [&[module.optimisation, "-c"], fused].concat();
+            compile(&options, &[source], &object)?;
             objects.push(object);
+            if !module.kernels.is_empty() {
+                objects.push(kernels::built(folder, module)?);
+            }
         }
         let entries: Vec<Entry> = modules.iter().flat_map(Entry::all).collect();
         objects.push(write(folder, "main.c", &main(modules, &entries)));
@@ -143,7 +158,8 @@ impl Program {
         })
     }
 
-    /// The results of a function of a module; `arguments` one after the other. With the ending `_rows` those of [`STATES`] states, in rows.
+    /// The results of a function of a module; `arguments` one after the other. With the ending `_rows` those of [`STATES`] states, in rows; with the ending
+    /// `_grid` those of the kernel, in a structure of arrays.
     ///
     /// # Panics
     /// Where the program does not have it, or has stopped.
@@ -171,11 +187,21 @@ impl Drop for Program {
     }
 }
 
-/// Compiles or links; nothing where there is no compiler.
+/// Compiles C or links; nothing where there is no compiler.
 fn compile(options: &[&str], sources: &[PathBuf], target: &Path) -> Option<()> {
-    let compiler = std::env::var_os("CC").unwrap_or_else(|| "cc".into());
+    let options = [&OPTIONS, options].concat();
+    compile_by(("CC", "cc"), &options, sources, target)
+}
+
+/// The same by the compiler that an environment variable names, or else the usual one.
+fn compile_by(
+    (variable, usual): (&str, &str),
+    options: &[&str],
+    sources: &[PathBuf],
+    target: &Path,
+) -> Option<()> {
+    let compiler = std::env::var_os(variable).unwrap_or_else(|| usual.into());
     let output = Command::new(&compiler)
-        .args(OPTIONS)
         .args(FUSED)
         .args(options)
         .args(sources)
@@ -193,7 +219,7 @@ fn compile(options: &[&str], sources: &[PathBuf], target: &Path) -> Option<()> {
             // Not by a macro: those are shown only where a test fails.
             let _ = writeln!(
                 std::io::stderr(),
-                "SKIPPED: no C compiler: {} is not found; name one in CC",
+                "SKIPPED: no compiler: {} is not found; name one in {variable}",
                 Path::new(&compiler).display()
             );
             None
@@ -215,6 +241,9 @@ fn main(modules: &[Module<'_>], entries: &[Entry]) -> String {
     let mut text = String::from("#include <stdio.h>\n");
     for module in modules {
         let _ = writeln!(text, "#include \"{}.h\"", module.name);
+    }
+    for entry in entries.iter().filter(|entry| entry.is_kernel) {
+        let _ = writeln!(text, "{};", kernels::prototype(entry));
     }
     let _ = write!(
         text,

@@ -10,9 +10,9 @@ use hamel_compiler::emit::Function;
 use hamel_compiler::functions::{Kind, compile_in_lanes};
 use hamel_compiler::graph::{Argument, Sym, atan2, call, call_two, primitive, record};
 use hamel_compiler::scene;
+use hamel_emitted::{ball_chain, chain_8, geodesic_springs, plate_cart_arm, snakeboard};
 use hamel_scene::Scene;
 use hamel_tests::c99::{Module, Program, STATES, agree, functions, same};
-use hamel_tests::emitted::{ball_chain, chain_8, geodesic_springs, plate_cart_arm, snakeboard};
 use hamel_tests::random;
 use rand::SeedableRng;
 use std::path::Path;
@@ -194,6 +194,7 @@ fn committed_modules_agree() {
         model,
         functions,
         lanes: &[],
+        kernels: &[],
         // The highest level that build systems commonly ask for: more is inlined, and other warnings are looked for.
         optimisation: "-O2",
     });
@@ -272,6 +273,7 @@ fn many_states_agree() {
             model,
             functions,
             lanes,
+            kernels: &[],
             optimisation: "-O2",
         })
         .collect();
@@ -401,6 +403,7 @@ fn helpers_agree() {
         model: &model,
         functions: &functions,
         lanes: &[],
+        kernels: &[],
         optimisation: "-O2",
     };
     let Some(mut program) = Program::new(&folder("helpers"), &[module]) else {

@@ -1,4 +1,4 @@
-//! Compiled modules (`tests/src/emitted`): those that are committed are what the compiler writes; they compute what the tree does in every scalar, and
+//! Compiled modules (`tests/emitted`): those that are committed are what the compiler writes; they compute what the tree does in every scalar, and
 //! integrators take them.
 
 use chacha20::ChaCha8Rng;
@@ -8,11 +8,11 @@ use hamel::integrate::{Form, Integration, Method, Options, Scheme, StepControl};
 use hamel::scalar::F64x4;
 use hamel_compiler::functions::Kind;
 use hamel_compiler::{Build, scene};
-use hamel_scene::{Scene, urdf};
-use hamel_tests::emitted::{
+use hamel_emitted::{
     ankle as robot, ball_chain, crank_rocker, geodesic_springs, loops, plate_cart_arm as module,
     snakeboard,
 };
+use hamel_scene::{Scene, urdf};
 use hamel_tests::{random, scenes};
 use rand::SeedableRng;
 use std::path::Path;
@@ -51,7 +51,7 @@ fn module_of(file: &str) -> Build {
 fn is_written(build: Build, name: &str) {
     let module = build.module(&format!("{name}.toml"));
     let module = module.unwrap_or_else(|error| panic!("{error}"));
-    let path = folder().join(format!("src/emitted/{name}.rs"));
+    let path = folder().join(format!("emitted/src/{name}.rs"));
     if std::env::var_os("UPDATE_EXPECT").is_some() {
         std::fs::write(&path, &module.text).expect("the folder is there");
     }

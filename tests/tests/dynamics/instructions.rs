@@ -3,7 +3,7 @@
 //! The test binary runs itself under valgrind, with two numbers of calls; the difference leaves start and end out.
 
 use hamel::scalar::Scalar;
-use hamel_tests::emitted::pendulum;
+use hamel_emitted::pendulum;
 use std::hint::black_box;
 use std::process::Command;
 

@@ -5,6 +5,7 @@ mod batches;
 mod c99;
 mod chains;
 mod compiled;
+mod cuda;
 mod derivatives;
 mod emitted;
 mod errata;

@@ -6,8 +6,8 @@ use hamel::dynamics::{Dynamics, ForwardDerivatives, MassMatrix, Recursive, Refer
 use hamel::integrate::{Form, Method, Options, Scheme, Solution, State, integrate};
 use hamel::integrate::{no_inputs, no_observer};
 use hamel::mechanism::Mechanism;
+use hamel_emitted::humanoid::EQUATIONS;
 use hamel_scene::Scene;
-use hamel_tests::emitted::humanoid::EQUATIONS;
 use hamel_tests::figures::{Largest, difference, size};
 use hamel_tests::scenes::load;
 use std::path::Path;

@@ -8,8 +8,8 @@ use hamel::integrate::{Form, Method, Options, Scheme, integrate, no_inputs, no_o
 use hamel::mechanism::{Mechanism, NamedFrame};
 use hamel::nalgebra::{DVector, Matrix6xX, Vector3};
 use hamel::spatial::Pose;
+use hamel_emitted::{crank_rocker, geared_pendulum, slider_crank_offset};
 use hamel_scene::Scene;
-use hamel_tests::emitted::{crank_rocker, geared_pendulum, slider_crank_offset};
 use hamel_tests::figures::Largest;
 use serde_json::Value;
 use std::sync::Arc;

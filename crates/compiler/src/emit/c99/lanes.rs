@@ -5,6 +5,7 @@
 
 use super::super::lines::{Formula, Line, Place};
 use super::super::{Function, Lowered};
+use super::Parameter;
 use super::formula::value;
 use super::helpers::Used;
 use super::statement::{Statement, statements};
@@ -31,23 +32,11 @@ pub struct Written {
     outputs: Vec<String>,
 }
 
-/// An argument, and how many entries it has for one state.
-#[derive(Serialize)]
-struct Parameter {
-    name: &'static str,
-    size: usize,
-}
-
 impl Written {
     /// The function, which has no loops over like bodies, in lines.
     pub fn new(function: &Function, lowered: &Lowered) -> Self {
         let mut used = Used::default();
         used.note(lowered);
-        let parameters = function.arguments.iter();
-        let parameters = parameters.map(|&(argument, size)| Parameter {
-            name: argument.name(),
-            size,
-        });
         let arguments = function.arguments.iter().map(|(argument, _)| *argument);
         let unused = arguments.filter(|argument| !used.reads(*argument));
         let mut side = Side::default();
@@ -60,7 +49,7 @@ impl Written {
         Self {
             name: function.name,
             summary: one_line(&function.summary),
-            parameters: parameters.collect(),
+            parameters: Parameter::all(function),
             unused: unused.map(|argument| argument.name()).collect(),
             count: function.results(),
             angles: side.angles,

@@ -1,4 +1,4 @@
-//! A module of functions in C99: a source that needs nothing but `<math.h>`, and its header.
+//! A module of functions in C99: a source that needs nothing but `<math.h>`, and its header. The same functions in CUDA C++, with a kernel for each.
 //!
 //! Templates lay the texts out (`crates/compiler/templates`); what they are filled with is made here, operation by operation as in Rust. Sums of
 //! products are multiply–adds, fused only where the target does that in hardware. Sines and cosines are those of the C library, one by one;
@@ -25,9 +25,19 @@ use serde::Serialize;
 use statement::{Array, Statement};
 use tera::{Context, Tera};
 
-const TEMPLATES: [(&str, &str); 5] = [
+const TEMPLATES: [(&str, &str); 9] = [
     ("module.h", include_str!("../../../templates/module.h.tera")),
     ("module.c", include_str!("../../../templates/module.c.tera")),
+    (
+        "module.cu",
+        include_str!("../../../templates/module.cu.tera"),
+    ),
+    ("layout.c", include_str!("../../../templates/layout.c.tera")),
+    ("sizes.c", include_str!("../../../templates/sizes.c.tera")),
+    (
+        "function.c",
+        include_str!("../../../templates/function.c.tera"),
+    ),
     (
         "helpers.c",
         include_str!("../../../templates/helpers.c.tera"),
@@ -37,7 +47,8 @@ const TEMPLATES: [(&str, &str); 5] = [
 ];
 
 /// Names that lines must not take: arguments, what the functions bind themselves, helpers, and what `<math.h>` defines.
-const RESERVED: [&str; 41] = [
+const RESERVED: [&str; 42] = [
+    "arguments",
     "q",
     "v",
     "p",
@@ -101,6 +112,43 @@ pub fn module(
     label: &str,
     name: &str,
 ) -> tera::TeraResult<Texts> {
+    let mut context = context(model, (functions, in_lanes), label, name);
+    context.insert("device", "");
+    let tera = templates()?;
+    Ok(Texts {
+        source: broken(&tera.render("module.c", &context)?),
+        header: broken(&tera.render("module.h", &context)?),
+    })
+}
+
+/// The same functions in CUDA C++, each with a kernel `NAME_..._states` that computes one state a thread: one source, without a header.
+///
+/// # Errors
+/// A fault in a template, which is part of this crate.
+pub fn cuda(
+    model: &Model,
+    functions: &[Function],
+    label: &str,
+    name: &str,
+) -> tera::TeraResult<String> {
+    let mut context = context(model, (functions, &[]), label, name);
+    context.insert("device", "__device__ ");
+    Ok(broken(&templates()?.render("module.cu", &context)?))
+}
+
+fn templates() -> tera::TeraResult<Tera> {
+    let mut tera = Tera::new();
+    tera.add_raw_templates(TEMPLATES)?;
+    Ok(tera)
+}
+
+/// What templates are filled with, but for the qualifier of functions.
+fn context(
+    model: &Model,
+    (functions, in_lanes): (&[Function], &[Function]),
+    label: &str,
+    name: &str,
+) -> Context {
     let bodies = identifiers(model);
     let lines = |functions: &[Function]| -> Vec<Lowered> {
         let lowered = functions.iter();
@@ -153,12 +201,7 @@ pub fn module(
     let curves = curves.into_iter().map(curve::Table::new);
     context.insert("curves", &curves.collect::<Vec<_>>());
     context.insert("used", &used.helpers());
-    let mut tera = Tera::new();
-    tera.add_raw_templates(TEMPLATES)?;
-    Ok(Texts {
-        source: broken(&tera.render("module.c", &context)?),
-        header: broken(&tera.render("module.h", &context)?),
-    })
+    context
 }
 
 /// A function as the templates see it.
@@ -169,6 +212,8 @@ struct Written {
     /// Units, axes and order of its results.
     results: &'static str,
     operations: String,
+    /// What it reads, in order.
+    arguments: Vec<Parameter>,
     /// Declarations of its parameters, in order.
     parameters: Vec<String>,
     /// Parameters that it does not read.
@@ -213,6 +258,7 @@ impl Written {
             summary: one_line(&function.summary),
             results: results::results(function.name),
             operations: function.operations().to_string(),
+            arguments: Parameter::all(function),
             parameters: parameters.chain([results]).collect(),
             unused: unused.chain((count == 0).then_some("results")).collect(),
             count,
@@ -230,6 +276,24 @@ impl Written {
                 .as_ref()
                 .map(|tables| pairs::Written::new(tables, function.outputs.len())),
         }
+    }
+}
+
+/// An argument, and how many entries it has for one state.
+#[derive(Serialize)]
+struct Parameter {
+    name: &'static str,
+    size: usize,
+}
+
+impl Parameter {
+    fn all(function: &Function) -> Vec<Self> {
+        let parameters = function.arguments.iter();
+        let parameters = parameters.map(|&(argument, size)| Self {
+            name: argument.name(),
+            size,
+        });
+        parameters.collect()
     }
 }
 

@@ -1,4 +1,4 @@
-//! Compiles the scenes of `hamel_tests::emitted`, as a user's build script does. The two short modules that are committed are written by the test
+//! Compiles the scenes of this crate, as a user's build script does. The two short modules that are committed are written by the test
 //! `dynamics emitted`.
 
 use hamel_compiler::functions::Kind;
@@ -6,11 +6,11 @@ use hamel_compiler::{Build, Error, scene};
 
 fn main() -> Result<(), Error> {
     println!("cargo::rerun-if-changed=build.rs");
-    compiled("../scenes/plate_cart_arm.toml", Kind::ALL)
+    compiled("../../scenes/plate_cart_arm.toml", Kind::ALL)
         .lanes()
         .compile()?;
     compiled(
-        "data/scenes/geodesic_springs.toml",
+        "../data/scenes/geodesic_springs.toml",
         [
             Kind::ForwardDynamics,
             Kind::MomentumRates,
@@ -19,7 +19,7 @@ fn main() -> Result<(), Error> {
     )
     .compile()?;
     for linkage in ["crank_rocker", "geared_pendulum", "slider_crank_offset"] {
-        let scene = format!("../scenes/report/{linkage}.toml");
+        let scene = format!("../../scenes/report/{linkage}.toml");
         compiled(
             &scene,
             [
@@ -31,12 +31,12 @@ fn main() -> Result<(), Error> {
         .compile()?;
     }
     compiled(
-        "../scenes/humanoid.toml",
+        "../../scenes/humanoid.toml",
         [Kind::ForwardDynamics, Kind::MomentumRates],
     )
     .compile()?;
     compiled(
-        "data/scenes/loops.toml",
+        "../data/scenes/loops.toml",
         [
             Kind::ForwardDynamics,
             Kind::InverseDynamics,
@@ -48,13 +48,13 @@ fn main() -> Result<(), Error> {
     .lanes()
     .compile()?;
     compiled(
-        "data/scenes/linkages.toml",
+        "../data/scenes/linkages.toml",
         [Kind::ForwardDynamics, Kind::InverseDynamics],
     )
     .lanes()
     .compile()?;
     compiled(
-        "data/urdf/loops/ankle.urdf",
+        "../data/urdf/loops/ankle.urdf",
         [
             Kind::ForwardDynamics,
             Kind::MomentumRates,
@@ -63,17 +63,17 @@ fn main() -> Result<(), Error> {
     )
     .compile()?;
     compiled(
-        "../scenes/report/chain_8.toml",
+        "../../scenes/report/chain_8.toml",
         [Kind::ForwardDerivatives, Kind::InverseMassMatrix],
     )
     .compile()?;
     compiled(
-        "data/scenes/ball_chain.toml",
+        "../data/scenes/ball_chain.toml",
         [Kind::ForwardDynamics, Kind::InverseDynamics],
     )
     .compile()
 }
 
 fn compiled(path: &str, functions: impl IntoIterator<Item = Kind>) -> Build {
-    scene(path).specs("../joint-specs").functions(functions)
+    scene(path).specs("../../joint-specs").functions(functions)
 }
