@@ -222,11 +222,18 @@ impl std::fmt::Display for TooLong {
                 f,
                 "{name} would have {operations} operations, more than {LONGEST}: the tree computes it"
             ),
-            true => write!(
-                f,
-                "{name} in lanes would have {operations} operations on {numbers} arguments and results, more than {LONGEST_IN_LANES} or \
-                 {WIDEST_IN_LANES}: a batch takes its states one by one"
-            ),
+            true => {
+                let much = match *operations > LONGEST_IN_LANES {
+                    true => format!("{operations} operations, more than {LONGEST_IN_LANES}"),
+                    false => {
+                        format!("{numbers} arguments and results, more than {WIDEST_IN_LANES}")
+                    }
+                };
+                write!(
+                    f,
+                    "{name} in lanes would have {much}: states are computed one by one"
+                )
+            }
         }
     }
 }
