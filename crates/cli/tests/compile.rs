@@ -72,6 +72,39 @@ fn a_header_tells_units_axes_and_order_of_all_entries() {
 }
 
 #[test]
+fn a_module_in_cuda_is_one_source_with_a_kernel_for_each_function() {
+    let source = folder("compile_cuda").join("board.cu");
+    let shown = source.to_str().expect("text");
+    // Kernels take many states with `--lanes` or without.
+    let told = stdout(&["compile", "scenes/snakeboard.toml", "--lanes", "-o", shown]);
+    assert_eq!(told, "");
+    let text = read(&source);
+    assert!(!source.with_extension("h").exists() && !text.contains("#include"));
+    for function in ["forward_dynamics", "momentum_rates", "poses"] {
+        let own = format!("__device__ static void board_{function}(");
+        let kernel =
+            format!("extern \"C\" __global__ void board_{function}_states(long long count,");
+        assert!(text.contains(&own) && text.contains(&kernel), "{function}");
+    }
+    assert!(text.contains("body `front`"), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 110));
+}
+
+#[test]
+fn an_ending_that_names_no_language_is_refused() {
+    let source = folder("compile_ending").join("board.cpp");
+    let shown = source.to_str().expect("text");
+    let refused = hamel(&["compile", "scenes/snakeboard.toml", "-o", shown]);
+    let said = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(2), "{said}");
+    assert!(
+        said.contains("`.cpp`") && said.contains("`.cu` (CUDA C++)"),
+        "{said}"
+    );
+    assert!(!source.exists());
+}
+
+#[test]
 fn what_c_cannot_have_is_refused() {
     let folder = folder("compile_refused");
     let scene = "scenes/snakeboard.toml";
