@@ -131,8 +131,8 @@ impl FunctionName {
 /// # Errors
 /// Mistakes in the scene; what cannot be compiled; a file that cannot be written.
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
-    let language = language(args.file())?;
-    let is_in_c = language == Language::C99;
+    let language = language(args.file());
+    let is_in_c = matches!(language, Ok(Language::C99));
     let header = args
         .file()
         .filter(|_| is_in_c)
@@ -153,6 +153,8 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let written = header.as_deref().into_iter().chain(args.file());
     let written = written.map(|path| (path, is_own as _));
     let outputs = admit([&*args.scene], written, args.force.force)?;
+    // Who names the scene itself as the output is told that first.
+    let language = language?;
     let refused = |error: Error| Failure::Refused(error.to_string());
     let asked: Vec<Kind> = args.functions.iter().map(|name| name.kind()).collect();
     let build = configured(input.build()?, language, args, &asked);
