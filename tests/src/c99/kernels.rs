@@ -1,6 +1,6 @@
 //! Kernels in CUDA, built by the C++ compiler of the machine for its processor: blocks and threads one after the other.
 
-use super::{Entry, Module, compile_by, write};
+use super::{Entry, KERNEL, Module, compile_by, write};
 use hamel_compiler::emit::c99;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -49,8 +49,9 @@ fn host(module: &Module<'_>) -> String {
         "#define __device__\n#define __global__\n#include <math.h>\n\nstruct Index {{ long x; }};\n\
          static Index blockIdx, threadIdx;\nstatic const Index blockDim = {{4}};\n\n#include \"{name}.cu\"\n\nextern \"C\" {{\n"
     );
-    for entry in Entry::all(module).iter().filter(|entry| entry.is_kernel) {
-        let kernel = entry.name.replace(super::KERNEL, "_states");
+    let entries = Entry::all(module);
+    for entry in entries.iter().filter(|entry| entry.ending == KERNEL) {
+        let kernel = entry.name.replace(KERNEL, "_states");
         let places = 0..entry.arguments.len();
         let (declared, given): (String, String) = places
             .map(|i| (format!("const double *x{i}, "), format!("x{i}, ")))

@@ -67,11 +67,10 @@ const KERNEL: &str = "_grid";
 /// A function of the program.
 struct Entry {
     module: String,
-    /// In the module.
+    /// In the module, with the ending.
     name: String,
-    /// Whether it is given how many states there are.
-    is_of_many: bool,
-    is_kernel: bool,
+    /// Empty for a function of one state: others are given how many there are.
+    ending: &'static str,
     /// Entries of each argument.
     arguments: Vec<usize>,
     results: usize,
@@ -79,15 +78,13 @@ struct Entry {
 
 impl Entry {
     fn all(module: &Module<'_>) -> Vec<Self> {
-        let entry = |function: &Function, ending: &str| {
-            let is_of_many = !ending.is_empty();
-            let states = if is_of_many { STATES } else { 1 };
+        let entry = |function: &Function, ending: &'static str| {
+            let states = if ending.is_empty() { 1 } else { STATES };
             let arguments = function.arguments.iter().map(|(_, size)| states * size);
             Self {
                 module: module.name.clone(),
                 name: format!("{}{ending}", function.name),
-                is_of_many,
-                is_kernel: ending == KERNEL,
+                ending,
                 arguments: arguments.collect(),
                 results: states * function.results(),
             }
@@ -104,7 +101,7 @@ impl Entry {
 
     /// The call of the function, at arguments that lie in `x` one after the other.
     fn call(&self) -> String {
-        let count = self.is_of_many.then(|| format!("{STATES}, "));
+        let count = (!self.ending.is_empty()).then(|| format!("{STATES}, "));
         let mut end = 0;
         let starts = self.arguments.iter().map(|size| {
             end += size;
@@ -242,7 +239,7 @@ fn main(modules: &[Module<'_>], entries: &[Entry]) -> String {
     for module in modules {
         let _ = writeln!(text, "#include \"{}.h\"", module.name);
     }
-    for entry in entries.iter().filter(|entry| entry.is_kernel) {
+    for entry in entries.iter().filter(|entry| entry.ending == KERNEL) {
         let _ = writeln!(text, "{};", kernels::prototype(entry));
     }
     let _ = write!(

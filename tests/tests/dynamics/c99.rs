@@ -9,6 +9,7 @@ use hamel_codegen::expr::Function as Known;
 use hamel_compiler::emit::Function;
 use hamel_compiler::functions::{Kind, compile_in_lanes};
 use hamel_compiler::graph::{Argument, Sym, atan2, call, call_two, primitive, record};
+use hamel_compiler::model::Model;
 use hamel_compiler::scene;
 use hamel_emitted::{ball_chain, chain_8, geodesic_springs, plate_cart_arm, snakeboard};
 use hamel_scene::Scene;
@@ -21,6 +22,22 @@ fn folder(name: &str) -> std::path::PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR"))
         .join("c99")
         .join(name)
+}
+
+/// A scene file of the project, and what is compiled of it.
+pub fn loaded(file: &str) -> (Scene, Model) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+    let model = scene(&path).library(hamel_joints::specs()).model();
+    let model = model.unwrap_or_else(|error| panic!("{error}"));
+    let scene = Scene::load(&path, &hamel_joints::registry());
+    (scene.unwrap_or_else(|errors| panic!("{errors}")), model)
+}
+
+/// The arguments of one state, where `rows` holds those of all.
+pub fn of_state<'r>(function: &Function, rows: &'r [Vec<f64>], state: usize) -> Vec<&'r [f64]> {
+    let arguments = rows.iter().zip(&function.arguments);
+    let own = arguments.map(|(rows, (_, size))| &rows[state * size..(state + 1) * size]);
+    own.collect()
 }
 
 /// Every function of every scene that is not too long has the bits of its evaluated lines, and the values of the tree to the bounds of the test `compiled`.
@@ -165,7 +182,6 @@ fn committed() -> Vec<Committed> {
 /// The committed modules in C have the bits of those in Rust.
 #[test]
 fn committed_modules_agree() {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let files = [
         "../scenes/plate_cart_arm.toml",
         "../scenes/snakeboard.toml",
@@ -174,12 +190,7 @@ fn committed_modules_agree() {
         "../scenes/report/chain_8.toml",
     ];
     let load = |file: &&str| {
-        let model = scene(here.join(file))
-            .library(hamel_joints::specs())
-            .model();
-        let model = model.unwrap_or_else(|error| panic!("{error}"));
-        let scene = Scene::load(here.join(file), &hamel_joints::registry());
-        let scene = scene.unwrap_or_else(|errors| panic!("{errors}"));
+        let (scene, model) = loaded(file);
         let name = Path::new(file).file_stem().unwrap_or_default();
         let name = name.to_string_lossy().into_owned();
         let mut functions = functions(&model);
@@ -243,14 +254,8 @@ const FAR: usize = 3;
 /// Functions of many states are those of one state to rounding, of a whole group and of one that is not, also where the polynomials of angles do not serve.
 #[test]
 fn many_states_agree() {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let load = |file: &str| {
-        let model = scene(here.join(file))
-            .library(hamel_joints::specs())
-            .model();
-        let model = model.unwrap_or_else(|error| panic!("{error}"));
-        let scene = Scene::load(here.join(file), &hamel_joints::registry());
-        let scene = scene.unwrap_or_else(|errors| panic!("{errors}"));
+        let (scene, model) = loaded(file);
         let kinds = Kind::ALL.into_iter().filter(|kind| kind.is_batched());
         let lanes: Vec<Function> = kinds
             .filter_map(|kind| compile_in_lanes(&model, kind).ok())
@@ -299,11 +304,7 @@ fn many_states_agree() {
             let given: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
             let found = program.call(name, &format!("{}_rows", function.name), &given);
             for (state, found) in found.chunks(function.results()).enumerate() {
-                let own = |(rows, (_, size)): (&Vec<f64>, &(Argument, usize))| {
-                    rows[state * size..(state + 1) * size].to_vec()
-                };
-                let own: Vec<Vec<f64>> = rows.iter().zip(&function.arguments).map(own).collect();
-                let own: Vec<&[f64]> = own.iter().map(Vec::as_slice).collect();
+                let own = of_state(function, &rows, state);
                 let expected = program.call(name, function.name, &own);
                 let largest = expected.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
                 let bound = ROUNDINGS * largest;
@@ -384,9 +385,7 @@ fn helpers_agree() {
         all.into_iter().map(Sym::value).collect::<Vec<_>>()
     });
     // Any that stores enough will do: its functions are not written.
-    let any = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/double_ball_pendulum.toml");
-    let model = scene(any).library(hamel_joints::specs()).model();
-    let model = model.unwrap_or_else(|error| panic!("{error}"));
+    let (_, model) = loaded("../scenes/double_ball_pendulum.toml");
     let function = Function {
         name: "helpers",
         summary: "All helpers.".to_owned(),

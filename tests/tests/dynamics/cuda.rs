@@ -1,13 +1,12 @@
 //! Compiled modules in CUDA: kernels, run by the processor, have the bits of the functions of one state in C; and NVRTC compiles them.
 
+use super::c99::{loaded, of_state};
 use chacha20::ChaCha8Rng;
 use hamel::mechanism::Mechanism;
 use hamel_compiler::emit::{Function, c99};
 use hamel_compiler::functions::{Kind, Loops, compile};
 use hamel_compiler::graph::Argument;
 use hamel_compiler::model::Model;
-use hamel_compiler::scene;
-use hamel_scene::Scene;
 use hamel_tests::c99::{Module, Program, STATES, functions, same};
 use hamel_tests::{compiled, random};
 use rand::SeedableRng;
@@ -41,12 +40,8 @@ fn scenes() -> Vec<Case> {
         "data/scenes/linkages.toml",
     ];
     let case = |file: &str| {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
-        let model = scene(&path).library(hamel_joints::specs()).model();
-        let model = model.unwrap_or_else(|error| panic!("{error}"));
-        let scene = Scene::load(&path, &hamel_joints::registry());
-        let scene = scene.unwrap_or_else(|errors| panic!("{errors}"));
-        let name = path.file_stem().unwrap_or_default();
+        let (scene, model) = loaded(file);
+        let name = Path::new(file).file_stem().unwrap_or_default();
         Case {
             name: name.to_string_lossy().into_owned(),
             mechanism: scene.mechanism,
@@ -144,19 +139,14 @@ fn agree(into: &str, cases: &[Case]) {
 
 /// The kernel of a function has the bits of the function, `rows` holding the states of each argument.
 fn agree_at(program: &mut Program, name: &str, function: &Function, rows: &[Vec<f64>]) {
-    let sizes = || function.arguments.iter().map(|(_, size)| *size);
-    let columns: Vec<Vec<f64>> = rows
-        .iter()
-        .zip(sizes())
-        .map(|(rows, size)| side_by_side(rows, size))
+    let arguments = rows.iter().zip(&function.arguments);
+    let columns: Vec<Vec<f64>> = arguments
+        .map(|(rows, (_, size))| side_by_side(rows, *size))
         .collect();
     let given: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
     let found = program.call(name, &format!("{}_grid", function.name), &given);
     for state in 0..STATES {
-        let own = rows.iter().zip(sizes());
-        let own: Vec<&[f64]> = own
-            .map(|(rows, size)| &rows[state * size..(state + 1) * size])
-            .collect();
+        let own = of_state(function, rows, state);
         let expected = program.call(name, function.name, &own);
         let found: Vec<f64> = (0..expected.len())
             .map(|i| found[i * STATES + state])
