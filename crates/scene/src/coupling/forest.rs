@@ -14,8 +14,16 @@ use std::collections::{HashMap, HashSet};
 struct Set {
     nodes: Vec<usize>,
     known: HashSet<usize>,
-    /// How many of them move.
-    moving: usize,
+}
+
+impl Set {
+    /// Adds a node; whether the set is not too large then.
+    fn take(&mut self, node: usize) -> bool {
+        if self.known.insert(node) {
+            self.nodes.push(node);
+        }
+        self.nodes.len() <= MOST_LINKS
+    }
 }
 
 /// What begins a set of nodes that move together.
@@ -75,10 +83,6 @@ impl<'n, 'a> Forest<'n, 'a> {
         ways
     }
 
-    fn moves(&self, node: usize) -> bool {
-        self.nodes[node].movement != Movement::Fixed
-    }
-
     /// Sets of nodes that move together. Of one that is too large the first nodes are named, and nothing else is looked at.
     pub(super) fn gathered(&self, seeds: &[Seed], sink: &mut Sink) -> Option<Vec<Vec<usize>>> {
         let mut sets: Vec<Set> = Vec::new();
@@ -96,7 +100,7 @@ impl<'n, 'a> Forest<'n, 'a> {
                     other.nodes.iter().for_each(|node| _ = of.remove(node));
                     waiting.extend(other.nodes);
                 }
-                if !self.take(&mut set, next) {
+                if !set.take(next) {
                     sink.push(self.too_many(seed));
                     return None;
                 }
@@ -115,15 +119,6 @@ impl<'n, 'a> Forest<'n, 'a> {
         Some(sets.filter(|nodes| !nodes.is_empty()).collect())
     }
 
-    /// Adds a node to a set; whether it is not too large then.
-    fn take(&self, set: &mut Set, node: usize) -> bool {
-        if set.known.insert(node) {
-            set.nodes.push(node);
-            set.moving += usize::from(self.moves(node));
-        }
-        set.moving <= MOST_LINKS
-    }
-
     /// The nodes on the way from a set to what all of it hangs on that are not in it; `None` where they are too many.
     fn between(&self, set: &Set) -> Option<Set> {
         let mut more = Set::default();
@@ -138,7 +133,7 @@ impl<'n, 'a> Forest<'n, 'a> {
                 };
                 let Some(passed) = *deeper else { break };
                 *deeper = self.nodes[passed].parent;
-                if !set.known.contains(&passed) && !self.take(&mut more, passed) {
+                if !set.known.contains(&passed) && !more.take(passed) {
                     return None;
                 }
             }
@@ -177,15 +172,14 @@ impl<'n, 'a> Forest<'n, 'a> {
             .unwrap_or(0..0)
     }
 
-    /// A set in order, with the laws of what moves.
+    /// A set in order, with its laws.
     pub(super) fn group(&self, set: &[usize], laws: &[Law]) -> Group {
         let mut members = set.to_vec();
         members.sort_by_key(|&node| (self.depths[node], node));
         let base = members.first().and_then(|&first| self.nodes[first].parent);
-        let law = |node: usize| self.moves(node).then_some(laws[node]);
         Group {
             base,
-            members: members.into_iter().map(|node| (node, law(node))).collect(),
+            members: members.into_iter().map(|node| (node, laws[node])).collect(),
             ties: Vec::new(),
         }
     }
@@ -223,9 +217,8 @@ impl<'n, 'a> Forest<'n, 'a> {
 
     /// Where a group begins in the file, and what messages about what moves in it begin with.
     fn owner(&self, group: &Group) -> Option<(Span, String)> {
-        let mut members = group.members.iter();
-        let follower = members
-            .find_map(|&(node, law)| Some((node, law?)).filter(|(node, law)| law.leader != *node));
+        let mut members = group.members.iter().copied();
+        let follower = members.find(|(node, law)| law.leader != *node);
         if let Some((follower, law)) = follower {
             let (own, leader) = (name(self.nodes, follower), name(self.nodes, law.leader));
             let owner = format!("joint `{own}`: between it and `{leader}`, which it follows");

@@ -43,12 +43,12 @@ impl<'a> Movement<'a> {
     }
 }
 
-/// A body, or a link of a robot, as far as couplings look at it.
+/// A body, or the link of a robot that a joint moves, as far as couplings look at it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node<'a> {
     /// The name of its joint; `None` of what stands for no joint.
     pub(crate) joint: Option<&'a Located<String>>,
-    /// What it hangs on.
+    /// What it hangs on: never what is fixed to another node.
     pub(crate) parent: Option<usize>,
     /// How it moves.
     pub(crate) movement: Movement<'a>,
@@ -72,8 +72,8 @@ pub(crate) struct Law {
 pub(crate) struct Group {
     /// What it hangs on.
     pub(crate) base: Option<usize>,
-    /// The nodes, each after what it hangs on, with the laws of those that move.
-    pub(crate) members: Vec<(usize, Option<Law>)>,
+    /// The nodes, each after what it hangs on, with their laws.
+    pub(crate) members: Vec<(usize, Law)>,
     /// The ties that hold them together, but for those that laws express, by place and name.
     pub(crate) ties: Vec<(usize, String)>,
 }
@@ -82,7 +82,7 @@ impl Group {
     /// The nodes that follow none, in their order: one a coordinate.
     pub(crate) fn leaders(&self) -> Vec<usize> {
         let own = self.members.iter();
-        let own = own.filter(|(node, law)| law.is_some_and(|law| law.leader == *node));
+        let own = own.filter(|(node, law)| law.leader == *node);
         own.map(|(node, _)| *node).collect()
     }
 

@@ -2,7 +2,7 @@
 
 use super::closing::Plan;
 use super::forces::{self, Owner};
-use super::graph::{Group, Law, Movement, Node, groups};
+use super::graph::{Group, Movement, Node, groups};
 use super::initial::{self, Given};
 use super::joint::{self, Coupling};
 use super::{linkage, tie::Tie};
@@ -71,9 +71,9 @@ impl<'a> Lowering<'a> {
         notices: &mut Notices,
         sink: &mut Sink,
     ) -> Option<Vec<(usize, BodyDescription)>> {
-        let members = self.members();
-        self.refuse_order(&members, sink)?;
-        let mut owners = self.owners(&members);
+        let members = &self.group.members;
+        self.refuse_order(sink)?;
+        let mut owners = self.owners();
         let (joint, initial, coordinates) = match self.group.ties.is_empty() {
             true => {
                 let coordinates = self.group.leaders().len();
@@ -89,7 +89,7 @@ impl<'a> Lowering<'a> {
         };
         let acting = forces::joined(&owners, coordinates, sink);
         let (mut initial, mut acting) = (Some(initial?), Some(acting));
-        let bodies = owners.iter().zip(&members).enumerate();
+        let bodies = owners.iter().zip(members).enumerate();
         let bodies = bodies.map(|(number, (owner, (place, _)))| {
             let name = format!("link_{}", number + 1);
             let body = BodyDescription {
@@ -115,7 +115,8 @@ impl<'a> Lowering<'a> {
     }
 
     /// Whether the bodies follow each other.
-    fn refuse_order(&self, members: &[(usize, Law)], sink: &mut Sink) -> Option<()> {
+    fn refuse_order(&self, sink: &mut Sink) -> Option<()> {
+        let members = &self.group.members;
         let (first, _) = members.first()?;
         let mut places = members.iter().map(|(place, _)| *place).zip(*first..);
         let Some((place, _)) = places.find(|(place, wanted)| place != wanted) else {
@@ -149,13 +150,6 @@ impl<'a> Lowering<'a> {
         None
     }
 
-    fn members(&self) -> Vec<(usize, Law)> {
-        let members = self.group.members.iter();
-        members
-            .filter_map(|(place, law)| Some((*place, (*law)?)))
-            .collect()
-    }
-
     /// The number of a body among those of the coupling.
     pub(super) fn number(&self, place: usize) -> Option<usize> {
         self.group.members.iter().position(|(own, _)| *own == place)
@@ -172,10 +166,10 @@ impl<'a> Lowering<'a> {
         &self.scene.bodies[place]
     }
 
-    fn owners(&self, members: &[(usize, Law)]) -> Vec<Owner<'a>> {
+    fn owners(&self) -> Vec<Owner<'a>> {
         let leaders = self.group.leaders();
         let closed = !self.group.ties.is_empty();
-        let owners = members.iter().map(|(place, law)| {
+        let owners = self.group.members.iter().map(|(place, law)| {
             let body = &self.scene.bodies[*place];
             let movement = Movement::of(&body.joint.kind.value);
             let before = body.parent.and_then(|parent| self.number(parent));

@@ -67,13 +67,7 @@ pub(super) fn followed(
             sink.push(error);
             continue;
         }
-        let moving = ways.each_ref().map(|way| {
-            let moving = way
-                .iter()
-                .filter(|node| nodes[**node].movement != Movement::Fixed);
-            moving.copied().collect::<Vec<usize>>()
-        });
-        let law = match (tie.law, moving[0].as_slice(), moving[1].as_slice()) {
+        let law = match (tie.law, ways[0].as_slice(), ways[1].as_slice()) {
             (Some(law), &[first], &[second]) => {
                 let forward = (first, second, law);
                 let (ratio, offset) = law;
@@ -109,11 +103,7 @@ fn refusal(nodes: &[Node<'_>], tie: &Tie<'_>, ways: &Ways) -> Option<Diagnostic>
     if let Some(error) = tie.law.and_then(|(ratio, _)| no_ratio(tie.name, ratio)) {
         return Some(error);
     }
-    let moves = |way: &Vec<usize>| {
-        let mut way = way.iter();
-        way.any(|node| nodes[*node].movement != Movement::Fixed)
-    };
-    let [first, second] = ways.each_ref().map(moves);
+    let [first, second] = ways.each_ref().map(|way| !way.is_empty());
     if tie.law.is_some() && !(first && second) {
         let end = if first { "successor" } else { "predecessor" };
         let why =

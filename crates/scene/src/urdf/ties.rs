@@ -163,14 +163,15 @@ impl Ties<'_, '_> {
         loops.chain(self.couplings.iter().map(|own| own.node))
     }
 
-    /// As couplings look at them: ends are links.
-    pub(super) fn of_links(&self) -> Vec<Tie<'_>> {
+    /// As couplings look at them: ends are the links that move the bodies of theirs, which `body` tells.
+    pub(super) fn of_links(&self, body: impl Fn(usize) -> usize) -> Vec<Tie<'_>> {
+        let ends = |ends: [usize; 2]| ends.map(|link| Some(body(link)));
         let loops = self.loops.iter().map(|own| Tie {
-            ends: own.ends.map(Some),
+            ends: ends(own.ends),
             ..Tie::of_loop(&own.tie)
         });
         let couplings = self.couplings.iter().map(|own| Tie {
-            ends: own.ends.map(Some),
+            ends: ends(own.ends),
             ..Tie::of_coupling(&own.tie)
         });
         loops.chain(couplings).collect()

@@ -1,7 +1,7 @@
 //! The links as a tree: names that are unique, joints between links that exist, one root, no cycle.
 
 use super::document::{place, tag};
-use super::robot::{Joint, Robot};
+use super::robot::{Joint, JointType, Robot};
 use super::ties::{Ties, ties};
 use crate::coupling::{self, Group, Movement, Node as Member, groups};
 use crate::description::MimicDescription;
@@ -64,6 +64,7 @@ pub(super) fn links<'a, 'i>(
     if sink.len() > errors_before {
         return None;
     }
+    let rigid = Rigid::new(robot, &parents, &order);
     let ties = ties(robot, &names, &parents, sink)?;
     let elements = ties
         .nodes()
@@ -72,15 +73,16 @@ pub(super) fn links<'a, 'i>(
     let names: Vec<Option<Located<String>>> = names_of_joints(robot, &parents);
     let members = parents.iter().zip(&names).map(|(hangs_on, name)| Member {
         joint: name.as_ref(),
-        parent: hangs_on.map(|(_, parent)| parent),
+        parent: hangs_on.map(|(_, parent)| rigid.of[parent]),
         movement: hangs_on.map_or(Movement::Fixed, |(joint, _)| movement(&robot.joints[joint])),
         mimic: hangs_on.and_then(|(joint, _)| mimics.get(joint)?.as_ref()),
         motor: None,
     });
     let members: Vec<Member<'_>> = members.collect();
-    let groups = groups(&members, &ties.of_links(), "robot", sink)?;
+    let held = ties.of_links(|link| rigid.of[link]);
+    let groups = groups(&members, &held, "robot", sink)?;
     if !groups.is_empty() {
-        order = coupling::order(&links, &groups);
+        order = rigid.order(&parents, &groups);
     }
     let mut places = vec![None; parents.len()];
     for (place, group) in groups.iter().enumerate() {
@@ -96,6 +98,40 @@ pub(super) fn links<'a, 'i>(
         groups,
         places,
     })
+}
+
+/// Links that fixed joints join to one body, which couplings look at as one.
+struct Rigid {
+    /// For each link the one that moves its body: itself, or the next above that no fixed joint carries.
+    of: Vec<usize>,
+    /// For each of these the links of its body, parents first.
+    links: Vec<Vec<usize>>,
+}
+
+impl Rigid {
+    /// `order` has all links, parents first.
+    fn new(robot: &Robot<'_, '_>, parents: &[Option<(usize, usize)>], order: &[usize]) -> Self {
+        let mut of: Vec<usize> = (0..parents.len()).collect();
+        let mut links = vec![Vec::new(); parents.len()];
+        for &link in order {
+            if let Some((joint, parent)) = parents[link]
+                && robot.joints[joint].kind == JointType::Fixed
+            {
+                of[link] = of[parent];
+            }
+            links[of[link]].push(link);
+        }
+        Self { of, links }
+    }
+
+    /// All links, parents first: the bodies of a group follow each other, and the links of each body.
+    fn order(&self, parents: &[Option<(usize, usize)>], groups: &[Group]) -> Vec<usize> {
+        let carried = |link: &Option<(usize, usize)>| link.map(|(_, parent)| self.of[parent]);
+        let parents: Vec<Option<usize>> = parents.iter().map(carried).collect();
+        let bodies = coupling::order(&parents, groups);
+        let links = bodies.into_iter().flat_map(|link| &self.links[link]);
+        links.copied().collect()
+    }
 }
 
 /// The name of the joint of each link, where it stands.

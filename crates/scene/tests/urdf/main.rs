@@ -1,6 +1,7 @@
 //! Robots in URDF: what becomes of each kind of element, and the scene that is written of it.
 
 mod asked;
+mod coupled;
 mod shapes;
 
 use hamel_runtime::spatial::Pose;
