@@ -3,7 +3,7 @@
 use super::Group;
 use crate::parse::order as by_parents;
 
-/// Every body, parents first; among those that could come next, the first in the file.
+/// Every body, after the one that `parents` names, which need not be the one that it hangs on; among those that could come next, the first in the file.
 pub(crate) fn order(parents: &[Option<usize>], groups: &[Group]) -> Vec<usize> {
     if groups.is_empty() {
         return by_parents(parents);
@@ -21,9 +21,11 @@ pub(crate) fn order(parents: &[Option<usize>], groups: &[Group]) -> Vec<usize> {
         members[least] = &group.members;
     }
     for group in groups {
+        // The first hangs on no other of them, and comes after all that has to be there.
+        let base = group.members.first().and_then(|(root, _)| parents[*root]);
         for (place, _) in &group.members {
             joined[*place] = match first[*place] == *place {
-                true => group.base,
+                true => base,
                 // After the place that stands for all.
                 false => Some(first[*place]),
             };
@@ -65,5 +67,17 @@ mod tests {
         };
         assert_eq!(order(&parents, &[group]), [0, 1, 4, 2, 3]);
         assert_eq!(order(&parents, &[]), [0, 1, 3, 4, 2]);
+    }
+
+    #[test]
+    fn a_coupling_on_one_of_several_bodies_of_a_joint_comes_after_all_of_these() {
+        // 2, 3 and 4 are bodies of one joint; 0 and 1 are coupled on 2.
+        let parents = [Some(4), Some(4), None, None, None];
+        let group = Group {
+            base: Some(2),
+            members: vec![(0, OWN), (1, OWN)],
+            ties: Vec::new(),
+        };
+        assert_eq!(order(&parents, &[group]), [2, 3, 4, 0, 1]);
     }
 }
