@@ -27,17 +27,27 @@ use std::sync::Arc;
 /// # Errors
 /// A file that cannot be read, is not UTF-8 or holds nothing.
 pub fn read_file(path: &Path) -> Result<(String, String), Diagnostics> {
-    let name = path.display().to_string();
-    let refuse =
-        |message: String| Diagnostics::new(&name, "", vec![Diagnostic::without_place(message)]);
-    let bytes = limited(path).map_err(|error| refuse(format!("cannot read {name}: {error}")))?;
-    let text =
-        text::from_utf8(bytes).map_err(|reason| refuse(format!("cannot read {name}: {reason}")))?;
+    let (bytes, name) = read_bytes(path)?;
+    let text = text::from_utf8(bytes)
+        .map_err(|reason| refuse(&name, format!("cannot read {name}: {reason}")))?;
     // One error, not one for each thing that it lacks: such a file is one that is being written, or was not written to its end.
     match text.trim().is_empty() {
-        true => Err(refuse(format!("{name} is empty"))),
+        true => Err(refuse(&name, format!("{name} is empty"))),
         false => Ok((text, name)),
     }
+}
+
+/// The bytes of a file, and what messages call it.
+pub(crate) fn read_bytes(path: &Path) -> Result<(Vec<u8>, String), Diagnostics> {
+    let name = path.display().to_string();
+    match limited(path) {
+        Ok(bytes) => Ok((bytes, name)),
+        Err(error) => Err(refuse(&name, format!("cannot read {name}: {error}"))),
+    }
+}
+
+fn refuse(name: &str, message: String) -> Diagnostics {
+    Diagnostics::new(name, "", vec![Diagnostic::without_place(message)])
 }
 
 /// The bytes of a file that is not larger than any scene or robot: devices have no end.

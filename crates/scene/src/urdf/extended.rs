@@ -9,69 +9,42 @@
 //! What is written stays in its line, so that messages tell lines of the file.
 
 use super::document::{child, tag};
+use super::supplement::{LOOPS, Supplement, beside};
 use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::read::Sink;
-use crate::scene::read_file;
 use crate::source::Span;
 use crate::suggest::nearest;
 use roxmltree::{Document, Node};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
-use yaml_rust2::parser::{Event, Parser};
-use yaml_rust2::scanner::ScanError;
-use yaml_rust2::{Yaml, YamlLoader};
+use yaml_rust2::Yaml;
 
 /// Begins the processing instruction that names the file.
 pub(super) const TARGET: &str = "extended-by";
 
-/// The key without which a YAML file is another one.
-const LOOPS: &str = "closed_loop";
-
-/// Most bytes of such a file: it names joints.
-const MOST_BYTES: u64 = 1 << 20;
-
 /// The robot `text` of the file `path`, with what the YAML file of the same name beside it says in URDF+; as it is where there is no such file, or one that closes no loops.
 ///
 /// # Errors
-/// A YAML file with `closed_loop` that cannot be read, lists of different lengths, frames and joints that the robot does not have, and types that are not known: all at once, by the name of the YAML file.
+/// A YAML file with `closed_loop` that cannot be read, is larger than 1 MiB or not UTF-8; `closed_loop` inside another key, misspelt, in two documents or two files; lists of different lengths, frames and joints that the robot does not have, and types that are not known: all at once, by the name of the YAML file.
 pub fn with_loops(path: &Path, text: String) -> Result<String, Diagnostics> {
-    let files = ["yaml", "yml"].map(|ending| path.with_extension(ending));
-    let small = |file: &&std::path::PathBuf| {
-        file.metadata()
-            .is_ok_and(|own| own.is_file() && own.len() <= MOST_BYTES)
-    };
-    let Some(file) = files.iter().find(small) else {
+    let Some(supplement) = beside(path)? else {
         return Ok(text);
     };
-    let named = |bytes: Vec<u8>| {
-        let mut parts = bytes.windows(LOOPS.len());
-        parts.any(|part| part == LOOPS.as_bytes())
-    };
-    if !std::fs::read(file).is_ok_and(named) {
-        return Ok(text);
-    }
-    let (supplement, name) = read_file(file)?;
     let mut sink = Sink::default();
-    let completed = extended(&text, &supplement, &name, &mut sink);
+    let completed = extended(&text, &supplement, &mut sink);
     match sink.len() {
         0 => Ok(completed.unwrap_or(text)),
-        _ => Err(sink.refuse(&name, "", "the loops of the robot cannot be read")),
+        _ => Err(sink.refuse(
+            &supplement.name,
+            "",
+            "the loops of the robot cannot be read",
+        )),
     }
 }
 
-/// The robot in URDF+; `None` where it is no URDF, or the YAML says nothing of it.
-fn extended(text: &str, supplement: &str, name: &str, sink: &mut Sink) -> Option<String> {
-    let refuse = |why: String| Diagnostic::without_place(format!("{name}: {why}"));
-    let said = match plain(supplement).and_then(|()| YamlLoader::load_from_str(supplement)) {
-        Ok(documents) => documents.into_iter().next()?,
-        Err(error) => {
-            sink.push(refuse(format!("not valid YAML: {error}")));
-            return None;
-        }
-    };
-    if said[LOOPS].is_badvalue() {
-        return None;
-    }
+/// The robot in URDF+; `None` where it is no URDF.
+fn extended(text: &str, supplement: &Supplement, sink: &mut Sink) -> Option<String> {
+    let Supplement { said, name } = supplement;
     // What is no XML is refused where it is read.
     let document = Document::parse(text).ok()?;
     let mut work = Work {
@@ -79,31 +52,14 @@ fn extended(text: &str, supplement: &str, name: &str, sink: &mut Sink) -> Option
         edits: Vec::new(),
         errors: Vec::new(),
     };
-    let loops = work.loops(&said);
-    work.types(&said, &loops);
-    work.motors(&said, &loops);
+    let loops = work.loops(said);
+    work.types(said, &loops);
+    work.motors(said, &loops);
     work.close(&loops, name);
     for why in work.errors {
-        sink.push(refuse(why));
+        sink.push(Diagnostic::without_place(format!("{name}: {why}")));
     }
     Some(edited(text, work.edits))
-}
-
-/// Whether a text has no aliases: each is read as a copy of what it stands for, and copies of copies fill any memory.
-fn plain(text: &str) -> Result<(), ScanError> {
-    let mut events = Parser::new_from_str(text);
-    loop {
-        match events.next_token()? {
-            (Event::Alias(_), at) => {
-                return Err(ScanError::new_string(
-                    at,
-                    String::from("aliases are not read"),
-                ));
-            }
-            (Event::StreamEnd, _) => return Ok(()),
-            _ => {}
-        }
-    }
 }
 
 /// Where a text is replaced by another.

@@ -30,6 +30,7 @@ mod masses;
 mod robot;
 mod schema;
 mod shapes;
+mod supplement;
 mod ties;
 mod tree;
 

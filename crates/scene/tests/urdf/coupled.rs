@@ -17,7 +17,7 @@ fn robot_with(links: &[&str], more: &str, options: &Options) -> Import {
 }
 
 /// A joint of that name, which moves the link `of_` and that name.
-fn joint(name: &str, kind: &str, parent: &str, inside: &str) -> String {
+pub fn joint(name: &str, kind: &str, parent: &str, inside: &str) -> String {
     format!(
         "<joint name=\"{name}\" type=\"{kind}\"><parent link=\"{parent}\"/><child link=\"of_{name}\"/>\
          <axis xyz=\"0 0 1\"/>{inside}</joint>"

@@ -2,6 +2,7 @@
 
 mod asked;
 mod coupled;
+mod extended;
 mod shapes;
 
 use hamel_runtime::spatial::Pose;
