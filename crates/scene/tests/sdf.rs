@@ -565,3 +565,39 @@ fn frames_of_models_are_known_by_both_names() {
     let import = said(&of("1.9", &[&inner, &outer]));
     assert_eq!(begins(&import, "b"), Vector3::new(1.0, 1.0, 0.0));
 }
+
+/// A leader without mass moves with its follower, which has some.
+#[test]
+fn one_mass_is_enough_for_joints_that_follow_each_other() {
+    let link = |name: &str, inside: &str| format!("<link name='{name}'>{inside}</link>");
+    let mass = "<inertial><mass>1</mass></inertial>";
+    let none = "<inertial><mass>0</mass><inertia><ixx>0</ixx><iyy>0</iyy><izz>0</izz></inertia></inertial>";
+    let joint = |name: &str, child: &str, mimic: &str| {
+        format!(
+            "<joint name='{name}' type='revolute'><parent>world</parent><child>{child}</child><axis><xyz>0 0 1</xyz>{mimic}</axis></joint>"
+        )
+    };
+    let text = |leader: &str, follower: &str| {
+        [
+            String::from("<sdf version='1.11'><model name='m'>"),
+            link("a", leader),
+            link("b", follower),
+            joint("first", "a", ""),
+            joint(
+                "second",
+                "b",
+                "<mimic joint='first'><multiplier>2</multiplier></mimic>",
+            ),
+            String::from("</model></sdf>"),
+        ]
+        .concat()
+    };
+    for [leader, follower] in [[mass, none], [none, mass]] {
+        assert_eq!(said(&text(leader, follower)).scene.bodies.len(), 2);
+    }
+    let both = refused(&text(none, none), &Options::default());
+    for name in ["a", "b"] {
+        let wanted = format!("body `{name}` moves on joint");
+        assert!(both.contains(&wanted), "{both}");
+    }
+}

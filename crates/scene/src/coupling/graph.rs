@@ -95,6 +95,23 @@ impl Group {
         names.join("+")
     }
 
+    /// The nodes that only move together: all that ties hold, or those that follow one.
+    pub(crate) fn bound(&self) -> Vec<Vec<usize>> {
+        let places = |leader: Option<usize>| {
+            let own = self.members.iter();
+            let own = own.filter(|(_, law)| leader.is_none_or(|leader| law.leader == leader));
+            own.map(|(node, _)| *node).collect()
+        };
+        match self.ties.is_empty() {
+            true => self
+                .leaders()
+                .into_iter()
+                .map(|own| places(Some(own)))
+                .collect(),
+            false => vec![places(None)],
+        }
+    }
+
     /// Whether all of its joints follow one.
     pub(crate) fn is_of_one(&self) -> bool {
         self.ties.is_empty() && self.leaders().len() <= 1

@@ -7,6 +7,7 @@ use super::joint::Movement;
 use super::names::Names;
 use super::settings::Settings;
 use super::tree::Body;
+use crate::coupling::Tie;
 use crate::description::{BodyDescription, JointDescription, SceneDescription, Source};
 use crate::diagnostics::Diagnostic;
 use crate::forces::{FrameDescription, PointSpring, WrenchAxes, WrenchDescription};
@@ -103,7 +104,8 @@ pub(super) fn convert(
     }
     couple::couple(&mut scene, &mut notices, sink);
     let help = "give the body an <inertial> or a geom with mass, or take the joint away";
-    couple::refuse_massless(&scene, help, sink);
+    let ties: Vec<Tie<'_>> = scene.loops.iter().map(Tie::of_loop).collect();
+    couple::refuse_massless(&scene.bodies, &ties, ("body", help), sink);
     (sink.len() == 0).then(|| Import {
         scene,
         notices: notices.into_vec(),

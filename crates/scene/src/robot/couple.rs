@@ -81,9 +81,14 @@ fn settle(scene: &mut SceneDescription, found: &[Group]) {
         .for_each(|wrench| wrench.body = rank[wrench.body]);
 }
 
-/// Refuses bodies that move without mass on them or on what hangs on them, and without an armature: M would be singular. Errors end with `help`.
-pub(crate) fn refuse_massless(scene: &SceneDescription, help: &str, sink: &mut Sink) {
-    let bodies = &scene.bodies;
+/// Refuses bodies that move without mass on them or on what hangs on them, and without an armature: M would be singular. Those that only move together need one mass between
+/// them. Errors call a body `what`, and end with `help`.
+pub(crate) fn refuse_massless(
+    bodies: &[BodyDescription],
+    ties: &[Tie<'_>],
+    (what, help): (&str, &str),
+    sink: &mut Sink,
+) {
     let massive = bodies.iter().map(|body| !is_nothing(&body.mass));
     let mut massive: Vec<bool> = massive.collect();
     for (index, body) in bodies.iter().enumerate().rev() {
@@ -91,13 +96,21 @@ pub(crate) fn refuse_massless(scene: &SceneDescription, help: &str, sink: &mut S
             massive[parent] = true;
         }
     }
-    let bare = bodies.iter().zip(massive).filter(|(body, massive)| {
-        !massive && body.forces.armature.is_none() && body.mimic.is_none()
-    });
-    for (body, _) in bare {
+    // An armature is inertia of its own joint alone.
+    for (massive, body) in massive.iter_mut().zip(bodies) {
+        *massive |= body.forces.armature.is_some();
+    }
+    let nodes: Vec<Node<'_>> = bodies.iter().map(Node::of).collect();
+    // What makes no group is told elsewhere.
+    let found = groups(&nodes, ties, "robot", &mut Sink::default()).unwrap_or_default();
+    for own in found.iter().flat_map(Group::bound) {
+        let any = own.iter().any(|&body| massive[body]);
+        own.iter().for_each(|&body| massive[body] |= any);
+    }
+    for (body, _) in bodies.iter().zip(massive).filter(|(_, massive)| !massive) {
         let (name, joint) = (&body.name.value, &body.joint.name.value);
         let message = format!(
-            "body `{name}` moves on joint `{joint}`, but neither it nor what hangs on it has mass: its acceleration would not be determined"
+            "{what} `{name}` moves on joint `{joint}`, but neither it nor what hangs on it has mass: its acceleration would not be determined"
         );
         let error = Diagnostic::new(body.name.span.clone(), message);
         sink.push(error.help(help));

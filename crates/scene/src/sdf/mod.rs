@@ -33,6 +33,7 @@ mod schema;
 mod shapes;
 mod tree;
 
+use crate::coupling::Tie;
 use crate::description::{SceneDescription, Source};
 use crate::diagnostics::Diagnostic;
 use crate::notice::Notices;
@@ -106,11 +107,9 @@ pub(crate) fn import(
         couple::couple(&mut scene, &mut notices, sink);
     }
     if sink.len() == 0 {
-        couple::refuse_massless(
-            &scene,
-            "give the link an <inertial>, or make the joint fixed",
-            sink,
-        );
+        let help = "give the link an <inertial>, or make the joint fixed";
+        let ties: Vec<Tie<'_>> = scene.loops.iter().map(Tie::of_loop).collect();
+        couple::refuse_massless(&scene.bodies, &ties, ("body", help), sink);
     }
     (sink.len() == 0).then(|| Import {
         scene,

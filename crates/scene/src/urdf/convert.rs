@@ -6,6 +6,7 @@ use super::masses::Part;
 use super::robot::Robot;
 use super::tree::{self, Links, name_span};
 use super::{Import, Options, Stops, mass, masses, shapes};
+use crate::coupling::Tie;
 use crate::description::{
     BodyDescription, InitialDescription, JointDescription, MimicDescription, SceneDescription,
     Source,
@@ -16,6 +17,7 @@ use crate::notice::Notices;
 use crate::parse::WORLD;
 use crate::read::Sink;
 use crate::robot::JointFacts;
+use crate::robot::couple::refuse_massless;
 use crate::robot::mass::moved;
 use crate::scene::stem;
 use crate::settings::Settings;
@@ -59,15 +61,13 @@ pub(super) fn convert(
     let bodies_and_parts = (&mut *bodies, &*parts);
     masses::settle(robot, bodies_and_parts, options.lenient, &mut notices, sink);
     let anchored = |link: usize| anchors.get(link).copied().flatten();
-    let joined = links.closed().map(|links| {
-        let bodies = links.into_iter().filter_map(|link| anchored(link)?.body);
-        bodies.collect()
-    });
-    let joined: Vec<Vec<usize>> = joined.collect();
     let on_body = |link: usize| anchored(link).map(|anchor| (anchor.body, anchor.pose));
     let (loops, couplings) = links.ties.placed(version, on_body, sink);
     if complete {
-        masses::refuse_massless(&bodies, &joined, sink);
+        let help = "give the link an <inertial>, or make the joint fixed";
+        let ties = loops.iter().map(Tie::of_loop);
+        let ties = ties.chain(couplings.iter().map(Tie::of_coupling));
+        refuse_massless(&bodies, &ties.collect::<Vec<_>>(), ("link", help), sink);
     }
     if bodies.is_empty() && sink.len() == errors_before {
         let error = Diagnostic::new(tag(robot.links[0].node), "no joint of the robot moves");

@@ -10,29 +10,20 @@ use hamel_runtime::spatial::MassProperties;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::{HashMap, HashSet};
 
-/// Fixes the joints below which nothing has mass, and tells which. Loops, couplings and followers may hold what hangs on them: those joints stay as they are.
+/// Fixes the joints below which nothing has mass, and tells which. Loops and couplings may hold what hangs on them, and joints that follow each other move together, whichever of them moves a
+/// mass: those joints stay as they are.
 pub(super) fn fix_massless(robot: &mut Robot<'_, '_>, notices: &mut Notices) {
-    let above: HashMap<&str, &str> = robot
-        .joints
-        .iter()
-        .map(|joint| (joint.child, joint.parent))
+    let joints = || robot.joints.iter();
+    let above: Neighbours<'_> = joints()
+        .map(|joint| (joint.child, vec![joint.parent]))
         .collect();
-    // A joint that another one follows moves what hangs on that.
-    let moved: HashMap<&str, &str> = robot
-        .joints
-        .iter()
-        .map(|joint| (joint.name, joint.child))
-        .collect();
-    let led_by: HashMap<&str, &str> = robot
-        .joints
-        .iter()
-        .filter_map(|joint| {
-            Some((
-                joint.child,
-                *moved.get(attribute(joint.node, "mimic", "joint")?)?,
-            ))
-        })
-        .collect();
+    let mut coupled = Neighbours::new();
+    for joint in joints() {
+        if let Some(followed) = attribute(joint.node, "mimic", "joint") {
+            coupled.entry(joint.name).or_default().push(followed);
+            coupled.entry(followed).or_default().push(joint.name);
+        }
+    }
     let ties = robot.loops.iter().chain(&robot.couplings);
     let tied = ties
         .flat_map(|tie| tie.children())
@@ -41,22 +32,33 @@ pub(super) fn fix_massless(robot: &mut Robot<'_, '_>, notices: &mut Notices) {
         let own = link.inertial().and_then(mass::of_inertial);
         own.is_some_and(|own| !is_nothing(&own))
     });
-    let mut waiting: Vec<&str> = links.map(|link| link.name).chain(tied).collect();
-    let mut carried = HashSet::new();
-    while let Some(link) = waiting.pop() {
-        if carried.insert(link) {
-            waiting.extend([&above, &led_by].iter().filter_map(|next| next.get(link)));
-        }
-    }
+    let links = links.map(|link| link.name).chain(tied).collect();
+    let carried = reached(links, &above);
+    let carrying = joints().filter(|joint| carried.contains(joint.child));
+    let moving = reached(carrying.map(|joint| joint.name).collect(), &coupled);
     let moves_nothing = robot
         .joints
         .iter_mut()
-        .filter(|joint| joint.kind != JointType::Fixed && !carried.contains(joint.child));
+        .filter(|joint| joint.kind != JointType::Fixed && !moving.contains(joint.name));
     for joint in moves_nothing {
         joint.kind = JointType::Fixed;
         let message = "joints that move nothing with mass are fixed";
         notices.warn(message, format!("joint `{}`", joint.name));
     }
+}
+
+/// Names, with those that each leads to.
+type Neighbours<'a> = HashMap<&'a str, Vec<&'a str>>;
+
+/// These names and all to which they lead.
+fn reached<'a>(mut waiting: Vec<&'a str>, neighbours: &Neighbours<'a>) -> HashSet<&'a str> {
+    let mut reached = HashSet::new();
+    while let Some(name) = waiting.pop() {
+        if reached.insert(name) {
+            waiting.extend(neighbours.get(name).into_iter().flatten());
+        }
+    }
+    reached
 }
 
 /// Gives each part of a body whose inertia no rigid body has that of a ball with the mean of its principal moments, and tells which.

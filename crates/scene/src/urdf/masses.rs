@@ -1,4 +1,4 @@
-//! What the links of each body weigh together, and whether that can move.
+//! What the links of each body weigh together, and whether a rigid body can.
 
 use super::document::place;
 use super::lenient;
@@ -7,7 +7,7 @@ use crate::description::BodyDescription;
 use crate::diagnostics::Diagnostic;
 use crate::notice::Notices;
 use crate::read::Sink;
-use crate::robot::mass::{is_nothing, sum};
+use crate::robot::mass::sum;
 use hamel_runtime::spatial::{MassError, MassProperties};
 
 /// A link as a part of a body.
@@ -69,31 +69,5 @@ fn tell_odd(robot: &Robot<'_, '_>, parts: &[Part], notices: &mut Notices) {
     for part in parts.iter().filter(|part| part.mass.check().is_err()) {
         let name = robot.links[part.link].name;
         notices.add(message, format!("link `{name}`"));
-    }
-}
-
-/// Refuses bodies that move without mass on them or on what hangs on them: M would be singular.
-///
-/// Those of a loop move together: mass on one of `joined` is enough.
-pub(super) fn refuse_massless(bodies: &[BodyDescription], joined: &[Vec<usize>], sink: &mut Sink) {
-    let massive = bodies.iter().map(|body| !is_nothing(&body.mass));
-    let mut massive: Vec<bool> = massive.collect();
-    for (index, body) in bodies.iter().enumerate().rev() {
-        if let Some(parent) = body.parent.filter(|_| massive[index]) {
-            massive[parent] = true;
-        }
-    }
-    for own in joined {
-        let any = own.iter().any(|&body| massive[body]);
-        own.iter().for_each(|&body| massive[body] |= any);
-    }
-    for (body, _) in bodies.iter().zip(massive).filter(|(_, massive)| !massive) {
-        let (name, joint) = (&body.name.value, &body.joint.name.value);
-        let message = format!(
-            "link `{name}` moves on joint `{joint}`, but neither it nor what hangs on it has mass: its acceleration would \
-             not be determined"
-        );
-        let error = Diagnostic::new(body.name.span.clone(), message);
-        sink.push(error.help("give the link an <inertial>, or make the joint fixed"));
     }
 }

@@ -28,12 +28,6 @@ pub(super) struct Links<'a, 'i> {
 }
 
 impl Links<'_, '_> {
-    /// The links of each group that ties hold.
-    pub(super) fn closed(&self) -> impl Iterator<Item = Vec<usize>> {
-        let closed = self.groups.iter().filter(|group| !group.ties.is_empty());
-        closed.map(|group| group.members.iter().map(|(link, _)| *link).collect())
-    }
-
     /// What couples a link with others, if something does.
     pub(super) fn group(&self, link: usize) -> Option<&Group> {
         self.groups.get((*self.places.get(link)?)?)

@@ -132,3 +132,53 @@ fn couplings_on_links_that_are_fixed_stay_apart() {
         "{warned:?}"
     );
 }
+
+const EMPTY: &str = "<robot name=\"r\"><link name=\"base\"/>";
+
+/// A leader on `base`, its follower and what moves between, whose links have what is said in them.
+fn pair(leader: &str, between: &str, follower: &str) -> String {
+    let link = |name: &str, inside: &str| format!("<link name=\"of_{name}\">{inside}</link>");
+    [
+        EMPTY.to_owned(),
+        link("leader", leader),
+        link("between", between),
+        link("follower", follower),
+        joint("leader", "continuous", "base", ""),
+        joint("between", "continuous", "base", ""),
+        joint(
+            "follower",
+            "continuous",
+            "of_between",
+            "<mimic joint=\"leader\" multiplier=\"-2\"/>",
+        ),
+        String::from("</robot>"),
+    ]
+    .concat()
+}
+
+/// Joints that follow each other have one acceleration, which any mass among them determines. A lenient reader changes nothing of them, and fixes those that move nothing.
+#[test]
+fn one_mass_is_enough_for_joints_that_follow_each_other() {
+    let lenient = Options {
+        lenient: true,
+        ..Options::default()
+    };
+    for (text, moving, lenient_moving) in [
+        (pair(INERTIAL, INERTIAL, ""), Some(3), 3),
+        (pair("", INERTIAL, INERTIAL), Some(3), 3),
+        (pair("", "", INERTIAL), Some(3), 3),
+        (pair("", INERTIAL, ""), None, 1),
+        // The follower's mass does nothing for what carries it without any.
+        (pair(INERTIAL, "", ""), None, 2),
+    ] {
+        let strict = read(&text, "r.urdf", &Options::default());
+        let strict = strict.map(|import| import.scene.bodies.len());
+        assert_eq!(strict.as_ref().ok(), moving.as_ref(), "{text}: {strict:?}");
+        let import = read(&text, "r.urdf", &lenient);
+        let import = import.unwrap_or_else(|errors| panic!("{errors}"));
+        assert_eq!(import.scene.bodies.len(), lenient_moving, "{text}");
+        let is_fixed = |own: &String| own.contains("are fixed");
+        let told = notices(&import);
+        assert_eq!(told.iter().any(is_fixed), moving.is_none(), "{told:?}");
+    }
+}
