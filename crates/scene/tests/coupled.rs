@@ -44,3 +44,16 @@ fn a_coupling_on_one_of_several_bodies_may_come_before_them() {
     assert_eq!(names, wanted);
 }
 
+#[test]
+fn the_joint_of_any_of_its_bodies_has_its_name() {
+    for part in ["crank", "rod", "slider"] {
+        let ends = format!(
+            "[[loop]]\nname = \"l\"\ntype = \"revolute\"\npredecessor = {{ body = \"a\" }}\n\
+             successor = {{ body = \"engine.{part}\" }}\n"
+        );
+        let errors = read(&[engine(), body("a", "world", HINGE), ends].concat());
+        let text = errors.expect_err("no link").to_string();
+        let wanted = "loop `l`: joint `engine` of type `any` moves in it";
+        assert!(text.contains(wanted), "{text}");
+    }
+}

@@ -14,7 +14,9 @@ pub(super) fn direct(nodes: &[Node<'_>], elements: &str, sink: &mut Sink) -> Vec
     let named = named.filter_map(|(index, node)| Some((node.joint?.value.as_str(), index)));
     let places: HashMap<&str, usize> = named.collect();
     let known = nodes.iter().filter_map(|node| Some(&*node.joint?.value));
-    let known: Vec<&str> = known.collect();
+    let mut known: Vec<&str> = known.collect();
+    // The bodies of a joint follow each other.
+    known.dedup();
     let mut law = |index: usize, mimic: &Located<MimicDescription>| {
         let followed = &mimic.value.joint;
         let Some(&leader) = places.get(followed.value.as_str()) else {

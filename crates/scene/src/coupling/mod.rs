@@ -65,7 +65,7 @@ impl<'a> Node<'a> {
             Some(_) => Movement::Other(&body.joint.kind.value),
         };
         Self {
-            joint: body.leads().then_some(&body.joint.name),
+            joint: Some(&body.joint.name),
             parent: body.parent,
             movement: kind,
             mimic: body.mimic.as_ref(),

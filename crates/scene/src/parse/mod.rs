@@ -90,7 +90,7 @@ impl BodyDraft {
         let joint = self.joint.as_ref();
         let kind = joint.map_or("", |joint| &joint.kind.value);
         Node {
-            joint: joint.map(|joint| &joint.name).filter(|_| self.leads()),
+            joint: joint.map(|joint| &joint.name),
             parent,
             movement: match self.part {
                 None => Movement::of(kind),
