@@ -1,6 +1,6 @@
 //! From links and joints to bodies: moving joints make bodies, fixed joints join links to one.
 
-use super::document::{place, tag};
+use super::document::{child, place, tag};
 use super::joint;
 use super::masses::Part;
 use super::robot::Robot;
@@ -218,7 +218,11 @@ impl<'c, 'a, 'i> Converter<'c, 'a, 'i> {
         let axis = axis.unwrap_or_else(Pose::identity);
         let Some(kind) = joint.kind.of_library() else {
             let message = "fixed joints join links to one body, on which the link is a named frame";
-            self.notices.add(message, owner);
+            self.notices.add(message, &owner);
+            if child(joint.node, "mimic").is_some() {
+                self.notices
+                    .add("fixed joints follow none: their mimic has no effect", owner);
+            }
             let body = parent.body;
             return self.attach(link, Anchor { body, pose: origin });
         };

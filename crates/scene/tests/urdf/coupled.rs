@@ -182,3 +182,14 @@ fn one_mass_is_enough_for_joints_that_follow_each_other() {
         assert_eq!(told.iter().any(is_fixed), moving.is_none(), "{told:?}");
     }
 }
+
+#[test]
+fn a_mimic_of_a_fixed_joint_is_told() {
+    let more = [
+        joint("a", "continuous", "base", ""),
+        joint("b", "fixed", "base", "<mimic joint=\"a\"/>"),
+    ];
+    let told = notices(&robot(&["of_a", "of_b"], &more.concat()));
+    let wanted = "note: fixed joints follow none: their mimic has no effect: joint `b`";
+    assert!(told.iter().any(|own| own == wanted), "{told:?}");
+}
