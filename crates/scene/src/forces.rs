@@ -23,6 +23,8 @@ pub struct JointForces {
     pub friction: Option<Located<FrictionDescription>>,
     /// Where the joint's range ends.
     pub limit: Option<Located<LimitDescription>>,
+    /// Of a coupling, whose limits the lower and the upper end of `limit` are.
+    pub limit_of: [Option<LimitOwner>; 2],
     /// Stops that give way at other joints of its coupling.
     pub further_limits: Vec<Located<LimitDescription>>,
     /// What acts at its ports.
@@ -116,6 +118,19 @@ pub struct LimitDescription {
     pub upper: Option<f64>,
     /// What happens there.
     pub kind: LimitKind,
+}
+
+/// The limit of a joint that ends the range of what the joint follows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LimitOwner {
+    /// Name of the joint.
+    pub joint: String,
+    /// The number of its port in the coupling.
+    pub port: usize,
+    /// Whether it is its upper limit.
+    pub is_upper: bool,
+    /// Where it is, rad or m.
+    pub end: Located<f64>,
 }
 
 /// What happens where a joint's range ends.

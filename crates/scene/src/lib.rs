@@ -48,7 +48,7 @@ pub use diagnostics::{Diagnostic, Diagnostics};
 pub use event::{EventDescription, PointAlong, PortOf, Quantity, QuantityDescription, SceneEvent};
 pub use forces::{
     BodyPoint, ConstraintDescription, FrameDescription, FrictionDescription, JointForces,
-    JointSpring, LimitDescription, LimitKind, PerFreedom, PointSpring, PortForces,
+    JointSpring, LimitDescription, LimitKind, LimitOwner, PerFreedom, PointSpring, PortForces,
     PortSpringDescription, SpringEnergy, WrenchAxes, WrenchDescription,
 };
 pub use notice::{Notice, Severity};

@@ -30,7 +30,7 @@ pub(crate) use slopes::Target;
 pub use slopes::{End, PointForce, Slope, Slopes};
 pub use spring::{JointSpring, RotationSpring};
 pub use timed::{TimedEffort, TimedWrench};
-pub use unilateral::{JointFriction, JointStop, has_one_freedom};
+pub use unilateral::{JointFriction, JointStop, LimitOf, has_one_freedom};
 pub use view::MotionList;
 pub use view::{Action, Motions, View};
 

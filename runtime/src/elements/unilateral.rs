@@ -42,6 +42,17 @@ pub struct JointStop {
     pub upper: Option<f64>,
     /// From 0, which takes all of the joint's speed, to 1, which takes none.
     pub restitution: f64,
+    /// Whose limits the lower and the upper one are, where they are not the joint's own.
+    pub of: [Option<LimitOf>; 2],
+}
+
+/// The limit of a joint that is one of several bodies of another: a joint that follows, or one that is followed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LimitOf {
+    /// Name of the joint, for messages.
+    pub joint: String,
+    /// Whether it is its upper limit.
+    pub is_upper: bool,
 }
 
 impl JointFriction {

@@ -4,6 +4,7 @@ use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::Range;
+use hamel_runtime::elements::LimitOf;
 use hamel_runtime::erased::AnyJoint;
 use hamel_runtime::mechanism::Mechanism;
 
@@ -68,6 +69,8 @@ pub(crate) struct Contact {
     pub(super) frictions: Vec<Friction>,
     lower: Option<f64>,
     upper: Option<f64>,
+    /// Whose limits these are, where they are not its own.
+    of: [Option<LimitOf>; 2],
     pub(super) restitution: f64,
 }
 
@@ -159,6 +162,7 @@ impl Contact {
                 frictions,
                 lower: stop.and_then(|stop| stop.lower),
                 upper: stop.and_then(|stop| stop.upper),
+                of: stop.map_or([None, None], |stop| stop.of.clone()),
                 restitution: stop.map_or(0.0, |stop| stop.restitution),
             })
         });
@@ -177,6 +181,7 @@ impl Contact {
             frictions: Vec::new(),
             lower: Some(0.0),
             upper: None,
+            of: [None, None],
             restitution,
         }
     }
@@ -185,6 +190,26 @@ impl Contact {
         match side {
             Side::Lower => self.lower,
             Side::Upper => self.upper,
+        }
+    }
+
+    /// What messages call a limit: the joint, and which of its limits it is.
+    pub(super) fn told(&self, side: Side) -> (&str, &'static str) {
+        let [lower, upper] = &self.of;
+        let of = match side {
+            Side::Lower => lower,
+            Side::Upper => upper,
+        };
+        match of {
+            Some(LimitOf {
+                joint,
+                is_upper: true,
+            }) => (joint, Side::Upper.name()),
+            Some(LimitOf {
+                joint,
+                is_upper: false,
+            }) => (joint, Side::Lower.name()),
+            None => (&self.joint, side.name()),
         }
     }
 

@@ -24,18 +24,22 @@ pub(super) fn of_joint(
     (before, after): (Phase, Phase),
     speeds: (f64, f64),
 ) -> Vec<Note> {
-    let note = |what: String, rising: bool| Note {
+    let note = |(joint, what): (&str, String), rising: bool| Note {
         body: contact.body,
         is_impact: false,
-        name: format!("{}: {what}", contact.joint),
+        name: format!("{joint}: {what}"),
         rising,
     };
+    let at_limit = |verb: &str, side: Side| {
+        let (joint, limit) = contact.told(side);
+        (joint, format!("{verb} its {limit} limit"))
+    };
+    let own = |what: &str| (&*contact.joint, String::from(what));
     let mut notes = Vec::new();
     if let Some(side) = hit {
-        let what = format!("hits its {} limit", side.name());
         notes.push(Note {
             is_impact: true,
-            ..note(what, speeds.0 > 0.0)
+            ..note(at_limit("hits", side), speeds.0 > 0.0)
         });
     }
     let moves_forward = match after {
@@ -50,20 +54,14 @@ pub(super) fn of_joint(
                 Phase::Slides { forward } => forward,
                 _ => speeds.0 > 0.0,
             };
-            Some(("sticks".into(), forward))
+            Some((own("sticks"), forward))
         }
-        (_, Phase::Rests(side)) => {
-            let what = format!("rests at its {} limit", side.name());
-            Some((what, side == Side::Upper))
-        }
-        (Phase::Rests(side), _) => {
-            let what = format!("leaves its {} limit", side.name());
-            Some((what, side == Side::Lower))
-        }
-        (Phase::Sticks, _) => Some(("slides".into(), moves_forward)),
+        (_, Phase::Rests(side)) => Some((at_limit("rests at", side), side == Side::Upper)),
+        (Phase::Rests(side), _) => Some((at_limit("leaves", side), side == Side::Lower)),
+        (Phase::Sticks, _) => Some((own("slides"), moves_forward)),
         // An impact turns it round, and has been told.
         (Phase::Slides { .. }, Phase::Slides { .. }) if hit.is_none() => {
-            Some(("slides back".into(), moves_forward))
+            Some((own("slides back"), moves_forward))
         }
         _ => None,
     };

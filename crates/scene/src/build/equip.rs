@@ -6,8 +6,8 @@ use crate::forces::{LimitKind, PointSpring, PortForces, WrenchAxes, WrenchDescri
 use hamel_runtime::dynamics::{Dynamics, DynamicsError, Recursive};
 use hamel_runtime::elements::{
     BodySpring, BodyWrench, Drive, Element, JointDamper, JointEffort, JointFriction, JointLimit,
-    JointSpring, JointStop, PointConstraint, PortEffort, PortSpring, RotationSpring, TimedEffort,
-    TimedWrench,
+    JointSpring, JointStop, LimitOf, PointConstraint, PortEffort, PortSpring, RotationSpring,
+    TimedEffort, TimedWrench,
 };
 use hamel_runtime::erased::AnyJoint;
 use hamel_runtime::mechanism::{Mechanism, MechanismErrors, NamedFrame};
@@ -309,6 +309,13 @@ fn stops(description: &SceneDescription, acting: &[Acting]) -> Vec<JointStop> {
             lower: limit.lower,
             upper: limit.upper,
             restitution,
+            of: owner.forces.limit_of.each_ref().map(|own| {
+                let own = own.as_ref()?;
+                Some(LimitOf {
+                    joint: own.joint.clone(),
+                    is_upper: own.is_upper,
+                })
+            }),
         })
     });
     stops.collect()

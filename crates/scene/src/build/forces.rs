@@ -4,8 +4,8 @@ use super::state::Stand;
 use crate::description::{InitialDescription, Motion};
 use crate::diagnostics::Diagnostic;
 use crate::forces::{
-    FrictionDescription, JointForces, JointSpring, LimitDescription, LimitKind, PerFreedom,
-    PortForces, SpringEnergy,
+    FrictionDescription, JointForces, JointSpring, LimitDescription, LimitKind, LimitOwner,
+    PerFreedom, PortForces, SpringEnergy,
 };
 use crate::read::Sink;
 use crate::source::{Located, Span};
@@ -262,7 +262,7 @@ fn motion(
 pub(super) fn check_limit(
     stand: &Stand,
     q: &[f64],
-    limit: &Located<LimitDescription>,
+    (limit, of): (&Located<LimitDescription>, &[Option<LimitOwner>; 2]),
 ) -> Result<(), Diagnostic> {
     // Of other joints it is said elsewhere that they can have none.
     let ([value], [coordinate]) = (q, stand.joint.coordinates()) else {
@@ -275,14 +275,30 @@ pub(super) fn check_limit(
     let (lower, upper) = (limit.value.lower, limit.value.upper);
     let below = lower.filter(|&lower| *value < lower - room(lower));
     let above = upper.filter(|&upper| *value > upper + room(upper));
-    let (side, end) = match (below, above) {
-        (Some(lower), _) => ("lower", lower),
-        (_, Some(upper)) => ("upper", upper),
+    let [lower_of, upper_of] = of;
+    let (side, end, of) = match (below, above) {
+        (Some(lower), _) => ("lower", lower, lower_of),
+        (_, Some(upper)) => ("upper", upper, upper_of),
         _ => return Ok(()),
     };
+    if let Some(owner) = of {
+        return Err(beyond(stand, q, owner));
+    }
     let (name, value, end) = (&stand.name, Number(*value), Number(end));
     let message = format!(
         "joint `{name}`: its coordinate `{coordinate}` is {value:?} at time 0, beyond its {side} limit {end:?}"
     );
     Err(Diagnostic::new(limit.span.clone(), message))
+}
+
+/// A joint of a coupling that begins beyond its limit.
+fn beyond(stand: &Stand, q: &[f64], owner: &LimitOwner) -> Diagnostic {
+    let LimitOwner { joint, end, .. } = owner;
+    let side = if owner.is_upper { "upper" } else { "lower" };
+    let (value, limit) = (stand.joint.port_value(q, owner.port), Number(end.value));
+    let message = format!(
+        "joint `{joint}`: it is at {:?} at time 0, beyond its {side} limit {limit:?}",
+        Number(value)
+    );
+    Diagnostic::new(end.span.clone(), message)
 }

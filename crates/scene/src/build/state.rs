@@ -48,7 +48,7 @@ pub(crate) fn state(
     let acting = forces::acting(&stand, initial, forces, sink);
     let (configuration, speeds) = solved?;
     if let Some(limit) = &forces.limit {
-        forces::check_limit(&stand, &configuration, limit)
+        forces::check_limit(&stand, &configuration, (limit, &forces.limit_of))
             .map_err(|error| sink.push(error))
             .ok()?;
     }

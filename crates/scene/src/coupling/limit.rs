@@ -2,7 +2,7 @@
 
 use super::forces::Owner;
 use crate::diagnostics::Diagnostic;
-use crate::forces::{JointForces, LimitDescription, LimitKind};
+use crate::forces::{JointForces, LimitDescription, LimitKind, LimitOwner};
 use crate::source::Located;
 use hamel_runtime::shown::Number;
 
@@ -14,7 +14,7 @@ pub(super) fn add(
     coordinates: usize,
     forces: &mut JointForces,
 ) -> Result<(), Diagnostic> {
-    for owner in owners {
+    for (port, owner) in owners.iter().enumerate() {
         let Some(limit) = &owner.body.forces.limit else {
             continue;
         };
@@ -24,8 +24,14 @@ pub(super) fn add(
         let own = Located::new(followed(&limit.value, owner), limit.span.clone());
         match (own.value.kind, &mut forces.limit) {
             (LimitKind::Compliant { .. }, _) => forces.further_limits.push(own),
-            (LimitKind::Impact { .. }, None) => forces.limit = Some(own),
-            (LimitKind::Impact { .. }, Some(narrowed)) => narrow(owner, narrowed, &own)?,
+            (LimitKind::Impact { .. }, None) => {
+                forces.limit = Some(own);
+                forces.limit_of = named(owner, port, limit);
+            }
+            (LimitKind::Impact { .. }, Some(narrowed)) => {
+                let ends = [&mut forces.limit_of, &mut named(owner, port, limit)];
+                narrow(owner, (narrowed, &own), ends)?;
+            }
         }
     }
     Ok(())
@@ -53,10 +59,33 @@ pub(super) fn followed(limit: &LimitDescription, owner: &Owner<'_>) -> LimitDesc
     }
 }
 
+/// Both ends of the limit of y as those of q, with what messages call them.
+fn named(
+    owner: &Owner<'_>,
+    port: usize,
+    limit: &Located<LimitDescription>,
+) -> [Option<LimitOwner>; 2] {
+    let named = |end: Option<f64>, is_upper: bool| {
+        Some(LimitOwner {
+            joint: owner.name.to_owned(),
+            port,
+            is_upper,
+            end: Located::new(end?, limit.span.clone()),
+        })
+    };
+    let lower = named(limit.value.lower, false);
+    let upper = named(limit.value.upper, true);
+    match owner.link.ratio > 0.0 {
+        true => [lower, upper],
+        false => [upper, lower],
+    }
+}
+
+/// Brings the ends of a limit to those of another that are narrower.
 fn narrow(
     owner: &Owner<'_>,
-    all: &mut Located<LimitDescription>,
-    own: &Located<LimitDescription>,
+    (all, own): (&mut Located<LimitDescription>, &Located<LimitDescription>),
+    [all_of, own_of]: [&mut [Option<LimitOwner>; 2]; 2],
 ) -> Result<(), Diagnostic> {
     if all.value.kind != own.value.kind {
         let message = format!(
@@ -67,13 +96,24 @@ fn narrow(
             .context(all.span.clone(), "the limit of another")
             .help("coupled joints stop together"));
     }
-    let tighter = |a: Option<f64>, b: Option<f64>, choose: fn(f64, f64) -> f64| match (a, b) {
-        (Some(a), Some(b)) => Some(choose(a, b)),
-        (one, other) => one.or(other),
-    };
-    all.value.lower = tighter(all.value.lower, own.value.lower, f64::max);
-    all.value.upper = tighter(all.value.upper, own.value.upper, f64::min);
-    match (all.value.lower, all.value.upper) {
+    let LimitDescription { lower, upper, .. } = &mut all.value;
+    let [lower_of, upper_of] = all_of;
+    let [own_lower, own_upper] = own_of;
+    if own
+        .value
+        .lower
+        .is_some_and(|own| lower.is_none_or(|all| own > all))
+    {
+        (*lower, *lower_of) = (own.value.lower, own_lower.take());
+    }
+    if own
+        .value
+        .upper
+        .is_some_and(|own| upper.is_none_or(|all| own < all))
+    {
+        (*upper, *upper_of) = (own.value.upper, own_upper.take());
+    }
+    match (*lower, *upper) {
         (Some(lower), Some(upper)) if lower >= upper => {
             let message = format!(
                 "joint `{}`: with the limits of the joints that it is coupled with nothing is left of its range: what it follows is at least {:?} and at most {:?}",

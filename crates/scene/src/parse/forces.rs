@@ -34,6 +34,7 @@ pub(super) fn forces(fields: &mut Fields<'_>, sink: &mut Sink) -> Option<JointFo
         motion: motion?,
         friction: friction?,
         limit: limit?,
+        limit_of: [None, None],
         further_limits: Vec::new(),
         ports: ports?.unwrap_or_default(),
     })
