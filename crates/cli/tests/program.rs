@@ -271,6 +271,38 @@ fn mistakes_are_told_in_words() {
     }
 }
 
+/// A body may have the name that columns of a joint's ports begin with.
+#[test]
+fn two_columns_of_one_name_are_refused() {
+    let body = |name: &str, keys: &str| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nparent = \"world\"\nmass = 1.0\n\
+             inertia_xx_yy_zz_xy_xz_yz = [0.1, 0.1, 0.1, 0.0, 0.0, 0.0]\njoint = {{ type = \"prismatic\" }}\n{keys}\n"
+        )
+    };
+    let scene = |name: &str| {
+        let bodies = [
+            body("lift", ""),
+            body("x", "mimic = { joint = \"lift\" }"),
+            body(name, ""),
+        ];
+        format!("hamel = 1\ngravity = [0, 0, -9.81]\n{}", bodies.concat())
+    };
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("columns.toml");
+    let told = path.display().to_string();
+    let arguments = ["simulate", told.as_str(), "--t-end", "0.1", "--json"];
+    std::fs::write(&path, scene("lift.port")).expect("a file of the build");
+    let output = hamel(&arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    let wanted = "two columns would be called `lift.port.x_m`, one of body `lift.port` and one of joint `lift`";
+    assert!(
+        !output.status.success() && stderr.contains(wanted),
+        "{stderr}"
+    );
+    std::fs::write(&path, scene("lift.part")).expect("a file of the build");
+    stdout(&arguments);
+}
+
 #[test]
 fn a_method_that_is_chosen_is_told_with_its_reason_and_what_steps_pass_over_is_told() {
     let simulate = |options: &[&str]| -> Value {

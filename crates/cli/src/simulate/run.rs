@@ -29,7 +29,7 @@ use std::time::Instant;
 pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let mut plan = Plan::new(args, registry)?;
     Request::settle(&mut plan, args.quiet)?;
-    let columns = Columns::new(&plan);
+    let columns = Columns::new(&plan)?;
     let run = match args.compiled {
         true => {
             let mut equations = compile::equations(args, &plan)?;

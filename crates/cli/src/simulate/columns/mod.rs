@@ -17,8 +17,10 @@ use hamel::dynamics::Recursive;
 use hamel::integrate::Step;
 use hamel::mechanism::{Kinematics, Mechanism};
 use hamel::spatial::Pose;
+use hamel_console::output::Failure;
 use hamel_sweep::columns::{Ending, Turn, suffix};
 use serde::Serialize;
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// One column.
@@ -120,6 +122,19 @@ struct Entry<'a> {
     quantities: Vec<Quantity<'a>>,
 }
 
+impl Entry<'_> {
+    /// What messages call it.
+    fn called(&self) -> String {
+        let kind = match self.list {
+            None => return String::from("the mechanism"),
+            Some(List::Bodies) => "body",
+            Some(List::Frames) => "frame",
+            Some(List::Joints | List::Efforts) => "joint",
+        };
+        format!("{kind} `{}`", self.name)
+    }
+}
+
 /// The columns of a run, in their order.
 pub struct Columns<'a> {
     list: Vec<Column>,
@@ -131,7 +146,10 @@ pub struct Columns<'a> {
 impl<'a> Columns<'a> {
     /// Those of what is simulated: time and energies; bodies; named frames; coordinates and speeds of joints; efforts where
     /// there is a controller.
-    pub fn new(plan: &'a Plan) -> Self {
+    ///
+    /// # Errors
+    /// Two columns of one name, as names that have dots may make them.
+    pub fn new(plan: &'a Plan) -> Result<Self, Failure> {
         let mut columns = Self {
             list: Vec::new(),
             entries: Vec::new(),
@@ -146,7 +164,25 @@ impl<'a> Columns<'a> {
         if plan.control.is_some() {
             columns.efforts(mechanism);
         }
-        columns
+        columns.refuse_same()?;
+        Ok(columns)
+    }
+
+    /// Whether each column has a name of its own; a reader of tables would take one for another.
+    fn refuse_same(&self) -> Result<(), Failure> {
+        let mut owners: HashMap<&str, &Entry<'_>> = HashMap::new();
+        for entry in &self.entries {
+            for column in entry.quantities.iter().flat_map(|own| own.columns.clone()) {
+                let name = &self.list[column].name;
+                if let Some(other) = owners.insert(name, entry) {
+                    let (first, second) = (other.called(), entry.called());
+                    return Err(Failure::Options(format!(
+                        "two columns would be called `{name}`, one of {first} and one of {second}: one of them needs another name"
+                    )));
+                }
+            }
+        }
+        Ok(())
     }
 
     /// All of them.
