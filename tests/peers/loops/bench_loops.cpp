@@ -64,7 +64,9 @@ struct Loops : Bench {
     for (size_t k = 0; k < couplings.size(); k++)
       for (auto& [joint, x] : couplings[k]) J(k, model.joints[joint].idx_v()) = x;
   }
-  void load(const std::string& folder, const std::string& name) {
+  void load(std::istringstream& words) override {
+    std::string folder, name;
+    words >> folder >> name;
     m = read_model(folder + "/" + name + ".txt");
     s = read_states(folder + "/" + name + ".bin", m.nq, m.nv);
     build_pin_model(m, model);
@@ -98,37 +100,4 @@ struct Loops : Bench {
   }
 };
 
-int main() {
-  std::unique_ptr<Loops> b;
-  std::string line;
-  while (std::getline(std::cin, line)) {
-    std::istringstream ss(line);
-    std::string c, a;
-    ss >> c;
-    try {
-      if (c == "quit") break;
-      else if (c == "info") std::printf("%s\n", Loops().info().c_str());
-      else if (c == "load") {
-        std::string folder, name;
-        ss >> folder >> name;
-        b.reset(new Loops);
-        b->load(folder, name);
-        std::printf("ok");
-        for (auto& algorithm : b->order) std::printf(" %s", algorithm.c_str());
-        std::printf("\n");
-      } else if (c == "bench") {
-        double ms; ss >> a >> ms;
-        std::printf("%.4f\n", b->run(a, ms));
-      } else if (c == "check") {
-        int k; ss >> a >> k;
-        for (double x : b->chk[a](k)) std::printf("%.17g ", x);
-        std::printf("\n");
-      } else std::printf("skip unknown command\n");
-    } catch (const std::exception& e) {
-      std::string w = e.what();
-      for (char& ch : w) if (ch == '\n') ch = ' ';
-      std::printf("skip %s\n", w.substr(0, 300).c_str());
-    }
-    std::fflush(stdout);
-  }
-}
+int main() { return bench_main<Loops>(); }

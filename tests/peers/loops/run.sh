@@ -9,7 +9,7 @@ HERE=$(cd "$(dirname "$0")" && pwd); W=${PEERS_WORK:-$HOME/.cache/peers}; export
 export PEERS_LOOPS=$W/loops
 mkdir -p "$W"/{build,results,loops}
 log() { echo "[peers] $*" >&2; }
-[ -z "${SKIP_INSTALL:-}" ] && "$HERE/../install.sh" base
+[ -z "${SKIP_INSTALL:-}" ] && "$HERE/../install.sh" base rbda
 [ "$(ls "$PEERS_LOOPS"/*.json 2>/dev/null | wc -l)" -gt 0 ] && [ -z "$(find "$HERE" -name '*.py' -newer "$PEERS_LOOPS/written")" ] || {
   log "mechanisms, and their exact accelerations"
   "$W/venv/bin/python" "$HERE/models.py" "$PEERS_LOOPS" >&2 && touch "$PEERS_LOOPS/written" || exit 1
@@ -25,8 +25,10 @@ if [ ! -e "$W/build/bench_loops" ] || [ "$HERE/bench_loops.cpp" -nt "$W/build/be
     -DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS -DBOOST_FUSION_INVOKE_MAX_ARITY=12 -I"$PFX/include" -I/usr/include/eigen3 \
     "$HERE/bench_loops.cpp" -o "$W/build/bench_loops" -L"$PFX/lib" -lboost_serialization -Wl,-rpath,"$PFX/lib" || log "the build failed"
 fi
+[ -d "$W/rbda/generalized_rbda" ] && { log "build bench_rbda"; "$HERE/build_rbda.sh" || log "the build failed"; }
 programs=("hamel compiled=$W/target/release/peer-loops --compiled" "hamel tree=$W/target/release/peer-loops")
 [ -x "$W/build/bench_loops" ] && programs+=("pinocchio=$W/build/bench_loops")
+[ -x "$W/build/bench_rbda" ] && programs+=("generalized_rbda=$W/build/bench_rbda")
 IFS=';' read -ra extra <<<"${EXTRA:-}"
 {
   echo "# Mechanisms with loops, $(date -u +%F), $(lscpu | sed -n 's/^Model name: *//p'), $(nproc) cpus, load $(cut -d' ' -f1 /proc/loadavg)"
