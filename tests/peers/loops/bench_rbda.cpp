@@ -33,6 +33,14 @@ static std::vector<std::string> names_of_joints(const std::string& path) {
   return names;
 }
 
+static Vector picked(const Vector& from, const std::vector<int>& places) {
+  Vector out(places.size());
+  for (size_t i = 0; i < places.size(); i++) out[i] = from[places[i]];
+  return out;
+}
+// Of a free body's rates ours are linear, angular; theirs angular, linear.
+static const std::vector<int> SWAPPED = {3, 4, 5, 0, 1, 2};
+
 struct Rbda : Bench {
   std::unique_ptr<ClusterTreeModel<double>> model;
   std::vector<ModelState<double>> states;
@@ -82,18 +90,17 @@ struct Rbda : Bench {
       auto joint = model->clusters()[c]->joint_;
       Vector q = gather(c, s.q(k), &JointSpec::iq, &JointSpec::nq), v = gather(c, s.v(k), &JointSpec::iv, &JointSpec::nv);
       Vector effort = gather(c, s.tau(k), &JointSpec::iv, &JointSpec::nv);
-      if (joint->type() == ClusterJointTypes::Free) {  // ours: position, quaternion x y z w; linear, angular
-        q << q.head(3).eval(), q[6], q.segment(3, 3).eval();
-        v << v.tail(3).eval(), v.head(3).eval();
-        effort << effort.tail(3).eval(), effort.head(3).eval();
+      if (joint->type() == ClusterJointTypes::Free) {  // of its quaternion ours is x y z w, theirs w x y z
+        q = picked(q, {0, 1, 2, 6, 3, 4, 5});
+        v = picked(v, SWAPPED);
+        effort = picked(effort, SWAPPED);
         state.emplace_back(JointCoordinate<double>(q, false), JointCoordinate<double>(v, false));
       } else {
         auto constraint = joint->cloneLoopConstraint();
         JointCoordinate<double> spanning(q, true);
         constraint->updateJacobians(spanning);
         auto rows = independent(constraint->G());
-        auto own = [&](const Vector& x) { Vector out(rows.size()); for (size_t i = 0; i < rows.size(); i++) out[i] = x[rows[i]]; return out; };
-        state.emplace_back(constraint->isImplicit() ? spanning : JointCoordinate<double>(own(q), false), JointCoordinate<double>(own(v), false));
+        state.emplace_back(constraint->isImplicit() ? spanning : JointCoordinate<double>(picked(q, rows), false), JointCoordinate<double>(picked(v, rows), false));
         effort = (constraint->G().transpose() * effort).eval();
       }
       tau.segment(at, effort.size()) = effort;
@@ -112,7 +119,7 @@ struct Rbda : Bench {
       auto joint = model->clusters()[c]->joint_;
       Vector own = found.segment(at, joint->numVelocities());
       at += own.size();
-      if (joint->type() == ClusterJointTypes::Free) own << own.tail(3).eval(), own.head(3).eval();
+      if (joint->type() == ClusterJointTypes::Free) own = picked(own, SWAPPED);
       else own = (joint->G() * own + joint->g()).eval();
       int row = 0;
       for (int i : joints[c]) for (int n = 0; n < m.j[i].nv; n++) out[m.j[i].iv + n] = own[row++];
