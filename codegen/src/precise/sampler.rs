@@ -12,6 +12,9 @@ use chacha20::rand_core::{Rng, SeedableRng};
 const ATTEMPTS: usize = 64;
 /// Newton's method in doubles takes some five steps from near; with slopes in doubles it gains some 50 bits a step: 512 bits in a dozen.
 const NEWTON_STEPS: usize = 30;
+/// Steps and parts in which the runtime assembles a linkage, `assemble` and `project` of its `finite`.
+const PROJECTION_STEPS: usize = 12;
+const PARTS: usize = 16;
 /// A step in doubles from which on digits are gained by more bits alone.
 const CLOSE: f64 = 1e-9;
 /// How far from home a point of declared relations is looked for, in every stored scalar.
@@ -146,6 +149,35 @@ impl<'a> Sampler<'a> {
         self.relations.iter().all(holds).then_some(settled)
     }
 
+    /// The point with its stored scalars, a guess, moved onto the manifold in as many steps as the runtime takes to assemble a linkage: directly, or with the values
+    /// of the relations taken back to zero in parts.
+    pub fn assembled(&self, guess: &Point) -> Option<Point> {
+        let (coordinates, relations) = (self.space.manifold.coordinates(), &self.relations);
+        let mut direct = guess.clone();
+        if newton_in_doubles(&mut direct, &coordinates, relations, PROJECTION_STEPS) {
+            return self.settled(&direct);
+        }
+        let start = doubles(guess, &coordinates);
+        let near = |symbol: &Symbol| guess.value(symbol).to_f64();
+        let values = relations.iter().map(|(e, _)| e.evaluate(&0.0, &near));
+        let values: Vec<f64> = values.collect();
+        let mut now = start.clone();
+        for left in (1..PARTS).rev() {
+            let part = left as f64 / PARTS as f64;
+            let targets: Vec<f64> = values.iter().map(|value| part * value).collect();
+            let step = step_in_doubles((guess, &coordinates), relations, (&now, &targets));
+            now.iter_mut()
+                .zip(step)
+                .for_each(|(x, change)| *x += change);
+        }
+        let change: Vec<f64> = now.iter().zip(start).map(|(x, start)| x - start).collect();
+        let mut followed = guess.clone();
+        advance(&mut followed, &coordinates, &change);
+        newton_in_doubles(&mut followed, &coordinates, relations, PROJECTION_STEPS)
+            .then(|| self.settled(&followed))
+            .flatten()
+    }
+
     fn attempt(&mut self) -> Option<Point> {
         if self.far.is_some() {
             self.draw.reach = REACHES[self.index(REACHES.len())];
@@ -268,33 +300,47 @@ fn to_zero(at: &mut Point, coordinates: &[Symbol], equations: &[Sloped]) -> Opti
     None
 }
 
-/// Newton's method in doubles: to where equations are met to their rounding, or `steps` steps.
-fn newton_in_doubles(at: &mut Point, coordinates: &[Symbol], equations: &[Sloped], steps: usize) {
-    let start: Vec<f64> = coordinates.iter().map(|q| at.value(q).to_f64()).collect();
+/// Newton's method in doubles: to where equations are met to their rounding, or `steps` steps. Whether it has come there.
+fn newton_in_doubles(
+    at: &mut Point,
+    coordinates: &[Symbol],
+    equations: &[Sloped],
+    steps: usize,
+) -> bool {
+    let targets = vec![0.0; equations.len()];
+    let start = doubles(at, coordinates);
     let mut now = start.clone();
-    for _ in 0..steps {
-        let near = |symbol: &Symbol| match coordinates.iter().position(|q| q == symbol) {
-            Some(place) => now[place],
-            None => at.value(symbol).to_f64(),
-        };
-        let right = equations.iter().map(|(e, _)| -e.evaluate(&0.0, &near));
-        let step = shortest_solution(slopes(equations, &near), right.collect());
-        let size = step
-            .iter()
-            .fold(0.0_f64, |most, change| most.max(change.abs()));
+    let mut steps = (0..steps).map(|_| {
+        let step = step_in_doubles((at, coordinates), equations, (&now, &targets));
         now.iter_mut()
-            .zip(step)
+            .zip(&step)
             .for_each(|(x, change)| *x += change);
-        if size <= CLOSE {
-            break;
-        }
-    }
-    let change: Vec<f64> = now
-        .iter()
-        .zip(start)
-        .map(|(now, start)| now - start)
-        .collect();
+        step.iter()
+            .fold(0.0_f64, |most, change| most.max(change.abs()))
+    });
+    let is_there = steps.any(|size| size <= CLOSE);
+    let change: Vec<f64> = now.iter().zip(start).map(|(x, start)| x - start).collect();
     advance(at, coordinates, &change);
+    is_there
+}
+
+/// The step of Newton's method from `now` to where the equations have the values `targets`.
+fn step_in_doubles(
+    (at, coordinates): (&Point, &[Symbol]),
+    equations: &[Sloped],
+    (now, targets): (&[f64], &[f64]),
+) -> Vec<f64> {
+    let near = |symbol: &Symbol| match coordinates.iter().position(|q| q == symbol) {
+        Some(place) => now[place],
+        None => at.value(symbol).to_f64(),
+    };
+    let pairs = equations.iter().zip(targets);
+    let right = pairs.map(|((e, _), target)| target - e.evaluate(&0.0, &near));
+    shortest_solution(slopes(equations, &near), right.collect())
+}
+
+fn doubles(at: &Point, coordinates: &[Symbol]) -> Vec<f64> {
+    coordinates.iter().map(|q| at.value(q).to_f64()).collect()
 }
 
 fn slopes(equations: &[Sloped], near: &impl Fn(&Symbol) -> f64) -> Vec<Vec<f64>> {

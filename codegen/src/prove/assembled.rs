@@ -21,17 +21,10 @@ impl Prover<'_> {
             .take(CHOICES)
             .peekable();
         if choices.peek().is_none() {
-            let span = &self.joint.spec.freedoms.span;
-            let message = "no configuration was found that meets the relations";
-            let error = refuted(code::RELATIONS, span, message, "in this joint");
-            return Some(Box::new(error.note(
-                "Newton's method was started from many places around home, with values of the parameters from their ranges",
-            ).note(
-                "nor does it find any where the derivatives of a relation are 0 wherever it is met, as those of a square are",
-            ).help("check signs and units of the relations; `home near …;` says around which configuration they are met")));
+            return Some(Box::new(self.none_found()));
         }
         let home = Sampler::new(space, BITS).single();
-        let found = choices.any(|point| home.settled(&self.at_home(point)).is_some());
+        let found = choices.any(|point| home.assembled(&self.at_home(point)).is_some());
         let span = self.joint.spec.home.as_ref().map(|home| &home.span);
         let span = span.unwrap_or(&self.joint.spec.freedoms.span);
         (!found).then(|| {
@@ -41,6 +34,28 @@ impl Prover<'_> {
                 "`home near …;` takes a guess that is nearer to the relations, and at which their derivatives are independent",
             ))
         })
+    }
+
+    /// The error of relations that Newton's method does not solve from anywhere.
+    fn none_found(&self) -> Diagnostic {
+        let spec = &self.joint.spec;
+        if spec.home.is_some() && !spec.home_is_guess {
+            let message = "the relations hold at home, but do not say how the joint moves there: their derivatives are dependent";
+            let error = refuted(
+                code::RELATIONS,
+                &spec.freedoms.span,
+                message,
+                "in this joint",
+            );
+            return error
+                .note("Newton's method finds no configuration around home, as where the derivatives of a relation are 0 wherever it is met: those of a square are")
+                .help("write relations with independent derivatives: `x = y;` for `pow(x - y, 2) = 0;`");
+        }
+        let message = "no configuration was found that meets the relations";
+        refuted(code::RELATIONS, &spec.freedoms.span, message, "in this joint")
+            .note("Newton's method was started from many places around home, with values of the parameters from their ranges")
+            .note("nor does it find any where the derivatives of a relation are 0 wherever it is met, as those of a square are")
+            .help("check signs and units of the relations; `home near …;` says around which configuration they are met")
     }
 
     /// The point with Q as the spec says of home.

@@ -1,6 +1,6 @@
 //! The claim that everything is defined: no quotient divides by zero, no root or logarithm leaves the positive numbers, no angle jumps.
 
-use super::{Attempt, Identities, Prover, certified, refuted};
+use super::{Attempt, Identities, LEAVE_OUT, Prover, certified, is_of_parameters, refuted};
 use crate::diagnostic::Diagnostic;
 use crate::domain::{Critical, Domain};
 use crate::expr::{Expr, Function};
@@ -252,9 +252,11 @@ fn refusal(critical: &Critical, span: &Range<usize>) -> Diagnostic {
         Function::Curve(..) => "`continue linear` gives the curve values beyond its ends",
         _ => "ranges of parameters and `require` help to show that it does not vanish",
     };
-    refuted(code::NOT_DEFINED, span, &message, "the joint needs it").help(format!(
-        "if the joint ends there, declare it: `except {locus} = 0;`; {otherwise}"
-    ))
+    let help = match is_of_parameters(argument) && rest.iter().all(is_of_parameters) {
+        true => LEAVE_OUT.to_owned(),
+        false => format!("if the joint ends there, declare it: `except {locus} = 0;`; {otherwise}"),
+    };
+    refuted(code::NOT_DEFINED, span, &message, "the joint needs it").help(help)
 }
 
 /// The expression; a long one by its number of terms and its symbols.

@@ -341,6 +341,26 @@ fn refuted(code: &'static str, span: &Range<usize>, message: &str, label: &str) 
     Diagnostic::new(code, span.clone(), message).label(label)
 }
 
+/// What to do about the zeros of a function, of which `written` is a form for `except`.
+fn end_there(function: &Expr, written: &str) -> String {
+    match is_of_parameters(function) {
+        true => LEAVE_OUT.to_owned(),
+        false if written == "…" => {
+            "if the joint ends there, declare it: `except … = 0;` with a function that vanishes there"
+                .to_owned()
+        }
+        false => format!("if the joint ends there, declare it: `except {written} = 0;`"),
+    }
+}
+
+/// What to do about parameters for which there is no joint.
+const LEAVE_OUT: &str = "leave those parameters out by their ranges or by `require`";
+
+/// Whether a function has a value of parameters alone, at whatever configuration.
+fn is_of_parameters(function: &Expr) -> bool {
+    function.is_constant() && !function.symbols().is_empty()
+}
+
 fn symbolic(name: &'static str, statement: &str, proof: Proof, detail: &str) -> Claim {
     Claim {
         name,

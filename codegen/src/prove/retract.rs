@@ -2,7 +2,9 @@
 
 use super::Proof;
 use super::named::Relations;
-use super::{Attempt, Identities, LONGEST, Prover, certified, refuted, symbolic};
+use super::{
+    Attempt, Identities, LEAVE_OUT, LONGEST, Prover, certified, is_of_parameters, refuted, symbolic,
+};
 use crate::diagnostic::Diagnostic;
 use crate::expand::{Confinement, Flow, Motion, dimension, rank, without_content};
 use crate::expr::{Expr, Symbol, budget};
@@ -273,6 +275,7 @@ impl Prover<'_> {
         let regular = self.where_irregular(&flow.regular);
         let written = regular.to_string();
         let help = match (is_cross_product, written.len() <= LONGEST) {
+            _ if is_of_parameters(&regular) => LEAVE_OUT.to_owned(),
             (false, true) => format!(
                 "if the joint ends there, declare it: `except {written} = 0;`, in this form or in one that differs from it by a factor of \
                  parameters; other independent directions, named by `basis`, end elsewhere"

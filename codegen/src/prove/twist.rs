@@ -1,10 +1,9 @@
 //! Claims about X and S: they span the velocities of H, to first order in ϕ, at every configuration.
 
-use super::{Attempt, Prover, certified, degenerate, refuted};
+use super::{Attempt, Prover, certified, degenerate, end_there, refuted};
 use crate::diagnostic::Diagnostic;
 use crate::domain::Domain;
 use crate::expand::{directions, in_child_frames, rank, twist_map_in_frame};
-use crate::expr::Expr;
 use crate::matrix::Matrix;
 use crate::model::VelocityFrame;
 use crate::spec::code;
@@ -293,17 +292,5 @@ impl Prover<'_> {
     /// What stands below X.
     fn rates_beside(&self) -> String {
         format!("E: rates of {}", self.x.still.names())
-    }
-}
-
-/// What to do about the zeros of a function, of which `written` is a form for `except`.
-fn end_there(function: &Expr, written: &str) -> String {
-    match function.is_constant() && !function.symbols().is_empty() {
-        true => "leave those parameters out by their ranges or by `require`".to_owned(),
-        false if written == "…" => {
-            "if the joint ends there, declare it: `except … = 0;` with a function that vanishes there"
-                .to_owned()
-        }
-        false => format!("if the joint ends there, declare it: `except {written} = 0;`"),
     }
 }

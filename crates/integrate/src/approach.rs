@@ -60,6 +60,12 @@ const LEFT: f64 = 0.25;
 /// How many rad or m a joint may move in a step, as a part of the distance from its singular set, without a look at what lies between.
 const UNSEEN: f64 = 0.125;
 
+/// The part of its largest value below which what vanishes at a singular set is on its way there. What does not fall below is no cause of a failure.
+const FALLEN: f64 = 0.5;
+
+/// Below this, or this part of its largest value, what vanishes at a singular set is told of beside other causes.
+const NEAR: f64 = 0.1;
+
 /// Most looks within a step.
 const MOST_LOOKS: f64 = 32.0;
 
@@ -195,16 +201,17 @@ impl Watch {
         Ok(())
     }
 
-    /// The joint that is nearest to its singular set at a time and Q.
+    /// The joint that is nearest to its singular set at a time and Q, if one is near.
     pub(super) fn nearest_at(&self, mechanism: &Mechanism, (time, q): (f64, &[f64])) -> Near {
-        let here = self.nearest.iter().map(|(index, _)| {
+        let here = self.nearest.iter().filter_map(|(index, nearest)| {
             let body = &mechanism.bodies()[*index];
-            approach(body, value_at(body, q), time)
+            let value = value_at(body, q);
+            (value <= NEAR * nearest.most.max(1.0)).then(|| approach(body, value, time))
         });
         Near(here.min_by(|a, b| a.value.total_cmp(&b.value)))
     }
 
-    /// How near a joint, if its motion has an end, is to it at a time and Q.
+    /// How near a joint, if its motion has an end and comes towards it, is to it at a time and Q.
     pub(super) fn end_of(
         &self,
         mechanism: &Mechanism,
@@ -214,8 +221,9 @@ impl Watch {
         let mut watched = self.nearest.iter();
         let (index, nearest) = watched.find(|(_, nearest)| nearest.joint == joint)?;
         let body = &mechanism.bodies()[*index];
-        has_ends(body.joint()).then(|| Approach {
-            value: value_at(body, q),
+        let value = value_at(body, q);
+        (has_ends(body.joint()) && value <= FALLEN * nearest.most).then(|| Approach {
+            value,
             time,
             ..nearest.clone()
         })

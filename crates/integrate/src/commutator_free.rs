@@ -1,8 +1,8 @@
 //! One step of the commutator-free method of order 4: stages compose Φ with combinations of rates, so that no differential of Φ enters.
 //!
 //! E. Celledoni, A. Marthinsen and B. Owren, *Commutator-free Lie group methods*, 2003. It needs a Φ whose rays are the flows of the
-//! joint's own velocities, `Φ(Φ(Q, aϕ), bϕ) = Φ(Q, (a + b)ϕ)`, as Q exp(ϕ) and q + ϕ are. A joint with another Φ takes its stages in (ϕ, y)
-//! instead, with the same nodes and weights.
+//! joint's own velocities, `Φ(Φ(Q, aϕ), bϕ) = Φ(Q, (a + b)ϕ)`, as Q exp(ϕ) has. A joint with another Φ, or one whose ϕ add up, as angles do, takes its stages
+//! in (ϕ, y) instead, with the same nodes and weights.
 
 use super::StepFailure;
 use super::flow::{Flow, Rates, multiply, widest};
@@ -28,8 +28,8 @@ const PATHS: [&[[f64; 4]]; 4] = [
 
 /// The method at work.
 pub(super) struct CommutatorFree {
-    /// Whether each body's joint has a Φ whose rays are flows.
-    flows: Vec<bool>,
+    /// Whether stages of each body's joint are composed of Φ.
+    composed: Vec<bool>,
     /// Rates at the stages from the second on.
     stages: Vec<Rates>,
     /// `S₀⁻¹ v` of all joints at each stage.
@@ -53,7 +53,7 @@ impl CommutatorFree {
         let longest = bodies.iter().map(|body| body.ranges().configuration.len());
         let (longest, widest) = (longest.max().unwrap_or(0), widest(mechanism));
         Self {
-            flows: bodies.iter().map(rays_are_flows).collect(),
+            composed: bodies.iter().map(is_composed).collect(),
             stages: vec![flow.new_rates(); 3],
             local_rates: vec![vec![0.0; freedoms]; 4],
             phi: vec![0.0; freedoms],
@@ -75,15 +75,15 @@ impl CommutatorFree {
         let mut outcome = Ok(());
         self.phi.fill(0.0);
         for (index, body) in flow.mechanism.joints() {
-            if self.flows[index] && outcome.is_ok() {
+            if self.composed[index] && outcome.is_ok() {
                 outcome = self.compose(body, step_state, step, path);
             }
         }
         outcome?;
         let Self {
-            flows,
+            composed,
             stages,
-            phi: composed,
+            phi: moved,
             ..
         } = self;
         let weights = total(path);
@@ -92,14 +92,14 @@ impl CommutatorFree {
             for (weight, rates) in weights.iter().zip(rates) {
                 add(y, step * weight, &rates.y);
                 for (index, body) in flow.mechanism.joints() {
-                    if !flows[index] {
+                    if !composed[index] {
                         let own = body.ranges().freedoms.clone();
                         add(&mut phi[own.clone()], step * weight, &rates.phi[own]);
                     }
                 }
             }
-            for (phi, composed) in phi.iter_mut().zip(composed) {
-                *phi += *composed;
+            for (phi, moved) in phi.iter_mut().zip(moved) {
+                *phi += *moved;
             }
         })
     }
@@ -195,6 +195,14 @@ fn total(path: &[[f64; 4]]) -> [f64; 4] {
         add(&mut sum, 1.0, weights);
     }
     sum
+}
+
+/// Whether stages of a joint are composed of Φ: its rays are flows, and ϕ of them do not add up.
+///
+/// Where they do, ϕ of a composition is the sum, which says how often an angle has turned; Φ and its inverse would tell an angle within half a turn.
+fn is_composed(body: &Body) -> bool {
+    let adds = body.joint().structures().retract_differential.is_identity();
+    !adds && rays_are_flows(body)
 }
 
 /// Whether `Φ(Φ(Q, ϕ), ϕ) = Φ(Q, 2ϕ)`, at home and a ϕ without symmetry.

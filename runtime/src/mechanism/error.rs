@@ -5,6 +5,7 @@ use crate::erased::FiniteMapError;
 use crate::joint::MOST_FREEDOMS;
 use crate::shown::Number;
 use crate::spatial::{MassError, PoseError};
+use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt::{Display, Formatter};
@@ -129,7 +130,7 @@ pub enum MechanismError {
     },
     /// A linkage has no home: near the guess of its spec no configuration meets its relations.
     #[error(
-        "joint `{joint}`: near the guess `home near` of its spec no configuration meets its relations: it cannot be put together with {parameters}"
+        "joint `{joint}`: near the guess `home near` of its spec no configuration meets its relations{}", with_parameters(.parameters)
     )]
     Assembly {
         /// The joint.
@@ -449,5 +450,13 @@ impl Display for Owner<'_> {
             Some(body) => write!(f, "body `{body}`"),
             None => f.write_str("the mechanism"),
         }
+    }
+}
+
+/// What a linkage cannot be assembled with, if it has parameters.
+fn with_parameters(parameters: &str) -> String {
+    match parameters {
+        "" => String::new(),
+        some => format!(": it cannot be put together with {some}"),
     }
 }

@@ -1,4 +1,6 @@
-//! The law suite on joints that are interpreted: of each kind of spec one.
+//! The law suite on joints that are interpreted, of each kind of spec one, and motions of such joints.
+
+mod ends;
 
 use hamel::joint::Joint;
 use hamel_codegen::derived::Derived;
@@ -58,4 +60,21 @@ fn rolling() {
 fn in_a_loop() {
     let links = [0.2, 0.85, 1.0, 1.15];
     check::<6, 1, 1, 0, 2, 3>("four_bar", &links, Reach::Around(0.2));
+}
+
+/// An independent direction may have a parameter for a factor: v is then the rate divided by it.
+#[test]
+fn along_a_scaled_direction() {
+    let text = "hamel = 1;
+        joint half(k: 1 > 0) {
+            config   a: S1, b: R1;
+            relation a.c = b;
+            basis    turn = k * e1 of so2(a);
+            home     = [1, 0], 1;
+            H        = pose(rot_z(a), [b, 0, 0]);
+        }";
+    let derived = hamel_codegen::derive(text, "half.joint").expect("a spec that is proved");
+    let exact = JointType::exact(&derived, &[0.7]).expect("values that it takes");
+    let joint: Interpreted<3, 1, 1, 0, 1, 2> = exact.expect("its sizes");
+    check_within(&joint, Reach::HalfTurn);
 }

@@ -1,5 +1,6 @@
 //! Derivatives of relations along the standard directions of G.
 
+use crate::domain::Domain;
 use crate::expand::motion::Motion;
 use crate::expr::Expr;
 use crate::manifold::Ideal;
@@ -37,7 +38,7 @@ impl<'a> Directions<'a> {
 
     /// N and det(∂φ N) where the chosen directions are independent: of the standard directions that complete them, those with the
     /// shortest determinant.
-    pub fn normal(&self, chosen: &Matrix) -> Option<(Matrix, Expr)> {
+    pub fn normal(&self, chosen: &Matrix, domain: &Domain<'_>) -> Option<(Matrix, Expr)> {
         let size = chosen.rows();
         let simplify = |e: &Expr| self.ideal.simplest(e);
         let candidates = combinations(size, size - chosen.columns());
@@ -45,7 +46,8 @@ impl<'a> Directions<'a> {
             let unit = |&n: &usize| Matrix::identity(size).column(n);
             let normal = Matrix::from_columns(size, &rest.iter().map(unit).collect::<Vec<_>>());
             let whole = chosen.beside(&normal).determinant(&Expr::clone);
-            if whole.is_zero() || whole.as_rational().is_none() {
+            // Of numbers and parameters alone, as the chosen directions are.
+            if !domain.is_unit(&whole) && domain.nonzero(&whole).is_none() {
                 return None;
             }
             let determinant = self.gradient.times(&normal).determinant(&simplify);

@@ -68,7 +68,7 @@ pub fn expand(
     let directions = Directions::new(joint);
     let bases = match implicit {
         Implicit::Independent(chosen) => {
-            Bases::independent(joint, &directions, &columns(joint, chosen))
+            Bases::independent(joint, domain, &directions, &columns(joint, chosen))
         }
         Implicit::CrossProduct => Bases::cross_product(joint, &directions),
     };
@@ -99,8 +99,13 @@ struct Bases {
 }
 
 impl Bases {
-    fn independent(joint: &Prepared, directions: &Directions<'_>, chosen: &Matrix) -> Option<Self> {
-        let (normal, determinant) = directions.normal(chosen)?;
+    fn independent(
+        joint: &Prepared,
+        domain: &Domain<'_>,
+        directions: &Directions<'_>,
+        chosen: &Matrix,
+    ) -> Option<Self> {
+        let (normal, determinant) = directions.normal(chosen, domain)?;
         Some(Self {
             named: named::expand(joint, directions, (chosen, &normal))?,
             normal,

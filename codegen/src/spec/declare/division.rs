@@ -50,7 +50,7 @@ fn hidden(spec: &JointSpec, suspects: &[&Parameter], span: &Range<usize>) -> Vec
         Ok(true) => vec![],
         _ => named
             .iter()
-            .map(|parameter| error(parameter, span))
+            .map(|parameter| hidden_error(parameter, span))
             .collect(),
     }
 }
@@ -111,10 +111,20 @@ fn has_divisor(value: &Expr, symbol: &Symbol) -> bool {
 fn error(parameter: &Parameter, span: &Range<usize>) -> Diagnostic {
     let name = parameter.symbol.name();
     let message = format!("division by `{name}`, which may be zero by its range");
-    Diagnostic::new(code::MAY_VANISH, span.clone(), message)
-        .label(format!("divides by `{name}`"))
-        .help(format!(
-            "leave zero out of its range: `{name}: {} > 0`",
-            parameter.unit
-        ))
+    refusal(parameter, span, message).label(format!("divides by `{name}`"))
+}
+
+fn hidden_error(parameter: &Parameter, span: &Range<usize>) -> Diagnostic {
+    let name = parameter.symbol.name();
+    let message =
+        format!("the relations are others where `{name}` is 0, which its range does not leave out");
+    refusal(parameter, span, message).label(format!("solved by a division by `{name}`"))
+}
+
+fn refusal(parameter: &Parameter, span: &Range<usize>, message: String) -> Diagnostic {
+    Diagnostic::new(code::MAY_VANISH, span.clone(), message).help(format!(
+        "leave zero out of its range: `{}: {} > 0`",
+        parameter.symbol.name(),
+        parameter.unit
+    ))
 }

@@ -6,7 +6,7 @@ use super::super::{code, limits};
 use super::equation;
 use super::once::{At, Once};
 use crate::diagnostic::Diagnostic;
-use crate::expr::{Expr, Function, Role, budget};
+use crate::expr::{Application, Expr, Function, Role, budget};
 use crate::manifold::Manifold;
 use crate::model::Declared;
 use std::ops::Range;
@@ -56,7 +56,7 @@ fn relation(
         }
     }
     let error = match distinct.iter().find_map(equation::function_beside_numbers) {
-        Some(function) => Some(not_polynomial(at, function.function)),
+        Some(function) => Some(not_polynomial(at, &function)),
         None => says_nothing(at, &distinct, &manifold.value),
     };
     match error {
@@ -68,8 +68,13 @@ fn relation(
     }
 }
 
-fn not_polynomial(at: At<'_, Equation>, function: Function) -> Diagnostic {
-    let (found, advice) = match function {
+fn not_polynomial(at: At<'_, Equation>, found: &Application) -> Diagnostic {
+    let of_parameters = !found.arguments.iter().any(equation::of_configuration);
+    let (found, advice) = match found.function {
+        _ if of_parameters => (
+            "a function of parameters",
+            "make its value a parameter, in place of what it is computed from",
+        ),
         Function::Sqrt => ("a square root", "square both sides: `dot(Q, Q) = r * r`"),
         Function::Recip => ("a quotient", "multiply both sides by the divisor"),
         Function::Cos | Function::Sin => (
