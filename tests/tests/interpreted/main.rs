@@ -78,3 +78,22 @@ fn along_a_scaled_direction() {
     let joint: Interpreted<3, 1, 1, 0, 1, 2> = exact.expect("its sizes");
     check_within(&joint, Reach::HalfTurn);
 }
+
+/// Of a parameter that the spec does not describe the unit is told.
+#[test]
+fn a_missing_parameter_is_told_by_its_unit() {
+    let text = "hamel = 1;
+        joint screwed(pitch: m > 0) {
+            config   a: S1;
+            velocity in child;
+            H        = pose(rot_z(a), [0, 0, pitch]);
+        }";
+    let derived = hamel_codegen::derive(text, "screwed.joint").expect("a spec that is proved");
+    let mut registry = hamel_joints::registry();
+    let kind = JointType::new(&derived).expect("sizes that are interpreted");
+    kind.register(&mut registry).expect("a name of its own");
+    let scene = "hamel = 1\n[[body]]\nname = \"link\"\nparent = \"world\"\nmass = 1.0\njoint = { type = \"screwed\" }\n";
+    let error = hamel_scene::Scene::parse(scene, "scene.toml", &registry);
+    let message = error.expect_err("a parameter is missing").to_string();
+    assert!(message.contains("= help: its unit is m\n"), "{message}");
+}

@@ -47,7 +47,8 @@ impl<'a> Directions<'a> {
             let normal = Matrix::from_columns(size, &rest.iter().map(unit).collect::<Vec<_>>());
             let whole = chosen.beside(&normal).determinant(&Expr::clone);
             // Of numbers and parameters alone, as the chosen directions are.
-            if !domain.is_unit(&whole) && domain.nonzero(&whole).is_none() {
+            let is_regular = || domain.is_unit(&whole) || domain.nonzero(&whole).is_some();
+            if whole.is_zero() || !is_regular() {
                 return None;
             }
             let determinant = self.gradient.times(&normal).determinant(&simplify);

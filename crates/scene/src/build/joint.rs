@@ -87,7 +87,10 @@ fn parameter_values(
                     description.name.value, entry.name, parameter.name
                 );
                 let error = Diagnostic::new(description.span.clone(), message);
-                sink.push(error.help(format!("{}, {}", parameter.description, parameter.unit)));
+                sink.push(error.help(match parameter.description {
+                    "" => format!("its unit is {}", parameter.unit),
+                    described => format!("{described}, {}", parameter.unit),
+                }));
             }
         }
     }
