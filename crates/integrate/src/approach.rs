@@ -60,11 +60,8 @@ const LEFT: f64 = 0.25;
 /// How many rad or m a joint may move in a step, as a part of the distance from its singular set, without a look at what lies between.
 const UNSEEN: f64 = 0.125;
 
-/// The part of its largest value below which what vanishes at a singular set is on its way there. What does not fall below is no cause of a failure.
-const FALLEN: f64 = 0.5;
-
-/// Below this, or this part of its largest value, what vanishes at a singular set is told of beside other causes.
-const NEAR: f64 = 0.1;
+/// How many times its least value so far what vanishes at a singular set is, from which on the joint is not on its way there: what goes away from the set is no cause of a failure.
+const AWAY: f64 = 2.0;
 
 /// Most looks within a step.
 const MOST_LOOKS: f64 = 32.0;
@@ -201,17 +198,16 @@ impl Watch {
         Ok(())
     }
 
-    /// The joint that is nearest to its singular set at a time and Q, if one is near.
+    /// The joint that is nearest to its singular set at a time and Q.
     pub(super) fn nearest_at(&self, mechanism: &Mechanism, (time, q): (f64, &[f64])) -> Near {
-        let here = self.nearest.iter().filter_map(|(index, nearest)| {
+        let here = self.nearest.iter().map(|(index, _)| {
             let body = &mechanism.bodies()[*index];
-            let value = value_at(body, q);
-            (value <= NEAR * nearest.most.max(1.0)).then(|| approach(body, value, time))
+            approach(body, value_at(body, q), time)
         });
         Near(here.min_by(|a, b| a.value.total_cmp(&b.value)))
     }
 
-    /// How near a joint, if its motion has an end and comes towards it, is to it at a time and Q.
+    /// How near a joint, if its motion has an end and does not go away from it, is to it at a time and Q.
     pub(super) fn end_of(
         &self,
         mechanism: &Mechanism,
@@ -222,7 +218,7 @@ impl Watch {
         let (index, nearest) = watched.find(|(_, nearest)| nearest.joint == joint)?;
         let body = &mechanism.bodies()[*index];
         let value = value_at(body, q);
-        (has_ends(body.joint()) && value <= FALLEN * nearest.most).then(|| Approach {
+        (has_ends(body.joint()) && value <= AWAY * nearest.value).then(|| Approach {
             value,
             time,
             ..nearest.clone()
