@@ -157,25 +157,22 @@ impl<'a> Sampler<'a> {
         if newton_in_doubles(&mut direct, &coordinates, relations, PROJECTION_STEPS) {
             return self.settled(&direct);
         }
-        let start = doubles(guess, &coordinates);
         let near = |symbol: &Symbol| guess.value(symbol).to_f64();
         let values = relations.iter().map(|(e, _)| e.evaluate(&0.0, &near));
         let values: Vec<f64> = values.collect();
-        let mut now = start.clone();
+        let mut now = doubles(guess, &coordinates);
         for left in (1..PARTS).rev() {
             let part = left as f64 / PARTS as f64;
             let targets: Vec<f64> = values.iter().map(|value| part * value).collect();
             let step = step_in_doubles((guess, &coordinates), relations, (&now, &targets));
-            now.iter_mut()
-                .zip(step)
-                .for_each(|(x, change)| *x += change);
+            add(&mut now, &step);
         }
-        let change: Vec<f64> = now.iter().zip(start).map(|(x, start)| x - start).collect();
         let mut followed = guess.clone();
-        advance(&mut followed, &coordinates, &change);
-        newton_in_doubles(&mut followed, &coordinates, relations, PROJECTION_STEPS)
-            .then(|| self.settled(&followed))
-            .flatten()
+        move_to(&mut followed, &coordinates, &now);
+        match newton_in_doubles(&mut followed, &coordinates, relations, PROJECTION_STEPS) {
+            true => self.settled(&followed),
+            false => None,
+        }
     }
 
     fn attempt(&mut self) -> Option<Point> {
@@ -308,20 +305,29 @@ fn newton_in_doubles(
     steps: usize,
 ) -> bool {
     let targets = vec![0.0; equations.len()];
-    let start = doubles(at, coordinates);
-    let mut now = start.clone();
-    let mut steps = (0..steps).map(|_| {
+    let mut now = doubles(at, coordinates);
+    let mut sizes = (0..steps).map(|_| {
         let step = step_in_doubles((at, coordinates), equations, (&now, &targets));
-        now.iter_mut()
-            .zip(&step)
-            .for_each(|(x, change)| *x += change);
+        add(&mut now, &step);
         step.iter()
             .fold(0.0_f64, |most, change| most.max(change.abs()))
     });
-    let is_there = steps.any(|size| size <= CLOSE);
-    let change: Vec<f64> = now.iter().zip(start).map(|(x, start)| x - start).collect();
-    advance(at, coordinates, &change);
+    let is_there = sizes.any(|size| size <= CLOSE);
+    move_to(at, coordinates, &now);
     is_there
+}
+
+fn add(now: &mut [f64], step: &[f64]) {
+    now.iter_mut()
+        .zip(step)
+        .for_each(|(x, change)| *x += change);
+}
+
+/// Moves the scalars to these values, by differences in doubles.
+fn move_to(at: &mut Point, coordinates: &[Symbol], now: &[f64]) {
+    let change = now.iter().zip(doubles(at, coordinates));
+    let change: Vec<f64> = change.map(|(now, start)| now - start).collect();
+    advance(at, coordinates, &change);
 }
 
 /// The step of Newton's method from `now` to where the equations have the values `targets`.

@@ -32,7 +32,7 @@ pub(super) struct CommutatorFree {
     composed: Vec<bool>,
     /// Rates at the stages from the second on.
     stages: Vec<Rates>,
-    /// `S₀⁻¹ v` of all joints at each stage.
+    /// `S₀⁻¹ v` of the joints that are composed, at each stage.
     local_rates: Vec<Vec<f64>>,
     /// ϕ at the stage that is being evaluated.
     phi: Vec<f64>,
@@ -138,13 +138,16 @@ impl CommutatorFree {
         Ok(())
     }
 
-    /// `S₀⁻¹ v = D ϕ̇` of all joints at stage i, from the rates in ϕ.
+    /// `S₀⁻¹ v = D ϕ̇` at stage i of the joints that are composed, from the rates in ϕ.
     fn localize(&mut self, step_state: &StepState, flow: &Flow<'_>, i: usize) {
         let (rates, phi) = match i {
             0 => (&step_state.rates, &step_state.offset),
             _ => (&self.stages[i - 1], &step_state.phi),
         };
-        for (_, body) in flow.mechanism.joints() {
+        for (index, body) in flow.mechanism.joints() {
+            if !self.composed[index] {
+                continue;
+            }
             let own = body.ranges().freedoms.clone();
             let differential = &mut self.differential[..own.len() * own.len()];
             let base = body.configuration(&step_state.base);

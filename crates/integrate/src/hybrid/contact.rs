@@ -200,17 +200,11 @@ impl Contact {
             Side::Lower => lower,
             Side::Upper => upper,
         };
-        match of {
-            Some(LimitOf {
-                joint,
-                is_upper: true,
-            }) => (joint, Side::Upper.name()),
-            Some(LimitOf {
-                joint,
-                is_upper: false,
-            }) => (joint, Side::Lower.name()),
-            None => (&self.joint, side.name()),
-        }
+        let Some(LimitOf { joint, is_upper }) = of else {
+            return (&self.joint, side.name());
+        };
+        let side = if *is_upper { Side::Upper } else { Side::Lower };
+        (joint, side.name())
     }
 
     /// The limit at which it exactly is.
