@@ -83,17 +83,18 @@ fn along_a_scaled_direction() {
 #[test]
 fn a_missing_parameter_is_told_by_its_unit() {
     let text = "hamel = 1;
-        joint screwed(pitch: m > 0) {
+        joint raised(height: m) {
             config   a: S1;
+            basis    turn of so2(a);
             velocity in child;
-            H        = pose(rot_z(a), [0, 0, pitch]);
+            H        = pose(rot_z(a), [0, 0, height]);
         }";
-    let derived = hamel_codegen::derive(text, "screwed.joint").expect("a spec that is proved");
+    let derived = hamel_codegen::derive(text, "raised.joint").expect("a spec that is proved");
     let mut registry = hamel_joints::registry();
     let kind = JointType::new(&derived).expect("sizes that are interpreted");
     kind.register(&mut registry).expect("a name of its own");
-    let scene = "hamel = 1\n[[body]]\nname = \"link\"\nparent = \"world\"\nmass = 1.0\njoint = { type = \"screwed\" }\n";
+    let scene = "hamel = 1\n[[body]]\nname = \"link\"\nparent = \"world\"\nmass = 1.0\njoint = { type = \"raised\" }\n";
     let error = hamel_scene::Scene::parse(scene, "scene.toml", &registry);
     let message = error.expect_err("a parameter is missing").to_string();
-    assert!(message.contains("= help: its unit is m\n"), "{message}");
+    assert!(message.contains("= help: its unit is m"), "{message}");
 }
