@@ -13,7 +13,9 @@ mod joint_source;
 mod joint_values;
 mod level;
 mod load;
+mod pictures;
 mod positions;
+mod program;
 mod results;
 mod robot;
 mod simulation;
@@ -34,6 +36,10 @@ mod _hamel {
     use crate::level::{arithmetic, levels};
     #[pymodule_export]
     use crate::load::{load, parse};
+    #[pymodule_export]
+    use crate::pictures::{page, picture};
+    #[pymodule_export]
+    use crate::program::run_program;
     #[pymodule_export]
     use crate::robot::Robot;
     #[pymodule_export]

@@ -3,6 +3,7 @@
 use crate::compile::Compilation;
 use crate::errors::of_package;
 use crate::info;
+use crate::pictures;
 use crate::source::{AllLimits, Source};
 use crate::workspace::Workspaces;
 use hamel::Model;
@@ -447,6 +448,6 @@ impl Robot {
     }
 
     fn _repr_html_(&self) -> String {
-        info::table(self)
+        format!("{}{}", pictures::image(self), info::table(self))
     }
 }

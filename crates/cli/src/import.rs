@@ -1,11 +1,11 @@
 //! `hamel import`: a robot in URDF, MJCF or SDF as a scene file.
 
 use crate::input::RobotArgs;
-use crate::meshes::locate;
 use fnv::FnvHasher;
 use hamel::registry::JointRegistry;
 use hamel_console::files::{Force, admit, named};
 use hamel_console::output::{self, Failure, tell};
+use hamel_pictures::locate;
 use hamel_scene::robot;
 use hamel_scene::{Geometry, Mesh, SceneDescription, read_file};
 use std::fs::File;

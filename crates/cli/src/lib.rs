@@ -1,12 +1,11 @@
 //! `hamel`: simulates and compiles scenes and robots, and explains joints, from the command line.
 //!
-//! This library holds the program, so that tests can be built with all of its features. Exit code 0 means success, 1 that something went wrong (told on stderr), 2 that the command line was not understood, 130 that it was interrupted.
+//! This library holds the program, so that tests can be built with all of its features, and so that the Python package has it too. Exit code 0 means success, 1 that something went wrong (told on stderr), 2 that the command line was not understood, 130 that it was interrupted.
 
 mod compile;
 mod import;
 mod input;
 mod joints;
-mod meshes;
 mod pace;
 mod parameters;
 #[cfg(not(feature = "report"))]
@@ -19,7 +18,7 @@ use clap::{Parser, Subcommand};
 use hamel_console::{interrupt, output, terminal};
 #[cfg(feature = "report")]
 use hamel_report as report;
-use std::process::ExitCode;
+use std::ffi::OsString;
 
 /// What `hamel --help` ends with.
 const FEATURES: &str = "`hamel help COMMAND` explains a command with examples.
@@ -51,15 +50,15 @@ enum Command {
     Sweep(sweep::Args),
 }
 
-/// The program: parses the command line, does what it says, and gives the exit code.
-pub fn main() -> ExitCode {
+/// The program: parses a command line, which begins with the name of the program, does what it says, and gives the exit code. From then on the process ends by Ctrl-C.
+pub fn run(command_line: impl IntoIterator<Item = OsString>) -> u8 {
     interrupt::listen();
     let registry = hamel_joints::registry();
-    let command = match Cli::try_parse() {
+    let command = match Cli::try_parse_from(command_line) {
         Ok(cli) => cli.command,
         Err(answer) => {
             terminal::answer(&answer);
-            return ExitCode::from(if answer.use_stderr() { 2 } else { 0 });
+            return if answer.use_stderr() { 2 } else { 0 };
         }
     };
     let result = match command {
@@ -72,8 +71,8 @@ pub fn main() -> ExitCode {
         Command::Sweep(args) => sweep::run(&args, &registry),
     };
     match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) if failure.is_broken_pipe() => ExitCode::SUCCESS,
+        Ok(()) => 0,
+        Err(failure) if failure.is_broken_pipe() => 0,
         Err(failure) => {
             output::report(&failure);
             failure.exit_code()

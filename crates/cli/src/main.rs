@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    hamel_cli::main()
+    ExitCode::from(hamel_cli::run(std::env::args_os()))
 }

@@ -8,7 +8,6 @@ use hamel_scene::text::{is_visible, visible};
 use serde_json::Serializer;
 use std::io;
 use std::path::Path;
-use std::process::ExitCode;
 
 /// Why a command failed.
 #[derive(Debug, thiserror::Error)]
@@ -78,11 +77,11 @@ impl Failure {
     }
 
     /// The exit code that tells the failure to the caller: 2 for the command line, 130 for an interrupt, 1 for everything else.
-    pub fn exit_code(&self) -> ExitCode {
+    pub const fn exit_code(&self) -> u8 {
         match self {
-            Self::Options(_) => ExitCode::from(2),
-            Self::Interrupted(_) => ExitCode::from(interrupt::EXIT_CODE),
-            _ => ExitCode::FAILURE,
+            Self::Options(_) => 2,
+            Self::Interrupted(_) => interrupt::EXIT_CODE,
+            _ => 1,
         }
     }
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import html
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +24,8 @@ if TYPE_CHECKING:
 class Motion:
     """A motion: arrays with one row per sample; n samples, N entries of q, S speeds."""
 
+    robot: _hamel.Robot
+    """The robot that moved."""
     t: NDArray[np.float64]
     """Times, s, (n,)."""
     q: NDArray[np.float64]
@@ -49,6 +54,8 @@ class Motion:
     """Steps, rejected steps and evaluations of the equations of motion."""
     columns: tuple[list[str], list[str]] = field(repr=False)
     """Names of the columns of q and of v."""
+    has_inputs: bool
+    """Whether efforts of ``inputs`` acted."""
 
     @property
     def end(self) -> State:
@@ -70,6 +77,51 @@ class Motion:
         for names, values in zip(self.columns, (self.q, self.v)):
             table.update(zip(names, values.T))
         return pandas.DataFrame(table)
+
+    def to_html(self) -> str:
+        """One page of HTML that needs nothing else: plays the motion in three dimensions, with the meshes of the robot, and plots energies, momentum, coordinates and speeds."""
+        return _hamel.page(self.robot, self._shown())
+
+    def save(self, path: str | PathLike[str], *, instants: int = 1) -> None:
+        """Writes the motion as a page or a picture, by the ending of ``path``; a file of that name is replaced.
+
+        Args:
+            path: ``.html``, the page of ``to_html``; ``.svg`` or ``.png``, a still picture of 960 by 640 pixels; ``.gif``, a moving one of 640 by 426. SVG has no meshes.
+                A GIF has at most 25 pictures a second, and plays for 2 to 20 s.
+            instants: how many samples a still picture shows, from the first to the last, the earlier ones paler; 1 to 50.
+
+        Raises:
+            ArgumentError: another ending, a number of instants out of range, a motion without samples.
+            OSError: a file that cannot be written.
+        """
+        file = Path(path)
+        kind = file.suffix.lower().removeprefix(".")
+        if kind not in ("gif", "html", "png", "svg"):
+            raise ArgumentError(f"path is {str(path)!r}: it must end in .html, .svg, .png or .gif")
+        if not isinstance(instants, int) or not 1 <= instants <= 50:
+            raise ArgumentError(f"instants is {instants!r}: it must be an integer from 1 to 50")
+        if kind == "html":
+            file.write_text(self.to_html(), encoding="utf-8")
+        else:
+            file.write_bytes(_hamel.picture(self.robot, self._shown(), kind, instants))
+
+    def _shown(self) -> dict[str, Any]:
+        """What pages and pictures are made of."""
+        error = "" if self.end_error is None else f" · estimated error at the end {self.end_error:.1e}"
+        return {
+            "t": np.asarray(self.t, dtype=float),
+            "q": np.asarray(self.q, dtype=float),
+            "v": np.asarray(self.v, dtype=float),
+            "error": None if self.error is None else self.error.tolist(),
+            "method": self.method + error + (", not reliable" if self.doubt else ""),
+            "has_inputs": self.has_inputs,
+        }
+
+    def _repr_html_(self) -> str | None:
+        if len(self.t) == 0:
+            return None
+        page = html.escape(self.to_html())
+        return f'<iframe srcdoc="{page}" sandbox="allow-scripts" width="100%" height="640" style="border:0" title="motion"></iframe>'
 
     def __repr__(self) -> str:
         error = "" if self.end_error is None else f", error {self.end_error:.1e}"
@@ -190,4 +242,4 @@ def simulate(
     request["estimate"] = bool(estimate)
     found = _hamel.simulate(robot, request)
     energy = found["kinetic_energy"] + found["potential_energy"]
-    return Motion(energy=energy, columns=robot._columns, **found)
+    return Motion(robot=robot, energy=energy, columns=robot._columns, has_inputs=inputs is not None, **found)

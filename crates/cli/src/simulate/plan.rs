@@ -4,12 +4,12 @@ use super::args::Args;
 use super::request::Request;
 use super::{csv, metadata, page, parquet, picture, settings, times};
 use crate::input::Input;
-use crate::meshes::Meshes;
 use hamel::integrate::{Method, Options, Sampling};
 use hamel::registry::JointRegistry;
 use hamel::shown::Number;
 use hamel_console::files::{Output, admit, is_stdout};
 use hamel_console::output::{Failure, tell};
+use hamel_pictures::Meshes;
 use hamel_scene::{Arithmetic, Company, Control, SampleError, Scene, Settings};
 use std::path::{Path, PathBuf};
 
@@ -158,12 +158,7 @@ impl Plan {
 
     /// Whether anything but gravity can change the energy.
     pub fn does_work(&self) -> bool {
-        let mechanism = &self.scene.mechanism;
-        self.control.is_some()
-            || !mechanism.elements().is_empty()
-            || mechanism.changes_with_time()
-            || !mechanism.frictions().is_empty()
-            || !mechanism.stops().is_empty()
+        self.control.is_some() || hamel_pictures::does_work(&self.scene.mechanism)
     }
 
     /// The files of the trajectory.

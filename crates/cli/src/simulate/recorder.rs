@@ -15,6 +15,8 @@ use hamel::mechanism::{Mechanism, StateError};
 use hamel::shown::Number;
 use hamel_console::interrupt;
 use hamel_console::output::Failure;
+use hamel_pictures::Sample;
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
@@ -133,7 +135,7 @@ impl<'a> Recorder<'a> {
         {
             page.step(step.time);
         }
-        let Some(sample) = step.sample else {
+        let Some(number) = step.sample else {
             return Ok(());
         };
         let at = (step.configuration, step.speeds);
@@ -145,11 +147,18 @@ impl<'a> Recorder<'a> {
             files.record(&row)?;
             if self.plan.json {
                 // Samples at one time are seen once.
-                self.rows.resize(sample + 1, row);
+                self.rows.resize(number + 1, row);
             }
         }
         if let Some(page) = &mut files.page {
-            page.sample(step, &found, efforts);
+            let sample = Sample {
+                time: step.time,
+                configuration: step.configuration,
+                speeds: step.speeds,
+                efforts,
+                kinematics: Cow::Borrowed(&found),
+            };
+            page.sample(number, &sample);
         }
         if let Some(pictures) = &mut files.pictures {
             pictures.sample(step.time, &found);

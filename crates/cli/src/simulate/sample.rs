@@ -1,8 +1,6 @@
 //! The mechanism at one time, in the quantities that all outputs show.
 
 use hamel::mechanism::{Kinematics, Mechanism, StateError};
-use hamel::spatial::Pose;
-pub use hamel_sweep::columns::quaternion;
 
 /// All bodies in the state (`q`, `speeds`), where outputs have numbers for it.
 ///
@@ -18,11 +16,4 @@ pub fn kinematics(
         mechanism.check_energy(q, speeds)?;
     }
     Ok(kinematics)
-}
-
-/// A pose as position, m, and unit quaternion x, y, z, w.
-pub fn seven(pose: &Pose<f64>) -> [f64; 7] {
-    let [x, y, z] = pose.translation.into();
-    let [i, j, k, w] = quaternion(&pose.rotation);
-    [x, y, z, i, j, k, w]
 }

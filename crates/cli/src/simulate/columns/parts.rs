@@ -1,9 +1,9 @@
 //! What is told of the mechanism, of each body and of each named frame.
 
-use super::super::sample::quaternion;
 use super::{Ending, suffix};
 use hamel::mechanism::{BodyState, Kinematics};
 use hamel::spatial::Pose;
+use hamel_sweep::columns::quaternion;
 
 /// A vector of numbers, read from an `S`.
 pub struct Part<S> {

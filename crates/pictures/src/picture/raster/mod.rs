@@ -4,8 +4,8 @@ mod gif;
 mod layer;
 mod png;
 
-pub use gif::{Playing, is_own as is_own_gif, write as write_gif};
-pub use png::{is_own as is_own_png, write as write_png};
+pub use gif::{Playing, is_gif, write as write_gif};
+pub use png::{is_png, write as write_png};
 
 use super::Instant;
 use super::colors::{Color, named};
@@ -15,7 +15,6 @@ use super::solid::Solid;
 use super::stage::{GRID, GRID_PART, LINE, Line, SHADOW, Stage, ghost};
 use layer::{Corner, FINE, Layer, Rgb};
 use nalgebra::{Vector2, Vector3};
-use std::fs::File;
 use std::io::Read;
 
 /// By which pictures are known that were written before.
@@ -25,7 +24,7 @@ const MARK: &str = "hamel simulate";
 const HEAD: u64 = 1024;
 
 /// Whether a file begins with these bytes and has the mark in its head.
-fn has_mark(file: &File, start: &[u8]) -> bool {
+fn has_mark(file: impl Read, start: &[u8]) -> bool {
     let mut head = vec![];
     let is_read = file.take(HEAD).read_to_end(&mut head).is_ok();
     let mut windows = head.windows(MARK.len());

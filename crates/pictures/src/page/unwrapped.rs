@@ -195,7 +195,7 @@ mod tests {
 
     /// Largest step of the coordinates of a joint that turns and slides at `rate` for ten units of time, and where they end.
     fn followed(name: &str, parameters: &[f64], rate: &[f64]) -> (f64, Vec<f64>) {
-        let registry = hamel_joints::registry();
+        let registry = hamel::joints::registry();
         let entry = registry.get(name).expect("a joint of the library");
         let joint = (entry.build)(parameters).expect("parameters in range");
         let layout = joint.layout();

@@ -3,31 +3,30 @@
 use super::header::Header;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use hamel_console::output::Failure;
 
-const FRAME: &str = include_str!("../../html/page.html");
-const STYLE: &str = include_str!("../../html/style.css");
+const FRAME: &str = include_str!("../html/page.html");
+const STYLE: &str = include_str!("../html/style.css");
 
 /// One script out of several: a file uses what is declared above it.
 const SCRIPTS: [&str; 10] = [
-    include_str!("../../html/algebra.js"),
-    include_str!("../../html/recording.js"),
-    include_str!("../../html/meshes.js"),
-    include_str!("../../html/painter.js"),
-    include_str!("../../html/camera.js"),
-    include_str!("../../html/stage.js"),
-    include_str!("../../html/chart.js"),
-    include_str!("../../html/clock.js"),
-    include_str!("../../html/panel.js"),
-    include_str!("../../html/main.js"),
+    include_str!("../html/algebra.js"),
+    include_str!("../html/recording.js"),
+    include_str!("../html/meshes.js"),
+    include_str!("../html/painter.js"),
+    include_str!("../html/camera.js"),
+    include_str!("../html/stage.js"),
+    include_str!("../html/chart.js"),
+    include_str!("../html/clock.js"),
+    include_str!("../html/panel.js"),
+    include_str!("../html/main.js"),
 ];
 
-/// The page of a run.
+/// The page of a motion.
 ///
 /// # Errors
 /// A header that JSON cannot hold.
-pub fn page(header: &Header<'_>, blob: &[u8]) -> Result<String, Failure> {
-    let json = serde_json::to_string(header).map_err(|error| Failure::Page(error.to_string()))?;
+pub fn page(header: &Header<'_>, blob: &[u8]) -> Result<String, serde_json::Error> {
+    let json = serde_json::to_string(header)?;
     Ok(filled(&[
         ("title", &escaped(header.name)),
         ("style", STYLE),

@@ -1,9 +1,9 @@
 //! What stands for a body: the ellipsoid of its inertia, and simple shapes of the scene.
 
-use super::super::sample::seven;
 use crate::meshes::Meshes;
+use crate::sample::seven;
+use hamel::scene::{Geometry, ShapeDescription};
 use hamel::spatial::{MassProperties, Pose};
-use hamel_scene::{Geometry, ShapeDescription};
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 

@@ -7,8 +7,7 @@ use super::{MARK, Painter, has_mark};
 use color_quant::NeuQuant;
 use fnv::FnvHashMap;
 use gif::{AnyExtension, DisposalMethod, Encoder, EncodingError, Extension, Frame, Repeat};
-use std::fs::File;
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 
 /// Width and height, pixels.
 const SIZE: (u16, u16) = (640, 426);
@@ -30,8 +29,8 @@ const LEAST: f64 = 2.0;
 /// The index of no colour: what the picture before shows stays.
 const SAME: u8 = 255;
 
-/// Whether a file is such a picture.
-pub fn is_own(file: &File) -> bool {
+/// Whether a file is a moving picture that was written here.
+pub fn is_gif(file: impl Read) -> bool {
     has_mark(file, b"GIF89a")
 }
 

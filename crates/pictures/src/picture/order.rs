@@ -215,9 +215,9 @@ pub fn clipped(
 #[cfg(test)]
 mod tests {
     use super::ordered;
-    use crate::simulate::picture::solid::Form;
+    use crate::picture::solid::Form;
+    use hamel::scene::Geometry;
     use hamel::spatial::Pose;
-    use hamel_scene::Geometry;
     use nalgebra::{Matrix3, Vector3};
 
     fn cuboid(sides: [f64; 3], at: [f64; 3], color: f64) -> super::Solid {

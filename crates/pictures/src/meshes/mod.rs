@@ -9,7 +9,7 @@ mod reduce;
 
 pub use locate::locate;
 
-use hamel_scene::{Geometry, Mesh, Notice, Severity, ShapeDescription};
+use hamel::scene::{Geometry, Mesh, Notice, Severity, ShapeDescription};
 use nalgebra::Vector3;
 use std::ops::Range;
 use std::path::Path;

@@ -4,11 +4,10 @@ use super::super::scenery::Scenery;
 use super::super::{Instant, SIZE};
 use super::{MARK, Painter, has_mark};
 use png::{BitDepth, ColorType, Encoder, EncodingError};
-use std::fs::File;
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 
-/// Whether a file is such a picture.
-pub fn is_own(file: &File) -> bool {
+/// Whether a file is a still picture of pixels that was written here.
+pub fn is_png(file: impl Read) -> bool {
     has_mark(file, b"\x89PNG\r\n\x1a\n")
 }
 

@@ -1,9 +1,10 @@
 //! The numbers of a page as bytes: little-endian, times as f64, everything else as f32.
 
-use super::super::sample::seven;
+use crate::sample::seven;
 use hamel::spatial::Pose;
 
 /// Times, columns and poses of the frames so far.
+#[derive(Debug)]
 pub struct Blob {
     times: Vec<f64>,
     columns: Vec<Vec<f32>>,

@@ -3,8 +3,8 @@
 use super::colors::Color;
 use super::view::{Ball, across};
 use crate::meshes::Part;
+use hamel::scene::Geometry;
 use hamel::spatial::Pose;
-use hamel_scene::Geometry;
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -256,8 +256,8 @@ fn cuboid(half: &Vector3<f64>) -> Vec<Vec<Vector3<f64>>> {
 #[cfg(test)]
 mod tests {
     use super::Form;
+    use hamel::scene::Geometry;
     use hamel::spatial::Pose;
-    use hamel_scene::Geometry;
     use nalgebra::Vector3;
     use std::f64::consts::{PI, TAU};
 

@@ -1,12 +1,31 @@
 //! What the page plots: which columns there are, what they are called, and their values at a time.
 
-use super::super::plan::Plan;
 use super::unwrapped::Unwrapped;
+use crate::sample::Sample;
 use hamel::erased::AnyJoint;
-use hamel::integrate::Step;
-use hamel::mechanism::{Body, Kinematics, Mechanism};
+use hamel::mechanism::{Body, Mechanism};
+use hamel::scene::Scene;
 use hamel::spatial::split;
 use serde::Serialize;
+
+/// What is known of a motion before it begins, by which its charts are chosen.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Contents {
+    /// Whether samples have the efforts of a controller.
+    pub has_efforts: bool,
+    /// Whether the ends of steps are noted.
+    pub has_steps: bool,
+    /// Whether anything but gravity can change the energy.
+    pub does_work: bool,
+}
+
+/// Whether anything but gravity and inputs can change the energy of a mechanism.
+pub fn does_work(mechanism: &Mechanism) -> bool {
+    !mechanism.elements().is_empty()
+        || mechanism.changes_with_time()
+        || !mechanism.frictions().is_empty()
+        || !mechanism.stops().is_empty()
+}
 
 /// A plot: one of its variants at a time is shown.
 #[derive(Debug, Serialize)]
@@ -41,24 +60,25 @@ pub struct Charts<'a> {
     described: Vec<Chart>,
     columns: usize,
     first_energy: Option<f64>,
-    steps: Steps,
+    /// Where they are noted.
+    steps: Option<Steps>,
     /// One a body: the coordinates of its joint from home.
     followed: Vec<Unwrapped>,
     coordinates: Vec<f64>,
 }
 
 impl<'a> Charts<'a> {
-    /// The charts of what is simulated; one with efforts where it is controlled.
-    pub fn new(plan: &'a Plan) -> Self {
-        let mechanism = &plan.scene.mechanism;
+    /// The charts of a motion of `scene`.
+    pub fn new(scene: &'a Scene, contents: Contents) -> Self {
+        let mechanism = &*scene.mechanism;
         let mut columns = 0;
-        let described = described(plan, &mut columns);
+        let described = described(mechanism, contents, &mut columns);
         Self {
             mechanism,
             described,
             columns,
             first_energy: None,
-            steps: Steps::default(),
+            steps: contents.has_steps.then(Steps::default),
             followed: mechanism
                 .joints()
                 .map(|(_, body)| Unwrapped::new(body.joint(), body.home()))
@@ -89,7 +109,9 @@ impl<'a> Charts<'a> {
 
     /// Notes the end of a step.
     pub fn step(&mut self, time: f64) {
-        self.steps.note(time);
+        if let Some(steps) = &mut self.steps {
+            steps.note(time);
+        }
     }
 
     /// Follows the coordinates to a sample, also to one that is no frame: the fewer turn between two, the surer.
@@ -101,13 +123,9 @@ impl<'a> Charts<'a> {
         self.coordinates = coordinates.collect();
     }
 
-    /// The columns' values at the end of `step`, to which the coordinates have been followed, in the order of [`described`]; `efforts` are a controller's, empty without one.
-    pub fn values(
-        &mut self,
-        step: &Step<'_>,
-        kinematics: &Kinematics,
-        efforts: &[f64],
-    ) -> Vec<f64> {
+    /// The columns' values at a sample, to which the coordinates have been followed, in the order of [`described`].
+    pub fn values(&mut self, sample: &Sample<'_>) -> Vec<f64> {
+        let kinematics = &sample.kinematics;
         let energy = kinematics.energy();
         let first = *self.first_energy.get_or_insert(energy);
         let (about_origin, linear) = split(&kinematics.momentum());
@@ -122,9 +140,9 @@ impl<'a> Charts<'a> {
             values.extend(momentum.iter());
         }
         values.extend(&self.coordinates);
-        values.extend(step.speeds);
-        values.extend(efforts);
-        values.extend(self.steps.take());
+        values.extend(sample.speeds);
+        values.extend(sample.efforts);
+        values.extend(self.steps.iter_mut().flat_map(Steps::take));
         values
     }
 }
@@ -151,8 +169,7 @@ impl Steps {
 }
 
 /// Which columns there are, numbered in the order of [`Charts::values`].
-fn described(plan: &Plan, next: &mut usize) -> Vec<Chart> {
-    let mechanism = &plan.scene.mechanism;
+fn described(mechanism: &Mechanism, contents: Contents, next: &mut usize) -> Vec<Chart> {
     let mut plain = |name: &str, unit: &str, columns: &[&str]| {
         let columns = numbered(columns.iter().copied(), next);
         variant(name, unit, None, columns)
@@ -160,7 +177,7 @@ fn described(plan: &Plan, next: &mut usize) -> Vec<Chart> {
     let energy = vec![plain("", "J", &["kinetic", "potential", "total"])];
     let change = vec![plain("", "J", &["total − initial"])];
     // With nothing at work it is the integrator's alone.
-    let change_title = match plan.does_work() {
+    let change_title = match contents.does_work {
         true => "Energy change",
         false => "Energy drift",
     };
@@ -200,12 +217,17 @@ fn described(plan: &Plan, next: &mut usize) -> Vec<Chart> {
     };
     let coordinates = joints(|body| body.joint().freedoms(), coordinates, next);
     let speeds = joints(|body| body.joint().speeds(), rates, next);
-    let efforts = match plan.control.is_some() {
+    let efforts = match contents.has_efforts {
         true => joints(|body| body.joint().freedoms(), forces, next),
         false => Vec::new(),
     };
-    let columns = numbered(["longest", "shortest"].into_iter(), next);
-    let steps = vec![variant("", "s", None, columns)];
+    let steps = match contents.has_steps {
+        true => {
+            let columns = numbered(["longest", "shortest"].into_iter(), next);
+            vec![variant("", "s", None, columns)]
+        }
+        false => Vec::new(),
+    };
     [
         ("Energy", false, energy),
         (change_title, false, change),

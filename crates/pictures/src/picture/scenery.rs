@@ -5,10 +5,10 @@ use super::colors::{self, Color};
 use super::solid::{Form, Solid, from_axis};
 use super::view::Ball;
 use crate::meshes::Meshes;
-use crate::simulate::page::Ellipsoid;
+use crate::page::Ellipsoid;
 use hamel::mechanism::Mechanism;
+use hamel::scene::{Geometry, Scene, ShapeDescription};
 use hamel::spatial::Pose;
-use hamel_scene::{Geometry, Scene, ShapeDescription};
 use nalgebra::{Matrix3, Vector3};
 
 /// A form fixed to a body, or to the world.

@@ -1,14 +1,13 @@
 //! What a page is told of the mechanism and of the run, as JSON.
 
-use super::super::accuracy::Accuracy;
-use super::super::plan::Plan;
-use super::super::sample::seven;
 use super::charts::Chart;
 use super::solids::{Ellipsoid, Shape};
 use super::triangles::Triangles;
 use crate::meshes::Meshes;
+use crate::sample::seven;
 use hamel::mechanism::Body;
-use hamel_scene::text::visible;
+use hamel::scene::Scene;
+use hamel::scene::text::visible;
 use serde::Serialize;
 
 /// Everything but the recorded numbers. All in SI units; poses are x, y, z and a quaternion x, y, z, w.
@@ -19,8 +18,8 @@ pub struct Header<'a> {
     /// Name of the scene.
     pub name: &'a str,
     description: String,
-    /// Form, method and error at the end, in words.
-    method: String,
+    /// How the motion was found, in words.
+    method: &'a str,
     gravity: [f64; 3],
     /// Number of frames.
     frames: usize,
@@ -58,14 +57,13 @@ struct Mark<'a> {
 }
 
 impl<'a> Header<'a> {
-    /// What there is to tell of the run of `plan`.
+    /// What there is to tell of a motion of `scene`: the number of its frames, how it was found, and its charts.
     pub fn new(
-        plan: &'a Plan,
-        (frames, accuracy): (usize, Option<&Accuracy>),
+        scene: &'a Scene,
+        (frames, method): (usize, &'a str),
         meshes: &Meshes,
         charts: Vec<Chart>,
     ) -> Self {
-        let scene = &plan.scene;
         let shapes = scene.shapes.iter();
         let marks = scene.mechanism.frames().iter().map(|frame| Mark {
             name: &frame.name,
@@ -76,7 +74,7 @@ impl<'a> Header<'a> {
             version: 3,
             name: &scene.name,
             description: visible(&scene.description),
-            method: method(plan, accuracy),
+            method,
             gravity: (*scene.mechanism.gravity()).into(),
             frames,
             bodies: scene
@@ -90,15 +88,6 @@ impl<'a> Header<'a> {
             marks: marks.collect(),
             charts,
         }
-    }
-}
-
-/// Form, method and error at the end, in words.
-fn method(plan: &Plan, accuracy: Option<&Accuracy>) -> String {
-    let method = format!("{} form, {}", plan.settings.form_name(), plan.method());
-    match accuracy {
-        Some(accuracy) => format!("{method} · {}", accuracy.at_the_end()),
-        None => method,
     }
 }
 

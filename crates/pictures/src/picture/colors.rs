@@ -3,7 +3,7 @@
 /// Red, green and blue, from 0 to 1.
 pub type Color = [f64; 3];
 
-const STYLE: &str = include_str!("../../html/style.css");
+const STYLE: &str = include_str!("../html/style.css");
 
 /// The first colour of that name; grey where there is none.
 pub fn named(name: &str) -> Color {
