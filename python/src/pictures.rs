@@ -38,7 +38,9 @@ impl Motion<'_> {
         let (t, q, v) = (self.t.as_array(), self.q.as_array(), self.v.as_array());
         let [times, configurations, speeds] = [t.len(), q.nrows(), v.nrows()];
         if times == 0 {
-            return Err(String::from("the motion has no samples, so that there is nothing to show"));
+            return Err(String::from(
+                "the motion has no samples, so that there is nothing to show",
+            ));
         }
         if configurations != times || speeds != times {
             return Err(format!(
@@ -74,7 +76,11 @@ pub fn page(py: Python<'_>, robot: &Bound<'_, Robot>, motion: Motion<'_>) -> PyR
         method: &motion.method,
         errors: errors.as_deref(),
     };
-    let drawn = py.detach(|| recorded(model, &states, contents)?.html(&meshes, &told).map_err(text));
+    let drawn = py.detach(|| {
+        recorded(model, &states, contents)?
+            .html(&meshes, &told)
+            .map_err(text)
+    });
     drawn.map_err(refused)
 }
 
