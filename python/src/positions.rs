@@ -61,6 +61,37 @@ impl Robot {
         Ok(phi)
     }
 
+    /// ∂Q/∂ϕ at ϕ = 0: of each joint ∂Q/∂v S₀.
+    pub fn by_local_of<'py>(&self, q: &Bound<'py, PyAny>) -> PyResult<Results<'py>> {
+        let argument = Argument::read(CONFIGURATION, q, self.sizes().configuration)?;
+        let shape = [self.sizes().configuration, self.sizes().freedoms];
+        let [slopes] = evaluate(
+            q.py(),
+            self.workspaces(),
+            [argument],
+            [&shape],
+            |_, [q], [slopes]| {
+                self.mechanism().check_configuration(q)?;
+                for (_, body) in self.mechanism().joints() {
+                    let (columns, rows) = places(body);
+                    let q = &q[rows.clone()];
+                    let mut velocities = vec![0.0; columns.len() * columns.len()];
+                    body.joint().velocity_map(q, &mut velocities);
+                    let mut rate = vec![0.0; rows.len()];
+                    // Each column is v of one rate of ϕ.
+                    for (column, v) in columns.clone().zip(velocities.chunks(columns.len())) {
+                        body.joint().configuration_rate(q, v, &mut rate);
+                        for (row, &rate) in rows.clone().zip(&rate) {
+                            slopes[row * shape[1] + column] = rate;
+                        }
+                    }
+                }
+                Ok(())
+            },
+        )?;
+        Ok(slopes)
+    }
+
     /// The nearest Q on the manifolds.
     pub fn projected<'py>(&self, q: &Bound<'py, PyAny>) -> PyResult<Results<'py>> {
         let shape = self.sizes().configuration;

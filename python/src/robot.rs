@@ -216,6 +216,14 @@ impl Robot {
         self.positions_of(q)
     }
 
+    /// Derivatives of q by local coordinates phi about q, (..., N, K), at phi = 0: the identity for joints that store angles or displacements. Of a change of phi it makes one of q.
+    ///
+    /// Args:
+    ///     q: configurations, (..., N).
+    fn configuration_by_local<'py>(&self, q: Given<'_, 'py>) -> PyResult<Arrays<'py>> {
+        self.by_local_of(q)
+    }
+
     /// q moved to the nearest point where stored scalars are those of a configuration, (..., N): what q lacks whose digits were cut off, as by float32.
     ///
     /// Functions of q refuse a q that is off by more than 1e-9: a rotation matrix that is none, a quaternion not of length 1, a loop that is open.

@@ -30,8 +30,8 @@ def test_methods_tell_all_of_their_arguments(name):
 @pytest.mark.parametrize(
     "command",
     [
-        ["mypy", "--strict", "--cache-dir", "{cache}", "-p", "hamel"],
-        ["mypy.stubtest", "hamel", "--mypy-config-file", "{root}/python/pyproject.toml"],
+        ["mypy", "--strict", "--config-file", "{root}/python/pyproject.toml", "--cache-dir", "{cache}", "-p", "hamel"],
+        ["mypy.stubtest", "hamel", "--mypy-config-file", "{root}/python/pyproject.toml", "--allowlist", "{root}/python/tests/not_imported.txt", "--ignore-unused-allowlist"],
     ],
     ids=["types", "stubs"],
 )
@@ -46,7 +46,7 @@ def test_the_lines_of_use_in_the_pages_run(tmp_path, monkeypatch):
     pytest.importorskip("pandas")
     text = (ROOT / "python/README.md").read_text()
     program = text.split("```python\n")[1].split("```")[0]
-    more = [part.split("```")[0] for part in (ROOT / "docs/python.md").read_text().split("```python\n")[1:3]]
+    more = [part.split("```")[0] for part in (ROOT / "docs/python.md").read_text().split("```python\n")[1:4]]
     (tmp_path / "panda.urdf").write_text((ROOT / "tests/data/urdf/panda7.urdf").read_text())
     monkeypatch.chdir(tmp_path)
     names = {}

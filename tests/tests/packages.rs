@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// Categories that crates.io knows, those of them that are used here.
-const CATEGORIES: [&str; 9] = [
+const CATEGORIES: [&str; 10] = [
     "command-line-interface",
     "command-line-utilities",
     "development-tools::build-utils",
@@ -15,6 +15,7 @@ const CATEGORIES: [&str; 9] = [
     "parser-implementations",
     "science::robotics",
     "simulation",
+    "visualization",
 ];
 /// Members that are of use in the repository alone.
 const UNPUBLISHED: [&str; 3] = ["hamel-downstream", "hamel-emitted", "hamel-tests"];
