@@ -10,6 +10,7 @@ use hamel_pictures::{Contents, Meshes, Page, Pictures, Sample, Told, does_work};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
+use std::io;
 use std::path::Path;
 
 /// A motion as Python has it; of each array a row for each sample.
@@ -113,11 +114,29 @@ pub fn picture<'py>(
     let refused = |message| errors::argument(py, message);
     let states = motion.states().map_err(refused)?;
     let robot = robot.get();
-    let drawn = py.detach(|| drawn(robot, &states, kind, instants));
-    Ok(PyBytes::new(py, &drawn.map_err(refused)?))
+    let mut exception = None;
+    let drawn = py.detach(|| {
+        drawn(robot, &states, (kind, instants), &mut || {
+            let heard = Python::attach(|py| py.check_signals());
+            heard.map_err(|raised| {
+                exception = Some(raised);
+                io::ErrorKind::Interrupted.into()
+            })
+        })
+    });
+    match exception {
+        Some(raised) => Err(raised),
+        None => Ok(PyBytes::new(py, &drawn.map_err(refused)?)),
+    }
 }
 
-fn drawn(robot: &Robot, states: &[State], kind: &str, instants: usize) -> Result<Vec<u8>, String> {
+/// The bytes of a picture; `listen` is asked from time to time, and ends the work by an error.
+fn drawn(
+    robot: &Robot,
+    states: &[State],
+    (kind, instants): (&str, usize),
+    listen: &mut dyn FnMut() -> io::Result<()>,
+) -> Result<Vec<u8>, String> {
     let (scene, mechanism) = (robot.model().scene(), robot.model().mechanism());
     let mut pictures = Pictures::default();
     for state in states {
@@ -127,7 +146,7 @@ fn drawn(robot: &Robot, states: &[State], kind: &str, instants: usize) -> Result
     let mut file = Vec::new();
     let written = match kind {
         "png" => pictures.write_png(scene, &meshes(robot), instants, &mut file),
-        "gif" => pictures.write_gif(scene, &meshes(robot), &mut file, &|_, _| ()),
+        "gif" => pictures.write_gif(scene, &meshes(robot), &mut file, &mut |_, _| listen()),
         _ => {
             file = pictures.svg(scene, instants).into_bytes();
             Ok(())
@@ -150,7 +169,8 @@ pub fn image(robot: &Robot) -> String {
         [] => "svg",
         _ => "png",
     };
-    let Ok(file) = drawn(robot, &[robot.model().state()], kind, 1) else {
+    let state = robot.model().state();
+    let Ok(file) = drawn(robot, &[state], (kind, 1), &mut || Ok(())) else {
         return String::new();
     };
     let coded = STANDARD.encode(file);

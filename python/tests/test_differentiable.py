@@ -1,5 +1,7 @@
 """Equations of motion in PyTorch and JAX: their derivatives are those of differences. Each is tested where it is installed."""
 
+from importlib import import_module
+
 import hamel
 import numpy as np
 import pytest
@@ -14,22 +16,20 @@ ROBOTS = [PANDA, SCENES / "double_ball_pendulum.toml", SCENES / "humanoid.toml",
 def of_torch(function, robot, arguments, weights):
     """The value of a function, and the gradients of its sum with weights."""
     torch = pytest.importorskip("torch")
-    import hamel.torch
-
+    torch_of = import_module("hamel.torch")
     tensors = [torch.tensor(own, requires_grad=True) for own in arguments]
-    value = getattr(hamel.torch, function)(robot, *tensors)
+    value = getattr(torch_of, function)(robot, *tensors)
     (value * torch.tensor(weights)).sum().backward()
     return value.detach().numpy(), [own.grad.numpy() for own in tensors]
 
 
 def of_jax(function, robot, arguments, weights):
     jax = pytest.importorskip("jax")
-    import hamel.jax
-
+    jax_of = import_module("hamel.jax")
     jax.config.update("jax_enable_x64", True)
 
     def weighted(*arguments):
-        value = getattr(hamel.jax, function)(robot, *arguments)
+        value = getattr(jax_of, function)(robot, *arguments)
         return (value * weights).sum(), value
 
     slopes, value = jax.jit(jax.grad(weighted, argnums=(0, 1, 2), has_aux=True))(*arguments)
@@ -76,34 +76,33 @@ def test_gradients_are_those_of_differences(function, path, gradients):
 
 def test_torch_checks_its_gradients_over_batches(panda):
     torch = pytest.importorskip("torch")
-    import hamel.torch
-
+    torch_of = import_module("hamel.torch")
     q, v, tau = (torch.tensor(own, requires_grad=True) for own in states(panda, 2))
     # Of each of several shapes the gradient is a sum over what it was broadcast to.
     for arguments in ((q, v[0], tau), (q[:, None], v, tau[0]), (q[0], v[0], tau[0])):
         for function in FUNCTIONS:
-            torch.autograd.gradcheck(lambda *own, function=function: getattr(hamel.torch, function)(panda, *own), arguments)
-    value = hamel.torch.forward_dynamics(panda, q.float(), v.float(), tau.float())
+            torch.autograd.gradcheck(lambda *own, function=function: getattr(torch_of, function)(panda, *own), arguments)
+    value = torch_of.forward_dynamics(panda, q.float(), v.float(), tau.float())
     assert value.dtype == torch.float32
     with torch.no_grad():
-        assert not hamel.torch.forward_dynamics(panda, q, v, tau).requires_grad
+        assert not torch_of.forward_dynamics(panda, q, v, tau).requires_grad
 
 
 def test_jax_maps_compiles_and_differentiates_both_ways(panda):
     jax = pytest.importorskip("jax")
-    import hamel.jax
+    jax_of = import_module("hamel.jax")
     from jax.test_util import check_grads
 
     jax.config.update("jax_enable_x64", True)
     q, v, tau = states(panda, 4)
     plain = panda.forward_dynamics(q, v, tau)
-    mapped = jax.jit(jax.vmap(lambda q, v, tau: hamel.jax.forward_dynamics(panda, q, v, tau)))
+    mapped = jax.jit(jax.vmap(lambda q, v, tau: jax_of.forward_dynamics(panda, q, v, tau)))
     assert np.array_equal(mapped(q, v, tau), plain)
-    half = jax.vmap(lambda q: hamel.jax.inverse_dynamics(panda, q, v[0], v[1]))(q)
+    half = jax.vmap(lambda q: jax_of.inverse_dynamics(panda, q, v[0], v[1]))(q)
     assert np.array_equal(half, panda.inverse_dynamics(q, v[0], v[1]))
     for function in FUNCTIONS:
-        check_grads(lambda *own, function=function: getattr(hamel.jax, function)(panda, *own), (q, v[0], tau[0]), order=1)
-    jacobian = jax.jacfwd(lambda q: hamel.jax.forward_dynamics(panda, q, v[0], tau[0]))(q[0])
+        check_grads(lambda *own, function=function: getattr(jax_of, function)(panda, *own), (q, v[0], tau[0]), order=1)
+    jacobian = jax.jacfwd(lambda q: jax_of.forward_dynamics(panda, q, v[0], tau[0]))(q[0])
     exact = panda.forward_dynamics_derivatives(q[0], v[0], tau[0]).by_local
     assert np.abs(jacobian - exact).max() < 1e-12 * np.abs(exact).max()
 
@@ -113,10 +112,9 @@ def test_single_precision_is_projected_to_the_manifold():
     arguments = near(robot, 2)
     exact = robot.forward_dynamics(*arguments)
     torch = pytest.importorskip("torch")
-    import hamel.torch
-
+    torch_of = import_module("hamel.torch")
     tensors = [torch.tensor(own, dtype=torch.float32, requires_grad=True) for own in arguments]
-    value = hamel.torch.forward_dynamics(robot, *tensors)
+    value = torch_of.forward_dynamics(robot, *tensors)
     value.sum().backward()
     # Arguments were rounded to 24 bits.
     assert np.abs(value.detach().numpy() - exact).max() < 1e-4 * max(1.0, np.abs(exact).max())
@@ -124,8 +122,7 @@ def test_single_precision_is_projected_to_the_manifold():
 
 def test_errors_are_those_of_robots(panda):
     torch = pytest.importorskip("torch")
-    import hamel.torch
-
+    torch_of = import_module("hamel.torch")
     q = torch.zeros(7, dtype=torch.float64)
     with pytest.raises(hamel.ArgumentError, match=r"tau has shape \(6,\)"):
-        hamel.torch.forward_dynamics(panda, q, q, q[:6])
+        torch_of.forward_dynamics(panda, q, q, q[:6])

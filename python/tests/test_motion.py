@@ -182,9 +182,10 @@ def ctrl_c():
 
 
 @pytest.mark.usefixtures("ctrl_c")
-def test_an_interrupt_is_heard_at_once():
-    """Ctrl-C in the middle of a motion, of its estimate, and of a batch."""
+def test_an_interrupt_is_heard_at_once(tmp_path):
+    """Ctrl-C in the middle of a motion, of its estimate, of a batch, and of a moving picture."""
     robot = hamel.load(PENDULUM)
+    moved = hamel.simulate(robot, 20.0, sample_step=0.04, estimate=False)
     q = np.zeros((20_000_000, 1))
     # On many, the batch might be over by then.
     hamel.set_threads(2)
@@ -192,6 +193,7 @@ def test_an_interrupt_is_heard_at_once():
         lambda: hamel.simulate(robot, 1e6, dt=1e-4, samples=[0.0], estimate=False),
         lambda: hamel.simulate(robot, 1e5, accuracy=1e-6, samples=[0.0]),
         lambda: robot.forward_dynamics_derivatives(q, q, q),
+        lambda: moved.save(tmp_path / "motion.gif"),
     ]
     for call in calls:
         sent = []

@@ -36,5 +36,5 @@ def test_its_motions_are_those_of_the_package(tmp_path):
         rows = list(csv.DictReader(file))
     motion = hamel.simulate(hamel.load(PENDULUM), 2.0, sample_step=0.5)
     assert [float(row["hinge.q.q_rad"]) for row in rows] == motion.q[:, 0].tolist()
-    assert np.array_equal([float(row["hinge.v.w_rad_per_s"]) for row in rows], motion.v[:, 0])
+    assert np.array_equal([float(row["hinge.v.q_rad_per_s"]) for row in rows], motion.v[:, 0])
     assert all(path.stat().st_size > 100 for path in files.values())

@@ -39,15 +39,16 @@ def _function(function: Function, robot: _hamel.Robot) -> Any:
     def doubles(*arguments: Any) -> tuple[NDArray[np.float64], ...]:
         q, v, last = (np.asarray(own, np.float64) for own in arguments)
         # Fewer digits are not enough for matrices that are rotations.
-        return q if np.result_type(arguments[0]) == np.float64 else robot.project(q), v, last
+        is_exact = np.asarray(arguments[0]).dtype == np.float64
+        return q if is_exact else robot.project(q), v, last
 
     def value(q: Any, v: Any, last: Any) -> NDArray[Any]:
         found = getattr(robot, function)(*doubles(q, v, last))
-        return np.asarray(found, np.result_type(q))
+        return np.asarray(found, np.asarray(q).dtype)
 
     def derivatives(q: Any, v: Any, last: Any) -> tuple[NDArray[Any], ...]:
         found = slopes(robot, function, *doubles(q, v, last))
-        return tuple(np.asarray(own, np.result_type(q)) for own in found)
+        return tuple(np.asarray(own, np.asarray(q).dtype) for own in found)
 
     @jax.custom_jvp
     def evaluate(q: Any, v: Any, last: Any) -> Any:

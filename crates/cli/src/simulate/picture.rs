@@ -100,10 +100,12 @@ impl<'a> Pictures<'a> {
                 tell(note(pictures.playing()).as_slice());
             }
             let bar = progress::working("choosing the colours of the GIF", plan.quiet);
-            let told = |drawn: usize, count: usize| {
-                bar.set_message(format!("drawing the GIF: {drawn} of {count} pictures"));
-            };
-            let written = pictures.write_gif(scene, meshes, file, &told);
+            let written = pictures.write_gif(scene, meshes, file, &mut |drawn, count| {
+                if drawn > 0 {
+                    bar.set_message(format!("drawing the GIF: {drawn} of {count} pictures"));
+                }
+                Ok(())
+            });
             bar.finish_and_clear();
             written
         });

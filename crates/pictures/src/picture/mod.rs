@@ -94,16 +94,16 @@ impl Pictures {
         Playing::of(self.0.duration(), self.0.some.len())
     }
 
-    /// The motion as GIF, with meshes; `told` hears how many pictures are drawn, and of how many.
+    /// The motion as GIF, with meshes. `told` hears how many pictures are drawn, 0 while colours are chosen, and of how many; it may end the work by an error.
     ///
     /// # Errors
-    /// What cannot be written.
+    /// What cannot be written; an error of `told`.
     pub fn write_gif(
         &self,
         scene: &Scene,
         meshes: &Meshes,
         file: &mut impl Write,
-        told: &dyn Fn(usize, usize),
+        told: &mut dyn FnMut(usize, usize) -> io::Result<()>,
     ) -> io::Result<()> {
         let playing = self.playing();
         let mut instants = self.0.chosen(playing.count);
@@ -111,8 +111,8 @@ impl Pictures {
         instants.dedup_by(|a, b| a.time == b.time);
         let scenery = Scenery::new(scene, meshes).round();
         let count = instants.len();
-        raster::write_gif(&scenery, &instants, playing, file, &|drawn| {
-            told(drawn, count);
+        raster::write_gif(&scenery, &instants, playing, file, &mut |drawn| {
+            told(drawn, count)
         })
     }
 }

@@ -61,19 +61,19 @@ impl Playing {
     }
 }
 
-/// Writes the motion through `instants`, again and again; `told` hears of how many pictures are drawn.
+/// Writes the motion through `instants`, again and again. `told` hears how many pictures are drawn, 0 while colours are chosen, and may end the work by an error.
 ///
 /// # Errors
-/// What cannot be written.
+/// What cannot be written; an error of `told`.
 pub fn write(
     scenery: &Scenery,
     instants: &[Instant],
     playing: Playing,
     file: &mut impl Write,
-    told: &dyn Fn(usize),
+    told: &mut dyn FnMut(usize) -> io::Result<()>,
 ) -> io::Result<()> {
     let painter = Painter::new(scenery, instants, SIZE);
-    let mut colors = Colors::of(&painter, instants);
+    let mut colors = Colors::of(&painter, instants, told)?;
     let palette = colors.palette();
     let mut encoder = Encoder::new(file, SIZE.0, SIZE.1, &palette).map_err(written)?;
     encoder
@@ -91,7 +91,7 @@ pub fn write(
         frame.delay = delay(instants, index, playing.speed);
         encoder.write_frame(&frame).map_err(written)?;
         before = Some(indices);
-        told(index + 1);
+        told(index + 1)?;
     }
     Ok(())
 }
@@ -113,18 +113,26 @@ struct Colors {
 
 impl Colors {
     /// Those that serve some of the instants best.
-    fn of(painter: &Painter<'_>, instants: &[Instant]) -> Self {
+    ///
+    /// # Errors
+    /// Those of `told`.
+    fn of(
+        painter: &Painter<'_>,
+        instants: &[Instant],
+        told: &mut dyn FnMut(usize) -> io::Result<()>,
+    ) -> io::Result<Self> {
         let step = instants.len().div_ceil(MOST_LOOKED_AT).max(1);
         let mut looked_at = vec![];
         for instant in instants.iter().step_by(step) {
+            told(0)?;
             let pixels = painter.picture(std::slice::from_ref(instant));
             let some = pixels.into_iter().step_by(ONE_OF);
             looked_at.extend(some.flat_map(|[red, green, blue]| [red, green, blue, 255]));
         }
-        Self {
+        Ok(Self {
             chosen: NeuQuant::new(1, usize::from(SAME), &looked_at),
             known: FnvHashMap::default(),
-        }
+        })
     }
 
     fn palette(&self) -> Vec<u8> {
