@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._values import Claim, ForwardDerivatives, InverseDerivatives, JointInfo, Limits, Parameter, Sizes, State
 
-__all__ = ["Joint", "Robot", "Sweep", "arithmetic", "load", "parse", "scene_text", "set_threads", "simulate"]
+__all__ = ["Joint", "Robot", "Sweep", "arithmetic", "levels", "load", "page", "parse", "picture", "run_program", "scene_text", "set_threads", "simulate"]
 
 _Array: TypeAlias = NDArray[np.float64]
 _Axes: TypeAlias = Literal["world_aligned", "body", "world"]

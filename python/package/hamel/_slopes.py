@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _hamel
-
-Function = Literal["forward_dynamics", "inverse_dynamics"]
 
 _Array = NDArray[np.float64]
 
@@ -23,8 +21,8 @@ class Slopes(NamedTuple):
     by_last: _Array
 
 
-def slopes(robot: _hamel.Robot, function: Function, q: _Array, v: _Array, last: _Array) -> Slopes:
-    """The value of a function of a robot, and its derivatives.
+def slopes(robot: _hamel.Robot, function: str, q: _Array, v: _Array, last: _Array) -> Slopes:
+    """The value of ``forward_dynamics`` or ``inverse_dynamics``, and its derivatives.
 
     Those by q are along the manifold of the joints: a change of q that leaves it, such as that of the length of a quaternion, changes nothing.
     """

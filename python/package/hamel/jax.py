@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from . import _hamel
 from ._errors import ArgumentError
-from ._slopes import Function, slopes
+from ._slopes import slopes
 
 
 def forward_dynamics(robot: _hamel.Robot, q: jax.typing.ArrayLike, v: jax.typing.ArrayLike, tau: jax.typing.ArrayLike) -> jax.Array:
@@ -34,7 +34,7 @@ def inverse_dynamics(robot: _hamel.Robot, q: jax.typing.ArrayLike, v: jax.typing
 
 
 @lru_cache(maxsize=64)
-def _function(function: Function, robot: _hamel.Robot) -> Any:
+def _function(function: str, robot: _hamel.Robot) -> Any:
     """A function of one robot, with the rule by which it is differentiated."""
     def doubles(*arguments: Any) -> tuple[NDArray[np.float64], ...]:
         q, v, last = (np.asarray(own, np.float64) for own in arguments)

@@ -16,7 +16,7 @@ import torch
 from numpy.typing import NDArray
 
 from . import _hamel
-from ._slopes import Function, slopes
+from ._slopes import slopes
 
 
 def forward_dynamics(robot: _hamel.Robot, q: torch.Tensor, v: torch.Tensor, tau: torch.Tensor) -> torch.Tensor:
@@ -29,7 +29,7 @@ def inverse_dynamics(robot: _hamel.Robot, q: torch.Tensor, v: torch.Tensor, a: t
     return _apply("inverse_dynamics", robot, q, v, a)
 
 
-def _apply(function: Function, robot: _hamel.Robot, *arguments: torch.Tensor) -> torch.Tensor:
+def _apply(function: str, robot: _hamel.Robot, *arguments: torch.Tensor) -> torch.Tensor:
     result: torch.Tensor = _Dynamics.apply(function, robot, *arguments)
     return result
 
@@ -38,7 +38,7 @@ class _Dynamics(torch.autograd.Function):
     """A function of a robot; derivatives are computed where a gradient is wanted."""
 
     @staticmethod
-    def forward(ctx: Any, function: Function, robot: _hamel.Robot, *arguments: torch.Tensor) -> torch.Tensor:
+    def forward(ctx: Any, function: str, robot: _hamel.Robot, *arguments: torch.Tensor) -> torch.Tensor:
         q, v, last = (own.detach().to("cpu", torch.float64).numpy() for own in arguments)
         if arguments[0].dtype != torch.float64:
             q = robot.project(q)
