@@ -3,6 +3,7 @@
 import re
 import subprocess
 import sys
+import tempfile
 import time
 import timeit
 from pathlib import Path
@@ -30,6 +31,24 @@ def measured(call):
 def wheel():
     for path in (ROOT / "target/python/wheels").glob("*.whl"):
         print(f"{path.name}: {path.stat().st_size / 1e6:.1f} MB")
+
+
+def first_minute():
+    """From nothing to a page of a moving robot: a virtual environment, the wheel with numpy, the program and the package."""
+    (path,) = (ROOT / "target/python/wheels").glob("*.whl")
+    script = f"import hamel; hamel.simulate(hamel.load({str(PANDA)!r}), 1.0).save('package.html')"
+    with tempfile.TemporaryDirectory() as folder:
+        begin = time.perf_counter()
+        subprocess.run([sys.executable, "-m", "venv", "venv"], cwd=folder, check=True)
+        made = time.perf_counter()
+        subprocess.run(["venv/bin/pip", "install", "--quiet", "--disable-pip-version-check", path], cwd=folder, check=True)
+        installed = time.perf_counter()
+        subprocess.run(["venv/bin/hamel", "simulate", PANDA, "--quiet", "--html", "program.html"], cwd=folder, check=True)
+        by_program = time.perf_counter()
+        subprocess.run(["venv/bin/python", "-c", script], cwd=folder, check=True)
+        end = time.perf_counter()
+    parts = [made - begin, installed - made, by_program - installed, end - by_program]
+    print("an empty environment, pip install, a page by the program, one by the package: " + ", ".join(f"{part:.1f} s" for part in parts))
 
 
 def imports():
@@ -157,6 +176,7 @@ def others():
 
 
 wheel()
+first_minute()
 imports()
 calls()
 batches()
