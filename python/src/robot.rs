@@ -216,7 +216,7 @@ impl Robot {
         self.positions_of(q)
     }
 
-    /// Derivatives of q by local coordinates phi about q, (..., N, K), at phi = 0: the identity for joints that store angles or displacements. Of a change of phi it makes one of q.
+    /// Derivatives of q by local coordinates phi about q, (..., N, K), at phi = 0: they map changes of phi to changes of q. For joints that store angles or displacements they are the identity.
     ///
     /// Args:
     ///     q: configurations, (..., N).
