@@ -64,7 +64,7 @@ def test_efforts_change_the_energy():
 def test_files_are_what_their_ending_says(motion, tmp_path):
     for ending, start in {"html": b"<!doctype html>", "svg": b"<!-- hamel simulate, picture -->", "png": b"\x89PNG\r\n\x1a\n", "gif": b"GIF89a"}.items():
         path = tmp_path / f"motion.{ending}"
-        motion.save(path, instants=3)
+        motion.save(path, instants=np.int64(3))
         assert path.read_bytes().startswith(start)
     width, height = struct.unpack(">II", (tmp_path / "motion.png").read_bytes()[16:24])
     assert (width, height) == (960, 640)

@@ -98,12 +98,12 @@ class Motion:
         kind = file.suffix.lower().removeprefix(".")
         if kind not in ("gif", "html", "png", "svg"):
             raise ArgumentError(f"path is {str(path)!r}: it must end in .html, .svg, .png or .gif")
-        if not isinstance(instants, int) or not 1 <= instants <= 50:
+        if not hasattr(instants, "__index__") or not 1 <= instants <= 50:
             raise ArgumentError(f"instants is {instants!r}: it must be an integer from 1 to 50")
         if kind == "html":
             file.write_text(self.to_html(), encoding="utf-8")
         else:
-            file.write_bytes(_hamel.picture(self.robot, self._shown(), kind, instants))
+            file.write_bytes(_hamel.picture(self.robot, self._shown(), kind, int(instants)))
 
     def _shown(self) -> dict[str, Any]:
         """What pages and pictures are made of."""
