@@ -63,7 +63,8 @@ impl Motion<'_> {
 pub fn page(py: Python<'_>, robot: &Bound<'_, Robot>, motion: Motion<'_>) -> PyResult<String> {
     let refused = |message| errors::argument(py, message);
     let states = motion.states().map_err(refused)?;
-    let (model, meshes) = (robot.get().model(), meshes(robot.get()));
+    let robot = robot.get();
+    let model = robot.model();
     let is_controlled = motion.has_inputs || model.scene().control.is_some();
     let contents = Contents {
         has_efforts: false,
@@ -79,7 +80,7 @@ pub fn page(py: Python<'_>, robot: &Bound<'_, Robot>, motion: Motion<'_>) -> PyR
     };
     let drawn = py.detach(|| {
         recorded(model, &states, contents)?
-            .html(&meshes, &told)
+            .html(&meshes(robot), &told)
             .map_err(text)
     });
     drawn.map_err(refused)
@@ -116,7 +117,13 @@ pub fn picture<'py>(
     let robot = robot.get();
     let mut exception = None;
     let drawn = py.detach(|| {
-        drawn(robot, &states, (kind, instants), &mut || {
+        // SVG has none.
+        let meshes = match kind {
+            "svg" => Meshes::default(),
+            _ => meshes(robot),
+        };
+        let (model, shown) = (robot.model(), (&*states, &meshes));
+        drawn(model, shown, (kind, instants), &mut || {
             let heard = Python::attach(|py| py.check_signals());
             heard.map_err(|raised| {
                 exception = Some(raised);
@@ -132,12 +139,12 @@ pub fn picture<'py>(
 
 /// The bytes of a picture; `listen` is asked from time to time, and ends the work by an error.
 fn drawn(
-    robot: &Robot,
-    states: &[State],
+    model: &Model,
+    (states, meshes): (&[State], &Meshes),
     (kind, instants): (&str, usize),
     listen: &mut dyn FnMut() -> io::Result<()>,
 ) -> Result<Vec<u8>, String> {
-    let (scene, mechanism) = (robot.model().scene(), robot.model().mechanism());
+    let (scene, mechanism) = (model.scene(), model.mechanism());
     let mut pictures = Pictures::default();
     for state in states {
         let found = mechanism.kinematics(&state.configuration, &state.speeds);
@@ -145,8 +152,8 @@ fn drawn(
     }
     let mut file = Vec::new();
     let written = match kind {
-        "png" => pictures.write_png(scene, &meshes(robot), instants, &mut file),
-        "gif" => pictures.write_gif(scene, &meshes(robot), &mut file, &mut |_, _| listen()),
+        "png" => pictures.write_png(scene, meshes, instants, &mut file),
+        "gif" => pictures.write_gif(scene, meshes, &mut file, &mut |_, _| listen()),
         _ => {
             file = pictures.svg(scene, instants).into_bytes();
             Ok(())
@@ -165,12 +172,13 @@ fn meshes(robot: &Robot) -> Meshes {
 
 /// A picture of a robot in its initial state for notebooks, as HTML; nothing where there is none.
 pub fn image(robot: &Robot) -> String {
-    let kind = match meshes(robot).parts() {
+    let (model, meshes) = (robot.model(), meshes(robot));
+    let kind = match meshes.parts() {
         [] => "svg",
         _ => "png",
     };
-    let state = robot.model().state();
-    let Ok(file) = drawn(robot, &[state], (kind, 1), &mut || Ok(())) else {
+    let shown = (&[model.state()][..], &meshes);
+    let Ok(file) = drawn(model, shown, (kind, 1), &mut || Ok(())) else {
         return String::new();
     };
     let coded = STANDARD.encode(file);

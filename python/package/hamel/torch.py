@@ -21,17 +21,12 @@ from ._slopes import slopes
 
 def forward_dynamics(robot: _hamel.Robot, q: torch.Tensor, v: torch.Tensor, tau: torch.Tensor) -> torch.Tensor:
     """Accelerations, (..., S), as ``Robot.forward_dynamics``."""
-    return _apply("forward_dynamics", robot, q, v, tau)
+    return _Dynamics.apply("forward_dynamics", robot, q, v, tau)
 
 
 def inverse_dynamics(robot: _hamel.Robot, q: torch.Tensor, v: torch.Tensor, a: torch.Tensor) -> torch.Tensor:
     """Efforts, (..., S), as ``Robot.inverse_dynamics``."""
-    return _apply("inverse_dynamics", robot, q, v, a)
-
-
-def _apply(function: str, robot: _hamel.Robot, *arguments: torch.Tensor) -> torch.Tensor:
-    result: torch.Tensor = _Dynamics.apply(function, robot, *arguments)
-    return result
+    return _Dynamics.apply("inverse_dynamics", robot, q, v, a)
 
 
 class _Dynamics(torch.autograd.Function):
