@@ -18,6 +18,12 @@ fn main() -> Result<(), Error> {
         ],
     )
     .compile()?;
+    compiled(
+        "../data/scenes/double_pendulum.toml",
+        [Kind::ForwardDynamics],
+    )
+    .lanes()
+    .compile()?;
     for linkage in ["crank_rocker", "geared_pendulum", "slider_crank_offset"] {
         let scene = format!("../../scenes/report/{linkage}.toml");
         compiled(

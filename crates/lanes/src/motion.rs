@@ -17,10 +17,12 @@ const ASKED: usize = 64;
 
 /// A motion that is to go with others.
 pub struct Start<'a> {
-    /// The scene.
+    /// A scene with its mechanism and its time.
     pub scene: &'a Scene,
+    /// Its state at time 0.
+    pub state: State,
     /// The numbers of it that differ.
-    pub numbers: Vec<f64>,
+    pub numbers: &'a [f64],
     /// The length of its steps, s.
     pub dt: f64,
     /// What follows its angles.
@@ -150,15 +152,15 @@ impl<'a> Block<'a> {
                 return;
             };
             for joint in &places.joints {
-                let q = &start.scene.configuration[joint.share.configuration.clone()];
+                let q = &start.state.configuration[joint.share.configuration.clone()];
                 for (place, number) in joint.base.clone().zip(q) {
                     self.machine.set(place, lane, *number);
                 }
             }
-            for (place, number) in places.speeds.clone().zip(&start.scene.speeds) {
+            for (place, number) in places.speeds.clone().zip(&start.state.speeds) {
                 self.machine.set(place, lane, *number);
             }
-            for (place, number) in (places.numbers..).zip(&start.numbers) {
+            for (place, number) in (places.numbers..).zip(start.numbers) {
                 self.machine.set(place, lane, *number);
             }
         }

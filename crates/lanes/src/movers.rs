@@ -5,9 +5,13 @@ use crate::machine::WIDTH;
 use crate::motion::{Start, moved};
 use crate::plan::Plan;
 use crate::row::{Alone, Described, described};
+use hamel::integrate::State;
 use hamel::registry::JointRegistry;
+use hamel::scene::Starts;
 use hamel_sweep::{Cells, Mover, Movers, Row, Sweep, Watch};
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 use std::sync::{Mutex, PoisonError};
 
 /// Why a motion that began side by side goes by the tree.
@@ -68,6 +72,7 @@ impl Movers for Lanes<'_> {
         Box::new(Own {
             lanes: self,
             joints: Joints::default(),
+            last: None,
         })
     }
 
@@ -80,11 +85,24 @@ impl Movers for Lanes<'_> {
 struct Own<'a> {
     lanes: &'a Lanes<'a>,
     joints: Joints,
+    /// The last row that was built and went side by side: those that follow may differ from it in their starts alone.
+    last: Option<Built>,
+}
+
+/// A row that has been built.
+#[derive(Clone)]
+struct Built {
+    row: Rc<Described>,
+    cells: Cells,
+    /// The numbers of it that differ.
+    numbers: Rc<[f64]>,
+    /// Its joints, from the first row on that differs in their states alone.
+    starts: Rc<OnceCell<Option<Starts>>>,
 }
 
 /// A row on its way to a result.
 enum Way {
-    Lane(Box<Described>, Vec<f64>),
+    Lane(Built, State),
     Tree(String),
     Done(Row),
 }
@@ -99,17 +117,46 @@ impl Mover for Own<'_> {
     }
 }
 
+impl Built {
+    /// The state at time 0 of a row that differs from this one in that alone.
+    fn start(&self, lanes: &Lanes<'_>, cells: &Cells) -> Option<State> {
+        let Lanes {
+            sweep, registry, ..
+        } = lanes;
+        if !sweep.differ_in_starts_alone(&self.cells, cells) {
+            return None;
+        }
+        let starts = || self.row.description.starts(registry);
+        sweep.start(self.starts.get_or_init(starts).as_ref()?, cells)
+    }
+}
+
 impl Own<'_> {
-    fn way(&self, cells: &Cells) -> Way {
+    fn way(&mut self, cells: &Cells) -> Way {
         let Lanes {
             sweep,
             registry,
             plan,
             ..
         } = self.lanes;
+        if let Some(built) = &self.last
+            && let Some(state) = built.start(self.lanes, cells)
+        {
+            return Way::Lane(built.clone(), state);
+        }
         match described(sweep, registry, &self.joints, cells) {
             Ok(row) => match plan.numbers(&row) {
-                Ok(numbers) => Way::Lane(Box::new(row), numbers),
+                Ok(numbers) => {
+                    let state = row.scene.start();
+                    let built = Built {
+                        row: Rc::new(row),
+                        cells: cells.clone(),
+                        numbers: numbers.into(),
+                        starts: Rc::default(),
+                    };
+                    self.last = Some(built.clone());
+                    Way::Lane(built, state)
+                }
                 Err(reason) => Way::Tree(reason),
             },
             Err(Alone::Refused(row)) => Way::Done(row),
@@ -117,19 +164,20 @@ impl Own<'_> {
         }
     }
 
-    fn block(&self, rows: &[Cells], watch: Watch<'_>) -> Option<Vec<Row>> {
+    fn block(&mut self, rows: &[Cells], watch: Watch<'_>) -> Option<Vec<Row>> {
         let lanes = self.lanes;
         let mut ways: Vec<Way> = rows.iter().map(|cells| self.way(cells)).collect();
         let refused = ways.iter().filter(|way| matches!(way, Way::Done(_)));
         (watch.done)(refused.count());
         let (mut starts, mut places, mut moved_here) = (vec![], vec![], 0);
         for (place, way) in ways.iter().enumerate() {
-            if let Way::Lane(row, numbers) = way {
+            if let Way::Lane(built, state) = way {
                 places.push(place);
                 starts.push(Start {
-                    scene: &row.scene,
-                    numbers: numbers.clone(),
-                    dt: row.dt,
+                    scene: &built.row.scene,
+                    state: state.clone(),
+                    numbers: &built.numbers,
+                    dt: built.row.dt,
                     turns: lanes.sweep.turns(),
                 });
             }
@@ -137,10 +185,11 @@ impl Own<'_> {
         let ends = moved(&lanes.plan, starts, watch.stop)?;
         for (place, end) in places.into_iter().zip(ends) {
             let told = match (&ways[place], end) {
-                (Way::Lane(row, _), Some(end)) => {
-                    let row = lanes
-                        .sweep
-                        .ended(&row.scene, &end.state, end.steps, &end.turns);
+                (Way::Lane(built, _), Some(end)) => {
+                    let row =
+                        lanes
+                            .sweep
+                            .ended(&built.row.scene, &end.state, end.steps, &end.turns);
                     Way::Done(row)
                 }
                 _ => Way::Tree(LEFT.to_owned()),

@@ -3,7 +3,7 @@
 use crate::joints::Joints;
 use hamel::integrate::{Form, Method, Tableau};
 use hamel::registry::JointRegistry;
-use hamel::scene::{Arithmetic, Scene};
+use hamel::scene::{Arithmetic, Scene, SceneDescription};
 use hamel_compiler::model::Model;
 use hamel_compiler::numbers::{self, Shape};
 use hamel_compiler::prune::{Link, Pruning, prune};
@@ -15,7 +15,9 @@ const MOST_STEPS: f64 = 1e9;
 /// A scene with the pruned model of its equations.
 #[derive(Debug)]
 pub struct Described {
-    /// The scene.
+    /// What the row says.
+    pub description: SceneDescription,
+    /// Its scene.
     pub scene: Scene,
     /// What the scene compiler makes of it.
     pub model: Model,
@@ -62,6 +64,7 @@ pub fn described(
     numbers::numbers(&mut model, &mut links, &mut all);
     Ok(Described {
         shape: Shape::of(&model, &links),
+        description,
         scene,
         model,
         links,

@@ -22,6 +22,8 @@ pub(crate) struct Place {
     pub column: usize,
     /// Whether it is written without a point, as counts are.
     is_whole: bool,
+    /// The keys that lead to it, elements of lists by their names where they have one.
+    keys: Vec<String>,
 }
 
 /// A scene's text with places for the columns of a table.
@@ -44,8 +46,9 @@ impl Document {
         for (column, name) in columns.iter().enumerate() {
             let name = name.as_ref();
             match place(root.get_ref(), name) {
-                Ok((span, is_whole)) => {
-                    if let Some(other) = places.iter().find(|other| other.span == span) {
+                Ok(found) => {
+                    let span = &found.span;
+                    if let Some(other) = places.iter().find(|other| other.span == *span) {
                         let other = columns[other.column].as_ref();
                         refused.push(format!(
                             "columns `{}` and `{}` name the same number",
@@ -53,11 +56,7 @@ impl Document {
                             visible(name)
                         ));
                     }
-                    places.push(Place {
-                        span,
-                        column,
-                        is_whole,
-                    });
+                    places.push(Place { column, ..found });
                 }
                 Err(why) => refused.push(format!("column `{}`: {why}", visible(name))),
             }
@@ -70,6 +69,17 @@ impl Document {
             }),
             false => Err(refused),
         }
+    }
+
+    /// Columns of numbers in the `initial` of bodies: the column, the body's name, and the keys from there.
+    pub fn starts(&self) -> impl Iterator<Item = (usize, &str, Vec<&str>)> {
+        self.places.iter().filter_map(|place| {
+            let keys: Vec<&str> = place.keys.iter().map(String::as_str).collect();
+            match keys.as_slice() {
+                ["body", name, "initial", keys @ ..] => Some((place.column, *name, keys.to_vec())),
+                _ => None,
+            }
+        })
     }
 
     /// The text as it was read.
@@ -117,22 +127,32 @@ fn number(number: f64, is_whole: bool, text: &mut String) {
     };
 }
 
-/// The number that a column names, and whether it is written as a whole one.
-fn place(root: &DeTable<'_>, column: &str) -> Result<(Range<usize>, bool), String> {
+/// The number that a column names; of which column it is, the caller knows.
+fn place(root: &DeTable<'_>, column: &str) -> Result<Place, String> {
     let path = Path::parse(column)?;
     let mut at = Node::Table(root);
     let mut way = String::new();
+    let mut keys = Vec::new();
     let mut found: Option<&Spanned<DeValue<'_>>> = None;
     for key in path.keys() {
         let next = at.child(key).map_err(|why| format!("{}{why}", of(&way)))?;
         shown(key, &mut way);
+        let own = match at {
+            Node::List(_) => name(next).unwrap_or(key),
+            _ => key,
+        };
+        keys.push(own.to_owned());
         at = Node::of(next.get_ref());
         found = Some(next);
     }
     let found = found.ok_or("it is empty")?;
     match found.get_ref() {
-        DeValue::Float(_) => Ok((found.span(), false)),
-        DeValue::Integer(_) => Ok((found.span(), true)),
+        DeValue::Float(_) | DeValue::Integer(_) => Ok(Place {
+            span: found.span(),
+            column: 0,
+            is_whole: found.get_ref().is_integer(),
+            keys,
+        }),
         DeValue::Array(items) if items.is_empty() => Err("it is an empty list".into()),
         DeValue::Array(items) => Err(format!(
             "it is a list, of which a column takes one number: `{way}.1` to `{way}.{}`",

@@ -9,6 +9,7 @@ mod motion;
 mod path;
 mod results;
 mod run;
+mod start;
 pub mod summary;
 
 pub use motion::{Sweep, SweepError};

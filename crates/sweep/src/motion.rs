@@ -4,9 +4,10 @@ use crate::columns::Turns;
 use crate::document::Document;
 use crate::results::{Outcome, Results, Row, outcome};
 use crate::run::Cells;
+use crate::start::start_columns;
 use hamel::integrate::State;
 use hamel::registry::JointRegistry;
-use hamel::scene::{Diagnostics, Scene, SceneDescription};
+use hamel::scene::{Diagnostics, Scene, SceneDescription, StartNumber};
 use hamel::{Error, Model};
 use std::cell::RefCell;
 
@@ -28,6 +29,8 @@ pub struct Sweep {
     document: Document,
     source: String,
     columns: Vec<String>,
+    /// Columns that change the state at time 0 alone.
+    pub(crate) starts: Vec<(usize, StartNumber)>,
     results: Results,
     has_error: bool,
 }
@@ -46,8 +49,11 @@ impl Sweep {
         registry: &JointRegistry,
     ) -> Result<Self, SweepError> {
         let scene = Scene::parse(text, source, registry)?;
+        let document = Document::new(text, columns).map_err(SweepError::Columns)?;
+        let description = Scene::from_toml(text, source)?;
         Ok(Self {
-            document: Document::new(text, columns).map_err(SweepError::Columns)?,
+            starts: start_columns(&document, &description, registry),
+            document,
             source: source.to_owned(),
             columns: columns
                 .iter()

@@ -17,6 +17,10 @@ pub mod chain_8 {
 pub mod crank_rocker {
     include!(concat!(env!("OUT_DIR"), "/crank_rocker.rs"));
 }
+/// `tests/data/scenes/double_pendulum.toml`, with lanes: rows of a sweep beside it.
+pub mod double_pendulum {
+    include!(concat!(env!("OUT_DIR"), "/double_pendulum.rs"));
+}
 /// Both forms of `scenes/report/geared_pendulum.toml`: a gear on a base that moves.
 pub mod geared_pendulum {
     include!(concat!(env!("OUT_DIR"), "/geared_pendulum.rs"));

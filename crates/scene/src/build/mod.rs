@@ -11,7 +11,7 @@ mod state;
 
 pub(crate) use control::control;
 pub(crate) use parts::states;
-pub(crate) use state::{State, state};
+pub(crate) use state::{Stand, State, stand, state};
 
 use crate::description::SceneDescription;
 use crate::read::Sink;

@@ -34,45 +34,45 @@ pub(crate) fn state(
     registry: &JointRegistry,
     sink: &mut Sink,
 ) -> Option<State> {
-    let joint = joint::joint(description, registry, sink)?;
-    let stand = Stand::new(description, Arc::clone(&joint))
-        .map_err(|error| sink.push(error))
-        .ok()?;
-    let solved = stand
-        .configuration(&initial.position)
-        .and_then(|configuration| {
-            let speeds = stand.speeds(&configuration, &initial.motion)?;
-            Ok((configuration, speeds))
-        });
+    let stand = stand(description, registry, sink)?;
+    let solved = stand.solved(initial);
     let solved = solved.map_err(|error| sink.push(error)).ok();
     let acting = forces::acting(&stand, initial, forces, sink);
     let (configuration, speeds) = solved?;
-    if let Some(limit) = &forces.limit {
-        forces::check_limit(&stand, &configuration, (limit, &forces.limit_of))
-            .map_err(|error| sink.push(error))
-            .ok()?;
-    }
+    stand
+        .check_limit(&configuration, forces)
+        .map_err(|error| sink.push(error))
+        .ok()?;
     Some(State {
-        joint,
+        joint: stand.joint,
         configuration,
         speeds,
         acting: acting?,
     })
 }
 
+/// The joint alone.
+pub(crate) fn stand(
+    description: &JointDescription,
+    registry: &JointRegistry,
+    sink: &mut Sink,
+) -> Option<Stand> {
+    let joint = joint::joint(description, registry, sink)?;
+    Stand::of(&description.name.value, joint, &description.span)
+        .map_err(|error| sink.push(error))
+        .ok()
+}
+
 /// The joint alone, between the world and bodies without mass: its state is solved there, so that the errors of one joint do
 /// not hide those of another.
-pub(super) struct Stand {
+#[derive(Debug)]
+pub(crate) struct Stand {
     pub(super) name: String,
     mechanism: Mechanism,
     pub(super) joint: Arc<dyn AnyJoint>,
 }
 
 impl Stand {
-    fn new(description: &JointDescription, joint: Arc<dyn AnyJoint>) -> Result<Self, Diagnostic> {
-        Self::of(&description.name.value, joint, &description.span)
-    }
-
     /// The joint called `name`, which messages find at `span`.
     pub(super) fn of(
         name: &str,
@@ -102,6 +102,31 @@ impl Stand {
             mechanism,
             joint,
         })
+    }
+
+    /// The configuration and the speeds that `initial` means.
+    fn solved(&self, initial: &InitialDescription) -> Result<(Vec<f64>, Vec<f64>), Diagnostic> {
+        let configuration = self.configuration(&initial.position)?;
+        let speeds = self.speeds(&configuration, &initial.motion)?;
+        Ok((configuration, speeds))
+    }
+
+    /// The same, within the limits at which the joint is hit.
+    pub(crate) fn state(
+        &self,
+        initial: &InitialDescription,
+        forces: &JointForces,
+    ) -> Result<(Vec<f64>, Vec<f64>), Diagnostic> {
+        let state = self.solved(initial)?;
+        self.check_limit(&state.0, forces)?;
+        Ok(state)
+    }
+
+    fn check_limit(&self, q: &[f64], forces: &JointForces) -> Result<(), Diagnostic> {
+        match &forces.limit {
+            Some(limit) => forces::check_limit(self, q, (limit, &forces.limit_of)),
+            None => Ok(()),
+        }
     }
 
     /// Whether the child can turn at home.
