@@ -235,17 +235,17 @@ impl Step<'_> {
         self.sums(&self.sum(self.scheme.weights, &rates))
     }
 
-    /// `h Σ weights · rates`, of all ϕ and then of v̄; none where there are no weights.
+    /// `Σ h weights · rates`, of all ϕ and then of v̄; none where there are no weights.
     fn sum(&self, weights: &[f64], rates: &[Rates]) -> Vec<Sym> {
         let [_, freedoms, speeds] = self.model.sizes();
         let step = Sym::input(Argument::Given, self.places.step);
         let entry = |place: usize| {
             let terms = weights.iter().zip(rates);
             let terms = terms.filter(|(weight, _)| **weight != 0.0);
-            let total: Sym = terms
-                .map(|(&weight, rates)| rates[place] * Sym::from(weight))
-                .sum();
-            step * total
+            // All entries share the products with the length of the step.
+            terms
+                .map(|(&weight, rates)| rates[place] * (step * Sym::from(weight)))
+                .sum()
         };
         (0..freedoms + speeds).map(entry).collect()
     }

@@ -2,6 +2,7 @@
 //!
 //! [`Lanes`] moves the rows of a sweep, as [`hamel_sweep::run_by`] takes it.
 
+mod exact;
 mod joints;
 mod lower;
 mod machine;

@@ -1,7 +1,7 @@
 //! From a graph to a program.
 
-use crate::places;
-use crate::program::{Operand, Operation, Program, Three, Two};
+use crate::program::{Operand, Operation, Program, Several, Three, Two};
+use crate::{exact, places};
 use hamel_codegen::expr::Function;
 use hamel_compiler::graph::{Argument, Graph, Operation as Of, Value};
 use hamel_compiler::stepping::Stepping;
@@ -30,19 +30,20 @@ pub fn program(step: &Stepping, inputs: usize) -> Program {
     }
     // Results take the places of the state when all of them are there.
     lowering.is_now = false;
-    let results: Vec<(u32, Operand)> = step
-        .outputs
-        .iter()
+    let results = step.outputs.iter();
+    let results: Vec<(u32, Operand)> = results
         .map(|&(place, value)| (place as u32, lowering.signed(value)))
         .collect();
     let results: Vec<(u32, Operand)> = results
         .into_iter()
         .map(|(place, result)| (place, lowering.apart(result, inputs)))
         .collect();
+    exact::joined(&mut lowering.program.step, &results);
     for (place, result) in results {
         let copy = Operation::Copy(result, place);
         lowering.program.step.push(copy);
     }
+    places::in_place(&mut lowering.program.step, inputs);
     lowering.program.rows = lowering.next as usize;
     places::shared(lowering.program, inputs)
 }
@@ -240,8 +241,13 @@ impl Lowering<'_> {
             Of::Several(function, arguments) => {
                 let arguments = arguments.iter().map(|&value| self.signed(value));
                 let arguments: Vec<Operand> = arguments.collect();
-                let parts = self.parts(node);
-                self.push(Operation::Several(function, arguments, parts));
+                let results = self.parts(node);
+                let several = Several {
+                    function,
+                    arguments,
+                    results,
+                };
+                self.push(Operation::Several(Box::new(several)));
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Runs programs: one operation after the other, each in a loop over many motions, which the compiler turns into SIMD code for each level of instructions.
 //!
-//! Everything is rounded as it is written: products are not fused with sums, so that results have the same bits at all levels. What is computed for one motion depends on that motion alone.
+//! Products are fused with sums at the [level of instructions](hamel_sweep::level) that has such instructions, and rounded at the other. So results have the same bits with AVX2 and AVX-512, and by whichever
+//! instructions the lower level is computed. What is computed for one motion depends on that motion alone.
 
 use crate::program::{Operand, Operation, Program, Three, Two};
 use fearless_simd::Level;
@@ -8,6 +9,7 @@ use fearless_simd::Level;
 use fearless_simd::prelude::*;
 use hamel::scalar::{Lane, Scalar};
 use hamel_compiler::graph::known;
+use hamel_sweep::level;
 use std::cell::Cell;
 
 /// Motions whose numbers lie in one cache line.
@@ -29,19 +31,19 @@ type Row = [Cell<Group>; GROUPS];
 #[derive(Debug)]
 pub struct Machine {
     rows: Vec<Row>,
-    /// Groups in use.
-    groups: usize,
     level: Level,
+    /// Whether products are fused with sums.
+    is_fused: bool,
 }
 
 impl Machine {
-    /// Room for the rows of `program` for `motions` motions, at most [`WIDTH`].
-    pub fn new(program: &Program, motions: usize) -> Self {
+    /// Room for the rows of `program`.
+    pub fn new(program: &Program) -> Self {
         let zero = || std::array::from_fn(|_| Cell::new(Group([0.0; LANES])));
         Self {
             rows: (0..program.rows).map(|_| zero()).collect(),
-            groups: motions.div_ceil(LANES).min(GROUPS),
             level: Level::new(),
+            is_fused: fuses(),
         }
     }
 
@@ -57,7 +59,7 @@ impl Machine {
 
     /// The largest size among the numbers of some rows; NaN counts as none.
     pub fn largest(&self, rows: std::ops::Range<usize>) -> f64 {
-        let groups = self.rows[rows].iter().flat_map(|row| &row[..self.groups]);
+        let groups = self.rows[rows].iter().flatten();
         groups
             .flat_map(|group| group.get().0)
             .fold(0.0, |most, x| x.abs().max(most))
@@ -65,10 +67,16 @@ impl Machine {
 
     /// Runs operations with the best instructions that the machine has.
     pub fn run(&mut self, operations: &[Operation], numbers: &[f64]) {
-        let run = Run {
+        match self.is_fused {
+            true => self.run_with::<true>(operations, numbers),
+            false => self.run_with::<false>(operations, numbers),
+        }
+    }
+
+    fn run_with<const FUSED: bool>(&self, operations: &[Operation], numbers: &[f64]) {
+        let run = Run::<FUSED> {
             rows: &self.rows,
             numbers,
-            groups: self.groups,
         };
         #[cfg(target_arch = "x86_64")]
         {
@@ -86,6 +94,14 @@ impl Machine {
             }
         }
         run.all(operations);
+    }
+}
+
+/// Whether the level of instructions has fused products. Processors that are not x86-64 have one level; where it may lack them, they would be calls of functions.
+fn fuses() -> bool {
+    match cfg!(target_arch = "x86_64") {
+        true => level::level() != level::LEVELS[0],
+        false => cfg!(target_arch = "aarch64"),
     }
 }
 
@@ -111,10 +127,9 @@ impl At for Same {
     }
 }
 
-struct Run<'a> {
+struct Run<'a, const FUSED: bool> {
     rows: &'a [Row],
     numbers: &'a [f64],
-    groups: usize,
 }
 
 /// Calls `$body` with what operands stand for, of either kind.
@@ -137,7 +152,7 @@ macro_rules! with {
     };
 }
 
-impl Run<'_> {
+impl<const FUSED: bool> Run<'_, FUSED> {
     #[inline(always)]
     fn all(&self, operations: &[Operation]) {
         for operation in operations {
@@ -160,24 +175,25 @@ impl Run<'_> {
                     Two::Subtract => self.two(to, a, b, |a, b| a - b),
                     Two::Multiply => self.two(to, a, b, |a, b| a * b),
                     Two::Divide => self.two(to, a, b, |a, b| a / b),
-                    Two::Larger => self.two(to, a, b, |a, b| Lane::<false>(a).larger(Lane(b)).0),
+                    Two::Larger => self.two(to, a, b, |a, b| Lane::<FUSED>(a).larger(Lane(b)).0),
                 });
             }
             Operation::Three(what, a, [b, c], to) => {
                 let (to, a) = (self.row(*to), self.row(*a));
                 with!(self, [b: *b, c: *c], match what {
-                    Three::AddTo => self.three(to, a, b, c, |a, b, c| a * b + c),
-                    Three::Less => self.three(to, a, b, c, |a, b, c| a * b - c),
-                    Three::From => self.three(to, a, b, c, |a, b, c| c - a * b),
+                    Three::AddTo => self.three(to, a, b, c, Self::multiply_add),
+                    Three::Less => self.three(to, a, b, c, |a, b, c| Self::multiply_add(a, b, -c)),
+                    Three::From => self.three(to, a, b, c, |a, b, c| Self::multiply_add(-a, b, c)),
                 });
             }
             Operation::Products(minus, [a, c], [b, d], to) => {
                 let (to, a, c) = (self.row(*to), self.row(*a), self.row(*c));
                 with!(self, [b: *b, d: *d], match minus {
-                    false => self.four(to, [a, c], b, d, |a, b, c, d| a * b + c * d),
-                    true => self.four(to, [a, c], b, d, |a, b, c, d| a * b - c * d),
+                    false => self.four(to, [a, c], b, d, |a, b, c, d| Self::multiply_add(a, b, c * d)),
+                    true => self.four(to, [a, c], b, d, |a, b, c, d| Self::multiply_add(a, b, -(c * d))),
                 });
             }
+            Operation::ExactSum(of, to) => self.exact_sum(*of, *to),
             Operation::Opposite(a, to) => self.of_one(*a, *to, |a| -a),
             Operation::Root(a, to) => self.of_one(*a, *to, f64::sqrt),
             Operation::SinCos(a, to) => self.sin_cos(*a, *to),
@@ -189,6 +205,12 @@ impl Run<'_> {
         }
     }
 
+    /// a b + c.
+    #[inline(always)]
+    fn multiply_add(a: f64, b: f64, c: f64) -> f64 {
+        Lane::<FUSED>(a).mul_add(Lane(b), Lane(c)).0
+    }
+
     #[inline(always)]
     fn of_one(&self, a: u32, to: u32, f: impl Fn(f64) -> f64) {
         let a = self.row(a);
@@ -197,7 +219,7 @@ impl Run<'_> {
 
     #[inline(always)]
     fn two(&self, to: &Row, a: impl At, b: impl At, f: impl Fn(f64, f64) -> f64) {
-        for (group, to) in to.iter().enumerate().take(self.groups) {
+        for (group, to) in to.iter().enumerate() {
             let (a, b, mut c) = (a.at(group), b.at(group), [0.0; LANES]);
             for i in 0..LANES {
                 c[i] = f(a[i], b[i]);
@@ -215,7 +237,7 @@ impl Run<'_> {
         c: impl At,
         f: impl Fn(f64, f64, f64) -> f64,
     ) {
-        for (group, to) in to.iter().enumerate().take(self.groups) {
+        for (group, to) in to.iter().enumerate() {
             let (a, b, c) = (a.at(group), b.at(group), c.at(group));
             let mut d = [0.0; LANES];
             for i in 0..LANES {
@@ -234,7 +256,7 @@ impl Run<'_> {
         d: impl At,
         f: impl Fn(f64, f64, f64, f64) -> f64,
     ) {
-        for (group, to) in to.iter().enumerate().take(self.groups) {
+        for (group, to) in to.iter().enumerate() {
             let (a, b, c, d) = (a.at(group), b.at(group), c.at(group), d.at(group));
             let mut e = [0.0; LANES];
             for i in 0..LANES {
@@ -244,19 +266,42 @@ impl Run<'_> {
         }
     }
 
+    /// By D. E. Knuth, without a branch.
+    #[inline(always)]
+    fn exact_sum(&self, [a, b]: [u32; 2], [sum, lost]: [u32; 2]) {
+        let [a, b, sum, lost] = [a, b, sum, lost].map(|row| self.row(row));
+        for group in 0..GROUPS {
+            let (a, b) = (a.at(group), b.at(group));
+            let (mut sums, mut rests) = ([0.0; LANES], [0.0; LANES]);
+            for i in 0..LANES {
+                sums[i] = a[i] + b[i];
+                let of_b = sums[i] - a[i];
+                rests[i] = (a[i] - (sums[i] - of_b)) + (b[i] - of_b);
+            }
+            sum[group].set(Group(sums));
+            lost[group].set(Group(rests));
+        }
+    }
+
     #[inline(always)]
     fn sin_cos(&self, of: u32, [sine, cosine]: [u32; 2]) {
         let (of, sine, cosine) = (self.row(of), self.row(sine), self.row(cosine));
-        for group in 0..self.groups.min(GROUPS) {
-            let angles = of.at(group);
-            let (mut sines, mut cosines) = ([0.0; LANES], [0.0; LANES]);
+        // Two groups at a time: each operation waits for the one before it, of the other group meanwhile.
+        for pair in 0..GROUPS / 2 {
+            let places = [2 * pair, 2 * pair + 1];
+            let angles = places.map(|group| of.at(group));
+            let (mut sines, mut cosines) = ([[0.0; LANES]; 2], [[0.0; LANES]; 2]);
             for i in 0..LANES {
-                let (s, c) = Lane::<false>(angles[i]).sin_cos();
-                sines[i] = s.0;
-                cosines[i] = c.0;
+                for group in 0..2 {
+                    let (s, c) = Lane::<FUSED>(angles[group][i]).sin_cos();
+                    sines[group][i] = s.0;
+                    cosines[group][i] = c.0;
+                }
             }
-            sine[group].set(Group(sines));
-            cosine[group].set(Group(cosines));
+            for (group, place) in places.into_iter().enumerate() {
+                sine[place].set(Group(sines[group]));
+                cosine[place].set(Group(cosines[group]));
+            }
         }
     }
 
@@ -274,8 +319,7 @@ impl Run<'_> {
             numbers.0[lane] = number;
             cell.set(numbers);
         };
-        for (group, lane) in
-            (0..self.groups).flat_map(|group| (0..LANES).map(move |lane| (group, lane)))
+        for (group, lane) in (0..GROUPS).flat_map(|group| (0..LANES).map(move |lane| (group, lane)))
         {
             match operation {
                 Operation::Call(function, a, b, to) => {
@@ -287,11 +331,10 @@ impl Run<'_> {
                         known::call(*function, read(a, group, lane), b),
                     );
                 }
-                Operation::Several(function, arguments, to) => {
-                    let arguments: Vec<f64> =
-                        arguments.iter().map(|a| read(a, group, lane)).collect();
-                    let results = known::primitive(*function, &arguments);
-                    for (row, number) in to.iter().zip(results) {
+                Operation::Several(own) => {
+                    let arguments = own.arguments.iter().map(|a| read(a, group, lane));
+                    let results = known::primitive(own.function, &arguments.collect::<Vec<f64>>());
+                    for (row, number) in own.results.iter().zip(results) {
                         write(*row, group, lane, number);
                     }
                 }

@@ -1,6 +1,6 @@
 //! Motions side by side, step by step.
 
-use crate::machine::{LANES, Machine, WIDTH};
+use crate::machine::{Machine, WIDTH};
 use crate::plan::Plan;
 use hamel::integrate::{FixedSteps, State, Step};
 use hamel::mechanism::Mechanism;
@@ -136,7 +136,7 @@ impl<'a> Block<'a> {
             .filter(|(_, joint)| !joint.adds);
         Self {
             plan,
-            machine: Machine::new(&plan.program, starts.len()),
+            machine: Machine::new(&plan.program),
             is_left: vec![false; starts.len()],
             follows: starts.iter().any(|start| !start.turns.angles().is_empty()),
             bent: bent.collect(),
@@ -147,7 +147,7 @@ impl<'a> Block<'a> {
     /// Puts all numbers in their places; places without a motion hold those of the last one.
     fn begin(&mut self) {
         let places = &self.plan.places;
-        for lane in 0..self.starts.len().next_multiple_of(LANES) {
+        for lane in 0..WIDTH {
             let Some(start) = self.starts.get(lane).or(self.starts.last()) else {
                 return;
             };

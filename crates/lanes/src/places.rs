@@ -1,6 +1,31 @@
 //! Rows are used again when nothing reads what they hold, so that all of them stay near the processor.
 
-use crate::program::{Operation, Program};
+use crate::program::{Operand, Operation, Program};
+
+/// Writes results at once where they are copied to at the end, one of the first `inputs`, if nothing reads afterwards what stood there.
+pub fn in_place(operations: &mut Vec<Operation>, inputs: usize) {
+    for number in (0..operations.len()).rev() {
+        let Operation::Copy(Operand::Row(result), place) = operations[number] else {
+            continue;
+        };
+        let is_result = |own: &Operation| own.written().contains(&result);
+        let Some(writer) = operations.iter().position(is_result) else {
+            continue;
+        };
+        let copies =
+            |own: &Operation| matches!(own, Operation::Copy(Operand::Row(of), _) if *of == result);
+        let after = &operations[writer + 1..];
+        let is_free = (place as usize) < inputs
+            && !after.iter().any(|own| own.read().contains(&place))
+            && after.iter().filter(|own| copies(own)).count() == 1;
+        if is_free {
+            operations.remove(number);
+            for own in &mut operations[writer..] {
+                own.rename(&mut |row| if row == result { place } else { row });
+            }
+        }
+    }
+}
 
 /// The program on fewer rows. The first `inputs` stay, and so do those that are computed once and read in steps.
 pub fn shared(mut program: Program, inputs: usize) -> Program {

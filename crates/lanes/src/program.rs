@@ -40,7 +40,18 @@ pub enum Three {
     From,
 }
 
-/// One operation, with the rows of its results.
+/// A function with several results.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Several {
+    /// The function.
+    pub function: Primitive,
+    /// Its arguments.
+    pub arguments: Vec<Operand>,
+    /// The rows of its results.
+    pub results: Vec<u32>,
+}
+
+/// One operation, with the rows of its results. It is small: all of a program should stay in the first cache.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Operation {
     /// Of two operands.
@@ -49,6 +60,8 @@ pub enum Operation {
     Three(Three, u32, [Operand; 2], u32),
     /// a b + c d, or, where true, a b − c d: a and c, then b and d.
     Products(bool, [u32; 2], [Operand; 2], u32),
+    /// a + b, and what its rounding lost.
+    ExactSum([u32; 2], [u32; 2]),
     /// −a.
     Opposite(u32, u32),
     /// √a.
@@ -58,7 +71,7 @@ pub enum Operation {
     /// Another function of one or two.
     Call(Function, Operand, Option<Operand>, u32),
     /// A function with several results.
-    Several(Primitive, Vec<Operand>, Vec<u32>),
+    Several(Box<Several>),
     /// A copy.
     Copy(Operand, u32),
 }
@@ -90,12 +103,13 @@ impl Operation {
             Self::Two(_, of, _) => rows(of),
             Self::Three(_, first, others, _) => [vec![*first], rows(others)].concat(),
             Self::Products(_, first, others, _) => [first.to_vec(), rows(others)].concat(),
+            Self::ExactSum(of, _) => of.to_vec(),
             Self::Opposite(of, _) | Self::Root(of, _) | Self::SinCos(of, _) => vec![*of],
             Self::Call(_, first, second, _) => {
                 let both: Vec<Operand> = std::iter::once(*first).chain(*second).collect();
                 rows(&both)
             }
-            Self::Several(_, of, _) => rows(of),
+            Self::Several(own) => rows(&own.arguments),
             Self::Copy(of, _) => rows(&[*of]),
         }
     }
@@ -110,8 +124,8 @@ impl Operation {
             | Self::Root(_, to)
             | Self::Call(.., to)
             | Self::Copy(_, to) => vec![*to],
-            Self::SinCos(_, to) => to.to_vec(),
-            Self::Several(_, _, to) => to.clone(),
+            Self::SinCos(_, to) | Self::ExactSum(_, to) => to.to_vec(),
+            Self::Several(own) => own.results.clone(),
         }
     }
 
@@ -141,6 +155,10 @@ impl Operation {
                 *of = place(*of);
                 *to = place(*to);
             }
+            Self::ExactSum(of, to) => {
+                of.iter_mut().for_each(|row| *row = place(*row));
+                to.iter_mut().for_each(|row| *row = place(*row));
+            }
             Self::SinCos(of, to) => {
                 *of = place(*of);
                 to.iter_mut().for_each(|to| *to = place(*to));
@@ -150,9 +168,9 @@ impl Operation {
                 second.iter_mut().for_each(&mut operand);
                 *to = place(*to);
             }
-            Self::Several(_, of, to) => {
-                of.iter_mut().for_each(&mut operand);
-                to.iter_mut().for_each(|to| *to = place(*to));
+            Self::Several(own) => {
+                own.arguments.iter_mut().for_each(operand);
+                own.results.iter_mut().for_each(|row| *row = place(*row));
             }
             Self::Copy(of, to) => {
                 operand(of);
