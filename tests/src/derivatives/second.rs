@@ -4,7 +4,9 @@ use super::{Actuation, BOUND, DualForm, Equipped, Expected, Lookup, matrix, rela
 use crate::figures::Largest;
 use crate::random::{Case, numbers};
 use chacha20::ChaCha8Rng;
-use hamel::dynamics::{ForwardSecondDerivatives, InverseSecondDerivatives, Recursive};
+use hamel::dynamics::{
+    ForwardSecondDerivatives, InverseDerivatives, InverseSecondDerivatives, Recursive,
+};
 use hamel::nalgebra::{DMatrix, DVector};
 use hamel::scalar::Dual;
 use rand::SeedableRng;
@@ -114,6 +116,26 @@ fn chosen(case: &Case, size: usize) -> (Vec<f64>, Vec<f64>) {
     (weights, numbers(&mut random, size))
 }
 
+/// M̄⁻¹ λ, where speeds of joints whose motion is prescribed neither answer nor are asked.
+fn answers(case: &Case, mass: &DMatrix<f64>, weights: &[f64]) -> Vec<f64> {
+    let joints = case.mechanism.joints();
+    let free = joints.filter(|(body, _)| !case.mechanism.is_driven(*body));
+    let free: Vec<usize> = free
+        .flat_map(|(_, body)| body.ranges().speeds.clone())
+        .collect();
+    let mut all = vec![0.0; weights.len()];
+    if free.is_empty() {
+        return all;
+    }
+    let mass = mass.select_rows(&free).select_columns(&free);
+    let asked = DVector::from_iterator(free.len(), free.iter().map(|&speed| weights[speed]));
+    let factors = mass.cholesky().expect("every body has mass");
+    for (&speed, answer) in free.iter().zip(factors.solve(&asked).iter()) {
+        all[speed] = *answer;
+    }
+    all
+}
+
 /// What is measured of every Hessian.
 struct Figures([Largest; 3]);
 
@@ -135,7 +157,8 @@ impl Figures {
         symmetry.meet(relative(found, &found.transpose()) / condition, place());
         let whole = found * DVector::from_column_slice(direction);
         let product = DVector::from_column_slice(product);
-        let [product, whole] = [product, whole].map(|own| matrix(own.len(), [own.as_slice().to_vec()].into_iter()));
+        let [product, whole] =
+            [product, whole].map(|own| matrix(own.len(), [own.as_slice().to_vec()].into_iter()));
         products.meet(relative(&product, &whole), place());
     }
 
@@ -200,15 +223,15 @@ pub fn forward_dynamics(all: impl IntoIterator<Item = Equipped>, lookup: Lookup<
         let mut product = vec![0.0; size];
         found.times(&direction, &mut product).expect("sizes fit");
         let oracle = Expected::new(&equipped);
-        let rates = found.first().rates();
-        let [by_local, by_speeds] = oracle.inverse(case, rates);
-        let [inputs, basis] = oracle.inputs(case);
-        let needs = [inputs - by_local, -by_speeds, basis];
-        let slopes = needs.map(|need| oracle.solve(&need));
-        let columns = slopes.iter().flat_map(|own| own.column_iter());
-        let slopes = matrix(form.speeds, columns.map(|own| own.iter().copied().collect()));
-        let virtual_speeds = oracle.solve(&matrix(form.speeds, [weights].into_iter()));
-        let expected = form.forward((rates, &slopes), virtual_speeds.as_slice());
+        // First derivatives are held to dual numbers by a law of their own.
+        let (first, rows) = (found.first(), form.speeds);
+        let parts = [first.by_local(), first.by_speeds(), first.by_efforts()];
+        let parts = parts.map(|part| part.matrix());
+        let columns = parts.iter().flat_map(|part| part.column_iter());
+        let slopes = matrix(rows, columns.map(|own| own.iter().copied().collect()));
+        let rates = first.rates();
+        let virtual_speeds = answers(case, &oracle.mass, &weights);
+        let expected = form.forward((rates, &slopes), &virtual_speeds);
         figures.meet(
             (&found.hessian().matrix(), &product),
             (&expected, &direction),
@@ -216,4 +239,37 @@ pub fn forward_dynamics(all: impl IntoIterator<Item = Equipped>, lookup: Lookup<
         );
     }
     figures.judge();
+}
+
+/// That `E_l E_k` of λᵀτ̄ alone is not its Hessian: the largest of what the charts of the joints add, relative to the Hessian.
+///
+/// # Panics
+/// Where sizes do not fit.
+pub fn share_of_charts(equipped: &Equipped) -> f64 {
+    let case = &equipped.case;
+    let (weights, _) = chosen(case, 0);
+    let mut dynamics = Recursive::new(Arc::clone(&case.mechanism));
+    let mut first = InverseDerivatives::new(&case.mechanism);
+    let mut found = InverseSecondDerivatives::new(&case.mechanism);
+    let (q, v, a) = (&case.q, &case.speeds, &case.rates);
+    dynamics
+        .inverse_dynamics_derivatives(q, v, a, &mut first)
+        .expect("nothing else acts");
+    dynamics
+        .inverse_dynamics_second_derivatives(q, v, a, &weights, &mut found)
+        .expect("nothing else acts");
+    let gradient = first
+        .by_local()
+        .matrix()
+        .tr_mul(&DVector::from_vec(weights));
+    let largest = case.mechanism.joints().map(|(_, body)| {
+        let own = &gradient.as_slice()[body.ranges().freedoms.clone()];
+        let mut terms = vec![0.0; own.len() * own.len()];
+        body.joint()
+            .chart_terms(body.configuration(q), own, &mut terms);
+        terms
+            .iter()
+            .fold(0.0, |most: f64, term| most.max(term.abs()))
+    });
+    largest.fold(0.0, f64::max) / found.hessian().matrix().amax().max(1.0)
 }

@@ -1,7 +1,7 @@
 //! Elements and rotors in dual numbers: their forces as their definitions have them, and the same for the library.
 
-use super::kernels::constants;
 use super::DualForm;
+use super::kernels::constants;
 use crate::random::numbers;
 use chacha20::ChaCha8Rng;
 use hamel::elements::{
@@ -229,7 +229,12 @@ impl Actuation {
     }
 
     /// How the momenta of rotors at ports change while v̄ stays, onto rates of momenta.
-    pub fn add_rotor_rates<D: Scalar>(&self, form: &DualForm<D>, (q, speeds): (&[D], &[D]), rates: &mut [D]) {
+    pub fn add_rotor_rates<D: Scalar>(
+        &self,
+        form: &DualForm<D>,
+        (q, speeds): (&[D], &[D]),
+        rates: &mut [D],
+    ) {
         for ([row, rate], inertia, own) in self.at_ports(form, q, speeds) {
             let v = &speeds[own.clone()];
             let (speed, turned) = (product(&row, v), product(&rate, v));
@@ -240,7 +245,13 @@ impl Actuation {
     }
 
     /// Adds `a v̄̇`, and of rotors at ports `a p̄ᵀ p̄ v̄̇`, to inverse dynamics.
-    pub fn add_rotors<D: Scalar>(&self, form: &DualForm<D>, q: &[D], accelerations: &[D], efforts: &mut [D]) {
+    pub fn add_rotors<D: Scalar>(
+        &self,
+        form: &DualForm<D>,
+        q: &[D],
+        accelerations: &[D],
+        efforts: &mut [D],
+    ) {
         for ([row, _], inertia, own) in self.at_ports(form, q, accelerations) {
             let along = product(&row, &accelerations[own.clone()]);
             for (effort, entry) in efforts[own].iter_mut().zip(row) {
@@ -313,7 +324,7 @@ impl Actuation {
             let v = body
                 .joint
                 .velocity(at(damper.body), &speeds[body.speeds.clone()]);
-            let damped = v.iter().zip(constants(&damper.coefficients));
+            let damped = v.iter().zip(constants::<D>(&damper.coefficients));
             add(damper.body, damped.map(|(v, c)| -(c * *v)).collect());
         }
         for motor in &self.motors {
@@ -380,8 +391,7 @@ impl Actuation {
                 + u.dot(&rate) * D::from_f64(rope.damping);
             for (n, sign) in [(0, 1.0), (1, -1.0)] {
                 if let Some(body) = rope.bodies[n] {
-                    let force =
-                        placed[body].rotation.transpose() * u * (pull * D::from_f64(sign));
+                    let force = placed[body].rotation.transpose() * u * (pull * D::from_f64(sign));
                     push(body, &lift(&rope.points[n]), &force, Vector3::zeros());
                 }
             }

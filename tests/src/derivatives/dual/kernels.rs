@@ -84,7 +84,10 @@ where
     }
 
     fn reduce(&self, q: &[D], efforts: &[D]) -> Vec<D> {
-        let reduced = self.0.speed_basis(&vector(q)).tr_mul(&vector::<D, K>(efforts));
+        let reduced = self
+            .0
+            .speed_basis(&vector(q))
+            .tr_mul(&vector::<D, K>(efforts));
         reduced.iter().copied().collect()
     }
 

@@ -197,7 +197,11 @@ impl<D: Scalar> DualForm<D> {
     }
 
     /// p̄̇ at v̄, where bodies are rid of momenta that are fixed in them: in the axes of the joints' child frames, at their origins.
-    pub fn momentum_rates_beside(&self, state: &DualState<D>, rid: &[(usize, Vector6<D>)]) -> Vec<D> {
+    pub fn momentum_rates_beside(
+        &self,
+        state: &DualState<D>,
+        rid: &[(usize, Vector6<D>)],
+    ) -> Vec<D> {
         let DualState { q, speeds, efforts } = state;
         let poses = self.poses(q);
         let twists = self.twists(&poses, q, speeds);
