@@ -2,7 +2,8 @@
 
 use super::error::{body, values};
 use super::{
-    Action, Curvature, Curvatures, Element, ElementError, PointForce, Slope, Slopes, Twice, View,
+    Action, Curvature, Curvatures, Element, ElementError, HyperDual, PointForce, Slope, Slopes,
+    View,
 };
 use crate::mechanism::Mechanism;
 use crate::scalar::Scalar;
@@ -45,12 +46,12 @@ impl BodySpring {
     }
 
     /// The force on the second end where it stands off the first, as a function of the way between them and of its rate.
-    fn force(&self, way: &Vector3<Twice>, rate: &Vector3<Twice>) -> Vector3<Twice> {
+    fn force(&self, way: &Vector3<HyperDual>, rate: &Vector3<HyperDual>) -> Vector3<HyperDual> {
         let length = Scalar::sqrt(dot(way, way));
         let direction = way.map(|entry| entry / length);
-        let stretch = length - Twice::from_f64(self.length);
-        let pull = Twice::from_f64(self.stiffness) * stretch
-            + Twice::from_f64(self.damping) * dot(&direction, rate);
+        let stretch = length - HyperDual::from_f64(self.length);
+        let pull = HyperDual::from_f64(self.stiffness) * stretch
+            + HyperDual::from_f64(self.damping) * dot(&direction, rate);
         direction * -pull
     }
 }
@@ -292,7 +293,7 @@ pub(super) fn add_wrench_curvatures(
         return;
     }
     let end = (pull.body, view.arm(pull.body, pull.point));
-    let force = pull.force.map(Twice::from_f64);
+    let force = pull.force.map(HyperDual::from_f64);
     let still = Vector3::zeros();
     curvatures.add_point_force(view, [None, Some(end)], (&still, &still), &|_, _| force);
     curvatures.add_moment(view, pull.body, &pull.moment);

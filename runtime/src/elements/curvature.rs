@@ -16,8 +16,8 @@ use crate::steps::{EffortLaw, MotionGradient, Variation};
 use core::ops::Range;
 use nalgebra::{SMatrix, SVector, Vector3, Vector6};
 
-/// A number with its derivatives along two directions.
-pub type Twice = Dual<Dual<f64>>;
+/// A number with its derivatives along two directions, and along one after the other.
+pub type HyperDual = Dual<Dual<f64>>;
 
 /// An element whose second derivatives are known.
 pub trait Curvature {
@@ -40,12 +40,12 @@ pub struct Curvatures<'a> {
     pub(crate) accelerations: &'a [f64],
     pub(crate) virtual_speeds: &'a [f64],
     /// What has been found, of −W.
-    pub(crate) into: Bent<'a>,
+    pub(crate) into: Collected<'a>,
 }
 
 /// Derivatives of the contracted inverse dynamics.
 #[derive(Debug)]
-pub(crate) struct Bent<'a> {
+pub(crate) struct Collected<'a> {
     /// Over (ϕ, v̄, v̄̇).
     pub(crate) hessian: &'a mut Sensitivity,
     /// By ϕ, of efforts at joints.
@@ -68,14 +68,14 @@ struct Reach {
 }
 
 /// What an element asks of a point or a body: derivatives of W by its place, its velocity and its virtual velocity.
-struct Asked {
+struct Acting {
     body: usize,
     gradient: [Vector3<f64>; 3],
     velocity: Vector3<f64>,
     virtual_velocity: Vector3<f64>,
 }
 
-impl Asked {
+impl Acting {
     /// How W changes along two directions beside the second derivatives of W itself: `outer` is above `inner`, or of the same joint.
     fn bend(&self, outer: &Reach, inner: &Reach) -> f64 {
         let [by_place, by_rate, by_virtual] = &self.gradient;
@@ -151,14 +151,14 @@ impl Curvatures<'_> {
             return self.spoil();
         };
         let (turn, _) = split(twist);
-        let asked = Asked {
+        let asked = Acting {
             body,
             gradient: [Vector3::zeros(), Vector3::zeros(), *moment],
             velocity: Vector3::zeros(),
             virtual_velocity: turn,
         };
-        let bent = join(&cross(&turn, moment), &Vector3::zeros());
-        self.into.gradients[body].placement -= bent;
+        let turned = join(&cross(&turn, moment), &Vector3::zeros());
+        self.into.gradients[body].placement -= turned;
         let feel = |twists: [&Vector6<f64>; 3], _: &Vector3<f64>| {
             let [.., drift] = twists;
             [Vector3::zeros(), Vector3::zeros(), split(drift).0]
@@ -173,7 +173,7 @@ impl Curvatures<'_> {
         view: &View<'_>,
         ends: [Option<End>; 2],
         (way, rate): (&Vector3<f64>, &Vector3<f64>),
-        force: &dyn Fn(&Vector3<Twice>, &Vector3<Twice>) -> Vector3<Twice>,
+        force: &dyn Fn(&Vector3<HyperDual>, &Vector3<HyperDual>) -> Vector3<HyperDual>,
     ) {
         let mut bodies = ends.iter().flatten().map(|(body, _)| *body);
         if bodies.any(|body| body >= self.virtual_twists.len()) {
@@ -190,7 +190,7 @@ impl Curvatures<'_> {
         self.into.reaches.fill(SVector::zeros());
         for ((place, virtual_velocity), sign) in places.iter().zip(virtual_velocities).zip(SIGNS) {
             let Some(place) = place else { continue };
-            let asked = Asked {
+            let asked = Acting {
                 body: place.body,
                 gradient: gradient.map(|by| by * sign),
                 velocity: place.velocity,
@@ -208,7 +208,7 @@ impl Curvatures<'_> {
     }
 
     /// The gradient of −W by the motion of the body at a point; that by the virtual twist is the force, which the recursion knows.
-    fn ask(&mut self, view: &View<'_>, place: &Place, asked: &Asked) {
+    fn ask(&mut self, view: &View<'_>, place: &Place, asked: &Acting) {
         let Some(placement) = view.motions.placement(place.body) else {
             return self.spoil();
         };
@@ -222,7 +222,7 @@ impl Curvatures<'_> {
     }
 
     /// How far each direction moves the way between the points.
-    fn reach(&mut self, view: &View<'_>, place: &Place, (asked, sign): (&Asked, f64)) {
+    fn reach(&mut self, view: &View<'_>, place: &Place, (asked, sign): (&Acting, f64)) {
         let position = place.position;
         let feel = move |twists: [&Vector6<f64>; 3], origin: &Vector3<f64>| {
             twists.map(|twist| at(twist, &(position - origin)))
@@ -283,11 +283,11 @@ impl Curvatures<'_> {
         }
     }
 
-    /// [`Asked::bend`] for all pairs of directions.
+    /// [`Acting::bend`] for all pairs of directions.
     fn add_bends(
         &mut self,
         view: &View<'_>,
-        asked: &Asked,
+        asked: &Acting,
         feel: impl Fn([&Vector6<f64>; 3], &Vector3<f64>) -> [Vector3<f64>; 3],
     ) {
         for lower in path(view.mechanism, asked.body) {
@@ -314,16 +314,16 @@ impl Curvatures<'_> {
 
     /// The second derivatives of W by the way, its rate and its virtual rate, for all pairs of directions.
     fn subtract_quadratic(&mut self, hessian: &SMatrix<f64, 9, 9>) {
-        let Bent {
+        let Collected {
             hessian: sum,
             reaches,
             ..
         } = &mut self.into;
         let moving = |reach: &SVector<f64, 9>| reach.iter().any(|entry| *entry != 0.0);
         for (l, outer) in reaches.iter().enumerate().filter(|(_, own)| moving(own)) {
-            let bent = hessian * outer;
+            let turned = hessian * outer;
             for (k, inner) in reaches.iter().enumerate().filter(|(_, own)| moving(own)) {
-                sum.add(l, k, -bent.dot(inner));
+                sum.add(l, k, -turned.dot(inner));
             }
         }
     }
@@ -333,7 +333,7 @@ impl Curvatures<'_> {
 fn expanded(
     (way, rate): (&Vector3<f64>, &Vector3<f64>),
     virtual_rate: &Vector3<f64>,
-    force: &dyn Fn(&Vector3<Twice>, &Vector3<Twice>) -> Vector3<Twice>,
+    force: &dyn Fn(&Vector3<HyperDual>, &Vector3<HyperDual>) -> Vector3<HyperDual>,
 ) -> ([Vector3<f64>; 3], SMatrix<f64, 9, 9>) {
     let mut hessian = SMatrix::zeros();
     let mut gradient = [Vector3::zeros(); 3];
@@ -341,7 +341,7 @@ fn expanded(
     for i in 0..6 {
         for j in 0..=i {
             let seeded = |n: usize, value: f64| {
-                Twice::new(Dual::new(value, unit(n, i)), Dual::constant(unit(n, j)))
+                HyperDual::new(Dual::new(value, unit(n, i)), Dual::constant(unit(n, j)))
             };
             let x = Vector3::from_fn(|n, _| seeded(n, way[n]));
             let x_rate = Vector3::from_fn(|n, _| seeded(3 + n, rate[n]));

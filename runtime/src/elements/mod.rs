@@ -20,8 +20,8 @@ mod view;
 
 pub use body::{BodySpring, BodyWrench, WrenchAxes};
 pub use constraint::PointConstraint;
-pub(crate) use curvature::Bent;
-pub use curvature::{Curvature, Curvatures, Twice};
+pub(crate) use curvature::Collected;
+pub use curvature::{Curvature, Curvatures, HyperDual};
 pub use drive::Drive;
 pub use error::ElementError;
 pub(crate) use error::values;

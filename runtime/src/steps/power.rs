@@ -66,10 +66,10 @@ pub(crate) struct PowerHessian<T, const K: usize, const S: usize> {
 }
 
 /// A number and its derivatives along two directions.
-type Twice<T> = Dual<Dual<T>>;
+type HyperDual<T> = Dual<Dual<T>>;
 
 /// Moves the number along the inner direction only where it is asked for.
-fn inner<T: Scalar>(value: Dual<T>, moves: bool) -> Twice<T> {
+fn inner<T: Scalar>(value: Dual<T>, moves: bool) -> HyperDual<T> {
     let rate = if moves { T::one() } else { T::zero() };
     Dual::new(value, Dual::constant(rate))
 }
@@ -100,11 +100,11 @@ where
             by_speeds: SMatrix::zeros(),
             by_accelerations: SMatrix::zeros(),
         };
-        let here = self.axis_here(&state.q, law);
+        let here = self.axis_here(state, law);
         let (q, speeds, rates) = (&state.q, &state.speeds, &state.accelerations);
         let (still, v, a) = (constant(q), outer(speeds, None), outer(rates, None));
-        let power = |q: &SVector<Twice<f64>, N>,
-                     speeds: &SVector<Twice<f64>, S>,
+        let power = |q: &SVector<HyperDual<f64>, N>,
+                     speeds: &SVector<HyperDual<f64>, S>,
                      rates: &SVector<Dual<f64>, S>| {
             let state = VirtualState {
                 q: *q,
@@ -140,11 +140,15 @@ where
         hessian
     }
 
-    /// The value of what a law acts on.
-    fn axis_here(&self, q: &SVector<f64, N>, law: &EffortLaw<'_>) -> f64 {
+    /// The value and the rate of what a law acts on.
+    fn axis_here(&self, state: &VirtualState<f64, N, S>, law: &EffortLaw<'_>) -> [f64; 2] {
         match law {
-            EffortLaw::Axis { port, .. } => self.axis(q, *port).0,
-            _ => 0.0,
+            EffortLaw::Axis { port, .. } => {
+                let (value, row) = self.axis(&state.q, *port);
+                let velocity = self.0.velocity(&state.q, &state.speeds);
+                [value, row.dot(&velocity)]
+            }
+            _ => [0.0; 2],
         }
     }
 
@@ -164,7 +168,7 @@ where
         &self,
         state: &VirtualState<T, N, S>,
         law: &EffortLaw<'_>,
-        here: f64,
+        here: [f64; 2],
     ) -> T {
         let VirtualState {
             q,
@@ -191,7 +195,7 @@ where
         q: &SVector<T, N>,
         velocity: &SVector<T, K>,
         law: &EffortLaw<'_>,
-        here: f64,
+        here: [f64; 2],
     ) -> SVector<T, K> {
         match law {
             EffortLaw::Constant(efforts) => lifted(efforts),
@@ -212,7 +216,8 @@ where
             EffortLaw::Axis { port, law, product } => {
                 let (value, row) = self.axis(q, *port);
                 let [effort, stiffness, damping] = [law.effort, law.stiffness, law.damping];
-                let (way, rate) = (value - T::from_f64(here), row.dot(velocity));
+                let [here, here_rate] = here.map(T::from_f64);
+                let (way, rate) = (value - here, row.dot(velocity) - here_rate);
                 let change = T::from_f64(stiffness) * way
                     + T::from_f64(damping) * rate
                     + T::from_f64(*product) * way * rate;

@@ -113,24 +113,6 @@ fn second_derivatives_of_forward_dynamics() {
 }
 
 #[test]
-fn tmp_library_inverse() {
-    let kinds = hamel_tests::random::library();
-    second::inverse_dynamics(
-        bare_and_equipped(cases(&kinds, 4, 60), cases(&kinds, 4, 60)),
-        derivatives::library_kernels,
-    );
-}
-
-#[test]
-fn tmp_library_forward() {
-    let kinds = hamel_tests::random::library();
-    second::forward_dynamics(
-        bare_and_equipped(cases(&kinds, 4, 60), cases(&kinds, 4, 60)),
-        derivatives::library_kernels,
-    );
-}
-
-#[test]
 fn inverse_dynamics() {
     derivatives::inverse_dynamics(all());
 }

@@ -13,24 +13,24 @@ use rand::SeedableRng;
 use std::sync::Arc;
 
 /// A number with its derivatives along two directions.
-pub type Twice = Dual<Dual<f64>>;
+pub type HyperDual = Dual<Dual<f64>>;
 
 /// The equations of motion at one case.
 struct Form<'a> {
-    form: DualForm<Twice>,
+    form: DualForm<HyperDual>,
     case: &'a Case,
     freedoms: usize,
     speeds: usize,
 }
 
 /// 1 along either of two directions where it is entry `i`.
-fn seeded(value: f64, i: usize, (l, k): (usize, usize)) -> Twice {
+fn seeded(value: f64, i: usize, (l, k): (usize, usize)) -> HyperDual {
     let along = |n: usize| f64::from(u8::from(n == i));
     Dual::new(Dual::new(value, along(l)), Dual::constant(along(k)))
 }
 
 impl<'a> Form<'a> {
-    fn new(case: &'a Case, actuation: &Actuation, lookup: Lookup<Twice>) -> Self {
+    fn new(case: &'a Case, actuation: &Actuation, lookup: Lookup<HyperDual>) -> Self {
         let layout = case.mechanism.layout();
         Self {
             form: DualForm::of(&case.mechanism, actuation.clone(), lookup),
@@ -45,7 +45,7 @@ impl<'a> Form<'a> {
         &self,
         vectors: [&[f64]; M],
         along: (usize, usize),
-    ) -> (Vec<Twice>, [Vec<Twice>; M]) {
+    ) -> (Vec<HyperDual>, [Vec<HyperDual>; M]) {
         let q = self
             .form
             .moved_along(&self.case.q, |k| seeded(0.0, k, along));
@@ -94,7 +94,7 @@ impl<'a> Form<'a> {
                 let rate = Dual::new(*rate, slopes[(i, outer)]);
                 Dual::new(rate, Dual::constant(slopes[(i, inner)]))
             });
-            let moved: Vec<Twice> = moved.collect();
+            let moved: Vec<HyperDual> = moved.collect();
             let needed = second(&self.form.inverse(&q, &v, &moved, true), virtual_speeds);
             second(&self.form.reduced(&q, &tau), virtual_speeds) - needed
         })
@@ -102,7 +102,7 @@ impl<'a> Form<'a> {
 }
 
 /// The second derivative of a weighted sum.
-fn second(values: &[Twice], weights: &[f64]) -> f64 {
+fn second(values: &[HyperDual], weights: &[f64]) -> f64 {
     let terms = values.iter().zip(weights);
     terms
         .map(|(value, weight)| weight * value.derivative().derivative())
@@ -171,7 +171,7 @@ impl Figures {
 ///
 /// # Panics
 /// With the figure and the case, where a bound does not hold.
-pub fn inverse_dynamics(all: impl IntoIterator<Item = Equipped>, lookup: Lookup<Twice>) {
+pub fn inverse_dynamics(all: impl IntoIterator<Item = Equipped>, lookup: Lookup<HyperDual>) {
     let mut figures = Figures::new("λᵀ∂²τ̄");
     for equipped in all {
         let case = &equipped.case;
@@ -203,7 +203,7 @@ pub fn inverse_dynamics(all: impl IntoIterator<Item = Equipped>, lookup: Lookup<
 ///
 /// # Panics
 /// With the figure and the case, where a bound does not hold.
-pub fn forward_dynamics(all: impl IntoIterator<Item = Equipped>, lookup: Lookup<Twice>) {
+pub fn forward_dynamics(all: impl IntoIterator<Item = Equipped>, lookup: Lookup<HyperDual>) {
     let mut figures = Figures::new("λᵀ∂²v̄̇");
     for equipped in all {
         let case = &equipped.case;

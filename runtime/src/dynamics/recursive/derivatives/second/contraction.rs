@@ -7,7 +7,7 @@ use crate::dynamics::recursive::elements::Seen;
 use crate::dynamics::recursive::inverse::MOST_FREEDOMS;
 use crate::dynamics::recursive::link::Node;
 use crate::dynamics::recursive::sweeps::combine;
-use crate::elements::{Bent, Curvatures, View};
+use crate::elements::{Collected, Curvatures, View};
 use crate::mechanism::Mechanism;
 use crate::spatial::{join, shift_twist, shift_wrench, split};
 use crate::steps::{EffortLaw, Motion, MotionGradient, Variation};
@@ -160,7 +160,7 @@ impl Recursive {
             virtual_twists: &out.virtual_twists,
             accelerations,
             virtual_speeds: &out.virtual_speeds,
-            into: Bent {
+            into: Collected {
                 hessian: &mut out.hessian,
                 by_local: &mut out.by_local,
                 gradients: &mut out.gradients,
