@@ -19,6 +19,9 @@ use nalgebra::{SMatrix, SVector, Vector3, Vector6};
 /// A number with its derivatives along two directions, and along one after the other.
 pub type HyperDual = Dual<Dual<f64>>;
 
+/// A force as a function of the way between two points and of its rate; world axes, N, m and m/s.
+pub type ForceLaw<'a> = &'a dyn Fn(&Vector3<HyperDual>, &Vector3<HyperDual>) -> Vector3<HyperDual>;
+
 /// An element whose second derivatives are known.
 pub trait Curvature {
     /// Adds first and second derivatives of the power of what [`Element::act`](super::Element::act) exerts under virtual speeds.
@@ -173,7 +176,7 @@ impl Curvatures<'_> {
         view: &View<'_>,
         ends: [Option<End>; 2],
         (way, rate): (&Vector3<f64>, &Vector3<f64>),
-        force: &dyn Fn(&Vector3<HyperDual>, &Vector3<HyperDual>) -> Vector3<HyperDual>,
+        force: ForceLaw<'_>,
     ) {
         let mut bodies = ends.iter().flatten().map(|(body, _)| *body);
         if bodies.any(|body| body >= self.virtual_twists.len()) {
@@ -333,7 +336,7 @@ impl Curvatures<'_> {
 fn expanded(
     (way, rate): (&Vector3<f64>, &Vector3<f64>),
     virtual_rate: &Vector3<f64>,
-    force: &dyn Fn(&Vector3<HyperDual>, &Vector3<HyperDual>) -> Vector3<HyperDual>,
+    force: ForceLaw<'_>,
 ) -> ([Vector3<f64>; 3], SMatrix<f64, 9, 9>) {
     let mut hessian = SMatrix::zeros();
     let mut gradient = [Vector3::zeros(); 3];

@@ -21,7 +21,7 @@ mod view;
 pub use body::{BodySpring, BodyWrench, WrenchAxes};
 pub use constraint::PointConstraint;
 pub(crate) use curvature::Collected;
-pub use curvature::{Curvature, Curvatures, HyperDual};
+pub use curvature::{Curvature, Curvatures, ForceLaw, HyperDual};
 pub use drive::Drive;
 pub use error::ElementError;
 pub(crate) use error::values;

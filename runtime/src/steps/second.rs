@@ -119,6 +119,15 @@ where
         carrying: &Carrying<T>,
         gradient: &MotionGradient<T>,
     ) -> OwnHessian<T, K, S> {
+        let structures = J::STRUCTURES;
+        // Then ϕ̇ = v = v̄ and X̄ stands still in the child: nothing changes but what the parent does, as seen from there.
+        if structures.speed_map.is_constant()
+            && structures.velocity_map.is_identity()
+            && structures.speed_basis.is_identity()
+        {
+            let columns = self.columns(&state.q, &Matrix3::identity());
+            return Self::second_variations_of(&columns, carrying, gradient);
+        }
         let still = state.constant();
         let gradient = gradient.map(constant);
         let local = self.0.local_twist_map(&state.q);
@@ -153,6 +162,34 @@ where
             hessian.mixed.set_column(l, &derivative(&by_local));
             let row = derivative(&by_speeds).transpose();
             hessian.by_speeds.set_row(l, &row);
+        }
+        hessian
+    }
+
+    /// [`Steps::second_variations`] where X̄ with these columns is constant, and the velocities of ϕ are the speeds.
+    fn second_variations_of<T: Scalar>(
+        columns: &[Vector6<T>; S],
+        carrying: &Carrying<T>,
+        gradient: &MotionGradient<T>,
+    ) -> OwnHessian<T, K, S> {
+        let mut hessian = OwnHessian {
+            by_local: SMatrix::<T, K, K>::zeros(),
+            mixed: SMatrix::<T, K, S>::zeros(),
+            by_speeds: SMatrix::<T, S, S>::zeros(),
+        };
+        for (l, outer) in columns.iter().enumerate() {
+            let moved = carrying.map(|twist| -bracket_product(outer, twist));
+            for (k, inner) in columns.iter().enumerate() {
+                let drift = bracket_product(&moved.twist, inner);
+                let rate = bracket_product(&moved.rate, inner)
+                    + bracket_product(&moved.twist, &bracket_product(&carrying.twist, inner))
+                    + bracket_product(&carrying.twist, &drift);
+                let virtual_drift = bracket_product(&moved.virtual_twist, inner);
+                hessian.by_local[(l, k)] = gradient.twist.dot(&drift)
+                    + gradient.rate.dot(&rate)
+                    + gradient.virtual_twist.dot(&virtual_drift);
+                hessian.by_speeds[(l, k)] = gradient.rate.dot(&bracket_product(outer, inner));
+            }
         }
         hessian
     }

@@ -80,7 +80,7 @@ fn what_is_not_covered_is_refused_by_name() {
 fn what_second_derivatives_do_not_cover_is_refused_by_name() {
     let case = cases(&library(), 2, 2).last().expect("two bodies");
     let (q, v, tau, mechanism) = (&case.q, &case.speeds, &case.efforts, &case.mechanism);
-    let silent: Arc<Silent> = Arc::new(Silent { has_slope: true });
+    let silent: Arc<dyn Element> = Arc::new(Silent { has_slope: true });
     let silent = (**mechanism).clone().with_elements(vec![silent]);
     let silent = Arc::new(silent.expect("it fits"));
     let mut out = InverseSecondDerivatives::new(&silent);
