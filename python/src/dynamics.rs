@@ -144,6 +144,64 @@ impl Robot {
         )
     }
 
+    /// `λᵀ∂²v̄̇` over (ϕ, v̄, τ), by the tree.
+    pub fn acceleration_hessians<'py>(
+        &self,
+        [q, v, tau, weights]: [Given<'_, 'py>; 4],
+    ) -> PyResult<Results<'py>> {
+        let py = q.py();
+        let arguments = [
+            self.q(q)?,
+            self.of_speeds("v", v)?,
+            self.tau(tau)?,
+            self.of_speeds("weights", weights)?,
+        ];
+        let size = 2 * self.sizes().freedoms + self.sizes().speeds;
+        let [hessians] = evaluate(
+            py,
+            self.workspaces(),
+            arguments,
+            [&[size, size]],
+            |own, [q, v, tau, weights], [out]| {
+                let (equations, found) = own.forward_second();
+                let tree = equations.tree();
+                tree.forward_dynamics_second_derivatives(q, v, tau, weights, found)?;
+                copy(found.hessian(), out);
+                Ok(())
+            },
+        )?;
+        Ok(hessians)
+    }
+
+    /// `λᵀ∂²τ̄` over (ϕ, v̄, v̄̇), by the tree.
+    pub fn effort_hessians<'py>(
+        &self,
+        [q, v, a, weights]: [Given<'_, 'py>; 4],
+    ) -> PyResult<Results<'py>> {
+        let py = q.py();
+        let arguments = [
+            self.q(q)?,
+            self.of_speeds("v", v)?,
+            self.of_speeds("a", a)?,
+            self.of_speeds("weights", weights)?,
+        ];
+        let size = self.sizes().freedoms + 2 * self.sizes().speeds;
+        let [hessians] = evaluate(
+            py,
+            self.workspaces(),
+            arguments,
+            [&[size, size]],
+            |own, [q, v, a, weights], [out]| {
+                let (equations, found) = own.inverse_second();
+                let tree = equations.tree();
+                tree.inverse_dynamics_second_derivatives(q, v, a, weights, found)?;
+                copy(found.hessian(), out);
+                Ok(())
+            },
+        )?;
+        Ok(hessians)
+    }
+
     /// The 6×S matrix that takes v̄ to the twist of a frame.
     pub fn jacobian_of<'py>(
         &self,

@@ -326,6 +326,50 @@ impl Robot {
         class.call1((by_local, by_speeds))
     }
 
+    /// Second derivatives of the accelerations, weighted and summed: the Hessian of weights · forward_dynamics by local coordinates phi about q, v and tau, (..., 2K + S, 2K + S), in
+    /// this order. Nothing is differenced; compiled robots take it from the general algorithms too.
+    ///
+    /// For joints that store angles or displacements phi is a change of q.
+    ///
+    /// Args:
+    ///     q: configurations, (..., N).
+    ///     v: speeds, (..., S), rad/s and m/s.
+    ///     tau: efforts, (..., K), N m and N.
+    ///     weights: one for each acceleration, (..., S).
+    ///
+    /// Raises:
+    ///     DynamicsError: a singular mass matrix; something that acts whose second derivatives are not known; constraints between joints.
+    fn forward_dynamics_second_derivatives<'py>(
+        &self,
+        q: Given<'_, 'py>,
+        v: Given<'_, 'py>,
+        tau: Given<'_, 'py>,
+        weights: Given<'_, 'py>,
+    ) -> PyResult<Arrays<'py>> {
+        self.acceleration_hessians([q, v, tau, weights])
+    }
+
+    /// Second derivatives of inverse dynamics, weighted and summed: the Hessian of weights · inverse_dynamics by local coordinates phi about q, v and a, (..., K + 2S, K + 2S), in this
+    /// order. Nothing is differenced; compiled robots take it from the general algorithms too.
+    ///
+    /// Args:
+    ///     q: configurations, (..., N).
+    ///     v: speeds, (..., S), rad/s and m/s.
+    ///     a: accelerations, (..., S), rad/s² and m/s².
+    ///     weights: one for each effort, (..., S).
+    ///
+    /// Raises:
+    ///     DynamicsError: something that acts whose second derivatives are not known.
+    fn inverse_dynamics_second_derivatives<'py>(
+        &self,
+        q: Given<'_, 'py>,
+        v: Given<'_, 'py>,
+        a: Given<'_, 'py>,
+        weights: Given<'_, 'py>,
+    ) -> PyResult<Arrays<'py>> {
+        self.effort_hessians([q, v, a, weights])
+    }
+
     /// The matrix that takes v to the twist of a frame or a body, (..., 6, S): angular velocity in the first three rows, rad/s, linear velocity in the last three, m/s.
     ///
     /// Args:

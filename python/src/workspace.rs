@@ -3,7 +3,9 @@
 use crate::batch::lock;
 use crate::equations::Equations;
 use hamel::compiled::Compiled;
-use hamel::dynamics::{ForwardDerivatives, InverseDerivatives};
+use hamel::dynamics::{
+    ForwardDerivatives, ForwardSecondDerivatives, InverseDerivatives, InverseSecondDerivatives,
+};
 use hamel::mechanism::{Body, CONFIGURATION_TOLERANCE, Mechanism, StateError};
 use std::sync::{Arc, Mutex};
 
@@ -18,6 +20,8 @@ pub struct Workspace {
     pub jacobian: Vec<f64>,
     forward: Option<Box<ForwardDerivatives>>,
     inverse: Option<Box<InverseDerivatives>>,
+    forward_second: Option<Box<ForwardSecondDerivatives>>,
+    inverse_second: Option<Box<InverseSecondDerivatives>>,
 }
 
 impl Workspace {
@@ -30,6 +34,8 @@ impl Workspace {
             jacobian: vec![0.0; 6 * speeds],
             forward: None,
             inverse: None,
+            forward_second: None,
+            inverse_second: None,
         }
     }
 
@@ -46,6 +52,22 @@ impl Workspace {
         let room = self
             .inverse
             .get_or_insert_with(|| Box::new(InverseDerivatives::new(&self.mechanism)));
+        (&mut self.equations, room)
+    }
+
+    /// The equations of motion, and room for second derivatives of forward dynamics.
+    pub fn forward_second(&mut self) -> (&mut Equations, &mut ForwardSecondDerivatives) {
+        let room = self
+            .forward_second
+            .get_or_insert_with(|| Box::new(ForwardSecondDerivatives::new(&self.mechanism)));
+        (&mut self.equations, room)
+    }
+
+    /// The equations of motion, and room for second derivatives of inverse dynamics.
+    pub fn inverse_second(&mut self) -> (&mut Equations, &mut InverseSecondDerivatives) {
+        let room = self
+            .inverse_second
+            .get_or_insert_with(|| Box::new(InverseSecondDerivatives::new(&self.mechanism)));
         (&mut self.equations, room)
     }
 }

@@ -26,6 +26,7 @@ def test_batches_of_none_and_one(panda, count):
     assert panda.pose(q, "panda_hand").shape == (count, 4, 4)
     assert panda.energy(q, v).shape == (count,)
     assert panda.forward_dynamics_derivatives(q, v, tau).by_local.shape == (count, 7, 7)
+    assert panda.forward_dynamics_second_derivatives(q, v, tau, tau).shape == (count, 21, 21)
     assert panda.configuration(q).shape == (count, 7)
 
 
@@ -135,6 +136,8 @@ def test_every_function_takes_numbers_that_are_none(panda):
     bad = np.full(7, np.nan)
     three = [panda.forward_dynamics, panda.inverse_dynamics, panda.forward_dynamics_derivatives, panda.inverse_dynamics_derivatives]
     calls = [lambda own=own: own(bad, bad, bad) for own in three]
+    four = [panda.forward_dynamics_second_derivatives, panda.inverse_dynamics_second_derivatives]
+    calls += [lambda own=own: own(bad, bad, bad, bad) for own in four]
     calls += [lambda own=own: own(bad, bad) for own in (panda.bias_forces, panda.energy, panda.kinetic_energy)]
     one = [panda.mass_matrix, panda.potential_energy, panda.poses, panda.center_of_mass, panda.configuration, panda.positions]
     calls += [lambda own=own: own(bad) for own in one]

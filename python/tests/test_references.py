@@ -92,6 +92,38 @@ def test_derivatives_of_inverse_and_forward_dynamics_fit(panda, q, v):
         assert np.abs(residual).max() < 1e-11 * np.abs(other).max()
 
 
+def test_second_derivatives_are_differences_of_first_ones(panda, q, v):
+    """Central differences of step h: their error is h² of fourth derivatives and eps / h of values."""
+    tau, step = column("tau"), 1e-5
+    weights = np.linspace(-1.0, 1.0, 7)
+
+    def slopes(q, v, tau):
+        found = panda.forward_dynamics_derivatives(q, v, tau)
+        return weights @ np.concatenate([found.by_local, found.by_speeds, found.by_efforts], axis=-1)
+
+    found = panda.forward_dynamics_second_derivatives(q, v, tau, weights)
+    assert found.shape == (*q.shape[:-1], 21, 21)
+    assert np.abs(found - np.swapaxes(found, -1, -2)).max() < 1e-12 * np.abs(found).max()
+    for k, unit in enumerate(step * np.eye(21)):
+        by_q, by_v, by_tau = unit[:7], unit[7:14], unit[14:]
+        difference = slopes(q + by_q, v + by_v, tau + by_tau) - slopes(q - by_q, v - by_v, tau - by_tau)
+        assert np.abs(found[..., k, :] - difference / (2 * step)).max() < 1e-6 * np.abs(found).max(), k
+
+
+def test_second_derivatives_of_inverse_and_forward_dynamics_fit(panda, q, v):
+    """By speeds and twice by q, of M(q) a: what is left of the efforts at two accelerations."""
+    weights = np.linspace(-1.0, 1.0, 7)
+    zero, a = np.zeros(7), np.linspace(0.5, 2.0, 7)
+    found, rest = (panda.inverse_dynamics_second_derivatives(q, v, own, weights) for own in (a, zero))
+    # By q and a it is the derivative of the mass matrix, and linear in a otherwise.
+    step = 1e-6
+    for k, unit in enumerate(step * np.eye(7)):
+        mass = (panda.mass_matrix(q + unit) - panda.mass_matrix(q - unit)) / (2 * step)
+        assert np.abs(found[..., k, 14:] - weights @ mass).max() < 1e-7 * np.abs(mass).max()
+    assert np.allclose(found[..., 7:14, 7:14], rest[..., 7:14, 7:14], rtol=0, atol=1e-12)
+    assert not found[..., 7:, 14:].any()
+
+
 def test_a_jacobian_takes_speeds_to_twists(panda, q, v):
     for axes in ("world_aligned", "body", "world"):
         twist = panda.twist(q, v, "panda_hand_tcp", axes)

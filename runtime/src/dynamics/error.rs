@@ -58,6 +58,14 @@ pub enum DynamicsError {
         /// Its name.
         name: String,
     },
+    /// Second derivatives of this mechanism are not covered.
+    #[error("second derivatives of the dynamics do not cover {what}: `{name}`")]
+    NotTwiceDifferentiable {
+        /// What stands in the way.
+        what: &'static str,
+        /// Its name.
+        name: String,
+    },
     /// A frame that cannot move in all six ways has no operational-space inertia.
     #[error(
         "frame `{frame}` has no operational-space inertia: its motion in direction `{direction}` depends on the directions before it, the \

@@ -17,9 +17,9 @@ pub mod reference;
 pub use error::DynamicsError;
 pub use recursive::LoadedMass;
 pub use recursive::{
-    ForwardDerivatives, Frame, FrameReadings, HamiltonianDerivatives, InverseDerivatives,
-    InverseMassMatrix, JointTorqueRegressor, MassMatrix, PinError, PinForce, Readings, Recursive,
-    Refined, Sensitivity,
+    ForwardDerivatives, ForwardSecondDerivatives, Frame, FrameReadings, HamiltonianDerivatives,
+    InverseDerivatives, InverseMassMatrix, InverseSecondDerivatives, JointTorqueRegressor,
+    MassMatrix, PinError, PinForce, Readings, Recursive, Refined, Sensitivity,
 };
 pub use reference::Reference;
 

@@ -1,8 +1,12 @@
 //! Springs between bodies, and wrenches from outside.
 
 use super::error::{body, values};
-use super::{Action, Element, ElementError, PointForce, Slope, Slopes, View};
+use super::{
+    Action, Curvature, Curvatures, Element, ElementError, HyperDual, PointForce, Slope, Slopes,
+    View,
+};
 use crate::mechanism::Mechanism;
+use crate::scalar::Scalar;
 use crate::spatial::fused::{apply, dot};
 use crate::spatial::split;
 use alloc::string::String;
@@ -39,6 +43,16 @@ impl BodySpring {
         }
         let direction = between / length;
         (direction, length, dot(&direction, &rate))
+    }
+
+    /// The force on the second end where it stands off the first, as a function of the way between them and of its rate.
+    fn force(&self, way: &Vector3<HyperDual>, rate: &Vector3<HyperDual>) -> Vector3<HyperDual> {
+        let length = Scalar::sqrt(dot(way, way));
+        let direction = way.map(|entry| entry / length);
+        let stretch = length - HyperDual::from_f64(self.length);
+        let pull = HyperDual::from_f64(self.stiffness) * stretch
+            + HyperDual::from_f64(self.damping) * dot(&direction, rate);
+        direction * -pull
     }
 }
 
@@ -82,6 +96,10 @@ impl Element for BodySpring {
     fn slope(&self) -> Option<&dyn Slope> {
         Some(self)
     }
+
+    fn curvature(&self) -> Option<&dyn Curvature> {
+        Some(self)
+    }
 }
 
 impl Slope for BodySpring {
@@ -109,6 +127,22 @@ impl Slope for BodySpring {
             by_rate: -along * self.damping,
         };
         slopes.add_point_force(view, &force);
+    }
+}
+
+impl Curvature for BodySpring {
+    /// Where the points coincide there are none, as there is no force.
+    fn add_curvatures(&self, view: &View<'_>, curvatures: &mut Curvatures<'_>) {
+        if self.line(view).1 == 0.0 {
+            return;
+        }
+        let [from, to] = [0, 1].map(|end: usize| view.point(self.bodies[end], &self.points[end]));
+        let ends = [0, 1].map(|end: usize| {
+            let body = self.bodies[end]?;
+            Some((body, view.arm(body, &self.points[end])))
+        });
+        let motion = (&(to.0 - from.0), &(to.1 - from.1));
+        curvatures.add_point_force(view, ends, motion, &|way, rate| self.force(way, rate));
     }
 }
 
@@ -216,11 +250,21 @@ impl Element for BodyWrench {
     fn slope(&self) -> Option<&dyn Slope> {
         Some(self)
     }
+
+    fn curvature(&self) -> Option<&dyn Curvature> {
+        Some(self)
+    }
 }
 
 impl Slope for BodyWrench {
     fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>) {
         add_wrench_slopes(&self.pull(), view, slopes);
+    }
+}
+
+impl Curvature for BodyWrench {
+    fn add_curvatures(&self, view: &View<'_>, curvatures: &mut Curvatures<'_>) {
+        add_wrench_curvatures(&self.pull(), view, curvatures);
     }
 }
 
@@ -237,4 +281,20 @@ pub(super) fn add_wrench_slopes(pull: &Pull<'_>, view: &View<'_>, slopes: &mut S
     };
     slopes.add_point_force(view, &force);
     slopes.add_moment(view, pull.body, &pull.moment);
+}
+
+/// The same of second derivatives.
+pub(super) fn add_wrench_curvatures(
+    pull: &Pull<'_>,
+    view: &View<'_>,
+    curvatures: &mut Curvatures<'_>,
+) {
+    if pull.axes == WrenchAxes::Body {
+        return;
+    }
+    let end = (pull.body, view.arm(pull.body, pull.point));
+    let force = pull.force.map(HyperDual::from_f64);
+    let still = Vector3::zeros();
+    curvatures.add_point_force(view, [None, Some(end)], (&still, &still), &|_, _| force);
+    curvatures.add_moment(view, pull.body, &pull.moment);
 }

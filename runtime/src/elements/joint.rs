@@ -1,9 +1,10 @@
 //! Dampers and actuators at a joint.
 
 use super::error::{body, values};
-use super::{Action, Element, ElementError, Slope, Slopes, View};
+use super::{Action, Curvature, Curvatures, Element, ElementError, Slope, Slopes, View};
 use crate::joint::MOST_FREEDOMS;
 use crate::mechanism::Mechanism;
+use crate::steps::EffortLaw;
 use alloc::string::String;
 use alloc::vec::Vec;
 
@@ -55,6 +56,10 @@ impl Element for JointDamper {
     fn slope(&self) -> Option<&dyn Slope> {
         Some(self)
     }
+
+    fn curvature(&self) -> Option<&dyn Curvature> {
+        Some(self)
+    }
 }
 
 impl Slope for JointDamper {
@@ -71,6 +76,12 @@ impl Slope for JointDamper {
             &[0.0; MOST_FREEDOMS * MOST_FREEDOMS],
             &by_velocity,
         );
+    }
+}
+
+impl Curvature for JointDamper {
+    fn add_curvatures(&self, view: &View<'_>, curvatures: &mut Curvatures<'_>) {
+        curvatures.add_effort(view, self.body, &EffortLaw::Damper(&self.coefficients));
     }
 }
 
@@ -115,8 +126,18 @@ impl Element for JointEffort {
     fn slope(&self) -> Option<&dyn Slope> {
         Some(self)
     }
+
+    fn curvature(&self) -> Option<&dyn Curvature> {
+        Some(self)
+    }
 }
 
 impl Slope for JointEffort {
     fn add_slopes(&self, _view: &View<'_>, _slopes: &mut Slopes<'_>) {}
+}
+
+impl Curvature for JointEffort {
+    fn add_curvatures(&self, view: &View<'_>, curvatures: &mut Curvatures<'_>) {
+        curvatures.add_effort(view, self.body, &EffortLaw::Constant(&self.efforts));
+    }
 }

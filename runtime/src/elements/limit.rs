@@ -2,10 +2,11 @@
 
 use super::error::{body, values};
 use super::port::{add_slopes, known};
-use super::{Action, Element, ElementError, Slope, Slopes, View};
+use super::{Action, Curvature, Curvatures, Element, ElementError, Slope, Slopes, View};
 use crate::erased::AnyJoint;
 use crate::joint::{Port, PortLaw};
 use crate::mechanism::Mechanism;
+use crate::steps::EffortLaw;
 use alloc::string::String;
 use core::f64::consts::TAU;
 
@@ -215,6 +216,10 @@ impl Element for JointLimit {
     fn slope(&self) -> Option<&dyn Slope> {
         Some(self)
     }
+
+    fn curvature(&self) -> Option<&dyn Curvature> {
+        Some(self)
+    }
 }
 
 impl Slope for JointLimit {
@@ -239,5 +244,29 @@ impl Slope for JointLimit {
                 add_slopes((self.body, port), &law, view, slopes);
             }
         }
+    }
+}
+
+impl Curvature for JointLimit {
+    /// Of the branch that it is on: where the effort bends, second derivatives jump.
+    fn add_curvatures(&self, view: &View<'_>, curvatures: &mut Curvatures<'_>) {
+        let Some(beyond) = self.beyond(view) else {
+            return;
+        };
+        let factor = self.factor(&beyond);
+        let damping = match factor > 0.0 {
+            true => self.stiffness * self.damping,
+            false => 0.0,
+        };
+        let law = EffortLaw::Axis {
+            port: self.port,
+            law: PortLaw {
+                effort: self.effort(&beyond),
+                stiffness: self.stiffness * factor,
+                damping: damping * beyond.by,
+            },
+            product: damping * beyond.side,
+        };
+        curvatures.add_effort(view, self.body, &law);
     }
 }

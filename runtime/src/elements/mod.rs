@@ -6,6 +6,7 @@
 
 mod body;
 mod constraint;
+mod curvature;
 mod drive;
 mod error;
 mod joint;
@@ -19,6 +20,8 @@ mod view;
 
 pub use body::{BodySpring, BodyWrench, WrenchAxes};
 pub use constraint::PointConstraint;
+pub(crate) use curvature::Collected;
+pub use curvature::{Curvature, Curvatures, ForceLaw, HyperDual};
 pub use drive::Drive;
 pub use error::ElementError;
 pub(crate) use error::values;
@@ -62,6 +65,12 @@ pub trait Element: Debug + Send + Sync {
     /// How what it exerts changes with the state, for derivatives of the dynamics; `None` where it does not say, and derivatives of a mechanism
     /// with it are refused.
     fn slope(&self) -> Option<&dyn Slope> {
+        None
+    }
+
+    /// Second derivatives of what it exerts, for those of the dynamics; `None` where it does not say, and second derivatives of a mechanism with it
+    /// are refused.
+    fn curvature(&self) -> Option<&dyn Curvature> {
         None
     }
 

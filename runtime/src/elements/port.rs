@@ -3,9 +3,10 @@
 //! An effort f at a port with the rate w = P v is `τ = Pᵀ f` in v, so that its power is `f w`.
 
 use super::error::{body, functions, values};
-use super::{Action, Element, ElementError, Slope, Slopes, View};
+use super::{Action, Curvature, Curvatures, Element, ElementError, Slope, Slopes, View};
 use crate::joint::{MOST_FREEDOMS, Port, PortLaw};
 use crate::mechanism::Mechanism;
+use crate::steps::EffortLaw;
 use crate::time_function::{Moment, TimeFunction};
 use alloc::string::String;
 use core::slice;
@@ -87,6 +88,10 @@ impl Element for PortEffort {
         Some(self)
     }
 
+    fn curvature(&self) -> Option<&dyn Curvature> {
+        Some(self)
+    }
+
     fn port_effort(&self, view: &View<'_>) -> Option<(usize, usize, f64)> {
         Some((self.body, self.port, self.effort.value(view.moment)))
     }
@@ -112,6 +117,23 @@ impl Slope for PortEffort {
             damping: 0.0,
         };
         add_slopes((self.body, self.port), &law, view, slopes);
+    }
+}
+
+impl Curvature for PortEffort {
+    fn add_curvatures(&self, view: &View<'_>, curvatures: &mut Curvatures<'_>) {
+        let law = PortLaw {
+            effort: self.effort.value(view.moment),
+            stiffness: 0.0,
+            damping: 0.0,
+        };
+        let port = Some(self.port);
+        let law = EffortLaw::Axis {
+            port,
+            law,
+            product: 0.0,
+        };
+        curvatures.add_effort(view, self.body, &law);
     }
 }
 
@@ -160,6 +182,10 @@ impl Element for PortSpring {
     fn slope(&self) -> Option<&dyn Slope> {
         Some(self)
     }
+
+    fn curvature(&self) -> Option<&dyn Curvature> {
+        Some(self)
+    }
 }
 
 impl Slope for PortSpring {
@@ -170,6 +196,23 @@ impl Slope for PortSpring {
             damping: self.damping,
         };
         add_slopes((self.body, self.port), &law, view, slopes);
+    }
+}
+
+impl Curvature for PortSpring {
+    fn add_curvatures(&self, view: &View<'_>, curvatures: &mut Curvatures<'_>) {
+        let law = PortLaw {
+            effort: self.now(view).1,
+            stiffness: self.stiffness,
+            damping: self.damping,
+        };
+        let port = Some(self.port);
+        let law = EffortLaw::Axis {
+            port,
+            law,
+            product: 0.0,
+        };
+        curvatures.add_effort(view, self.body, &law);
     }
 }
 

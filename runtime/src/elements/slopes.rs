@@ -146,7 +146,7 @@ pub struct PointForce {
 }
 
 /// The signs with which a force acts on its two points.
-const SIGNS: [f64; 2] = [-1.0, 1.0];
+pub(super) const SIGNS: [f64; 2] = [-1.0, 1.0];
 
 /// A column of one of both matrices.
 #[derive(Clone, Copy)]
@@ -158,10 +158,10 @@ enum Column {
 }
 
 /// A point of a body, where it is and how it moves.
-struct Place {
-    body: usize,
-    position: Vector3<f64>,
-    velocity: Vector3<f64>,
+pub(super) struct Place {
+    pub(super) body: usize,
+    pub(super) position: Vector3<f64>,
+    pub(super) velocity: Vector3<f64>,
 }
 
 impl Slopes<'_> {
@@ -362,13 +362,13 @@ impl Slopes<'_> {
 }
 
 /// The body and all that it hangs on, up to the root.
-fn path(mechanism: &Mechanism, body: usize) -> impl Iterator<Item = usize> + '_ {
+pub(super) fn path(mechanism: &Mechanism, body: usize) -> impl Iterator<Item = usize> + '_ {
     let parent = |index: &usize| mechanism.bodies()[*index].parent();
     core::iter::successors(Some(body), parent)
 }
 
 impl Place {
-    fn new(view: &View<'_>, (body, arm): End) -> Option<Self> {
+    pub(super) fn new(view: &View<'_>, (body, arm): End) -> Option<Self> {
         let (turn, slide) = split(view.motions.twist(body)?);
         Some(Self {
             body,
@@ -379,7 +379,7 @@ impl Place {
 }
 
 /// The velocity that a twist gives the end of an arm.
-fn at(twist: &Vector6<f64>, arm: &Vector3<f64>) -> Vector3<f64> {
+pub(super) fn at(twist: &Vector6<f64>, arm: &Vector3<f64>) -> Vector3<f64> {
     let (turn, slide) = split(twist);
     add_cross(&slide, &turn, arm)
 }

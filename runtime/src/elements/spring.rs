@@ -1,11 +1,12 @@
 //! Springs at a joint, measured on the joint's own manifold.
 
 use super::error::{body, values};
-use super::{Action, Element, ElementError, Slope, Slopes, View};
+use super::{Action, Curvature, Curvatures, Element, ElementError, Slope, Slopes, View};
 use crate::joint::MOST_FREEDOMS;
 use crate::mechanism::{CONFIGURATION_TOLERANCE, Mechanism};
 use crate::spatial::fused::product;
 use crate::spatial::vee;
+use crate::steps::EffortLaw;
 use alloc::string::String;
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, Matrix3, Vector3};
@@ -132,6 +133,10 @@ impl Element for JointSpring {
     fn slope(&self) -> Option<&dyn Slope> {
         Some(self)
     }
+
+    fn curvature(&self) -> Option<&dyn Curvature> {
+        Some(self)
+    }
 }
 
 impl Slope for JointSpring {
@@ -151,6 +156,16 @@ impl Slope for JointSpring {
             &by_local,
             &[0.0; MOST_FREEDOMS * MOST_FREEDOMS],
         );
+    }
+}
+
+impl Curvature for JointSpring {
+    fn add_curvatures(&self, view: &View<'_>, curvatures: &mut Curvatures<'_>) {
+        let law = EffortLaw::Spring {
+            rest: &self.rest,
+            stiffness: &self.stiffness,
+        };
+        curvatures.add_effort(view, self.body, &law);
     }
 }
 
@@ -229,6 +244,10 @@ impl Element for RotationSpring {
     fn slope(&self) -> Option<&dyn Slope> {
         Some(self)
     }
+
+    fn curvature(&self) -> Option<&dyn Curvature> {
+        Some(self)
+    }
 }
 
 impl Slope for RotationSpring {
@@ -246,5 +265,15 @@ impl Slope for RotationSpring {
             &by_local,
             &[0.0; MOST_FREEDOMS * MOST_FREEDOMS],
         );
+    }
+}
+
+impl Curvature for RotationSpring {
+    fn add_curvatures(&self, view: &View<'_>, curvatures: &mut Curvatures<'_>) {
+        let law = EffortLaw::RotationSpring {
+            rest: &self.rest,
+            stiffness: self.stiffness,
+        };
+        curvatures.add_effort(view, self.body, &law);
     }
 }

@@ -1,8 +1,10 @@
 //! Efforts and wrenches that are functions of time.
 
-use super::body::{Pull, add_wrench_slopes};
+use super::body::{Pull, add_wrench_curvatures, add_wrench_slopes};
 use super::error::{body, functions, values};
-use super::{Action, Element, ElementError, Slope, Slopes, View, WrenchAxes};
+use super::{
+    Action, Curvature, Curvatures, Element, ElementError, Slope, Slopes, View, WrenchAxes,
+};
 use crate::mechanism::Mechanism;
 use crate::time_function::TimeFunction;
 use alloc::string::String;
@@ -90,6 +92,10 @@ impl Element for TimedWrench {
         Some(self)
     }
 
+    fn curvature(&self) -> Option<&dyn Curvature> {
+        Some(self)
+    }
+
     fn functions(&self) -> &[TimeFunction] {
         &self.entries
     }
@@ -98,5 +104,11 @@ impl Element for TimedWrench {
 impl Slope for TimedWrench {
     fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>) {
         add_wrench_slopes(&self.now(view), view, slopes);
+    }
+}
+
+impl Curvature for TimedWrench {
+    fn add_curvatures(&self, view: &View<'_>, curvatures: &mut Curvatures<'_>) {
+        add_wrench_curvatures(&self.now(view), view, curvatures);
     }
 }

@@ -8,8 +8,8 @@ use super::{AnyJoint, ExtendedJoint, FiniteMapError, Layout, Shared, Sizes};
 use crate::joint::{Joint, Pin, Port, PortLaw, Products, Structures, Units, VelocityFrame};
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
 use crate::steps::{
-    AtPort, ChartDerivatives, Field, Motion, Pivot, PivotFailure, Placement, RotorTerm, Steps,
-    Variation,
+    AtPort, Carrying, ChartDerivatives, EffortLaw, Field, Motion, MotionGradient, Pivot,
+    PivotFailure, Placement, RotorTerm, Steps, Variation, VirtualState,
 };
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -465,5 +465,62 @@ where
         };
         let state = (&stored(&self.0, q), &vector(speeds), &accelerations);
         Steps(&self.0).variations(state, motions, columns, own);
+    }
+
+    fn second_variations(
+        &self,
+        state: (&[f64], &[f64], &[f64]),
+        virtual_speeds: &[f64],
+        carrying: &Carrying<f64>,
+        gradient: &MotionGradient<f64>,
+        out: [&mut [f64]; 3],
+    ) {
+        let state = virtual_state(&self.0, state, virtual_speeds);
+        let hessian = Steps(&self.0).second_variations(&state, carrying, gradient);
+        let [by_local, mixed, by_speeds] = out;
+        hessian.by_local.store(by_local);
+        hessian.mixed.store(mixed);
+        hessian.by_speeds.store(by_speeds);
+    }
+
+    fn chart_terms(&self, q: &[f64], gradient: &[f64], out: &mut [f64]) {
+        Steps(&self.0)
+            .chart_terms(&stored(&self.0, q), &vector(gradient))
+            .store(out);
+    }
+
+    fn power_hessian(
+        &self,
+        state: (&[f64], &[f64], &[f64]),
+        virtual_speeds: &[f64],
+        law: &EffortLaw<'_>,
+        gradient: &mut [f64],
+        out: [&mut [f64]; 4],
+    ) {
+        let state = virtual_state(&self.0, state, virtual_speeds);
+        let hessian = Steps(&self.0).power_hessian(&state, law);
+        let [by_local, mixed, by_speeds, by_accelerations] = out;
+        hessian.gradient.store(gradient);
+        hessian.by_local.store(by_local);
+        hessian.mixed.store(mixed);
+        hessian.by_speeds.store(by_speeds);
+        hessian.by_accelerations.store(by_accelerations);
+    }
+}
+
+/// The slices as vectors.
+fn virtual_state<J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    joint: &J,
+    (q, speeds, accelerations): (&[f64], &[f64], &[f64]),
+    virtual_speeds: &[f64],
+) -> VirtualState<f64, N, S>
+where
+    J: Joint<N, K, S, C>,
+{
+    VirtualState {
+        q: stored(joint, q),
+        speeds: vector(speeds),
+        accelerations: vector(accelerations),
+        virtual_speeds: vector(virtual_speeds),
     }
 }

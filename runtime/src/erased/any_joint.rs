@@ -7,7 +7,8 @@ use crate::joint::{Joint, Products};
 use crate::joint::{Pin, Port, PortLaw, Structures, Units, VelocityFrame};
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
 use crate::steps::{
-    ChartDerivatives, Motion, Pivot, PivotFailure, Placement, RotorTerm, Variation,
+    Carrying, ChartDerivatives, EffortLaw, Motion, MotionGradient, Pivot, PivotFailure, Placement,
+    RotorTerm, Variation,
 };
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -244,5 +245,29 @@ pub trait AnyJoint: Debug + Send + Sync {
         motions: (&Motion<f64>, &Motion<f64>),
         columns: &[Vector6<f64>],
         out: &mut [Variation<f64>],
+    );
+    /// Second derivatives, along the joint's own ϕ and v̄ at the `state` (q, v̄, v̄̇), of a scalar function of a mechanism's motion whose `gradient` by the
+    /// motion of the child frame is held fixed there: `E_l` of the products of the gradient with the variations, into `out`: by ϕ (K×K, row l, column k), by
+    /// ϕ and v̄ (K×S), and by v̄ (S×S). `virtual_speeds` are μ; `carrying` is what the parent does; it and the gradient are in child axes.
+    fn second_variations(
+        &self,
+        state: (&[f64], &[f64], &[f64]),
+        virtual_speeds: &[f64],
+        carrying: &Carrying<f64>,
+        gradient: &MotionGradient<f64>,
+        out: [&mut [f64]; 3],
+    );
+    /// `Σ_m g_m [S₀⁻¹ (∂S_l − E_l S₀)]_mk` into `out` (K×K, row l, column k), for g with K entries: what `E_l E_k f` lacks to be the Hessian of f(Φ(Q, ϕ))
+    /// at ϕ = 0, where g_k is `E_k f`.
+    fn chart_terms(&self, q: &[f64], gradient: &[f64], out: &mut [f64]);
+    /// First and second derivatives at the `state` (q, v̄, v̄̇) of the power of efforts under `virtual_speeds`: `E_k` into `gradient` (K); `E_l E_k` (K×K,
+    /// row l, column k), by ϕ and v̄ (K×S), by v̄ (S×S), by ϕ and v̄̇ (K×S) into `out`.
+    fn power_hessian(
+        &self,
+        state: (&[f64], &[f64], &[f64]),
+        virtual_speeds: &[f64],
+        law: &EffortLaw<'_>,
+        gradient: &mut [f64],
+        out: [&mut [f64]; 4],
     );
 }

@@ -14,7 +14,9 @@ mod chart;
 mod directions;
 mod pattern;
 mod place;
+mod power;
 mod rotors;
+mod second;
 mod slopes;
 mod vary;
 
@@ -23,8 +25,11 @@ pub use articulate::{Pivot, PivotFailure};
 pub use chart::ChartDerivatives;
 pub(crate) use chart::Field;
 pub use place::Placement;
+pub use power::EffortLaw;
 pub(crate) use rotors::AtPort;
 pub use rotors::RotorTerm;
+pub(crate) use second::VirtualState;
+pub use second::{Carrying, MotionGradient};
 pub use vary::Variation;
 
 use crate::erased::nan;

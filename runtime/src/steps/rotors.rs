@@ -68,7 +68,7 @@ where
         columns(|k| derivative(&self.port_row(&self.0.retract(&q, &along(k)), port)))
     }
 
-    fn rotor_term<T: Scalar>(
+    pub(super) fn rotor_term<T: Scalar>(
         &self,
         (q, speeds, x): (&SVector<T, N>, &SVector<T, S>, &SVector<T, S>),
         AtPort { port, term }: AtPort,

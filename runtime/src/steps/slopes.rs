@@ -7,8 +7,7 @@ use super::directions::{along, columns, constant, derivative};
 use crate::erased::nan;
 use crate::joint::{Joint, PortLaw};
 use crate::scalar::{Dual, Scalar};
-use crate::spatial::vee;
-use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix3, SMatrix, SVector};
 
 impl<J, const N: usize, const K: usize, const S: usize, const C: usize> Steps<'_, J, N, K, S, C>
 where
@@ -25,15 +24,7 @@ where
         }
         let rest = constant(rest);
         let stiffness = SMatrix::<T, K, K>::from_row_slice(stiffness).map(Dual::constant);
-        self.slope(q, |q| {
-            let phi = self.0.local(&rest, q);
-            let mut rates = self.0.velocity_map_inverse(q);
-            for j in 0..K {
-                let rate = rates.column(j).into_owned();
-                rates.set_column(j, &self.0.retract_differential_inverse(&rest, &phi, &rate));
-            }
-            -rates.tr_mul(&(stiffness * phi))
-        })
+        self.slope(q, |q| self.spring_effort((q, &rest), &stiffness))
     }
 
     /// `∂τ/∂ϕ` at `q` of a [`RotationSpring`](crate::elements::RotationSpring) with this `rest` rotation and stiffness.
@@ -44,11 +35,8 @@ where
         stiffness: T,
     ) -> SMatrix<T, K, K> {
         let back = rest.transpose().map(Dual::constant);
-        self.slope(q, |q| {
-            let turn = self.0.pose(q).rotation * back;
-            let moment: Vector3<Dual<T>> = vee(&turn) * Dual::constant(-stiffness);
-            self.0.twist_map(q).fixed_rows::<3>(0).tr_mul(&moment)
-        })
+        let stiffness = Dual::constant(stiffness);
+        self.slope(q, |q| self.turn_effort(q, &back, stiffness))
     }
 
     /// The derivatives in ϕ and in v of `Σ_k γ_k v_k (a v)`, the velocity term of rotors with inertias a.
@@ -95,7 +83,7 @@ where
     }
 
     /// The value of a port, and its row of P as a column.
-    fn port<T: Scalar>(&self, q: &SVector<T, N>, port: usize) -> (T, SVector<T, K>) {
+    pub(super) fn port<T: Scalar>(&self, q: &SVector<T, N>, port: usize) -> (T, SVector<T, K>) {
         let (values, map) = (self.0.port_values(q), self.0.port_map(q));
         let value = values.as_ref().get(port).copied();
         let row = map.as_ref().get(port).copied();

@@ -3,6 +3,7 @@
 use hamel::erased::AnyJoint;
 use hamel::joint::Member;
 use hamel::registry::JointRegistry;
+use hamel::scalar::Scalar;
 use hamel_downstream::joints::{
     BallCayley, BallTurns, Bead, CamCircle, CarWheels, Catenary, CatenaryLength, CrankCoupler,
     CrankRocker, DirectionSensor, FourBarThrough, GearedRotor, MeasuredRocker, PlanarTurns,
@@ -10,7 +11,7 @@ use hamel_downstream::joints::{
     SliderCrankRod, SpherePoint, Unpinned, Valley,
 };
 use hamel_downstream::{WITH_KNOTS, of_trees};
-use hamel_tests::derivatives::{self, Equipped, Kernels, bare_and_equipped, behind, of};
+use hamel_tests::derivatives::{self, Equipped, Kernels, bare_and_equipped, behind, of, second};
 use hamel_tests::differences::FINE;
 use hamel_tests::linear_step;
 use hamel_tests::random::{self, cases};
@@ -33,7 +34,7 @@ fn without_knots() -> Vec<Arc<dyn AnyJoint>> {
 }
 
 /// The kernels of the joints of [`kinds`].
-fn kernels(joint: &dyn AnyJoint) -> Box<dyn Kernels> {
+fn kernels<D: Scalar>(joint: &dyn AnyJoint) -> Box<dyn Kernels<D>> {
     let car = CarWheels::new(0.7, 0.85, 1.0);
     let linkage = CrankRocker::new(0.9, 0.2, 0.9 + 0.1 * 2.0, 0.9 + 0.1 * 3.0);
     let slider = SliderCrankLinks::new(0.9, 0.9 / 3.0, 0.9 / 9.0);
@@ -91,6 +92,24 @@ fn all() -> Vec<Equipped> {
     let trees = || cases(&kinds, 8, TREES);
     let all = bare_and_equipped(trees(), trees()).into_iter();
     all.map(|equipped| equipped.on(kernels)).collect()
+}
+
+/// Bare, and with elements of all kinds and rotors at every joint: smaller trees, since all pairs of coordinates are moved along.
+fn small() -> Vec<Equipped> {
+    let kinds = kinds();
+    let trees = || cases(&kinds, 4, TREES);
+    let all = bare_and_equipped(trees(), trees()).into_iter();
+    all.map(|equipped| equipped.on(kernels)).collect()
+}
+
+#[test]
+fn second_derivatives_of_inverse_dynamics() {
+    second::inverse_dynamics(small(), kernels);
+}
+
+#[test]
+fn second_derivatives_of_forward_dynamics() {
+    second::forward_dynamics(small(), kernels);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 mod dual;
 mod expected;
 mod laws;
+pub mod second;
 
 pub use dual::{Actuation, DualForm, DualState, Kernels, Lookup, behind, library_kernels, of};
 pub use expected::Expected;

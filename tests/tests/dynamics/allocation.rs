@@ -2,8 +2,8 @@
 
 use allocation_counter::measure;
 use hamel::dynamics::{
-    Dynamics, ForwardDerivatives, Frame, HamiltonianDerivatives, InverseDerivatives,
-    InverseMassMatrix, MassMatrix, Recursive,
+    Dynamics, ForwardDerivatives, ForwardSecondDerivatives, Frame, HamiltonianDerivatives,
+    InverseDerivatives, InverseMassMatrix, InverseSecondDerivatives, MassMatrix, Recursive,
 };
 use hamel::elements::PointConstraint;
 use hamel::integrate::{
@@ -94,8 +94,17 @@ fn elements_do_not_allocate() {
             let found = dynamics.hamiltonian_derivatives(q, v, tau, &mut hamiltonian);
             found.expect("every body has mass");
         });
+        let mut inverse = InverseSecondDerivatives::new(&mechanism);
+        let mut forward = ForwardSecondDerivatives::new(&mechanism);
+        counts.of("second derivatives", || {
+            let (a, out) = (&case.rates, &mut inverse);
+            let found = dynamics.inverse_dynamics_second_derivatives(q, v, a, v, out);
+            found.expect("covered");
+            let found = dynamics.forward_dynamics_second_derivatives(q, v, tau, v, &mut forward);
+            found.expect("every body has mass");
+        });
     }
-    counts.assert_none(1);
+    counts.assert_none(2);
 }
 
 /// Both forms and their derivatives where constraints couple joints.

@@ -34,7 +34,8 @@ mod slender;
 mod sweeps;
 
 pub use derivatives::{
-    ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives, InverseMassMatrix, Sensitivity,
+    ForwardDerivatives, ForwardSecondDerivatives, HamiltonianDerivatives, InverseDerivatives,
+    InverseMassMatrix, InverseSecondDerivatives, Sensitivity,
 };
 pub use frames::FrameReadings;
 pub use loaded::LoadedMass;

@@ -1,7 +1,7 @@
 //! Elements and rotors in dual numbers: their forces as their definitions have them, and the same for the library.
 
+use super::DualForm;
 use super::kernels::constants;
-use super::{D, DualForm};
 use crate::random::numbers;
 use chacha20::ChaCha8Rng;
 use hamel::elements::{
@@ -10,7 +10,7 @@ use hamel::elements::{
 };
 use hamel::mechanism::{Body, Mechanism};
 use hamel::nalgebra::{Matrix3, Vector3, Vector6};
-use hamel::scalar::Dual;
+use hamel::scalar::Scalar;
 use hamel::spatial::{Pose, join, so3, split, vee};
 use rand::{RngExt, SeedableRng};
 use std::ops::Range;
@@ -45,9 +45,9 @@ fn vector(random: &mut ChaCha8Rng) -> Vector3<f64> {
     Vector3::from_fn(|_, _| random.random_range(-1.0..1.0))
 }
 
-fn product(a: &[D], b: &[D]) -> D {
+fn product<D: Scalar>(a: &[D], b: &[D]) -> D {
     let terms = a.iter().zip(b);
-    terms.fold(Dual::constant(0.0), |sum, (a, b)| sum + *a * *b)
+    terms.fold(D::from_f64(0.0), |sum, (a, b)| sum + *a * *b)
 }
 
 /// `H Hᵀ` of a random H, by rows.
@@ -203,9 +203,9 @@ impl Actuation {
     }
 
     /// p̄ and p̄̇ of each rotor at a port, with its inertia and the speeds of its joint.
-    fn at_ports<'a>(
+    fn at_ports<'a, D: Scalar>(
         &'a self,
-        form: &'a DualForm,
+        form: &'a DualForm<D>,
         q: &'a [D],
         speeds: &'a [D],
     ) -> impl Iterator<Item = ([Vec<D>; 2], D, Range<usize>)> + 'a {
@@ -214,22 +214,27 @@ impl Actuation {
             let own = &speeds[body.speeds.clone()];
             let q = &q[body.configuration.clone()];
             let motion = body.joint.port_motion(q, own, rotor.port);
-            (motion, Dual::constant(rotor.inertia), body.speeds.clone())
+            (motion, D::from_f64(rotor.inertia), body.speeds.clone())
         })
     }
 
     /// Kinetic energy of rotors at ports.
-    pub fn rotor_energy(&self, form: &DualForm, q: &[D], speeds: &[D]) -> D {
-        let half = Dual::constant(0.5);
+    pub fn rotor_energy<D: Scalar>(&self, form: &DualForm<D>, q: &[D], speeds: &[D]) -> D {
+        let half = D::from_f64(0.5);
         let each = self.at_ports(form, q, speeds);
-        each.fold(Dual::constant(0.0), |sum, ([row, _], inertia, own)| {
+        each.fold(D::from_f64(0.0), |sum, ([row, _], inertia, own)| {
             let rate = product(&row, &speeds[own]);
             sum + half * inertia * rate * rate
         })
     }
 
     /// How the momenta of rotors at ports change while v̄ stays, onto rates of momenta.
-    pub fn add_rotor_rates(&self, form: &DualForm, (q, speeds): (&[D], &[D]), rates: &mut [D]) {
+    pub fn add_rotor_rates<D: Scalar>(
+        &self,
+        form: &DualForm<D>,
+        (q, speeds): (&[D], &[D]),
+        rates: &mut [D],
+    ) {
         for ([row, rate], inertia, own) in self.at_ports(form, q, speeds) {
             let v = &speeds[own.clone()];
             let (speed, turned) = (product(&row, v), product(&rate, v));
@@ -240,14 +245,20 @@ impl Actuation {
     }
 
     /// Adds `a v̄̇`, and of rotors at ports `a p̄ᵀ p̄ v̄̇`, to inverse dynamics.
-    pub fn add_rotors(&self, form: &DualForm, q: &[D], accelerations: &[D], efforts: &mut [D]) {
+    pub fn add_rotors<D: Scalar>(
+        &self,
+        form: &DualForm<D>,
+        q: &[D],
+        accelerations: &[D],
+        efforts: &mut [D],
+    ) {
         for ([row, _], inertia, own) in self.at_ports(form, q, accelerations) {
             let along = product(&row, &accelerations[own.clone()]);
             for (effort, entry) in efforts[own].iter_mut().zip(row) {
                 *effort += inertia * entry * along;
             }
         }
-        let terms = constants(&self.armature);
+        let terms: Vec<D> = constants(&self.armature);
         let terms = terms.iter().zip(accelerations).map(|(a, x)| *a * *x);
         for (effort, term) in efforts.iter_mut().zip(terms) {
             *effort += term;
@@ -255,7 +266,7 @@ impl Actuation {
     }
 
     /// Generalised forces, one per speed.
-    pub fn forces(&self, form: &DualForm, q: &[D], speeds: &[D]) -> Vec<D> {
+    pub fn forces<D: Scalar>(&self, form: &DualForm<D>, q: &[D], speeds: &[D]) -> Vec<D> {
         let mut forces = form.reduced(q, &self.efforts(form, q, speeds));
         for ([row, rate], inertia, own) in self.at_ports(form, q, speeds) {
             let turned = product(&rate, &speeds[own.clone()]);
@@ -286,9 +297,9 @@ impl Actuation {
     }
 
     /// τ of all joints.
-    fn efforts(&self, form: &DualForm, q: &[D], speeds: &[D]) -> Vec<D> {
+    fn efforts<D: Scalar>(&self, form: &DualForm<D>, q: &[D], speeds: &[D]) -> Vec<D> {
         let size = form.joints().map(|body| body.freedoms.len()).sum();
-        let mut efforts = vec![Dual::constant(0.0); size];
+        let mut efforts = vec![D::from_f64(0.0); size];
         let mut add = |body: usize, own: Vec<D>| {
             let sum = efforts[form.bodies[body].freedoms.clone()].iter_mut();
             sum.zip(own).for_each(|(sum, own)| *sum += own);
@@ -303,9 +314,9 @@ impl Actuation {
         }
         for spring in &self.turns {
             let joint = &form.bodies[spring.body].joint;
-            let back: Matrix3<D> = spring.rest.transpose().map(Dual::constant);
+            let back: Matrix3<D> = spring.rest.transpose().map(D::from_f64);
             let turn = vee(&(joint.pose(at(spring.body)).rotation * back));
-            let moment = turn * Dual::constant(-spring.stiffness);
+            let moment = turn * D::from_f64(-spring.stiffness);
             add(spring.body, joint.moment(at(spring.body), &moment));
         }
         for damper in &self.dampers {
@@ -313,7 +324,7 @@ impl Actuation {
             let v = body
                 .joint
                 .velocity(at(damper.body), &speeds[body.speeds.clone()]);
-            let damped = v.iter().zip(constants(&damper.coefficients));
+            let damped = v.iter().zip(constants::<D>(&damper.coefficients));
             add(damper.body, damped.map(|(v, c)| -(c * *v)).collect());
         }
         for motor in &self.motors {
@@ -322,7 +333,7 @@ impl Actuation {
         for motor in &self.port_motors {
             let joint = &form.bodies[motor.body].joint;
             let (_, row) = joint.port(at(motor.body), motor.port, 0.0);
-            let effort = Dual::constant(motor.effort.constant().unwrap_or(f64::NAN));
+            let effort = D::from_f64(motor.effort.constant().unwrap_or(f64::NAN));
             add(motor.body, row.iter().map(|p| *p * effort).collect());
         }
         for spring in &self.port_springs {
@@ -332,8 +343,8 @@ impl Actuation {
                 .joint
                 .velocity(at(spring.body), &speeds[body.speeds.clone()]);
             let rates = row.iter().zip(&v);
-            let rate = rates.fold(Dual::constant(0.0), |sum, (p, v)| sum + *p * *v);
-            let [stiffness, damping] = [spring.stiffness, spring.damping].map(Dual::constant);
+            let rate = rates.fold(D::from_f64(0.0), |sum, (p, v)| sum + *p * *v);
+            let [stiffness, damping] = [spring.stiffness, spring.damping].map(D::from_f64);
             let effort = -(stiffness * way) - damping * rate;
             add(spring.body, row.iter().map(|p| *p * effort).collect());
         }
@@ -341,9 +352,9 @@ impl Actuation {
     }
 
     /// Wrenches on the bodies, in their joints' child frames.
-    fn on_bodies(
+    fn on_bodies<D: Scalar>(
         &self,
-        form: &DualForm,
+        form: &DualForm<D>,
         poses: &[Pose<D>],
         q: &[D],
         speeds: &[D],
@@ -354,7 +365,7 @@ impl Actuation {
             let pose = body.parent.map_or(*pose, |parent| placed[parent] * *pose);
             placed.push(pose);
         }
-        let lift = |v: &Vector3<f64>| v.map(Dual::constant);
+        let lift = |v: &Vector3<f64>| v.map(D::from_f64);
         let mut wrenches = vec![Vector6::zeros(); placed.len()];
         // A force in child axes at a point of the body frame.
         let mut push = |body: usize, point: &Vector3<D>, force: &Vector3<D>, moment: Vector3<D>| {
@@ -374,14 +385,13 @@ impl Actuation {
             };
             let ((from, slow), (to, fast)) = (end(0), end(1));
             let (way, rate) = (to - from, fast - slow);
-            let length = hamel::scalar::Scalar::sqrt(way.dot(&way));
+            let length = Scalar::sqrt(way.dot(&way));
             let u = way / length;
-            let pull = (length - Dual::constant(rope.length)) * Dual::constant(rope.stiffness)
-                + u.dot(&rate) * Dual::constant(rope.damping);
+            let pull = (length - D::from_f64(rope.length)) * D::from_f64(rope.stiffness)
+                + u.dot(&rate) * D::from_f64(rope.damping);
             for (n, sign) in [(0, 1.0), (1, -1.0)] {
                 if let Some(body) = rope.bodies[n] {
-                    let force =
-                        placed[body].rotation.transpose() * u * (pull * Dual::constant(sign));
+                    let force = placed[body].rotation.transpose() * u * (pull * D::from_f64(sign));
                     push(body, &lift(&rope.points[n]), &force, Vector3::zeros());
                 }
             }

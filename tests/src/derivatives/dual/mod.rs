@@ -10,15 +10,13 @@ pub use kernels::{Kernels, Lookup, behind, library_kernels, of};
 
 use hamel::mechanism::Mechanism;
 use hamel::nalgebra::{Vector3, Vector6};
-use hamel::scalar::Dual;
+use hamel::scalar::{Dual, Scalar};
 use hamel::spatial::{Pose, SpatialInertia, bracket_dual_product, bracket_product, join};
 use kernels::constants;
 use std::sync::Arc;
 
-type D = Dual<f64>;
-
-struct Body {
-    joint: Box<dyn Kernels>,
+struct Body<D> {
+    joint: Box<dyn Kernels<D>>,
     /// Whether it stands for its joint: it is the only body, or the first.
     leads: bool,
     parent: Option<usize>,
@@ -32,15 +30,15 @@ struct Body {
 }
 
 /// A mechanism in dual numbers.
-pub struct DualForm {
-    bodies: Vec<Body>,
+pub struct DualForm<D = Dual<f64>> {
+    bodies: Vec<Body<D>>,
     gravity: Vector3<D>,
     actuation: Actuation,
 }
 
 /// A state in dual numbers.
 #[derive(Clone)]
-pub struct DualState {
+pub struct DualState<D = Dual<f64>> {
     /// All joints' Q.
     pub q: Vec<D>,
     /// v̄.
@@ -49,10 +47,10 @@ pub struct DualState {
     pub efforts: Vec<D>,
 }
 
-fn lifted(pose: &Pose<f64>) -> Pose<D> {
+fn lifted<D: Scalar>(pose: &Pose<f64>) -> Pose<D> {
     Pose::new(
-        pose.rotation.map(Dual::constant),
-        pose.translation.map(Dual::constant),
+        pose.rotation.map(D::from_f64),
+        pose.translation.map(D::from_f64),
     )
 }
 
@@ -62,17 +60,24 @@ impl DualForm {
         Self::of(mechanism, actuation, library_kernels)
     }
 
+    /// Q moved along one ϕ.
+    pub fn moved(&self, q: &[f64], freedom: usize) -> Vec<Dual<f64>> {
+        self.moved_along(q, |k| Dual::new(0.0, f64::from(u8::from(k == freedom))))
+    }
+}
+
+impl<D: Scalar> DualForm<D> {
     /// A mechanism on joints whose kernels are found elsewhere.
-    pub fn of(mechanism: &Arc<Mechanism>, actuation: Actuation, lookup: Lookup) -> Self {
+    pub fn of(mechanism: &Arc<Mechanism>, actuation: Actuation, lookup: Lookup<D>) -> Self {
         let bodies = mechanism.bodies();
-        let body = |body: &hamel::mechanism::Body| {
+        let body = |body: &hamel::mechanism::Body| -> Body<D> {
             let above = body
                 .parent()
                 .map(|parent| *bodies[parent].child_placement());
             let above = above.unwrap_or_else(Pose::identity);
             let inertia = SpatialInertia::from(body.mass()).transform(body.child_placement());
             let ranges = body.ranges();
-            let lift = |x: f64| Dual::constant(x);
+            let lift = |x: f64| D::from_f64(x);
             let i = &inertia.inertia;
             let mut lifted_inertia = SpatialInertia::<D>::zero();
             lifted_inertia.mass = lift(inertia.mass);
@@ -94,13 +99,13 @@ impl DualForm {
         };
         Self {
             bodies: bodies.iter().map(body).collect(),
-            gravity: mechanism.gravity().map(Dual::constant),
+            gravity: mechanism.gravity().map(D::from_f64),
             actuation,
         }
     }
 
     /// (q, v̄, τ) without infinitesimals.
-    pub fn state(&self, q: &[f64], speeds: &[f64], efforts: &[f64]) -> DualState {
+    pub fn state(&self, q: &[f64], speeds: &[f64], efforts: &[f64]) -> DualState<D> {
         DualState {
             q: constants(q),
             speeds: constants(speeds),
@@ -108,15 +113,14 @@ impl DualForm {
         }
     }
 
-    fn joints(&self) -> impl Iterator<Item = &Body> {
+    fn joints(&self) -> impl Iterator<Item = &Body<D>> {
         self.bodies.iter().filter(|body| body.leads)
     }
 
-    /// Q moved along one ϕ.
-    pub fn moved(&self, q: &[f64], freedom: usize) -> Vec<D> {
+    /// Φ(Q, ϕ), ϕ of all joints.
+    pub fn moved_along(&self, q: &[f64], phi: impl Fn(usize) -> D) -> Vec<D> {
         let each = self.joints().flat_map(|body| {
-            let unit = |k: usize| Dual::new(0.0, f64::from(u8::from(k == freedom)));
-            let phi: Vec<D> = body.freedoms.clone().map(unit).collect();
+            let phi: Vec<D> = body.freedoms.clone().map(&phi).collect();
             body.joint.retract(&q[body.configuration.clone()], &phi)
         });
         each.collect()
@@ -124,7 +128,7 @@ impl DualForm {
 
     /// H of each joint, its frame included, child to the parent's child frame.
     fn poses(&self, q: &[D]) -> Vec<Pose<D>> {
-        let pose = |body: &Body| body.frame * body.joint.pose(&q[body.configuration.clone()]);
+        let pose = |body: &Body<D>| body.frame * body.joint.pose(&q[body.configuration.clone()]);
         self.bodies.iter().map(pose).collect()
     }
 
@@ -134,10 +138,10 @@ impl DualForm {
         let zero = Vector3::zeros();
         let base = join(&zero, &if falls { -self.gravity } else { zero });
         let motions = self.motions(&poses, (q, speeds, accelerations), base);
-        let wrench = |(body, (twist, rate)): (&Body, &(_, _))| body.inertia.wrench(twist, rate);
+        let wrench = |(body, (twist, rate)): (&Body<D>, &(_, _))| body.inertia.wrench(twist, rate);
         let own: Vec<Vector6<D>> = self.bodies.iter().zip(&motions).map(wrench).collect();
         let wrenches = self.gathered(&poses, own);
-        let mut efforts = vec![Dual::constant(0.0); speeds.len()];
+        let mut efforts = vec![D::from_f64(0.0); speeds.len()];
         for (body, wrench) in self.bodies.iter().zip(&wrenches) {
             let columns = body.joint.columns(&q[body.configuration.clone()]);
             for (effort, column) in efforts[body.speeds.clone()].iter_mut().zip(&columns) {
@@ -188,19 +192,23 @@ impl DualForm {
     }
 
     /// p̄̇ at v̄.
-    pub fn momentum_rates(&self, state: &DualState) -> Vec<D> {
+    pub fn momentum_rates(&self, state: &DualState<D>) -> Vec<D> {
         self.momentum_rates_beside(state, &[])
     }
 
     /// p̄̇ at v̄, where bodies are rid of momenta that are fixed in them: in the axes of the joints' child frames, at their origins.
-    pub fn momentum_rates_beside(&self, state: &DualState, rid: &[(usize, Vector6<D>)]) -> Vec<D> {
+    pub fn momentum_rates_beside(
+        &self,
+        state: &DualState<D>,
+        rid: &[(usize, Vector6<D>)],
+    ) -> Vec<D> {
         let DualState { q, speeds, efforts } = state;
         let poses = self.poses(q);
         let twists = self.twists(&poses, q, speeds);
         let rotations = self.rotations(&poses);
-        let momentum = |(body, twist): (&Body, &Vector6<D>)| body.inertia.apply(twist);
+        let momentum = |(body, twist): (&Body<D>, &Vector6<D>)| body.inertia.apply(twist);
         let mut momenta: Vec<_> = self.bodies.iter().zip(&twists).map(momentum).collect();
-        let weight = |(body, rotation): (&Body, &hamel::nalgebra::Matrix3<D>)| {
+        let weight = |(body, rotation): (&Body<D>, &hamel::nalgebra::Matrix3<D>)| {
             let fall = rotation.transpose() * self.gravity;
             body.inertia.apply(&join(&Vector3::zeros(), &fall))
         };
@@ -237,7 +245,7 @@ impl DualForm {
     pub fn powers(&self, q: &[D], speeds: &[D], wrenches: &[(usize, Vector6<f64>)]) -> Vec<D> {
         let twists = self.twists(&self.poses(q), q, speeds);
         let power =
-            |(body, wrench): &(usize, Vector6<f64>)| wrench.map(Dual::constant).dot(&twists[*body]);
+            |(body, wrench): &(usize, Vector6<f64>)| wrench.map(D::from_f64).dot(&twists[*body]);
         wrenches.iter().map(power).collect()
     }
 
@@ -251,7 +259,7 @@ impl DualForm {
         let motions = self.motions(&self.poses(q), motion, Vector6::zeros());
         let rate = |(body, wrench): &(usize, Vector6<f64>)| {
             let (_, rate) = &motions[*body];
-            wrench.map(Dual::constant).dot(rate)
+            wrench.map(D::from_f64).dot(rate)
         };
         wrenches.iter().map(rate).collect()
     }
@@ -260,12 +268,12 @@ impl DualForm {
     pub fn energies(&self, q: &[D], speeds: &[D]) -> (D, D) {
         let poses = self.poses(q);
         let twists = self.twists(&poses, q, speeds);
-        let (mut kinetic, mut potential) = (Dual::constant(0.0), Dual::constant(0.0));
+        let (mut kinetic, mut potential) = (D::from_f64(0.0), D::from_f64(0.0));
         let mut placed: Vec<Pose<D>> = vec![];
         for ((body, pose), twist) in self.bodies.iter().zip(&poses).zip(&twists) {
             let pose = body.parent.map_or(*pose, |parent| placed[parent] * *pose);
             placed.push(pose);
-            kinetic += twist.dot(&body.inertia.apply(twist)) * Dual::constant(0.5);
+            kinetic += twist.dot(&body.inertia.apply(twist)) * D::from_f64(0.5);
             let inertia = &body.inertia;
             let moment = pose.rotation * inertia.first_moment + pose.translation * inertia.mass;
             potential -= self.gravity.dot(&moment);
@@ -328,7 +336,7 @@ impl DualForm {
     }
 }
 
-fn sum(columns: &[Vector6<D>], weights: &[D]) -> Vector6<D> {
+fn sum<D: Scalar>(columns: &[Vector6<D>], weights: &[D]) -> Vector6<D> {
     let terms = columns.iter().zip(weights);
     terms.fold(Vector6::zeros(), |sum, (column, weight)| {
         sum + column * *weight

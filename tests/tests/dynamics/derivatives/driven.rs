@@ -6,7 +6,8 @@ use hamel::elements::Drive;
 use hamel::nalgebra::{DMatrix, DVector};
 use hamel::time_function::Law;
 use hamel_tests::derivatives::{
-    Actuation, BOUND, Equipped, Expected, constants, derivatives, matrix, relative,
+    Actuation, BOUND, Equipped, Expected, constants, derivatives, library_kernels, matrix,
+    relative, second,
 };
 use hamel_tests::figures::Largest;
 use hamel_tests::random::{Case, cases, library};
@@ -193,4 +194,11 @@ fn free_joints_answer_in_the_port_hamiltonian_form() {
         }
     }
     worst.iter().for_each(|worst| worst.assert_within(BOUND));
+}
+
+#[test]
+fn second_derivatives_of_forward_dynamics() {
+    let small = all().into_iter();
+    let small = small.filter(|own| own.case.mechanism.bodies().len() < 6);
+    second::forward_dynamics(small, library_kernels);
 }

@@ -6,6 +6,7 @@ mod coupled_momenta;
 mod coupled_system;
 mod driven;
 mod refusals;
+mod second;
 
 use chacha20::ChaCha8Rng;
 use hamel::dynamics::{ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives, Recursive};

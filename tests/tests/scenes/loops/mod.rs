@@ -7,7 +7,9 @@ mod kernels;
 mod library;
 mod posture;
 
-use hamel::dynamics::{Dynamics, ForwardDerivatives, Recursive, Reference};
+use hamel::dynamics::{
+    Dynamics, ForwardDerivatives, ForwardSecondDerivatives, Recursive, Reference,
+};
 use hamel::integrate::{Form, Method, Options, Scheme, State, integrate, no_inputs, no_observer};
 use hamel::nalgebra::Vector3;
 use hamel_scene::urdf::{self, Import};
@@ -220,6 +222,84 @@ fn derivatives_are_those_of_differences() {
                     (speed - by_speed[i]).abs() < allowed,
                     "{name}: {speed} {}",
                     by_speed[i]
+                );
+            }
+        }
+    }
+}
+
+/// Q moved by ϕ.
+fn moved(scene: &Scene, phi: &[f64]) -> Vec<f64> {
+    let joints = scene.mechanism.joints().map(|(_, body)| {
+        let mut moved = vec![0.0; body.ranges().configuration.len()];
+        let (q, own) = (
+            body.configuration(&scene.configuration),
+            &phi[body.ranges().freedoms.clone()],
+        );
+        body.joint().retract(q, own, &mut moved);
+        moved
+    });
+    joints.flatten().collect()
+}
+
+/// Second derivatives are symmetric, and those by speeds and by efforts are differences of the first ones; by ϕ as well, where ϕ̇ is v at every ϕ.
+#[test]
+fn second_derivatives_are_differences_of_first_ones() {
+    // Fourth order, as above.
+    const STEP: f64 = 2e-4;
+    for (name, scene) in all() {
+        let mechanism = &scene.mechanism;
+        let speeds = &scene.speeds;
+        let efforts: Vec<f64> = (0..speeds.len()).map(|k| 0.3 - 0.2 * k as f64).collect();
+        let weights: Vec<f64> = (0..speeds.len()).map(|k| 0.7 + 0.4 * k as f64).collect();
+        let mut dynamics = Recursive::new(Arc::clone(mechanism));
+        let mut found = ForwardSecondDerivatives::new(mechanism);
+        let q = &scene.configuration;
+        let asked =
+            dynamics.forward_dynamics_second_derivatives(q, speeds, &efforts, &weights, &mut found);
+        asked.expect("regular");
+        let hessian = found.hessian().matrix();
+        let size = hessian.amax().max(1.0);
+        let askew = (&hessian - hessian.transpose()).amax();
+        assert!(askew < 1e-12 * size, "{name}: {askew:e} of {size:e}");
+        let mut first = ForwardDerivatives::new(mechanism);
+        let mut slopes = |q: &[f64], v: &[f64], tau: &[f64]| {
+            let asked = dynamics.forward_dynamics_derivatives(q, v, tau, &mut first);
+            asked.expect("regular");
+            let parts = [first.by_local(), first.by_speeds(), first.by_efforts()];
+            let columns = |part: &hamel::dynamics::Sensitivity| {
+                part.matrix()
+                    .tr_mul(&hamel::nalgebra::DVector::from_column_slice(&weights))
+            };
+            let parts = parts.map(columns);
+            parts
+                .iter()
+                .flat_map(|part| part.iter().copied())
+                .collect::<Vec<f64>>()
+        };
+        let freedoms = mechanism.layout().freedoms;
+        let is_flat = |body: &hamel::mechanism::Body| {
+            let structures = body.joint().structures();
+            structures.velocity_map.is_constant() && structures.velocity_map_gradient.is_zero()
+        };
+        let flat = mechanism.joints().all(|(_, body)| is_flat(body));
+        for k in 0..hessian.nrows() {
+            if k < freedoms && !flat {
+                continue;
+            }
+            let at = [-2.0, -1.0, 1.0, 2.0].map(|n| {
+                let (mut phi, mut v, mut tau) =
+                    (vec![0.0; freedoms], speeds.clone(), efforts.clone());
+                let place = phi.iter_mut().chain(&mut v).chain(&mut tau).nth(k);
+                *place.expect("a coordinate") += n * STEP;
+                slopes(&moved(&scene, &phi), &v, &tau)
+            });
+            for i in 0..hessian.ncols() {
+                let entry = (8.0 * (at[2][i] - at[1][i]) - (at[3][i] - at[0][i])) / (12.0 * STEP);
+                let own = hessian[(k, i)];
+                assert!(
+                    (own - entry).abs() < 1e-8 * size,
+                    "{name}: {own} {entry}, {size}"
                 );
             }
         }

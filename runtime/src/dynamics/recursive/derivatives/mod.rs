@@ -27,7 +27,7 @@
 //! take `−M̄⁻¹` times the derivatives of inverse dynamics instead, which is as exact and costs less for them ([`factor`]).
 //!
 //! Elements and rotors add what [`acting`] says. Elements of one's own without slopes ([`Element::slope`](crate::elements::Element::slope)) are not
-//! covered: asking for derivatives of such a mechanism is an error. Inverse dynamics is that of the tree; under constraints that couple joints, forward
+//! covered: asking for derivatives of such a mechanism is an error. Second derivatives are in [`second`]. Inverse dynamics is that of the tree; under constraints that couple joints, forward
 //! dynamics is in [`coupled`] and the port-Hamiltonian form in [`coupled_momenta`].
 
 mod acting;
@@ -44,17 +44,19 @@ mod inverse;
 mod inverse_mass;
 mod momentum_rates;
 mod product;
+mod second;
 mod sweep;
 
 pub use forward::ForwardDerivatives;
 pub use hamiltonian::HamiltonianDerivatives;
 pub use inverse::InverseDerivatives;
 pub use inverse_mass::InverseMassMatrix;
+pub use second::{ForwardSecondDerivatives, InverseSecondDerivatives};
 
 use super::Recursive;
 use super::link::{Link, Node};
 use crate::dynamics::DynamicsError;
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Mechanism, WHOLE, check_size};
 use crate::steps::Variation;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -160,6 +162,20 @@ impl Sensitivity {
         product::add_product(left, right, self);
     }
 
+    /// The matrix times `vector`, into `out`.
+    ///
+    /// # Errors
+    /// A `vector` that has not one entry a column, or an `out` that has not one a row.
+    pub fn times(&self, vector: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+        check_size(WHOLE, "direction", self.columns, vector.len())?;
+        check_size(WHOLE, "result", self.rows, out.len())?;
+        for (row, out) in out.iter_mut().enumerate() {
+            let terms = self.row(row).iter().zip(vector);
+            *out = terms.map(|(entry, weight)| entry * weight).sum();
+        }
+        Ok(())
+    }
+
     /// Adds to entry (i, j).
     pub(crate) fn add(&mut self, i: usize, j: usize, value: f64) {
         self.entries[i * self.columns + j] += value;
@@ -192,6 +208,19 @@ impl Recursive {
         match elements.find(|element| element.slope().is_none()) {
             Some(element) => Err(DynamicsError::NotDifferentiable {
                 what: "an element without slopes",
+                name: element.name().into(),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// [`Recursive::check_branches`], and whether second derivatives cover all that acts on the mechanism.
+    fn check_twice_differentiable(&self, branches: &[Branch]) -> Result<(), DynamicsError> {
+        self.check_differentiable(branches)?;
+        let mut elements = self.mechanism.elements().iter();
+        match elements.find(|element| element.curvature().is_none()) {
+            Some(element) => Err(DynamicsError::NotTwiceDifferentiable {
+                what: "an element without curvatures",
                 name: element.name().into(),
             }),
             None => Ok(()),
