@@ -203,6 +203,84 @@ fn a_row_has_the_same_bits_wherever_it_stands() {
     assert_eq!(bits(&moved), bits(&all));
 }
 
+/// Rows that follow each other with the same masses share a scene, and others not: the bits are those of each row alone.
+#[test]
+fn rows_with_other_starts_have_the_bits_of_rows_alone() {
+    let columns = [
+        "body.upper.mass",
+        "body.upper.initial.configuration.1",
+        "body.2.initial.speeds.1",
+    ];
+    let sweep = swept(&double_pendulum(), &columns);
+    let row = |number: usize| {
+        let start = 0.1 * number as f64;
+        Cells::from([1.0 + 0.2 * (number / 4) as f64, start - 0.5, 2.0 - start])
+    };
+    let mut rows: Vec<Cells> = (0..14).map(row).collect();
+    // No start, a start that no joint takes, and a mass that no body has.
+    rows[2].fault = Some("a cell is no number".into());
+    rows[6].numbers[2] = f64::NAN;
+    rows[10].numbers[0] = -1.0;
+    let sample: Vec<Cells> = [0, 5, 13].map(|place: usize| rows[place].clone()).into();
+    let (all, ways) = side_by_side(&sweep, &sample, &rows);
+    assert_eq!((ways.lanes, ways.tree.len()), (11, 0), "{ways:?}");
+    let joints = hamel_sweep::joints();
+    for (place, cells) in rows.iter().enumerate() {
+        let (alone, _) = side_by_side(&sweep, &sample, std::slice::from_ref(cells));
+        assert_eq!(bits(&alone), bits(&all[place..=place]), "{place}");
+        assert_eq!(all[place].outcome, sweep.motion(cells, &joints).outcome);
+    }
+    let fine = [&rows[..2], &rows[3..6], &rows[7..10], &rows[11..]].concat();
+    let (moved, _) = side_by_side(&sweep, &sample, &fine);
+    difference(&sweep, &fine, &moved);
+}
+
+/// All ways in which `initial` gives numbers.
+#[test]
+fn starts_of_all_kinds_are_those_of_scenes() {
+    let hinge = |initial: &str| {
+        described(&body(
+            "arm",
+            "world",
+            "{ type = \"revolute\" }",
+            &format!("body_at = {{ position = [0.2, 0.05, 0.0] }}\ninitial = {initial}"),
+        ))
+    };
+    let free = "com = [0.02, 0.0, 0.01]\ninitial = { phi = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6], twist = { angular = [0.5, 6.0, 0.0], linear = [0.3, 0.0, 0.1], frame = \"parent\" } }";
+    let free = described(&body("arm", "world", "{ type = \"free\" }", free));
+    let cases = [
+        (
+            hinge("{ phi = [0.3], velocity = [0.2] }"),
+            vec!["phi.1", "velocity.1"],
+        ),
+        (
+            hinge(
+                "{ configuration = [0.3], twist = { angular = [0.0, 0.0, 0.2], linear = [0.0, 0.0, 0.0], frame = \"child\" } }",
+            ),
+            vec!["configuration.1", "twist.angular.3"],
+        ),
+        (
+            free,
+            vec!["phi.2", "phi.5", "twist.angular.1", "twist.linear.3"],
+        ),
+    ];
+    for (text, keys) in cases {
+        let columns: Vec<String> = keys
+            .iter()
+            .map(|key| format!("body.arm.initial.{key}"))
+            .collect();
+        let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
+        let (sweep, rows) = (swept(&text, &columns), rows(&vec![0.3; keys.len()], 9));
+        let (moved, ways) = side_by_side(&sweep, &rows, &rows);
+        assert_eq!(ways.lanes, 9, "{keys:?}: {ways:?}");
+        difference(&sweep, &rows, &moved);
+        for (place, cells) in rows.iter().enumerate() {
+            let (alone, _) = side_by_side(&sweep, &rows, std::slice::from_ref(cells));
+            assert_eq!(bits(&alone), bits(&moved[place..=place]), "{keys:?}");
+        }
+    }
+}
+
 #[test]
 fn a_number_may_be_0_in_the_first_row() {
     let columns = ["body.lower.body_at.position.2", "body.upper.damping"];
