@@ -22,7 +22,7 @@ pub fn rate(rows: &[Cells]) -> f64 {
     let cores = thread::available_parallelism().map_or(1, std::num::NonZero::get);
     thread::scope(|scope| {
         for own in rows.chunks(rows.len().div_ceil(cores)) {
-            scope.spawn(|| own.chunks_exact(MOTIONS).for_each(|rows| moved(rows)));
+            scope.spawn(|| own.chunks_exact(MOTIONS).for_each(moved));
         }
     });
     rows.len() as f64 / begin.elapsed().as_secs_f64()
