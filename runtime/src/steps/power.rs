@@ -163,7 +163,8 @@ where
         }
     }
 
-    /// `μᵀ S̄ᵀ τ`.
+    /// `μᵀ S̄ᵀ τ`. Not inlined: each joint has all its kernels here, and four calls of them would quadruple their code.
+    #[inline(never)]
     fn virtual_power<T: Scalar>(
         &self,
         state: &VirtualState<T, N, S>,

@@ -194,7 +194,8 @@ where
         hessian
     }
 
-    /// What `gradient` says of one unit of each ϕ and v̄.
+    /// What `gradient` says of one unit of each ϕ and v̄. Not inlined, for the size of the code of all joints.
+    #[inline(never)]
     fn products<T: Scalar>(
         &self,
         state: &VirtualState<T, N, S>,
