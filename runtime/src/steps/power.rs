@@ -163,8 +163,7 @@ where
         }
     }
 
-    /// `μᵀ S̄ᵀ τ`. Not inlined: each joint has all its kernels here, and four calls of them would quadruple their code.
-    #[inline(never)]
+    /// `μᵀ S̄ᵀ τ`.
     fn virtual_power<T: Scalar>(
         &self,
         state: &VirtualState<T, N, S>,

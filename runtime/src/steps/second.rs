@@ -194,8 +194,7 @@ where
         hessian
     }
 
-    /// What `gradient` says of one unit of each ϕ and v̄. Not inlined, for the size of the code of all joints.
-    #[inline(never)]
+    /// What `gradient` says of one unit of each ϕ and v̄.
     fn products<T: Scalar>(
         &self,
         state: &VirtualState<T, N, S>,
