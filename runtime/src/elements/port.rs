@@ -109,31 +109,26 @@ impl Element for PortEffort {
     }
 }
 
-impl Slope for PortEffort {
-    fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>) {
-        let law = PortLaw {
+impl PortEffort {
+    /// How its effort changes with the value and the rate of the port.
+    fn law(&self, view: &View<'_>) -> PortLaw<f64> {
+        PortLaw {
             effort: self.effort.value(view.moment),
             stiffness: 0.0,
             damping: 0.0,
-        };
-        add_slopes((self.body, self.port), &law, view, slopes);
+        }
+    }
+}
+
+impl Slope for PortEffort {
+    fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>) {
+        add_slopes((self.body, self.port), &self.law(view), view, slopes);
     }
 }
 
 impl Curvature for PortEffort {
     fn add_curvatures(&self, view: &View<'_>, curvatures: &mut Curvatures<'_>) {
-        let law = PortLaw {
-            effort: self.effort.value(view.moment),
-            stiffness: 0.0,
-            damping: 0.0,
-        };
-        let port = Some(self.port);
-        let law = EffortLaw::Axis {
-            port,
-            law,
-            product: 0.0,
-        };
-        curvatures.add_effort(view, self.body, &law);
+        add_curvatures((self.body, self.port), self.law(view), view, curvatures);
     }
 }
 
@@ -145,6 +140,15 @@ impl PortSpring {
         let port = ports.get(self.port);
         let way = port.map_or(f64::NAN, |port| port.deflection(value, self.rest));
         (way, -self.stiffness * way - self.damping * rate)
+    }
+
+    /// How its effort changes with the value and the rate of the port.
+    fn law(&self, view: &View<'_>) -> PortLaw<f64> {
+        PortLaw {
+            effort: self.now(view).1,
+            stiffness: self.stiffness,
+            damping: self.damping,
+        }
     }
 }
 
@@ -190,30 +194,29 @@ impl Element for PortSpring {
 
 impl Slope for PortSpring {
     fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>) {
-        let law = PortLaw {
-            effort: self.now(view).1,
-            stiffness: self.stiffness,
-            damping: self.damping,
-        };
-        add_slopes((self.body, self.port), &law, view, slopes);
+        add_slopes((self.body, self.port), &self.law(view), view, slopes);
     }
 }
 
 impl Curvature for PortSpring {
     fn add_curvatures(&self, view: &View<'_>, curvatures: &mut Curvatures<'_>) {
-        let law = PortLaw {
-            effort: self.now(view).1,
-            stiffness: self.stiffness,
-            damping: self.damping,
-        };
-        let port = Some(self.port);
-        let law = EffortLaw::Axis {
-            port,
-            law,
-            product: 0.0,
-        };
-        curvatures.add_effort(view, self.body, &law);
+        add_curvatures((self.body, self.port), self.law(view), view, curvatures);
     }
+}
+
+/// Adds the second derivatives of `τ = Pᵀ f`.
+fn add_curvatures(
+    (body, port): (usize, usize),
+    law: PortLaw<f64>,
+    view: &View<'_>,
+    curvatures: &mut Curvatures<'_>,
+) {
+    let law = EffortLaw::Axis {
+        port: Some(port),
+        law,
+        product: 0.0,
+    };
+    curvatures.add_effort(view, body, &law);
 }
 
 /// Adds the slopes of `τ = Pᵀ f`.
