@@ -86,9 +86,9 @@ impl<const N: usize, const K: usize, const S: usize, const C: usize, const R: us
         &self,
         kernel: &KernelTape,
         arguments: &[&[T]],
-        output: impl FnMut(usize, T),
+        mut output: impl FnMut(usize, T),
     ) {
-        kernel.tape.run(arguments, &self.parameters, output);
+        kernel.tape.run(arguments, &self.parameters, &mut output);
     }
 
     /// A column, with zeros behind what the kernel gives; zeros where there is no such kernel.

@@ -148,7 +148,7 @@ impl JointType {
         check_values(joint, self.parameters, values)?;
         for (text, margin) in &self.requirements {
             let mut found = f64::NAN;
-            margin.run::<f64>(&[], values, |_, value| found = value);
+            margin.run::<f64>(&[], values, &mut |_, value| found = value);
             check_requirement(joint, text, found, self.parameters, values)?;
         }
         for &place in &self.nonzero {

@@ -69,7 +69,7 @@ impl Tape {
         &self,
         arguments: &[&[T]],
         parameters: &[f64],
-        output: impl FnMut(usize, T),
+        output: &mut dyn FnMut(usize, T),
     ) {
         let zero = T::zero();
         match self.size {
@@ -79,25 +79,21 @@ impl Tape {
         }
     }
 
+    /// Once for each scalar: a copy for each use of the outputs would make programs several times as large.
+    #[inline(never)]
     fn run_in<T: Scalar>(
         &self,
         results: &mut [T],
         arguments: &[&[T]],
         parameters: &[f64],
-        mut output: impl FnMut(usize, T),
+        output: &mut dyn FnMut(usize, T),
     ) {
-        self.execute(results, arguments, parameters);
-        for (number, place) in self.outputs.iter().enumerate() {
-            output(number, results[*place as usize]);
-        }
-    }
-
-    /// All operations. Once for each scalar: a copy beside each use of the results would make programs several times as large.
-    #[inline(never)]
-    fn execute<T: Scalar>(&self, results: &mut [T], arguments: &[&[T]], parameters: &[f64]) {
         let mut next = 0;
         for operation in &self.operations {
             next += operation.run(results, next, arguments, parameters);
+        }
+        for (number, place) in self.outputs.iter().enumerate() {
+            output(number, results[*place as usize]);
         }
     }
 }

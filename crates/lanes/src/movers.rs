@@ -5,17 +5,20 @@ use crate::machine::WIDTH;
 use crate::motion::{Start, moved};
 use crate::plan::Plan;
 use crate::row::{Alone, Described, described};
+use hamel::dynamics::Dynamics;
 use hamel::integrate::State;
 use hamel::registry::JointRegistry;
 use hamel::scene::Starts;
-use hamel_sweep::{Cells, Mover, Movers, Row, Sweep, Watch};
-use std::cell::OnceCell;
+use hamel_sweep::{Cells, Mover, Movers, Outcome, Row, Sweep, Watch};
+use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::{Mutex, PoisonError};
 
 /// Why a motion that began side by side goes by the tree.
 const LEFT: &str = "its numbers do not stay finite, or a joint turns far in one step";
+/// Why a motion does not begin side by side.
+const REFUSED: &str = "the equations of the tree refuse its first state";
 
 /// Which way rows went that have a scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -92,6 +95,8 @@ struct Own<'a> {
 /// A row that has been built.
 #[derive(Clone)]
 struct Built {
+    /// Its equations by the tree, which judge the first state: steps side by side would divide by what is no more than rounding.
+    tree: Rc<RefCell<Box<dyn Dynamics>>>,
     row: Rc<Described>,
     cells: Cells,
     /// The numbers of it that differ.
@@ -129,6 +134,24 @@ impl Built {
         let starts = || self.row.description.starts(registry);
         sweep.start(self.starts.get_or_init(starts).as_ref()?, cells)
     }
+
+    /// Whether the equations of the tree accelerate what is in this state.
+    fn accepts(&self, state: &State) -> bool {
+        let sizes = self.row.scene.mechanism.layout();
+        let mut rates = vec![0.0; sizes.speeds];
+        let efforts = vec![0.0; sizes.freedoms];
+        let mut tree = self.tree.borrow_mut();
+        tree.forward_dynamics(&state.configuration, &state.speeds, &efforts, &mut rates)
+            .is_ok()
+    }
+
+    /// The row from this state on.
+    fn way(self, state: State) -> Way {
+        match self.accepts(&state) {
+            true => Way::Lane(self, state),
+            false => Way::Tree(REFUSED.to_owned()),
+        }
+    }
 }
 
 impl Own<'_> {
@@ -142,20 +165,22 @@ impl Own<'_> {
         if let Some(built) = &self.last
             && let Some(state) = built.start(self.lanes, cells)
         {
-            return Way::Lane(built.clone(), state);
+            return built.clone().way(state);
         }
         match described(sweep, registry, &self.joints, cells) {
             Ok(row) => match plan.numbers(&row) {
                 Ok(numbers) => {
-                    let state = row.scene.start();
+                    let (state, settings) = (row.scene.start(), &row.scene.settings);
+                    let tree = settings.arithmetic.dynamics(&row.scene.mechanism);
                     let built = Built {
+                        tree: Rc::new(RefCell::new(tree)),
                         row: Rc::new(row),
                         cells: cells.clone(),
                         numbers: numbers.into(),
                         starts: Rc::default(),
                     };
                     self.last = Some(built.clone());
-                    Way::Lane(built, state)
+                    built.way(state)
                 }
                 Err(reason) => Way::Tree(reason),
             },
@@ -190,7 +215,10 @@ impl Own<'_> {
                         lanes
                             .sweep
                             .ended(&built.row.scene, &end.state, end.steps, &end.turns);
-                    Way::Done(row)
+                    match row.outcome {
+                        Outcome::Ended => Way::Done(row),
+                        _ => Way::Tree(LEFT.to_owned()),
+                    }
                 }
                 _ => Way::Tree(LEFT.to_owned()),
             };

@@ -166,6 +166,11 @@ impl Results {
             found.kinetic_energy(),
             found.potential_energy(),
         ];
+        if let Some(energy) = energies.iter().find(|energy| !energy.is_finite()) {
+            return Err(format!(
+                "its last state has an energy of {energy} J, which is beyond the range of numbers"
+            ));
+        }
         numbers.push(state.time);
         numbers.extend(energies);
         numbers.push(steps as f64);

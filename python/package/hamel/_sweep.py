@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from numbers import Real
+from operator import index
 from os import PathLike
 from typing import Any, Literal, overload
 
@@ -81,8 +83,7 @@ def sweep(
         Error: Ray is not installed; nodes with another version of hamel, or that compute otherwise; a cluster that fails for good.
         KeyboardInterrupt: Ctrl-C; there are no results then.
     """
-    if workers is not None and (not isinstance(workers, int) or isinstance(workers, bool) or workers < 1):
-        raise ArgumentError(f"workers is {workers!r}: it must be a whole number of at least 1")
+    workers = _count(workers)
     if level is not None and level not in LEVELS:
         raise ArgumentError(f"level is {level!r}: it must be one of {', '.join(LEVELS)}")
     if engine == "ray":
@@ -101,13 +102,35 @@ def sweep(
     return found
 
 
+# More threads than this no machine has.
+_MOST_WORKERS = 65536
+
+
+def _count(workers: Any) -> int | None:
+    """The number of workers as Python's own; ``None`` stays."""
+    if workers is None:
+        return None
+    try:
+        count = None if isinstance(workers, (bool, np.bool_)) else index(workers)
+    except TypeError:
+        count = None
+    if count is None or not 1 <= count <= _MOST_WORKERS:
+        raise ArgumentError(f"workers is {workers!r}: it must be a whole number from 1 to {_MOST_WORKERS}")
+    return count
+
+
 def numbers(table: Any) -> dict[str, NDArray[np.float64]]:
     """The columns of a table in memory by name, as doubles.
 
     Raises:
         ArgumentError: what is no table; columns that are no arrays of numbers, of one length.
     """
-    columns = {str(name): _column(str(name), values) for name, values in _columns(table).items()}
+    columns: dict[str, NDArray[np.float64]] = {}
+    for key, values in _columns(table).items():
+        name = str(key)
+        if name in columns:
+            raise ArgumentError(f"table has two columns `{name}`")
+        columns[name] = _column(name, values)
     if not columns:
         raise ArgumentError("table has no columns")
     lengths = {name: len(values) for name, values in columns.items()}
@@ -122,15 +145,36 @@ def _columns(table: Any) -> Mapping[Any, Any]:
         return table
     for names in ("column_names", "columns"):
         if hasattr(table, names):
-            return {name: table[name].to_numpy() for name in getattr(table, names)}
+            keys = list(getattr(table, names))
+            twice = [name for place, name in enumerate(keys) if name in keys[:place]]
+            if twice:
+                raise ArgumentError(f"table has two columns `{twice[0]}`")
+            return {name: table[name].to_numpy() for name in keys}
     raise ArgumentError(f"table is {table!r}: it must be a dict of arrays or a data frame")
 
 
 def _column(name: str, values: Any) -> NDArray[np.float64]:
+    # Conversion to doubles alone would read texts, dates and complex numbers, and what a mask hides.
+    if np.ma.is_masked(values):
+        raise ArgumentError(f"column `{name}` has masked values: fill them, or leave the rows out")
     try:
-        array = np.array(values, dtype=float)
-    except (TypeError, ValueError) as error:
+        found = np.asarray(values)
+        if found.dtype.kind not in "biufO":
+            raise TypeError(f"its values are of type {found.dtype}")
+        if found.dtype.kind == "O":
+            found = np.array([_number(value) for value in found.flat]).reshape(found.shape)
+        array = np.array(found, dtype=float)
+    except (TypeError, ValueError, OverflowError) as error:
         raise ArgumentError(f"column `{name}` is no array of numbers: {error}") from None
     if array.ndim != 1:
         raise ArgumentError(f"column `{name}` has shape {array.shape}: it must have shape (n,)")
     return array
+
+
+def _number(value: Any) -> float:
+    """A number among Python objects; NaN where there is none."""
+    if value is None:
+        return np.nan
+    if not isinstance(value, (Real, np.bool_)):
+        raise TypeError(f"{value!r} is of type {type(value).__name__}")
+    return float(value)

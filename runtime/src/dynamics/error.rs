@@ -58,6 +58,14 @@ pub enum DynamicsError {
         /// Its name.
         name: String,
     },
+    /// What an element exerts has no derivative at this state.
+    #[error("element `{name}` has no derivative at this state: {what}")]
+    NoDerivative {
+        /// The element.
+        name: String,
+        /// Why.
+        what: &'static str,
+    },
     /// Second derivatives of this mechanism are not covered.
     #[error("second derivatives of the dynamics do not cover {what}: `{name}`")]
     NotTwiceDifferentiable {

@@ -45,14 +45,23 @@ impl BodySpring {
         (direction, length, dot(&direction, &rate))
     }
 
-    /// The force on the second end where it stands off the first, as a function of the way between them and of its rate.
+    /// The force on the second end as a function of the way between them and of its rate. Along the way it is linear; only what depends on the direction
+    /// divides by the length.
     fn force(&self, way: &Vector3<HyperDual>, rate: &Vector3<HyperDual>) -> Vector3<HyperDual> {
+        let linear = way * HyperDual::from_f64(-self.stiffness);
+        if self.is_linear() {
+            return linear;
+        }
         let length = Scalar::sqrt(dot(way, way));
         let direction = way.map(|entry| entry / length);
-        let stretch = length - HyperDual::from_f64(self.length);
-        let pull = HyperDual::from_f64(self.stiffness) * stretch
-            + HyperDual::from_f64(self.damping) * dot(&direction, rate);
-        direction * -pull
+        let along = HyperDual::from_f64(self.stiffness * self.length)
+            - HyperDual::from_f64(self.damping) * dot(&direction, rate);
+        linear + direction * along
+    }
+
+    /// Whether the force is `−k x`, which needs no direction.
+    fn is_linear(&self) -> bool {
+        self.damping == 0.0 && (self.length == 0.0 || self.stiffness == 0.0)
     }
 }
 
@@ -103,19 +112,23 @@ impl Element for BodySpring {
 }
 
 impl Slope for BodySpring {
-    /// With u along the line and the pull p, `F = −p u` on the second end: `∂F/∂x = −(k uuᵀ + (p/l) (1 − uuᵀ) + c u (u̇)ᵀ)`,
-    /// `∂F/∂ẋ = −c uuᵀ`, where `u̇ = (ẋ − l̇ u)/l`. Where the points coincide the force is zero, and so are these.
+    /// With u along the line, `F = −k x + (k l₀ − c l̇) u` on the second end: `∂F/∂x = −k 1 + ((k l₀ − c l̇)/l) (1 − uuᵀ) − c u (u̇)ᵀ`,
+    /// `∂F/∂ẋ = −c uuᵀ`, where `u̇ = (ẋ − l̇ u)/l`. Where the points coincide, what depends on u is left out.
     fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>) {
         let (u, length, rate) = self.line(view);
-        if length == 0.0 {
-            return;
-        }
-        let velocity = |end: usize| view.point(self.bodies[end], &self.points[end]).1;
-        let turn = (velocity(1) - velocity(0) - u * rate) / length;
-        let pull = self.stiffness * (length - self.length) + self.damping * rate;
         let along = u * u.transpose();
-        let across = Matrix3::identity() - along;
-        let turned = u * turn.transpose();
+        let linear = Matrix3::identity() * -self.stiffness;
+        let by_way = match self.is_linear() || length == 0.0 {
+            true => linear,
+            false => {
+                let velocity = |end: usize| view.point(self.bodies[end], &self.points[end]).1;
+                let turn = (velocity(1) - velocity(0) - u * rate) / length;
+                let push = self.stiffness * self.length - self.damping * rate;
+                let across = Matrix3::identity() - along;
+                linear + across * (push / length) - u * turn.transpose() * self.damping
+            }
+        };
+        let pull = self.stiffness * (length - self.length) + self.damping * rate;
         let end = |end: usize| {
             let body = self.bodies[end]?;
             Some((body, view.arm(body, &self.points[end])))
@@ -123,19 +136,20 @@ impl Slope for BodySpring {
         let force = PointForce {
             ends: [end(0), end(1)],
             force: -u * pull,
-            by_way: -(along * self.stiffness + across * (pull / length) + turned * self.damping),
+            by_way,
             by_rate: -along * self.damping,
         };
         slopes.add_point_force(view, &force);
     }
+
+    fn missing(&self, view: &View<'_>) -> Option<&'static str> {
+        let coincide = self.line(view).1 == 0.0 && !self.is_linear();
+        coincide.then_some("its points coincide, so that its force has no direction")
+    }
 }
 
 impl Curvature for BodySpring {
-    /// Where the points coincide there are none, as there is no force.
     fn add_curvatures(&self, view: &View<'_>, curvatures: &mut Curvatures<'_>) {
-        if self.line(view).1 == 0.0 {
-            return;
-        }
         let [from, to] = [0, 1].map(|end: usize| view.point(self.bodies[end], &self.points[end]));
         let ends = [0, 1].map(|end: usize| {
             let body = self.bodies[end]?;

@@ -114,6 +114,7 @@ impl Curvatures<'_> {
         let mut gradient = [0.0; MOST_FREEDOMS];
         let [by_local, mixed, by_speeds, by_accelerations] = &mut room;
         let out = [
+            &mut gradient[..size],
             &mut by_local[..size * size],
             &mut mixed[..size * count],
             &mut by_speeds[..count * count],
@@ -127,7 +128,6 @@ impl Curvatures<'_> {
             ),
             &self.virtual_speeds[ranges.speeds.clone()],
             law,
-            &mut gradient[..size],
             out,
         );
         for (sum, entry) in self.into.by_local[ranges.freedoms.clone()]

@@ -20,6 +20,11 @@ use nalgebra::{Matrix3, Vector3, Vector6};
 pub trait Slope {
     /// Adds `∂/∂ϕ` and `∂/∂v̄` of what [`Element::act`](super::Element::act) exerts.
     fn add_slopes(&self, view: &View<'_>, slopes: &mut Slopes<'_>);
+
+    /// Why what it exerts has no derivative there, if it has none. Its slopes are then those of what has one.
+    fn missing(&self, _view: &View<'_>) -> Option<&'static str> {
+        None
+    }
 }
 
 /// Where elements put how what they exert changes. What is said of a body that is not there makes all of it NaN.

@@ -476,11 +476,7 @@ where
         out: [&mut [f64]; 3],
     ) {
         let state = virtual_state(&self.0, state, virtual_speeds);
-        let hessian = Steps(&self.0).second_variations(&state, carrying, gradient);
-        let [by_local, mixed, by_speeds] = out;
-        hessian.by_local.store(by_local);
-        hessian.mixed.store(mixed);
-        hessian.by_speeds.store(by_speeds);
+        Steps(&self.0).second_variations(&state, carrying, gradient, out);
     }
 
     fn chart_terms(&self, q: &[f64], gradient: &[f64], out: &mut [f64]) {
@@ -494,17 +490,10 @@ where
         state: (&[f64], &[f64], &[f64]),
         virtual_speeds: &[f64],
         law: &EffortLaw<'_>,
-        gradient: &mut [f64],
-        out: [&mut [f64]; 4],
+        out: [&mut [f64]; 5],
     ) {
         let state = virtual_state(&self.0, state, virtual_speeds);
-        let hessian = Steps(&self.0).power_hessian(&state, law);
-        let [by_local, mixed, by_speeds, by_accelerations] = out;
-        hessian.gradient.store(gradient);
-        hessian.by_local.store(by_local);
-        hessian.mixed.store(mixed);
-        hessian.by_speeds.store(by_speeds);
-        hessian.by_accelerations.store(by_accelerations);
+        Steps(&self.0).power_hessian(&state, law, out);
     }
 }
 

@@ -260,14 +260,13 @@ pub trait AnyJoint: Debug + Send + Sync {
     /// `Σ_m g_m [S₀⁻¹ (∂S_l − E_l S₀)]_mk` into `out` (K×K, row l, column k), for g with K entries: what `E_l E_k f` lacks to be the Hessian of f(Φ(Q, ϕ))
     /// at ϕ = 0, where g_k is `E_k f`.
     fn chart_terms(&self, q: &[f64], gradient: &[f64], out: &mut [f64]);
-    /// First and second derivatives at the `state` (q, v̄, v̄̇) of the power of efforts under `virtual_speeds`: `E_k` into `gradient` (K); `E_l E_k` (K×K,
-    /// row l, column k), by ϕ and v̄ (K×S), by v̄ (S×S), by ϕ and v̄̇ (K×S) into `out`.
+    /// First and second derivatives at the `state` (q, v̄, v̄̇) of the power of efforts under `virtual_speeds`, into `out`: `E_k` (K), `E_l E_k` (K×K, row l,
+    /// column k), by ϕ and v̄ (K×S), by v̄ (S×S), by ϕ and v̄̇ (K×S).
     fn power_hessian(
         &self,
         state: (&[f64], &[f64], &[f64]),
         virtual_speeds: &[f64],
         law: &EffortLaw<'_>,
-        gradient: &mut [f64],
-        out: [&mut [f64]; 4],
+        out: [&mut [f64]; 5],
     );
 }

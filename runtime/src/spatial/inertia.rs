@@ -1,6 +1,6 @@
 //! Spatial inertia of a rigid body.
 
-use super::fused::{add_cross, apply, cross, dot};
+use super::fused::{add_cross, apply, cross};
 use super::{MassProperties, Pose, Symmetric3, hat, join, split};
 use crate::scalar::Scalar;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
@@ -78,13 +78,10 @@ impl<T: Scalar> SpatialInertia<T> {
         // With s = mc + ½ m r both groups of terms become one: 2 (r·s) 1 − r sᵀ − s rᵀ.
         let half = offset * (self.mass * T::from_f64(0.5));
         let middle = self.first_moment + half;
-        let along = dot(offset, &middle);
-        let mut inertia = self.inertia.add_symmetric_product(&-offset, &middle);
-        inertia += Symmetric3::diagonal(along + along);
         Self {
             mass: self.mass,
             first_moment: middle + half,
-            inertia,
+            inertia: self.inertia.add_steiner(offset, &middle),
         }
     }
 

@@ -122,17 +122,20 @@ impl<T: Scalar> Symmetric3<T> {
         }
     }
 
-    /// `S + a bᵀ + b aᵀ`.
+    /// `S + 2 (a·b) 1 − a bᵀ − b aᵀ`.
+    ///
+    /// An entry of the diagonal takes the products of the other two axes alone. Were its own product added with `a·b` and subtracted with the rest, its rounding
+    /// would stay: for a rod along z whose centre of mass lies far along z, more than the whole moment about z.
     #[inline(always)]
-    pub fn add_symmetric_product(&self, a: &Vector3<T>, b: &Vector3<T>) -> Self {
-        let twice = |x: T| x + x;
+    pub fn add_steiner(&self, a: &Vector3<T>, b: &Vector3<T>) -> Self {
+        let twice = a + a;
         Self {
-            xx: twice(a.x).mul_add(b.x, self.xx),
-            xy: a.x.mul_add(b.y, b.x.mul_add(a.y, self.xy)),
-            xz: a.x.mul_add(b.z, b.x.mul_add(a.z, self.xz)),
-            yy: twice(a.y).mul_add(b.y, self.yy),
-            yz: a.y.mul_add(b.z, b.y.mul_add(a.z, self.yz)),
-            zz: twice(a.z).mul_add(b.z, self.zz),
+            xx: twice.y.mul_add(b.y, twice.z.mul_add(b.z, self.xx)),
+            xy: (-a.x).mul_add(b.y, (-b.x).mul_add(a.y, self.xy)),
+            xz: (-a.x).mul_add(b.z, (-b.x).mul_add(a.z, self.xz)),
+            yy: twice.x.mul_add(b.x, twice.z.mul_add(b.z, self.yy)),
+            yz: (-a.y).mul_add(b.z, (-b.y).mul_add(a.z, self.yz)),
+            zz: twice.x.mul_add(b.x, twice.y.mul_add(b.y, self.zz)),
         }
     }
 }

@@ -12,6 +12,7 @@
 mod articulate;
 mod chart;
 mod directions;
+mod motion_gradient;
 mod pattern;
 mod place;
 mod power;
@@ -24,12 +25,12 @@ pub(crate) use articulate::rounding;
 pub use articulate::{Pivot, PivotFailure};
 pub use chart::ChartDerivatives;
 pub(crate) use chart::Field;
+pub use motion_gradient::{Carrying, MotionGradient};
 pub use place::Placement;
 pub use power::EffortLaw;
 pub(crate) use rotors::AtPort;
 pub use rotors::RotorTerm;
 pub(crate) use second::VirtualState;
-pub use second::{Carrying, MotionGradient};
 pub use vary::Variation;
 
 use crate::erased::nan;

@@ -1,6 +1,7 @@
 //! Second derivatives of the power of efforts at one joint under virtual speeds μ, `μᵀ S̄ᵀ τ(Q, v)`: dual numbers of dual numbers through the joint's own kernels.
 
 use super::directions::constant;
+use super::motion_gradient::have_sizes;
 use super::second::VirtualState;
 use super::{AtPort, RotorTerm, Steps};
 use crate::erased::nan;
@@ -50,94 +51,72 @@ pub enum EffortLaw<'a> {
     },
 }
 
-/// First and second derivatives of a power at one joint.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PowerHessian<T, const K: usize, const S: usize> {
-    /// `E_k`.
-    pub(crate) gradient: SVector<T, K>,
-    /// `E_l E_k`: row l, column k.
-    pub(crate) by_local: SMatrix<T, K, K>,
-    /// By ϕ and v̄.
-    pub(crate) mixed: SMatrix<T, K, S>,
-    /// By v̄.
-    pub(crate) by_speeds: SMatrix<T, S, S>,
-    /// By ϕ and v̄̇.
-    pub(crate) by_accelerations: SMatrix<T, K, S>,
-}
-
 /// A number and its derivatives along two directions.
-type HyperDual<T> = Dual<Dual<T>>;
+type HyperDual = Dual<Dual<f64>>;
 
-/// Moves the number along the inner direction only where it is asked for.
-fn inner<T: Scalar>(value: Dual<T>, moves: bool) -> HyperDual<T> {
-    let rate = if moves { T::one() } else { T::zero() };
-    Dual::new(value, Dual::constant(rate))
-}
-
-/// A vector of which entry `j` is moved along the outer direction.
-fn outer<T: Scalar, const S: usize>(
-    vector: &SVector<T, S>,
-    j: Option<usize>,
-) -> SVector<Dual<T>, S> {
-    let rate = |i| if Some(i) == j { T::one() } else { T::zero() };
-    SVector::from_fn(|i, _| Dual::new(vector[i], rate(i)))
+/// A vector of which entry `outer` moves along the first direction, and entry `inner` along the second.
+fn moved<const S: usize>(
+    vector: &SVector<f64, S>,
+    outer: Option<usize>,
+    inner: Option<usize>,
+) -> SVector<HyperDual, S> {
+    let rate = |i, of| if Some(i) == of { 1.0 } else { 0.0 };
+    SVector::from_fn(|i, _| {
+        let value = Dual::new(vector[i], rate(i, outer));
+        Dual::new(value, Dual::constant(rate(i, inner)))
+    })
 }
 
 impl<J, const N: usize, const K: usize, const S: usize, const C: usize> Steps<'_, J, N, K, S, C>
 where
     J: Joint<N, K, S, C>,
 {
-    /// First and second derivatives of the power of efforts under virtual speeds.
+    /// First and second derivatives of the power of efforts under virtual speeds, as [`AnyJoint::power_hessian`](crate::erased::AnyJoint::power_hessian) says.
     pub(crate) fn power_hessian(
         &self,
         state: &VirtualState<f64, N, S>,
         law: &EffortLaw<'_>,
-    ) -> PowerHessian<f64, K, S> {
-        let mut hessian = PowerHessian {
-            gradient: SVector::zeros(),
-            by_local: SMatrix::zeros(),
-            mixed: SMatrix::zeros(),
-            by_speeds: SMatrix::zeros(),
-            by_accelerations: SMatrix::zeros(),
-        };
+        mut out: [&mut [f64]; 5],
+    ) {
+        if !have_sizes(&mut out, [K, K * K, K * S, S * S, K * S]) {
+            return;
+        }
         let here = self.axis_here(state, law);
-        let (q, speeds, rates) = (&state.q, &state.speeds, &state.accelerations);
-        let (still, v, a) = (constant(q), outer(speeds, None), outer(rates, None));
-        let power = |q: &SVector<HyperDual<f64>, N>,
-                     speeds: &SVector<HyperDual<f64>, S>,
-                     rates: &SVector<Dual<f64>, S>| {
-            let state = VirtualState {
-                q: *q,
-                speeds: *speeds,
-                accelerations: constant(rates),
-                virtual_speeds: constant(&constant(&state.virtual_speeds)),
-            };
-            self.virtual_power(&state, law, here).derivative()
-        };
-        for k in 0..K {
-            for l in 0..K {
-                let moved = self.moving(&self.moving(q, l), k);
-                let slope = power(&moved, &constant(&v), &a);
-                hessian.by_local[(l, k)] = slope.derivative();
-                hessian.gradient[k] = slope.value;
-            }
-            let moved = self.moving(&still, k);
-            for l in 0..S {
-                let faster = constant(&outer(speeds, Some(l)));
-                hessian.mixed[(k, l)] = power(&moved, &faster, &a).derivative();
-                let (speeds, rates) = (constant(&v), outer(rates, Some(l)));
-                hessian.by_accelerations[(k, l)] = power(&moved, &speeds, &rates).derivative();
+        let [gradient, by_local, mixed, by_speeds, by_accelerations] = out;
+        // One loop over pairs of directions, so that the kernels in it are compiled once: ϕ, then v̄, then v̄̇.
+        for inner in 0..K + S {
+            for outer in 0..K + S + S {
+                let (speed, of_speed) = (inner.checked_sub(K), outer.checked_sub(K));
+                let of_acceleration = outer.checked_sub(K + S);
+                if speed.is_some() && (of_speed.is_none() || of_acceleration.is_some()) {
+                    continue;
+                }
+                let q = match of_speed {
+                    None => self.moving(&state.q, outer),
+                    Some(_) => constant(&state.q),
+                };
+                let moved = VirtualState {
+                    q: match speed {
+                        None => self.moving(&q, inner),
+                        Some(_) => constant(&q),
+                    },
+                    speeds: moved(&state.speeds, of_speed, speed),
+                    accelerations: moved(&state.accelerations, of_acceleration, None),
+                    virtual_speeds: moved(&state.virtual_speeds, None, None),
+                };
+                let slope = self.virtual_power(&moved, law, here).derivative();
+                let entry = match (speed, of_speed, of_acceleration) {
+                    (Some(i), Some(j), _) => &mut by_speeds[i * S + j],
+                    (_, _, Some(j)) => &mut by_accelerations[j * K + inner],
+                    (_, Some(j), None) => &mut mixed[j * K + inner],
+                    (_, None, None) => {
+                        gradient[inner] = slope.value;
+                        &mut by_local[inner * K + outer]
+                    }
+                };
+                *entry = slope.derivative();
             }
         }
-        let still = constant(&still);
-        for k in 0..S {
-            for l in 0..S {
-                let faster = outer(speeds, Some(l));
-                let both = SVector::from_fn(|i, _| inner(faster[i], i == k));
-                hessian.by_speeds[(k, l)] = power(&still, &both, &a).derivative();
-            }
-        }
-        hessian
     }
 
     /// The value and the rate of what a law acts on.

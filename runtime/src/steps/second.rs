@@ -1,40 +1,15 @@
 //! How a joint's share in the derivatives of a scalar function of a mechanism's motion changes with the joint's own ϕ and v̄.
 //!
 //! The function has derivatives by the placement, the twist, its rate and the virtual twist of a child frame: [`MotionGradient`]. Those by ϕ and v̄ are products
-//! of these with the [`Variation`]s. Here the products are differentiated once more along the joint's own directions, the [`MotionGradient`] held fixed in
-//! the child frame: by dual numbers through the kernels of first order, with Q moved along `E_l = Q̇(Q, S₀ e_l)`.
+//! of these with what one unit of ϕ and v̄ changes. Here the products are differentiated once more along the joint's own directions, the [`MotionGradient`] held
+//! fixed in the child frame: by dual numbers through the kernels of first order, with Q moved along `E_l = Q̇(Q, S₀ e_l)`.
 
-use super::directions::{along, constant, derivative};
-use super::{Motion, Placement, Steps, Variation};
+use super::Steps;
+use super::directions::{along, constant};
+use super::motion_gradient::{Carrying, MotionGradient, OwnMotion, have_sizes};
 use crate::joint::{Joint, Products};
 use crate::scalar::{Dual, Scalar};
-use crate::spatial::bracket_product;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector6};
-
-/// The gradient of a scalar function of a mechanism's motion by the motion of one child frame and of all that hangs on it: four vectors that are read as
-/// wrenches are.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MotionGradient<T> {
-    /// ζ, by the placement.
-    pub placement: Vector6<T>,
-    /// β, by V.
-    pub twist: Vector6<T>,
-    /// h, by V̇.
-    pub rate: Vector6<T>,
-    /// F, by the virtual twist P.
-    pub virtual_twist: Vector6<T>,
-}
-
-/// V, V̇ and P of the parent, as they carry a child frame along.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Carrying<T> {
-    /// V.
-    pub twist: Vector6<T>,
-    /// V̇.
-    pub rate: Vector6<T>,
-    /// P.
-    pub virtual_twist: Vector6<T>,
-}
 
 /// Q, v̄, v̄̇ and the virtual speeds μ of one joint.
 #[derive(Clone, Copy, Debug)]
@@ -45,52 +20,8 @@ pub(crate) struct VirtualState<T, const N: usize, const S: usize> {
     pub(crate) virtual_speeds: SVector<T, S>,
 }
 
-/// Second derivatives of one joint's share.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct OwnHessian<T, const K: usize, const S: usize> {
-    /// `E_l E_k`: row l, column k. Not symmetric: see [`Steps::chart_terms`].
-    pub(crate) by_local: SMatrix<T, K, K>,
-    /// By ϕ and v̄.
-    pub(crate) mixed: SMatrix<T, K, S>,
-    /// By v̄.
-    pub(crate) by_speeds: SMatrix<T, S, S>,
-}
-
-impl<T: Scalar> MotionGradient<T> {
-    /// Zeros.
-    pub fn zero() -> Self {
-        Self {
-            placement: Vector6::zeros(),
-            twist: Vector6::zeros(),
-            rate: Vector6::zeros(),
-            virtual_twist: Vector6::zeros(),
-        }
-    }
-
-    /// Each of its vectors.
-    pub(crate) fn map<U>(&self, f: impl Fn(&Vector6<T>) -> Vector6<U>) -> MotionGradient<U> {
-        MotionGradient {
-            placement: f(&self.placement),
-            twist: f(&self.twist),
-            rate: f(&self.rate),
-            virtual_twist: f(&self.virtual_twist),
-        }
-    }
-}
-
-impl<T: Scalar> Carrying<T> {
-    /// Each of its vectors.
-    pub(crate) fn map<U>(&self, f: impl Fn(&Vector6<T>) -> Vector6<U>) -> Carrying<U> {
-        Carrying {
-            twist: f(&self.twist),
-            rate: f(&self.rate),
-            virtual_twist: f(&self.virtual_twist),
-        }
-    }
-}
-
-impl<T: Scalar, const N: usize, const S: usize> VirtualState<T, N, S> {
-    fn constant(&self) -> VirtualState<Dual<T>, N, S> {
+impl<const N: usize, const S: usize> VirtualState<f64, N, S> {
+    fn constant(&self) -> VirtualState<Dual<f64>, N, S> {
         VirtualState {
             q: constant(&self.q),
             speeds: constant(&self.speeds),
@@ -112,137 +43,103 @@ where
     }
 
     /// The derivatives of the products of `gradient` with the variations, both in child axes, along the joint's own ϕ and v̄. `carrying` is of the parent, in
-    /// child axes as well.
-    pub(crate) fn second_variations<T: Scalar>(
+    /// child axes as well. Into `out` as [`AnyJoint::second_variations`](crate::erased::AnyJoint::second_variations) says.
+    pub(crate) fn second_variations(
         &self,
-        state: &VirtualState<T, N, S>,
-        carrying: &Carrying<T>,
-        gradient: &MotionGradient<T>,
-    ) -> OwnHessian<T, K, S> {
+        state: &VirtualState<f64, N, S>,
+        carrying: &Carrying<f64>,
+        gradient: &MotionGradient<f64>,
+        mut out: [&mut [f64]; 3],
+    ) {
+        if !have_sizes(&mut out, [K * K, K * S, S * S]) {
+            return;
+        }
         let structures = J::STRUCTURES;
-        // Then ϕ̇ = v = v̄ and X̄ stands still in the child: nothing changes but what the parent does, as seen from there.
         if structures.speed_map.is_constant()
             && structures.velocity_map.is_identity()
             && structures.speed_basis.is_identity()
         {
             let columns = self.columns(&state.q, &Matrix3::identity());
-            return Self::second_variations_of(&columns, carrying, gradient);
+            return gradient.constant_columns(&columns, carrying, out);
         }
-        let still = state.constant();
-        let gradient = gradient.map(constant);
+        let (still, gradient) = (state.constant(), gradient.constant());
         let local = self.0.local_twist_map(&state.q);
-        let mut hessian = OwnHessian {
-            by_local: SMatrix::<T, K, K>::zeros(),
-            mixed: SMatrix::<T, K, S>::zeros(),
-            by_speeds: SMatrix::<T, S, S>::zeros(),
-        };
-        for l in 0..K {
-            let moved = VirtualState {
-                q: self.moving(&state.q, l),
-                ..still
+        let [by_local, mixed, by_speeds] = out;
+        // One loop, so that what it does is compiled once: along each ϕ, then along each speed.
+        for l in 0..K + S {
+            let (moved, carried) = match l < K {
+                true => {
+                    let q = self.moving(&state.q, l);
+                    let carried = carrying.turned_back(&local.column(l).into_owned());
+                    (VirtualState { q, ..still }, carried)
+                }
+                false => {
+                    let speeds = still.speeds + along(l - K);
+                    (VirtualState { speeds, ..still }, carrying.constant())
+                }
             };
-            // What the parent does stands still in the parent, and turns back in the child.
-            let z = local.column(l).into_owned();
-            let carried = carrying.map(|twist| {
-                let turned = bracket_product(&z, twist);
-                Vector6::from_fn(|i, _| Dual::new(twist[i], -turned[i]))
-            });
-            let (by_local, _) = self.products(&moved, &carried, &gradient);
-            hessian
-                .by_local
-                .set_row(l, &derivative(&by_local).transpose());
-        }
-        let carried = carrying.map(constant);
-        for l in 0..S {
-            let faster = VirtualState {
-                speeds: still.speeds + along(l),
-                ..still
-            };
-            let (by_local, by_speeds) = self.products(&faster, &carried, &gradient);
-            hessian.mixed.set_column(l, &derivative(&by_local));
-            let row = derivative(&by_speeds).transpose();
-            hessian.by_speeds.set_row(l, &row);
-        }
-        hessian
-    }
-
-    /// [`Steps::second_variations`] where X̄ with these columns is constant, and the velocities of ϕ are the speeds.
-    fn second_variations_of<T: Scalar>(
-        columns: &[Vector6<T>; S],
-        carrying: &Carrying<T>,
-        gradient: &MotionGradient<T>,
-    ) -> OwnHessian<T, K, S> {
-        let mut hessian = OwnHessian {
-            by_local: SMatrix::<T, K, K>::zeros(),
-            mixed: SMatrix::<T, K, S>::zeros(),
-            by_speeds: SMatrix::<T, S, S>::zeros(),
-        };
-        for (l, outer) in columns.iter().enumerate() {
-            let moved = carrying.map(|twist| -bracket_product(outer, twist));
-            for (k, inner) in columns.iter().enumerate() {
-                let drift = bracket_product(&moved.twist, inner);
-                let rate = bracket_product(&moved.rate, inner)
-                    + bracket_product(&moved.twist, &bracket_product(&carrying.twist, inner))
-                    + bracket_product(&carrying.twist, &drift);
-                let virtual_drift = bracket_product(&moved.virtual_twist, inner);
-                hessian.by_local[(l, k)] = gradient.twist.dot(&drift)
-                    + gradient.rate.dot(&rate)
-                    + gradient.virtual_twist.dot(&virtual_drift);
-                hessian.by_speeds[(l, k)] = gradient.rate.dot(&bracket_product(outer, inner));
+            let (of_local, of_speeds) = self.products(&moved, &carried, &gradient);
+            match l.checked_sub(K) {
+                None => (0..K).for_each(|k| by_local[k * K + l] = of_local[k].derivative()),
+                Some(j) => {
+                    (0..K).for_each(|k| mixed[j * K + k] = of_local[k].derivative());
+                    (0..S).for_each(|i| by_speeds[i * S + j] = of_speeds[i].derivative());
+                }
             }
         }
-        hessian
     }
 
     /// What `gradient` says of one unit of each ϕ and v̄.
-    fn products<T: Scalar>(
+    fn products(
         &self,
-        state: &VirtualState<T, N, S>,
-        carrying: &Carrying<T>,
-        gradient: &MotionGradient<T>,
-    ) -> (SVector<T, K>, SVector<T, S>) {
-        let columns = self.columns(&state.q, &Matrix3::identity());
-        let parent = Motion {
-            placement: Placement::world(),
-            twist: carrying.twist,
-            rate: carrying.rate,
+        state: &VirtualState<Dual<f64>, N, S>,
+        carrying: &Carrying<Dual<f64>>,
+        gradient: &MotionGradient<Dual<f64>>,
+    ) -> ([Dual<f64>; K], [Dual<f64>; S]) {
+        let VirtualState {
+            q,
+            speeds,
+            accelerations,
+            virtual_speeds,
+        } = state;
+        let (joint, structures) = (self.0, J::STRUCTURES);
+        let columns = self.columns(q, &Matrix3::identity());
+        let first = joint.first_order(q);
+        let twist_slopes = J::twist_gradient_at(&first, speeds);
+        let mut rate_slopes = J::twist_gradient_at(&first, accelerations);
+        if !structures.bias_acceleration.is_constant() {
+            rate_slopes += joint.bias_acceleration_gradient(q, speeds);
+        }
+        let speed_slopes = match structures.bias_acceleration.is_zero() {
+            true => SMatrix::zeros(),
+            false => joint.bias_acceleration_slope_at((q, speeds), &first, &twist_slopes),
         };
-        let own = Motion {
-            twist: Self::add_columns(&carrying.twist, &columns, &state.speeds),
-            ..parent
+        let own = OwnMotion {
+            columns: &columns,
+            local: &columns_of(&joint.local_twist_map(q)),
+            twist: Self::add_columns(&Vector6::zeros(), &columns, speeds),
+            twist_slopes: &columns_of(&twist_slopes),
+            rate_slopes: &columns_of(&rate_slopes),
+            virtual_slopes: &columns_of(&J::twist_gradient_at(&first, virtual_speeds)),
+            speed_slopes: &columns_of(&speed_slopes),
         };
-        let mut variations = [Variation::zero(); K];
-        let rates = (&state.q, &state.speeds, &state.accelerations);
-        self.variations(rates, (&own, &parent), &columns, &mut variations);
-        let virtual_slopes = self.0.twist_gradient(&state.q, &state.virtual_speeds);
-        let by_local = SVector::from_fn(|k, _| {
-            let Variation {
-                local, drift, rate, ..
-            } = &variations[k];
-            let virtual_drift =
-                bracket_product(&carrying.virtual_twist, local) + virtual_slopes.column(k);
-            gradient.placement.dot(local)
-                + gradient.twist.dot(drift)
-                + gradient.rate.dot(rate)
-                + gradient.virtual_twist.dot(&virtual_drift)
-        });
-        let by_speeds = SVector::from_fn(|j, _| {
-            gradient.twist.dot(&columns[j]) + gradient.rate.dot(&variations[j].speed_rate)
-        });
+        let zero = Dual::constant(0.0);
+        let (mut by_local, mut by_speeds) = ([zero; K], [zero; S]);
+        gradient.products(&own, carrying, &mut by_local, &mut by_speeds);
         (by_local, by_speeds)
     }
 
     /// `Σ_m g_m [S₀⁻¹ (∂S_l − E_l S₀)]_mk` (row l, column k): with it `E_l E_k f` is the Hessian of f(Φ(Q, ϕ)) at ϕ = 0, where g_k is `E_k f`.
     ///
     /// At ϕ, one unit of ϕ_k moves Φ as `S₀(Φ)⁻¹ S(Q, ϕ) e_k` does at ϕ = 0, so that `∂(f∘Φ)/∂ϕ_k = Σ_m g_m(Φ) [S₀(Φ)⁻¹ S(Q, ϕ)]_mk`.
-    pub(crate) fn chart_terms<T: Scalar>(
+    pub(crate) fn chart_terms(
         &self,
-        q: &SVector<T, N>,
-        gradient: &SVector<T, K>,
-    ) -> SMatrix<T, K, K> {
+        q: &SVector<f64, N>,
+        gradient: &SVector<f64, K>,
+    ) -> SMatrix<f64, K, K> {
         let structures = J::STRUCTURES;
         let slices = self.0.velocity_map_gradient(q);
-        let mut terms = SMatrix::<T, K, K>::zeros();
+        let mut terms = SMatrix::<f64, K, K>::zeros();
         let weights = self.0.velocity_map_inverse(q).tr_mul(gradient);
         for (l, slice) in slices.iter().enumerate() {
             let mut change = *slice;
@@ -256,4 +153,9 @@ where
         }
         terms
     }
+}
+
+/// The columns of a matrix.
+fn columns_of<T: Scalar, const M: usize>(matrix: &SMatrix<T, 6, M>) -> [Vector6<T>; M] {
+    matrix.data.0.map(Vector6::from)
 }

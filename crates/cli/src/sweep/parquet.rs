@@ -4,7 +4,7 @@ use super::table::{Part, unreadable};
 use hamel_console::files::Draft;
 use hamel_console::output::Failure;
 use hamel_sweep::Cells;
-use parquet::basic::{ConvertedType, Repetition, Type as Physical};
+use parquet::basic::{ConvertedType, LogicalType, Repetition, Type as Physical};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::{ParquetError, Result as Done};
@@ -25,6 +25,8 @@ const RESULTS: &str = "sweep";
 pub struct Table {
     reader: SerializedFileReader<File>,
     names: Vec<String>,
+    /// Whether the numbers of a column are unsigned.
+    unsigned: Vec<bool>,
     /// The next group.
     group: usize,
     columns: Vec<ColumnReader>,
@@ -50,8 +52,10 @@ impl Table {
             return Err(Failure::Options(refused.join("\nerror: ")));
         }
         let names = schema.columns().iter().map(|own| own.name().to_owned());
+        let unsigned = schema.columns().iter().map(|own| is_unsigned(own));
         Ok(Self {
             names: names.collect(),
+            unsigned: unsigned.collect(),
             reader,
             group: 0,
             columns: Vec::new(),
@@ -102,8 +106,9 @@ impl Table {
         let count = count.min(self.left);
         self.left -= count;
         let mut rows = vec![Cells::default(); count];
-        for (column, name) in self.columns.iter_mut().zip(&self.names) {
-            for (row, number) in rows.iter_mut().zip(numbers(column, count)?) {
+        let named = self.names.iter().zip(&self.unsigned);
+        for (column, (name, unsigned)) in self.columns.iter_mut().zip(named) {
+            for (row, number) in rows.iter_mut().zip(numbers(column, *unsigned, count)?) {
                 match number {
                     Some(number) => row.numbers.push(number),
                     None => {
@@ -124,22 +129,60 @@ fn refusal(column: &ColumnDescriptor) -> Option<String> {
         kind,
         Physical::DOUBLE | Physical::FLOAT | Physical::INT32 | Physical::INT64
     );
+    let meaning = other_meaning(column);
     let is_flat = column.path().parts().len() == 1 && column.max_rep_level() == 0;
     let name = hamel_scene::text::visible_line(&column.path().string());
-    match (is_flat, is_number) {
-        (true, true) => None,
-        (false, _) => Some(format!(
+    match (is_flat, is_number, meaning) {
+        (true, true, None) => None,
+        (false, ..) => Some(format!(
             "column `{name}` is a list or a record, and must hold numbers"
         )),
-        (true, false) => Some(format!(
+        (true, true, Some(meaning)) => Some(format!(
+            "column `{name}` holds {meaning}, stored as {kind}, and must hold numbers: make them floating-point numbers in its unit"
+        )),
+        (true, false, _) => Some(format!(
             "column `{name}` holds {kind}, and must hold numbers"
         )),
     }
 }
 
+/// Whether whole numbers of a column are unsigned; they are stored as signed ones.
+fn is_unsigned(column: &ColumnDescriptor) -> bool {
+    use ConvertedType as Converted;
+    matches!(
+        column.converted_type(),
+        Converted::UINT_8 | Converted::UINT_16 | Converted::UINT_32 | Converted::UINT_64
+    )
+}
+
+/// What the stored numbers of a column stand for, if for no numbers: a decimal is stored without its point, a date as days.
+fn other_meaning(column: &ColumnDescriptor) -> Option<&'static str> {
+    use ConvertedType as Converted;
+    match (column.logical_type_ref(), column.converted_type()) {
+        (Some(LogicalType::Decimal { .. }), _) | (_, Converted::DECIMAL) => Some("decimals"),
+        (Some(LogicalType::Date), _) | (_, Converted::DATE) => Some("dates"),
+        (Some(LogicalType::Time { .. } | LogicalType::Timestamp { .. }), _)
+        | (
+            _,
+            Converted::TIME_MILLIS
+            | Converted::TIME_MICROS
+            | Converted::TIMESTAMP_MILLIS
+            | Converted::TIMESTAMP_MICROS,
+        ) => Some("times"),
+        (Some(LogicalType::Integer(_)) | None, _) => None,
+        (Some(_), _) => Some("what is no number"),
+    }
+}
+
 /// The next numbers of a column.
-fn numbers(column: &mut ColumnReader, count: usize) -> Done<Vec<Option<f64>>> {
+fn numbers(column: &mut ColumnReader, unsigned: bool, count: usize) -> Done<Vec<Option<f64>>> {
     match column {
+        ColumnReader::Int32ColumnReader(own) if unsigned => {
+            values(own, count, |value| f64::from(value.cast_unsigned()))
+        }
+        ColumnReader::Int64ColumnReader(own) if unsigned => {
+            values(own, count, |value| value.cast_unsigned() as f64)
+        }
         ColumnReader::DoubleColumnReader(own) => values(own, count, |value| *value),
         ColumnReader::FloatColumnReader(own) => values(own, count, |value| f64::from(*value)),
         ColumnReader::Int32ColumnReader(own) => values(own, count, |value| f64::from(*value)),
@@ -246,7 +289,11 @@ fn show(file: File, columns: usize, see: &mut dyn FnMut(u64, &str, &[f64])) -> D
         })?;
         let mut all = Vec::with_capacity(columns);
         for column in 0..columns {
-            all.push(numbers(&mut group.get_column_reader(column + 2)?, count)?);
+            all.push(numbers(
+                &mut group.get_column_reader(column + 2)?,
+                false,
+                count,
+            )?);
         }
         for (place, (row, outcome)) in rows.into_iter().zip(texts).enumerate() {
             let numbers = all.iter().map(|column| column[place].unwrap_or(f64::NAN));

@@ -46,12 +46,13 @@ impl Equations {
             Self::Lagrangian(at) => {
                 rates.speeds.copy_from_slice(y);
                 dynamics.complete_speeds(q, &mut rates.speeds)?;
-                dynamics.forward_dynamics_derivatives(q, &rates.speeds, efforts, at)?;
+                let found = dynamics.forward_dynamics_derivatives(q, &rates.speeds, efforts, at);
+                smooth(found)?;
                 rates.y.copy_from_slice(at.rates());
                 Ok(())
             }
             Self::Hamiltonian(at) => {
-                dynamics.hamiltonian_derivatives(q, y, efforts, at)?;
+                smooth(dynamics.hamiltonian_derivatives(q, y, efforts, at))?;
                 let mut held = |_: &[f64], tau: &mut [f64]| tau.copy_from_slice(efforts);
                 dynamics.momentum_rates(q, y, &mut held, &mut rates.speeds, &mut rates.y)
             }
@@ -114,5 +115,13 @@ fn add_efforts(slopes: &mut Sensitivity, by_efforts: &Sensitivity) {
     let rows = slopes.entries_mut().chunks_exact_mut(width);
     for (row, own) in rows.zip(by_efforts.entries().chunks_exact(own)) {
         super::add(&mut row[width - own.len()..], 1.0, own);
+    }
+}
+
+/// What has no derivative at a state is left out of those that are found: a linearisation that lacks it costs steps, and no accuracy.
+fn smooth(found: Result<(), DynamicsError>) -> Result<(), DynamicsError> {
+    match found {
+        Err(DynamicsError::NoDerivative { .. }) => Ok(()),
+        found => found,
     }
 }

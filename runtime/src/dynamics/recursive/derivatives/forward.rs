@@ -185,13 +185,24 @@ impl Recursive {
         self.check_differentiable(&out.responses.branches)?;
         self.check_coupled(out.coupled.as_ref().map_or(0, Coupled::room))?;
         self.forward_dynamics(q, speeds, efforts, &mut out.rates)?;
-        if !self.mechanism.constraints().is_empty() {
-            return self.differentiate_coupled((q, speeds, efforts), out);
+        match self.mechanism.constraints().is_empty() {
+            true => self.differentiate_tree((q, speeds, efforts), out),
+            false => self.differentiate_coupled((q, speeds, efforts), out)?,
         }
+        let found = [&out.by_local, &out.by_speeds, &out.by_efforts];
+        self.check_found((q, speeds), &found)
+    }
+
+    /// The derivatives where no constraint couples joints, after [`Recursive::forward_dynamics`].
+    fn differentiate_tree(
+        &mut self,
+        (q, speeds, efforts): (&[f64], &[f64], &[f64]),
+        out: &mut ForwardDerivatives,
+    ) {
         if let Some(mut dense) = out.dense.take() {
             self.differentiate_dense((q, speeds, efforts), &mut dense, out);
             out.dense = Some(dense);
-            return Ok(());
+            return;
         }
         self.set_accelerations(q, speeds, &out.rates);
         let yields = self.holonomic && self.mechanism.drives().is_empty();
@@ -200,7 +211,7 @@ impl Recursive {
             self.invert_few(factors, &mut out.by_efforts);
             negative_product(&out.by_efforts, &inverse.by_local, &mut out.by_local);
             negative_product(&out.by_efforts, &inverse.by_speeds, &mut out.by_speeds);
-            return Ok(());
+            return;
         }
         if self.acted_on {
             self.act_and_vary((q, speeds), Some(&out.rates), &mut out.acting);
@@ -236,7 +247,6 @@ impl Recursive {
             add_response(inverse, &out.acting.by_local, &mut out.by_local);
             add_response(inverse, &out.acting.by_speeds, &mut out.by_speeds);
         }
-        Ok(())
     }
 
     /// Inward: F of each body and all that hangs on it; B of the same, giving way.

@@ -199,7 +199,14 @@ impl Recursive {
             &mut out.rates_by_local,
         );
         self.obey_drives(out);
-        Ok(())
+        let found = [
+            &out.speeds_by_local,
+            &out.speeds_by_momenta,
+            &out.rates_by_local,
+            &out.rates_by_momenta,
+            &out.rates_by_efforts,
+        ];
+        self.check_found((q, &out.speeds), &found)
     }
 
     /// The variations of all joints at (q, v̄).

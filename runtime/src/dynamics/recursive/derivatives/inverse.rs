@@ -132,7 +132,7 @@ impl Recursive {
         self.check_differentiable(&out.branches)?;
         self.advance(q, speeds, Some(accelerations));
         self.differentiate_needed(q, speeds, accelerations, out);
-        Ok(())
+        self.check_found((q, speeds), &[&out.by_local, &out.by_speeds])
     }
 
     /// What is left of [`Recursive::inverse_dynamics_derivatives`] once the bodies move.

@@ -37,6 +37,7 @@ mod coupled_momenta;
 mod dense;
 mod energy;
 mod factor;
+mod finite;
 mod fold;
 mod forward;
 mod hamiltonian;

@@ -136,7 +136,7 @@ impl Recursive {
         for index in 0..self.links.len() {
             self.add_input_pairs(index, q, out);
         }
-        Ok(())
+        self.check_found((q, speeds), &[&out.hessian])
     }
 
     /// `μᵀ ∂S̄_kᵀ`: by ϕ_k and τ.

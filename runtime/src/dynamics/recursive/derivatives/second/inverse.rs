@@ -60,6 +60,6 @@ impl Recursive {
         self.check_twice_differentiable(&out.contraction.branches)?;
         out.contraction.virtual_speeds.copy_from_slice(weights);
         self.contract((q, speeds, accelerations), None, &mut out.contraction);
-        Ok(())
+        self.check_found((q, speeds), &[&out.contraction.hessian])
     }
 }
