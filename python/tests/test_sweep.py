@@ -4,6 +4,7 @@ import os
 import pickle
 import subprocess
 import sys
+from pathlib import Path
 
 import hamel
 import numpy as np
@@ -60,7 +61,12 @@ def test_rows_fail_alone():
     ("rows", "message"),
     [
         ({"body.hand.mas": [1.0]}, "column `body.hand.mas`: in `body.hand`: the scene has no `mas` there; did you mean `mass`?"),
-        ({MASS: ["a"]}, "column `body.hand.mass` is no array of numbers: could not convert string to float: 'a'"),
+        ({MASS: ["1"]}, "column `body.hand.mass` is no array of numbers: its values are of type <U1"),
+        ({MASS: np.array([1, 2], "m8[s]")}, "column `body.hand.mass` is no array of numbers: its values are of type timedelta64[s]"),
+        ({MASS: [1.0 + 2.0j]}, "column `body.hand.mass` is no array of numbers: its values are of type complex128"),
+        ({MASS: np.array([1.0, "2"], object)}, "column `body.hand.mass` is no array of numbers: '2' is of type str"),
+        ({MASS: np.ma.array([1.0, 2.0], mask=[False, True])}, "column `body.hand.mass` has masked values: fill them, or leave the rows out"),
+        ({MASS: [1.0], Path(MASS): [2.0]}, "table has two columns `body.hand.mass`"),
         ({MASS: [[1.0]]}, "column `body.hand.mass` has shape (1, 1): it must have shape (n,)"),
         ({MASS: [1.0], "gravity.2": [1.0, 2.0]}, "table has columns of different lengths: {'body.hand.mass': 1, 'gravity.2': 2}"),
         ({}, "table has no columns"),
@@ -74,8 +80,10 @@ def test_tables_that_are_none_are_refused(rows, message):
 
 
 def test_workers_are_counted():
-    with pytest.raises(hamel.ArgumentError, match="workers is 0: it must be a whole number of at least 1"):
-        hamel.sweep(ARM, table(1), 0)
+    for count in (0, 10**30, 1.5, True):
+        with pytest.raises(hamel.ArgumentError, match=r"workers is .*: it must be a whole number from 1 to 65536"):
+            hamel.sweep(ARM, table(1), count)
+    assert hamel.sweep(ARM, table(1), np.int64(2), estimate=False)["outcome"].tolist() == ["ended"]
 
 
 def test_sweeps_pickle_as_their_scenes():

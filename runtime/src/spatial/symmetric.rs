@@ -151,3 +151,20 @@ impl<T: Scalar> AddAssign for Symmetric3<T> {
         self.zz += other.zz;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The moment about a thin axis along which the centre of mass lies keeps its digits.
+    #[test]
+    fn thin_moments_are_kept() {
+        let thin = Symmetric3 {
+            zz: 1e-14,
+            ..Symmetric3::diagonal(1.0)
+        };
+        let moved = thin.add_steiner(&Vector3::new(0.0, 0.0, -0.3), &Vector3::new(0.0, 0.0, -0.7));
+        assert_eq!(moved.zz, 1e-14);
+        assert!((moved.xx - 1.42).abs() <= 4.0 * f64::EPSILON);
+    }
+}

@@ -131,3 +131,44 @@ fn columns_without_numbers_are_refused() {
         "{said}"
     );
 }
+
+/// Decimals are stored without their point, dates as days: such columns are refused. Unsigned numbers are stored as signed ones, and read as they are meant.
+#[test]
+fn stored_numbers_are_read_as_they_are_meant() {
+    let place = pendulums(0);
+    let write = |kind: &str, value: i32| {
+        let schema = format!("message table {{ required int32 body.arm.mass ({kind}); }}");
+        let schema = Arc::new(parse_message_type(&schema).expect("a schema"));
+        let file = File::create(place.path("table.parquet")).expect("a file");
+        let mut writer = SerializedFileWriter::new(file, schema, Arc::default()).expect("a writer");
+        let mut group = writer.next_row_group().expect("a group");
+        let mut column = group.next_column().expect("a column").expect("the first");
+        column
+            .typed::<Int32Type>()
+            .write_batch(&[value], None, None)
+            .expect("a number");
+        column.close().expect("a column");
+        group.close().expect("a group");
+        writer.close().expect("a file");
+    };
+    for (kind, meaning) in [
+        ("DECIMAL(9,2)", "decimals"),
+        ("DATE", "dates"),
+        ("TIME(MILLIS,true)", "times"),
+    ] {
+        write(kind, 100);
+        let said = place.refused("sweep pendulum.toml --over table.parquet -o out", 2);
+        assert_eq!(
+            said,
+            format!(
+                "error: column `body.arm.mass` holds {meaning}, stored as INT32, and must hold numbers: make them floating-point numbers in its unit\n"
+            )
+        );
+    }
+    write("INTEGER(32,false)", -1);
+    let said = place.done("sweep pendulum.toml --over table.parquet --scene-of 1");
+    assert!(said.contains("mass = 4294967295"), "{said}");
+    write("INTEGER(16,true)", 2);
+    let said = place.done("sweep pendulum.toml --over table.parquet --scene-of 1");
+    assert!(said.contains("mass = 2"), "{said}");
+}

@@ -7,6 +7,7 @@ mod coupled_system;
 mod driven;
 mod refusals;
 mod second;
+mod springs;
 
 use chacha20::ChaCha8Rng;
 use hamel::dynamics::{ForwardDerivatives, HamiltonianDerivatives, InverseDerivatives, Recursive};
