@@ -19,6 +19,8 @@ Examples:
       one function alone
   hamel compile panda.urdf --function forward-dynamics --function forward-dynamics-derivatives -o panda.rs
       what implicit methods of integration and regulators take
+  hamel compile panda.urdf --function forward-dynamics-second-derivatives -o panda.rs
+      the Hessian of weights · accelerations: what optimal control of second order takes
   hamel compile panda.urdf -o panda.c
       the same in C99, for controllers that are not in Rust: panda.c and panda.h, whose functions begin with panda_
   hamel compile panda.urdf -o panda.cu
@@ -33,7 +35,7 @@ CUDA is one source for nvcc and NVRTC, without a header.
 docs/compile.md says more.
 
 Not compiled, and refused with the element's name: wrenches that change with time, springs in local coordinates that have no closed form,
-rests and states to be found from a pose.
+rests and states to be found from a pose; second derivatives of forward dynamics where a constraint couples joints.
 
 Exit codes: 0 success; 1 a scene with mistakes or that cannot be compiled, a file that cannot be written; 2 wrong options; 130 interrupted.";
 
@@ -104,6 +106,10 @@ pub enum FunctionName {
     InverseDynamicsDerivatives,
     /// M̄⁻¹(Q)
     InverseMassMatrix,
+    /// Second derivatives of accelerations, contracted with weights
+    ForwardDynamicsSecondDerivatives,
+    /// Second derivatives of efforts, contracted with weights
+    InverseDynamicsSecondDerivatives,
 }
 
 impl FunctionName {
@@ -122,6 +128,8 @@ impl FunctionName {
             Self::ForwardDynamicsDerivatives => Kind::ForwardDerivatives,
             Self::InverseDynamicsDerivatives => Kind::InverseDerivatives,
             Self::InverseMassMatrix => Kind::InverseMassMatrix,
+            Self::ForwardDynamicsSecondDerivatives => Kind::ForwardSecondDerivatives,
+            Self::InverseDynamicsSecondDerivatives => Kind::InverseSecondDerivatives,
         }
     }
 }

@@ -7,7 +7,8 @@ use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 use hamel_runtime::dynamics::{
-    Dynamics, DynamicsError, ForwardDerivatives, InverseDerivatives, MassMatrix, Refined,
+    Dynamics, DynamicsError, ForwardDerivatives, ForwardSecondDerivatives, InverseDerivatives,
+    InverseSecondDerivatives, MassMatrix, Refined,
 };
 use hamel_runtime::joint::MOST_FREEDOMS;
 use hamel_runtime::mechanism::{Mechanism, StateError};
@@ -231,6 +232,7 @@ impl Compiled {
         }
         self.compare_inverse(q, &speeds)?;
         self.compare_inverse_derivatives(q, &speeds)?;
+        self.compare_second_derivatives(q, &speeds, &efforts)?;
         self.compare_places(q, &speeds)?;
         self.compare_momenta((&mut exact, q), &mut speeds, &efforts)
     }
@@ -338,6 +340,48 @@ impl Compiled {
                 .collect()
         };
         Rates::of(&changed(&expected)).meet(&changed(&found))
+    }
+
+    /// The same of second derivatives; λ of forward dynamics is such that virtual speeds are the speeds.
+    fn compare_second_derivatives(
+        &mut self,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &[f64],
+    ) -> Result<(), Unlike> {
+        let functions = Arc::clone(&self.functions);
+        let mechanism = Arc::clone(self.tree.mechanism());
+        if functions.inverse_dynamics_second_derivatives.is_some() {
+            let mut expected = InverseSecondDerivatives::new(&mechanism);
+            self.tree.inverse_dynamics_second_derivatives(
+                q,
+                speeds,
+                speeds,
+                speeds,
+                &mut expected,
+            )?;
+            let expected = expected.hessian().entries();
+            let mut found = vec![0.0; expected.len()];
+            self.inverse_dynamics_second_derivatives(q, speeds, speeds, speeds, &mut found)?;
+            meet((expected, &found), "the Hessian of inverse dynamics")?;
+        }
+        if functions.forward_dynamics_second_derivatives.is_some() {
+            let mut weights = vec![0.0; speeds.len()];
+            self.tree.momenta(q, speeds, &mut weights)?;
+            let mut expected = ForwardSecondDerivatives::new(&mechanism);
+            self.tree.forward_dynamics_second_derivatives(
+                q,
+                speeds,
+                efforts,
+                &weights,
+                &mut expected,
+            )?;
+            let expected = expected.hessian().entries();
+            let mut found = vec![0.0; expected.len()];
+            self.forward_dynamics_second_derivatives(q, speeds, efforts, &weights, &mut found)?;
+            meet((expected, &found), "the Hessian of forward dynamics")?;
+        }
+        Ok(())
     }
 
     fn other(&self, place: &'static str, entry: usize, expected: f64, found: f64) -> CompiledError {

@@ -7,9 +7,12 @@ use core::fmt;
 /// A function of one state, which may carry data: what it reads, then where its results go. Arguments that it does not have are not read.
 pub type Function = Box<dyn Fn(&[f64], &[f64], &[f64], &mut [f64]) + Send + Sync>;
 
+/// The same with weights λ after the inputs.
+pub type WeightedFunction = Box<dyn Fn(&[f64], &[f64], &[f64], &[f64], &mut [f64]) + Send + Sync>;
+
 /// Functions of one scene: what [`Equations`] are of an emitted module, for functions that carry data, and a few more.
 ///
-/// All are called with Q, v̄ or p̄, and inputs, in this order.
+/// All are called with Q, v̄ or p̄, and inputs, in this order; those of second derivatives with λ after these.
 #[derive(Default)]
 pub struct Functions {
     /// Name of the scene.
@@ -44,6 +47,10 @@ pub struct Functions {
     pub forward_dynamics_derivatives: Option<Function>,
     /// Derivatives of inverse dynamics from Q, v̄ and v̄̇, laid out as in [`Equations::inverse_dynamics_derivatives`].
     pub inverse_dynamics_derivatives: Option<Function>,
+    /// λᵀ∂²v̄̇ from Q, v̄, τ and λ, laid out as in [`Equations::forward_dynamics_second_derivatives`].
+    pub forward_dynamics_second_derivatives: Option<WeightedFunction>,
+    /// λᵀ∂²τ̄ from Q, v̄, v̄̇ and λ, laid out as in [`Equations::inverse_dynamics_second_derivatives`].
+    pub inverse_dynamics_second_derivatives: Option<WeightedFunction>,
 }
 
 impl From<&'static Equations> for Functions {
@@ -78,6 +85,12 @@ impl From<&'static Equations> for Functions {
                 .map(|own| Box::new(own) as _),
             inverse_dynamics_derivatives: equations
                 .inverse_dynamics_derivatives
+                .map(|own| Box::new(own) as _),
+            forward_dynamics_second_derivatives: equations
+                .forward_dynamics_second_derivatives
+                .map(|own| Box::new(own) as _),
+            inverse_dynamics_second_derivatives: equations
+                .inverse_dynamics_second_derivatives
                 .map(|own| Box::new(own) as _),
         }
     }

@@ -21,6 +21,8 @@ mod lanes;
 mod layout;
 mod pairs;
 #[cfg(feature = "alloc")]
+mod second;
+#[cfg(feature = "alloc")]
 mod states;
 mod transpose;
 #[cfg(feature = "alloc")]
@@ -31,7 +33,7 @@ pub use batch::{Batch, BatchError};
 #[cfg(feature = "alloc")]
 pub use entry::Entry;
 #[cfg(feature = "alloc")]
-pub use functions::{Function, Functions};
+pub use functions::{Function, Functions, WeightedFunction};
 pub use lanes::{LANES, Level, ManyStates, OfState, many_states};
 pub use layout::{Lanes, Quantities, States};
 pub use pairs::{Carrying, Pairing, Pairs};
@@ -40,6 +42,9 @@ pub use tree::{Compiled, CompiledError};
 
 /// A function of one state: Q, v̄ and inputs in, results into the last argument; sizes are those of [`Equations`].
 pub type OneState = fn(&[f64], &[f64], &[f64], &mut [f64]);
+
+/// The same contracted with weights λ: Q, v̄, inputs and λ in, results into the last argument.
+pub type Weighted = fn(&[f64], &[f64], &[f64], &[f64], &mut [f64]);
 
 /// p̄ from Q and v̄, or v̄ from Q and p̄, into the last argument.
 pub type MomentumMap = fn(&[f64], &[f64], &mut [f64]);
@@ -78,6 +83,10 @@ pub struct Equations {
     pub forward_dynamics_derivatives: Option<OneState>,
     /// Derivatives of inverse dynamics from Q, v̄ and v̄̇, where the module has them: for each speed a row of `∂τ̄/∂ϕ` and `∂τ̄/∂v̄`.
     pub inverse_dynamics_derivatives: Option<OneState>,
+    /// λᵀ∂²v̄̇ by rows over (ϕ, v̄, τ) from Q, v̄, τ and λ, where the module has it.
+    pub forward_dynamics_second_derivatives: Option<Weighted>,
+    /// λᵀ∂²τ̄ of inverse dynamics by rows over (ϕ, v̄, v̄̇) from Q, v̄, v̄̇ and λ, where the module has it.
+    pub inverse_dynamics_second_derivatives: Option<Weighted>,
     /// Numbers that derivatives of forward dynamics have: all rows together, 0 without them.
     pub forward_slopes: usize,
     /// M̄ by rows from Q, where the module has it: v̄ and inputs are not read.

@@ -44,6 +44,8 @@ const IN_LANES: Equations = Equations {
     inverse_dynamics: None,
     forward_dynamics_derivatives: None,
     inverse_dynamics_derivatives: None,
+    forward_dynamics_second_derivatives: None,
+    inverse_dynamics_second_derivatives: None,
     forward_slopes: 0,
     mass_matrix: None,
     inverse_mass_matrix: None,

@@ -13,7 +13,7 @@
 use super::check;
 use super::describe::Refused;
 use super::emit;
-use super::functions::{self, Kind, Loops, TooLong};
+use super::functions::{self, Kind, Loops, NotWritten, TooLong};
 use super::model::Model;
 use super::products::JointType;
 use hamel_codegen::derived::Derived;
@@ -281,8 +281,9 @@ impl Build {
                     reasons.extend(new.collect::<Vec<_>>());
                     functions.push(chosen.function);
                 }
-                Err(long) if self.functions.is_none() => left_out.push(long),
-                Err(long) => return Err(Error::TooLong(long)),
+                Err(NotWritten::TooLong(long)) if self.functions.is_none() => left_out.push(long),
+                Err(NotWritten::TooLong(long)) => return Err(Error::TooLong(long)),
+                Err(coupled) => reasons.push(coupled.to_string()),
             }
         }
         if !reasons.is_empty() {

@@ -28,8 +28,8 @@ pub fn explain(model: &Model, kinds: &[Kind]) -> String {
         text += &of_body(model, body, [&bare[index], &framed[index], &pruned[index]]);
     }
     for &kind in kinds {
-        if let Err(long) = compile(model, kind, Loops::default()) {
-            let _ = writeln!(text, "\n{long}");
+        if let Err(not) = compile(model, kind, Loops::default()) {
+            let _ = writeln!(text, "\n{not}");
             continue;
         }
         let chosen = [&bare, &framed, &pruned]

@@ -120,6 +120,25 @@ impl<'a> Joint<'a> {
         columns(&entries, self.joint.derived.shape.freedoms)
     }
 
+    /// S₀ by rows, one row after the other; none where the velocities are rates of coordinates.
+    pub fn velocity_map(&self) -> Vec<Sym> {
+        match self.linkage {
+            Some(_) => vec![],
+            None => self.entries(KernelKind::VelocityMap),
+        }
+    }
+
+    /// ∂S/∂ϕ at ϕ = 0, for each ϕ by rows, one row after the other; none where the velocities are rates of coordinates.
+    pub fn velocity_map_gradient(&self) -> Vec<Vec<Sym>> {
+        if self.linkage.is_some() {
+            return vec![];
+        }
+        let freedoms = self.joint.derived.shape.freedoms;
+        let entries = self.entries(KernelKind::VelocityMapGradient);
+        let slices = entries.chunks((freedoms * freedoms).max(1));
+        slices.map(<[Sym]>::to_vec).collect()
+    }
+
     /// S₀⁻¹ by columns.
     pub fn velocity_map_inverse(&self) -> Vec<Vec<Sym>> {
         if self.linkage.is_some() {

@@ -5,7 +5,7 @@
     reason = "functions of another language are called: see the safety comments"
 )]
 
-use hamel::compiled::{Function, Functions};
+use hamel::compiled::{Function, Functions, WeightedFunction};
 use std::ffi::c_long;
 use std::path::Path;
 use std::sync::Arc;
@@ -16,6 +16,9 @@ type One = unsafe extern "C" fn(*const f64, *mut f64);
 type Two = unsafe extern "C" fn(*const f64, *const f64, *mut f64);
 /// A function of three arrays, with inputs.
 type Three = unsafe extern "C" fn(*const f64, *const f64, *const f64, *mut f64);
+
+/// A function of four arrays, with inputs and λ.
+type Four = unsafe extern "C" fn(*const f64, *const f64, *const f64, *const f64, *mut f64);
 
 /// Numbers of bodies, of stored scalars, of degrees of freedom, of speeds, and of results of the derivatives of forward dynamics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -210,6 +213,36 @@ impl<'a> Module<'a> {
         })))
     }
 
+    /// A function of Q, v̄, so many inputs and λ, whose results are a square matrix.
+    fn of_weights(&self, name: &str, inputs: usize) -> Result<Option<WeightedFunction>, LoadError> {
+        let sizes = self.sizes;
+        let rows = sizes.freedoms + sizes.speeds + inputs;
+        let count = rows * rows;
+        // SAFETY: the module has these functions of four arrays, and what calls it holds the library.
+        let Some(own) = (unsafe { self.function::<Four>(name, count)? }) else {
+            return Ok(None);
+        };
+        let held = Arc::clone(&self.library);
+        Ok(Some(Box::new(move |q, v, u, weights, results| {
+            let _held = &held;
+            let fits = q.len() == sizes.configuration && v.len() == sizes.speeds;
+            let fits = fits && weights.len() == sizes.speeds;
+            match fits && u.len() == inputs && results.len() == count {
+                // SAFETY: as of functions of Q.
+                true => unsafe {
+                    own(
+                        q.as_ptr(),
+                        v.as_ptr(),
+                        u.as_ptr(),
+                        weights.as_ptr(),
+                        results.as_mut_ptr(),
+                    );
+                },
+                false => results.fill(f64::NAN),
+            }
+        })))
+    }
+
     /// All that are wanted.
     fn functions(self) -> Result<Functions, LoadError> {
         let Sizes {
@@ -245,6 +278,10 @@ impl<'a> Module<'a> {
                 speeds,
                 slopes,
             )?,
+            forward_dynamics_second_derivatives: self
+                .of_weights("forward_dynamics_second_derivatives", freedoms)?,
+            inverse_dynamics_second_derivatives: self
+                .of_weights("inverse_dynamics_second_derivatives", speeds)?,
         })
     }
 }

@@ -41,6 +41,8 @@ pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations
     }),
     forward_dynamics_derivatives: None,
     inverse_dynamics_derivatives: None,
+    forward_dynamics_second_derivatives: None,
+    inverse_dynamics_second_derivatives: None,
     forward_slopes: 0,
     mass_matrix: None,
     inverse_mass_matrix: None,

@@ -32,6 +32,8 @@ pub const EQUATIONS: ::hamel::compiled::Equations = ::hamel::compiled::Equations
     inverse_dynamics: None,
     forward_dynamics_derivatives: None,
     inverse_dynamics_derivatives: None,
+    forward_dynamics_second_derivatives: None,
+    inverse_dynamics_second_derivatives: None,
     forward_slopes: 0,
     mass_matrix: None,
     inverse_mass_matrix: None,

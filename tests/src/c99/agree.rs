@@ -36,6 +36,8 @@ fn functions_with(model: &Model, loops: Loops, long: usize) -> Vec<Function> {
             Kind::ForwardDerivatives,
             Kind::InverseDerivatives,
             Kind::InverseMassMatrix,
+            Kind::ForwardSecondDerivatives,
+            Kind::InverseSecondDerivatives,
         ];
         let is_short = !derivatives.contains(&kind) || function.written() < long;
         is_short.then_some(function)
@@ -90,6 +92,7 @@ pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)]) {
                 return others.evaluate((kind, loops), q, v, u);
             };
             let given = |argument| match argument {
+                Argument::Weights => &u[u.len() - v.len()..],
                 Argument::Configuration => q,
                 Argument::Speeds | Argument::Momenta => v,
                 Argument::Efforts | Argument::Accelerations => u,
@@ -97,7 +100,8 @@ pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)]) {
                 Argument::Given => &[],
             };
             let arguments = function.arguments.iter();
-            let arguments: Vec<&[f64]> = arguments.map(|&(one, _)| given(one)).collect();
+            let arguments = arguments.map(|&(one, size)| &given(one)[..size]);
+            let arguments: Vec<&[f64]> = arguments.collect();
             let name = format!("scene_{i}");
             let found = program.borrow_mut().call(&name, function.name, &arguments);
             let expected = function.evaluate(|argument| given(argument).to_vec());
@@ -117,6 +121,9 @@ pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)]) {
             let has = |kind: Kind| functions[i].iter().any(|one| one.name == kind.name());
             if has(Kind::ForwardDerivatives) && has(Kind::InverseDerivatives) {
                 point().derivatives_agree_by(&by);
+            }
+            if has(Kind::ForwardSecondDerivatives) && has(Kind::InverseSecondDerivatives) {
+                point().second_derivatives_agree_by(&by);
             }
         }
     }

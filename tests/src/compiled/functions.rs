@@ -24,7 +24,7 @@ impl<'a> Functions<'a> {
         }
     }
 
-    /// The values of a function at a state; `speeds` are the momenta where it takes these.
+    /// The values of a function at a state; `speeds` are the momenta where it takes these, `inputs` end with λ where it takes that.
     pub fn evaluate(
         &self,
         how: (Kind, Loops),
@@ -43,6 +43,7 @@ impl<'a> Functions<'a> {
             Argument::Configuration => q.to_vec(),
             Argument::Speeds | Argument::Momenta => speeds.to_vec(),
             Argument::Efforts | Argument::Accelerations => inputs.to_vec(),
+            Argument::Weights => inputs[inputs.len() - speeds.len()..].to_vec(),
             // Of steps of motions alone.
             Argument::Given => vec![],
         })

@@ -2,6 +2,7 @@
 
 mod functions;
 mod point;
+mod second;
 mod slopes;
 
 pub use functions::Functions;

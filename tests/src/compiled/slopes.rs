@@ -10,7 +10,7 @@ use hamel_compiler::functions::Kind;
 use std::sync::Arc;
 
 /// Size of the terms that cancel where a matrix of derivatives is 0, such as ∂τ̄/∂v̄ of a pendulum: speeds and efforts of random states are about 1.
-const TERMS: f64 = 1.0;
+pub(super) const TERMS: f64 = 1.0;
 
 /// A matrix: its number of columns, and its entries by rows.
 type Part<'a> = (usize, &'a [f64]);

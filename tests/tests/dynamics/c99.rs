@@ -115,7 +115,7 @@ struct Committed {
     module: &'static str,
     function: &'static str,
     arguments: &'static [usize],
-    in_rust: fn([&[f64]; 3]) -> Vec<f64>,
+    in_rust: fn([&[f64]; 4]) -> Vec<f64>,
 }
 
 macro_rules! committed {
@@ -160,6 +160,18 @@ fn committed() -> Vec<Committed> {
             as_flattened
         ),
         committed!(plate_cart_arm, inverse_mass_matrix, [0], as_flattened),
+        committed!(
+            plate_cart_arm,
+            forward_dynamics_second_derivatives,
+            [0, 1, 2, 3],
+            as_flattened
+        ),
+        committed!(
+            plate_cart_arm,
+            inverse_dynamics_second_derivatives,
+            [0, 1, 2, 3],
+            as_flattened
+        ),
         // Without sines. Derivatives of eight balls in dual numbers take the compiler ten minutes.
         committed!(
             f64: chain_8,
@@ -229,10 +241,13 @@ fn committed_modules_agree() {
             let v = random::numbers(&mut random, layout.speeds);
             let u = random::numbers(&mut random, layout.freedoms);
             let u = match function {
-                "inverse_dynamics" | "inverse_dynamics_derivatives" => &u[..layout.speeds],
+                "inverse_dynamics"
+                | "inverse_dynamics_derivatives"
+                | "inverse_dynamics_second_derivatives" => &u[..layout.speeds],
                 _ => &u,
             };
-            let state = [&*q, &*v, u];
+            let weights: Vec<f64> = v.iter().map(|v| 0.3 - v.cos()).collect();
+            let state = [&*q, &*v, u, &*weights];
             let given: Vec<&[f64]> = arguments.iter().map(|&one| state[one]).collect();
             let found = program.call(module, function, &given);
             let expected = in_rust(state);

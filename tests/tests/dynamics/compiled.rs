@@ -5,6 +5,7 @@ pub mod closed;
 mod derivatives;
 mod loops;
 mod moments;
+mod second;
 pub mod several;
 
 use chacha20::ChaCha8Rng;

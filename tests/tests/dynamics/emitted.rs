@@ -3,7 +3,10 @@
 
 use chacha20::ChaCha8Rng;
 use hamel::compiled::{Compiled, CompiledError, Equations};
-use hamel::dynamics::{Dynamics, DynamicsError, ForwardDerivatives, InverseDerivatives, Recursive};
+use hamel::dynamics::{
+    Dynamics, DynamicsError, ForwardDerivatives, ForwardSecondDerivatives, InverseDerivatives,
+    InverseSecondDerivatives, Recursive,
+};
 use hamel::integrate::{Form, Integration, Method, Options, Scheme, StepControl};
 use hamel::scalar::F64x4;
 use hamel_compiler::functions::Kind;
@@ -264,6 +267,43 @@ fn derivatives_are_those_of_the_tree() {
     assert_eq!(refused, Err(DynamicsError::ForeignResults));
 }
 
+/// The Hessians of both as compiled Rust has them, and those of the tree where the module has none.
+#[test]
+fn second_derivatives_are_those_of_the_tree() {
+    let mechanism = &scenes::load("plate_cart_arm").mechanism;
+    let mut tree = Recursive::new(Arc::clone(mechanism));
+    let mut forward = ForwardSecondDerivatives::new(mechanism);
+    let mut inverse = InverseSecondDerivatives::new(mechanism);
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let layout = *mechanism.layout();
+    for equations in [&module::EQUATIONS, &NONE] {
+        let mut compiled = Compiled::new(Arc::clone(mechanism), equations).expect("its scene");
+        let q = random::configuration(&mut random, mechanism);
+        let v = random::numbers(&mut random, layout.speeds);
+        let weights = random::numbers(&mut random, layout.speeds);
+        let u = random::numbers(&mut random, layout.freedoms);
+        let rates = &u[..layout.speeds];
+        tree.inverse_dynamics_second_derivatives(&q, &v, rates, &weights, &mut inverse)
+            .expect("the scene is sound");
+        let mut found = vec![0.0; inverse.hessian().entries().len()];
+        compiled
+            .inverse_dynamics_second_derivatives(&q, &v, rates, &weights, &mut found)
+            .expect("the scene is sound");
+        assert!(difference(&found, inverse.hessian().entries()) < 1e-12);
+        tree.forward_dynamics_second_derivatives(&q, &v, &u, &weights, &mut forward)
+            .expect("the scene is sound");
+        let mut found = vec![0.0; forward.hessian().entries().len()];
+        compiled
+            .forward_dynamics_second_derivatives(&q, &v, &u, &weights, &mut found)
+            .expect("the scene is sound");
+        assert!(difference(&found, forward.hessian().entries()) < 1e-12);
+        let short = compiled.forward_dynamics_second_derivatives(&q, &v, &u, &weights, &mut []);
+        short.expect_err("there is no room");
+        let short = compiled.inverse_dynamics_second_derivatives(&q, &v, rates, &[], &mut found);
+        short.expect_err("there are no weights");
+    }
+}
+
 /// How often [`counted`] was called.
 static CALLS: AtomicUsize = AtomicUsize::new(0);
 
@@ -356,6 +396,8 @@ const NONE: Equations = Equations {
     hamiltonian: None,
     forward_dynamics_derivatives: None,
     inverse_dynamics_derivatives: None,
+    forward_dynamics_second_derivatives: None,
+    inverse_dynamics_second_derivatives: None,
     ..module::EQUATIONS
 };
 static ONLY_FORWARD_DERIVATIVES: Equations = Equations {

@@ -7,7 +7,7 @@ use chacha20::ChaCha8Rng;
 use hamel::dynamics::{Dynamics, Recursive};
 use hamel::erased::AnyJoint;
 use hamel::mechanism::Mechanism;
-use hamel_compiler::functions::{Kind, Loops, compile};
+use hamel_compiler::functions::{Kind, Loops, NotWritten, compile};
 use hamel_tests::{compiled, random};
 use rand::SeedableRng;
 use std::hint::black_box;
@@ -98,11 +98,12 @@ fn long_chains_are_compiled_or_refused_by_name() {
             let model = compiled::model(name, &mechanism(name, Shape::Chain, count));
             let operations = match compile(&model, Kind::ForwardDynamics, Loops::Long) {
                 Ok(chosen) => chosen.function.written(),
-                Err(long) => {
+                Err(NotWritten::TooLong(long)) => {
                     let told = long.to_string();
                     assert!(told.starts_with("forward_dynamics would have "), "{told}");
                     long.operations
                 }
+                Err(other) => panic!("{other}"),
             };
             operations as f64
         });

@@ -183,8 +183,8 @@ fn what_is_left_out_changes_no_effort() {
                         Argument::Configuration => q.clone(),
                         Argument::Speeds | Argument::Momenta => v.clone(),
                         Argument::Efforts | Argument::Accelerations => a.clone(),
-                        // Of steps of motions alone.
-                        Argument::Given => vec![],
+                        // Of steps of motions, and of second derivatives.
+                        Argument::Given | Argument::Weights => vec![],
                     })
                 };
                 let (found, expected) = (efforts(&pruned), efforts(&bare));
@@ -238,8 +238,8 @@ fn what_is_left_out_does_not_depend_on_the_size() {
                     Argument::Configuration => q.clone(),
                     Argument::Speeds | Argument::Momenta => v.clone(),
                     Argument::Efforts | Argument::Accelerations => a.clone(),
-                    // Of steps of motions alone.
-                    Argument::Given => vec![],
+                    // Of steps of motions, and of second derivatives.
+                    Argument::Given | Argument::Weights => vec![],
                 });
                 efforts[count - 1] /= unit * unit;
                 efforts
@@ -319,7 +319,7 @@ fn what_is_left_out_changes_no_effort_of_a_linkage_on_either_side_of_its_fold() 
                     Argument::Configuration => q.clone(),
                     Argument::Speeds | Argument::Momenta => vec![0.7],
                     Argument::Efforts | Argument::Accelerations => vec![-0.4],
-                    Argument::Given => vec![],
+                    Argument::Given | Argument::Weights => vec![],
                 })
             };
             let (found, expected) = (efforts(&pruned)[0], efforts(&bare)[0]);

@@ -164,7 +164,11 @@ pub fn argument_size<T>(argument: Argument, [configuration, freedoms, speeds]: [
     match argument {
         Argument::Configuration => configuration,
         Argument::Efforts => freedoms,
-        Argument::Speeds | Argument::Momenta | Argument::Accelerations | Argument::Given => speeds,
+        Argument::Speeds
+        | Argument::Momenta
+        | Argument::Accelerations
+        | Argument::Weights
+        | Argument::Given => speeds,
     }
 }
 
@@ -177,6 +181,7 @@ impl Argument {
             Self::Momenta => "p",
             Self::Efforts => "tau",
             Self::Accelerations => "a",
+            Self::Weights => "lambda",
             Self::Given => "given",
         }
     }

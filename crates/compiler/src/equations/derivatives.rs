@@ -23,9 +23,12 @@ pub(super) type Rows = Vec<Vec<Sym>>;
 /// A body and all that hangs on it.
 #[derive(Clone)]
 pub(super) struct Carried {
-    inertia: Rigid,
-    coriolis: Coriolis,
-    wrench: Wrench,
+    /// N.
+    pub(super) inertia: Rigid,
+    /// B.
+    pub(super) coriolis: Coriolis,
+    /// F.
+    pub(super) wrench: Wrench,
 }
 
 /// What a joint's own units and speeds show to the joints above it.
@@ -70,7 +73,7 @@ impl Tree<'_> {
     }
 
     /// The generalised forces of the efforts of the argument, elements, dampers and rotors.
-    fn exerted(&self, argument: Option<Argument>) -> Vec<Sym> {
+    pub(super) fn exerted(&self, argument: Option<Argument>) -> Vec<Sym> {
         let mut exerted = self.efforts_of(self.external(), None);
         for (index, body) in self.joints() {
             let efforts = self.efforts(index, argument);
@@ -246,7 +249,7 @@ impl Tree<'_> {
 }
 
 impl Carried {
-    fn plus(&self, other: &Self) -> Self {
+    pub(super) fn plus(&self, other: &Self) -> Self {
         Self {
             inertia: self.inertia.plus(&other.inertia),
             coriolis: self.coriolis.plus(&other.coriolis),
@@ -254,7 +257,7 @@ impl Carried {
         }
     }
 
-    fn to_parent(&self, steps: &[Step]) -> Self {
+    pub(super) fn to_parent(&self, steps: &[Step]) -> Self {
         Self {
             inertia: self.inertia.to_parent(steps).settled(),
             coriolis: self.coriolis.to_parent(steps).settled(),
@@ -263,7 +266,7 @@ impl Carried {
     }
 
     /// What one unit more of something changes of the wrench, beside carrying it along.
-    fn raised(&self, variation: &Variation) -> Wrench {
+    pub(super) fn raised(&self, variation: &Variation) -> Wrench {
         let faster = self.coriolis.apply(&variation.drift.angular);
         self.inertia.of(&variation.rate).plus(&faster)
     }

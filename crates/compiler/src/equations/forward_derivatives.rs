@@ -54,7 +54,7 @@ impl Tree<'_> {
     }
 
     /// The factors of M̄ where driven joints do not give way.
-    fn held_factors(&self, mut matrix: Matrix) -> Factors {
+    pub(super) fn held_factors(&self, mut matrix: Matrix) -> Factors {
         for place in (0..matrix.len()).filter(|&place| self.is_driven(place)) {
             hold(&mut matrix, place);
         }

@@ -23,6 +23,7 @@ mod newton_euler;
 mod pairs;
 mod ports;
 mod rotors;
+mod second;
 pub(crate) mod solve;
 mod variation;
 

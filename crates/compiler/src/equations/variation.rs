@@ -23,9 +23,9 @@ pub(super) struct Motion {
     /// V̇, with the acceleration of the world that stands for gravity.
     pub(super) rate: Twist,
     /// V of the parent.
-    carried: Twist,
+    pub(super) carried: Twist,
     /// V̇ of the parent.
-    carried_rate: Twist,
+    pub(super) carried_rate: Twist,
     /// What it takes to move it so.
     pub(super) wrench: Wrench,
 }

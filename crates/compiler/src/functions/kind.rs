@@ -32,11 +32,15 @@ pub enum Kind {
     InverseDerivatives,
     /// M̄⁻¹ from Q.
     InverseMassMatrix,
+    /// How λᵀv̄̇ bends with ϕ, v̄ and τ, from Q, v̄, τ and λ.
+    ForwardSecondDerivatives,
+    /// How λᵀτ̄ bends with ϕ, v̄ and v̄̇, from Q, v̄, v̄̇ and λ.
+    InverseSecondDerivatives,
 }
 
 impl Kind {
     /// All of them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 15] = [
         Self::ForwardDynamics,
         Self::InverseDynamics,
         Self::MassMatrix,
@@ -50,6 +54,8 @@ impl Kind {
         Self::ForwardDerivatives,
         Self::InverseDerivatives,
         Self::InverseMassMatrix,
+        Self::ForwardSecondDerivatives,
+        Self::InverseSecondDerivatives,
     ];
 
     /// Those of a module for which none are named: all but the derivatives, which are longer than all others together, and M̄⁻¹, which
@@ -83,6 +89,8 @@ impl Kind {
             Self::ForwardDerivatives => "forward_dynamics_derivatives",
             Self::InverseDerivatives => "inverse_dynamics_derivatives",
             Self::InverseMassMatrix => "inverse_mass_matrix",
+            Self::ForwardSecondDerivatives => "forward_dynamics_second_derivatives",
+            Self::InverseSecondDerivatives => "inverse_dynamics_second_derivatives",
         }
     }
 
@@ -113,6 +121,12 @@ impl Kind {
             Self::InverseMassMatrix => {
                 "Inverse mass matrix M̄⁻¹ by rows; joints whose motion is prescribed do not give way: their rows are 0."
             }
+            Self::ForwardSecondDerivatives => {
+                "λᵀ∂²v̄̇ by rows: the Hessian of λᵀv̄̇ over local coordinates ϕ about Q, v̄ and τ."
+            }
+            Self::InverseSecondDerivatives => {
+                "λᵀ∂²τ̄ by rows: the Hessian of λᵀτ̄ of inverse dynamics over local coordinates ϕ about Q, v̄ and v̄̇."
+            }
         }
     }
 
@@ -137,6 +151,18 @@ impl Kind {
                 Argument::Efforts,
             ],
             Self::Speeds | Self::Hamiltonian => &[Argument::Configuration, Argument::Momenta],
+            Self::ForwardSecondDerivatives => &[
+                Argument::Configuration,
+                Argument::Speeds,
+                Argument::Efforts,
+                Argument::Weights,
+            ],
+            Self::InverseSecondDerivatives => &[
+                Argument::Configuration,
+                Argument::Speeds,
+                Argument::Accelerations,
+                Argument::Weights,
+            ],
         }
     }
 
@@ -165,6 +191,8 @@ impl Kind {
                 Some(own + if coupled { freedoms + speeds } else { 0 })
             }
             Self::InverseDerivatives => Some((freedoms + speeds).max(1)),
+            Self::ForwardSecondDerivatives => Some((2 * freedoms + speeds).max(1)),
+            Self::InverseSecondDerivatives => Some((freedoms + 2 * speeds).max(1)),
             _ => None,
         }
     }

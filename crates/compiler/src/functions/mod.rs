@@ -79,6 +79,15 @@ impl Kind {
                     tree.inverse_mass_matrix()
                 })]
             }
+            Self::ForwardSecondDerivatives => vec![(
+                "of inverse dynamics under M̄⁻¹λ, M̄ factorised along the tree",
+                |tree| tree.forward_second_derivatives(),
+            )],
+            Self::InverseSecondDerivatives => {
+                vec![("composite bodies under virtual speeds", |tree| {
+                    tree.inverse_second_derivatives()
+                })]
+            }
         }
     }
 
@@ -124,6 +133,8 @@ impl Kind {
                 | Self::InverseMassMatrix
                 | Self::ForwardDerivatives
                 | Self::InverseDerivatives
+                | Self::ForwardSecondDerivatives
+                | Self::InverseSecondDerivatives
         )
     }
 }
@@ -238,6 +249,33 @@ impl std::fmt::Display for TooLong {
     }
 }
 
+/// Why a function is not written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum NotWritten {
+    /// It would be too long.
+    TooLong(TooLong),
+    /// Second derivatives of forward dynamics where a constraint couples joints: the tree has none either.
+    Coupled {
+        /// The function.
+        kind: Kind,
+        /// Name of the first constraint.
+        constraint: String,
+    },
+}
+
+impl std::fmt::Display for NotWritten {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::TooLong(long) => write!(f, "{long}"),
+            Self::Coupled { kind, constraint } => write!(
+                f,
+                "{}: second derivatives of the dynamics do not cover forward dynamics under a constraint that couples joints: `{constraint}`",
+                kind.name()
+            ),
+        }
+    }
+}
+
 /// Whether like bodies are looped over.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Loops {
@@ -271,13 +309,20 @@ pub struct Chosen {
 /// A function of the model: with the fewest operations where it is short, else with the shortest code.
 ///
 /// # Errors
-/// More than [`LONGEST`] operations that would be written.
-pub fn compile(model: &Model, kind: Kind, loops: Loops) -> Result<Chosen, TooLong> {
-    let refused = |operations| TooLong {
-        kind,
-        in_lanes: false,
-        operations,
-        numbers: 0,
+/// More than [`LONGEST`] operations that would be written; second derivatives of forward dynamics where constraints couple joints.
+pub fn compile(model: &Model, kind: Kind, loops: Loops) -> Result<Chosen, NotWritten> {
+    let constraint = model.coupling.constraints.first();
+    if let (Kind::ForwardSecondDerivatives, Some(constraint)) = (kind, constraint) {
+        let constraint = constraint.name.clone();
+        return Err(NotWritten::Coupled { kind, constraint });
+    }
+    let refused = |operations| {
+        NotWritten::TooLong(TooLong {
+            kind,
+            in_lanes: false,
+            operations,
+            numbers: 0,
+        })
     };
     let least = least(model, kind);
     let is_looped = loops != Loops::Never && !kind.pairwise(model).is_empty();
@@ -322,8 +367,10 @@ fn least(model: &Model, kind: Kind) -> usize {
     match kind {
         Kind::MassMatrix => ENTRY * pairs(model),
         Kind::InverseMassMatrix => (ENTRY + RESPONSE * speeds / 2) * pairs(model),
-        Kind::InverseDerivatives => MET * pairs(model),
-        Kind::ForwardDerivatives => (MET + RESPONSE * (freedoms + speeds)) * pairs(model),
+        Kind::InverseDerivatives | Kind::InverseSecondDerivatives => MET * pairs(model),
+        Kind::ForwardDerivatives | Kind::ForwardSecondDerivatives => {
+            (MET + RESPONSE * (freedoms + speeds)) * pairs(model)
+        }
         _ => 0,
     }
 }

@@ -7,11 +7,13 @@
 mod count;
 mod fault;
 pub mod known;
+mod put;
 mod slope;
 mod sym;
 
 pub use count::Operations;
 pub use fault::{Cause, Fault, about, inverse_of_inertia};
+pub use put::put;
 pub use slope::Slopes;
 pub use sym::{Sym, atan2, call, call_two, primitive, sin_cos};
 
@@ -62,6 +64,8 @@ pub enum Argument {
     Efforts,
     /// v̄̇.
     Accelerations,
+    /// λ, with which second derivatives are contracted: one entry a speed.
+    Weights,
     /// Numbers in an order of their own: what a step of a motion is given, [`stepping`](crate::stepping).
     Given,
 }

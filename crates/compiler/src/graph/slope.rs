@@ -1,5 +1,6 @@
 //! How values of the graph change with their inputs: forward differentiation, node by node, on the same graph.
 
+use super::put::scalar;
 use super::sym::make;
 use super::{Argument, CURRENT, Operation, Sym, Value, call, sin_cos};
 use hamel_codegen::derived::Primitive;
@@ -62,18 +63,6 @@ impl Slopes {
             Sym::Node(value) => found.value(*value),
         };
         self.values.iter().map(value).collect()
-    }
-}
-
-/// A node as a scalar: numbers as such, so that they fold.
-fn scalar(number: u32) -> Sym {
-    let bits = CURRENT.with_borrow(|graph| match graph.nodes[number as usize].operation {
-        Operation::Constant(bits) => Some(bits),
-        _ => None,
-    });
-    match bits {
-        Some(bits) => Sym::Number(f64::from_bits(bits)),
-        None => Sym::Node(number.into()),
     }
 }
 

@@ -68,6 +68,8 @@ const fn equations(configuration: usize, freedoms: usize, speeds: usize) -> Equa
         hamiltonian: None,
         forward_dynamics_derivatives: None,
         inverse_dynamics_derivatives: None,
+        forward_dynamics_second_derivatives: None,
+        inverse_dynamics_second_derivatives: None,
         forward_slopes: 0,
         mass_matrix: None,
         inverse_mass_matrix: None,

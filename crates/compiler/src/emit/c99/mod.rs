@@ -47,13 +47,14 @@ const TEMPLATES: [(&str, &str); 9] = [
 ];
 
 /// Names that lines must not take: arguments, what the functions bind themselves, helpers, and what `<math.h>` defines.
-const RESERVED: [&str; 42] = [
+const RESERVED: [&str; 43] = [
     "arguments",
     "q",
     "v",
     "p",
     "tau",
     "a",
+    "lambda",
     "i",
     "lane",
     "lanes",

@@ -54,5 +54,15 @@ const fn of(kind: Kind) -> &'static str {
              q: those of the joint's Phi(q, phi), which `hamel joints explain` writes for each type. Their axes may be others than those of v: of a ball \
              they turn about the child's axes."
         }
+        Kind::ForwardSecondDerivatives => {
+            "results: the second derivatives of the sum of lambda times a, where lambda has one entry a speed. Rows and columns alike belong to phi (one a \
+             freedom, in the order of tau), to v (one a speed) and to tau (one a freedom). Symmetric, and all of it is written. phi are local coordinates \
+             about q, 0 at q: those of the joint's Phi(q, phi), which `hamel joints explain` writes for each type."
+        }
+        Kind::InverseSecondDerivatives => {
+            "results: the second derivatives of the sum of lambda times the efforts of inverse dynamics, where lambda has one entry a speed. Rows and \
+             columns alike belong to phi (one a freedom, in the order of tau), to v and to a (one a speed each). Symmetric, and all of it is written. phi are \
+             local coordinates about q, 0 at q: those of the joint's Phi(q, phi), which `hamel joints explain` writes for each type."
+        }
     }
 }

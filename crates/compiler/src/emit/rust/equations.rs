@@ -27,6 +27,11 @@ pub fn equations(model: &Model, functions: &[Function], lanes: &[&Function]) -> 
         rows(Kind::ForwardDerivatives),
         rows(Kind::InverseDerivatives),
     );
+    let weighted = |kind| some(of(kind).map(rows_of_weights));
+    let (forward_bends, inverse_bends) = (
+        weighted(Kind::ForwardSecondDerivatives),
+        weighted(Kind::InverseSecondDerivatives),
+    );
     let size = of(Kind::ForwardDerivatives).map_or(0, Function::results);
     let size = Literal::usize_unsuffixed(size);
     let masses = [Kind::MassMatrix, Kind::InverseMassMatrix].map(|kind| {
@@ -47,6 +52,8 @@ pub fn equations(model: &Model, functions: &[Function], lanes: &[&Function]) -> 
             inverse_dynamics: #inverse,
             forward_dynamics_derivatives: #forward_slopes,
             inverse_dynamics_derivatives: #inverse_slopes,
+            forward_dynamics_second_derivatives: #forward_bends,
+            inverse_dynamics_second_derivatives: #inverse_bends,
             forward_slopes: #size,
             #(#masses)*
             in_lanes: #in_lanes,
@@ -83,6 +90,25 @@ fn rows_of_state(function: &Function) -> TokenStream {
                 (q.first_chunk(), v.first_chunk(), u.first_chunk(), results.get_mut(..#count))
             {
                 results.copy_from_slice(#name::<f64>(q, v, u).#entries());
+            }
+        }
+    }
+}
+
+/// The same with weights λ.
+fn rows_of_weights(function: &Function) -> TokenStream {
+    let name = Ident::new(function.name, Span::call_site());
+    let count = Literal::usize_unsuffixed(function.results());
+    quote! {
+        |q, v, u, lambda, results| {
+            if let (Some(q), Some(v), Some(u), Some(lambda), Some(results)) = (
+                q.first_chunk(),
+                v.first_chunk(),
+                u.first_chunk(),
+                lambda.first_chunk(),
+                results.get_mut(..#count),
+            ) {
+                results.copy_from_slice(#name::<f64>(q, v, u, lambda).as_flattened());
             }
         }
     }
