@@ -8,7 +8,7 @@ use crate::row::{Alone, Described, described};
 use hamel::dynamics::Dynamics;
 use hamel::integrate::State;
 use hamel::registry::JointRegistry;
-use hamel::scene::Starts;
+use hamel::scene::{Scene, Starts};
 use hamel_sweep::{Cells, Mover, Movers, Outcome, Row, Sweep, Watch};
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
@@ -95,14 +95,40 @@ struct Own<'a> {
 /// A row that has been built.
 #[derive(Clone)]
 struct Built {
-    /// Its equations by the tree, which judge the first state: steps side by side would divide by what is no more than rounding.
-    tree: Rc<RefCell<Box<dyn Dynamics>>>,
+    tree: Rc<RefCell<Tree>>,
     row: Rc<Described>,
     cells: Cells,
     /// The numbers of it that differ.
     numbers: Rc<[f64]>,
     /// Its joints, from the first row on that differs in their states alone.
     starts: Rc<OnceCell<Option<Starts>>>,
+}
+
+/// The equations of a row by the tree, which judge the first state: steps side by side would divide by what is no more than rounding.
+struct Tree {
+    dynamics: Box<dyn Dynamics>,
+    efforts: Vec<f64>,
+    rates: Vec<f64>,
+}
+
+impl Tree {
+    fn new(scene: &Scene) -> Self {
+        let sizes = scene.mechanism.layout();
+        Self {
+            dynamics: scene.settings.arithmetic.dynamics(&scene.mechanism),
+            efforts: vec![0.0; sizes.freedoms],
+            rates: vec![0.0; sizes.speeds],
+        }
+    }
+
+    /// Whether what is in this state has accelerations.
+    fn accepts(&mut self, state: &State) -> bool {
+        let (q, speeds) = (&state.configuration, &state.speeds);
+        let found = self
+            .dynamics
+            .forward_dynamics(q, speeds, &self.efforts, &mut self.rates);
+        found.is_ok()
+    }
 }
 
 /// A row on its way to a result.
@@ -135,19 +161,10 @@ impl Built {
         sweep.start(self.starts.get_or_init(starts).as_ref()?, cells)
     }
 
-    /// Whether the equations of the tree accelerate what is in this state.
-    fn accepts(&self, state: &State) -> bool {
-        let sizes = self.row.scene.mechanism.layout();
-        let mut rates = vec![0.0; sizes.speeds];
-        let efforts = vec![0.0; sizes.freedoms];
-        let mut tree = self.tree.borrow_mut();
-        tree.forward_dynamics(&state.configuration, &state.speeds, &efforts, &mut rates)
-            .is_ok()
-    }
-
     /// The row from this state on.
     fn way(self, state: State) -> Way {
-        match self.accepts(&state) {
+        let is_accepted = self.tree.borrow_mut().accepts(&state);
+        match is_accepted {
             true => Way::Lane(self, state),
             false => Way::Tree(REFUSED.to_owned()),
         }
@@ -170,10 +187,9 @@ impl Own<'_> {
         match described(sweep, registry, &self.joints, cells) {
             Ok(row) => match plan.numbers(&row) {
                 Ok(numbers) => {
-                    let (state, settings) = (row.scene.start(), &row.scene.settings);
-                    let tree = settings.arithmetic.dynamics(&row.scene.mechanism);
+                    let state = row.scene.start();
                     let built = Built {
-                        tree: Rc::new(RefCell::new(tree)),
+                        tree: Rc::new(RefCell::new(Tree::new(&row.scene))),
                         row: Rc::new(row),
                         cells: cells.clone(),
                         numbers: numbers.into(),
