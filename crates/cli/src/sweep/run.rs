@@ -148,7 +148,7 @@ fn move_missing(
         return Ok(0);
     }
     let progress = Progress::new(folder.manifest.rows, rows, args.quiet);
-    let heed = Heed::begin();
+    let heed = Heed::keys();
     let mut table = table::Table::open(&args.over)?;
     let mut part = 0;
     let next = || {

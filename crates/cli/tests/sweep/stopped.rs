@@ -66,6 +66,50 @@ fn killed_in_the_middle_it_goes_on_to_the_same_bytes() {
     );
 }
 
+/// As clusters and `timeout` end programs: one motion may take longer than they wait.
+#[test]
+fn a_signal_of_the_system_ends_it_at_once() {
+    let place = pendulums(0);
+    place.write(
+        "table.csv",
+        "body.arm.mass,simulation.t_end\n1.0,0.01\n1.0,1e6\n",
+    );
+    let mut command = place.command(
+        "sweep pendulum.toml --over table.csv -o out --block 1 --workers 1 --no-error-estimate",
+    );
+    let mut child = command
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    let start = Instant::now();
+    while !place.path("out/part-000001.csv").exists() {
+        assert!(start.elapsed() < Duration::from_secs(120), "it is slow");
+        sleep(Duration::from_millis(2));
+    }
+    let process = Pid::from_raw(i32::try_from(child.id()).expect("a number of the system"));
+    kill(process, Signal::SIGTERM).expect("it is there");
+    let start = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait().expect("a child") {
+            assert_eq!(status.code(), Some(130));
+            break;
+        }
+        if start.elapsed() > Duration::from_secs(60) {
+            child.kill().expect("it is killed");
+            panic!("it goes on");
+        }
+        sleep(Duration::from_millis(5));
+    }
+    assert!(place.path("out/part-000001.csv").exists());
+    let left = fs::read_dir(place.path("out")).expect("a folder");
+    let unfinished = left.filter(|entry| {
+        let name = entry.as_ref().expect("an entry").file_name();
+        name.to_string_lossy().starts_with(".hamel-")
+    });
+    assert_eq!(unfinished.count(), 0);
+}
+
 #[test]
 fn an_interrupt_says_how_to_go_on() {
     let place = pendulums(2000);
