@@ -13,7 +13,8 @@ use std::sync::Arc;
 /// How many times as large as those of one solution with M̄ errors may be: μ, v̄̇ and its first derivatives are solved for, one from the other.
 const SOLUTIONS: f64 = 4.0;
 
-/// Condition of M̄ from which on doubles leave too few digits for comparison: solutions that are made of solutions lose them twice.
+/// Condition of M̄ from which on doubles leave too few digits for comparison: solutions that are made of solutions lose them twice. Of a tip 1e8 times as heavy as what
+/// carries it, the Hessian of the tree is another one after each rounding of Q.
 const WORST: f64 = 1e7;
 
 impl Point {
