@@ -120,23 +120,19 @@ impl<'a> Joint<'a> {
         columns(&entries, self.joint.derived.shape.freedoms)
     }
 
-    /// S₀ by rows, one row after the other; none where the velocities are rates of coordinates.
+    /// S₀ by rows, one row after the other.
     pub fn velocity_map(&self) -> Vec<Sym> {
-        match self.linkage {
-            Some(_) => vec![],
-            None => self.entries(KernelKind::VelocityMap),
-        }
+        self.entries(KernelKind::VelocityMap)
     }
 
-    /// ∂S/∂ϕ at ϕ = 0, for each ϕ by rows, one row after the other; none where the velocities are rates of coordinates.
+    /// ∂S/∂ϕ at ϕ = 0, for each ϕ as S₀; none where the velocities are rates of coordinates.
     pub fn velocity_map_gradient(&self) -> Vec<Vec<Sym>> {
         if self.linkage.is_some() {
             return vec![];
         }
-        let freedoms = self.joint.derived.shape.freedoms;
+        let size = self.joint.derived.shape.freedoms.pow(2).max(1);
         let entries = self.entries(KernelKind::VelocityMapGradient);
-        let slices = entries.chunks((freedoms * freedoms).max(1));
-        slices.map(<[Sym]>::to_vec).collect()
+        entries.chunks(size).map(<[Sym]>::to_vec).collect()
     }
 
     /// S₀⁻¹ by columns.

@@ -14,6 +14,10 @@ pub enum Product {
     Inverse,
     /// Derivatives of forward dynamics.
     Forward,
+    /// Second derivatives of inverse dynamics.
+    SecondInverse,
+    /// Second derivatives of forward dynamics.
+    SecondForward,
 }
 
 impl Product {
@@ -24,6 +28,8 @@ impl Product {
             Self::InverseMass => "inverse_mass",
             Self::Inverse => "inverse",
             Self::Forward => "forward",
+            Self::SecondInverse => "second_inverse",
+            Self::SecondForward => "second_forward",
         }
     }
 }
@@ -45,6 +51,8 @@ pub struct Tables {
     pub entries: Vec<[usize; 3]>,
     /// The same of M̄.
     pub masses: Vec<[usize; 3]>,
+    /// The same of the Hessian of contracted inverse dynamics.
+    pub bends: Vec<[usize; 3]>,
     /// Speeds whose rates are given, with the columns of these rates.
     pub held: Vec<[usize; 2]>,
     /// Columns of right-hand sides that are not 0.
@@ -60,11 +68,15 @@ pub struct Tables {
 }
 
 impl Tables {
-    /// Numbers that are needed for M̄.
+    /// Numbers that are needed for M̄, and for what else is made on the way.
     pub fn room(&self) -> usize {
+        let (speeds, width) = (self.above.len(), self.size[1]);
+        let freedoms = width.saturating_sub(speeds) / 2;
+        let of_second = speeds * (width + freedoms) + width + 4 * (freedoms + speeds).pow(2);
         match self.product {
-            Product::Mass | Product::Inverse => 0,
-            Product::InverseMass | Product::Forward => self.above.len() * self.above.len(),
+            Product::Mass | Product::Inverse | Product::SecondInverse => 0,
+            Product::InverseMass | Product::Forward => speeds * speeds,
+            Product::SecondForward => speeds * speeds + of_second,
         }
     }
 
@@ -95,6 +107,7 @@ impl Tables {
             above: &above,
             entries: &self.entries,
             masses: &self.masses,
+            bends: &self.bends,
             held: &self.held,
             columns: &self.columns,
             followed: &self.followed,
@@ -128,6 +141,10 @@ impl Tables {
             Product::Forward => {
                 pairs.forward(work, &mut matrix, &mut results, width);
             }
+            Product::SecondInverse => pairs.second_inverse(work, &mut results, width),
+            Product::SecondForward => {
+                pairs.second_forward(work, &mut matrix, &mut results, width);
+            }
         });
         results
     }
@@ -141,21 +158,49 @@ impl Tables {
             while let Some(body) = carrier {
                 let above = &self.bodies[body];
                 let (others, other_units) = sizes(&self.joints[above.joint]);
-                if self.product != Product::Inverse {
+                if !matches!(self.product, Product::Inverse | Product::SecondInverse) {
                     products(&mut count, speeds * others, 6);
                 }
-                if matches!(self.product, Product::Inverse | Product::Forward) {
+                if self.has_slopes() {
                     products(&mut count, units * others, 6);
                     products(&mut count, speeds * other_units, 9);
+                }
+                if self.has_bends() {
+                    let (locals, other_locals) = (units - speeds, other_units - others);
+                    products(&mut count, units * other_units, 3);
+                    products(&mut count, locals * (other_units + others), 6);
+                    products(&mut count, (units + speeds) * other_locals, 6);
+                    count.additions += locals * other_units + units * other_locals;
                 }
                 carrier = above.parent;
             }
         }
         count.additions += self.added();
+        if self.product == Product::SecondForward {
+            let width = self.size[1];
+            let freedoms = (width - self.above.len()) / 2;
+            let terms = freedoms * width * self.above.len();
+            count.multiplications += terms;
+            count.additions += terms + 2 * freedoms * width;
+        }
         if self.room() > 0 {
             self.solution(&mut count);
         }
         count
+    }
+
+    /// Whether first derivatives of inverse dynamics are made.
+    pub fn has_slopes(&self) -> bool {
+        use Product::{Forward, Inverse, SecondForward};
+        matches!(self.product, Inverse | Forward | SecondForward)
+    }
+
+    /// Whether second ones are.
+    pub fn has_bends(&self) -> bool {
+        matches!(
+            self.product,
+            Product::SecondInverse | Product::SecondForward
+        )
     }
 
     /// Entries that come to others: those that stand alone are no additions.

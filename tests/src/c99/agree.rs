@@ -36,10 +36,18 @@ fn functions_with(model: &Model, loops: Loops, long: usize) -> Vec<Function> {
             Kind::ForwardDerivatives,
             Kind::InverseDerivatives,
             Kind::InverseMassMatrix,
+        ];
+        // Of second ones a few scenes tell as much.
+        let second = [
             Kind::ForwardSecondDerivatives,
             Kind::InverseSecondDerivatives,
         ];
-        let is_short = !derivatives.contains(&kind) || function.written() < long;
+        let most = match kind {
+            kind if derivatives.contains(&kind) => long,
+            kind if second.contains(&kind) => long / 2,
+            _ => usize::MAX,
+        };
+        let is_short = function.written() < most;
         is_short.then_some(function)
     };
     Kind::ALL.into_iter().filter_map(function).collect()

@@ -279,7 +279,11 @@ impl Point {
 
 /// The bound of errors of solutions with M̄.
 pub(super) fn of_solutions(mass: DMatrix<f64>) -> f64 {
+    BOUND.max(ROUNDINGS * condition(mass) * f64::EPSILON)
+}
+
+/// The condition of M̄.
+pub(super) fn condition(mass: DMatrix<f64>) -> f64 {
     let eigenvalues = mass.symmetric_eigenvalues();
-    let condition = eigenvalues.max() / eigenvalues.min();
-    BOUND.max(ROUNDINGS * condition * f64::EPSILON)
+    eigenvalues.max() / eigenvalues.min()
 }

@@ -1,7 +1,7 @@
 //! Compiled second derivatives against the tree's.
 
 use super::Functions;
-use super::point::{BOUND, Evaluate, Point, of_solutions};
+use super::point::{BOUND, Evaluate, Point, condition, of_solutions};
 use super::slopes::TERMS;
 use hamel::dynamics::{
     Dynamics, ForwardSecondDerivatives, InverseSecondDerivatives, MassMatrix, Recursive,
@@ -9,6 +9,13 @@ use hamel::dynamics::{
 };
 use hamel_compiler::functions::Kind;
 use std::sync::Arc;
+
+/// How many times as large as those of one solution with M̄ errors may be: μ, v̄̇ and its first derivatives are solved for, one from the other.
+const SOLUTIONS: f64 = 4.0;
+
+/// Condition of M̄ from which on doubles leave too few digits for comparison: solutions that are made of solutions lose them twice. Of a tip 1e8 times as heavy as what
+/// carries it, the Hessian of the tree is another one after each rounding of Q.
+const WORST: f64 = 1e7;
 
 impl Point {
     /// Both functions of second derivatives have the tree's values; forward dynamics under constraints that couple joints has none.
@@ -53,6 +60,11 @@ impl Point {
         }
         let mut mass = MassMatrix::new(&self.mechanism);
         tree.mass_matrix(&self.q, &mut mass).expect("sizes fit");
+        let bound = SOLUTIONS * of_solutions(mass.matrix());
+        // Rounding may leave an eigenvalue below 0.
+        if !(0.0..=WORST).contains(&condition(mass.matrix())) {
+            return;
+        }
         let mut forward = ForwardSecondDerivatives::new(&self.mechanism);
         tree.forward_dynamics_second_derivatives(
             &self.q,
@@ -64,7 +76,6 @@ impl Point {
         .expect("M̄ is regular");
         let inputs = with_weights(&self.inputs);
         let kind = Kind::ForwardSecondDerivatives;
-        let bound = of_solutions(mass.matrix());
         self.hessian_agrees(by, (kind, &inputs), forward.hessian(), bound);
     }
 

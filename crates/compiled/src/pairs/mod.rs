@@ -8,6 +8,7 @@
 //! W and U of each unit (nine); for each joint that is carried the wrench that each of its units raises (six), then N X̄ and the angular part of Bᵀ X̄ of each
 //! speed (nine). Units of a joint are its local coordinates, then its speeds.
 
+mod second;
 mod solution;
 
 use hamel_runtime::scalar::Scalar;
@@ -49,6 +50,8 @@ pub struct Pairs<'a> {
     pub entries: &'a [[usize; 3]],
     /// The same of M̄.
     pub masses: &'a [[usize; 3]],
+    /// The same of the Hessian of contracted inverse dynamics.
+    pub bends: &'a [[usize; 3]],
     /// Speeds whose rates are given, with the columns of these rates.
     pub held: &'a [[usize; 2]],
     /// Columns of the right-hand sides that are not 0: from the first to behind the last.

@@ -8,8 +8,8 @@ use crate::pairs::{Product, Tables};
 use hamel_compiled::{Carrying, Pairing};
 use num_traits::{One, Zero};
 
-/// Rows of derivatives, and M̄.
-type Entries<'a> = [&'a [Vec<Sym>]; 2];
+/// Rows of derivatives, M̄, and half of the Hessian of contracted inverse dynamics; what is not wanted is empty.
+type Entries<'a> = [&'a [Vec<Sym>]; 3];
 
 /// What each body of a joint shows to those it carries, and the joint to those that carry it.
 type Contribution<'a> = (&'a [(usize, Vec<Sym>)], &'a [Sym]);
@@ -38,6 +38,7 @@ impl<'a> Layout<'a> {
                 above: carriers.map(|all| all.first().copied()).collect(),
                 entries: vec![],
                 masses: vec![],
+                bends: vec![],
                 held: vec![],
                 columns: vec![],
                 followed: vec![],
@@ -55,7 +56,7 @@ impl<'a> Layout<'a> {
         entries: Entries<'_>,
         rates: Option<&[Sym]>,
     ) {
-        let is_mass = self.is_mass();
+        let has_slopes = self.tables.has_slopes();
         let mut all = all.fuse();
         for (index, body) in self.tree.bodies.iter().enumerate() {
             let contribution = all.next();
@@ -68,19 +69,23 @@ impl<'a> Layout<'a> {
             }
             let (own, units) = (body.share.speeds.clone(), self.tree.places(index));
             for row in own.clone() {
-                for &column in units.iter().filter(|_| !is_mass) {
+                for &column in units.iter().filter(|_| has_slopes) {
                     self.entry([row, column], entries[0][row][column]);
                 }
                 for column in own.clone().take_while(|&column| column <= row) {
                     self.mass([row, column], entries[1]);
                 }
             }
-            if let Some(rates) = rates {
+            if matches!(
+                self.tables.product,
+                Product::Forward | Product::SecondForward
+            ) {
                 self.efforts(index);
-                for row in own {
-                    self.entry([row, self.tables.size[1] - 1], rates[row]);
-                }
             }
+            for (row, rates) in own.filter_map(|row| Some((row, rates?))) {
+                self.entry([row, self.tables.size[1] - 1], rates[row]);
+            }
+            self.bends(index, entries[2]);
         }
         self.others(entries);
         let followed = rates.map(|rates| self.tree.followed_variations(rates));
@@ -133,6 +138,39 @@ impl<'a> Layout<'a> {
         self.work.push(value.settled());
     }
 
+    /// Entries of the Hessian between places of one joint.
+    fn bends(&mut self, index: usize, rows: &[Vec<Sym>]) {
+        let places = self.bent_places(index);
+        for &row in places.iter().filter(|&&row| row < rows.len()) {
+            for &column in places.iter().filter(|&&column| column <= row) {
+                self.bend([row, column], rows[row][column]);
+            }
+        }
+    }
+
+    /// The places of a joint's units, rates and efforts.
+    fn bent_places(&self, index: usize) -> Vec<usize> {
+        let [_, freedoms, speeds] = self.tree.model.sizes();
+        let share = &self.tree.bodies[index].share;
+        let rates = share.speeds.clone().map(|speed| freedoms + speeds + speed);
+        let efforts = share.freedoms.clone();
+        let efforts = efforts.map(|effort| freedoms + 2 * speeds + effort);
+        let units = self.tree.places(index).into_iter();
+        units.chain(rates).chain(efforts).collect()
+    }
+
+    /// An entry of the Hessian and that across the diagonal.
+    fn bend(&mut self, [row, column]: [usize; 2], value: Sym) {
+        if value.is_zero() {
+            return;
+        }
+        self.tables.bends.push([row, column, self.work.len()]);
+        if row != column {
+            self.tables.bends.push([column, row, self.work.len()]);
+        }
+        self.work.push(value.settled());
+    }
+
     /// The columns of a joint's efforts: S̄ᵀ, or that its rates are given.
     fn efforts(&mut self, index: usize) {
         let tree = self.tree;
@@ -153,7 +191,7 @@ impl<'a> Layout<'a> {
     }
 
     /// Entries between units of different joints.
-    fn others(&mut self, [rows, matrix]: Entries<'_>) {
+    fn others(&mut self, [rows, matrix, bends]: Entries<'_>) {
         let tree = self.tree;
         let [_, freedoms, speeds] = tree.model.sizes();
         let (mut by_speed, mut by_column) = (vec![0; speeds], vec![0; freedoms + speeds]);
@@ -166,10 +204,22 @@ impl<'a> Layout<'a> {
                 .into_iter()
                 .for_each(|place| by_column[place] = index);
         }
-        let is_mass = self.is_mass();
+        let mut owner = vec![0; 2 * (freedoms + speeds)];
+        for (index, _) in tree.joints() {
+            let places = self.bent_places(index).into_iter();
+            places.for_each(|place| owner[place] = index);
+        }
+        for (row, entries) in bends.iter().enumerate() {
+            for (column, &entry) in entries.iter().enumerate() {
+                if owner[row] != owner[column] {
+                    self.bend([row, column], entry);
+                }
+            }
+        }
+        let has_slopes = self.tables.has_slopes();
         for row in 0..speeds {
             let columns =
-                (0..freedoms + speeds).filter(|&c| !is_mass && by_column[c] != by_speed[row]);
+                (0..freedoms + speeds).filter(|&c| has_slopes && by_column[c] != by_speed[row]);
             for column in columns {
                 self.entry([row, column], rows[row][column]);
             }
@@ -179,16 +229,15 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// Whether M̄ alone is made of them.
-    fn is_mass(&self) -> bool {
-        matches!(self.tables.product, Product::Mass | Product::InverseMass)
-    }
-
     /// The numbers and the tables.
     pub(super) fn finish(mut self) -> super::pairs::Paired {
         let [_, freedoms, speeds] = self.tree.model.sizes();
         match self.tables.product {
-            Product::Mass | Product::Inverse => {}
+            Product::Mass | Product::Inverse | Product::SecondInverse => {}
+            Product::SecondForward => {
+                self.tables.columns = vec![[0, freedoms]];
+                self.eliminated(vec![vec![true; freedoms]; speeds]);
+            }
             Product::InverseMass => {
                 let driven = (0..speeds).filter(|&speed| self.tree.is_driven(speed));
                 self.tables.held = driven.map(|speed| [speed, 0]).collect();

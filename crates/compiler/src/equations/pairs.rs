@@ -18,21 +18,24 @@ pub type Paired = (Vec<Sym>, Tables);
 
 /// What a body shows to those that it carries, and a joint to those that carry it.
 #[derive(Clone, Default)]
-struct Contribution {
+pub(super) struct Contribution {
     /// Of each body of the joint that carries others: X̄, then W and U.
-    seen: Vec<(usize, Vec<Sym>)>,
+    pub(super) seen: Vec<(usize, Vec<Sym>)>,
     /// What each unit raises, then momenta; none where nothing carries the joint.
-    shown: Vec<Sym>,
+    pub(super) shown: Vec<Sym>,
 }
 
 /// Contributions, and what is found entry by entry.
-struct Found {
+#[derive(Default)]
+pub(super) struct Found {
     /// One per body: those of joints stand at the bodies that stand for them.
-    contributions: Vec<Contribution>,
+    pub(super) contributions: Vec<Contribution>,
     /// Rows of derivatives.
-    rows: Rows,
+    pub(super) rows: Rows,
     /// Own blocks of M̄.
-    matrix: Matrix,
+    pub(super) matrix: Matrix,
+    /// Half of the Hessian of contracted inverse dynamics, without pairs of different joints.
+    pub(super) bends: Rows,
 }
 
 impl Tree<'_> {
@@ -82,7 +85,7 @@ impl Tree<'_> {
     pub fn paired_inverse(&self) -> Paired {
         let [_, freedoms, speeds] = self.model.sizes();
         let rates = (0..speeds).map(|i| Sym::input(Argument::Accelerations, i));
-        let mut found = self.found(&rates.collect::<Vec<Sym>>(), None);
+        let mut found = self.found((&rates.collect::<Vec<Sym>>(), false), None);
         found.matrix = vec![];
         self.tables(Product::Inverse, [speeds, freedoms + speeds], found, None)
     }
@@ -91,7 +94,7 @@ impl Tree<'_> {
     pub fn paired_forward(&self) -> Paired {
         let [_, freedoms, speeds] = self.model.sizes();
         let rates = self.articulated_accelerations(super::Bias::Within);
-        let mut found = self.found(&rates, Some(Argument::Efforts));
+        let mut found = self.found((&rates, true), Some(Argument::Efforts));
         self.add_armature(&mut found.matrix);
         let size = [speeds, 2 * freedoms + speeds + 1];
         self.tables(Product::Forward, size, found, Some(rates))
@@ -104,7 +107,7 @@ impl Tree<'_> {
         let found = Found {
             rows: self.needed_slopes(&rates, Some(Argument::Efforts)),
             matrix: self.mass_matrix(),
-            contributions: vec![],
+            ..Found::default()
         };
         let size = [speeds, 2 * freedoms + speeds + 1];
         self.tables(Product::Forward, size, found, Some(rates))
@@ -116,15 +119,20 @@ impl Tree<'_> {
             contributions: vec![Contribution::default(); self.bodies.len()],
             rows: vec![vec![Sym::zero(); width]; count],
             matrix: vec![vec![Sym::zero(); count]; count],
+            bends: vec![],
         }
     }
 
-    /// What derivatives at v̄̇ are made of.
-    fn found(&self, rates: &[Sym], efforts: Option<Argument>) -> Found {
+    /// What derivatives at v̄̇ are made of; what bodies follow by themselves is left out where they are `solved` for.
+    pub(super) fn found(
+        &self,
+        (rates, solved): (&[Sym], bool),
+        efforts: Option<Argument>,
+    ) -> Found {
         let [_, freedoms, speeds] = self.model.sizes();
         let frames = self.root_frames();
         let mut found = self.nothing(freedoms + speeds);
-        self.carry((rates, efforts.is_some()), |index, carried, variations| {
+        self.carry((rates, solved), |index, carried, variations| {
             let mut sum: Option<Shown> = None;
             let mut seen = vec![];
             for body in self.model.carried(index) {
@@ -158,7 +166,7 @@ impl Tree<'_> {
     }
 
     /// A joint shows nothing where nothing carries it.
-    fn shown_by(&self, index: usize, shown: Vec<Sym>) -> Vec<Sym> {
+    pub(super) fn shown_by(&self, index: usize, shown: Vec<Sym>) -> Vec<Sym> {
         match self.bodies[index].parent {
             Some(_) => shown.into_iter().map(Sym::settled).collect(),
             None => vec![],
@@ -183,7 +191,7 @@ impl Tree<'_> {
         }
     }
 
-    fn add_armature(&self, matrix: &mut Matrix) {
+    pub(super) fn add_armature(&self, matrix: &mut Matrix) {
         for (index, body) in self.joints() {
             section(number(index), "rotors");
             let places = body.share.speeds.clone();
@@ -196,7 +204,7 @@ impl Tree<'_> {
     }
 
     /// The frame of each body in that of its root's body.
-    fn root_frames(&self) -> Vec<Vec<Step>> {
+    pub(super) fn root_frames(&self) -> Vec<Vec<Step>> {
         let mut places: Vec<(Mat3, Vec3)> = vec![];
         for (index, body) in self.bodies.iter().enumerate() {
             section(number(index), "place");
@@ -230,7 +238,7 @@ impl Tree<'_> {
     }
 
     /// The numbers of the bodies in order, body after body, and the tables.
-    fn tables(
+    pub(super) fn tables(
         &self,
         product: Product,
         size: [usize; 2],
@@ -240,22 +248,26 @@ impl Tree<'_> {
         let mut layout = Layout::new(self, product, size);
         let all = found.contributions.iter();
         let all = all.map(|own| (&own.seen[..], &own.shown[..]));
-        layout.place(all, [&found.rows, &found.matrix], rates.as_deref());
+        layout.place(
+            all,
+            [&found.rows, &found.matrix, &found.bends],
+            rates.as_deref(),
+        );
         layout.finish()
     }
 }
 
-fn at_root(frame: &[Step], twist: &Twist) -> Twist {
+pub(super) fn at_root(frame: &[Step], twist: &Twist) -> Twist {
     let steps = frame.iter().rev();
     steps.fold(twist.clone(), |twist, step| step.twist_to_parent(&twist))
 }
 
-fn of_twist(twist: &Twist) -> Vec<Sym> {
+pub(super) fn of_twist(twist: &Twist) -> Vec<Sym> {
     let both = twist.angular.iter().chain(&twist.linear);
     both.map(|entry| entry.settled()).collect()
 }
 
-fn of_wrench(wrench: &Wrench) -> Vec<Sym> {
+pub(super) fn of_wrench(wrench: &Wrench) -> Vec<Sym> {
     wrench.moment.iter().chain(&wrench.force).copied().collect()
 }
 

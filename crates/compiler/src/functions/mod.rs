@@ -1,8 +1,10 @@
 //! The functions that can be asked for, each by its own recursion; where there are several, the one with the fewest operations.
 
 mod kind;
+mod not_written;
 
 pub use kind::Kind;
+pub use not_written::{NotWritten, TooLong};
 
 use super::alike::Plan;
 use super::emit::{Function, argument_size};
@@ -113,6 +115,18 @@ impl Kind {
                     tree.solved_forward()
                 }),
             ],
+            Self::InverseSecondDerivatives => {
+                vec![(
+                    "composite bodies under virtual speeds, pair by pair",
+                    |tree| tree.paired_second_inverse(),
+                )]
+            }
+            Self::ForwardSecondDerivatives if can_loop_second(model) => {
+                vec![(
+                    "of inverse dynamics under M̄⁻¹λ, pair by pair",
+                    |tree| tree.paired_second_forward(),
+                )]
+            }
             _ => vec![],
         }
     }
@@ -137,6 +151,11 @@ impl Kind {
                 | Self::InverseSecondDerivatives
         )
     }
+}
+
+/// Whether second derivatives of forward dynamics may be left to loops: those with prescribed motions or constraints are not.
+fn can_loop_second(model: &Model) -> bool {
+    model.coupling.constraints.is_empty() && model.bodies.iter().all(|body| !body.driven)
 }
 
 /// Name of the recursion that eliminates joint by joint.
@@ -206,75 +225,6 @@ const WIDEST_IN_LANES: usize = 240;
 /// Operations, those of loops once, that a function may have, so that no module keeps the Rust compiler busy without end: straight-line functions
 /// of 31 000 operations already took it more than 100 s.
 pub const LONGEST: usize = 100_000;
-
-/// A function that would be too long.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct TooLong {
-    /// The function.
-    pub kind: Kind,
-    /// Whether it is left out in lanes alone.
-    pub in_lanes: bool,
-    /// At least so many operations would be written.
-    pub operations: usize,
-    /// Arguments and results, where it is left out in lanes.
-    pub numbers: usize,
-}
-
-impl std::fmt::Display for TooLong {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self {
-            operations,
-            numbers,
-            ..
-        } = self;
-        let name = self.kind.name();
-        match self.in_lanes {
-            false => write!(
-                f,
-                "{name} would have {operations} operations, more than {LONGEST}: the tree computes it"
-            ),
-            true => {
-                let much = match *operations > LONGEST_IN_LANES {
-                    true => format!("{operations} operations, more than {LONGEST_IN_LANES}"),
-                    false => {
-                        format!("{numbers} arguments and results, more than {WIDEST_IN_LANES}")
-                    }
-                };
-                write!(
-                    f,
-                    "{name} in lanes would have {much}: states are computed one by one"
-                )
-            }
-        }
-    }
-}
-
-/// Why a function is not written.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum NotWritten {
-    /// It would be too long.
-    TooLong(TooLong),
-    /// Second derivatives of forward dynamics where a constraint couples joints: the tree has none either.
-    Coupled {
-        /// The function.
-        kind: Kind,
-        /// Name of the first constraint.
-        constraint: String,
-    },
-}
-
-impl std::fmt::Display for NotWritten {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::TooLong(long) => write!(f, "{long}"),
-            Self::Coupled { kind, constraint } => write!(
-                f,
-                "{}: second derivatives of the dynamics do not cover forward dynamics under a constraint that couples joints: `{constraint}`",
-                kind.name()
-            ),
-        }
-    }
-}
 
 /// Whether like bodies are looped over.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -43,7 +43,8 @@ pub fn put(values: &[Sym], other: impl Fn(Argument, usize) -> Option<Sym>) -> Ve
             }
             operation => {
                 if let Some(new) = changed.computed(operation) {
-                    changed.of.insert(number, new.named(&node.label));
+                    let new = new.named(&node.label).settled();
+                    changed.of.insert(number, new);
                 }
             }
         }

@@ -56,6 +56,8 @@ pub struct Helpers {
     inverse_mass: bool,
     inverse: bool,
     forward: bool,
+    second_inverse: bool,
+    second_forward: bool,
     /// 1/n! as far as Stumpff functions take them.
     inverse_factorials: Vec<String>,
 }
@@ -123,6 +125,8 @@ impl Used {
             inverse_mass: self.products.contains(&Product::InverseMass),
             inverse: self.products.contains(&Product::Inverse),
             forward: self.products.contains(&Product::Forward),
+            second_inverse: self.products.contains(&Product::SecondInverse),
+            second_forward: self.products.contains(&Product::SecondForward),
             mul_add: self.mul_add
                 || !self.products.is_empty()
                 || self.curve

@@ -15,8 +15,8 @@ pub struct Written {
     /// Speeds, and columns of the results.
     size: usize,
     width: usize,
-    /// Whether it needs room for M̄, and whether its helper is told the columns.
-    matrix: bool,
+    /// Room that it needs for M̄ and more, and whether its helper is told the columns.
+    room: usize,
     is_wide: bool,
     mirrored: String,
     tables: Vec<Table>,
@@ -53,12 +53,13 @@ impl Written {
         let plain = |rows: &[[usize; 3]]| rows.iter().map(|row| row.map(number).to_vec()).collect();
         let held = tables.held.iter().map(|row| row.map(number).to_vec());
         let columns = tables.columns.iter().map(|row| row.map(number).to_vec());
-        let all: [(&'static str, usize, Vec<Vec<i64>>); 8] = [
+        let all: [(&'static str, usize, Vec<Vec<i64>>); 9] = [
             ("joints", 6, joints.collect()),
             ("bodies", 3, bodies.collect()),
             ("above", 1, above.collect()),
             ("entries", 3, plain(&tables.entries)),
             ("masses", 3, plain(&tables.masses)),
+            ("bends", 3, plain(&tables.bends)),
             ("held", 2, held.collect()),
             ("columns", 2, columns.collect()),
             ("followed", 3, plain(&tables.followed)),
@@ -67,10 +68,10 @@ impl Written {
             helper: tables.product.name(),
             work: work.max(1),
             is_empty: work == 0,
-            size: tables.size[0],
+            size: tables.above.len(),
             width: tables.size[1],
-            matrix: tables.room() > 0,
-            is_wide: matches!(tables.product, Product::Inverse | Product::Forward),
+            room: tables.room(),
+            is_wide: !matches!(tables.product, Product::Mass | Product::InverseMass),
             mirrored: optional(tables.mirrored).to_string(),
             tables: all.into_iter().map(Table::new).collect(),
         }

@@ -22,6 +22,16 @@ pub fn rows(tables: &Tables) -> TokenStream {
             #matrix
             PAIRS.#method(&results, matrix.as_flattened_mut(), rows.as_flattened_mut(), #width);
         },
+        Product::SecondInverse => {
+            quote! { PAIRS.#method(&results, rows.as_flattened_mut(), #width); }
+        }
+        Product::SecondForward => {
+            let room = Literal::usize_unsuffixed(tables.room());
+            quote! {
+                let mut matrix = [n(0.0); #room];
+                PAIRS.#method(&results, &mut matrix, rows.as_flattened_mut(), #width);
+            }
+        }
     };
     let constants = constants(tables);
     let heading = comment("each pair of joints on one way to the root:");
@@ -41,8 +51,13 @@ fn constants(tables: &Tables) -> TokenStream {
         let ranges = ranges.iter().map(|range| numbers(range));
         quote! { &[#(#ranges),*] }
     });
-    let [entries, masses, followed] = [&tables.entries, &tables.masses, &tables.followed]
-        .map(|table| table.iter().map(|row| numbers(row)).collect::<Vec<_>>());
+    let [entries, masses, bends, followed] = [
+        &tables.entries,
+        &tables.masses,
+        &tables.bends,
+        &tables.followed,
+    ]
+    .map(|table| table.iter().map(|row| numbers(row)).collect::<Vec<_>>());
     let columns = tables.columns.iter().map(|row| numbers(row));
     let held = tables.held.iter().map(|row| numbers(row));
     let filled = tables.filled.iter().map(|row| {
@@ -61,6 +76,7 @@ fn constants(tables: &Tables) -> TokenStream {
             above: &[#(#above),*],
             entries: &[#(#entries),*],
             masses: &[#(#masses),*],
+            bends: &[#(#bends),*],
             held: &[#(#held),*],
             columns: &[#(#columns),*],
             followed: &[#(#followed),*],

@@ -68,6 +68,17 @@ impl Tree<'_> {
 
     /// The Hessian of `μᵀ(τ̄ − S̄ᵀτ)`, of all that acts, over (ϕ, v̄, v̄̇) and, where there are any, the efforts τ of the argument.
     pub(super) fn contracted(&self, efforts: Option<Argument>) -> Hessian {
+        self.contracted_but(efforts, |index, bodies, sums, hessian| {
+            self.add_pairs_above(index, bodies, sums, hessian);
+        })
+    }
+
+    /// The same without pairs of directions of different joints, which are left to `visit` for each joint.
+    pub(super) fn contracted_but(
+        &self,
+        efforts: Option<Argument>,
+        mut visit: impl FnMut(usize, &[Moving], &[Sums], &mut Hessian),
+    ) -> Hessian {
         let mut hessian = Hessian::new(self);
         let mut gradient = self.add_acting(efforts, &mut hessian);
         let bodies = self.virtually_moved();
@@ -85,7 +96,7 @@ impl Tree<'_> {
             self.add_gradient(index, &bodies[index], &sums[index], &mut gradient);
             // All other bodies of the joint come before in this order.
             if self.model.bodies[index].leads() {
-                self.add_pairs_above(index, &bodies, &sums, &mut hessian);
+                visit(index, &bodies, &sums, &mut hessian);
                 self.add_chart_terms(index, &gradient, &mut hessian);
             }
         }

@@ -54,6 +54,12 @@ impl Hessian {
         self.rows[row.max(column)][row.min(column)]
     }
 
+    /// The first rows, each up to the diagonal.
+    pub(super) fn into_rows(mut self, count: usize) -> Vec<Vec<Sym>> {
+        self.rows.truncate(count);
+        self.rows
+    }
+
     /// All that is kept.
     pub(super) fn entries_mut(&mut self) -> impl Iterator<Item = &mut Sym> {
         self.rows.iter_mut().flatten()

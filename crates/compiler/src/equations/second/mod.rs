@@ -25,4 +25,5 @@ mod contracted;
 mod forward;
 mod hessian;
 mod own;
+mod paired;
 mod pairs;

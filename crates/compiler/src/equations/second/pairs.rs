@@ -3,25 +3,25 @@
 use super::contracted::{Direction, Moving, Sums};
 use super::hessian::Hessian;
 use crate::equations::{Tree, number, to_parent, wrench_to_parent};
-use crate::graph::section;
+use crate::graph::{Sym, section};
 use crate::spatial::{Step, Twist, Vec3, Wrench, cross, dot};
 use num_traits::One;
 
 /// What the directions of a joint meet those above with: p with `by_virtual_drift`, W with `by_rate`, and U with the moment `by_drift`.
-struct Raised {
+pub(super) struct Raised {
     /// Of ϕ, then of v̄.
     by_virtual_drift: Vec<Wrench>,
     /// Of ϕ.
-    by_rate: Vec<Wrench>,
+    pub(super) by_rate: Vec<Wrench>,
     /// Of ϕ, then of v̄.
-    by_drift: Vec<Vec3>,
+    pub(super) by_drift: Vec<Vec3>,
     /// Of v̄̇, met by p.
     momenta: Vec<Wrench>,
 }
 
 impl Raised {
-    fn of(directions: &[Direction], columns: &[Twist], sums: &Sums) -> Self {
-        let opposite = -crate::graph::Sym::one();
+    pub(super) fn of(directions: &[Direction], columns: &[Twist], sums: &Sums) -> Self {
+        let opposite = -Sym::one();
         let along = |own: &Direction, wrench: &Wrench| {
             let dual = own.variation.local.bracket_dual(wrench);
             dual.times(opposite)
@@ -49,7 +49,7 @@ impl Raised {
         }
     }
 
-    fn at_parent(self, steps: &[Step]) -> Self {
+    pub(super) fn at_parent(self, steps: &[Step]) -> Self {
         let wrenches = |all: Vec<Wrench>| -> Vec<Wrench> {
             let moved = all.iter().map(|own| wrench_to_parent(steps, own));
             moved.collect()
@@ -63,7 +63,7 @@ impl Raised {
         }
     }
 
-    fn plus(self, other: &Self) -> Self {
+    pub(super) fn plus(self, other: &Self) -> Self {
         let wrenches = |all: &[Wrench], others: &[Wrench]| -> Vec<Wrench> {
             let pairs = all.iter().zip(others);
             pairs.map(|(a, b)| a.plus(b)).collect()
