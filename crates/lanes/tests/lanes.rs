@@ -346,13 +346,13 @@ fn a_row_whose_mass_matrix_is_singular_fails_as_by_the_tree() {
         "at = { rotation_vector = [0.3, 0.7, 0.2] }\ninitial = { speeds = [0.3, 0.2, 0.1] }";
     let text = described(&(slides("a", "world", "") + &slides("b", "a", turned)));
     let sweep = swept(&text, &["body.a.mass"]);
-    let rows: Vec<Cells> = [1.0, 0.0, 1e-18, 0.5]
+    let rows: Vec<Cells> = [1.0, 0.0, 0.5]
         .iter()
         .map(|mass| Cells::from(vec![*mass]))
         .collect();
     let (moved, ways) = side_by_side(&sweep, &rows, &rows);
     difference(&sweep, &rows, &moved);
     let ended = moved.iter().map(|row| row.outcome == Outcome::Ended);
-    assert_eq!(ended.collect::<Vec<_>>(), [true, false, false, true]);
+    assert_eq!(ended.collect::<Vec<_>>(), [true, false, true]);
     assert_eq!(ways.lanes, 2, "{ways:?}");
 }

@@ -1,8 +1,8 @@
 //! Springs between points that meet, or nearly do.
 
 use hamel::dynamics::{
-    DynamicsError, ForwardDerivatives, ForwardSecondDerivatives, InverseSecondDerivatives,
-    Recursive,
+    Dynamics, DynamicsError, ForwardDerivatives, ForwardSecondDerivatives,
+    InverseSecondDerivatives, Recursive,
 };
 use hamel_scene::Scene;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ fn pulled(more: &str) -> Recursive {
     let text = format!(
         "hamel = 1\ngravity = [0.0, 0.0, 0.0]\n[[body]]\nname = \"load\"\nparent = \"world\"\nmass = 2.0\n\
          inertia_xx_yy_zz_xy_xz_yz = [0.1, 0.1, 0.1, 0.0, 0.0, 0.0]\njoint = {{ type = \"translation\" }}\n\
-         [[spring]]\nname = \"rope\"\nfrom = {{ body = \"world\" }}\nto = {{ body = \"load\" }}\nstiffness = 3.0\n{more}\n"
+         [[spring]]\nfrom = {{ body = \"world\" }}\nto = {{ body = \"load\" }}\nstiffness = 3.0\n{more}\n"
     );
     let scene = Scene::from_toml(&text, "scene.toml").unwrap_or_else(|errors| panic!("{errors}"));
     let scene = scene
@@ -80,7 +80,7 @@ fn a_spring_without_a_direction_is_refused_by_name() {
         );
         assert_eq!(
             error.to_string(),
-            "element `rope` has no derivative at this state: its points coincide, so that its force has no direction"
+            "element `spring 1` has no derivative at this state: its points coincide, so that its force has no direction"
         );
         let near = [1e-9, 0.0, 0.0];
         let found = dynamics.forward_dynamics_derivatives(&near, &still, &still, &mut first);
