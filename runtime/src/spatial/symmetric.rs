@@ -159,7 +159,7 @@ mod tests {
     /// The moment about a thin axis along which the centre of mass lies keeps its digits.
     #[test]
     fn thin_moments_are_kept() {
-        let thin = Symmetric3 {
+        let thin: Symmetric3<f64> = Symmetric3 {
             zz: 1e-14,
             ..Symmetric3::diagonal(1.0)
         };
