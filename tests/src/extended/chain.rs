@@ -91,6 +91,27 @@ impl Chain {
         }
     }
 
+    /// At least the largest moment of inertia about the origin of a joint, over all axes, of what the joint carries: half the trace of the inertia matrix.
+    ///
+    /// An entry of M̄ is this inertia seen along the axes of the joint. It has the roundings of the other axes, also where its own moment is small.
+    pub fn largest_moment(&self) -> f64 {
+        let (mut mass, mut first_moment) = (Exact::from(0.0), Vector3::<Exact>::zeros());
+        let (mut half_trace, mut largest) = (Exact::from(0.0), 0.0_f64);
+        for link in self.links.iter().rev() {
+            mass += link.mass.clone();
+            let own = &link.com * link.mass.clone();
+            half_trace += link.inertia.trace() * Exact::from(0.5) + own.dot(&link.com);
+            first_moment += own;
+            largest = largest.max(half_trace.to_f64());
+
+            let turned = &link.rotation * &first_moment;
+            let moved = &link.offset * mass.clone();
+            half_trace += link.offset.dot(&(&turned * Exact::from(2.0) + &moved));
+            first_moment = turned + moved;
+        }
+        largest
+    }
+
     /// τ of the motion with the given speeds and accelerations, by Newton's and Euler's equations of each body.
     pub fn inverse_dynamics(&self, speeds: &[Exact], accelerations: &[Exact]) -> Vec<Exact> {
         let size = self.freedoms.speeds();
