@@ -45,5 +45,5 @@ mod _hamel {
     #[pymodule_export]
     use crate::simulation::simulate;
     #[pymodule_export]
-    use crate::sweep::{Sweep, scene_text};
+    use crate::sweep::{Sweep, sample, scene_text};
 }

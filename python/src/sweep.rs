@@ -4,13 +4,14 @@ use crate::errors;
 use crate::robot::Robot;
 use crate::source::{RobotOptions, Source};
 use hamel::registry::JointRegistry;
-use hamel_sweep::{Block, Cells, Row, SweepError, Watch};
+use hamel_lanes::{Lanes, Plan};
+use hamel_sweep::{Block, ByTree, Cells, Movers, Row, SweepError, Watch};
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple, PyType};
 use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -18,7 +19,7 @@ use std::time::{Duration, Instant};
 const LOOK: Duration = Duration::from_millis(20);
 
 /// Rows that are handed out together.
-const BLOCK: usize = 1000;
+const BLOCK: usize = 1024;
 
 /// The text of the scene of a file, a text or a robot, and what messages call it.
 #[pyfunction]
@@ -42,13 +43,51 @@ pub fn scene_text(
     Ok((text, source.name))
 }
 
-/// A scene, the numbers of it that rows change, and what is told of its motions. Pickles as the text of the scene.
+/// The rows, by their places from 0, that decide which numbers of a table of `rows` rows differ.
+#[pyfunction]
+pub fn sample(rows: u64) -> Vec<u64> {
+    hamel_lanes::sample(rows).collect()
+}
+
+/// A scene, the numbers of it that rows change, by which equations rows move, and what is told of their motions. Pickles as what it is made of.
 #[pyclass(frozen, module = "hamel._hamel")]
 pub struct Sweep {
     text: String,
     source: String,
     moved: hamel_sweep::Sweep,
     joints: JointRegistry,
+    /// As it was asked for, and the sample.
+    equations: (Equations, Vec<Vec<f64>>),
+    /// What rows move by that go side by side, or why none does.
+    plan: Result<Arc<Plan>, String>,
+}
+
+/// By which equations rows move.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Equations {
+    Auto,
+    Lanes,
+    Tree,
+}
+
+impl Equations {
+    const NAMES: [(&str, Self); 3] = [
+        ("auto", Self::Auto),
+        ("lanes", Self::Lanes),
+        ("tree", Self::Tree),
+    ];
+
+    fn named(name: &str) -> Result<Self, String> {
+        let found = Self::NAMES.iter().find(|(own, _)| *own == name);
+        found
+            .map(|(_, equations)| *equations)
+            .ok_or_else(|| format!("equations is '{name}': it must be 'auto', 'lanes' or 'tree'"))
+    }
+
+    fn name(self) -> &'static str {
+        let found = Self::NAMES.iter().find(|(_, own)| *own == self);
+        found.map_or("auto", |(name, _)| name)
+    }
 }
 
 #[pymethods]
@@ -60,7 +99,10 @@ impl Sweep {
         source: String,
         columns: Vec<String>,
         estimate: bool,
+        equations: &str,
+        sample: Vec<Vec<f64>>,
     ) -> PyResult<Self> {
+        let equations = Equations::named(equations).map_err(|error| errors::argument(py, error))?;
         let joints = hamel_sweep::joints();
         let moved = hamel_sweep::Sweep::new(&text, &source, &columns, &joints);
         let moved = moved.and_then(|moved| match estimate {
@@ -68,18 +110,56 @@ impl Sweep {
             false => Ok(moved),
         });
         let moved = moved.map_err(|error| refusal(py, &source, error))?;
+        let plan = match (equations, estimate) {
+            (Equations::Tree, _) => Err("that was asked for".to_owned()),
+            (_, true) => Err("errors of motions are estimated".to_owned()),
+            _ => {
+                let rows: Vec<Cells> = sample.iter().cloned().map(Cells::from).collect();
+                py.detach(|| Plan::new(&moved, &joints, &rows)).map(Arc::new)
+            }
+        };
+        if let (Equations::Lanes, Err(why)) = (equations, &plan) {
+            let why = format!("no row can move by equations='lanes': {why}");
+            return Err(errors::argument(py, why));
+        }
         Ok(Self {
             text,
             source,
             moved,
             joints,
+            equations: (equations, sample),
+            plan,
         })
+    }
+
+    /// Why all rows move by the tree, where they do.
+    #[getter]
+    fn why_tree(&self) -> Option<&str> {
+        self.plan.as_ref().err().map(String::as_str)
+    }
+
+    /// The text of the scene.
+    #[getter]
+    fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// What messages call the scene.
+    #[getter]
+    fn source(&self) -> &str {
+        &self.source
+    }
+
+    /// Names of the numbers that rows change.
+    #[getter]
+    fn columns(&self) -> &[String] {
+        self.moved.columns()
     }
 
     /// Names of the numbers that each row gives.
     #[getter]
-    fn results(&self) -> Vec<String> {
-        self.moved.results().to_vec()
+    fn results(&self) -> &[String] {
+        self.moved.results()
     }
 
     /// The motions of the rows of these columns, by so many threads: a dictionary of arrays, and `outcome`, a list.
@@ -112,7 +192,9 @@ impl Sweep {
     ) -> PyResult<(Bound<'py, PyType>, Bound<'py, PyTuple>)> {
         let columns = self.moved.columns().to_vec();
         let (text, source, estimate) = (&self.text, &self.source, self.moved.estimates());
-        let arguments = (text, source, columns, estimate).into_pyobject(py)?;
+        let (equations, sample) = (self.equations.0.name(), &self.equations.1);
+        let arguments =
+            (text, source, columns, estimate, equations, sample).into_pyobject(py)?;
         Ok((py.get_type::<Self>(), arguments))
     }
 }
@@ -146,7 +228,19 @@ impl Sweep {
             stop: &|| listener.is_over(),
             ..Watch::NONE
         };
-        hamel_sweep::run(&self.moved, &self.joints, workers, next, &write, watch)?;
+        let (sweep, registry) = (&self.moved, &self.joints);
+        let (lanes, tree);
+        let movers: &dyn Movers = match &self.plan {
+            Ok(plan) => {
+                lanes = Lanes::new(sweep, registry, Arc::clone(plan));
+                &lanes
+            }
+            Err(_) => {
+                tree = ByTree { sweep, registry };
+                &tree
+            }
+        };
+        hamel_sweep::run_by(movers, workers, next, &write, watch)?;
         let all = all.into_inner().unwrap_or_else(PoisonError::into_inner);
         // Those that an exception has ended are not told.
         Ok(all.into_iter().flatten().collect())

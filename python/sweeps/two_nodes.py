@@ -1,6 +1,6 @@
-"""A sweep by Ray on two nodes of this machine, one of which is lost half way: `.venv/bin/python sweeps/two_nodes.py --rows 100000`.
+"""A sweep by Ray on two nodes of this machine, one of which is lost half way: `.venv/bin/python sweeps/two_nodes.py --rows 1000000`.
 
-Prints motions a second, how many bytes of results are those of a sweep in one process, and the peak memory of the process that asked for the sweep.
+The double pendulum moves side by side, the arm one by one. Prints motions a second, how many bytes of results are those of a sweep in one process, and the peak memory of the process that asked for the sweep.
 """
 
 import argparse
@@ -22,22 +22,38 @@ import pyarrow.parquet
 import ray
 from ray.cluster_utils import Cluster
 
-SCENE = Path(__file__).resolve().parents[2] / "scenes/sweep/arm.toml"
-COLUMNS = ["body.hand.mass", "body.fore.mass", "body.fore.spring.stiffness", "body.upper.initial.configuration.1", "simulation.t_end"]
+ROOT = Path(__file__).resolve().parents[2]
+
+# Scenes by name, and between which bounds rows change their numbers.
+CASES = {
+    "pendulum": (
+        ROOT / "tests/data/scenes/double_pendulum.toml",
+        {"body.upper.initial.configuration.1": (-1.0, 1.0), "body.lower.initial.configuration.1": (-1.0, 1.0), "body.lower.initial.speeds.1": (-2.0, 2.0)},
+    ),
+    "arm": (
+        ROOT / "scenes/sweep/arm.toml",
+        {
+            "body.hand.mass": (0.3, 0.9),
+            "body.fore.mass": (1.0, 1.4),
+            "body.fore.spring.stiffness": (150.0, 210.0),
+            "body.upper.initial.configuration.1": (-0.02, 0.02),
+            "simulation.t_end": (0.1, 0.15),
+        },
+    ),
+}
 FILE_ROWS = 20_000
 
 
-def rows_of(first, count):
+def rows_of(case, first, count):
     """Rows that depend on their places alone."""
     random = np.random.default_rng(first)
-    ranges = [(0.3, 0.9), (1.0, 1.4), (150.0, 210.0), (-0.02, 0.02), (0.1, 0.15)]
-    return {name: random.uniform(*own, count) for name, own in zip(COLUMNS, ranges, strict=True)}
+    return {name: random.uniform(*own, count) for name, own in CASES[case][1].items()}
 
 
-def write_table(folder, rows):
+def write_table(folder, case, rows):
     folder.mkdir()
     for first in range(0, rows, FILE_ROWS):
-        table = pyarrow.table(rows_of(first, min(FILE_ROWS, rows - first)))
+        table = pyarrow.table(rows_of(case, first, min(FILE_ROWS, rows - first)))
         pyarrow.parquet.write_table(table, folder / f"{first:09}.parquet", row_group_size=FILE_ROWS // 4)
 
 
@@ -65,10 +81,10 @@ def two_nodes():
     return cluster, second
 
 
-def sweep(table, output, rows, estimate, kill):
+def sweep(case, table, output, rows, estimate, kill):
     """Moves all rows, without the second node from the middle on; gives how long it took, s, and how many rows were there then."""
     cluster, second = two_nodes()
-    thread = threading.Thread(target=hamel.sweep, args=(SCENE, table), kwargs={"engine": "ray", "output": output, "estimate": estimate})
+    thread = threading.Thread(target=hamel.sweep, args=(CASES[case][0], table), kwargs={"engine": "ray", "output": output, "estimate": estimate})
     start, before = time.perf_counter(), peak()
     thread.start()
     there = 0
@@ -89,7 +105,7 @@ def sweep(table, output, rows, estimate, kill):
     print(f"level      {json.loads((output / 'sweep.json').read_text())['level']}")
 
 
-def compare(output, rows, estimate):
+def compare(case, output, rows, estimate):
     """Compares the sorted results with those of a process without Ray, a file of the table at a time."""
     program = "import hamel, pickle, sys; a, k = pickle.load(sys.stdin.buffer); pickle.dump(hamel.sweep(*a, **k), sys.stdout.buffer)"
     files = [pyarrow.parquet.read_table(path) for path in output.glob("*.parquet")]
@@ -98,7 +114,7 @@ def compare(output, rows, estimate):
     count = same = 0
     start = time.perf_counter()
     for first in range(0, rows, FILE_ROWS):
-        asked = pickle.dumps(((str(SCENE), rows_of(first, min(FILE_ROWS, rows - first))), {"estimate": estimate}))
+        asked = pickle.dumps(((str(CASES[case][0]), rows_of(case, first, min(FILE_ROWS, rows - first))), {"estimate": estimate}))
         done = subprocess.run([sys.executable, "-c", program], input=asked, capture_output=True, check=True)
         expected, found = pickle.loads(done.stdout), results.slice(first, FILE_ROWS)
         for name, values in expected.items():
@@ -115,15 +131,16 @@ def compare(output, rows, estimate):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rows", type=int, default=100_000)
+    parser.add_argument("--scene", choices=CASES, default="pendulum")
     parser.add_argument("--estimate", action="store_true", help="estimate errors, which takes about as long again")
     parser.add_argument("--keep-nodes", action="store_true", help="lose no node")
     parser.add_argument("--no-comparison", action="store_true", help="do not compute the rows again in one process")
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         table, output = Path(folder) / "table", Path(folder) / "results"
-        write_table(table, given.rows)
-        sweep(table, output, given.rows, given.estimate, not given.keep_nodes)
-        is_same = given.no_comparison or compare(output, given.rows, given.estimate)
+        write_table(table, given.scene, given.rows)
+        sweep(given.scene, table, output, given.rows, given.estimate, not given.keep_nodes)
+        is_same = given.no_comparison or compare(given.scene, output, given.rows, given.estimate)
     return 0 if is_same else 1
 
 

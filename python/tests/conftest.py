@@ -11,6 +11,18 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 PANDA = ROOT / "tests/data/urdf/panda7.urdf"
 SCENES = ROOT / "scenes"
+PENDULUM = ROOT / "tests/data/scenes/double_pendulum.toml"
+
+
+def pendulums(count):
+    """Rows of `PENDULUM` that go side by side, but for one that fails and one that leaves the finite numbers. Masses are the same in two rows each."""
+    random = np.random.default_rng(11)
+    rows = {"body.lower.mass": np.repeat(random.uniform(0.8, 1.2, -(-count // 2)), 2)[:count]}
+    rows["body.upper.initial.configuration.1"] = random.uniform(-0.5, 0.5, count)
+    rows["body.lower.initial.speeds.1"] = random.uniform(-1.0, 1.0, count)
+    rows["body.lower.mass"][count // 3] = -1.0
+    rows["body.lower.initial.speeds.1"][count // 2] = 1e200
+    return rows
 
 
 def states(robot, count, seed=1):

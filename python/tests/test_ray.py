@@ -12,7 +12,7 @@ import time
 import hamel
 import numpy as np
 import pytest
-from conftest import SCENES
+from conftest import PENDULUM, SCENES, pendulums
 
 ray = pytest.importorskip("ray", reason="the sweeps by Ray need it: pip install 'ray[data]>=2.60'")
 pytest.importorskip("ray.data")
@@ -101,6 +101,22 @@ def test_tables_in_memory_and_datasets_are_rows_in_their_order(two_nodes):
     dataset = ray.data.from_arrow([arrow.table(rows).slice(start, 9) for start in range(0, 50, 9)])
     for given in (rows, arrow.table(rows), dataset):
         assert_same_bytes(hamel.sweep(ARM, given, engine="ray", estimate=False), expected)
+
+
+def test_rows_go_side_by_side_with_the_bytes_of_one_process(two_nodes, tmp_path):
+    rows = pendulums(700)
+    expected = hamel.sweep(PENDULUM, rows, estimate=False)
+    tree = hamel.sweep(PENDULUM, rows, estimate=False, equations="tree")
+    assert any(expected[name].tobytes() != tree[name].tobytes() for name in expected)
+    dataset = ray.data.from_arrow([arrow.table(rows).slice(start, 90) for start in range(0, 700, 90)])
+    for given in (rows, in_files(tmp_path / "table", rows), dataset):
+        assert_same_bytes(hamel.sweep(PENDULUM, given, engine="ray", estimate=False), expected)
+    for equations, why in (("auto", None), ("tree", "that was asked for")):
+        out = tmp_path / equations
+        hamel.sweep(PENDULUM, tmp_path / "table", engine="ray", estimate=False, equations=equations, output=out)
+        assert_same_bytes(sorted_results(out), expected if why is None else tree)
+        told = json.loads((out / "sweep.json").read_text())
+        assert (told["equations"], told["why_tree"]) == (equations, why)
 
 
 def test_no_rows_have_no_results(two_nodes):

@@ -1,5 +1,6 @@
 """Many motions of one scene, beside single ones and the program's."""
 
+import csv
 import os
 import pickle
 import subprocess
@@ -9,7 +10,7 @@ from pathlib import Path
 import hamel
 import numpy as np
 import pytest
-from conftest import SCENES
+from conftest import PENDULUM, SCENES, pendulums
 
 ARM = SCENES / "sweep/arm.toml"
 MASS = "body.hand.mass"
@@ -87,16 +88,58 @@ def test_workers_are_counted():
 
 
 def test_sweeps_pickle_as_their_scenes():
-    sweep = hamel._hamel.Sweep(*hamel._hamel.scene_text(ARM, False), [MASS], False)
-    again = pickle.loads(pickle.dumps(sweep))
-    rows = [np.array([0.5, 0.7])]
-    for name, values in sweep.rows(rows, 1).items():
-        assert np.array_equal(values, again.rows(rows, 1)[name])
+    for scene, column in ((ARM, MASS), (PENDULUM, "body.lower.mass")):
+        sweep = hamel._hamel.Sweep(*hamel._hamel.scene_text(scene, False), [column], False, "auto", [[0.5], [0.7]])
+        assert (sweep.why_tree is None) == (scene == PENDULUM), sweep.why_tree
+        again = pickle.loads(pickle.dumps(sweep))
+        rows = [np.array([0.5, 0.7])]
+        for name, values in sweep.rows(rows, 1).items():
+            assert np.array_equal(values, again.rows(rows, 1)[name])
+
+
+@pytest.mark.parametrize("equations", ["auto", "lanes", "tree"])
+def test_bits_are_those_of_the_program_with_the_same_equations(equations, tmp_path):
+    rows = pendulums(150)
+    found = hamel.sweep(PENDULUM, rows, estimate=False, equations=equations)
+    text = [",".join(rows), *(",".join(repr(float(values[row])) for values in rows.values()) for row in range(150))]
+    (tmp_path / "table.csv").write_text("\n".join(text) + "\n")
+    options = [PENDULUM, "--over", tmp_path / "table.csv", "-o", tmp_path / "out", "--no-error-estimate", "--equations", equations]
+    subprocess.run([sys.executable, "-m", "hamel", "sweep", *options], check=True, capture_output=True, timeout=300)
+    parts = sorted((tmp_path / "out").glob("part-*.csv"))
+    told = [row for part in parts for row in csv.DictReader(part.read_text().splitlines())]
+    assert [row["outcome"] for row in told] == found["outcome"].tolist()
+    for name, values in found.items():
+        assert name == "outcome" or np.array_equal([float(row[name]) for row in told], values, equal_nan=True), name
+    assert found["outcome"][50].startswith("failed: body `lower`: mass is -1 kg")
+
+
+def test_side_by_side_differs_from_the_tree_by_rounding():
+    rows = pendulums(200)
+    lanes, tree = (hamel.sweep(PENDULUM, rows, estimate=False, equations=own) for own in ("auto", "tree"))
+    assert lanes["outcome"].tolist() == tree["outcome"].tolist()
+    names = [name for name in lanes if name != "outcome"]
+    # The bound that the program's own sweeps are tested with.
+    for name in names:
+        own, other = lanes[name], tree[name]
+        assert np.array_equal(np.isnan(own), np.isnan(other)), name
+        assert np.nanmax(np.abs(own - other) / np.maximum(1.0, np.abs(other))) < 1e-11, name
+    assert any(lanes[name].tobytes() != tree[name].tobytes() for name in names), "all rows have gone by the tree"
+
+
+def test_rows_that_cannot_go_side_by_side_are_told():
+    for scene, options, why in (
+        (PENDULUM, {}, "errors of motions are estimated"),
+        (ARM, {"estimate": False}, "its method controls the length of steps"),
+    ):
+        with pytest.raises(hamel.ArgumentError) as raised:
+            hamel.sweep(scene, {"gravity.3": [-9.0, -9.5]}, equations="lanes", **options)
+        assert str(raised.value) == f"no row can move by equations='lanes': {why}"
 
 
 @pytest.mark.parametrize(
     ("options", "message"),
     [
+        ({"equations": "lane"}, "equations is 'lane': it must be 'auto', 'lanes' or 'tree'"),
         ({"engine": "dask"}, "engine is 'dask': it must be None or 'ray'"),
         ({"output": "results"}, "output is for engine='ray': without it results are returned"),
         ({"level": "x86-64-v9"}, "level is 'x86-64-v9': it must be one of x86-64, x86-64-v3"),

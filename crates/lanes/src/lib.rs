@@ -1,6 +1,6 @@
 #![doc = include_str!("../README.md")]
 //!
-//! [`Lanes`] moves the rows of a sweep, as [`hamel_sweep::run_by`] takes it.
+//! [`Plan`] has the equations of a sweep for rows like those of a [`sample`](sample()) of its table. [`Lanes`] moves rows by them, as [`hamel_sweep::run_by`] takes it.
 
 mod exact;
 mod joints;
@@ -14,3 +14,4 @@ mod program;
 mod row;
 
 pub use movers::{Lanes, Ways};
+pub use plan::{Plan, sample};

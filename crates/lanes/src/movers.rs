@@ -13,7 +13,7 @@ use hamel_sweep::{Cells, Mover, Movers, Outcome, Row, Sweep, Watch};
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Why a motion that began side by side goes by the tree.
 const LEFT: &str = "its numbers do not stay finite, or a joint turns far in one step";
@@ -34,26 +34,28 @@ pub struct Ways {
 pub struct Lanes<'a> {
     sweep: &'a Sweep,
     registry: &'a JointRegistry,
-    plan: Plan,
+    plan: Arc<Plan>,
     ways: Mutex<Ways>,
 }
 
 impl<'a> Lanes<'a> {
-    /// The equations of `sweep` for rows like those of `sample`. Numbers that differ within `sample` may differ in every row. A row that changes another number moves by the tree.
-    ///
-    /// # Errors
-    /// Why no row goes side by side, in words.
+    /// The rows of `sweep`, by the equations that were made for it.
     pub fn new(
         sweep: &'a Sweep,
         registry: &'a JointRegistry,
-        sample: &[Cells],
-    ) -> Result<Self, String> {
-        Ok(Self {
+        plan: impl Into<Arc<Plan>>,
+    ) -> Self {
+        Self {
             sweep,
             registry,
-            plan: Plan::new(sweep, registry, &Joints::default(), sample)?,
+            plan: plan.into(),
             ways: Mutex::default(),
-        })
+        }
+    }
+
+    /// What the rows move by.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
     }
 
     /// Which way the rows went that were moved so far.
@@ -62,11 +64,6 @@ impl<'a> Lanes<'a> {
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .clone()
-    }
-
-    /// How many operations a step takes, and how many rows of numbers these take.
-    pub fn size(&self) -> [usize; 2] {
-        [self.plan.program.step.len(), self.plan.program.rows]
     }
 }
 

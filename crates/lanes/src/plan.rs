@@ -10,13 +10,26 @@ use hamel_compiler::numbers::{self, Shape};
 use hamel_compiler::stepping::{Places, Scheme, Stepping, stepping};
 use hamel_sweep::{Cells, Sweep};
 
-/// A program with what a row must have for it.
+/// Rows of a sample at most.
+const SAMPLE: u64 = 32;
+
+/// The rows, by their places from 0, that are the sample of a table of `rows` rows: evenly over it, the first and the last among them. So it depends on the table alone.
+pub fn sample(rows: u64) -> impl Iterator<Item = u64> {
+    let count = rows.min(SAMPLE);
+    let last = u128::from(rows.saturating_sub(1));
+    (0..count).map(move |number| match count {
+        1 => 0,
+        _ => (u128::from(number) * last / u128::from(count - 1)) as u64,
+    })
+}
+
+/// The equations that the rows of a sweep move by: one step of all of them, and what a row must have for it.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// One step.
-    pub program: Program,
+    pub(crate) program: Program,
     /// Where its numbers stand.
-    pub places: Places,
+    pub(crate) places: Places,
     /// Of which method.
     tableau: &'static Tableau,
     shape: Shape,
@@ -27,14 +40,13 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// The program for rows like those of `sample`, which decides which numbers differ.
+    /// The equations of `sweep` for rows like those of a [`sample`](sample()). Numbers that differ within it may differ in every row. A row that changes another number moves by the tree.
     ///
     /// # Errors
-    /// Why there is none, in words.
+    /// Why no row goes side by side, in words.
     pub fn new(
         sweep: &Sweep,
         registry: &JointRegistry,
-        joints: &Joints,
         sample: &[Cells],
     ) -> Result<Self, String> {
         if sweep.estimates() {
@@ -42,10 +54,10 @@ impl Plan {
                 "errors of motions are estimated; --no-error-estimate leaves that out".into(),
             );
         }
-        let mut rows: Vec<Described> = vec![];
+        let (joints, mut rows) = (Joints::default(), Vec::<Described>::new());
         let mut reason = "no row of a sample has a scene".to_owned();
         for cells in sample {
-            match described(sweep, registry, joints, cells) {
+            match described(sweep, registry, &joints, cells) {
                 Ok(row) => rows.push(row),
                 Err(Alone::Refused(_)) => {}
                 Err(Alone::Tree(why)) => reason = why,
@@ -73,11 +85,16 @@ impl Plan {
         })
     }
 
+    /// How many operations a step takes, and how many rows of numbers these take.
+    pub fn size(&self) -> [usize; 2] {
+        [self.program.step.len(), self.program.rows]
+    }
+
     /// The numbers of a row that differ from row to row.
     ///
     /// # Errors
     /// In what it is not as the rows that the program is for, in words.
-    pub fn numbers(&self, row: &Described) -> Result<Vec<f64>, String> {
+    pub(crate) fn numbers(&self, row: &Described) -> Result<Vec<f64>, String> {
         if row.tableau != self.tableau {
             return Err("its method is another than that of the sample".into());
         }

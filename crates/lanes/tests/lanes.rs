@@ -1,6 +1,6 @@
 //! Rows side by side against the same rows by the tree, and against themselves in other company.
 
-use hamel_lanes::Lanes;
+use hamel_lanes::{Lanes, Plan, Ways, sample};
 use hamel_sweep::{Cells, Movers, Outcome, Row, Sweep, Watch};
 
 /// Largest difference between side by side and the tree, as a part of max(1, size). Both take the same steps of the same method, and round the equations of motion in another order: some 100 roundings of
@@ -47,9 +47,10 @@ fn swept(text: &str, columns: &[&str]) -> Sweep {
         .expect("a scene and its columns")
 }
 
-fn side_by_side(sweep: &Sweep, sample: &[Cells], rows: &[Cells]) -> (Vec<Row>, hamel_lanes::Ways) {
+fn side_by_side(sweep: &Sweep, sample: &[Cells], rows: &[Cells]) -> (Vec<Row>, Ways) {
     let joints = hamel_sweep::joints();
-    let lanes = Lanes::new(sweep, &joints, sample).expect("a sweep that goes side by side");
+    let plan = Plan::new(sweep, &joints, sample).expect("a sweep that goes side by side");
+    let lanes = Lanes::new(sweep, &joints, plan);
     let moved = lanes
         .mover()
         .rows(rows, Watch::NONE)
@@ -355,4 +356,15 @@ fn a_row_whose_mass_matrix_is_singular_fails_as_by_the_tree() {
     let ended = moved.iter().map(|row| row.outcome == Outcome::Ended);
     assert_eq!(ended.collect::<Vec<_>>(), [true, false, true]);
     assert_eq!(ways.lanes, 2, "{ways:?}");
+}
+
+#[test]
+fn samples_are_spread_over_tables() {
+    let of = |rows| sample(rows).collect::<Vec<u64>>();
+    assert_eq!(of(0), []);
+    assert_eq!(of(1), [0]);
+    assert_eq!(of(3), [0, 1, 2]);
+    let many = of(10_000_000_000);
+    assert_eq!((many.len(), many[0], many[31]), (32, 0, 9_999_999_999));
+    assert!(many.is_sorted());
 }

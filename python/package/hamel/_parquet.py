@@ -73,6 +73,15 @@ def read(piece: dict[str, Any], columns: list[str]) -> Any:
     return group.slice(piece["start"], piece["count"])
 
 
+def row(table: Table, place: int) -> Any:
+    """One row, by its place from 0, as a table of pyarrow."""
+    for path, number, rows in table.groups:
+        if place < rows:
+            return read({"path": path, "group": number, "start": place, "count": 1}, table.columns)
+        place -= rows
+    raise IndexError(place)
+
+
 def rows_in(folder: str) -> int:
     """Rows of all Parquet files in a folder."""
     return sum(_footer(path).num_rows for path in _files(folder))

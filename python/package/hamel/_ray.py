@@ -7,6 +7,7 @@ import importlib
 import json
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from os import PathLike
 from typing import Any, NamedTuple
 
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from . import _hamel, _parquet
 from ._errors import ArgumentError, Error
 from ._level import LEVELS, lowest
+from ._sweep import made, numbers, rows_at
 
 # Rows that an actor moves at once, which are done again where it dies: as many parts as this, within bounds.
 _PARTS, _LEAST, _MOST = 64, 100, 5000
@@ -37,6 +39,7 @@ class Request:
     """Its text, and what messages call it."""
     workers: int | None
     estimate: bool
+    equations: str
     level: str | None
 
 
@@ -59,6 +62,8 @@ class Rows(NamedTuple):
     """How many there are."""
     dataset: Callable[[], Any]
     """Of tables of pyarrow: ``row``, from 1, and the columns."""
+    at: Callable[[list[int]], list[list[float]]]
+    """Some of them, by their places from 0."""
 
 
 def sweep(request: Request, table: Any, output: str | PathLike[str] | None) -> dict[str, NDArray[Any]] | None:
@@ -68,38 +73,36 @@ def sweep(request: Request, table: Any, output: str | PathLike[str] | None) -> d
     if folder is not None and not _parquet.is_empty(folder):
         raise ArgumentError(f"output is {folder}, which holds files: name a folder of its own for the results")
     rows = _rows(ray, table)
-    scene = (*request.scene(), rows.columns, request.estimate)
-    names = _hamel.Sweep(*scene).results
+    swept = made(request.scene(), rows.columns, request.estimate, request.equations, rows.total, rows.at)
     fixed, environment = _fixed(ray, request.level)
     results = rows.dataset().map_batches(
         Actor,
         batch_size=None,
         batch_format="pyarrow",
-        fn_constructor_args=(scene, fixed),
+        fn_constructor_args=(swept, fixed),
         compute=_pool(ray, request.workers),
         num_cpus=1,
         **({"runtime_env": {"env_vars": environment}} if environment else {}),
     )
     with _errors(ray):
         if folder is None:
-            return _gathered(results, rows.total, names)
-        _write(results, folder, _told(scene, fixed, rows.total), _nodes(ray))
+            return _gathered(results, rows.total, swept.results)
+        _write(results, folder, _told(request, swept, fixed, rows), _nodes(ray))
     return None
 
 
 class Actor:
     """Moves rows in a process of its own, which has one core."""
 
-    def __init__(self, scene: tuple[str, str, list[str], bool], fixed: Fixed) -> None:
+    def __init__(self, swept: _hamel.Sweep, fixed: Fixed) -> None:
         own = _own()
         if own != fixed:
             raise Error(f"an actor is {_shown(own)}, and the sweep {_shown(fixed)}: bits of results would depend on the node")
-        self.columns = scene[2]
-        self.sweep = _hamel.Sweep(*scene)
+        self.swept = swept
 
     def __call__(self, rows: Any) -> Any:
         """The results of rows, which have their numbers."""
-        found = self.sweep.rows([_doubles(rows[name]) for name in self.columns], 1)
+        found = self.swept.rows([_doubles(rows[name]) for name in self.swept.columns], 1)
         return _arrow().table({"row": rows["row"], **found})
 
 
@@ -226,12 +229,13 @@ def _rows_of_files(ray: Any, table: _parquet.Table) -> Rows:
         readers = ray.data.TaskPoolStrategy(size=_nodes(ray))
         return ray.data.from_arrow(places).map_batches(read, batch_size=1, batch_format="pyarrow", num_cpus=0, compute=readers)
 
-    return Rows(table.columns, table.rows, dataset)
+    def at(places: list[int]) -> list[list[float]]:
+        return [_cells(_parquet.row(table, place), 0, table.columns) for place in places]
+
+    return Rows(table.columns, table.rows, dataset, at)
 
 
 def _rows_of_memory(ray: Any, table: Any) -> Rows:
-    from ._sweep import numbers
-
     columns = numbers(table)
     count = len(next(iter(columns.values())))
     most = _part(count)
@@ -240,7 +244,7 @@ def _rows_of_memory(ray: Any, table: Any) -> Rows:
         whole = _arrow().table(columns)
         return ray.data.from_arrow([_with_numbers(whole.slice(start, most), start + 1) for start in range(0, count, most)])
 
-    return Rows(list(columns), count, dataset)
+    return Rows(list(columns), count, dataset, partial(rows_at, columns))
 
 
 def _rows_of_dataset(ray: Any, table: Any) -> Rows:
@@ -263,7 +267,16 @@ def _rows_of_dataset(ray: Any, table: Any) -> Rows:
     schema = held.schema()
     if schema is None:
         raise ArgumentError("table has no columns")
-    return Rows([str(name) for name in schema.names], sum(counts), dataset)
+    columns = [str(name) for name in schema.names]
+
+    def at(places: list[int]) -> list[list[float]]:
+        firsts = np.cumsum([0, *counts])
+        inside = [int(np.searchsorted(firsts, place, side="right")) - 1 for place in places]
+        cells = ray.remote(num_cpus=0)(_cells)
+        found: list[list[float]] = ray.get([cells.remote(blocks[block], int(place - firsts[block]), columns) for block, place in zip(inside, places, strict=True)])
+        return found
+
+    return Rows(columns, sum(counts), dataset, at)
 
 
 def _part(rows: int) -> int:
@@ -278,6 +291,12 @@ def _count(table: Any) -> int:
 def _with_numbers(table: Any, first: int) -> Any:
     """The rows of a table of pyarrow with their places in the whole table."""
     return table.append_column("row", _arrow().array(np.arange(first, first + len(table))))
+
+
+def _cells(table: Any, place: int, columns: list[str]) -> list[float]:
+    """A row of a table of pyarrow."""
+    row = table.slice(place, 1)
+    return [float(_doubles(row[name])[0]) for name in columns]
 
 
 def _doubles(column: Any) -> NDArray[np.float64]:
@@ -315,19 +334,20 @@ def _check_count(found: int, expected: int) -> None:
         raise Error(f"the sweep by Ray has {found} results, and the table {expected} rows")
 
 
-def _told(scene: tuple[str, str, list[str], bool], fixed: Fixed, rows: int) -> dict[str, Any]:
+def _told(request: Request, swept: _hamel.Sweep, fixed: Fixed, rows: Rows) -> dict[str, Any]:
     """What decides on the results."""
-    text, source, columns, estimate = scene
     return {
         "version": fixed.version,
         "engine": "ray",
-        "equations": "tree",
+        "equations": request.equations,
+        # Why no row moved side by side; none where rows did that could.
+        "why_tree": swept.why_tree,
         "level": fixed.level,
         "sum_of_functions": fixed.sum,
-        "error_estimate": estimate,
-        "rows": rows,
-        "columns": columns,
-        "scene": {"name": source, "text": text},
+        "error_estimate": request.estimate,
+        "rows": rows.total,
+        "columns": rows.columns,
+        "scene": {"name": swept.source, "text": swept.text},
     }
 
 

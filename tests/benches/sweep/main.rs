@@ -8,7 +8,7 @@
 mod by_hand;
 
 use hamel::registry::JointRegistry;
-use hamel_lanes::Lanes;
+use hamel_lanes::{Lanes, Plan};
 use hamel_sweep::{Block, ByTree, Cells, Movers, Sweep, SweepError, Watch, run_by};
 use std::error::Error;
 use std::time::Instant;
@@ -51,7 +51,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         sweep: &starts,
         registry: &joints,
     };
-    let lanes = |sweep, rows: fn(usize) -> Vec<Cells>| Lanes::new(sweep, &joints, &rows(32));
+    let lanes = |sweep, rows: fn(usize) -> Vec<Cells>| {
+        let plan = Plan::new(sweep, &joints, &rows(32))?;
+        Ok::<_, String>(Lanes::new(sweep, &joints, plan))
+    };
     let own = [
         lanes(&starts, start_rows)?,
         lanes(&short_starts, start_rows)?,
@@ -96,7 +99,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         rates.sort_by(f64::total_cmp);
         println!("{name:40} {:7.0} motions/s", rates[ROUNDS / 2]);
     }
-    let [operations, rows] = start.size();
+    let [operations, rows] = start.plan().size();
     println!("a step has {operations} operations on {rows} rows of numbers");
     Ok(())
 }

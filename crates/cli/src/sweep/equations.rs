@@ -4,11 +4,8 @@ use super::args::{Args, Equations};
 use super::table;
 use hamel::registry::JointRegistry;
 use hamel_console::output::Failure;
-use hamel_lanes::{Lanes, Ways};
+use hamel_lanes::{Lanes, Plan, Ways};
 use hamel_sweep::{ByTree, Cells, Movers, Sweep};
-
-/// Rows that decide which numbers differ from row to row.
-const SAMPLE: u64 = 32;
 
 /// What moves the rows.
 pub enum Moving<'a> {
@@ -37,8 +34,8 @@ impl<'a> Moving<'a> {
             true => vec![],
             false => sample(args, rows)?,
         };
-        match Lanes::new(sweep, registry, &sample) {
-            Ok(lanes) => Ok(Self::Lanes(Box::new(lanes))),
+        match Plan::new(sweep, registry, &sample) {
+            Ok(plan) => Ok(Self::Lanes(Box::new(Lanes::new(sweep, registry, plan)))),
             Err(why) if args.equations == Equations::Lanes => Err(Failure::Options(format!(
                 "no row can move by --equations lanes: {why}"
             ))),
@@ -78,16 +75,11 @@ impl<'a> Moving<'a> {
     }
 }
 
-/// Rows evenly over the table, the first and the last among them: so they do not depend on what has been moved already.
+/// The rows that decide which numbers differ from row to row, whatever has been moved already.
 fn sample(args: &Args, rows: u64) -> Result<Vec<Cells>, Failure> {
     let mut table = table::Table::open(&args.over)?;
-    let count = rows.min(SAMPLE);
     let (mut sample, mut next) = (vec![], 0);
-    for number in 0..count {
-        let wanted = match count {
-            1 => 0,
-            count => number * (rows - 1) / (count - 1),
-        };
+    for wanted in hamel_lanes::sample(rows) {
         while next < wanted {
             // No more in memory than of a block.
             let skipped = table.rows((wanted - next).min(5000))?.len() as u64;

@@ -16,6 +16,7 @@ const STYLE: &str = "\
 :root{color-scheme:light dark;--ink:#1c2430;--soft:#5d6878;--bar:#3d7cc9;--mid:#d1783f;--back:#fff;--line:#d8dee6}
 @media(prefers-color-scheme:dark){:root{--ink:#e4e9f0;--soft:#9aa6b6;--bar:#6ea3e6;--mid:#e59a66;--back:#14181e;--line:#333c48}}
 body{font:15px/1.5 system-ui,sans-serif;color:var(--ink);background:var(--back);margin:0 auto;padding:1rem;max-width:75rem}
+h1{font-size:1.6rem;overflow-wrap:anywhere}
 pre{overflow-x:auto;border:1px solid var(--line);border-radius:6px;padding:.7rem;font-size:12px}
 main{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(20rem,100%),1fr));gap:1rem}
 figure{margin:0;border:1px solid var(--line);border-radius:6px;padding:.7rem}
