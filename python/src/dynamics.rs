@@ -7,7 +7,7 @@ use crate::robot::Robot;
 use hamel::UnknownName;
 use hamel::dynamics::{Frame, FrameReadings, Sensitivity};
 use hamel::scene::suggest::nearest;
-use hamel::spatial::Pose;
+use hamel::spatial::{INERTIAL_PARAMETERS, Pose};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
@@ -200,6 +200,32 @@ impl Robot {
             },
         )?;
         Ok(hessians)
+    }
+
+    /// Y and τ₀ with `τ̄ = Y π + τ₀`, by the tree.
+    pub fn regressors<'py>(&self, [q, v, a]: [Given<'_, 'py>; 3]) -> PyResult<[Results<'py>; 2]> {
+        let py = q.py();
+        let arguments = [self.q(q)?, self.of_speeds("v", v)?, self.of_speeds("a", a)?];
+        let speeds = self.sizes().speeds;
+        let columns = INERTIAL_PARAMETERS * self.mechanism().bodies().len();
+        let shapes: [&[usize]; 2] = [&[speeds, columns], &[speeds]];
+        evaluate(
+            py,
+            self.workspaces(),
+            arguments,
+            shapes,
+            |own, [q, v, a], [matrix, rest]| {
+                let (equations, found) = own.regressor();
+                equations.tree().joint_torque_regressor(q, v, a, found)?;
+                rest.copy_from_slice(found.rest());
+                for (column, entries) in found.entries().chunks_exact(speeds.max(1)).enumerate() {
+                    for (row, entry) in entries.iter().enumerate() {
+                        matrix[row * columns + column] = *entry;
+                    }
+                }
+                Ok(())
+            },
+        )
     }
 
     /// The 6×S matrix that takes v̄ to the twist of a frame.

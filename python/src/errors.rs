@@ -90,6 +90,11 @@ pub fn argument(py: Python<'_>, message: impl AsRef<str>) -> PyErr {
     raise(py, Kind::Argument, message.as_ref(), &PyDict::new(py))
 }
 
+/// Equations that say nothing of what is asked.
+pub fn dynamics(py: Python<'_>, message: impl AsRef<str>) -> PyErr {
+    raise(py, Kind::Dynamics, message.as_ref(), &PyDict::new(py))
+}
+
 /// More numbers than memory holds.
 pub fn memory() -> PyErr {
     PyMemoryError::new_err("the batch has more numbers than memory can hold")

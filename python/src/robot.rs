@@ -1,15 +1,16 @@
 //! The class `Robot`.
 
 use crate::compile::Compilation;
-use crate::errors::of_package;
+use crate::errors::{self, of_package};
 use crate::info;
 use crate::pictures;
 use crate::source::{AllLimits, Source};
 use crate::workspace::Workspaces;
 use hamel::Model;
+use hamel::dynamics::parameters::BaseParameters;
 use hamel::erased::Layout;
 use hamel::mechanism::Mechanism;
-use numpy::{PyArray1, PyArrayDyn};
+use numpy::{IntoPyArray, PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple};
@@ -368,6 +369,56 @@ impl Robot {
         weights: Given<'_, 'py>,
     ) -> PyResult<Arrays<'py>> {
         self.effort_hessians([q, v, a, weights])
+    }
+
+    /// Inverse dynamics as a linear function of the inertial parameters, as `Regressor`: `matrix @ robot.inertial_parameters + rest`. Compiled robots take it from the general algorithms too.
+    ///
+    /// Args:
+    ///     q: configurations, (..., N).
+    ///     v: speeds, (..., S), rad/s and m/s.
+    ///     a: accelerations, (..., S), rad/s² and m/s².
+    fn joint_torque_regressor<'py>(
+        &self,
+        q: Given<'_, 'py>,
+        v: Given<'_, 'py>,
+        a: Given<'_, 'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        static CLASS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+        let found: [Arrays<'py>; 2] = self.regressors([q, v, a])?;
+        let class = of_package(q.py(), &CLASS, "hamel._values", "Regressor")?;
+        let [matrix, rest] = found;
+        class.call1((matrix, rest))
+    }
+
+    /// Inertial parameters of all bodies, (10 B,): of each its mass, kg, first moments mc_x, mc_y, mc_z, kg m, and moments of inertia I_xx, I_xy, I_yy, I_xz, I_yz, I_zz about the origin and in
+    /// the axes of its frame, kg m².
+    #[getter]
+    fn inertial_parameters<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.mechanism().inertial_parameters().into_pyarray(py)
+    }
+
+    /// The fewest combinations of inertial parameters on which efforts depend, as `BaseParameters`. Constraints that couple joints are not considered.
+    ///
+    /// Raises:
+    ///     DynamicsError: a joint of which too few configurations are found.
+    fn base_parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        static CLASS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+        let base = py.detach(|| BaseParameters::new(self.mechanism()));
+        let base = base.map_err(|error| errors::dynamics(py, error.to_string()))?;
+        let (rows, columns) = base.matrix().shape();
+        let entries = (0..rows * columns).map(|at| base.matrix()[(at / columns, at % columns)]);
+        let matrix = entries.collect::<Vec<f64>>().into_pyarray(py);
+        let names: Vec<String> = (0..rows)
+            .map(|own| base.combination(own).to_string())
+            .collect();
+        let kept: Vec<i64> = base.kept().iter().map(|&place| place as i64).collect();
+        let class = of_package(py, &CLASS, "hamel._values", "BaseParameters")?;
+        class.call1((
+            matrix.reshape([rows, columns])?,
+            kept.into_pyarray(py),
+            PyTuple::new(py, names)?,
+            base.certificate().is_minimal(),
+        ))
     }
 
     /// The matrix that takes v to the twist of a frame or a body, (..., 6, S): angular velocity in the first three rows, rad/s, linear velocity in the last three, m/s.

@@ -5,6 +5,7 @@ use crate::equations::Equations;
 use hamel::compiled::Compiled;
 use hamel::dynamics::{
     ForwardDerivatives, ForwardSecondDerivatives, InverseDerivatives, InverseSecondDerivatives,
+    JointTorqueRegressor,
 };
 use hamel::mechanism::{Body, CONFIGURATION_TOLERANCE, Mechanism, StateError};
 use std::sync::{Arc, Mutex};
@@ -22,6 +23,7 @@ pub struct Workspace {
     inverse: Option<Box<InverseDerivatives>>,
     forward_second: Option<Box<ForwardSecondDerivatives>>,
     inverse_second: Option<Box<InverseSecondDerivatives>>,
+    regressor: Option<Box<JointTorqueRegressor>>,
 }
 
 impl Workspace {
@@ -36,6 +38,7 @@ impl Workspace {
             inverse: None,
             forward_second: None,
             inverse_second: None,
+            regressor: None,
         }
     }
 
@@ -68,6 +71,14 @@ impl Workspace {
         let room = self
             .inverse_second
             .get_or_insert_with(|| Box::new(InverseSecondDerivatives::new(&self.mechanism)));
+        (&mut self.equations, room)
+    }
+
+    /// The equations of motion, and room for a regressor.
+    pub fn regressor(&mut self) -> (&mut Equations, &mut JointTorqueRegressor) {
+        let room = self
+            .regressor
+            .get_or_insert_with(|| Box::new(JointTorqueRegressor::new(&self.mechanism)));
         (&mut self.equations, room)
     }
 }

@@ -8,12 +8,13 @@ from ._errors import ArgumentError, CompilationError, DynamicsError, Error, File
 from ._hamel import Joint, Robot, load, set_threads
 from ._motion import Motion, simulate
 from ._sweep import sweep
-from ._values import Claim, ForwardDerivatives, InverseDerivatives, JointInfo, Limits, Parameter, Sizes, State
+from ._values import BaseParameters, Claim, ForwardDerivatives, InverseDerivatives, JointInfo, Limits, Parameter, Regressor, Sizes, State
 
 __version__ = "0.1.0"
 
 __all__ = [
     "ArgumentError",
+    "BaseParameters",
     "Claim",
     "CompilationError",
     "DynamicsError",
@@ -28,6 +29,7 @@ __all__ = [
     "Mistake",
     "Motion",
     "Parameter",
+    "Regressor",
     "Robot",
     "Sizes",
     "State",

@@ -120,3 +120,25 @@ class InverseDerivatives(NamedTuple):
     """By local coordinates phi about q, (..., S, K)."""
     by_speeds: NDArray[np.float64]
     """By v, (..., S, S)."""
+
+
+class Regressor(NamedTuple):
+    """Inverse dynamics as a linear function of the inertial parameters of a robot of B bodies and S speeds."""
+
+    matrix: NDArray[np.float64]
+    """By inertial parameters, (..., S, 10 B)."""
+    rest: NDArray[np.float64]
+    """What inertias have no part in, (..., S): what rotors take, less what springs, dampers and limits exert."""
+
+
+class BaseParameters(NamedTuple):
+    """The fewest combinations of inertial parameters on which efforts depend; n of them, of B bodies."""
+
+    matrix: NDArray[np.float64]
+    """Takes inertial parameters to base parameters, (n, 10 B)."""
+    kept: NDArray[np.int64]
+    """The parameters that stand for them, (n,): columns of a regressor, so that ``regressor.matrix[..., kept] @ (matrix @ parameters)`` is ``regressor.matrix @ parameters``."""
+    names: tuple[str, ...]
+    """Each as a sum, such as ``I_zz(upper) + 0.25 m(fore)``."""
+    is_minimal: bool
+    """Whether the regressor at random states has shown that they are as few as can be, and that nothing else acts."""
