@@ -115,7 +115,8 @@ impl Sweep {
             (_, true) => Err("errors of motions are estimated".to_owned()),
             _ => {
                 let rows: Vec<Cells> = sample.iter().cloned().map(Cells::from).collect();
-                py.detach(|| Plan::new(&moved, &joints, &rows)).map(Arc::new)
+                py.detach(|| Plan::new(&moved, &joints, &rows))
+                    .map(Arc::new)
             }
         };
         if let (Equations::Lanes, Err(why)) = (equations, &plan) {
@@ -193,8 +194,7 @@ impl Sweep {
         let columns = self.moved.columns().to_vec();
         let (text, source, estimate) = (&self.text, &self.source, self.moved.estimates());
         let (equations, sample) = (self.equations.0.name(), &self.equations.1);
-        let arguments =
-            (text, source, columns, estimate, equations, sample).into_pyobject(py)?;
+        let arguments = (text, source, columns, estimate, equations, sample).into_pyobject(py)?;
         Ok((py.get_type::<Self>(), arguments))
     }
 }

@@ -40,11 +40,7 @@ pub struct Lanes<'a> {
 
 impl<'a> Lanes<'a> {
     /// The rows of `sweep`, by the equations that were made for it.
-    pub fn new(
-        sweep: &'a Sweep,
-        registry: &'a JointRegistry,
-        plan: impl Into<Arc<Plan>>,
-    ) -> Self {
+    pub fn new(sweep: &'a Sweep, registry: &'a JointRegistry, plan: impl Into<Arc<Plan>>) -> Self {
         Self {
             sweep,
             registry,

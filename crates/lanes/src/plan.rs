@@ -44,11 +44,7 @@ impl Plan {
     ///
     /// # Errors
     /// Why no row goes side by side, in words.
-    pub fn new(
-        sweep: &Sweep,
-        registry: &JointRegistry,
-        sample: &[Cells],
-    ) -> Result<Self, String> {
+    pub fn new(sweep: &Sweep, registry: &JointRegistry, sample: &[Cells]) -> Result<Self, String> {
         if sweep.estimates() {
             return Err(
                 "errors of motions are estimated; --no-error-estimate leaves that out".into(),
