@@ -7,7 +7,6 @@ use crate::pictures;
 use crate::source::{AllLimits, Source};
 use crate::workspace::Workspaces;
 use hamel::Model;
-use hamel::dynamics::parameters::BaseParameters;
 use hamel::erased::Layout;
 use hamel::mechanism::Mechanism;
 use numpy::{IntoPyArray, PyArray1, PyArrayDyn, PyArrayMethods};
@@ -403,7 +402,7 @@ impl Robot {
     ///     DynamicsError: a joint of which too few configurations are found.
     fn base_parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         static CLASS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
-        let base = py.detach(|| BaseParameters::new(self.mechanism()));
+        let base = py.detach(|| self.model().base_parameters());
         let base = base.map_err(|error| errors::dynamics(py, error.to_string()))?;
         let (rows, columns) = base.matrix().shape();
         let entries = (0..rows * columns).map(|at| base.matrix()[(at / columns, at % columns)]);
