@@ -19,8 +19,9 @@ from ._errors import ArgumentError, Error
 from ._level import LEVELS, lowest
 from ._sweep import made, numbers, rows_at
 
-# Rows that an actor moves at once, which are done again where it dies: as many parts as this, within bounds.
-_PARTS, _LEAST, _MOST = 64, 100, 5000
+# Rows that an actor moves at once, which are done again where it dies: as many parts as this, of so many rows at least, and at most: one by one, and side by side, which takes seconds either way.
+_PARTS, _LEAST = 64, 100
+_MOST_BY_TREE, _MOST_IN_LANES = 5_000, 100_000
 
 # Parts that go into one file: to start what writes it takes longer than to write.
 _FILE = 4
@@ -60,8 +61,8 @@ class Rows(NamedTuple):
     columns: list[str]
     total: int
     """How many there are."""
-    dataset: Callable[[], Any]
-    """Of tables of pyarrow: ``row``, from 1, and the columns."""
+    dataset: Callable[[int], Any]
+    """Of tables of pyarrow with so many rows at most: ``row``, from 1, and the columns."""
     at: Callable[[list[int]], list[list[float]]]
     """Some of them, by their places from 0."""
 
@@ -75,7 +76,8 @@ def sweep(request: Request, table: Any, output: str | PathLike[str] | None) -> d
     rows = _rows(ray, table)
     swept = made(request.scene(), rows.columns, request.estimate, request.equations, rows.total, rows.at)
     fixed, environment = _fixed(ray, request.level)
-    results = rows.dataset().map_batches(
+    part = _part(rows.total, swept)
+    results = rows.dataset(part).map_batches(
         Actor,
         batch_size=None,
         batch_format="pyarrow",
@@ -87,7 +89,7 @@ def sweep(request: Request, table: Any, output: str | PathLike[str] | None) -> d
     with _errors(ray):
         if folder is None:
             return _gathered(results, rows.total, swept.results)
-        _write(results, folder, _told(request, swept, fixed, rows), _nodes(ray))
+        _write(results, folder, _told(request, swept, fixed, rows), part, _nodes(ray))
     return None
 
 
@@ -217,14 +219,12 @@ def _rows_of_files(ray: Any, table: _parquet.Table) -> Rows:
     """Those of files: what is handed out is where they stand."""
     if not table.columns:
         raise ArgumentError("table has no columns")
-    pieces = list(table.pieces(_part(table.rows)))
-
     def read(pieces: Any) -> Any:
         [piece] = pieces.to_pylist()
         return _with_numbers(_parquet.read(piece, table.columns), piece["first"])
 
-    def dataset() -> Any:
-        places = [_arrow().Table.from_pylist([piece]) for piece in pieces]
+    def dataset(most: int) -> Any:
+        places = [_arrow().Table.from_pylist([piece]) for piece in table.pieces(most)]
         # A reader for each node is enough: motions take far longer.
         readers = ray.data.TaskPoolStrategy(size=_nodes(ray))
         return ray.data.from_arrow(places).map_batches(read, batch_size=1, batch_format="pyarrow", num_cpus=0, compute=readers)
@@ -238,9 +238,8 @@ def _rows_of_files(ray: Any, table: _parquet.Table) -> Rows:
 def _rows_of_memory(ray: Any, table: Any) -> Rows:
     columns = numbers(table)
     count = len(next(iter(columns.values())))
-    most = _part(count)
 
-    def dataset() -> Any:
+    def dataset(most: int) -> Any:
         whole = _arrow().table(columns)
         return ray.data.from_arrow([_with_numbers(whole.slice(start, most), start + 1) for start in range(0, count, most)])
 
@@ -259,10 +258,10 @@ def _rows_of_dataset(ray: Any, table: Any) -> Rows:
     count, number = ray.remote(num_cpus=0)(_count), ray.remote(num_cpus=0)(_with_numbers)
     counts = ray.get([count.remote(block) for block in blocks])
 
-    def dataset() -> Any:
+    def dataset(most: int) -> Any:
         firsts = np.cumsum([1, *counts]).tolist()
         numbered = [number.remote(block, first) for block, first in zip(blocks, firsts, strict=False)]
-        return ray.data.from_arrow_refs(numbered).repartition(target_num_rows_per_block=_part(sum(counts)))
+        return ray.data.from_arrow_refs(numbered).repartition(target_num_rows_per_block=most)
 
     schema = held.schema()
     if schema is None:
@@ -279,9 +278,10 @@ def _rows_of_dataset(ray: Any, table: Any) -> Rows:
     return Rows(columns, sum(counts), dataset, at)
 
 
-def _part(rows: int) -> int:
+def _part(rows: int, swept: _hamel.Sweep) -> int:
     """Rows that are moved at once."""
-    return min(max(rows // _PARTS, _LEAST), _MOST)
+    most = _MOST_IN_LANES if swept.why_tree is None else _MOST_BY_TREE
+    return min(max(rows // _PARTS, _LEAST), most)
 
 
 def _count(table: Any) -> int:
@@ -320,11 +320,11 @@ def _gathered(results: Any, count: int, names: list[str]) -> dict[str, NDArray[A
     return {"outcome": np.array(outcomes, dtype=str), **found}
 
 
-def _write(results: Any, folder: str, told: dict[str, Any], nodes: int) -> None:
-    """Results as files, by one writer for each node, and what was swept: first, and again when all of them are there."""
+def _write(results: Any, folder: str, told: dict[str, Any], part: int, nodes: int) -> None:
+    """Results in parts as files, by one writer for each node, and what was swept: first, and again when all of them are there."""
     _parquet.write_text(folder, _MANIFEST, _json({**told, "is_complete": False}))
     if told["rows"] > 0:
-        results.write_parquet(folder, ray_remote_args={"num_cpus": 0}, concurrency=nodes, min_rows_per_file=_FILE * _part(told["rows"]))
+        results.write_parquet(folder, ray_remote_args={"num_cpus": 0}, concurrency=nodes, min_rows_per_file=_FILE * part)
     _check_count(_parquet.rows_in(folder), told["rows"])
     _parquet.write_text(folder, _MANIFEST, _json({**told, "is_complete": True}))
 
