@@ -73,13 +73,14 @@ def read(piece: dict[str, Any], columns: list[str]) -> Any:
     return group.slice(piece["start"], piece["count"])
 
 
-def row(table: Table, place: int) -> Any:
-    """One row, by its place from 0, as a table of pyarrow."""
-    for path, number, rows in table.groups:
-        if place < rows:
-            return read({"path": path, "group": number, "start": place, "count": 1}, table.columns)
-        place -= rows
-    raise IndexError(place)
+def rows(table: Table, places: list[int]) -> Iterator[Any]:
+    """Rows by their places from 0, which ascend, as tables of pyarrow. Each group that holds some of them is read once."""
+    first = 0
+    for path, number, count in table.groups:
+        inside = [place - first for place in places if first <= place < first + count]
+        if inside:
+            yield read({"path": path, "group": number, "start": 0, "count": count}, table.columns).take(inside)
+        first += count
 
 
 def rows_in(folder: str) -> int:

@@ -230,7 +230,7 @@ def _rows_of_files(ray: Any, table: _parquet.Table) -> Rows:
         return ray.data.from_arrow(places).map_batches(read, batch_size=1, batch_format="pyarrow", num_cpus=0, compute=readers)
 
     def at(places: list[int]) -> list[list[float]]:
-        return [_cells(_parquet.row(table, place), 0, table.columns) for place in places]
+        return [_cells(rows, place, table.columns) for rows in _parquet.rows(table, places) for place in range(len(rows))]
 
     return Rows(table.columns, table.rows, dataset, at)
 
