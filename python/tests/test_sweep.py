@@ -140,6 +140,7 @@ def test_rows_that_cannot_go_side_by_side_are_told():
     ("options", "message"),
     [
         ({"equations": "lane"}, "equations is 'lane': it must be 'auto', 'lanes' or 'tree'"),
+        ({"equations": None}, "equations is 'None': it must be 'auto', 'lanes' or 'tree'"),
         ({"engine": "dask"}, "engine is 'dask': it must be None or 'ray'"),
         ({"output": "results"}, "output is for engine='ray': without it results are returned"),
         ({"level": "x86-64-v9"}, "level is 'x86-64-v9': it must be one of x86-64, x86-64-v3"),

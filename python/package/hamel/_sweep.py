@@ -95,7 +95,7 @@ def sweep(
     if engine == "ray":
         from . import _ray
 
-        request = _ray.Request(lambda: _hamel.scene_text(scene, bool(floating_base)), workers, bool(estimate), equations, level)
+        request = _ray.Request(lambda: _hamel.scene_text(scene, bool(floating_base)), workers, bool(estimate), str(equations), level)
         return _ray.sweep(request, table, output)
     if engine is not None:
         raise ArgumentError(f"engine is {engine!r}: it must be None or 'ray'")
@@ -103,7 +103,7 @@ def sweep(
         raise ArgumentError("output is for engine='ray': without it results are returned")
     columns = numbers(table)
     check_level(level)
-    swept = made(_hamel.scene_text(scene, bool(floating_base)), list(columns), bool(estimate), equations, len(next(iter(columns.values()))), partial(rows_at, columns))
+    swept = made(_hamel.scene_text(scene, bool(floating_base)), list(columns), bool(estimate), str(equations), len(next(iter(columns.values()))), partial(rows_at, columns))
     found = swept.rows(list(columns.values()), workers)
     found["outcome"] = np.array(found["outcome"], dtype=str)
     return found
