@@ -8,7 +8,7 @@ import pytest
 from conftest import ROOT
 
 FOLDER = ROOT / "python/notebooks"
-NAMES = ["joint", "robot", "sweep"]
+NAMES = ["identification", "joint", "reachable", "robot", "sweep"]
 
 
 def test_there_are_no_others():
