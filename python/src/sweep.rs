@@ -57,37 +57,9 @@ pub struct Sweep {
     moved: hamel_sweep::Sweep,
     joints: JointRegistry,
     /// As it was asked for, and the sample.
-    equations: (Equations, Vec<Vec<f64>>),
+    equations: (String, Vec<Vec<f64>>),
     /// What rows move by that go side by side, or why none does.
     plan: Result<Arc<Plan>, String>,
-}
-
-/// By which equations rows move.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Equations {
-    Auto,
-    Lanes,
-    Tree,
-}
-
-impl Equations {
-    const NAMES: [(&str, Self); 3] = [
-        ("auto", Self::Auto),
-        ("lanes", Self::Lanes),
-        ("tree", Self::Tree),
-    ];
-
-    fn named(name: &str) -> Result<Self, String> {
-        let found = Self::NAMES.iter().find(|(own, _)| *own == name);
-        found
-            .map(|(_, equations)| *equations)
-            .ok_or_else(|| format!("equations is '{name}': it must be 'auto', 'lanes' or 'tree'"))
-    }
-
-    fn name(self) -> &'static str {
-        let found = Self::NAMES.iter().find(|(_, own)| *own == self);
-        found.map_or("auto", |(name, _)| name)
-    }
 }
 
 #[pymethods]
@@ -99,10 +71,13 @@ impl Sweep {
         source: String,
         columns: Vec<String>,
         estimate: bool,
-        equations: &str,
+        equations: String,
         sample: Vec<Vec<f64>>,
     ) -> PyResult<Self> {
-        let equations = Equations::named(equations).map_err(|error| errors::argument(py, error))?;
+        if !["auto", "lanes", "tree"].contains(&&*equations) {
+            let why = format!("equations is '{equations}': it must be 'auto', 'lanes' or 'tree'");
+            return Err(errors::argument(py, why));
+        }
         let joints = hamel_sweep::joints();
         let moved = hamel_sweep::Sweep::new(&text, &source, &columns, &joints);
         let moved = moved.and_then(|moved| match estimate {
@@ -110,16 +85,16 @@ impl Sweep {
             false => Ok(moved),
         });
         let moved = moved.map_err(|error| refusal(py, &source, error))?;
-        let plan = match (equations, estimate) {
-            (Equations::Tree, _) => Err("that was asked for".to_owned()),
-            (_, true) => Err("errors of motions are estimated".to_owned()),
-            _ => {
-                let rows: Vec<Cells> = sample.iter().cloned().map(Cells::from).collect();
-                py.detach(|| Plan::new(&moved, &joints, &rows))
-                    .map(Arc::new)
-            }
+        let plan = if equations == "tree" {
+            Err("that was asked for".to_owned())
+        } else if estimate {
+            Err("errors of motions are estimated".to_owned())
+        } else {
+            let rows: Vec<Cells> = sample.iter().cloned().map(Cells::from).collect();
+            let plan = py.detach(|| Plan::new(&moved, &joints, &rows));
+            plan.map(Arc::new)
         };
-        if let (Equations::Lanes, Err(why)) = (equations, &plan) {
+        if let ("lanes", Err(why)) = (&*equations, &plan) {
             let why = format!("no row can move by equations='lanes': {why}");
             return Err(errors::argument(py, why));
         }
@@ -193,7 +168,7 @@ impl Sweep {
     ) -> PyResult<(Bound<'py, PyType>, Bound<'py, PyTuple>)> {
         let columns = self.moved.columns().to_vec();
         let (text, source, estimate) = (&self.text, &self.source, self.moved.estimates());
-        let (equations, sample) = (self.equations.0.name(), &self.equations.1);
+        let (equations, sample) = &self.equations;
         let arguments = (text, source, columns, estimate, equations, sample).into_pyobject(py)?;
         Ok((py.get_type::<Self>(), arguments))
     }

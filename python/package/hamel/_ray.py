@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import importlib
 import json
+from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -257,10 +258,11 @@ def _rows_of_dataset(ray: Any, table: Any) -> Rows:
     blocks = held.to_arrow_refs()
     count, number = ray.remote(num_cpus=0)(_count), ray.remote(num_cpus=0)(_with_numbers)
     counts = ray.get([count.remote(block) for block in blocks])
+    # Places of the first rows of blocks, from 0, and how many rows there are.
+    *firsts, total = np.cumsum([0, *counts]).tolist()
 
     def dataset(most: int) -> Any:
-        firsts = np.cumsum([1, *counts]).tolist()
-        numbered = [number.remote(block, first) for block, first in zip(blocks, firsts, strict=False)]
+        numbered = [number.remote(block, first + 1) for block, first in zip(blocks, firsts, strict=True)]
         return ray.data.from_arrow_refs(numbered).repartition(target_num_rows_per_block=most)
 
     schema = held.schema()
@@ -269,13 +271,12 @@ def _rows_of_dataset(ray: Any, table: Any) -> Rows:
     columns = [str(name) for name in schema.names]
 
     def at(places: list[int]) -> list[list[float]]:
-        firsts = np.cumsum([0, *counts])
-        inside = [int(np.searchsorted(firsts, place, side="right")) - 1 for place in places]
+        inside = [bisect_right(firsts, place) - 1 for place in places]
         cells = ray.remote(num_cpus=0)(_cells)
-        found: list[list[float]] = ray.get([cells.remote(blocks[block], int(place - firsts[block]), columns) for block, place in zip(inside, places, strict=True)])
+        found: list[list[float]] = ray.get([cells.remote(blocks[block], place - firsts[block], columns) for block, place in zip(inside, places, strict=True)])
         return found
 
-    return Rows(columns, sum(counts), dataset, at)
+    return Rows(columns, total, dataset, at)
 
 
 def _part(rows: int, swept: _hamel.Sweep) -> int:
