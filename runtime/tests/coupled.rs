@@ -392,9 +392,9 @@ fn links_that_make_no_joint_are_refused() {
     );
     let few = coupled(&sound, &PORTS[..2]).expect_err("a fault");
     assert_eq!(few.to_string(), "coupled links: 2 ports, not one a link");
-    let other = Coupled::<3, 3, 0>::new(&sound, &PORTS).expect_err("two coordinates");
+    let other = Coupled::<3>::new(&sound, &PORTS).expect_err("two coordinates");
     assert_eq!(other, LinkFault::Coordinates { found: 2, most: 3 });
-    assert!(Coupled::<2, 2, 0>::new(&sound, &PORTS).is_ok_and(|joint| joint.member(5).is_none()));
+    assert!(Coupled::<2>::new(&sound, &PORTS).is_ok_and(|joint| joint.member(5).is_none()));
 }
 
 #[test]

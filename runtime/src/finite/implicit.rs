@@ -7,7 +7,7 @@
 #[cfg(test)]
 mod tests;
 
-use super::solve::{orientation, substitute_back, triangular};
+use super::solve::{orientation, substitute_back, triangulate};
 use super::{least_squares, norm, unless_apart, unless_turned};
 use crate::scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
@@ -33,27 +33,44 @@ pub fn retract<T: Scalar, const N: usize, const K: usize, const G: usize, const 
     displaced: impl Fn(&SVector<T, G>) -> SVector<T, N>,
     relations: impl Fn(&SVector<T, N>, &SVector<T, G>) -> (SVector<T, C>, SMatrix<T, C, G>),
 ) -> SVector<T, N> {
-    // The λ that the relations ask for, less that at ξ, to first order, after ξ is led on by `ahead`; and the sign of the determinant of ∂φ N.
-    let step = |xi: &SVector<T, G>, ahead: &SVector<T, G>| {
-        let (values, slopes) = relations(&displaced(xi), xi);
-        let (triangle, side) = triangular(slopes * normal, values + slopes * ahead);
-        (-substitute_back(&triangle, &side), orientation(&triangle))
-    };
+    along_branch(
+        &(tangent * phi),
+        |lambda| normal * lambda,
+        &displaced,
+        |xi, ahead| {
+            let (values, slopes) = relations(&displaced(xi), xi);
+            let (mut triangle, mut side) = (slopes * normal, values + slopes * ahead);
+            triangulate(C, triangle.as_mut_slice(), side.as_mut_slice());
+            let sign = orientation(C, triangle.as_slice());
+            substitute_back(C, triangle.as_slice(), side.as_mut_slice());
+            (-side, sign)
+        },
+    )
+}
+
+/// What [`retract`] does, `whole` being B ϕ, `normal` N λ, and `step` the λ that the relations ask for, less that at ξ, to first order, after ξ is led on by `ahead`; with the sign
+/// of the determinant of ∂φ N.
+#[inline]
+pub(crate) fn along_branch<T: Scalar, const N: usize, const G: usize, const C: usize>(
+    whole: &SVector<T, G>,
+    normal: impl Fn(&SVector<T, C>) -> SVector<T, G>,
+    displaced: impl Fn(&SVector<T, G>) -> SVector<T, N>,
+    step: impl Fn(&SVector<T, G>, &SVector<T, G>) -> (SVector<T, C>, T),
+) -> SVector<T, N> {
     let here = SVector::zeros();
     let (_, own_sign) = step(&here, &here);
-    let whole = tangent * phi;
     let part = whole * T::from_f64(1.0 / PARTS as f64);
     let mut lambda = SVector::<T, C>::zeros();
     for n in 1..PARTS {
         let along = part * T::from_f64(n as f64);
-        lambda += step(&(along + normal * lambda), &part).0;
+        lambda += step(&(along + normal(&lambda)), &part).0;
     }
     let (mut last, mut sign) = (SVector::zeros(), own_sign);
     for _ in 0..STEPS {
-        (last, sign) = step(&(whole + normal * lambda), &here);
+        (last, sign) = step(&(whole + normal(&lambda)), &here);
         lambda += last;
     }
-    let xi = whole + normal * lambda;
+    let xi = whole + normal(&lambda);
     // The scale of a displacement is that of a turn by one radian, or its own where that is larger.
     let found = unless_apart(&xi, norm(&last), T::one() + norm(&xi));
     displaced(&unless_turned(&found, own_sign, sign))

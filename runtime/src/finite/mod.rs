@@ -12,10 +12,13 @@ mod solve;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use implicit::along_branch;
 pub use implicit::{RETRACT_ITERATIONS, along_tangent, retract};
 pub use invert::{LOCAL_ITERATIONS, differential, differential_inverse, local};
+pub(crate) use project::by_shortest;
 pub use project::{PROJECT_ITERATIONS, assemble, project, project_by_displacements};
-pub use solve::{determinant, inverse, least_squares};
+pub(crate) use solve::{determinant, orientation, solve, substitute_back, triangulate};
+pub use solve::{inverse, least_squares};
 
 use crate::scalar::{Dual, Scalar};
 use nalgebra::{SMatrix, SVector};

@@ -1,6 +1,6 @@
 //! Projection onto a manifold that is given by relations, redundant ones among them.
 
-use super::solve::{orientation, triangular};
+use super::solve::{orientation, triangulate};
 use super::{least_squares, norm, unless_apart, unless_turned, with_jacobian};
 use crate::scalar::{Dual, Scalar};
 use nalgebra::{SMatrix, SVector};
@@ -44,8 +44,9 @@ pub fn assemble<T: Scalar, const N: usize, const R: usize, const C: usize>(
     across: impl Fn(&SVector<T, N>) -> SMatrix<T, C, C>,
 ) -> SVector<T, N> {
     let sign = |q: &SVector<T, N>| {
-        let (triangle, _) = triangular(across(q), SVector::<T, C>::zeros());
-        orientation(&triangle)
+        let mut triangle = across(q);
+        triangulate(C, triangle.as_mut_slice(), &mut []);
+        orientation(C, triangle.as_slice())
     };
     let own_sign = sign(guess);
     let on_branch = |q: SVector<T, N>| unless_turned(&q, own_sign, sign(&q));
@@ -79,6 +80,16 @@ pub fn project_by_displacements<T: Scalar, const N: usize, const G: usize, const
         let back = slopes.transpose();
         -(back * least_squares(&(slopes * back), &values))
     };
+    by_shortest(start, displaced, shortest)
+}
+
+/// What [`project_by_displacements`] does, `shortest` being the displacement that Newton's method asks for at Q.
+#[inline]
+pub(crate) fn by_shortest<T: Scalar, const N: usize, const G: usize>(
+    start: &SVector<T, N>,
+    displaced: impl Fn(&SVector<T, N>, &SVector<T, G>) -> SVector<T, N>,
+    shortest: impl Fn(&SVector<T, N>) -> SVector<T, G>,
+) -> SVector<T, N> {
     let mut q = *start;
     for _ in 0..PROJECT_ITERATIONS {
         q = displaced(&q, &shortest(&q));

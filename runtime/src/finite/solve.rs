@@ -1,22 +1,14 @@
-//! Linear systems of fixed size by Householder reflections: no pivots, so no branches, and backward stable.
+//! Linear systems by Householder reflections: no pivots, so no branches, and backward stable.
+//!
+//! Matrices are slices of their entries by columns, so that one function serves sizes that a type tells and sizes that only the data tell.
 
 use super::absolute;
 use crate::scalar::Scalar;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SMatrix;
 
 /// The inverse of a square matrix; infinite or NaN where it is singular.
 pub fn inverse<T: Scalar, const K: usize>(matrix: &SMatrix<T, K, K>) -> SMatrix<T, K, K> {
     least_squares(matrix, &SMatrix::identity())
-}
-
-/// The determinant of a square matrix.
-pub fn determinant<T: Scalar, const K: usize>(matrix: &SMatrix<T, K, K>) -> T {
-    let (triangle, _) = triangular(*matrix, SMatrix::<T, K, 1>::zeros());
-    // Each reflection turns the sign: one for every column but the last.
-    (0..K).fold(T::one(), |product, k| {
-        let entry = triangle[(k, k)];
-        product * if k + 1 < K { -entry } else { entry }
-    })
 }
 
 /// For each column r of `side` (N×M) the x (K) with the least ‖F x − r‖₂, for an F (`matrix`) of N rows and rank K.
@@ -26,102 +18,121 @@ pub fn least_squares<T: Scalar, const N: usize, const K: usize, const M: usize>(
     matrix: &SMatrix<T, N, K>,
     side: &SMatrix<T, N, M>,
 ) -> SMatrix<T, K, M> {
-    let (triangle, side) = triangular(*matrix, *side);
-    substitute_back(&triangle, &side)
+    let (mut matrix, mut side) = (*matrix, *side);
+    solve(N, matrix.as_mut_slice(), side.as_mut_slice());
+    SMatrix::from_fn(|i, j| side[(i, j)])
 }
 
-/// F and the columns of `side`, reflected so that F is an upper triangle in its first K rows. What is left below the diagonal is rounding.
-pub(super) fn triangular<T: Scalar, const N: usize, const K: usize, const M: usize>(
-    mut matrix: SMatrix<T, N, K>,
-    mut side: SMatrix<T, N, M>,
-) -> (SMatrix<T, N, K>, SMatrix<T, N, M>) {
+/// The same for matrices of so many rows: the solutions stand in the first entries of the columns of `side`, and `matrix` becomes what [`triangulate`] leaves.
+#[inline]
+pub(crate) fn solve<T: Scalar>(rows: usize, matrix: &mut [T], side: &mut [T]) {
+    triangulate(rows, matrix, side);
+    substitute_back(rows, matrix, side);
+}
+
+/// A matrix of so many rows, and the columns of `side`, reflected so that it is an upper triangle in its first rows. Its entries below the diagonal are those of the reflections.
+#[inline]
+pub(crate) fn triangulate<T: Scalar>(rows: usize, matrix: &mut [T], side: &mut [T]) {
+    let columns = matrix.len().checked_div(rows).unwrap_or(0);
     // The last row has nothing below it.
-    for k in (0..K).take_while(|k| k + 1 < N) {
-        let mirror = Mirror::of_column(&matrix, k);
-        mirror.reflect(&mut matrix);
-        mirror.reflect(&mut side);
+    for k in (0..columns).take_while(|k| k + 1 < rows) {
+        let (before, behind) = matrix.split_at_mut((k + 1) * rows);
+        let own = &mut before[k * rows + k..];
+        let (factor, diagonal) = mirror(own);
+        let normal = &own[1..];
+        for column in behind
+            .chunks_exact_mut(rows)
+            .chain(side.chunks_exact_mut(rows))
+        {
+            reflect(factor, normal, &mut column[k..]);
+        }
+        own[0] = diagonal;
     }
-    (matrix, side)
+}
+
+/// The reflection `I − τ v vᵀ` that clears a column below its first entry (Golub and Van Loan, Matrix Computations, section 5.1): τ and what the first entry becomes. v has 1 in its
+/// first entry; the others take the places of those of the column.
+///
+/// Of a column of zeros it is the identity. Of a column with a number that is not finite it makes NaN of all that it reflects.
+#[inline]
+fn mirror<T: Scalar>(column: &mut [T]) -> (T, T) {
+    let zero = T::zero();
+    let largest = column.iter().fold(zero, |largest, entry| {
+        let size = absolute(*entry);
+        T::select(size.less(largest), largest, size)
+    });
+    // Relative to the largest entry nothing overflows, and nothing that counts underflows.
+    let divisor = T::select(zero.less(largest), largest, T::one());
+    let square = column.iter().fold(zero, |sum, entry| {
+        let part = *entry / divisor;
+        part.mul_add(part, sum)
+    });
+    let filled = zero.less(square);
+    let length = T::select(filled, square, T::one()).sqrt();
+    let pivot = column[0] / divisor;
+    // Away from the pivot, so that nothing cancels.
+    let moved = pivot + T::select(pivot.less(zero), -length, length);
+    // The square is 0 where it is not filled, or NaN.
+    let factor = T::select(filled, T::one() + absolute(pivot) / length, square);
+    let first = column[0];
+    let mut share = first;
+    for entry in &mut column[1..] {
+        let own = *entry;
+        *entry = own / divisor / moved;
+        share = entry.mul_add(own, share);
+    }
+    (factor, first - factor * share)
+}
+
+/// Reflects a column, from the row of the reflection's first entry on.
+#[inline]
+fn reflect<T: Scalar>(factor: T, normal: &[T], column: &mut [T]) {
+    let Some((first, others)) = column.split_first_mut() else {
+        return;
+    };
+    let pairs = normal.iter().zip(others.iter());
+    let share = pairs.fold(*first, |sum, (normal, entry)| normal.mul_add(*entry, sum));
+    let share = factor * share;
+    *first -= share;
+    for (normal, entry) in normal.iter().zip(others) {
+        *entry -= share * *normal;
+    }
+}
+
+/// Solves a triangle that [`triangulate`] left, in the first entries of the columns of `side`.
+#[inline]
+pub(crate) fn substitute_back<T: Scalar>(rows: usize, triangle: &[T], side: &mut [T]) {
+    if rows == 0 {
+        return;
+    }
+    for solution in side.chunks_exact_mut(rows) {
+        for i in (0..triangle.len() / rows).rev() {
+            let known = (i + 1..triangle.len() / rows).fold(T::zero(), |sum, l| {
+                triangle[l * rows + i].mul_add(solution[l], sum)
+            });
+            solution[i] = (solution[i] - known) / triangle[i * rows + i];
+        }
+    }
+}
+
+/// The entries on the diagonal.
+fn diagonal<T: Scalar>(rows: usize, triangle: &[T]) -> impl Iterator<Item = T> {
+    triangle.iter().step_by(rows + 1).copied()
+}
+
+/// The determinant of a square matrix by its triangle.
+pub(crate) fn determinant<T: Scalar>(rows: usize, triangle: &[T]) -> T {
+    // Each reflection turns the sign: one for every column but the last.
+    diagonal(rows, triangle)
+        .enumerate()
+        .fold(T::one(), |product, (k, entry)| {
+            product * if k + 1 < rows { -entry } else { entry }
+        })
 }
 
 /// The sign of the determinant of a square matrix by its triangle, times −1 for each reflection: as many for any matrix of this size.
-pub(super) fn orientation<T: Scalar, const K: usize>(triangle: &SMatrix<T, K, K>) -> T {
-    (0..K).fold(T::one(), |sign, k| {
-        T::select(triangle[(k, k)].less(T::zero()), -sign, sign)
+pub(crate) fn orientation<T: Scalar>(rows: usize, triangle: &[T]) -> T {
+    diagonal(rows, triangle).fold(T::one(), |sign, entry| {
+        T::select(entry.less(T::zero()), -sign, sign)
     })
-}
-
-/// The reflection `I − τ v vᵀ` that clears a column below the diagonal (Golub and Van Loan, Matrix Computations, section 5.1): v is zero above the
-/// diagonal and one on it.
-struct Mirror<T, const N: usize> {
-    first: usize,
-    normal: SVector<T, N>,
-    factor: T,
-}
-
-impl<T: Scalar, const N: usize> Mirror<T, N> {
-    /// Of a column of zeros it is the identity. Of a column with a number that is not finite it makes NaN of all that it reflects.
-    fn of_column<const K: usize>(matrix: &SMatrix<T, N, K>, column: usize) -> Self {
-        let zero = T::zero();
-        let largest = (column..N).fold(zero, |largest, i| {
-            let size = absolute(matrix[(i, column)]);
-            T::select(size.less(largest), largest, size)
-        });
-        // Relative to the largest entry nothing overflows, and nothing that counts underflows.
-        let divisor = T::select(zero.less(largest), largest, T::one());
-        let mut normal = SVector::<T, N>::zeros();
-        let square = (column..N).fold(zero, |sum, i| {
-            normal[i] = matrix[(i, column)] / divisor;
-            normal[i].mul_add(normal[i], sum)
-        });
-        let filled = zero.less(square);
-        let length = T::select(filled, square, T::one()).sqrt();
-        let pivot = normal[column];
-        // Away from the pivot, so that nothing cancels.
-        let moved = pivot + T::select(pivot.less(zero), -length, length);
-        for i in column + 1..N {
-            normal[i] /= moved;
-        }
-        normal[column] = T::one();
-        let factor = T::one() + absolute(pivot) / length;
-        Self {
-            first: column,
-            normal,
-            // The square is 0 here, or NaN.
-            factor: T::select(filled, factor, square),
-        }
-    }
-
-    /// Reflects the columns.
-    fn reflect<const M: usize>(&self, matrix: &mut SMatrix<T, N, M>) {
-        let Self {
-            first,
-            normal,
-            factor,
-        } = *self;
-        for j in 0..M {
-            let share = (first..N).fold(T::zero(), |sum, i| normal[i].mul_add(matrix[(i, j)], sum));
-            let share = factor * share;
-            for i in first..N {
-                matrix[(i, j)] -= share * normal[i];
-            }
-        }
-    }
-}
-
-/// Solves the upper triangle of the first K rows.
-pub(super) fn substitute_back<T: Scalar, const N: usize, const K: usize, const M: usize>(
-    triangle: &SMatrix<T, N, K>,
-    side: &SMatrix<T, N, M>,
-) -> SMatrix<T, K, M> {
-    let mut solution = SMatrix::<T, K, M>::zeros();
-    for i in (0..K).rev() {
-        for j in 0..M {
-            let known = (i + 1..K).fold(T::zero(), |sum, l| {
-                triangle[(i, l)].mul_add(solution[(l, j)], sum)
-            });
-            solution[(i, j)] = (side[(i, j)] - known) / triangle[(i, i)];
-        }
-    }
-    solution
 }

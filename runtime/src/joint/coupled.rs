@@ -22,6 +22,7 @@
 //! a [port](crate::joint::Port): springs, dampers and efforts act there, and its rate is ratio_i times that of its coordinate.
 
 mod closed;
+mod equations;
 mod filled;
 mod link;
 mod names;
@@ -31,24 +32,29 @@ pub use closed::{MOST_INDEPENDENT, MOST_RELATIONS, closed, linkage_length, most_
 pub use link::{Link, LinkFault, LinkMotion, MOST_LINKS};
 pub use tie::{Relation, Row, Tie};
 
-use super::{Joint, Patterns, Port, Structure, Structures, Units, VelocityFrame};
+use super::{Facts, Joint, Patterns, Port, Structure, Structures, Units, VelocityFrame};
 use crate::erased::{Shared, erase};
 use crate::finite;
 use crate::scalar::Scalar;
 use crate::spatial::{Pose, bracket_product};
 use alloc::sync::Arc;
-use closed::{Ties, dependent, split};
+use closed::Ties;
 use core::iter::successors;
 use filled::Filled;
 use nalgebra::{SMatrix, SVector, Vector6};
-use names::{BODIES, coordinates};
+use names::BODIES;
 
 /// Most coordinates of a [`Coupled`] joint that no ties hold.
 pub const MOST_COORDINATES: usize = 4;
 
-/// Links that follow N coordinates, of which C relations leave K independent, as one of their bodies sees them; the joint itself is that of the first.
+/// One entry for each coordinate; those that a joint does not have are [idle](Joint::idle), and zero.
+type Coordinates<T> = SVector<T, MOST_LINKS>;
+
+/// Links that follow coordinates, of which K are independent and the others depend on them by as many relations, as one of their bodies sees them; the joint itself is that of the first.
+///
+/// It has room for [`MOST_LINKS`] coordinates: a type for each number of relations would take its time to compile.
 #[derive(Clone, Debug)]
-pub struct Coupled<const N: usize, const K: usize, const C: usize> {
+pub struct Coupled<const K: usize> {
     links: Arc<[Link]>,
     ports: &'static [Port],
     ties: Arc<Ties>,
@@ -62,14 +68,14 @@ pub struct Coupled<const N: usize, const K: usize, const C: usize> {
 /// Links that no joint can have, the first of them by its number.
 pub fn coupled(links: &[Link], ports: &'static [Port]) -> Result<Shared, LinkFault> {
     Ok(match link::check(links, ports)? {
-        1 => erase(Coupled::<1, 1, 0>::of(links, ports, Ties::NONE)),
-        2 => erase(Coupled::<2, 2, 0>::of(links, ports, Ties::NONE)),
-        3 => erase(Coupled::<3, 3, 0>::of(links, ports, Ties::NONE)),
-        _ => erase(Coupled::<4, 4, 0>::of(links, ports, Ties::NONE)),
+        1 => erase(Coupled::<1>::of(links, ports, Ties::NONE)),
+        2 => erase(Coupled::<2>::of(links, ports, Ties::NONE)),
+        3 => erase(Coupled::<3>::of(links, ports, Ties::NONE)),
+        _ => erase(Coupled::<4>::of(links, ports, Ties::NONE)),
     })
 }
 
-impl<const K: usize> Coupled<K, K, 0> {
+impl<const K: usize> Coupled<K> {
     /// The joint of these links, which follow K coordinates.
     ///
     /// # Errors
@@ -80,9 +86,7 @@ impl<const K: usize> Coupled<K, K, 0> {
             found => Err(LinkFault::Coordinates { found, most: K }),
         }
     }
-}
 
-impl<const N: usize, const K: usize, const C: usize> Coupled<N, K, C> {
     /// Of links and ties that have been checked.
     fn of(links: &[Link], ports: &'static [Port], ties: Ties) -> Self {
         Self {
@@ -91,6 +95,16 @@ impl<const N: usize, const K: usize, const C: usize> Coupled<N, K, C> {
             ties: Arc::new(ties),
             body: 0,
         }
+    }
+
+    /// How many relations hold the coordinates.
+    fn relation_count(&self) -> usize {
+        self.ties.count()
+    }
+
+    /// How many coordinates there are.
+    fn coordinate_count(&self) -> usize {
+        K + self.ties.count()
     }
 
     /// The joint as its body of that number sees it; `None` where there is no such body.
@@ -108,7 +122,7 @@ impl<const N: usize, const K: usize, const C: usize> Coupled<N, K, C> {
     }
 
     /// For this body's link, and those that it hangs on, the coordinate that it follows and its twist at unit rate of that, in the child frame.
-    fn twists<T: Scalar>(&self, q: &SVector<T, N>) -> Filled<(usize, Vector6<T>)> {
+    fn twists<T: Scalar>(&self, q: &Coordinates<T>) -> Filled<(usize, Vector6<T>)> {
         let mut twists = Filled::new((0, Vector6::zeros()));
         let mut below = Pose::identity();
         for link in self.upwards() {
@@ -125,8 +139,8 @@ impl<const N: usize, const K: usize, const C: usize> Coupled<N, K, C> {
     /// For each link from this body's upwards, its coordinate and `[a_i, w_i]`, with w_i the twist of what is behind it at rates of the coordinates: the rate of a_i.
     fn twist_rates<T: Scalar>(
         &self,
-        q: &SVector<T, N>,
-        rates: &SVector<T, N>,
+        q: &Coordinates<T>,
+        rates: &Coordinates<T>,
     ) -> Filled<(usize, Vector6<T>)> {
         let mut changes = Filled::new((0, Vector6::zeros()));
         let mut behind = Vector6::zeros();
@@ -138,14 +152,14 @@ impl<const N: usize, const K: usize, const C: usize> Coupled<N, K, C> {
     }
 
     /// X̂^c: rates of the coordinates to the twist of the body, in its own frame.
-    fn coordinate_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, N> {
+    fn coordinate_map<T: Scalar>(&self, q: &Coordinates<T>) -> SMatrix<T, 6, MOST_LINKS> {
         summed(&self.twists(q))
     }
 }
 
 /// Twists by coordinates.
-fn summed<T: Scalar, const N: usize>(twists: &Filled<(usize, Vector6<T>)>) -> SMatrix<T, 6, N> {
-    let mut map = SMatrix::<T, 6, N>::zeros();
+fn summed<T: Scalar>(twists: &Filled<(usize, Vector6<T>)>) -> SMatrix<T, 6, MOST_LINKS> {
+    let mut map = SMatrix::<T, 6, MOST_LINKS>::zeros();
     for (k, twist) in twists.as_ref() {
         add(&mut map, *k, twist);
     }
@@ -153,17 +167,17 @@ fn summed<T: Scalar, const N: usize>(twists: &Filled<(usize, Vector6<T>)>) -> SM
 }
 
 /// Adds to a column.
-fn add<T: Scalar, const K: usize>(map: &mut SMatrix<T, 6, K>, k: usize, twist: &Vector6<T>) {
+fn add<T: Scalar>(map: &mut SMatrix<T, 6, MOST_LINKS>, k: usize, twist: &Vector6<T>) {
     for i in 0..6 {
         map[(i, k)] += twist[i];
     }
 }
 
-impl<const N: usize, const K: usize, const C: usize> Joint<N, K, K, 0> for Coupled<N, K, C> {
-    const NAME: &'static str = if C == 0 { "coupled" } else { "linkage" };
-    const COORDINATES: [&'static str; N] = coordinates::<N, K>();
-    const FREEDOMS: [&'static str; K] = coordinates::<K, K>();
-    const SPEEDS: [&'static str; K] = coordinates::<K, K>();
+impl<const K: usize> Joint<MOST_LINKS, K, K, 0> for Coupled<K> {
+    const NAME: &'static str = "linkage";
+    const COORDINATES: [&'static str; MOST_LINKS] = names::coordinates::<MOST_LINKS>(K);
+    const FREEDOMS: [&'static str; K] = names::coordinates::<K>(K);
+    const SPEEDS: [&'static str; K] = names::coordinates::<K>(K);
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Declared;
     const STRUCTURES: Structures = Structures {
         twist_map: Structure::General,
@@ -172,25 +186,34 @@ impl<const N: usize, const K: usize, const C: usize> Joint<N, K, K, 0> for Coupl
         bias_acceleration: Structure::General,
         bias_momentum: Structure::General,
         speed_map: Structure::General,
-        project: if C == 0 {
-            Structure::Identity
-        } else {
-            Structure::General
-        },
-        residual: if C == 0 {
-            Structure::Zero
-        } else {
-            Structure::General
-        },
+        project: Structure::General,
+        residual: Structure::General,
         ..Structures::TRIVIAL
     };
     const PATTERNS: Patterns<K, K> = Patterns::DENSE;
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[];
-    const SINGULARITIES: &'static [&'static str] = closed::singularities(C);
-    const RELATIONS: &'static [&'static str] = closed::relations(C);
+    const SINGULARITIES: &'static [&'static str] = closed::SINGULARITIES;
+    const RELATIONS: &'static [&'static str] = closed::relations(MOST_LINKS - K);
+
+    fn facts(&self) -> Facts {
+        let facts = Facts::of::<Self, MOST_LINKS, K, K, 0>();
+        match self.relation_count() {
+            0 => Facts {
+                name: "coupled",
+                structures: Structures {
+                    project: Structure::Identity,
+                    residual: Structure::Zero,
+                    ..Self::STRUCTURES
+                },
+                singularities: &[],
+                ..facts
+            },
+            _ => facts,
+        }
+    }
 
     fn units(&self) -> Units {
-        names::units::<N, K>(&self.links)
+        names::units::<K>(&self.links, self.coordinate_count())
     }
 
     fn ports(&self) -> &'static [Port] {
@@ -206,7 +229,7 @@ impl<const N: usize, const K: usize, const C: usize> Joint<N, K, K, 0> for Coupl
     }
 
     fn idle(&self) -> usize {
-        self.ties.idle()
+        MOST_LINKS.saturating_sub(self.coordinate_count())
     }
 
     fn more(&self, visit: &mut dyn FnMut(Shared)) {
@@ -220,30 +243,30 @@ impl<const N: usize, const K: usize, const C: usize> Joint<N, K, K, 0> for Coupl
         links.flat_map(|link| [("ratio", link.ratio), ("offset", link.offset)])
     }
 
-    fn home<T: Scalar>(&self) -> SVector<T, N> {
-        match C {
+    fn home<T: Scalar>(&self) -> Coordinates<T> {
+        match self.relation_count() {
             0 => SVector::zeros(),
             _ => self.project(&self.ties.start()),
         }
     }
 
-    fn pose<T: Scalar>(&self, q: &SVector<T, N>) -> Pose<T> {
+    fn pose<T: Scalar>(&self, q: &Coordinates<T>) -> Pose<T> {
         let mut poses = self.upwards().map(|link| link.pose(q[link.coordinate]));
         let own = poses.next().unwrap_or_else(Pose::identity);
         poses.fold(own, |below, pose| pose * below)
     }
 
-    fn twist_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K> {
+    fn twist_map<T: Scalar>(&self, q: &Coordinates<T>) -> SMatrix<T, 6, K> {
         self.pose(q).act_twist_columns(&self.twist_map_child(q))
     }
 
-    fn twist_map_child<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K> {
+    fn twist_map_child<T: Scalar>(&self, q: &Coordinates<T>) -> SMatrix<T, 6, K> {
         self.tangent(q).along(&self.coordinate_map(q))
     }
 
-    fn twist_map_child_gradient<T: Scalar>(&self, q: &SVector<T, N>) -> [SMatrix<T, 6, K>; K] {
+    fn twist_map_child_gradient<T: Scalar>(&self, q: &Coordinates<T>) -> [SMatrix<T, 6, K>; K] {
         let tangent = self.tangent(q);
-        let map = match C {
+        let map = match self.relation_count() {
             0 => SMatrix::zeros(),
             _ => self.coordinate_map(q),
         };
@@ -256,7 +279,7 @@ impl<const N: usize, const K: usize, const C: usize> Joint<N, K, K, 0> for Coupl
 
     fn bias_acceleration<T: Scalar>(
         &self,
-        q: &SVector<T, N>,
+        q: &Coordinates<T>,
         speeds: &SVector<T, K>,
     ) -> SVector<T, 6> {
         let tangent = self.tangent(q);
@@ -266,7 +289,7 @@ impl<const N: usize, const K: usize, const C: usize> Joint<N, K, K, 0> for Coupl
         let turned = parts.fold(SVector::zeros(), |sum, (k, change)| {
             sum + change * rates[*k]
         });
-        match C {
+        match self.relation_count() {
             0 => turned,
             _ => {
                 let bend = self.bend(q, &rates, &tangent);
@@ -277,20 +300,20 @@ impl<const N: usize, const K: usize, const C: usize> Joint<N, K, K, 0> for Coupl
 
     fn bias_momentum<T: Scalar>(
         &self,
-        q: &SVector<T, N>,
+        q: &Coordinates<T>,
         speeds: &SVector<T, K>,
         h: &SVector<T, 6>,
     ) -> SVector<T, K> {
         let tangent = self.tangent(q);
         let rates = tangent.rates(speeds);
-        let mut all = SMatrix::<T, 1, N>::zeros();
+        let mut all = SMatrix::<T, 1, MOST_LINKS>::zeros();
         for (k, change) in self.twist_rates(q, &rates).as_ref() {
             for i in 0..6 {
                 all[*k] = change[i].mul_add(h[i], all[*k]);
             }
         }
         let turned = tangent.along(&all).transpose();
-        match C {
+        match self.relation_count() {
             0 => turned,
             _ => {
                 let bend = self.bend(q, &rates, &tangent);
@@ -299,7 +322,7 @@ impl<const N: usize, const K: usize, const C: usize> Joint<N, K, K, 0> for Coupl
         }
     }
 
-    fn port_map<T: Scalar>(&self, q: &SVector<T, N>) -> impl AsRef<[[T; K]]> {
+    fn port_map<T: Scalar>(&self, q: &Coordinates<T>) -> impl AsRef<[[T; K]]> {
         let tangent = self.tangent(q);
         let mut rows = Filled::new([T::zero(); K]);
         for link in self.links.iter() {
@@ -309,7 +332,7 @@ impl<const N: usize, const K: usize, const C: usize> Joint<N, K, K, 0> for Coupl
         rows
     }
 
-    fn port_values<T: Scalar>(&self, q: &SVector<T, N>) -> impl AsRef<[T]> {
+    fn port_values<T: Scalar>(&self, q: &Coordinates<T>) -> impl AsRef<[T]> {
         let mut values = Filled::new(T::zero());
         for (link, port) in self.links.iter().zip(self.ports) {
             let value = link.value(q[link.coordinate]);
@@ -324,69 +347,74 @@ impl<const N: usize, const K: usize, const C: usize> Joint<N, K, K, 0> for Coupl
         values
     }
 
-    fn relation_twists<T: Scalar>(&self, q: &SVector<T, N>) -> impl AsRef<[[T; 6]]> {
-        let twists: [[T; 6]; C] = (self.coordinate_map(q) * self.relation_displacements(q)).into();
+    fn relation_twists<T: Scalar>(&self, q: &Coordinates<T>) -> impl AsRef<[[T; 6]]> {
+        let map = self.coordinate_map(q);
+        let mut twists = Filled::new([T::zero(); 6]);
+        for displacement in self.relation_displacements(q).columns() {
+            let columns = displacement.iter().enumerate();
+            let twist = columns.fold(Vector6::zeros(), |sum, (d, displacement)| {
+                sum + map.column(K + d) * *displacement
+            });
+            twists.push(twist.into());
+        }
         twists
     }
 
-    fn relation_ports<T: Scalar>(&self, q: &SVector<T, N>) -> impl AsRef<[T]> {
-        let along = self.relation_displacements(q);
-        let mut rates = alloc::vec::Vec::with_capacity(C * self.links.len());
-        for relation in 0..C {
-            let rate = |link: &Link| along[(link.coordinate, relation)] * T::from_f64(link.ratio);
-            rates.extend(self.links.iter().map(rate));
+    fn relation_ports<T: Scalar>(&self, q: &Coordinates<T>) -> impl AsRef<[T]> {
+        let count = self.relation_count();
+        let mut rates = alloc::vec::Vec::with_capacity(count * self.links.len());
+        for displacement in self.relation_displacements(q).columns() {
+            rates.extend(self.links.iter().map(|link| {
+                let dependent = link.coordinate.checked_sub(K);
+                let along = dependent.and_then(|d| displacement.get(d));
+                along.map_or(T::zero(), |along| *along * T::from_f64(link.ratio))
+            }));
         }
         rates
     }
 
-    fn configuration_rate<T: Scalar>(&self, q: &SVector<T, N>, v: &SVector<T, K>) -> SVector<T, N> {
+    fn configuration_rate<T: Scalar>(&self, q: &Coordinates<T>, v: &SVector<T, K>) -> Coordinates<T> {
         self.tangent(q).rates(v)
     }
 
-    fn retract<T: Scalar>(&self, q: &SVector<T, N>, phi: &SVector<T, K>) -> SVector<T, N> {
+    fn retract<T: Scalar>(&self, q: &Coordinates<T>, phi: &SVector<T, K>) -> Coordinates<T> {
         let tangent = self.tangent(q);
-        match C {
-            0 => q + tangent.rates(phi),
-            _ => {
-                let moved = finite::retract(
-                    phi,
-                    (tangent.0, dependent()),
-                    |xi| q + xi,
-                    |q, _| self.relations(q),
-                );
-                let is_on = T::from_f64(self.ties.end()).less(self.singularity(&moved));
-                moved.map(|entry| T::select(is_on, entry, T::from_f64(f64::NAN)))
-            }
+        if self.relation_count() == 0 {
+            return q + tangent.rates(phi);
         }
+        let moved = finite::along_branch(
+            &tangent.rates(phi),
+            |lambda| self.dependent(lambda),
+            |xi| q + xi,
+            |xi, ahead| self.correction(&(q + xi), ahead),
+        );
+        let is_on = T::from_f64(self.ties.end()).less(self.singularity(&moved));
+        moved.map(|entry| T::select(is_on, entry, T::from_f64(f64::NAN)))
     }
 
-    fn local<T: Scalar>(&self, q: &SVector<T, N>, target: &SVector<T, N>) -> SVector<T, K> {
+    fn local<T: Scalar>(&self, q: &Coordinates<T>, target: &Coordinates<T>) -> SVector<T, K> {
         // The dependent coordinates are those along which Φ comes back.
         SVector::from_fn(|k, _| target[k] - q[k])
     }
 
-    fn project<T: Scalar>(&self, q: &SVector<T, N>) -> SVector<T, N> {
-        match C {
+    fn project<T: Scalar>(&self, q: &Coordinates<T>) -> Coordinates<T> {
+        match self.relation_count() {
             0 => *q,
-            _ => finite::project_by_displacements(q, |q, xi| q + xi, |q| self.relations(q)),
+            _ => finite::by_shortest(q, |q, xi| q + xi, |q| self.equations(q).shortest()),
         }
     }
 
-    fn residual<T: Scalar>(&self, q: &SVector<T, N>) -> T {
-        match C {
+    fn residual<T: Scalar>(&self, q: &Coordinates<T>) -> T {
+        match self.relation_count() {
             0 => T::zero(),
             _ => self.ties.residual(&self.links, q.as_slice()),
         }
     }
 
-    fn singularity<T: Scalar>(&self, q: &SVector<T, N>) -> T {
-        match C {
+    fn singularity<T: Scalar>(&self, q: &Coordinates<T>) -> T {
+        match self.relation_count() {
             0 => finite::least_absolute([]),
-            _ => {
-                let (_, own) = split::<T, N, K, C>(&self.relations(q).1);
-                let determinant = finite::determinant(&own);
-                finite::least_absolute([determinant * T::from_f64(self.ties.scale())])
-            }
+            _ => finite::least_absolute([self.determinant(q) * T::from_f64(self.ties.scale())]),
         }
     }
 }

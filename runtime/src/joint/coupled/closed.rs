@@ -1,14 +1,15 @@
 //! Links that [`Tie`]s hold: their relations, how the dependent coordinates follow, and the joint that they make.
 
 use super::link::{check_count, check_links};
-use super::{Coupled, Link, LinkFault, LinkMotion, MOST_LINKS, Tie};
+use super::equations::{Sides, Square};
+use super::{Coordinates, Coupled, Link, LinkFault, LinkMotion, MOST_LINKS, Tie};
 use crate::erased::{Shared, erase};
 use crate::finite;
 use crate::joint::{Joint, Port};
 use crate::scalar::{Dual, Scalar};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{DMatrix, SMatrix, SVector};
 
 /// Most relations of a joint.
 pub const MOST_RELATIONS: usize = 12;
@@ -48,49 +49,24 @@ pub(super) struct Ties {
     scale: f64,
     /// The determinant, as a number, at which the joint ends.
     end: f64,
-    /// The relations of the joint's type that it does not have.
-    idle: usize,
+    /// How many relations they are.
+    count: usize,
 }
 
-/// B: rates of the independent coordinates to those of all.
-pub(super) struct Tangent<T, const N: usize, const K: usize>(pub(super) SMatrix<T, N, K>);
-
-/// The names of the sets that a joint of so many relations must stay away from.
-pub(super) const fn singularities(relations: usize) -> &'static [&'static str] {
-    match relations {
-        0 => &[],
-        _ => &["det ∂g/∂y of the dependent coordinates = 0"],
-    }
-}
+/// The name of the set that joints with ties must stay away from.
+pub(super) const SINGULARITIES: &[&str] = &["det ∂g/∂y of the dependent coordinates = 0"];
 
 /// Names of so many relations.
 pub(super) const fn relations(count: usize) -> &'static [&'static str] {
-    const NAMES: [&str; MOST_RELATIONS] = [
+    const NAMES: [&str; MOST_LINKS] = [
         "g_1 = 0", "g_2 = 0", "g_3 = 0", "g_4 = 0", "g_5 = 0", "g_6 = 0", "g_7 = 0", "g_8 = 0",
-        "g_9 = 0", "g_10 = 0", "g_11 = 0", "g_12 = 0",
+        "g_9 = 0", "g_10 = 0", "g_11 = 0", "g_12 = 0", "g_13 = 0", "g_14 = 0", "g_15 = 0",
+        "g_16 = 0",
     ];
     match NAMES.split_at_checked(count) {
         Some((names, _)) => names,
         None => &[],
     }
-}
-
-/// N: the directions of the dependent coordinates, which are the last.
-pub(super) fn dependent<T: Scalar, const N: usize, const C: usize>() -> SMatrix<T, N, C> {
-    SMatrix::from_fn(|i, j| match i + C == N + j {
-        true => T::one(),
-        false => T::zero(),
-    })
-}
-
-/// The columns of the independent coordinates, and of the dependent ones.
-pub(super) fn split<T: Scalar, const N: usize, const K: usize, const C: usize>(
-    slopes: &SMatrix<T, C, N>,
-) -> (SMatrix<T, C, K>, SMatrix<T, C, C>) {
-    (
-        SMatrix::from_fn(|i, j| slopes[(i, j)]),
-        SMatrix::from_fn(|i, j| slopes[(i, K + j)]),
-    )
 }
 
 /// A joint of these links, which ties hold together, whose bodies are `link_1`, `link_2` …. With C relations the last C of the coordinates depend on the others; `start` is
@@ -106,11 +82,10 @@ pub fn closed(
 ) -> Result<Shared, LinkFault> {
     let (coordinates, count) = sizes(links, ties, ports)?;
     let independent = coordinates.saturating_sub(count);
-    // Each size is a type of its own, and takes its time to compile: linkages that are seldom take the next larger one.
-    macro_rules! of_the_next_size {
-        ($($k:literal: $($c:literal)*;)*) => {
-            match (independent, count) {
-                $($(($k, 1..=$c) => Coupled::<{ $k + $c }, $k, $c>::closed(links, ties, start, ports).map(erase),)*)*
+    macro_rules! of_the_size {
+        ($($k:literal)*) => {
+            match independent {
+                $($k => Coupled::<$k>::closed(links, ties, start, ports).map(erase),)*
                 _ => Err(LinkFault::Sizes {
                     independent,
                     relations: count,
@@ -118,14 +93,7 @@ pub fn closed(
             }
         };
     }
-    of_the_next_size! {
-        1: 1 2 3 6 12;
-        2: 1 2 3 6 12;
-        3: 1 2 6 12;
-        4: 2 12;
-        5: 11;
-        6: 10;
-    }
+    of_the_size! { 1 2 3 4 5 6 }
 }
 
 /// The numbers of coordinates and of relations.
@@ -211,10 +179,10 @@ impl Ties {
         start: Vec::new(),
         scale: 1.0,
         end: 0.0,
-        idle: 0,
+        count: 0,
     };
 
-    pub(super) fn start<T: Scalar, const N: usize>(&self) -> SVector<T, N> {
+    pub(super) fn start<T: Scalar>(&self) -> Coordinates<T> {
         SVector::from_fn(|i, _| self.start.get(i).map_or(T::zero(), |q| T::from_f64(*q)))
     }
 
@@ -226,8 +194,13 @@ impl Ties {
         self.end
     }
 
-    pub(super) fn idle(&self) -> usize {
-        self.idle
+    /// How many relations must hold.
+    pub(super) fn count(&self) -> usize {
+        self.count
+    }
+
+    pub(super) fn as_slice(&self) -> &[Tie] {
+        &self.ties
     }
 
     /// Root of the sum of squares of all relations, those that follow from others among them.
@@ -241,11 +214,11 @@ impl Ties {
     }
 }
 
-impl<const N: usize, const K: usize, const C: usize> Coupled<N, K, C> {
-    /// The joint of these links and ties, of C relations at most. Those that it does not have hold coordinates at 0 that move nothing, [`Joint::idle`].
+impl<const K: usize> Coupled<K> {
+    /// The joint of these links and ties.
     ///
     /// # Errors
-    /// Those of [`closed`](fn@closed), another number of independent coordinates than K, and more relations than C.
+    /// Those of [`closed`](fn@closed), and another number of independent coordinates than K.
     pub fn closed(
         links: &[Link],
         ties: &[Tie],
@@ -253,7 +226,7 @@ impl<const N: usize, const K: usize, const C: usize> Coupled<N, K, C> {
         ports: &'static [Port],
     ) -> Result<Self, LinkFault> {
         let (coordinates, count) = sizes(links, ties, ports)?;
-        if coordinates != K + count || !(1..=C).contains(&count) || N != K + C {
+        if coordinates != K + count || !(1..=most_relations(K)).contains(&count) {
             return Err(LinkFault::Sizes {
                 independent: coordinates.saturating_sub(count),
                 relations: count,
@@ -270,10 +243,10 @@ impl<const N: usize, const K: usize, const C: usize> Coupled<N, K, C> {
             start: start.to_vec(),
             scale: scale(links, ties, K),
             end: 0.0,
-            idle: C - count,
+            count,
         };
         let mut joint = Self::of(links, ports, ties);
-        let start = joint.ties.start::<f64, N>();
+        let start = joint.ties.start::<f64>();
         let (residual, determinant) = (joint.residual(&start), joint.singularity(&start));
         let spread = joint.spread(&start);
         match residual <= CLOSED {
@@ -288,121 +261,173 @@ impl<const N: usize, const K: usize, const C: usize> Coupled<N, K, C> {
     }
 
     /// How far the linkage is from folding: the least sine of the angle between what one dependent coordinate does to the relations and what all others do, with lengths as parts of the largest.
-    fn spread(&self, q: &SVector<f64, N>) -> f64 {
-        let (_, mut own) = split::<f64, N, K, C>(&self.relations(q).1);
+    fn spread(&self, q: &Coordinates<f64>) -> f64 {
+        let count = self.ties.count;
+        let mut equations = self.equations(q);
+        let (_, own) = equations.split_mut();
+        let mut own = DMatrix::from_column_slice(count, count, own);
         let length = linkage_length(&self.links, &self.ties.ties);
-        let kinds = self
-            .ties
-            .ties
-            .iter()
-            .flat_map(|tie| tie.lengths(&self.links));
+        let ties = self.ties.ties.iter();
+        let kinds = ties.flat_map(|tie| tie.lengths(&self.links));
         for (i, _) in kinds.enumerate().filter(|(_, is_length)| *is_length) {
             own.row_mut(i).scale_mut(1.0 / length);
         }
-        let inverse = finite::inverse(&own);
-        let sines = (0..C).map(|k| 1.0 / (own.column(k).norm() * inverse.row(k).norm()));
+        let mut inverse = DMatrix::identity(count, count);
+        finite::solve(count, own.clone().as_mut_slice(), inverse.as_mut_slice());
+        let sines = (0..count).map(|k| 1.0 / (own.column(k).norm() * inverse.row(k).norm()));
         sines.fold(1.0, |least, sine| if sine < least { sine } else { least })
     }
 
-    /// g(q), and its derivatives along the coordinates.
-    pub(super) fn relations<T: Scalar>(
-        &self,
-        q: &SVector<T, N>,
-    ) -> (SVector<T, C>, SMatrix<T, C, N>) {
-        let (mut values, mut slopes) = (SVector::zeros(), SMatrix::zeros());
-        let mut i = 0;
-        for tie in &self.ties.ties {
-            tie.relations(&self.links, q.as_slice(), |(value, row)| {
-                if i < C {
-                    values[i] = value;
-                    let row = row.iter().take(N).enumerate();
-                    row.for_each(|(k, slope)| slopes[(i, k)] = *slope);
+    /// B.
+    pub(super) fn tangent<T: Scalar>(&self, q: &Coordinates<T>) -> Tangent<T, K> {
+        let mut rates = SMatrix::<T, MOST_LINKS, K>::zeros();
+        for k in 0..K {
+            rates[(k, k)] = T::one();
+        }
+        let count = self.ties.count;
+        if count > 0 {
+            let mut equations = self.equations(q);
+            let (independent, dependent) = equations.split_mut();
+            finite::solve(count, dependent, independent);
+            for (k, column) in independent.chunks_exact(count).enumerate() {
+                for (i, rate) in column.iter().enumerate() {
+                    rates[(K + i, k)] = -*rate;
                 }
-                i += 1;
-            });
+            }
         }
-        for i in C - self.ties.idle()..C {
-            values[i] = q[K + i];
-            slopes[(i, K + i)] = T::one();
+        Tangent {
+            rates,
+            coordinates: K + count,
         }
-        (values, slopes)
     }
 
-    pub(super) fn tangent<T: Scalar>(&self, q: &SVector<T, N>) -> Tangent<T, N, K> {
-        if C == 0 {
-            return Tangent(SMatrix::identity());
-        }
-        let (independent, dependent) = split(&self.relations(q).1);
-        let follow: SMatrix<T, C, K> = -finite::least_squares(&dependent, &independent);
-        Tangent(SMatrix::from_fn(|i, j| match i {
-            _ if i >= K => follow[(i - K, j)],
-            _ if i == j => T::one(),
-            _ => T::zero(),
-        }))
-    }
-
-    /// The dependent rows of ∂B along a direction of the coordinates: `−(∂g_d)⁻¹ (∂²g d) B`.
+    /// The dependent rows of ∂B along a direction of the coordinates, but for their sign: `(∂g_d)⁻¹ (∂²g d) B`.
     pub(super) fn bend<T: Scalar>(
         &self,
-        q: &SVector<T, N>,
-        direction: &SVector<T, N>,
-        tangent: &Tangent<T, N, K>,
-    ) -> SMatrix<T, C, K> {
-        if C == 0 {
-            return SMatrix::zeros();
+        q: &Coordinates<T>,
+        direction: &Coordinates<T>,
+        tangent: &Tangent<T, K>,
+    ) -> Sides<T> {
+        let count = self.ties.count;
+        if count == 0 {
+            return Sides::new(0, K);
         }
-        let moved = q.zip_map(direction, Dual::new);
-        let slopes = self.relations(&moved).1;
-        let (_, dependent) = split::<T, N, K, C>(&slopes.map(|entry| entry.value));
-        let change = slopes.map(|entry| entry.derivative()) * tangent.0;
-        -finite::least_squares(&dependent, &change)
+        let moved = self.equations(&q.zip_map(direction, Dual::new));
+        let mut bend = moved.changes(&tangent.rates);
+        let mut dependent = moved.dependent();
+        finite::solve(count, dependent.as_mut_slice(), bend.as_mut_slice());
+        bend
     }
 
-    /// For each relation the displacement of the dependent coordinates at which it changes at unit rate, and no other.
-    pub(super) fn relation_displacements<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, N, C> {
-        let (_, own) = split::<T, N, K, C>(&self.relations(q).1);
-        dependent::<T, N, C>() * finite::inverse(&own)
+    /// The λ at which the relations hold, to first order, after Q is led on by `ahead`; and the sign of the determinant of the dependent columns.
+    pub(super) fn correction<T: Scalar>(
+        &self,
+        q: &Coordinates<T>,
+        ahead: &Coordinates<T>,
+    ) -> (SVector<T, MOST_RELATIONS>, T) {
+        let count = self.ties.count;
+        let mut equations = self.equations(q);
+        let mut lambda = equations.led(ahead);
+        let side = &mut lambda.as_mut_slice()[..count];
+        let (_, triangle) = equations.split_mut();
+        finite::triangulate(count, triangle, side);
+        let sign = finite::orientation(count, triangle);
+        finite::substitute_back(count, triangle, side);
+        (-lambda, sign)
+    }
+
+    /// Displacements of the dependent coordinates, among those of all.
+    pub(super) fn dependent<T: Scalar>(
+        &self,
+        lambda: &SVector<T, MOST_RELATIONS>,
+    ) -> Coordinates<T> {
+        let mut all = Coordinates::zeros();
+        for i in 0..self.ties.count {
+            all[K + i] = lambda[i];
+        }
+        all
+    }
+
+    /// det ∂g/∂y of the dependent coordinates, in m and numbers.
+    pub(super) fn determinant<T: Scalar>(&self, q: &Coordinates<T>) -> T {
+        let mut equations = self.equations(q);
+        let (_, triangle) = equations.split_mut();
+        finite::triangulate(self.ties.count, triangle, &mut []);
+        finite::determinant(self.ties.count, triangle)
+    }
+
+    /// For each relation the displacement of the dependent coordinates at which it changes at unit rate, and no other: a matrix by columns.
+    pub(super) fn relation_displacements<T: Scalar>(&self, q: &Coordinates<T>) -> Square<T> {
+        let count = self.ties.count;
+        let mut inverse = Square::new(count, count);
+        for (i, column) in inverse.columns_mut().enumerate() {
+            column[i] = T::one();
+        }
+        let mut equations = self.equations(q);
+        let (_, dependent) = equations.split_mut();
+        finite::solve(count, dependent, inverse.as_mut_slice());
+        inverse
     }
 }
 
-impl<T: Scalar, const N: usize, const K: usize> Tangent<T, N, K> {
+/// B: rates of the independent coordinates to those of all.
+pub(super) struct Tangent<T, const K: usize> {
+    /// Zero below the coordinates that there are.
+    rates: SMatrix<T, MOST_LINKS, K>,
+    coordinates: usize,
+}
+
+impl<T: Scalar, const K: usize> Tangent<T, K> {
     /// What is given for rates of all coordinates, for those of the independent ones.
-    pub(super) fn along<const R: usize>(&self, map: &SMatrix<T, R, N>) -> SMatrix<T, R, K> {
+    pub(super) fn along<const R: usize>(
+        &self,
+        map: &SMatrix<T, R, MOST_LINKS>,
+    ) -> SMatrix<T, R, K> {
         SMatrix::from_fn(|i, k| {
-            (K..N).fold(map[(i, k)], |sum, d| {
-                map[(i, d)].mul_add(self.0[(d, k)], sum)
+            (K..self.coordinates).fold(map[(i, k)], |sum, d| {
+                map[(i, d)].mul_add(self.rates[(d, k)], sum)
             })
         })
     }
 
     /// What changes as the dependent coordinates bend.
-    pub(super) fn bent<const R: usize, const C: usize>(
+    pub(super) fn bent<const R: usize>(
         &self,
-        map: &SMatrix<T, R, N>,
-        bend: &SMatrix<T, C, K>,
+        map: &SMatrix<T, R, MOST_LINKS>,
+        bend: &Sides<T>,
     ) -> SMatrix<T, R, K> {
-        SMatrix::from_fn(|i, k| {
-            (0..C).fold(T::zero(), |sum, d| {
-                map[(i, K + d)].mul_add(bend[(d, k)], sum)
-            })
-        })
+        let mut bent = SMatrix::zeros();
+        for (k, column) in bend.columns().enumerate() {
+            for (d, change) in column.iter().enumerate() {
+                for i in 0..R {
+                    bent[(i, k)] = (-map[(i, K + d)]).mul_add(*change, bent[(i, k)]);
+                }
+            }
+        }
+        bent
     }
 
     /// The rates of all coordinates.
-    pub(super) fn rates(&self, v: &SVector<T, K>) -> SVector<T, N> {
-        SVector::from_fn(|i, _| match i < K {
-            true => v[i],
-            false => (0..K).fold(T::zero(), |sum, k| self.0[(i, k)].mul_add(v[k], sum)),
-        })
+    pub(super) fn rates(&self, v: &SVector<T, K>) -> Coordinates<T> {
+        let mut rates = Coordinates::zeros();
+        for k in 0..K {
+            rates[k] = v[k];
+        }
+        for i in K..self.coordinates {
+            rates[i] = (0..K).fold(T::zero(), |sum, k| {
+                self.rates[(i, k)].mul_add(v[k], sum)
+            });
+        }
+        rates
     }
 
     /// The rates of all coordinates at unit rate of one.
-    pub(super) fn direction(&self, k: usize) -> SVector<T, N> {
-        SVector::from_fn(|i, _| self.0[(i, k)])
+    pub(super) fn direction(&self, k: usize) -> Coordinates<T> {
+        self.rates.column(k).into_owned()
     }
 
     /// The rate of a coordinate by those of the independent ones.
     pub(super) fn row(&self, coordinate: usize) -> [T; K] {
-        core::array::from_fn(|k| self.0[(coordinate, k)])
+        core::array::from_fn(|k| self.rates[(coordinate, k)])
     }
 }

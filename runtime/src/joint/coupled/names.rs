@@ -9,19 +9,20 @@ pub(super) const BODIES: [&str; MOST_LINKS] = [
     "link_10", "link_11", "link_12", "link_13", "link_14", "link_15", "link_16",
 ];
 
-/// Names of coordinates, of which K are independent: `q` of one.
-pub(super) const fn coordinates<const N: usize, const K: usize>() -> [&'static str; N] {
-    let independent = ["q_1", "q_2", "q_3", "q_4", "q_5", "q_6"];
+/// Names of N coordinates, of which the first are independent: `q` of one.
+pub(super) const fn coordinates<const N: usize>(independent: usize) -> [&'static str; N] {
+    let first = ["q_1", "q_2", "q_3", "q_4", "q_5", "q_6"];
     let others = [
         "y_1", "y_2", "y_3", "y_4", "y_5", "y_6", "y_7", "y_8", "y_9", "y_10", "y_11", "y_12",
+        "y_13", "y_14", "y_15",
     ];
     let mut names = ["q"; N];
     let mut k = 0;
     while k < N {
-        if k >= K {
-            names[k] = others[k - K];
-        } else if K > 1 {
-            names[k] = independent[k];
+        if k >= independent {
+            names[k] = others[k - independent];
+        } else if independent > 1 {
+            names[k] = first[k];
         }
         k += 1;
     }
@@ -48,13 +49,13 @@ static UNITS: [[Unit; TOLD]; 1 << TOLD] = {
     all
 };
 
-/// Those of N coordinates, of which K are independent: each is what the first link that follows it is moved by.
-pub(super) fn units<const N: usize, const K: usize>(links: &[Link]) -> Units {
+/// Those of so many coordinates, of which K are independent: each is what the first link that follows it is moved by.
+pub(super) fn units<const K: usize>(links: &[Link], coordinates: usize) -> Units {
     let is_length = |k: usize| {
         let first = links.iter().find(|link| link.coordinate == k);
         first.is_some_and(|link| link.motion == LinkMotion::Slide)
     };
-    let told = N.min(TOLD);
+    let told = coordinates.min(TOLD);
     let combination = (0..told).map(|k| usize::from(is_length(k)) << k);
     let units = UNITS.get(combination.sum::<usize>());
     let all = units.and_then(|units| units.get(..told));
