@@ -373,7 +373,11 @@ impl<const K: usize> Joint<MOST_LINKS, K, K, 0> for Coupled<K> {
         rates
     }
 
-    fn configuration_rate<T: Scalar>(&self, q: &Coordinates<T>, v: &SVector<T, K>) -> Coordinates<T> {
+    fn configuration_rate<T: Scalar>(
+        &self,
+        q: &Coordinates<T>,
+        v: &SVector<T, K>,
+    ) -> Coordinates<T> {
         self.tangent(q).rates(v)
     }
 

@@ -1,6 +1,6 @@
 //! Joints of one's own, beside the library's: general Φ, declared manifolds, subgroups.
 
-use hamel::registry::JointEntry;
+use hamel::registry::{JointEntry, JointRegistry};
 
 /// The joints that the build script generated.
 pub mod joints {
@@ -26,6 +26,18 @@ const ALONE: [&str; 7] = [
 pub fn of_trees() -> impl Iterator<Item = JointEntry> {
     let entries = joints::ENTRIES.iter().copied();
     entries.filter(|entry| !ALONE.contains(&entry.name))
+}
+
+/// All joints of [`held_out`].
+///
+/// An entry is a constant: what it builds is compiled wherever it is named. Here it is compiled once, and not again with each test.
+pub fn held_out() -> JointRegistry {
+    let mut registry = JointRegistry::new();
+    for entry in held_out::ENTRIES {
+        // Names are names of modules, hence distinct.
+        let _ = registry.insert(*entry);
+    }
+    registry
 }
 
 /// Joints unlike those of the library, which the generator's own tests derive.

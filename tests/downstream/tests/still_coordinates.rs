@@ -2,7 +2,6 @@
 
 use hamel::dynamics::{Dynamics, Recursive, Reference};
 use hamel::mechanism::{BodySpec, Mechanism};
-use hamel::registry::JointRegistry;
 use hamel::spatial::{MassProperties, Pose};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
@@ -12,10 +11,7 @@ const MASS: f64 = 1.3;
 const INERTIA: f64 = 0.4;
 
 fn on_wheels(joint: &str, parameters: &[f64]) -> Arc<Mechanism> {
-    let mut registry = JointRegistry::new();
-    registry
-        .extend(hamel_downstream::held_out::ENTRIES.iter().copied())
-        .expect("distinct names");
+    let registry = hamel_downstream::held_out();
     let inertia = Matrix3::from_diagonal(&Vector3::new(0.2, 0.3, INERTIA));
     let body = BodySpec {
         name: "chassis".into(),

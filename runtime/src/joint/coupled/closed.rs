@@ -1,7 +1,7 @@
 //! Links that [`Tie`]s hold: their relations, how the dependent coordinates follow, and the joint that they make.
 
-use super::link::{check_count, check_links};
 use super::equations::{Sides, Square};
+use super::link::{check_count, check_links};
 use super::{Coordinates, Coupled, Link, LinkFault, LinkMotion, MOST_LINKS, Tie};
 use crate::erased::{Shared, erase};
 use crate::finite;
@@ -414,9 +414,7 @@ impl<T: Scalar, const K: usize> Tangent<T, K> {
             rates[k] = v[k];
         }
         for i in K..self.coordinates {
-            rates[i] = (0..K).fold(T::zero(), |sum, k| {
-                self.rates[(i, k)].mul_add(v[k], sum)
-            });
+            rates[i] = (0..K).fold(T::zero(), |sum, k| self.rates[(i, k)].mul_add(v[k], sum));
         }
         rates
     }

@@ -206,8 +206,7 @@ fn compiled_couplings_are_those_of_the_tree() {
 #[test]
 fn kernels_of_couplings_obey_the_laws_of_joints() {
     fn check<const K: usize>(coupling: &Coupling) {
-        let joint =
-            Coupled::<K>::new(&coupling.links, coupling.ports).expect("links of a joint");
+        let joint = Coupled::<K>::new(&coupling.links, coupling.ports).expect("links of a joint");
         for body in 0..coupling.links.len() {
             laws::check_all(&joint.member(body).expect("a body"));
         }
