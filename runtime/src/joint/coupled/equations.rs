@@ -23,6 +23,7 @@ pub(super) type Sides<T> = Columns<T, { MOST_RELATIONS * MOST_INDEPENDENT }>;
 
 impl<T: Scalar, const ROOM: usize> Columns<T, ROOM> {
     /// Of zeros.
+    #[inline]
     pub(super) fn new(rows: usize, columns: usize) -> Self {
         Self {
             entries: [T::zero(); ROOM],
@@ -61,25 +62,29 @@ pub(super) struct Equations<T> {
 
 impl<const K: usize> Coupled<K> {
     /// Those at q.
+    #[inline]
     pub(super) fn equations<T: Scalar>(&self, q: &Coordinates<T>) -> Equations<T> {
-        let (count, coordinates) = (self.relation_count(), self.coordinate_count());
-        let mut values = SVector::zeros();
-        let mut slopes = Columns::new(count, coordinates);
-        let q = &q.as_slice()[..coordinates];
+        let mut equations = Equations {
+            values: SVector::zeros(),
+            slopes: Columns::new(self.relation_count(), self.coordinate_count()),
+            independent: K,
+        };
+        // Apart, so that a result of this size is made in its place and not copied there.
+        self.fill(q, &mut equations);
+        equations
+    }
+
+    fn fill<T: Scalar>(&self, q: &Coordinates<T>, into: &mut Equations<T>) {
+        let q = &q.as_slice()[..self.coordinate_count()];
         let mut i = 0;
         for tie in self.ties.as_slice() {
             tie.relations(&self.links, q, |(value, row)| {
-                values[i] = value;
-                for (column, slope) in slopes.columns_mut().zip(row) {
+                into.values[i] = value;
+                for (column, slope) in into.slopes.columns_mut().zip(row) {
                     column[i] = slope;
                 }
                 i += 1;
             });
-        }
-        Equations {
-            values,
-            slopes,
-            independent: K,
         }
     }
 }

@@ -135,38 +135,40 @@ fn sum<T: Scalar>(links: &[Link], q: &[T], terms: &[(usize, f64)], constant: f64
     (value, row)
 }
 
-/// A frame on a link, or on the joint's parent: where it stands, and for each link on the way its coordinate and the twist at unit rate of that, in the frame itself.
-struct End<T> {
-    pose: Pose<T>,
-    twists: Filled<(usize, Vector6<T>)>,
-}
-
-impl<T: Scalar> End<T> {
-    fn new(links: &[Link], q: &[T], mut at: Option<usize>, frame: &Pose<f64>) -> Self {
-        let mut pose = Pose::new(
-            frame.rotation.map(T::from_f64),
-            frame.translation.map(T::from_f64),
-        );
-        let mut twists = Filled::new((0, Vector6::zeros()));
-        while let Some(link) = at.and_then(|at| links.get(at)) {
-            let axis = link.axis() * T::from_f64(link.ratio);
-            twists.push((link.coordinate, pose.act_twist_inverse(&axis)));
-            pose = link.pose(q[link.coordinate]) * pose;
-            at = link.before;
-        }
-        Self { pose, twists }
+/// Where a frame stands that is fixed on a link, or on the joint's parent. Hands each link on the way to `visit`: its coordinate, and the twist at unit rate of that, in the frame itself.
+fn walk<T: Scalar>(
+    links: &[Link],
+    q: &[T],
+    mut at: Option<usize>,
+    frame: &Pose<f64>,
+    mut visit: impl FnMut(usize, Vector6<T>),
+) -> Pose<T> {
+    let mut pose = Pose::new(
+        frame.rotation.map(T::from_f64),
+        frame.translation.map(T::from_f64),
+    );
+    while let Some(link) = at.and_then(|at| links.get(at)) {
+        let axis = link.axis() * T::from_f64(link.ratio);
+        visit(link.coordinate, pose.act_twist_inverse(&axis));
+        pose = link.pose(q[link.coordinate]) * pose;
+        at = link.before;
     }
+    pose
 }
 
 impl<T: Scalar> Between<T> {
+    #[inline]
     fn new(links: &[Link], q: &[T], (ends, frames): ([Option<usize>; 2], &[Pose<f64>; 2])) -> Self {
         let mut twists = [Vector6::zeros(); MOST_LINKS];
-        let [first, second] = [0, 1].map(|end| End::new(links, q, ends[end], &frames[end]));
-        let pose = first.pose.inverse() * second.pose;
-        for (coordinate, twist) in first.twists.as_ref() {
-            twists[*coordinate] -= twist;
-        }
-        for (coordinate, twist) in second.twists.as_ref() {
+        let first = walk(links, q, ends[0], &frames[0], |coordinate, twist| {
+            twists[coordinate] -= twist;
+        });
+        let mut of_second = Filled::new((0, Vector6::zeros()));
+        let second = walk(links, q, ends[1], &frames[1], |coordinate, twist| {
+            of_second.push((coordinate, twist));
+        });
+        let pose = first.inverse() * second;
+        for (coordinate, twist) in of_second.as_ref() {
             twists[*coordinate] += pose.act_twist(twist);
         }
         Self {
