@@ -28,7 +28,7 @@ pub fn of_trees() -> impl Iterator<Item = JointEntry> {
     entries.filter(|entry| !ALONE.contains(&entry.name))
 }
 
-/// All joints of [`held_out`].
+/// All joints of [`mod@held_out`].
 ///
 /// An entry is a constant: what it builds is compiled wherever it is named. Here it is compiled once, and not again with each test.
 pub fn held_out() -> JointRegistry {
