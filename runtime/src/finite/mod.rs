@@ -12,11 +12,14 @@ mod solve;
 #[cfg(test)]
 mod tests;
 
+#[cfg(feature = "alloc")]
 pub(crate) use implicit::along_branch;
 pub use implicit::{RETRACT_ITERATIONS, along_tangent, retract};
 pub use invert::{LOCAL_ITERATIONS, differential, differential_inverse, local};
+#[cfg(feature = "alloc")]
 pub(crate) use project::by_shortest;
 pub use project::{PROJECT_ITERATIONS, assemble, project, project_by_displacements};
+#[cfg(feature = "alloc")]
 pub(crate) use solve::{determinant, orientation, solve, substitute_back, triangulate};
 pub use solve::{inverse, least_squares};
 

@@ -121,6 +121,7 @@ fn diagonal<T: Scalar>(rows: usize, triangle: &[T]) -> impl Iterator<Item = T> {
 }
 
 /// The determinant of a square matrix by its triangle.
+#[cfg(feature = "alloc")]
 pub(crate) fn determinant<T: Scalar>(rows: usize, triangle: &[T]) -> T {
     // Each reflection turns the sign: one for every column but the last.
     diagonal(rows, triangle)
