@@ -56,7 +56,7 @@ pub struct Sweep {
     source: String,
     moved: hamel_sweep::Sweep,
     joints: JointRegistry,
-    /// As it was asked for, and the sample.
+    /// As it was asked for, and the sample of the table.
     equations: (String, Vec<Vec<f64>>),
     /// What rows move by that go side by side, or why none does.
     plan: Result<Arc<Plan>, String>,
@@ -67,11 +67,9 @@ impl Sweep {
     #[new]
     fn new(
         py: Python<'_>,
-        text: String,
-        source: String,
+        (text, source): (String, String),
         columns: Vec<String>,
-        estimate: bool,
-        equations: String,
+        (estimate, equations, times): (bool, String, Vec<f64>),
         sample: Vec<Vec<f64>>,
     ) -> PyResult<Self> {
         if !["auto", "lanes", "tree"].contains(&&*equations) {
@@ -84,6 +82,7 @@ impl Sweep {
             true => moved.estimating(&joints),
             false => Ok(moved),
         });
+        let moved = moved.and_then(|moved| moved.sampling(&times, &joints));
         let moved = moved.map_err(|error| refusal(py, &source, error))?;
         let plan = if equations == "tree" {
             Err("that was asked for".to_owned())
@@ -167,9 +166,9 @@ impl Sweep {
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyType>, Bound<'py, PyTuple>)> {
         let columns = self.moved.columns().to_vec();
-        let (text, source, estimate) = (&self.text, &self.source, self.moved.estimates());
         let (equations, sample) = &self.equations;
-        let arguments = (text, source, columns, estimate, equations, sample).into_pyobject(py)?;
+        let options = (self.moved.estimates(), equations, self.moved.times().to_vec());
+        let arguments = ((&self.text, &self.source), columns, options, sample).into_pyobject(py)?;
         Ok((py.get_type::<Self>(), arguments))
     }
 }

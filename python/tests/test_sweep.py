@@ -48,6 +48,19 @@ def test_bits_do_not_depend_on_workers_and_on_the_kind_of_table():
     assert "error" not in found
 
 
+def test_samples_are_told_by_their_times():
+    rows = table(3)
+    found = hamel.sweep(ARM, rows, estimate=False, at=[0.0, 0.25])
+    assert np.array_equal(found["shoulder.q.q_rad@0"], rows["body.upper.initial.configuration.1"])
+    whole = hamel.sweep(ARM, rows, estimate=False, at=np.array([0.25]))
+    assert np.array_equal(whole["elbow.v.q_rad_per_s@0.25"], found["elbow.v.q_rad_per_s@0.25"])
+    assert pickle.loads(pickle.dumps(hamel._hamel.Sweep(hamel._hamel.scene_text(ARM, False), [MASS], (False, "tree", [0.25]), []))).results[-1].endswith("@0.25")
+    with pytest.raises(hamel.ArgumentError, match="a sample at 0.1 s comes after one at 0.2 s"):
+        hamel.sweep(ARM, rows, at=[0.2, 0.1])
+    with pytest.raises(hamel.ArgumentError, match="at is no array of numbers"):
+        hamel.sweep(ARM, rows, at="soon")
+
+
 def test_rows_fail_alone():
     found = hamel.sweep(ARM, {MASS: [0.5, -1.0, np.nan]}, estimate=False)
     assert found["outcome"].tolist() == [
@@ -89,7 +102,7 @@ def test_workers_are_counted():
 
 def test_sweeps_pickle_as_their_scenes():
     for scene, column in ((ARM, MASS), (PENDULUM, "body.lower.mass")):
-        sweep = hamel._hamel.Sweep(*hamel._hamel.scene_text(scene, False), [column], False, "auto", [[0.5], [0.7]])
+        sweep = hamel._hamel.Sweep(hamel._hamel.scene_text(scene, False), [column], (False, "auto", []), [[0.5], [0.7]])
         assert (sweep.why_tree is None) == (scene == PENDULUM), sweep.why_tree
         again = pickle.loads(pickle.dumps(sweep))
         rows = [np.array([0.5, 0.7])]

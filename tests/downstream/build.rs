@@ -49,9 +49,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         .out_dir(out.join("held_out"))
         .compile()?;
     build().specs("odd").out_dir(out.join("odd")).compile()?;
-    let specs = out.join("names");
+    let specs = out.join("named");
     write_names(&specs)?;
-    build().specs(&specs).out_dir(&specs).compile()?;
+    build().specs(&specs).out_dir(out.join("names")).compile()?;
     five_bars(&out)
 }
 
@@ -117,13 +117,19 @@ fn write_names(folder: &Path) -> std::io::Result<()> {
         "hamel = 1;\njoint parameters({}) {{\n    require 2 * {sum} > 3/2;\n    config q: R1;\n    H = rot_z(q) * trans([2 * {sum}, 3/2 * {sum}, pi]);\n}}\n",
         parameters.join(", "),
     );
-    write_if_new(&folder.join("parameters.joint"), &spec)
+    write_if_new(&folder.join("parameters.joint"), &spec)?;
+    set_old(folder)
 }
 
-/// A file that is written anew each time would be built anew each time.
+/// Writes a file, if its text is another, with the time of the first of all files: Cargo builds a crate anew that reads what is newer than the beginning of this script.
 fn write_if_new(path: &Path, text: &str) -> std::io::Result<()> {
-    match fs::read_to_string(path).is_ok_and(|found| found == text) {
-        true => Ok(()),
-        false => fs::write(path, text),
+    if fs::read_to_string(path).is_ok_and(|found| found == text) {
+        return Ok(());
     }
+    fs::write(path, text)?;
+    set_old(path)
+}
+
+fn set_old(path: &Path) -> std::io::Result<()> {
+    fs::File::open(path)?.set_modified(std::time::SystemTime::UNIX_EPOCH)
 }

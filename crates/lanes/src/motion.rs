@@ -2,11 +2,12 @@
 
 use crate::machine::{Machine, WIDTH};
 use crate::plan::Plan;
+use hamel::erased::AnyJoint;
 use hamel::integrate::{FixedSteps, State, Step};
-use hamel::mechanism::Mechanism;
 use hamel::scene::Scene;
 use hamel_compiler::stepping::Position;
-use hamel_sweep::columns::Turns;
+use hamel_sweep::Track;
+use std::ops::Range;
 
 /// The ϕ from which on a joint gets a new base point, as in the integrators of the tree.
 const FAR: f64 = 0.5;
@@ -25,8 +26,8 @@ pub struct Start<'a> {
     pub numbers: &'a [f64],
     /// The length of its steps, s.
     pub dt: f64,
-    /// What follows its angles.
-    pub turns: Turns,
+    /// What is kept of it on the way.
+    pub track: Track,
 }
 
 /// Where a motion ended.
@@ -35,8 +36,8 @@ pub struct End {
     pub state: State,
     /// How many steps it took.
     pub steps: usize,
-    /// Its angles.
-    pub turns: Turns,
+    /// What was kept of it.
+    pub track: Track,
 }
 
 /// Motions under way.
@@ -46,6 +47,7 @@ struct Block<'a> {
     machine: Machine,
     /// Whether a motion is left to the tree.
     is_left: Vec<bool>,
+    /// Whether all steps of a motion are followed.
     follows: bool,
     /// Joints whose base points move.
     bent: Vec<(usize, &'a Position)>,
@@ -57,19 +59,41 @@ struct Group {
     step: f64,
     count: usize,
     motions: Vec<usize>,
+    /// The next sample.
+    sample: usize,
 }
 
-/// Moves at most [`WIDTH`] scenes to their ends. A motion without one is left to the tree; `None` where `stop` tells to stop.
+/// The sample at this time, among `times`, of which `next` comes next. Its motions have [steps that end there](ends_at).
+fn sample_at(time: f64, times: &[f64], next: &mut usize) -> Option<usize> {
+    let wanted = times.get(*next)?;
+    // Where the clock is added up, rounding is another than where steps are multiplied.
+    let is_due = is_rounding(0.5 * (time - wanted), *wanted);
+    *next += usize::from(is_due);
+    is_due.then(|| *next - 1)
+}
+
+/// Whether steps of `dt` until `end` end at `time`, or are over before.
+pub fn ends_at(time: f64, dt: f64, end: f64) -> bool {
+    time >= end || is_rounding((time / dt).round() * dt - time, time)
+}
+
+/// Whether two times that differ by so much are one: both are decimals and products of decimals, with two roundings each.
+fn is_rounding(difference: f64, time: f64) -> bool {
+    difference.abs() <= 4.0 * f64::EPSILON * time
+}
+
+/// Moves at most [`WIDTH`] scenes to their ends. Their samples are taken at `times`. A motion without an end is left to the tree; `None` where `stop` tells to stop.
 pub fn moved<'a>(
     plan: &'a Plan,
     starts: Vec<Start<'a>>,
+    times: &[f64],
     stop: &dyn Fn() -> bool,
 ) -> Option<Vec<Option<End>>> {
     debug_assert!(starts.len() <= WIDTH);
     let mut ends: Vec<Option<End>> = starts.iter().map(|_| None).collect();
-    let mut groups = groups(&starts);
+    let mut groups = groups(&starts, times);
     let mut block = Block::new(plan, starts);
-    block.begin();
+    block.begin(times.first() == Some(&0.0));
     for number in 1_usize.. {
         groups.retain_mut(|group| {
             let next = group.steps.next();
@@ -97,12 +121,12 @@ pub fn moved<'a>(
         if number.is_multiple_of(ASKED) && stop() {
             return None;
         }
-        block.step(&groups);
+        block.step(&mut groups, times);
     }
     (!stop()).then_some(ends)
 }
 
-fn groups(starts: &[Start<'_>]) -> Vec<Group> {
+fn groups(starts: &[Start<'_>], times: &[f64]) -> Vec<Group> {
     let mut groups: Vec<([u64; 2], Group)> = vec![];
     for (motion, start) in starts.iter().enumerate() {
         let (end, dt) = (start.scene.settings.t_end, start.dt);
@@ -115,6 +139,8 @@ fn groups(starts: &[Start<'_>]) -> Vec<Group> {
                     step: f64::NAN,
                     count: 0,
                     motions: vec![motion],
+                    // That at time 0 is taken before the first step.
+                    sample: usize::from(times.first() == Some(&0.0)),
                 };
                 groups.push((key, group));
             }
@@ -138,14 +164,14 @@ impl<'a> Block<'a> {
             plan,
             machine: Machine::new(&plan.program),
             is_left: vec![false; starts.len()],
-            follows: starts.iter().any(|start| !start.turns.angles().is_empty()),
+            follows: starts.iter().any(|start| start.track.follows()),
             bent: bent.collect(),
             starts,
         }
     }
 
     /// Puts all numbers in their places; places without a motion hold those of the last one.
-    fn begin(&mut self) {
+    fn begin(&mut self, has_sample: bool) {
         let places = &self.plan.places;
         for lane in 0..WIDTH {
             let Some(start) = self.starts.get(lane).or(self.starts.last()) else {
@@ -167,18 +193,20 @@ impl<'a> Block<'a> {
         let program = &self.plan.program;
         self.machine.run(&program.once, &program.numbers);
         for motion in 0..self.starts.len() {
-            self.follow(motion, 0.0, 0);
+            self.follow(motion, (0.0, 0), has_sample.then_some(0));
         }
     }
 
-    fn step(&mut self, groups: &[Group]) {
+    fn step(&mut self, groups: &mut [Group], times: &[f64]) {
         let program = &self.plan.program;
         self.machine.run(&program.step, &program.numbers);
         self.move_bases();
-        if self.follows {
-            for group in groups {
+        for group in groups {
+            let time = group.steps.time();
+            let sample = sample_at(time, times, &mut group.sample);
+            if self.follows || sample.is_some() {
                 for &motion in &group.motions {
-                    self.follow(motion, group.steps.time(), group.count);
+                    self.follow(motion, (time, group.count), sample);
                 }
             }
         }
@@ -202,10 +230,10 @@ impl<'a> Block<'a> {
                 if size <= FAR || self.is_left[motion] {
                     continue;
                 }
-                let mut moved =
-                    position(&self.machine, &start.scene.mechanism, *body, joint, motion);
-                let body = &start.scene.mechanism.bodies()[*body];
-                if size > TOO_FAR || body.joint().project(&mut moved).is_err() {
+                let own = start.scene.mechanism.bodies()[*body].joint();
+                let mut moved = Vec::with_capacity(joint.base.len());
+                position(&self.machine, own, joint, motion, &mut moved);
+                if size > TOO_FAR || own.project(&mut moved).is_err() {
                     self.is_left[motion] = true;
                 }
                 for (row, number) in joint.base.clone().zip(moved) {
@@ -222,23 +250,21 @@ impl<'a> Block<'a> {
     fn state(&self, motion: usize, time: f64) -> State {
         let places = &self.plan.places;
         let mechanism = &self.starts[motion].scene.mechanism;
-        let joints = places.joints.iter().zip(mechanism.joints());
-        let q = joints
-            .flat_map(|(joint, (body, _))| position(&self.machine, mechanism, body, joint, motion));
+        let mut q = Vec::with_capacity(mechanism.layout().configuration);
+        for (joint, (_, body)) in places.joints.iter().zip(mechanism.joints()) {
+            position(&self.machine, body.joint(), joint, motion, &mut q);
+        }
+        let speeds = places.speeds.clone();
         State {
             time,
-            configuration: q.collect(),
-            speeds: places
-                .speeds
-                .clone()
-                .map(|row| self.machine.get(row, motion))
-                .collect(),
+            configuration: q,
+            speeds: speeds.map(|row| self.machine.get(row, motion)).collect(),
         }
     }
 
-    /// Follows the angles of a motion.
-    fn follow(&mut self, motion: usize, time: f64, number: usize) {
-        if !self.follows {
+    /// Keeps what is to be kept of a motion.
+    fn follow(&mut self, motion: usize, (time, number): (f64, usize), sample: Option<usize>) {
+        if !self.follows && sample.is_none() {
             return;
         }
         let state = self.state(motion, time);
@@ -249,11 +275,11 @@ impl<'a> Block<'a> {
             configuration: &state.configuration,
             speeds: &state.speeds,
             momenta: None,
-            sample: None,
+            sample,
             is_within: false,
             carried: None,
         };
-        start.turns.follow(&start.scene.mechanism, &step);
+        start.track.follow(&start.scene.mechanism, &step);
     }
 
     /// Where a motion has come to; none where the tree is to tell.
@@ -264,28 +290,26 @@ impl<'a> Block<'a> {
         is_told.then(|| End {
             state,
             steps,
-            turns: self.starts[motion].turns.clone(),
+            track: self.starts[motion].track.clone(),
         })
     }
 }
 
-/// Q of one joint.
+/// Appends Q of one joint.
 fn position(
     machine: &Machine,
-    mechanism: &Mechanism,
-    body: usize,
+    own: &dyn AnyJoint,
     joint: &Position,
     motion: usize,
-) -> Vec<f64> {
-    let read = |rows: std::ops::Range<usize>| -> Vec<f64> {
-        rows.map(|row| machine.get(row, motion)).collect()
-    };
-    let base = read(joint.base.clone());
+    all: &mut Vec<f64>,
+) {
+    let read = |rows: Range<usize>| rows.map(|row| machine.get(row, motion));
+    let first = all.len();
+    all.extend(read(joint.base.clone()));
     if joint.adds {
-        return base;
+        return;
     }
-    let mut moved = vec![0.0; base.len()];
-    let own = mechanism.bodies()[body].joint();
-    own.retract(&base, &read(joint.offset.clone()), &mut moved);
-    moved
+    let base = all[first..].to_vec();
+    let offset: Vec<f64> = read(joint.offset.clone()).collect();
+    own.retract(&base, &offset, &mut all[first..]);
 }

@@ -2,7 +2,7 @@
 
 use crate::joints::Joints;
 use crate::machine::WIDTH;
-use crate::motion::{Start, moved};
+use crate::motion::{End, Start, moved};
 use crate::plan::Plan;
 use crate::row::{Alone, Described, described};
 use hamel::dynamics::Dynamics;
@@ -10,8 +10,10 @@ use hamel::integrate::State;
 use hamel::registry::JointRegistry;
 use hamel::scene::{Scene, Starts};
 use hamel_sweep::{Cells, Mover, Movers, Outcome, Row, Sweep, Watch};
+use std::borrow::Cow;
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
+use std::mem;
 use std::rc::Rc;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -82,19 +84,18 @@ struct Own<'a> {
     lanes: &'a Lanes<'a>,
     joints: Joints,
     /// The last row that was built and went side by side: those that follow may differ from it in their starts alone.
-    last: Option<Built>,
+    last: Option<Rc<Built>>,
 }
 
 /// A row that has been built.
-#[derive(Clone)]
 struct Built {
-    tree: Rc<RefCell<Tree>>,
-    row: Rc<Described>,
+    tree: RefCell<Tree>,
+    row: Described,
     cells: Cells,
     /// The numbers of it that differ.
-    numbers: Rc<[f64]>,
+    numbers: Vec<f64>,
     /// Its joints, from the first row on that differs in their states alone.
-    starts: Rc<OnceCell<Option<Starts>>>,
+    starts: OnceCell<Option<RefCell<Starts>>>,
 }
 
 /// The equations of a row by the tree, which judge the first state: steps side by side would divide by what is no more than rounding.
@@ -126,8 +127,8 @@ impl Tree {
 
 /// A row on its way to a result.
 enum Way {
-    Lane(Built, State),
-    Tree(String),
+    Lane(Rc<Built>, State),
+    Tree(Cow<'static, str>),
     Done(Row),
 }
 
@@ -150,16 +151,17 @@ impl Built {
         if !sweep.differ_in_starts_alone(&self.cells, cells) {
             return None;
         }
-        let starts = || self.row.description.starts(registry);
-        sweep.start(self.starts.get_or_init(starts).as_ref()?, cells)
+        let starts = || self.row.description.starts(registry).map(RefCell::new);
+        let mut starts = self.starts.get_or_init(starts).as_ref()?.borrow_mut();
+        sweep.start(&mut starts, cells)
     }
 
     /// The row from this state on.
-    fn way(self, state: State) -> Way {
+    fn way(self: Rc<Self>, state: State) -> Way {
         let is_accepted = self.tree.borrow_mut().accepts(&state);
         match is_accepted {
             true => Way::Lane(self, state),
-            false => Way::Tree(REFUSED.to_owned()),
+            false => Way::Tree(REFUSED.into()),
         }
     }
 }
@@ -175,26 +177,26 @@ impl Own<'_> {
         if let Some(built) = &self.last
             && let Some(state) = built.start(self.lanes, cells)
         {
-            return built.clone().way(state);
+            return Rc::clone(built).way(state);
         }
         match described(sweep, registry, &self.joints, cells) {
             Ok(row) => match plan.numbers(&row) {
                 Ok(numbers) => {
                     let state = row.scene.start();
-                    let built = Built {
-                        tree: Rc::new(RefCell::new(Tree::new(&row.scene))),
-                        row: Rc::new(row),
+                    let built = Rc::new(Built {
+                        tree: RefCell::new(Tree::new(&row.scene)),
+                        row,
                         cells: cells.clone(),
-                        numbers: numbers.into(),
-                        starts: Rc::default(),
-                    };
-                    self.last = Some(built.clone());
+                        numbers,
+                        starts: OnceCell::new(),
+                    });
+                    self.last = Some(Rc::clone(&built));
                     built.way(state)
                 }
-                Err(reason) => Way::Tree(reason),
+                Err(reason) => Way::Tree(reason.into()),
             },
             Err(Alone::Refused(row)) => Way::Done(row),
-            Err(Alone::Tree(reason)) => Way::Tree(reason),
+            Err(Alone::Tree(reason)) => Way::Tree(reason.into()),
         }
     }
 
@@ -203,47 +205,54 @@ impl Own<'_> {
         let mut ways: Vec<Way> = rows.iter().map(|cells| self.way(cells)).collect();
         let refused = ways.iter().filter(|way| matches!(way, Way::Done(_)));
         (watch.done)(refused.count());
-        let (mut starts, mut places, mut moved_here) = (vec![], vec![], 0);
-        for (place, way) in ways.iter().enumerate() {
-            if let Way::Lane(built, state) = way {
-                places.push(place);
-                starts.push(Start {
-                    scene: &built.row.scene,
-                    state: state.clone(),
-                    numbers: &built.numbers,
-                    dt: built.row.dt,
-                    turns: lanes.sweep.turns(),
-                });
+        // What goes side by side is the tree's until it has a result.
+        let (mut going, mut states) = (vec![], vec![]);
+        for (place, way) in ways.iter_mut().enumerate() {
+            if let Way::Lane(..) = way
+                && let Way::Lane(built, state) = mem::replace(way, Way::Tree(LEFT.into()))
+            {
+                going.push((place, built));
+                states.push(state);
             }
         }
-        let ends = moved(&lanes.plan, starts, watch.stop)?;
-        for (place, end) in places.into_iter().zip(ends) {
-            let told = match (&ways[place], end) {
-                (Way::Lane(built, _), Some(end)) => {
-                    let row =
-                        lanes
-                            .sweep
-                            .ended(&built.row.scene, &end.state, end.steps, &end.turns);
-                    match row.outcome {
-                        Outcome::Ended => Way::Done(row),
-                        _ => Way::Tree(LEFT.to_owned()),
-                    }
-                }
-                _ => Way::Tree(LEFT.to_owned()),
+        let starts = going.iter().zip(states).map(|((_, built), state)| Start {
+            scene: &built.row.scene,
+            state,
+            numbers: &built.numbers,
+            dt: built.row.dt,
+            track: lanes.sweep.track(),
+        });
+        let ends = moved(
+            &lanes.plan,
+            starts.collect(),
+            lanes.sweep.times(),
+            watch.stop,
+        )?;
+        let mut moved_here = 0;
+        for ((place, built), end) in going.iter().zip(ends) {
+            let Some(End {
+                state,
+                steps,
+                track,
+            }) = end
+            else {
+                continue;
             };
-            let is_done = matches!(told, Way::Done(_));
-            (watch.done)(usize::from(is_done));
-            moved_here += u64::from(is_done);
-            ways[place] = told;
+            let row = lanes.sweep.ended(&built.row.scene, &state, steps, &track);
+            if row.outcome == Outcome::Ended {
+                (watch.done)(1);
+                moved_here += 1;
+                ways[*place] = Way::Done(row);
+            }
         }
         let mut counted = Ways::default();
         let results = ways.into_iter().zip(rows).map(|(way, cells)| {
             let reason = match way {
                 Way::Done(row) => return Some(row),
                 Way::Tree(reason) => reason,
-                Way::Lane(..) => LEFT.to_owned(),
+                Way::Lane(..) => LEFT.into(),
             };
-            *counted.tree.entry(reason).or_default() += 1;
+            *counted.tree.entry(reason.into_owned()).or_default() += 1;
             let row = lanes
                 .sweep
                 .motion_until(cells, lanes.registry, watch.stop)?;

@@ -1,6 +1,7 @@
 //! One row of a sweep, ready to move with others.
 
 use crate::joints::Joints;
+use crate::motion::ends_at;
 use hamel::integrate::{Form, Method, Tableau};
 use hamel::registry::JointRegistry;
 use hamel::scene::{Arithmetic, Scene, SceneDescription};
@@ -54,6 +55,12 @@ pub fn described(
 ) -> Result<Described, Alone> {
     let (description, scene) = sweep.described(cells, registry).map_err(Alone::Refused)?;
     let (tableau, dt) = method(&scene).map_err(Alone::Tree)?;
+    let end = scene.settings.t_end;
+    if let Some(time) = sweep.times().iter().find(|time| !ends_at(**time, dt, end)) {
+        return Err(Alone::Tree(format!(
+            "no step ends at {time} s, where a sample is taken"
+        )));
+    }
     let model = Model::new(&description, |name| joints.find(name));
     let mut model = model.map_err(|refused| {
         let reason = refused.reasons.into_iter().next().unwrap_or_default();

@@ -182,6 +182,51 @@ fn springs_and_dampers_move_as_by_the_tree() {
     check("springs", &text, &columns);
 }
 
+/// Of joints whose base points move and whose angles count turns, too.
+#[test]
+fn samples_are_those_of_the_tree() {
+    let circle = "at = { position = [0.0, 0.1, 0.3] }\nbody_at = { position = [0.2, 0.05, 0.1] }\ninitial.speeds = [9.0]";
+    let wheel = described(&body(
+        "upper",
+        "world",
+        "{ type = \"revolute_circle\" }",
+        circle,
+    ));
+    for (text, columns) in [
+        (
+            double_pendulum(),
+            &["body.upper.mass", "body.lower.mass"][..],
+        ),
+        (wheel, &["body.upper.mass"]),
+    ] {
+        // 0.3 / 0.004 is 74.99…; the end of the motion is a sample, too.
+        let sampled = |times: &[f64]| {
+            let sweep = swept(&text, columns);
+            sweep
+                .sampling(times, &hamel_sweep::joints())
+                .expect("times of the motion")
+        };
+        let rows = rows(&[1.3, 0.9][..columns.len()], 70);
+        let sweep = sampled(&[0.0, 0.3, 0.5, 0.996, 1.0]);
+        let (moved, ways) = side_by_side(&sweep, &rows, &rows);
+        assert_eq!(ways.lanes, 70);
+        let all = moved.iter().flat_map(|row| &row.numbers);
+        assert!(all.clone().all(|number| number.is_finite()));
+        println!("{:e}", difference(&sweep, &rows, &moved));
+        // The last sample is the end.
+        let states: Vec<_> = sweep.states().collect();
+        for row in &moved {
+            let end = &row.numbers[states[0].clone()];
+            assert_eq!(end, &row.numbers[states[5].clone()]);
+        }
+        // Side by side there is nothing between the ends of steps.
+        let joints = hamel_sweep::joints();
+        let refused = Plan::new(&sampled(&[0.3, 0.301]), &joints, &rows).err();
+        let wanted = "no step ends at 0.301 s, where a sample is taken";
+        assert_eq!(refused.as_deref(), Some(wanted));
+    }
+}
+
 fn bits(rows: &[Row]) -> Vec<Vec<u64>> {
     let all = rows
         .iter()

@@ -86,19 +86,26 @@ impl Starts {
         Some(StartNumber { joint, part, index })
     }
 
-    /// The state at time 0 with these finite numbers in place of those of the scene: the bits of a scene that is built with them.
+    /// The state at time 0 with these finite numbers, each of another place, instead of those of the scene: the bits of a scene that is built with them.
     ///
     /// # Errors
     /// The first number that a joint cannot take.
-    pub fn state(&self, numbers: &[(StartNumber, f64)]) -> Result<State, Diagnostic> {
+    pub fn state(&mut self, mut numbers: Vec<(StartNumber, f64)>) -> Result<State, Diagnostic> {
         let mut state = State {
             time: 0.0,
             configuration: Vec::new(),
             speeds: Vec::new(),
         };
-        for (index, joint) in self.joints.iter().enumerate() {
-            let own = numbers.iter().filter(|(place, _)| place.joint == index);
-            let (q, speeds) = joint.state_with(own)?;
+        for (index, joint) in self.joints.iter_mut().enumerate() {
+            if !numbers.iter().any(|(place, _)| place.joint == index) {
+                state.configuration.extend(&joint.state.0);
+                state.speeds.extend(&joint.state.1);
+                continue;
+            }
+            joint.exchange(index, &mut numbers);
+            let solved = joint.stand.state(&joint.initial, &joint.forces);
+            joint.exchange(index, &mut numbers);
+            let (q, speeds) = solved?;
             state.configuration.extend(q);
             state.speeds.extend(speeds);
         }
@@ -107,21 +114,14 @@ impl Starts {
 }
 
 impl Joint {
-    fn state_with<'a>(
-        &self,
-        numbers: impl Iterator<Item = &'a (StartNumber, f64)>,
-    ) -> Result<(Vec<f64>, Vec<f64>), Diagnostic> {
-        let mut numbers = numbers.peekable();
-        if numbers.peek().is_none() {
-            return Ok(self.state.clone());
-        }
-        let mut initial = self.initial.clone();
-        for (place, number) in numbers {
-            if let Some(own) = initial.number_mut(*place) {
-                *own = *number;
+    /// Puts the numbers of this joint in their places, and what stood there in theirs: a copy of `initial` would take longer than the rest.
+    fn exchange(&mut self, index: usize, numbers: &mut [(StartNumber, f64)]) {
+        let own = numbers.iter_mut().filter(|(place, _)| place.joint == index);
+        for (place, number) in own {
+            if let Some(initial) = self.initial.number_mut(*place) {
+                std::mem::swap(initial, number);
             }
         }
-        self.stand.state(&initial, &self.forces)
     }
 }
 

@@ -11,10 +11,12 @@ mod results;
 mod run;
 mod start;
 pub mod summary;
+mod track;
 
 pub use motion::{Sweep, SweepError};
 pub use results::{Outcome, Row, UnknownOutcome};
 pub use run::{Block, ByTree, Cells, Mover, Movers, Watch, Write, run, run_by};
+pub use track::Track;
 
 use hamel::registry::JointRegistry;
 

@@ -1,15 +1,17 @@
 //! A scene whose numbers rows change, and the motion of one row.
 
-use crate::columns::Turns;
 use crate::document::Document;
 use crate::results::{Outcome, Results, Row, outcome};
 use crate::run::Cells;
 use crate::start::start_columns;
+use crate::track::Track;
 use hamel::integrate::State;
 use hamel::registry::JointRegistry;
-use hamel::scene::{Diagnostics, Scene, SceneDescription, StartNumber};
+use hamel::scene::{Diagnostics, Scene, SceneDescription, Settings, StartNumber};
 use hamel::{Error, Model};
 use std::cell::RefCell;
+use std::ops::Range;
+use std::sync::Arc;
 
 /// Why there is no sweep.
 #[derive(Debug, thiserror::Error)]
@@ -21,6 +23,9 @@ pub enum SweepError {
     /// Columns that change nothing of the scene, one a line.
     #[error("{}", .0.join("\n"))]
     Columns(Vec<String>),
+    /// Times of samples that no motion has, one a line.
+    #[error("{}", .0.join("\n"))]
+    Times(Vec<String>),
 }
 
 /// A scene, the numbers of it that a table changes, and what is told of its motions.
@@ -31,9 +36,15 @@ pub struct Sweep {
     columns: Vec<String>,
     /// Columns that change the state at time 0 alone.
     pub(crate) starts: Vec<(usize, StartNumber)>,
-    results: Results,
+    results: Arc<Results>,
     has_error: bool,
 }
+
+/// Column of the end of motions.
+const END: &str = "simulation.t_end";
+
+/// Times of samples that are nearer to each other, as parts of their size, are taken as one: ends of steps are rounded.
+const APART: f64 = 1e-12;
 
 impl Sweep {
     /// Motions of the scene in `text`, which messages call `source`, with other numbers under the names `columns`. A name is the way through the scene file to a number, keys
@@ -59,7 +70,7 @@ impl Sweep {
                 .iter()
                 .map(|name| name.as_ref().to_owned())
                 .collect(),
-            results: Results::new(&scene.mechanism, false),
+            results: Arc::new(Results::new(&scene.mechanism, false, &[])),
             has_error: false,
         })
     }
@@ -70,9 +81,66 @@ impl Sweep {
     /// None that [`Sweep::new`] does not have.
     pub fn estimating(mut self, registry: &JointRegistry) -> Result<Self, SweepError> {
         let scene = Scene::parse(self.document.text(), &self.source, registry)?;
-        self.results = Results::new(&scene.mechanism, true);
+        self.results = Arc::new(Results::new(&scene.mechanism, true, self.times()));
         self.has_error = true;
         Ok(self)
+    }
+
+    /// With coordinates and speeds of all joints at these times too, s, ascending: columns that end with `@` and the time. They are NaN in rows whose motion ends before.
+    ///
+    /// # Errors
+    /// Times that are not finite, negative, not in their order, or after the end of the scene's motion where the table does not change it; all of them.
+    pub fn sampling(mut self, times: &[f64], registry: &JointRegistry) -> Result<Self, SweepError> {
+        let scene = Scene::parse(self.document.text(), &self.source, registry)?;
+        self.sample(&scene, times)?;
+        Ok(self)
+    }
+
+    /// The same at time 0, every `step` seconds after it, and at the end of the scene's motion.
+    ///
+    /// # Errors
+    /// A step that is not above 0, or that makes more than 1e6 samples.
+    pub fn sampling_every(
+        mut self,
+        step: f64,
+        registry: &JointRegistry,
+    ) -> Result<Self, SweepError> {
+        let scene = Scene::parse(self.document.text(), &self.source, registry)?;
+        let settings = Settings {
+            sample_step: step,
+            ..scene.settings
+        };
+        let times = settings.sample_times(0.0);
+        let times = times.map_err(|error| SweepError::Times(vec![error.to_string()]))?;
+        self.sample(&scene, &times)?;
+        Ok(self)
+    }
+
+    fn sample(&mut self, scene: &Scene, times: &[f64]) -> Result<(), SweepError> {
+        let is_open = self.columns.iter().any(|name| name == END);
+        let end = if is_open {
+            f64::INFINITY
+        } else {
+            scene.settings.t_end
+        };
+        let refused = refused_times(times, end);
+        if !refused.is_empty() {
+            return Err(SweepError::Times(refused));
+        }
+        // No time is told as −0.
+        let times: Vec<f64> = times.iter().map(|time| time + 0.0).collect();
+        self.results = Arc::new(Results::new(&scene.mechanism, self.has_error, &times));
+        Ok(())
+    }
+
+    /// The times of the samples, s.
+    pub fn times(&self) -> &[f64] {
+        self.results.times()
+    }
+
+    /// Places among the [`Sweep::results`] of coordinates and speeds: of the last state, then of each sample. All have the same order.
+    pub fn states(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+        self.results.states()
     }
 
     /// The names of the table's columns.
@@ -80,7 +148,8 @@ impl Sweep {
         &self.columns
     }
 
-    /// Names of the numbers of a [`Row`], with units as `hamel simulate` writes them: time, energies and steps; then of all joints coordinates and speeds.
+    /// Names of the numbers of a [`Row`], with units as `hamel simulate` writes them: time, energies and steps; then of all joints coordinates and speeds, at the end and at each of
+    /// [`Sweep::times`].
     pub fn results(&self) -> &[String] {
         self.results.names()
     }
@@ -92,7 +161,7 @@ impl Sweep {
             .map(|numbers| self.document.with(numbers))
     }
 
-    /// The motion of one row: the scene is built with its numbers, and moved as its `[simulation]` says. Its samples are not taken, and shorten no steps. The result depends on the row alone.
+    /// The motion of one row: the scene is built with its numbers, and moved as its `[simulation]` says. The scene's own samples are not taken, and shorten no steps. The result depends on the row alone.
     pub fn motion(&self, cells: &Cells, registry: &JointRegistry) -> Row {
         let moved = self.motion_until(cells, registry, &|| false);
         moved.unwrap_or_else(|| self.results.failure("it was ended".into()))
@@ -141,16 +210,16 @@ impl Sweep {
         described.map_err(|cause| self.results.failure(cause))
     }
 
-    /// What follows the angles over a motion that moves otherwise than by [`Sweep::motion`].
-    pub fn turns(&self) -> Turns {
-        self.results.turns()
+    /// What is to be kept of a motion that moves otherwise than by [`Sweep::motion`].
+    pub fn track(&self) -> Track {
+        Track::new(&self.results)
     }
 
     /// The result of such a motion that came to the end of its time in so many steps.
-    pub fn ended(&self, scene: &Scene, state: &State, steps: usize, turns: &Turns) -> Row {
+    pub fn ended(&self, scene: &Scene, state: &State, steps: usize, track: &Track) -> Row {
         let row = self
             .results
-            .row(&scene.mechanism, state, (steps, None), turns);
+            .row(&scene.mechanism, state, (steps, None), track);
         match row {
             Ok(numbers) => Row {
                 outcome: Outcome::Ended,
@@ -204,15 +273,21 @@ impl Sweep {
         }
     }
 
+    /// The times of samples that a motion of this scene has.
+    fn reached(&self, scene: &Scene) -> Vec<f64> {
+        let times = self.times().iter().copied();
+        times.filter(|time| *time <= scene.settings.t_end).collect()
+    }
+
     fn moved(&self, scene: Scene, stop: &dyn Fn() -> bool) -> Result<Row, String> {
         let model = Model::new(scene);
         let scene = model.scene();
-        let turns = RefCell::new(self.results.turns());
+        let track = RefCell::new(self.track());
         let simulation = model
             .simulate()
-            .sample_at([])
+            .sample_at(self.reached(scene))
             .stopping(stop)
-            .observing(|step| turns.borrow_mut().follow(&scene.mechanism, step));
+            .observing(|step| track.borrow_mut().follow(&scene.mechanism, step));
         let told = |error: Error| told(&error);
         let (solution, error) = match self.has_error {
             true => {
@@ -224,12 +299,28 @@ impl Sweep {
         let work = (solution.statistics.steps, error.as_ref());
         let numbers = self
             .results
-            .row(&scene.mechanism, &solution.state, work, &turns.borrow())?;
+            .row(&scene.mechanism, &solution.state, work, &track.borrow())?;
         Ok(Row {
             outcome: outcome(scene, &solution),
             numbers,
         })
     }
+}
+
+/// What is wrong with times of samples of motions that end at `end`.
+fn refused_times(times: &[f64], end: f64) -> Vec<String> {
+    let mut last = f64::NEG_INFINITY;
+    let refused = times.iter().filter_map(|&time| {
+        let before = std::mem::replace(&mut last, time);
+        if !(time.is_finite() && time >= 0.0) {
+            return Some(format!("a sample at {time} s: times are finite, and not negative"));
+        }
+        if time - before <= APART * time {
+            return Some(format!("a sample at {time} s comes after one at {before} s: times ascend, by more than rounding"));
+        }
+        (time > end).then(|| format!("a sample at {time} s: motions end at {end} s"))
+    });
+    refused.collect()
 }
 
 /// In one line.

@@ -1,10 +1,12 @@
 //! What is told of one motion: its last state in columns, and how it ended.
 
 use crate::columns::{Factor, Turns, coordinate_endings, speed_endings, suffix, turns};
+use crate::track::Track;
 use hamel::integrate::{GlobalError, Solution, State};
 use hamel::mechanism::Mechanism;
 use hamel::scene::Scene;
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// How a motion ended.
@@ -87,23 +89,26 @@ struct Joint {
 pub(crate) struct Results {
     names: Vec<String>,
     joints: Vec<Joint>,
+    /// How many coordinates and speeds are told of a state.
+    state: usize,
     has_error: bool,
+    /// When states are told besides the last one, s.
+    times: Vec<f64>,
 }
 
 impl Results {
-    /// Those of motions of `mechanism`, with the estimate of their errors where `has_error`.
-    pub fn new(mechanism: &Mechanism, has_error: bool) -> Self {
+    /// Those of motions of `mechanism`, with the estimate of their errors where `has_error`, and with states at `times`.
+    pub fn new(mechanism: &Mechanism, has_error: bool, times: &[f64]) -> Self {
         let error = if has_error { &ERROR[..] } else { &[] };
         let fixed = WHOLE.iter().chain(&WORK).chain(error);
-        let mut names: Vec<String> = fixed.map(|name| (*name).to_owned()).collect();
-        let mut joints = Vec::new();
+        let (mut state, mut joints) = (Vec::new(), Vec::new());
         for (index, body) in mechanism.joints() {
             let (joint, units) = (body.joint(), body.joint().units());
             let factors = Factor::all(joint);
             let endings = coordinate_endings(&factors, &units);
             for ending in endings.into_iter().chain(speed_endings(body, &units)) {
                 let (owner, unit) = (body.joint_name(), suffix(ending.unit));
-                names.push(format!("{owner}.{}{unit}", ending.name));
+                state.push(format!("{owner}.{}{unit}", ending.name));
             }
             joints.push(Joint {
                 body: index,
@@ -112,15 +117,36 @@ impl Results {
                 speeds: joint.speeds(),
             });
         }
+        let mut names: Vec<String> = fixed.map(|name| (*name).to_owned()).collect();
+        names.extend_from_slice(&state);
+        for time in times {
+            let time = label(*time);
+            names.extend(state.iter().map(|name| format!("{name}@{time}")));
+        }
         Self {
             names,
             joints,
+            state: state.len(),
             has_error,
+            times: times.to_vec(),
         }
     }
 
     pub fn names(&self) -> &[String] {
         &self.names
+    }
+
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Places among the names of what is told of the last state, and of each sample behind it.
+    pub fn states(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+        let first = self.names.len() - self.state * (self.times.len() + 1);
+        (0..=self.times.len()).map(move |number| {
+            let first = first + number * self.state;
+            first..first + self.state
+        })
     }
 
     /// Whether the same is told of the motions of `mechanism`: numbers decide which coordinates of a loop are told.
@@ -146,7 +172,27 @@ impl Results {
         )
     }
 
-    /// What a motion came to: its last state, its steps and its error.
+    /// Appends coordinates and speeds of all joints.
+    pub fn read(
+        &self,
+        mechanism: &Mechanism,
+        (q, speeds): (&[f64], &[f64]),
+        turns: &Turns,
+        numbers: &mut Vec<f64>,
+    ) {
+        let mut angles = turns.angles().iter();
+        for joint in &self.joints {
+            let body = &mechanism.bodies()[joint.body];
+            let own = body.configuration(q);
+            for factor in &joint.factors {
+                let angle = factor.kind.turn().and_then(|_| angles.next());
+                factor.read(own, angle.copied().unwrap_or(f64::NAN), numbers);
+            }
+            numbers.extend(&speeds[body.ranges().speeds.clone()]);
+        }
+    }
+
+    /// What a motion came to: its last state, its steps and its error, and its samples, NaN where they were not reached.
     ///
     /// # Errors
     /// A last state that has no finite energy.
@@ -155,7 +201,7 @@ impl Results {
         mechanism: &Arc<Mechanism>,
         state: &State,
         (steps, error): (usize, Option<&GlobalError>),
-        angles: &Turns,
+        track: &Track,
     ) -> Result<Vec<f64>, String> {
         let (q, speeds) = (&*state.configuration, &*state.speeds);
         let found = mechanism.kinematics(q, speeds);
@@ -179,16 +225,9 @@ impl Results {
             let is_reliable = error.is_some_and(|error| error.doubt.is_none());
             numbers.push(f64::from(u8::from(is_reliable)));
         }
-        let mut angles = angles.angles().iter();
-        for joint in &self.joints {
-            let body = &mechanism.bodies()[joint.body];
-            let own = body.configuration(q);
-            for factor in &joint.factors {
-                let angle = factor.kind.turn().and_then(|_| angles.next());
-                factor.read(own, angle.copied().unwrap_or(f64::NAN), &mut numbers);
-            }
-            numbers.extend(&speeds[body.ranges().speeds.clone()]);
-        }
+        self.read(mechanism, (q, speeds), track.turns(), &mut numbers);
+        numbers.extend(track.samples());
+        numbers.resize(self.names.len(), f64::NAN);
         Ok(numbers)
     }
 
@@ -199,6 +238,12 @@ impl Results {
             numbers: vec![f64::NAN; self.names.len()],
         }
     }
+}
+
+/// A time in 15 digits, without what rounding adds to products of steps.
+pub(crate) fn label(time: f64) -> String {
+    let rounded: f64 = format!("{time:.14e}").parse().unwrap_or(time);
+    rounded.to_string()
 }
 
 /// A motion that the scene stops ends at the last crossing of an event that does so.

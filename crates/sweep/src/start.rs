@@ -37,11 +37,11 @@ impl Sweep {
     }
 
     /// The state at time 0 of a row, by the [`SceneDescription::starts`] of a row that differs from it in that alone; it has the bits of the row's scene. `None` where the scene is refused.
-    pub fn start(&self, starts: &Starts, cells: &Cells) -> Option<State> {
+    pub fn start(&self, starts: &mut Starts, cells: &Cells) -> Option<State> {
         let columns = self.starts.iter();
         let numbers: Option<Vec<(StartNumber, f64)>> = columns
             .map(|&(column, place)| Some((place, *cells.numbers.get(column)?)))
             .collect();
-        starts.state(&numbers?).ok()
+        starts.state(numbers?).ok()
     }
 }

@@ -1,6 +1,6 @@
 //! What came of all rows: quantiles of each result, and failures by cause.
 //!
-//! Memory is bounded by the number of columns: [`Figures`] are found in [`PASSES`] passes over the results, and are exact.
+//! Memory is bounded by the number of columns: [`Figures`] are found in [some passes](Selection::passes) over the results, and are exact.
 
 use crate::Outcome;
 use std::collections::BTreeMap;
@@ -8,11 +8,8 @@ use std::collections::BTreeMap;
 /// The probabilities of the quantiles.
 pub const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 
-/// How often [`Selection`] sees all rows.
-pub const PASSES: u32 = 64_u32.div_ceil(DIGIT);
-
-/// Bits of a number by which one pass narrows what a quantile may be.
-const DIGIT: u32 = 13;
+/// Columns from which on memory is saved by more passes.
+const MANY: usize = 100;
 
 /// The sum of 2⁴⁰ doubles times this is a double. It is a power of two: products with it are exact but for values below 1e-295.
 const SCALE: f64 = 1.0 / (1_u64 << 40) as f64;
@@ -39,7 +36,38 @@ pub struct Figures {
 #[derive(Clone, Debug)]
 pub struct Selection {
     columns: Vec<Column>,
+    digits: Digits,
+}
+
+/// The bits of a number by which passes narrow what a quantile may be.
+#[derive(Clone, Copy, Debug)]
+struct Digits {
+    /// How many one pass looks at. The counts of a column take 40 · 2^bits bytes.
+    bits: u32,
     pass: u32,
+}
+
+impl Digits {
+    /// How many have been looked at before this pass.
+    const fn known(self) -> u32 {
+        self.bits * self.pass
+    }
+
+    /// How many this pass looks at.
+    const fn own(self) -> u32 {
+        let left = 64 - self.known();
+        if left < self.bits { left } else { self.bits }
+    }
+
+    /// What this pass looks at.
+    const fn of(self, key: u64) -> u64 {
+        (key >> (64 - self.known() - self.own())) & ((1 << self.own()) - 1)
+    }
+
+    /// Whether a number begins with these bits, which are known.
+    const fn begins(self, key: u64, prefix: u64) -> bool {
+        self.pass == 0 || key >> (64 - self.known()) == prefix
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -64,6 +92,10 @@ struct Target {
 impl Selection {
     /// Of so many columns.
     pub fn new(columns: usize) -> Self {
+        let digits = Digits {
+            bits: if columns < MANY { 13 } else { 8 },
+            pass: 0,
+        };
         let column = Column {
             count: 0,
             sum: 0.0,
@@ -71,19 +103,24 @@ impl Selection {
             min: f64::INFINITY,
             max: f64::NEG_INFINITY,
             // In the first pass all count the same.
-            targets: vec![Target::new()],
+            targets: vec![Target::new(digits.bits)],
         };
         Self {
             columns: vec![column; columns],
-            pass: 0,
+            digits,
         }
+    }
+
+    /// How often it sees all rows.
+    pub const fn passes(&self) -> u32 {
+        64_u32.div_ceil(self.digits.bits)
     }
 
     /// Takes a row, one number for each column. Every pass takes all rows, in the same order.
     pub fn see(&mut self, row: &[f64]) {
         for (column, &value) in self.columns.iter_mut().zip(row) {
             if value.is_finite() {
-                column.see(value, self.pass);
+                column.see(value, self.digits);
             }
         }
     }
@@ -91,34 +128,29 @@ impl Selection {
     /// Ends a pass.
     pub fn narrow(&mut self) {
         for column in &mut self.columns {
-            column.narrow(self.pass);
+            column.narrow(self.digits);
         }
-        self.pass += 1;
+        self.digits.pass += 1;
     }
 
-    /// The figures, after [`PASSES`] passes.
+    /// The figures, after all passes.
     pub fn figures(&self) -> Vec<Figures> {
         self.columns.iter().map(Column::figures).collect()
     }
 }
 
 impl Target {
-    fn new() -> Self {
+    fn new(bits: u32) -> Self {
         Self {
-            counts: vec![0; 1 << DIGIT],
+            counts: vec![0; 1 << bits],
             ..Self::default()
         }
     }
 }
 
-/// Bits of a pass that are not looked at yet.
-const fn below(pass: u32) -> u32 {
-    64_u32.saturating_sub(DIGIT * (pass + 1))
-}
-
 impl Column {
-    fn see(&mut self, value: f64, pass: u32) {
-        if pass == 0 {
+    fn see(&mut self, value: f64, digits: Digits) {
+        if digits.pass == 0 {
             self.count += 1;
             self.min = self.min.min(value);
             self.max = self.max.max(value);
@@ -132,17 +164,15 @@ impl Column {
             self.sum = sum;
         }
         let key = ordered(value);
-        let known = 64 - DIGIT * pass;
         for target in &mut self.targets {
-            if pass == 0 || key >> known == target.prefix {
-                let digit = (key >> below(pass)) & mask(pass);
-                target.counts[digit as usize] += 1;
+            if digits.begins(key, target.prefix) {
+                target.counts[digits.of(key) as usize] += 1;
             }
         }
     }
 
-    fn narrow(&mut self, pass: u32) {
-        if pass == 0 {
+    fn narrow(&mut self, digits: Digits) {
+        if digits.pass == 0 {
             let first = self.targets.pop().unwrap_or_default();
             let ranks = QUANTILES.map(|part| (part * self.count as f64).ceil().max(1.0) as u64);
             self.targets = ranks
@@ -160,7 +190,7 @@ impl Column {
                 is_here
             });
             let digit = digit.unwrap_or(0) as u64;
-            target.prefix = target.prefix << mask(pass).count_ones() | digit;
+            target.prefix = target.prefix << digits.own() | digit;
             target.rank = rank;
             target.counts.fill(0);
         }
@@ -188,12 +218,6 @@ impl Column {
             max: self.max,
         }
     }
-}
-
-/// The bits that a pass looks at, once they stand last.
-const fn mask(pass: u32) -> u64 {
-    let bits = 64 - DIGIT * pass;
-    (1 << if bits < DIGIT { bits } else { DIGIT }) - 1
 }
 
 const SIGN: u64 = 1 << 63;
@@ -298,15 +322,23 @@ fn without_digits(text: &str, kind: &mut String) {
 
 #[cfg(test)]
 mod tests {
-    use super::{Causes, Figures, PASSES, QUANTILES, Selection};
+    use super::{Causes, Figures, MANY, QUANTILES, Selection};
 
+    /// In one column, and in the last of many.
     fn selected(values: &[f64]) -> Figures {
-        let mut selection = Selection::new(1);
-        for _ in 0..PASSES {
-            values.iter().for_each(|&value| selection.see(&[value]));
-            selection.narrow();
-        }
-        selection.figures()[0]
+        let mut found = [1, MANY].map(|columns| {
+            let mut selection = Selection::new(columns);
+            for _ in 0..selection.passes() {
+                let rows = values.iter().map(|&value| vec![value; columns]);
+                rows.for_each(|row| selection.see(&row));
+                selection.narrow();
+            }
+            selection.figures()[columns - 1]
+        });
+        let [one, many] = found.each_mut();
+        // Not by numbers: those of no values are NaN.
+        assert_eq!(format!("{one:?}"), format!("{many:?}"));
+        *one
     }
 
     #[test]

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from . import _hamel, _parquet
 from ._errors import ArgumentError, Error
 from ._level import LEVELS, lowest
-from ._sweep import made, numbers, rows_at
+from ._sweep import Options, made, numbers, rows_at
 
 # Rows that an actor moves at once, which are done again where it dies: as many parts as this, of so many rows at least, and at most: one by one, and side by side, which takes seconds either way.
 _PARTS, _LEAST = 64, 100
@@ -40,8 +40,7 @@ class Request:
     scene: Callable[[], tuple[str, str]]
     """Its text, and what messages call it."""
     workers: int | None
-    estimate: bool
-    equations: str
+    options: Options
     level: str | None
 
 
@@ -75,7 +74,7 @@ def sweep(request: Request, table: Any, output: str | PathLike[str] | None) -> d
     if folder is not None and not _parquet.is_empty(folder):
         raise ArgumentError(f"output is {folder}, which holds files: name a folder of its own for the results")
     rows = _rows(ray, table)
-    swept = made(request.scene(), rows.columns, request.estimate, request.equations, rows.total, rows.at)
+    swept = made(request.scene(), rows.columns, request.options, rows.total, rows.at)
     fixed, environment = _fixed(ray, request.level)
     part = _part(rows.total, swept)
     results = rows.dataset(part).map_batches(
@@ -337,15 +336,17 @@ def _check_count(found: int, expected: int) -> None:
 
 def _told(request: Request, swept: _hamel.Sweep, fixed: Fixed, rows: Rows) -> dict[str, Any]:
     """What decides on the results."""
+    estimate, equations, times = request.options
     return {
         "version": fixed.version,
         "engine": "ray",
-        "equations": request.equations,
+        "equations": equations,
         # Why no row moved side by side; none where rows did that could.
         "why_tree": swept.why_tree,
         "level": fixed.level,
         "sum_of_functions": fixed.sum,
-        "error_estimate": request.estimate,
+        "error_estimate": estimate,
+        "samples": times,
         "rows": rows.total,
         "columns": rows.columns,
         "scene": {"name": swept.source, "text": swept.text},

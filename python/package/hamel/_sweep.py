@@ -10,7 +10,7 @@ from os import PathLike
 from typing import Any, Literal, overload
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _hamel
 from ._errors import ArgumentError
@@ -27,6 +27,7 @@ def sweep(
     floating_base: bool = False,
     level: str | None = None,
     equations: Literal["auto", "lanes", "tree"] = "auto",
+    at: ArrayLike = (),
     engine: Literal["ray"] | None = None,
     output: None = None,
 ) -> dict[str, NDArray[Any]]: ...
@@ -42,6 +43,7 @@ def sweep(
     floating_base: bool = False,
     level: str | None = None,
     equations: Literal["auto", "lanes", "tree"] = "auto",
+    at: ArrayLike = (),
     engine: Literal["ray"],
     output: str | PathLike[str],
 ) -> None: ...
@@ -56,6 +58,7 @@ def sweep(
     floating_base: bool = False,
     level: str | None = None,
     equations: Literal["auto", "lanes", "tree"] = "auto",
+    at: ArrayLike = (),
     engine: Literal["ray"] | None = None,
     output: str | PathLike[str] | None = None,
 ) -> dict[str, NDArray[Any]] | None:
@@ -73,6 +76,7 @@ def sweep(
             process, and with ``engine="ray"`` the lowest of the nodes.
         equations: ``"auto"`` moves many rows side by side, in a fraction of the time, where scene and rows allow it, as ``hamel sweep`` does; that takes ``estimate=False`` and steps of one length.
             ``"lanes"`` refuses a sweep of which no row can. ``"tree"`` moves rows one by one; results differ from those side by side by rounding.
+        at: times of samples, s, ascending: coordinates and speeds of all joints at these times too, such as ``elbow.q.q_rad@0.5``. They are NaN in rows whose motion ends before.
         engine: ``"ray"`` moves rows on the cluster that Ray is connected to, or on one of this machine that it starts. None moves them in this process.
         output: with ``engine="ray"``, a folder that is empty or is not there, on storage that all nodes share. Results are written there as Parquet files, in no order, and ``sweep.json`` says what
             was swept at which level of instructions. None gathers the results here.
@@ -85,17 +89,18 @@ def sweep(
 
     Raises:
         FileError: a scene with mistakes as it is written; a table that cannot be read. What a row makes wrong is in its ``outcome``.
-        ArgumentError: columns that name no number of the scene; ``equations="lanes"`` where no row can move so; columns that are no arrays of numbers, of one length; a level that a node does not have; an ``output`` that holds files.
+        ArgumentError: columns that name no number of the scene; times that are not in order, or after the end of the motion; ``equations="lanes"`` where no row can move so; columns that are no arrays of numbers, of one length; a level that a node does not have; an ``output`` that holds files.
         Error: Ray is not installed; nodes with another version of hamel, or that compute otherwise; a cluster that fails for good.
         KeyboardInterrupt: Ctrl-C; there are no results then.
     """
     workers = _count(workers)
+    options = (bool(estimate), str(equations), _array("at", at).tolist())
     if level is not None and level not in LEVELS:
         raise ArgumentError(f"level is {level!r}: it must be one of {', '.join(LEVELS)}")
     if engine == "ray":
         from . import _ray
 
-        request = _ray.Request(lambda: _hamel.scene_text(scene, bool(floating_base)), workers, bool(estimate), str(equations), level)
+        request = _ray.Request(lambda: _hamel.scene_text(scene, bool(floating_base)), workers, options, level)
         return _ray.sweep(request, table, output)
     if engine is not None:
         raise ArgumentError(f"engine is {engine!r}: it must be None or 'ray'")
@@ -103,18 +108,21 @@ def sweep(
         raise ArgumentError("output is for engine='ray': without it results are returned")
     columns = numbers(table)
     check_level(level)
-    swept = made(_hamel.scene_text(scene, bool(floating_base)), list(columns), bool(estimate), str(equations), len(next(iter(columns.values()))), partial(rows_at, columns))
+    swept = made(_hamel.scene_text(scene, bool(floating_base)), list(columns), options, len(next(iter(columns.values()))), partial(rows_at, columns))
     found = swept.rows(list(columns.values()), workers)
     found["outcome"] = np.array(found["outcome"], dtype=str)
     return found
 
 
-def made(
-    scene: tuple[str, str], columns: list[str], estimate: bool, equations: str, rows: int, at: Callable[[list[int]], list[list[float]]]
-) -> _hamel.Sweep:
+Options = tuple[bool, str, list[float]]
+"""Whether errors are estimated, by which equations rows move, and times of samples."""
+
+
+def made(scene: tuple[str, str], columns: list[str], options: Options, rows: int, at: Callable[[list[int]], list[list[float]]]) -> _hamel.Sweep:
     """The sweep of a table of so many rows, of which ``at`` gives some by their places from 0."""
+    estimate, equations, _ = options
     goes_by_tree = estimate or equations == "tree"
-    return _hamel.Sweep(*scene, columns, estimate, equations, [] if goes_by_tree else at(_hamel.sample(rows)))
+    return _hamel.Sweep(scene, columns, options, [] if goes_by_tree else at(_hamel.sample(rows)))
 
 
 def rows_at(columns: Mapping[str, NDArray[np.float64]], places: list[int]) -> list[list[float]]:
@@ -150,7 +158,7 @@ def numbers(table: Any) -> dict[str, NDArray[np.float64]]:
         name = str(key)
         if name in columns:
             raise ArgumentError(f"table has two columns `{name}`")
-        columns[name] = _column(name, values)
+        columns[name] = _array(f"column `{name}`", values)
     if not columns:
         raise ArgumentError("table has no columns")
     lengths = {name: len(values) for name, values in columns.items()}
@@ -173,10 +181,10 @@ def _columns(table: Any) -> Mapping[Any, Any]:
     raise ArgumentError(f"table is {table!r}: it must be a dict of arrays or a data frame")
 
 
-def _column(name: str, values: Any) -> NDArray[np.float64]:
+def _array(what: str, values: Any) -> NDArray[np.float64]:
     # Conversion to doubles alone would read texts, dates and complex numbers, and what a mask hides.
     if np.ma.is_masked(values):
-        raise ArgumentError(f"column `{name}` has masked values: fill them, or leave the rows out")
+        raise ArgumentError(f"{what} has masked values: fill them, or leave the rows out")
     try:
         found = np.asarray(values)
         if found.dtype.kind not in "biufO":
@@ -185,9 +193,9 @@ def _column(name: str, values: Any) -> NDArray[np.float64]:
             found = np.array([_number(value) for value in found.flat]).reshape(found.shape)
         array = np.array(found, dtype=float)
     except (TypeError, ValueError, OverflowError) as error:
-        raise ArgumentError(f"column `{name}` is no array of numbers: {error}") from None
+        raise ArgumentError(f"{what} is no array of numbers: {error}") from None
     if array.ndim != 1:
-        raise ArgumentError(f"column `{name}` has shape {array.shape}: it must have shape (n,)")
+        raise ArgumentError(f"{what} has shape {array.shape}: it must have shape (n,)")
     return array
 
 

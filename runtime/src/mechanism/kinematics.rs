@@ -3,10 +3,11 @@
 use super::check::Space;
 use super::{Body, Mechanism, StateError};
 use crate::elements::{MotionList, View};
+use crate::erased::AnyJoint;
 use crate::spatial::{Pose, SpatialInertia, join, split};
 use crate::steps::Placement;
 use alloc::vec::Vec;
-use nalgebra::{DVectorView, Vector3, Vector6};
+use nalgebra::{DMatrixView, DVectorView, DVectorViewMut, MatrixView6xX, Vector3, Vector6};
 
 /// Position and velocity of one body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -188,8 +189,9 @@ impl Mechanism {
 
     fn body_states(&self, q: &[f64], speeds: &[f64]) -> Vec<BodyState> {
         let mut states: Vec<BodyState> = Vec::with_capacity(self.bodies.len());
+        let mut scratch = Scratch::default();
         for body in &self.bodies {
-            let (own, relative) = body.relative_motion(q, speeds);
+            let (own, relative) = body.relative_motion(q, speeds, &mut scratch);
             let (pose, twist) = match body.parent().map(|parent| &states[parent]) {
                 Some(parent) => (
                     parent.pose.compose(&own),
@@ -216,13 +218,50 @@ impl Body {
     }
 
     /// Pose of the body frame in the parent's body frame, and twist relative to the parent in body axes.
-    fn relative_motion(&self, q: &[f64], speeds: &[f64]) -> (Pose<f64>, Vector6<f64>) {
+    fn relative_motion(
+        &self,
+        q: &[f64],
+        speeds: &[f64],
+        scratch: &mut Scratch,
+    ) -> (Pose<f64>, Vector6<f64>) {
         let q = self.configuration(q);
         let own = &speeds[self.ranges.speeds.clone()];
-        let twist = self.twist_map_child(q)
-            * (self.speed_basis(q) * DVectorView::from_slice(own, own.len()));
-        let twist = Vector6::from_column_slice(twist.as_slice());
+        let twist = scratch.twist(self.joint(), q, own);
         let pose = *self.placement() * self.joint().pose(q) * *self.child_placement();
         (pose, self.child_placement().act_twist_inverse(&twist))
     }
+}
+
+/// Room for S̄, X^c and v of one joint after another.
+#[derive(Default)]
+struct Scratch {
+    speed_basis: Vec<f64>,
+    twist_map: Vec<f64>,
+    velocity: Vec<f64>,
+}
+
+impl Scratch {
+    /// X^c S̄ v̄ at a joint's Q.
+    fn twist(&mut self, joint: &dyn AnyJoint, q: &[f64], speeds: &[f64]) -> Vector6<f64> {
+        let (freedoms, count) = (joint.layout().freedoms, speeds.len());
+        let basis = zeros(&mut self.speed_basis, freedoms * count);
+        joint.speed_basis(q, basis);
+        let basis = DMatrixView::from_slice(basis, freedoms, count);
+        let map = zeros(&mut self.twist_map, 6 * freedoms);
+        joint.twist_map_child(q, map);
+        let map = MatrixView6xX::from_slice(map, freedoms);
+        let velocity = zeros(&mut self.velocity, freedoms);
+        let mut velocity = DVectorViewMut::from_slice(velocity, freedoms);
+        velocity.gemv(1.0, &basis, &DVectorView::from_slice(speeds, count), 0.0);
+        let mut twist = Vector6::zeros();
+        twist.gemv(1.0, &map, &velocity, 0.0);
+        twist
+    }
+}
+
+/// So many zeros.
+fn zeros(room: &mut Vec<f64>, count: usize) -> &mut [f64] {
+    room.clear();
+    room.resize(count, 0.0);
+    room
 }

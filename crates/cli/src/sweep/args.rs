@@ -12,6 +12,8 @@ Examples:
       one motion for each row of the table, with its masses, lengths and gains; results as CSV in the folder arm
   hamel sweep scenes/sweep/arm.toml --over million.parquet -o arm --no-error-estimate
       results as Parquet, twice as fast without an error of each motion
+  hamel sweep scenes/sweep/arm.toml --over scenes/sweep/tolerances.csv -o arm --sample-step 0.02
+      coordinates and speeds every 0.02 s too: summary.html shows the bands in which they move, arm/summary.csv their quantiles
   hamel sweep scenes/sweep/arm.toml --over scenes/sweep/tolerances.csv --scene-of 17 > row17.toml
       the scene of row 17, to look at: hamel simulate row17.toml --html row17.html
 
@@ -27,7 +29,7 @@ Each row is the scene with its numbers, moved as its [simulation] says. A row wh
 A column that names no number of the scene is refused before anything moves.
 
 The folder holds part-N.csv (or .parquet): for each row its number, from 1, the outcome (`ended`, `event NAME`, `failed: CAUSE`), the last time, energies, steps, the estimated error, and coordinates and speeds of all
-joints, under the names that `hamel simulate` gives them. summary.csv has quantiles of them, failures.csv failures by cause, summary.html pictures; sweep.json says what was swept.
+joints, under the names that `hamel simulate` gives them; with --at or --sample-step the same at these times, under the names with @ and the time. summary.csv has quantiles of them, failures.csv failures by cause, summary.html pictures; sweep.json says what was swept.
 Rows of a scene that moves by an explicit method of steps of one length (method rk4 with dt), without events, controllers, friction, limits of joints and functions of time, move side by side with
 --no-error-estimate: about a dozen times as many a second of a double pendulum. Their numbers differ from those of the tree by rounding. --equations tree moves all rows one by one.
 
@@ -76,6 +78,20 @@ pub struct Args {
     /// By which equations rows move: many rows side by side, in a fraction of the time, where scene and rows allow it (auto, lanes), or one by one (tree)
     #[arg(long, value_enum, default_value_t = Equations::Auto)]
     pub equations: Equations,
+
+    /// Coordinates and speeds at these times too, s, ascending; NaN in rows whose motion ends before
+    #[arg(
+        long,
+        value_name = "T1,T2,…",
+        value_delimiter = ',',
+        allow_negative_numbers = true,
+        conflicts_with = "sample_step"
+    )]
+    pub at: Vec<f64>,
+
+    /// Coordinates and speeds at time 0, every so many seconds after it, and at the end of the scene's motion
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub sample_step: Option<f64>,
 
     /// Instructions of mathematical functions, on which last bits depend: x86-64 (no fused products) or x86-64-v3; other processors have one level [default: that of this machine]
     #[arg(long, value_name = "LEVEL", value_parser = LEVELS)]

@@ -16,8 +16,11 @@ const LAYOUT: u32 = 1;
 /// Larger files are no manifests, bytes.
 const LARGEST: u64 = 64 << 20;
 
+/// Times of samples that a message repeats.
+const MOST_TIMES: usize = 10;
+
 /// What decides on the results.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// Version of the layout.
     pub hamel_sweep: u32,
@@ -46,9 +49,24 @@ pub struct Manifest {
     /// By which equations rows move.
     #[serde(default = "tree")]
     pub equations: String,
+    /// When states are told besides the last one, s.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub samples: Vec<f64>,
     /// Which way the rows went that the last command moved; nothing before one has come to its end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub moved: Option<Moved>,
+}
+
+/// What decides on the results besides scene and table.
+pub struct Options<'a> {
+    /// Format of the parts.
+    pub format: Format,
+    /// Whether errors of motions are estimated.
+    pub error_estimate: bool,
+    /// By which equations rows move.
+    pub equations: Equations,
+    /// When states are told besides the last one, s.
+    pub times: &'a [f64],
 }
 
 /// Which way rows went.
@@ -78,12 +96,7 @@ pub struct Input {
 
 impl Manifest {
     /// What is to be swept.
-    pub fn new(
-        [scene, table]: [Input; 2],
-        rows: u64,
-        block: u64,
-        (format, error_estimate, equations): (Format, bool, Equations),
-    ) -> Self {
+    pub fn new([scene, table]: [Input; 2], rows: u64, block: u64, options: Options<'_>) -> Self {
         let Arithmetic { level, sum } = Arithmetic::own();
         Self {
             hamel_sweep: LAYOUT,
@@ -95,9 +108,10 @@ impl Manifest {
             table,
             rows,
             block,
-            format: format.name().to_owned(),
-            error_estimate,
-            equations: equations.name().to_owned(),
+            format: options.format.name().to_owned(),
+            error_estimate: options.error_estimate,
+            equations: options.equations.name().to_owned(),
+            samples: options.times.to_vec(),
             moved: None,
         }
     }
@@ -160,6 +174,10 @@ impl Manifest {
             false => "left out",
         };
         note("the error estimate", estimate(other), estimate(self));
+        if self.samples != other.samples {
+            let (then, now) = (told_times(&other.samples), told_times(&self.samples));
+            all.push(format!("samples were {then}, and are {now}"));
+        }
         for (what, then, now) in [
             ("the scene", &other.scene, &self.scene),
             ("the table", &other.table, &self.table),
@@ -170,6 +188,17 @@ impl Manifest {
             }
         }
         all
+    }
+}
+
+/// Times of samples, in few words.
+fn told_times(times: &[f64]) -> String {
+    match times {
+        [] => "none".to_owned(),
+        [first, .., last] if times.len() > MOST_TIMES => {
+            format!("{} from {first} to {last} s", times.len())
+        }
+        few => format!("at {few:?} s"),
     }
 }
 

@@ -1,6 +1,7 @@
 //! `hamel sweep`: from a scene and a table to a folder of results.
 
 mod args;
+mod band;
 mod csv;
 mod equations;
 mod folder;

@@ -1,10 +1,12 @@
-//! `summary.html`: a histogram of each result, in one file that needs no other.
+//! `summary.html`: bands of the samples over time and a histogram of each result, in one file that needs no other.
 
+use super::band;
 use super::summary::short;
 use hamel_console::files::first_line;
 use hamel_sweep::summary::Figures;
 use std::fmt;
 use std::fs::File;
+use std::ops::Range;
 
 /// Bars of a histogram.
 const BARS: usize = 48;
@@ -22,6 +24,7 @@ main{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(20rem,100%),
 figure{margin:0;border:1px solid var(--line);border-radius:6px;padding:.7rem}
 figcaption{font-weight:600;overflow-wrap:anywhere}figure p{margin:.2rem 0 0;color:var(--soft);font-size:13px}
 svg{width:100%;height:8rem;display:block}rect{fill:var(--bar)}line{stroke:var(--mid);stroke-width:.6}
+.all{fill:var(--bar);opacity:.2}.most{fill:var(--bar);opacity:.45}polyline{fill:none;stroke:var(--mid);stroke-width:1.5;vector-effect:non-scaling-stroke}
 ";
 
 /// Whether a file is such a page.
@@ -69,6 +72,10 @@ pub struct Page<'a> {
     pub names: &'a [String],
     pub figures: &'a [Figures],
     pub histograms: &'a Histograms,
+    /// Times of samples, s.
+    pub times: &'a [f64],
+    /// Where the names and figures of the last state and of each sample stand.
+    pub states: &'a [Range<usize>],
 }
 
 impl fmt::Display for Page<'_> {
@@ -83,8 +90,16 @@ impl fmt::Display for Page<'_> {
             "<title>Sweep of {title}</title>\n<style>{STYLE}</style>\n<h1>Sweep of {title}</h1>"
         )?;
         writeln!(f, "<pre>{}</pre>\n<main>", escaped(self.summary))?;
+        let (last, samples) = self.states.split_first().unzip();
+        let last = last.cloned().unwrap_or(0..0);
+        for (place, column) in last.clone().enumerate() {
+            let figures = samples.into_iter().flatten();
+            let figures = figures.map(|state| &self.figures[state.start + place]);
+            let instants = self.times.iter().copied().zip(figures).collect();
+            band::figure(f, &escaped(&self.names[column]), instants)?;
+        }
         let columns = self.names.iter().zip(self.figures).zip(&self.histograms.0);
-        for ((name, figures), histogram) in columns {
+        for ((name, figures), histogram) in columns.take(last.end) {
             figure(f, name, figures, histogram)?;
         }
         writeln!(f, "</main></html>")

@@ -3,7 +3,7 @@
 use super::args::{Args, Format};
 use super::equations::Moving;
 use super::folder::Folder;
-use super::manifest::{Input, Manifest};
+use super::manifest::{Input, Manifest, Options};
 use super::progress::Progress;
 use super::summary::Summary;
 use super::{level, parquet, table};
@@ -37,7 +37,8 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     };
     let rows = table.count()?;
     let moving = Moving::new(args, &sweep, registry, rows)?;
-    let mut folder = folder(args, &text, (rows, moving.least_block()), output)?;
+    let size = (rows, moving.least_block());
+    let mut folder = folder(args, &text, size, (sweep.times(), output))?;
     let start = Instant::now();
     let moved = move_missing(args, &sweep, &folder, moving.movers())?;
     let work = (moved, start.elapsed(), moving.ways(moved));
@@ -69,9 +70,15 @@ fn sweep(
         true => sweep,
         false => sweep.and_then(|sweep| sweep.estimating(registry)),
     };
+    let sweep = sweep.and_then(|sweep| match args.sample_step {
+        Some(step) => sweep.sampling_every(step, registry),
+        None => sweep.sampling(&args.at, registry),
+    });
     sweep.map_err(|error| match error {
         SweepError::Scene(mistakes) => mistakes.into(),
-        SweepError::Columns(refused) => Failure::Options(refused.join("\nerror: ")),
+        SweepError::Columns(refused) | SweepError::Times(refused) => {
+            Failure::Options(refused.join("\nerror: "))
+        }
         other => Failure::Options(other.to_string()),
     })
 }
@@ -81,7 +88,7 @@ fn folder(
     args: &Args,
     scene: &str,
     (rows, least_block): (u64, u64),
-    output: &Path,
+    (times, output): (&[f64], &Path),
 ) -> Result<Folder, Failure> {
     if rows == 0 {
         let shown = args.over.display();
@@ -110,7 +117,12 @@ fn folder(
     let block = args
         .block
         .map_or_else(|| usual_block(rows, least_block), |block| block.get());
-    let options = (format, !args.no_error_estimate, args.equations);
+    let options = Options {
+        format,
+        error_estimate: !args.no_error_estimate,
+        equations: args.equations,
+        times,
+    };
     let manifest = Manifest::new(inputs, rows, block, options);
     Folder::open(output, manifest, format, args.block.is_none())
 }

@@ -9,11 +9,12 @@ use hamel_console::files::{IsOwn, Output, admit, first_line};
 use hamel_console::output::Failure;
 use hamel_lanes::Ways;
 use hamel_sweep::Sweep;
-use hamel_sweep::summary::{Causes, Failures, Figures, PASSES, QUANTILES, Selection};
+use hamel_sweep::summary::{Causes, Failures, Figures, QUANTILES, Selection};
 use serde_json::{Value, json};
 use std::fmt;
 use std::fs::File;
 use std::io;
+use std::ops::Range;
 use std::time::Duration;
 
 /// Names of the figures of a column.
@@ -26,6 +27,9 @@ pub struct Summary {
     folder: String,
     names: Vec<String>,
     figures: Vec<Figures>,
+    /// Times of samples, s, and where the names and figures of the last state and of each sample stand.
+    times: Vec<f64>,
+    states: Vec<Range<usize>>,
     causes: Causes,
     rows: u64,
     /// Rows that this command moved, how long it took, and which way they went.
@@ -47,7 +51,7 @@ impl Summary {
     ) -> Result<Self, Failure> {
         let names = sweep.results();
         let (mut selection, mut causes) = (Selection::new(names.len()), Causes::default());
-        for pass in 0..PASSES {
+        for pass in 0..selection.passes() {
             folder.read(names.len(), &mut |row, outcome, numbers| {
                 selection.see(numbers);
                 if pass == 0 {
@@ -62,6 +66,8 @@ impl Summary {
         Ok(Self {
             folder: folder.path().display().to_string(),
             names: names.to_vec(),
+            times: sweep.times().to_vec(),
+            states: sweep.states().collect(),
             figures,
             causes,
             rows: folder.manifest.rows,
@@ -111,6 +117,8 @@ impl Summary {
             names: &self.names,
             figures: &self.figures,
             histograms: &self.histograms,
+            times: &self.times,
+            states: &self.states,
         };
         page.write(drawn.to_string())
     }
@@ -228,17 +236,22 @@ impl fmt::Display for Summary {
         }
         told_ways(ways, f)?;
         writeln!(f, "results   {}", self.folder)?;
-        let width = self
-            .names
-            .iter()
-            .map(|name| name.chars().count())
-            .max()
-            .unwrap_or(0);
+        if !self.times.is_empty() {
+            let (count, ending) = (self.times.len(), self.format.name());
+            writeln!(
+                f,
+                "samples   {count} of each motion: summary.{ending} has their quantiles, summary.html the bands"
+            )?;
+        }
+        let last = self.states.first().map_or(0, |state| state.end);
+        let names = &self.names[..last];
+        let width = names.iter().map(|name| name.chars().count()).max();
+        let width = width.unwrap_or(0);
         write!(f, "\n{:width$}", "")?;
         for name in &FIGURES[1..] {
             write!(f, " {name:>13}")?;
         }
-        for (name, own) in self.names.iter().zip(&self.figures) {
+        for (name, own) in names.iter().zip(&self.figures) {
             write!(f, "\n{name:width$}")?;
             for number in &numbers(own)[1..] {
                 write!(f, " {:>13}", short(*number))?;

@@ -8,6 +8,7 @@ mod equations;
 mod place;
 mod refused;
 mod results;
+mod samples;
 #[cfg(unix)]
 mod stopped;
 mod tables;
