@@ -22,15 +22,20 @@ const ALONE: [&str; 7] = [
     "three_rrr",
 ];
 
+// An entry is a constant: what it builds is compiled wherever it is named. By the functions below it is compiled once, and not again with the tests.
+
+/// All joints of [`joints`].
+pub fn entries() -> Vec<JointEntry> {
+    joints::ENTRIES.to_vec()
+}
+
 /// The joints of which random trees are made.
 pub fn of_trees() -> impl Iterator<Item = JointEntry> {
-    let entries = joints::ENTRIES.iter().copied();
+    let entries = entries().into_iter();
     entries.filter(|entry| !ALONE.contains(&entry.name))
 }
 
 /// All joints of [`mod@held_out`].
-///
-/// An entry is a constant: what it builds is compiled wherever it is named. Here it is compiled once, and not again with each test.
 pub fn held_out() -> JointRegistry {
     let mut registry = JointRegistry::new();
     for entry in held_out::ENTRIES {
@@ -38,6 +43,11 @@ pub fn held_out() -> JointRegistry {
         let _ = registry.insert(*entry);
     }
     registry
+}
+
+/// All joints of [`mod@names`].
+pub fn names() -> Vec<JointEntry> {
+    names::ENTRIES.to_vec()
 }
 
 /// Joints unlike those of the library, which the generator's own tests derive.

@@ -4,7 +4,9 @@
 mod common;
 
 mod choice;
+mod coupled;
 mod dense;
+mod elements;
 mod energy;
 mod events;
 mod finite;
@@ -14,3 +16,4 @@ mod requests;
 mod singular;
 mod stiff;
 mod support;
+mod together;
