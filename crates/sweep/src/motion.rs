@@ -43,6 +43,9 @@ pub struct Sweep {
 /// Column of the end of motions.
 const END: &str = "simulation.t_end";
 
+/// Columns of samples at most: the summary holds some ten kilobytes for each.
+const MOST_SAMPLED: usize = 20_000;
+
 /// Times of samples that are nearer to each other, as parts of their size, are taken as one: ends of steps are rounded.
 const APART: f64 = 1e-12;
 
@@ -89,7 +92,7 @@ impl Sweep {
     /// With coordinates and speeds of all joints at these times too, s, ascending: columns that end with `@` and the time. They are NaN in rows whose motion ends before.
     ///
     /// # Errors
-    /// Times that are not finite, negative, not in their order, or after the end of the scene's motion where the table does not change it; all of them.
+    /// Times that are not finite, negative, not in their order, or after the end of the scene's motion where the table does not change it; all of them. More than 20 000 columns.
     pub fn sampling(mut self, times: &[f64], registry: &JointRegistry) -> Result<Self, SweepError> {
         let scene = Scene::parse(self.document.text(), &self.source, registry)?;
         self.sample(&scene, times)?;
@@ -99,7 +102,7 @@ impl Sweep {
     /// The same at time 0, every `step` seconds after it, and at the end of the scene's motion.
     ///
     /// # Errors
-    /// A step that is not above 0, or that makes more than 1e6 samples.
+    /// A step that is not above 0, or that makes more than 1e6 samples or 20 000 columns.
     pub fn sampling_every(
         mut self,
         step: f64,
@@ -123,7 +126,13 @@ impl Sweep {
         } else {
             scene.settings.t_end
         };
-        let refused = refused_times(times, end);
+        let mut refused = refused_times(times, end);
+        let own = self.results.states().next().map_or(0, |state| state.len());
+        let count = times.len().saturating_mul(own);
+        if count > MOST_SAMPLED {
+            let times = times.len();
+            refused.push(format!("{times} samples of {own} coordinates and speeds make {count} columns, and the limit is {MOST_SAMPLED}"));
+        }
         if !refused.is_empty() {
             return Err(SweepError::Times(refused));
         }

@@ -92,14 +92,14 @@ impl fmt::Display for Page<'_> {
         writeln!(f, "<pre>{}</pre>\n<main>", escaped(self.summary))?;
         let (last, samples) = self.states.split_first().unzip();
         let last = last.cloned().unwrap_or(0..0);
-        for (place, column) in last.clone().enumerate() {
+        for (place, column) in last.enumerate() {
             let figures = samples.into_iter().flatten();
             let figures = figures.map(|state| &self.figures[state.start + place]);
             let instants = self.times.iter().copied().zip(figures).collect();
             band::figure(f, &escaped(&self.names[column]), instants)?;
         }
         let columns = self.names.iter().zip(self.figures).zip(&self.histograms.0);
-        for ((name, figures), histogram) in columns.take(last.end) {
+        for ((name, figures), histogram) in columns {
             figure(f, name, figures, histogram)?;
         }
         writeln!(f, "</main></html>")

@@ -61,13 +61,15 @@ impl Summary {
             selection.narrow();
         }
         let figures = selection.figures();
-        let mut histograms = Histograms::new(&figures);
+        let states: Vec<_> = sweep.states().collect();
+        let last = states.first().map_or(0, |state| state.end);
+        let mut histograms = Histograms::new(&figures[..last]);
         folder.read(names.len(), &mut |_, _, numbers| histograms.see(numbers))?;
         Ok(Self {
             folder: folder.path().display().to_string(),
             names: names.to_vec(),
             times: sweep.times().to_vec(),
-            states: sweep.states().collect(),
+            states,
             figures,
             causes,
             rows: folder.manifest.rows,

@@ -117,4 +117,8 @@ fn times_that_no_motion_has_are_refused_at_once() {
         "--sample-step 0",
         "error: the time between two samples is 0 s, it must be above 0\n",
     );
+    refused(
+        "--sample-step 1e-5",
+        "error: 30001 samples of 2 coordinates and speeds make 60002 columns, and the limit is 20000\n",
+    );
 }
