@@ -6,13 +6,15 @@ use hamel::erased::AnyJoint;
 use hamel::integrate::{FixedSteps, State, Step};
 use hamel::scene::Scene;
 use hamel_compiler::stepping::Position;
-use hamel_sweep::Track;
+use hamel_sweep::{Sweep, Track};
 use std::ops::Range;
 
 /// The ϕ from which on a joint gets a new base point, as in the integrators of the tree.
 const FAR: f64 = 0.5;
 /// The ϕ beyond which a step says nothing: the tree judges what goes so fast.
 const TOO_FAR: f64 = 1.0;
+/// The part of a step that is taken along by the last one; a generous bound of what [`FixedSteps`] does.
+const SLIVER: f64 = 1e-9;
 /// Steps after which somebody may want to stop.
 const ASKED: usize = 64;
 
@@ -59,22 +61,27 @@ struct Group {
     step: f64,
     count: usize,
     motions: Vec<usize>,
-    /// The next sample.
+    /// When samples are taken, s, and the next of them.
+    times: Vec<f64>,
     sample: usize,
 }
 
-/// The sample at this time, among `times`, of which `next` comes next. Its motions have [steps that end there](ends_at).
-fn sample_at(time: f64, times: &[f64], next: &mut usize) -> Option<usize> {
-    let wanted = times.get(*next)?;
-    // Where the clock is added up, rounding is another than where steps are multiplied.
-    let is_due = is_rounding(0.5 * (time - wanted), *wanted);
-    *next += usize::from(is_due);
-    is_due.then(|| *next - 1)
+impl Group {
+    /// The sample that is taken at the end of the last step, which ends [at that time](ends_at).
+    fn sample(&mut self) -> Option<usize> {
+        let wanted = self.times.get(self.sample)?;
+        // Where the clock is added up, rounding is another than where steps are multiplied.
+        let is_due = is_rounding(0.5 * (self.steps.time() - wanted), *wanted);
+        self.sample += usize::from(is_due);
+        is_due.then(|| self.sample - 1)
+    }
 }
 
-/// Whether steps of `dt` until `end` end at `time`, or are over before.
+/// Whether one of the steps of `dt` until `end` ends at `time`, which is not after `end`.
 pub fn ends_at(time: f64, dt: f64, end: f64) -> bool {
-    time >= end || is_rounding((time / dt).round() * dt - time, time)
+    // The last step takes a sliver along that would be left behind it.
+    let is_before_last = end - time > 2.0 * SLIVER * dt;
+    time == end || is_before_last && is_rounding((time / dt).round() * dt - time, time)
 }
 
 /// Whether two times that differ by so much are one: both are decimals and products of decimals, with two roundings each.
@@ -82,18 +89,18 @@ fn is_rounding(difference: f64, time: f64) -> bool {
     difference.abs() <= 4.0 * f64::EPSILON * time
 }
 
-/// Moves at most [`WIDTH`] scenes to their ends. Their samples are taken at `times`. A motion without an end is left to the tree; `None` where `stop` tells to stop.
+/// Moves at most [`WIDTH`] scenes to their ends. A motion without an end is left to the tree; `None` where `stop` tells to stop.
 pub fn moved<'a>(
     plan: &'a Plan,
     starts: Vec<Start<'a>>,
-    times: &[f64],
+    sweep: &Sweep,
     stop: &dyn Fn() -> bool,
 ) -> Option<Vec<Option<End>>> {
     debug_assert!(starts.len() <= WIDTH);
     let mut ends: Vec<Option<End>> = starts.iter().map(|_| None).collect();
-    let mut groups = groups(&starts, times);
+    let mut groups = groups(&starts, sweep);
     let mut block = Block::new(plan, starts);
-    block.begin(times.first() == Some(&0.0));
+    block.begin(&mut groups);
     for number in 1_usize.. {
         groups.retain_mut(|group| {
             let next = group.steps.next();
@@ -121,12 +128,12 @@ pub fn moved<'a>(
         if number.is_multiple_of(ASKED) && stop() {
             return None;
         }
-        block.step(&mut groups, times);
+        block.step(&mut groups);
     }
     (!stop()).then_some(ends)
 }
 
-fn groups(starts: &[Start<'_>], times: &[f64]) -> Vec<Group> {
+fn groups(starts: &[Start<'_>], sweep: &Sweep) -> Vec<Group> {
     let mut groups: Vec<([u64; 2], Group)> = vec![];
     for (motion, start) in starts.iter().enumerate() {
         let (end, dt) = (start.scene.settings.t_end, start.dt);
@@ -139,8 +146,8 @@ fn groups(starts: &[Start<'_>], times: &[f64]) -> Vec<Group> {
                     step: f64::NAN,
                     count: 0,
                     motions: vec![motion],
-                    // That at time 0 is taken before the first step.
-                    sample: usize::from(times.first() == Some(&0.0)),
+                    times: sweep.times_until(end),
+                    sample: 0,
                 };
                 groups.push((key, group));
             }
@@ -171,7 +178,7 @@ impl<'a> Block<'a> {
     }
 
     /// Puts all numbers in their places; places without a motion hold those of the last one.
-    fn begin(&mut self, has_sample: bool) {
+    fn begin(&mut self, groups: &mut [Group]) {
         let places = &self.plan.places;
         for lane in 0..WIDTH {
             let Some(start) = self.starts.get(lane).or(self.starts.last()) else {
@@ -192,21 +199,23 @@ impl<'a> Block<'a> {
         }
         let program = &self.plan.program;
         self.machine.run(&program.once, &program.numbers);
-        for motion in 0..self.starts.len() {
-            self.follow(motion, (0.0, 0), has_sample.then_some(0));
-        }
+        self.follow_all(groups);
     }
 
-    fn step(&mut self, groups: &mut [Group], times: &[f64]) {
+    fn step(&mut self, groups: &mut [Group]) {
         let program = &self.plan.program;
         self.machine.run(&program.step, &program.numbers);
         self.move_bases();
+        self.follow_all(groups);
+    }
+
+    /// Keeps what is to be kept of the states at which the groups have arrived.
+    fn follow_all(&mut self, groups: &mut [Group]) {
         for group in groups {
-            let time = group.steps.time();
-            let sample = sample_at(time, times, &mut group.sample);
+            let sample = group.sample();
             if self.follows || sample.is_some() {
                 for &motion in &group.motions {
-                    self.follow(motion, (time, group.count), sample);
+                    self.follow(motion, (group.steps.time(), group.count), sample);
                 }
             }
         }
@@ -264,9 +273,6 @@ impl<'a> Block<'a> {
 
     /// Keeps what is to be kept of a motion.
     fn follow(&mut self, motion: usize, (time, number): (f64, usize), sample: Option<usize>) {
-        if !self.follows && sample.is_none() {
-            return;
-        }
         let state = self.state(motion, time);
         let start = &mut self.starts[motion];
         let step = Step {

@@ -222,12 +222,7 @@ impl Own<'_> {
             dt: built.row.dt,
             track: lanes.sweep.track(),
         });
-        let ends = moved(
-            &lanes.plan,
-            starts.collect(),
-            lanes.sweep.times(),
-            watch.stop,
-        )?;
+        let ends = moved(&lanes.plan, starts.collect(), lanes.sweep, watch.stop)?;
         let mut moved_here = 0;
         for ((place, built), end) in going.iter().zip(ends) {
             let Some(End {

@@ -56,7 +56,8 @@ pub fn described(
     let (description, scene) = sweep.described(cells, registry).map_err(Alone::Refused)?;
     let (tableau, dt) = method(&scene).map_err(Alone::Tree)?;
     let end = scene.settings.t_end;
-    if let Some(time) = sweep.times().iter().find(|time| !ends_at(**time, dt, end)) {
+    let times = sweep.times_until(end);
+    if let Some(time) = times.iter().find(|time| !ends_at(**time, dt, end)) {
         return Err(Alone::Tree(format!(
             "no step ends at {time} s, where a sample is taken"
         )));

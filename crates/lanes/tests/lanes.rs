@@ -227,6 +227,44 @@ fn samples_are_those_of_the_tree() {
     }
 }
 
+/// Ends that differ from samples by rounding, by less than what the last step takes along, and by more.
+#[test]
+fn samples_at_the_ends_of_motions_are_those_of_the_tree() {
+    let joints = hamel_sweep::joints();
+    let sweep = swept(&double_pendulum(), &["simulation.t_end"]);
+    let sweep = sweep.sampling(&[0.1, 0.1 + 0.2, 0.5], &joints);
+    let sweep = sweep.expect("times that ascend");
+    let ends = [
+        0.05,
+        0.3,
+        0.1 + 0.2,
+        0.300_000_000_001,
+        0.3001,
+        0.302,
+        0.5,
+        0.7,
+    ];
+    let rows: Vec<Cells> = ends.map(|end| Cells::from([end])).into();
+    let (moved, ways) = side_by_side(&sweep, &rows, &rows);
+    let left = "no step ends at 0.30000000000000004 s, where a sample is taken";
+    assert_eq!((ways.lanes, ways.tree.get(left)), (7, Some(&1)), "{ways:?}");
+    for ((cells, own), end) in rows.iter().zip(&moved).zip(ends) {
+        let tree = sweep.motion(cells, &joints);
+        let reached = sweep.times_until(end).len();
+        for (number, state) in sweep.states().skip(1).enumerate() {
+            for place in state {
+                let (a, b) = (own.numbers[place], tree.numbers[place]);
+                assert_eq!(a.is_finite(), number < reached, "{end}: {a:e}");
+                assert_eq!(b.is_finite(), number < reached, "{end}: {b:e} by the tree");
+                assert!(
+                    a.is_nan() || (a - b).abs() < ROUNDING,
+                    "{end}: {a:e}, {b:e}"
+                );
+            }
+        }
+    }
+}
+
 fn bits(rows: &[Row]) -> Vec<Vec<u64>> {
     let all = rows
         .iter()

@@ -71,6 +71,11 @@ impl Document {
         }
     }
 
+    /// Whether a column changes the number under these keys.
+    pub fn changes(&self, keys: &[&str]) -> bool {
+        self.places.iter().any(|place| place.keys == keys)
+    }
+
     /// Columns of numbers in the `initial` of bodies: the column, the body's name, and the keys from there.
     pub fn starts(&self) -> impl Iterator<Item = (usize, &str, Vec<&str>)> {
         self.places.iter().filter_map(|place| {

@@ -11,6 +11,7 @@ mod results;
 mod run;
 mod start;
 pub mod summary;
+mod times;
 mod track;
 
 pub use motion::{Sweep, SweepError};

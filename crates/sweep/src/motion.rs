@@ -4,10 +4,11 @@ use crate::document::Document;
 use crate::results::{Outcome, Results, Row, outcome};
 use crate::run::Cells;
 use crate::start::start_columns;
+use crate::times;
 use crate::track::Track;
-use hamel::integrate::State;
+use hamel::integrate::{State, Step};
 use hamel::registry::JointRegistry;
-use hamel::scene::{Diagnostics, Scene, SceneDescription, Settings, StartNumber};
+use hamel::scene::{Diagnostics, Scene, SceneDescription, StartNumber};
 use hamel::{Error, Model};
 use std::cell::RefCell;
 use std::ops::Range;
@@ -39,15 +40,6 @@ pub struct Sweep {
     results: Arc<Results>,
     has_error: bool,
 }
-
-/// Column of the end of motions.
-const END: &str = "simulation.t_end";
-
-/// Columns of samples at most: the summary holds some ten kilobytes for each.
-const MOST_SAMPLED: usize = 20_000;
-
-/// Times of samples that are nearer to each other, as parts of their size, are taken as one: ends of steps are rounded.
-const APART: f64 = 1e-12;
 
 impl Sweep {
     /// Motions of the scene in `text`, which messages call `source`, with other numbers under the names `columns`. A name is the way through the scene file to a number, keys
@@ -93,58 +85,42 @@ impl Sweep {
     ///
     /// # Errors
     /// Times that are not finite, negative, not in their order, or after the end of the scene's motion where the table does not change it; all of them. More than 20 000 columns.
-    pub fn sampling(mut self, times: &[f64], registry: &JointRegistry) -> Result<Self, SweepError> {
+    pub fn sampling(self, times: &[f64], registry: &JointRegistry) -> Result<Self, SweepError> {
         let scene = Scene::parse(self.document.text(), &self.source, registry)?;
-        self.sample(&scene, times)?;
-        Ok(self)
+        self.sampled(&scene, times)
     }
 
     /// The same at time 0, every `step` seconds after it, and at the end of the scene's motion.
     ///
     /// # Errors
     /// A step that is not above 0, or that makes more than 1e6 samples or 20 000 columns.
-    pub fn sampling_every(
-        mut self,
-        step: f64,
-        registry: &JointRegistry,
-    ) -> Result<Self, SweepError> {
+    pub fn sampling_every(self, step: f64, registry: &JointRegistry) -> Result<Self, SweepError> {
         let scene = Scene::parse(self.document.text(), &self.source, registry)?;
-        let settings = Settings {
-            sample_step: step,
-            ..scene.settings
-        };
-        let times = settings.sample_times(0.0);
-        let times = times.map_err(|error| SweepError::Times(vec![error.to_string()]))?;
-        self.sample(&scene, &times)?;
-        Ok(self)
+        let every = times::every(step, &scene);
+        let every = every.map_err(|mistake| SweepError::Times(vec![mistake]))?;
+        self.sampled(&scene, &every)
     }
 
-    fn sample(&mut self, scene: &Scene, times: &[f64]) -> Result<(), SweepError> {
-        let is_open = self.columns.iter().any(|name| name == END);
-        let end = if is_open {
-            f64::INFINITY
-        } else {
-            scene.settings.t_end
+    fn sampled(mut self, scene: &Scene, times: &[f64]) -> Result<Self, SweepError> {
+        let end = match self.document.changes(&["simulation", "t_end"]) {
+            true => f64::INFINITY,
+            false => scene.settings.t_end,
         };
-        let mut refused = refused_times(times, end);
-        let own = self.results.states().next().map_or(0, |state| state.len());
-        let count = times.len().saturating_mul(own);
-        if count > MOST_SAMPLED {
-            let times = times.len();
-            refused.push(format!("{times} samples of {own} coordinates and speeds make {count} columns, and the limit is {MOST_SAMPLED}"));
-        }
-        if !refused.is_empty() {
-            return Err(SweepError::Times(refused));
-        }
-        // No time is told as −0.
-        let times: Vec<f64> = times.iter().map(|time| time + 0.0).collect();
+        let numbers = self.states().next().map_or(0, |state| state.len());
+        let times = times::checked(times, numbers, end).map_err(SweepError::Times)?;
         self.results = Arc::new(Results::new(&scene.mechanism, self.has_error, &times));
-        Ok(())
+        Ok(self)
     }
 
     /// The times of the samples, s.
     pub fn times(&self) -> &[f64] {
         self.results.times()
+    }
+
+    /// Those of a motion that ends at `end`, s: the first of [`Sweep::times`], the last of which is `end` itself where only rounding lies between.
+    pub fn times_until(&self, end: f64) -> Vec<f64> {
+        let times = self.times().iter();
+        times.map_while(|&time| times::until(time, end)).collect()
     }
 
     /// Places among the [`Sweep::results`] of coordinates and speeds: of the last state, then of each sample. All have the same order.
@@ -282,19 +258,13 @@ impl Sweep {
         }
     }
 
-    /// The times of samples that a motion of this scene has.
-    fn reached(&self, scene: &Scene) -> Vec<f64> {
-        let times = self.times().iter().copied();
-        times.filter(|time| *time <= scene.settings.t_end).collect()
-    }
-
     fn moved(&self, scene: Scene, stop: &dyn Fn() -> bool) -> Result<Row, String> {
         let model = Model::new(scene);
         let scene = model.scene();
         let track = RefCell::new(self.track());
         let simulation = model
             .simulate()
-            .sample_at(self.reached(scene))
+            .sample_at(self.times_until(scene.settings.t_end))
             .stopping(stop)
             .observing(|step| track.borrow_mut().follow(&scene.mechanism, step));
         let told = |error: Error| told(&error);
@@ -306,6 +276,9 @@ impl Sweep {
             false => (simulation.run().map_err(told)?, None),
         };
         let work = (solution.statistics.steps, error.as_ref());
+        // What ends a motion within a step is not shown.
+        let end = end_of(&solution.state, work.0);
+        track.borrow_mut().follow(&scene.mechanism, &end);
         let numbers = self
             .results
             .row(&scene.mechanism, &solution.state, work, &track.borrow())?;
@@ -316,20 +289,19 @@ impl Sweep {
     }
 }
 
-/// What is wrong with times of samples of motions that end at `end`.
-fn refused_times(times: &[f64], end: f64) -> Vec<String> {
-    let mut last = f64::NEG_INFINITY;
-    let refused = times.iter().filter_map(|&time| {
-        let before = std::mem::replace(&mut last, time);
-        if !(time.is_finite() && time >= 0.0) {
-            return Some(format!("a sample at {time} s: times are finite, and not negative"));
-        }
-        if time - before <= APART * time {
-            return Some(format!("a sample at {time} s comes after one at {before} s: times ascend, by more than rounding"));
-        }
-        (time > end).then(|| format!("a sample at {time} s: motions end at {end} s"))
-    });
-    refused.collect()
+/// The last state as an observer sees it.
+fn end_of(state: &State, steps: usize) -> Step<'_> {
+    Step {
+        time: state.time,
+        // 0 would begin another motion.
+        number: steps.max(1),
+        configuration: &state.configuration,
+        speeds: &state.speeds,
+        momenta: None,
+        sample: None,
+        is_within: false,
+        carried: None,
+    }
 }
 
 /// In one line.

@@ -156,3 +156,47 @@ fn a_sound_row_does_not_help_a_scene_with_mistakes() {
     let refused = Sweep::new(&wrong, "arm.toml", &["body.arm.mass"], &joints);
     assert!(matches!(refused, Err(SweepError::Scene(_))));
 }
+
+/// The last state is between the ends of steps, where angles known up to turns were not followed before.
+#[test]
+fn an_event_ends_a_row_at_its_angle() {
+    let stop = "[[event]]\nname = \"there\"\nbody = \"arm\"\nalong = [0.0, 1.0, 0.0]\nvalue = 0.2\ndirection = \"falling\"\nthen = \"stop\"\n[simulation]";
+    let text = ARM
+        .replace("[simulation]", stop)
+        .replace("t_end = 0.1", "t_end = 5.0");
+    let joints = hamel_sweep::joints();
+    let sweep = Sweep::new(&text, "arm.toml", &[SPEED], &joints).expect("a scene");
+    let row = sweep.motion(&Cells::from([9.0]), &joints);
+    assert_eq!(row.outcome, Outcome::Event("there".into()));
+    let place = sweep
+        .results()
+        .iter()
+        .position(|name| name == "arm.q.q_rad");
+    let angle = row.numbers[place.expect("an angle")];
+    let wanted = std::f64::consts::PI - (0.2_f64 / 0.3).asin();
+    assert!((angle - wanted).abs() < 1e-9, "{angle:?}, {wanted:?}");
+}
+
+/// Between the ends of steps too, beside the motions that estimates take.
+#[test]
+fn samples_are_the_states_at_their_times() {
+    let joints = hamel_sweep::joints();
+    let dense = ARM.replace("[simulation]", "[simulation]\nsampling = \"dense\"");
+    for (text, tolerance) in [(ARM, 1e-9), (&*dense, 1e-6)] {
+        let sweep = Sweep::new(text, "arm.toml", &[SPEED], &joints).expect("a scene");
+        let sweep = sweep.sampling(&[0.0, 0.013, 0.1], &joints).expect("times");
+        let sweep = sweep.estimating(&joints).expect("a scene");
+        let row = sweep.motion(&Cells::from([3.0]), &joints);
+        let shorter = text.replace("t_end = 0.1", "t_end = 0.013");
+        let shorter = Sweep::new(&shorter, "arm.toml", &[SPEED], &joints).expect("a scene");
+        let until = shorter.motion(&Cells::from([3.0]), &joints);
+        let states: Vec<&[f64]> = sweep.states().map(|at| &row.numbers[at]).collect();
+        assert_eq!(states[1], [0.0, 3.0]);
+        assert_eq!(states[3], states[0]);
+        let wanted = &until.numbers[shorter.states().next().expect("the last")];
+        let pairs = states[2].iter().zip(wanted);
+        for (found, wanted) in pairs {
+            assert!((found - wanted).abs() < tolerance, "{found:e}, {wanted:e}");
+        }
+    }
+}

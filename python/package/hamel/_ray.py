@@ -24,6 +24,9 @@ from ._sweep import Options, made, numbers, rows_at
 _PARTS, _LEAST = 64, 100
 _MOST_BY_TREE, _MOST_IN_LANES = 5_000, 100_000
 
+# Numbers of the results of a part at most: with many samples parts have fewer rows.
+_MOST_NUMBERS = 10_000_000
+
 # Parts that go into one file: to start what writes it takes longer than to write.
 _FILE = 4
 
@@ -281,6 +284,7 @@ def _rows_of_dataset(ray: Any, table: Any) -> Rows:
 def _part(rows: int, swept: _hamel.Sweep) -> int:
     """Rows that are moved at once."""
     most = _MOST_IN_LANES if swept.why_tree is None else _MOST_BY_TREE
+    most = min(most, max(_LEAST, _MOST_NUMBERS // len(swept.results)))
     return min(max(rows // _PARTS, _LEAST), most)
 
 

@@ -63,7 +63,7 @@ pub struct Args {
     #[arg(long, value_name = "COUNT")]
     pub workers: Option<NonZero<usize>>,
 
-    /// Rows of one part of the results; a kill loses the parts under way [default: a 64th of the table, between 8 and 5000]
+    /// Rows of one part of the results; a kill loses the parts under way [default: a 64th of the table, between 8 and 5000; fewer with many samples]
     #[arg(long, value_name = "ROWS")]
     pub block: Option<NonZero<u64>>,
 
@@ -79,7 +79,7 @@ pub struct Args {
     #[arg(long, value_enum, default_value_t = Equations::Auto)]
     pub equations: Equations,
 
-    /// Coordinates and speeds at these times too, s, ascending; NaN in rows whose motion ends before
+    /// Coordinates and speeds at these times too, s, ascending; NaN in rows whose motion ends before. Steps end there unless the scene says sampling = "dense"; side by side they are times at which steps end anyway
     #[arg(
         long,
         value_name = "T1,T2,…",

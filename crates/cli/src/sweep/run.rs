@@ -17,6 +17,9 @@ use std::hash::Hasher;
 use std::path::Path;
 use std::time::Instant;
 
+/// Numbers of a part at most, 16 MB of them, unless `--block` says otherwise.
+const MOST_CELLS: u64 = 2_000_000;
+
 /// Sweeps the scene of `args` over its table.
 ///
 /// # Errors
@@ -38,7 +41,7 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     let rows = table.count()?;
     let moving = Moving::new(args, &sweep, registry, rows)?;
     let size = (rows, moving.least_block());
-    let mut folder = folder(args, &text, size, (sweep.times(), output))?;
+    let mut folder = folder(args, &text, size, (&sweep, output))?;
     let start = Instant::now();
     let moved = move_missing(args, &sweep, &folder, moving.movers())?;
     let work = (moved, start.elapsed(), moving.ways(moved));
@@ -88,7 +91,7 @@ fn folder(
     args: &Args,
     scene: &str,
     (rows, least_block): (u64, u64),
-    (times, output): (&[f64], &Path),
+    (sweep, output): (&Sweep, &Path),
 ) -> Result<Folder, Failure> {
     if rows == 0 {
         let shown = args.over.display();
@@ -114,22 +117,23 @@ fn folder(
             bytes,
         },
     ];
-    let block = args
-        .block
-        .map_or_else(|| usual_block(rows, least_block), |block| block.get());
+    let columns = sweep.results().len();
+    let usual = || usual_block(rows, least_block, columns);
+    let block = args.block.map_or_else(usual, |block| block.get());
     let options = Options {
         format,
         error_estimate: !args.no_error_estimate,
         equations: args.equations,
-        times,
+        times: sweep.times(),
     };
     let manifest = Manifest::new(inputs, rows, block, options);
     Folder::open(output, manifest, format, args.block.is_none())
 }
 
 /// A 64th of the rows, so that a kill of a small sweep of long motions loses little, and not so many that a large one holds much in memory; a multiple of those that go side by side.
-fn usual_block(rows: u64, least: u64) -> u64 {
-    let block = rows.div_ceil(64).clamp(least, 5000.max(least));
+fn usual_block(rows: u64, least: u64, columns: usize) -> u64 {
+    let most = (MOST_CELLS / columns.max(1) as u64).min(5000);
+    let block = rows.div_ceil(64).clamp(least, most.max(least));
     block.next_multiple_of(least)
 }
 
