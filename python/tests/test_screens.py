@@ -34,8 +34,11 @@ ROBOTS = {
 # Of `example-robot-data`, those that HAMEL_ROBOTS has: an arm, a quadruped, two humanoids and a hand.
 MESHES = ["panda_description/urdf/panda.urdf", "anymal_b_simple_description/robots/anymal.urdf", "talos_data/robots/talos_reduced.urdf", "icub_description/robots/icub.urdf", "allegro_hand_description/urdf/allegro_right_hand.urdf"]
 
+# Its page has bands over time.
+SAMPLED = "arm"
+
 SWEEPS = {
-    "arm": (SCENES / "sweep/arm.toml", SCENES / "sweep/tolerances.csv"),
+    SAMPLED: (SCENES / "sweep/arm.toml", SCENES / "sweep/tolerances.csv"),
     "pendulum": (PENDULUM, "body.lower.mass,body.upper.initial.configuration.1\n" + "".join(f"{0.8 + 0.01 * row},{0.02 * row}\n" for row in range(40))),
     "failures": (PENDULUM, "body.lower.mass\n" + "".join(f"{0.01 * (row - 5)}\n" for row in range(40))),
 }
@@ -62,6 +65,8 @@ def swept(name, folder):
         path.write_text(table)
         table = path
     options = [scene, "--over", table, "-o", folder / "out", "--no-error-estimate"]
+    if name == SAMPLED:
+        options += ["--sample-step", "0.02"]
     subprocess.run([sys.executable, "-m", "hamel", "sweep", *options], capture_output=True, timeout=300)
     return folder / "out/summary.html"
 
@@ -139,6 +144,7 @@ def test_sweeps_are_drawn(browser, name, tmp_path):
         check(found, faults, view)
         assert found["bars"] >= 20, view
         assert "energy_J" in found["text"]
+        assert ("elbow.q.q_rad over time" in found["text"]) == (name == SAMPLED)
 
 
 def test_a_page_that_is_empty_is_seen(browser, tmp_path):
