@@ -108,7 +108,7 @@ fn times_that_no_motion_has_are_refused_at_once() {
         assert!(!place.path("out").exists());
     };
     refused(
-        "--at -1,0.2,0.1,0.2,4",
+        "--at=-1,0.2,0.1,0.2,4",
         "error: a sample at -1 s: times are finite, and not negative\n\
          error: a sample at 0.1 s comes after one at 0.2 s: times ascend, by more than rounding\n\
          error: a sample at 4 s: motions end at 0.3 s\n",
