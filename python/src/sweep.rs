@@ -67,11 +67,13 @@ impl Sweep {
     #[new]
     fn new(
         py: Python<'_>,
-        (text, source): (String, String),
+        scene: (String, String),
         columns: Vec<String>,
-        (estimate, equations, times): (bool, String, Vec<f64>),
+        options: (bool, String, Vec<f64>),
         sample: Vec<Vec<f64>>,
     ) -> PyResult<Self> {
+        let (text, source) = scene;
+        let (estimate, equations, times) = options;
         if !["auto", "lanes", "tree"].contains(&&*equations) {
             let why = format!("equations is '{equations}': it must be 'auto', 'lanes' or 'tree'");
             return Err(errors::argument(py, why));
@@ -167,8 +169,13 @@ impl Sweep {
     ) -> PyResult<(Bound<'py, PyType>, Bound<'py, PyTuple>)> {
         let columns = self.moved.columns().to_vec();
         let (equations, sample) = &self.equations;
-        let options = (self.moved.estimates(), equations, self.moved.times().to_vec());
-        let arguments = ((&self.text, &self.source), columns, options, sample).into_pyobject(py)?;
+        let options = (
+            self.moved.estimates(),
+            equations,
+            self.moved.times().to_vec(),
+        );
+        let scene = (&self.text, &self.source);
+        let arguments = (scene, columns, options, sample).into_pyobject(py)?;
         Ok((py.get_type::<Self>(), arguments))
     }
 }
