@@ -88,7 +88,7 @@ fn every_licence_is_one_that_is_allowed() {
 }
 
 #[test]
-fn nothing_that_nobody_maintains_is_used() {
+fn nothing_that_is_denied_is_used() {
     let denied = listed("bans", "deny");
     for Locked { name, .. } in locked() {
         assert!(!denied.contains(&name), "{name}");
