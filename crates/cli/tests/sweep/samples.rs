@@ -115,7 +115,7 @@ fn times_that_no_motion_has_are_refused_at_once() {
     );
     refused(
         "--sample-step 0",
-        "error: the time between two samples is 0 s, it must be above 0\n",
+        "error: the time between two samples is 0.0 s, it must be above 0\n",
     );
     refused(
         "--sample-step 1e-5",
