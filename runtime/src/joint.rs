@@ -58,6 +58,7 @@ pub use structure::{Structure, Structures};
 pub use units::{Unit, Units};
 
 use crate::erased::Shared;
+use crate::matrix::{by_entry, identity, zeros};
 use crate::scalar::Scalar;
 use crate::spatial::Pose;
 use core::fmt::Debug;
@@ -79,7 +80,7 @@ pub const fn assert_kernel_interface(version: u32) {
 /// The matrix with the given rows, as emitted kernels write it.
 #[inline(always)]
 pub fn from_rows<T: Scalar, const R: usize, const C: usize>(rows: [[T; C]; R]) -> SMatrix<T, R, C> {
-    SMatrix::from_fn(|i, j| rows[i][j])
+    by_entry(|i, j| rows[i][j])
 }
 
 /// The matrix with the given rows at their numbers, and zeros elsewhere, as emitted kernels write it.
@@ -87,10 +88,10 @@ pub fn from_rows<T: Scalar, const R: usize, const C: usize>(rows: [[T; C]; R]) -
 pub fn rows_at<T: Scalar, const R: usize, const C: usize, const W: usize>(
     rows: [(usize, [T; C]); W],
 ) -> SMatrix<T, R, C> {
-    let mut matrix = SMatrix::zeros();
-    for (i, row) in rows {
-        for (j, entry) in row.into_iter().enumerate() {
-            matrix[(i, j)] = entry;
+    let mut matrix = zeros::<T, R, C>();
+    for (i, row) in &rows {
+        for (j, entry) in row.iter().enumerate() {
+            matrix.data.0[j][*i] = *entry;
         }
     }
     matrix
@@ -236,7 +237,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
                 "twist_map_child_gradient is not zero: the joint must implement it"
             )
         };
-        [SMatrix::zeros(); K]
+        [zeros(); K]
     }
 
     /// S₀(Q): ϕ̇ to v at ϕ = 0, (23).
@@ -247,7 +248,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
                 "velocity_map is not the identity: the joint must implement it"
             )
         };
-        SMatrix::identity()
+        identity()
     }
 
     /// S₀⁻¹(Q): v to ϕ̇ at ϕ = 0.
@@ -258,7 +259,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
                 "velocity_map_inverse is not the identity: the joint must implement it"
             )
         };
-        SMatrix::identity()
+        identity()
     }
 
     /// ∂S/∂ϕ at ϕ = 0, (23), (32); slice k is ∂S/∂ϕ_k.
@@ -269,7 +270,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
                 "velocity_map_gradient is not zero: the joint must implement it"
             )
         };
-        [SMatrix::zeros(); K]
+        [zeros(); K]
     }
 
     /// Σ_k γ_k v_k, (17): stands on the left of (24).
@@ -280,7 +281,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
                 "gamma is not zero: the joint must implement it"
             )
         };
-        SMatrix::zeros()
+        zeros()
     }
 
     /// J22(Q, p), (28): stands on the right of (27).
@@ -291,7 +292,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
                 "j22 is not zero: the joint must implement it"
             )
         };
-        SMatrix::zeros()
+        zeros()
     }
 
     /// A(Q) with Aᵀ v = 0, definition 2.
@@ -302,7 +303,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
                 "constraint has columns: the joint must implement it"
             )
         };
-        SMatrix::zeros()
+        zeros()
     }
 
     /// S̄(Q): speeds v̄ to v, definition 2, (15).
@@ -313,7 +314,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
                 "speed_basis is not the identity: the joint must implement it"
             )
         };
-        SMatrix::identity()
+        identity()
     }
 
     /// ∂S̄/∂ϕ; slice k is the derivative along ϕ_k.
@@ -324,7 +325,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
                 "speed_basis_gradient is not zero: the joint must implement it"
             )
         };
-        [SMatrix::zeros(); K]
+        [zeros(); K]
     }
 
     /// P(Q), a row for each of [`Joint::PORTS`]: v to its rate, rad/s or m/s. Efforts τ_p at the ports, N·m or N, are `τ = Pᵀ τ_p` in v.
@@ -415,7 +416,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
                 "retract_differential is not the identity: the joint must implement it"
             )
         };
-        SMatrix::identity()
+        identity()
     }
 
     /// ϕ̇ at finite ϕ from `rate`, the value S₀(Q′)⁻¹ v at the moved configuration Q′ = Φ(Q, ϕ).

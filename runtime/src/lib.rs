@@ -30,6 +30,7 @@ pub mod group;
 pub mod joint;
 #[cfg(feature = "alloc")]
 pub mod lu;
+mod matrix;
 #[cfg(feature = "alloc")]
 pub mod mechanism;
 pub mod registry;

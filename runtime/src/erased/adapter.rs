@@ -6,6 +6,7 @@ use super::slices::{Store, array, array_mut, nan, vector};
 use super::stored::{self, stored};
 use super::{AnyJoint, ExtendedJoint, FiniteMapError, Layout, Shared, Sizes};
 use crate::joint::{Joint, Pin, Port, PortLaw, Products, Structures, Units, VelocityFrame};
+use crate::matrix::{of_columns, product, transposed_product, zeros};
 use crate::spatial::{ArticulatedInertia, Pose, SpatialInertia};
 use crate::steps::{
     AtPort, Carrying, ChartDerivatives, EffortLaw, Field, Motion, MotionGradient, Pivot,
@@ -156,11 +157,11 @@ where
         let moved = stored(joint, moved);
         let velocity: SVector<f64, K> = match structures.speed_basis.is_identity() {
             true => vector(speeds),
-            false => joint.speed_basis(&moved) * vector::<f64, S>(speeds),
+            false => product(&joint.speed_basis(&moved), &vector(speeds)),
         };
         let rate = match structures.velocity_map.is_identity() {
             true => velocity,
-            false => joint.velocity_map_inverse(&moved) * velocity,
+            false => product(&joint.velocity_map_inverse(&moved), &velocity),
         };
         let local_rate = match structures.retract_differential.is_identity() {
             true => rate,
@@ -173,11 +174,10 @@ where
         let efforts = vector::<f64, K>(efforts);
         match J::STRUCTURES.speed_basis.is_identity() {
             true => efforts.store(out),
-            false => self
-                .0
-                .speed_basis(&stored(&self.0, q))
-                .tr_mul(&efforts)
-                .store(out),
+            false => {
+                let basis = self.0.speed_basis(&stored(&self.0, q));
+                transposed_product(&basis, &efforts).store(out)
+            }
         }
     }
 
@@ -191,7 +191,7 @@ where
         let q = stored(&self.0, q);
         let map = self.0.port_map(&q);
         let row = map.as_ref().get(port).copied().unwrap_or([nan(); K]);
-        SVector::from(row).store(out);
+        of_columns([row]).store(out);
     }
 
     fn pin_place(&self, q: &[f64], pin: usize) -> [f64; 9] {
@@ -363,7 +363,7 @@ where
             *own = Motion::unknown();
             return columns.fill(Vector6::repeat(nan()));
         };
-        let state = (&q, &SVector::from(*speeds));
+        let state = (&q, &of_columns([*speeds]));
         *own = Steps(&self.0).advance(state, joint_frame, parent, own_columns);
         if !accelerations.is_empty() {
             let accelerations = vector(accelerations);
@@ -460,7 +460,7 @@ where
             return out.fill(Variation::unknown());
         };
         let accelerations = match accelerations.is_empty() {
-            true => SVector::zeros(),
+            true => zeros(),
             false => vector(accelerations),
         };
         let state = (&stored(&self.0, q), &vector(speeds), &accelerations);

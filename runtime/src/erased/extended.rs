@@ -4,6 +4,7 @@ use super::slices::{Store, array, array_mut, nan};
 use super::stored::{self, stored};
 use super::{FiniteMapError, Sizes};
 use crate::joint::Joint;
+use crate::matrix::{of_columns, transposed_product};
 use crate::scalar::{Extended, Scalar};
 use crate::spatial::Pose;
 use crate::steps::{Motion, Steps};
@@ -72,7 +73,7 @@ where
             *own = Motion::unknown();
             return columns.fill(Vector6::repeat(nan()));
         };
-        let state = (&q, &SVector::from(*speeds));
+        let state = (&q, &of_columns([*speeds]));
         *own = Steps(&self.0).advance_shared(state, joint_frame, parent, own_columns);
     }
 
@@ -80,10 +81,10 @@ where
         let q = stored(&self.0, q);
         let map = self.0.port_map(&q);
         let row = map.as_ref().get(port).copied().unwrap_or([nan(); K]);
-        let row: SVector<Extended, K> = SVector::from(row);
+        let row: SVector<Extended, K> = of_columns([row]);
         match J::STRUCTURES.speed_basis.is_identity() {
             true => row.store(out),
-            false => self.0.speed_basis(&q).tr_mul(&row).store(out),
+            false => transposed_product(&self.0.speed_basis(&q), &row).store(out),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Slices and vectors or matrices of fixed sizes; a slice of another size reads as NaN, and is filled with NaN.
 
+use crate::matrix::{filled, of_columns};
 use crate::scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
@@ -14,8 +15,8 @@ pub(crate) fn nan<T: Scalar>() -> T {
 pub(crate) fn vector<T: Scalar, const D: usize>(slice: &[T]) -> SVector<T, D> {
     // Entry by entry: nalgebra's own way copies a number of bytes that is not known when it is compiled, by a call.
     match array(slice) {
-        Some(entries) => SVector::from(*entries),
-        None => SVector::from_element(nan()),
+        Some(entries) => of_columns([*entries]),
+        None => filled(nan()),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::slices::{Store, array, nan};
 use crate::joint::Joint;
+use crate::matrix::{filled, of_columns, zeros};
 use crate::scalar::Scalar;
 use nalgebra::SVector;
 
@@ -49,11 +50,13 @@ pub(super) fn exactly<
     slice: &[T],
 ) -> Option<SVector<T, N>> {
     match joint.idle() {
-        0 => array(slice).map(|entries| SVector::from(*entries)),
+        0 => array(slice).map(|entries| of_columns([*entries])),
         _ if slice.len() != size(joint) => None,
-        _ => Some(SVector::from_fn(|i, _| {
-            slice.get(i).copied().unwrap_or(T::zero())
-        })),
+        _ => {
+            let mut padded = zeros::<T, N, 1>();
+            padded.data.0[0][..slice.len()].copy_from_slice(slice);
+            Some(padded)
+        }
     }
 }
 
@@ -70,7 +73,10 @@ pub(super) fn stored<
     joint: &J,
     slice: &[T],
 ) -> SVector<T, N> {
-    exactly(joint, slice).unwrap_or(SVector::from_element(nan()))
+    match exactly(joint, slice) {
+        Some(own) => own,
+        None => filled(nan()),
+    }
 }
 
 /// What is stored of a vector into `out`; NaN where that is of another size.
@@ -90,9 +96,6 @@ pub(super) fn store<
     match joint.idle() {
         0 => vector.store(out),
         _ if out.len() != size(joint) => out.fill(nan()),
-        _ => out
-            .iter_mut()
-            .zip(vector.iter())
-            .for_each(|(out, entry)| *out = *entry),
+        _ => out.copy_from_slice(&vector.data.0[0][..out.len()]),
     }
 }

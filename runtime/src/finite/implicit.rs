@@ -9,6 +9,7 @@ mod tests;
 
 use super::solve::{orientation, substitute_back, triangulate};
 use super::{least_squares, norm, unless_apart, unless_turned};
+use crate::matrix::{by_entry, product, zeros};
 use crate::scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
@@ -34,12 +35,13 @@ pub fn retract<T: Scalar, const N: usize, const K: usize, const G: usize, const 
     relations: impl Fn(&SVector<T, N>, &SVector<T, G>) -> (SVector<T, C>, SMatrix<T, C, G>),
 ) -> SVector<T, N> {
     along_branch(
-        &(tangent * phi),
-        |lambda| normal * lambda,
+        &product(&tangent, phi),
+        |lambda| product(&normal, lambda),
         &displaced,
         |xi, ahead| {
             let (values, slopes) = relations(&displaced(xi), xi);
-            let (mut triangle, mut side) = (slopes * normal, values + slopes * ahead);
+            let (mut triangle, mut side) =
+                (product(&slopes, &normal), values + product(&slopes, ahead));
             triangulate(C, triangle.as_mut_slice(), side.as_mut_slice());
             let sign = orientation(C, triangle.as_slice());
             substitute_back(C, triangle.as_slice(), side.as_mut_slice());
@@ -57,15 +59,15 @@ pub(crate) fn along_branch<T: Scalar, const N: usize, const G: usize, const C: u
     displaced: impl Fn(&SVector<T, G>) -> SVector<T, N>,
     step: impl Fn(&SVector<T, G>, &SVector<T, G>) -> (SVector<T, C>, T),
 ) -> SVector<T, N> {
-    let here = SVector::zeros();
+    let here = zeros();
     let (_, own_sign) = step(&here, &here);
     let part = whole * T::from_f64(1.0 / PARTS as f64);
-    let mut lambda = SVector::<T, C>::zeros();
+    let mut lambda = zeros::<T, C, 1>();
     for n in 1..PARTS {
         let along = part * T::from_f64(n as f64);
         lambda += step(&(along + normal(&lambda)), &part).0;
     }
-    let (mut last, mut sign) = (SVector::zeros(), own_sign);
+    let (mut last, mut sign) = (zeros(), own_sign);
     for _ in 0..STEPS {
         (last, sign) = step(&(whole + normal(&lambda)), &here);
         lambda += last;
@@ -83,10 +85,10 @@ pub fn along_tangent<T: Scalar, const K: usize, const G: usize, const C: usize, 
     displacements: &SMatrix<T, G, M>,
     (tangent, normal): (SMatrix<T, G, K>, SMatrix<T, G, C>),
 ) -> SMatrix<T, K, M> {
-    let whole = SMatrix::<T, G, G>::from_fn(|i, j| match j < K {
-        true => tangent[(i, j)],
-        false => normal[(i, j - K)],
+    let whole = by_entry::<T, G, G>(|i, j| match j < K {
+        true => tangent.data.0[j][i],
+        false => normal.data.0[j - K][i],
     });
     let parts = least_squares(&whole, displacements);
-    SMatrix::from_fn(|k, j| parts[(k, j)])
+    by_entry(|k, j| parts.data.0[j][k])
 }

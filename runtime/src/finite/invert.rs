@@ -1,6 +1,7 @@
 //! Inverse and differential of any Φ; its derivative ∂Φ/∂ϕ of the stored scalars comes from dual numbers.
 
 use super::{least_squares, norm, unless_apart, with_jacobian};
+use crate::matrix::{entries, map, product, zeros};
 use crate::scalar::{Dual, Scalar};
 use nalgebra::{SMatrix, SVector};
 
@@ -24,7 +25,7 @@ pub fn local<T: Scalar, const N: usize, const K: usize>(
     target: &SVector<T, N>,
     retract: impl Fn(&SVector<Dual<T>, N>, &SVector<Dual<T>, K>) -> SVector<Dual<T>, N>,
 ) -> SVector<T, K> {
-    let base = q.map(Dual::constant);
+    let base = map(q, Dual::constant);
     let linear_at = |phi: &SVector<T, K>| {
         let (moved, tangent) = with_jacobian(|phi| retract(&base, phi), phi);
         let gap = target - moved;
@@ -38,7 +39,7 @@ pub fn local<T: Scalar, const N: usize, const K: usize>(
         phi += linear_at(&phi).2;
     }
     let (gap, tangent, step) = linear_at(&phi);
-    let missing = tangent * step;
+    let missing = product(&tangent, &step);
     unless_apart(&phi, norm(&gap) + norm(&missing), norm(target) + norm(q))
 }
 
@@ -47,7 +48,7 @@ fn guarded_descent<T: Scalar, const N: usize, const K: usize>(
     at: impl Fn(&SVector<T, K>) -> (SVector<T, N>, SVector<T, K>),
 ) -> SVector<T, K> {
     let (one, half) = (T::one(), T::from_f64(0.5));
-    let mut phi = SVector::<T, K>::zeros();
+    let mut phi = zeros::<T, K, 1>();
     let (mut gap, mut direction) = at(&phi);
     let mut share = one;
     for _ in 0..GUARDED {
@@ -74,7 +75,7 @@ fn either<T: Scalar, const D: usize>(
     if_true: &SVector<T, D>,
     if_false: &SVector<T, D>,
 ) -> SVector<T, D> {
-    SVector::from_fn(|i, _| T::select(mask, if_true[i], if_false[i]))
+    entries(|i| T::select(mask, if_true.data.0[0][i], if_false.data.0[0][i]))
 }
 
 /// D with `Φ(Q, ϕ + δ) = Φ(Q′, D δ) + O(δ²)` at Q′ = Φ(Q, ϕ), K×K; `retract` is Φ.
@@ -95,7 +96,7 @@ pub fn differential_inverse<T: Scalar, const N: usize, const K: usize>(
     retract: impl Fn(&SVector<Dual<T>, N>, &SVector<Dual<T>, K>) -> SVector<Dual<T>, N>,
 ) -> SVector<T, K> {
     let (tangent, there) = tangents(q, phi, retract);
-    least_squares(&tangent, &(there * rate))
+    least_squares(&tangent, &product(&there, rate))
 }
 
 /// ∂Φ/∂ϕ at (Q, ϕ) and at (Q′, 0), both N×K of the stored scalars.
@@ -107,9 +108,9 @@ fn tangents<T: Scalar, const N: usize, const K: usize>(
     retract: impl Fn(&SVector<Dual<T>, N>, &SVector<Dual<T>, K>) -> SVector<Dual<T>, N>,
 ) -> (SMatrix<T, N, K>, SMatrix<T, N, K>) {
     let at = |q: &SVector<T, N>, phi: &SVector<T, K>| {
-        let base = q.map(Dual::constant);
+        let base = map(q, Dual::constant);
         with_jacobian(|phi| retract(&base, phi), phi)
     };
     let (moved, tangent) = at(q, phi);
-    (tangent, at(&moved, &SVector::zeros()).1)
+    (tangent, at(&moved, &zeros()).1)
 }

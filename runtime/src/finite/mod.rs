@@ -23,23 +23,33 @@ pub use project::{PROJECT_ITERATIONS, assemble, project, project_by_displacement
 pub(crate) use solve::{determinant, orientation, solve, substitute_back, triangulate};
 pub use solve::{inverse, least_squares};
 
+use crate::matrix::{map, zeros};
 use crate::scalar::{Dual, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// A map's value at `x` and its Jacobian there, N×K: one evaluation a column.
 fn with_jacobian<T: Scalar, const N: usize, const K: usize>(
-    map: impl Fn(&SVector<Dual<T>, K>) -> SVector<Dual<T>, N>,
+    function: impl Fn(&SVector<Dual<T>, K>) -> SVector<Dual<T>, N>,
     x: &SVector<T, K>,
 ) -> (SVector<T, N>, SMatrix<T, N, K>) {
-    let columns: [_; K] = core::array::from_fn(|k| {
-        let mut x = x.map(Dual::constant);
-        x[k] = Dual::variable(x[k].value);
-        map(&x)
-    });
-    let jacobian = SMatrix::from_fn(|i, k| columns[k][i].derivative());
-    let first = columns.first().copied();
-    let moved = first.unwrap_or_else(|| map(&x.map(Dual::constant)));
-    (moved.map(|entry| entry.value), jacobian)
+    let still = map(x, Dual::constant);
+    let (mut value, mut jacobian) = (zeros::<T, N, 1>(), zeros::<T, N, K>());
+    // A loop, so that what the function does is compiled once; with nothing to vary it is evaluated all the same.
+    for k in 0..K.max(1) {
+        let mut moving = still;
+        if k < K {
+            moving.data.0[0][k] = Dual::variable(x.data.0[0][k]);
+        }
+        let moved = function(&moving);
+        for i in 0..N {
+            let entry = moved.data.0[0][i];
+            value.data.0[0][i] = entry.value;
+            if k < K {
+                jacobian.data.0[k][i] = entry.derivative();
+            }
+        }
+    }
+    (value, jacobian)
 }
 
 /// |x|.
@@ -78,16 +88,18 @@ pub fn least_absolute_beside<T: Scalar, const R: usize, const P: usize>(
 /// Euclidean norm, free of overflow and underflow: ϕ and residuals go down to 1e-300.
 fn norm<T: Scalar, const D: usize>(vector: &SVector<T, D>) -> T {
     let zero = T::zero();
-    let largest = vector.iter().fold(zero, |largest, &entry| {
-        let size = absolute(entry);
-        T::select(size.less(largest), largest, size)
-    });
+    let mut largest = zero;
+    for i in 0..D {
+        let size = absolute(vector.data.0[0][i]);
+        largest = T::select(size.less(largest), largest, size);
+    }
     // The divisor of a zero vector is 1, so that its norm is 0 and has a derivative.
     let divisor = T::select(zero.less(largest), largest, T::one());
-    let square = vector.iter().fold(zero, |sum, &entry| {
-        let ratio = entry / divisor;
-        sum + ratio * ratio
-    });
+    let mut square = zero;
+    for i in 0..D {
+        let ratio = vector.data.0[0][i] / divisor;
+        square += ratio * ratio;
+    }
     let positive = zero.less(square);
     let root = T::select(positive, square, T::one()).sqrt();
     divisor * T::select(zero.less(largest), root, largest)
@@ -104,7 +116,9 @@ fn unless_apart<T: Scalar, const D: usize>(
 ) -> SVector<T, D> {
     let limit = T::epsilon().sqrt() * scale + T::from_f64(f32::MIN_POSITIVE.into());
     let close = error.less(limit);
-    value.map(|entry| T::select(close, entry, T::from_f64(f64::NAN)))
+    map(value, |entry| {
+        T::select(close, entry, T::from_f64(f64::NAN))
+    })
 }
 
 /// `value` where two signs are the same, NaN elsewhere.
@@ -114,5 +128,5 @@ fn unless_turned<T: Scalar, const D: usize>(
     other: T,
 ) -> SVector<T, D> {
     let same = T::zero().less(sign * other);
-    value.map(|entry| T::select(same, entry, T::from_f64(f64::NAN)))
+    map(value, |entry| T::select(same, entry, T::from_f64(f64::NAN)))
 }

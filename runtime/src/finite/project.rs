@@ -2,6 +2,7 @@
 
 use super::solve::{orientation, triangulate};
 use super::{least_squares, norm, unless_apart, unless_turned, with_jacobian};
+use crate::matrix::{column, dot, entries, map, product, zeros};
 use crate::scalar::{Dual, Scalar};
 use nalgebra::{SMatrix, SVector};
 
@@ -51,11 +52,11 @@ pub fn assemble<T: Scalar, const N: usize, const R: usize, const C: usize>(
     let own_sign = sign(guess);
     let on_branch = |q: SVector<T, N>| unless_turned(&q, own_sign, sign(&q));
     let direct = on_branch(project(guess, codimension, &relations));
-    let values = relations(&guess.map(Dual::constant)).map(|value| value.value);
+    let values = map(&relations(&map(guess, Dual::constant)), |value| value.value);
     let mut q = *guess;
     for left in (1..PARTS).rev() {
         let offset = values * T::from_f64(left as f64 / PARTS as f64);
-        let shifted = |q: &SVector<Dual<T>, N>| relations(q) - offset.map(Dual::constant);
+        let shifted = |q: &SVector<Dual<T>, N>| relations(q) - map(&offset, Dual::constant);
         q += Equations::at(&q, shifted).shortest_solution(codimension);
     }
     let followed = on_branch(project(&q, codimension, &relations));
@@ -78,7 +79,7 @@ pub fn project_by_displacements<T: Scalar, const N: usize, const G: usize, const
     let shortest = |q: &SVector<T, N>| {
         let (values, slopes) = relations(q);
         let back = slopes.transpose();
-        -(back * least_squares(&(slopes * back), &values))
+        -product(&back, &least_squares(&product(&slopes, &back), &values))
     };
     by_shortest(start, displaced, shortest)
 }
@@ -113,21 +114,20 @@ impl<T: Scalar, const N: usize, const R: usize> Equations<T, N, R> {
         let (mut values, gradient) = with_jacobian(relations, q);
         let mut directions = gradient.transpose();
         for j in 0..R {
-            let length = norm(&directions.column(j).into_owned());
+            let length = norm(&column(&directions, j));
             // A relation without gradient cannot be corrected, but it is still checked.
             let divisor = T::select(T::zero().less(length), length, T::one());
             values[j] /= divisor;
-            directions
-                .column_mut(j)
-                .iter_mut()
-                .for_each(|entry| *entry /= divisor);
+            for i in 0..N {
+                directions.data.0[j][i] /= divisor;
+            }
         }
         Self { directions, values }
     }
 
     /// The least δ that solves `rank` of the equations, chosen one after the other by what is left of their directions.
     fn shortest_solution(mut self, rank: usize) -> SVector<T, N> {
-        let mut solution = SVector::zeros();
+        let mut solution = zeros::<T, N, 1>();
         // No more of them are independent than there are relations.
         for _ in 0..rank.min(R) {
             let (direction, value) = self.most_independent();
@@ -140,13 +140,14 @@ impl<T: Scalar, const N: usize, const R: usize> Equations<T, N, R> {
     /// The longest direction, scaled to 1, and its value.
     fn most_independent(&self) -> (SVector<T, N>, T) {
         let zero = T::zero();
-        let mut best = SVector::<T, N>::zeros();
+        let mut best = zeros::<T, N, 1>();
         let (mut value, mut longest) = (zero, zero);
-        for (column, &candidate) in self.directions.column_iter().zip(self.values.iter()) {
-            let column = column.into_owned();
+        for j in 0..R {
+            let candidate = self.values.data.0[0][j];
+            let column = column(&self.directions, j);
             let length = norm(&column);
             let longer = longest.less(length);
-            best = SVector::from_fn(|i, _| T::select(longer, column[i], best[i]));
+            best = entries(|i| T::select(longer, column[i], best[i]));
             value = T::select(longer, candidate, value);
             longest = T::select(longer, length, longest);
         }
@@ -156,18 +157,11 @@ impl<T: Scalar, const N: usize, const R: usize> Equations<T, N, R> {
 
     /// Takes `direction` out of every equation.
     fn eliminate(&mut self, direction: &SVector<T, N>, value: T) {
-        for (mut column, rest) in self
-            .directions
-            .column_iter_mut()
-            .zip(self.values.iter_mut())
-        {
-            let share = direction
-                .iter()
-                .zip(column.iter())
-                .fold(T::zero(), |sum, (&a, &b)| sum + a * b);
-            *rest -= share * value;
-            for (entry, &along) in column.iter_mut().zip(direction.iter()) {
-                *entry -= share * along;
+        for j in 0..R {
+            let share = dot(direction, &column(&self.directions, j));
+            self.values.data.0[0][j] -= share * value;
+            for i in 0..N {
+                self.directions.data.0[j][i] -= share * direction.data.0[0][i];
             }
         }
     }

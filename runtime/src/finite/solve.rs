@@ -3,12 +3,13 @@
 //! Matrices are slices of their entries by columns, so that one function serves sizes that a type tells and sizes that only the data tell.
 
 use super::absolute;
+use crate::matrix::{by_entry, identity};
 use crate::scalar::Scalar;
 use nalgebra::SMatrix;
 
 /// The inverse of a square matrix; infinite or NaN where it is singular.
 pub fn inverse<T: Scalar, const K: usize>(matrix: &SMatrix<T, K, K>) -> SMatrix<T, K, K> {
-    least_squares(matrix, &SMatrix::identity())
+    least_squares(matrix, &identity())
 }
 
 /// For each column r of `side` (N×M) the x (K) with the least ‖F x − r‖₂, for an F (`matrix`) of N rows and rank K.
@@ -20,7 +21,7 @@ pub fn least_squares<T: Scalar, const N: usize, const K: usize, const M: usize>(
 ) -> SMatrix<T, K, M> {
     let (mut matrix, mut side) = (*matrix, *side);
     solve(N, matrix.as_mut_slice(), side.as_mut_slice());
-    SMatrix::from_fn(|i, j| side[(i, j)])
+    by_entry(|i, j| side.data.0[j][i])
 }
 
 /// The same for matrices of so many rows: the solutions stand in the first entries of the columns of `side`, and `matrix` becomes what [`triangulate`] leaves.

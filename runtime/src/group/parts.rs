@@ -1,5 +1,6 @@
 //! Parts of vectors, one a factor of a manifold, and the small products that groups are made of.
 
+use crate::matrix::{by_entry, entries, map, zeros};
 use crate::scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
@@ -9,7 +10,7 @@ pub fn part<T: Scalar, const R: usize, const N: usize>(
     vector: &SVector<T, N>,
     start: usize,
 ) -> SVector<T, R> {
-    vector.fixed_rows::<R>(start).into_owned()
+    entries(|i| vector.data.0[0][start + i])
 }
 
 /// The vector of all parts, one after the other.
@@ -18,10 +19,10 @@ pub fn part<T: Scalar, const R: usize, const N: usize>(
 /// When the parts have not N entries together.
 #[inline]
 pub fn stacked<T: Scalar, const N: usize>(parts: &[&[T]]) -> SVector<T, N> {
-    let mut whole = SVector::<T, N>::zeros();
+    let mut whole = zeros::<T, N, 1>();
     let mut start = 0;
     for part in parts {
-        whole.as_mut_slice()[start..start + part.len()].copy_from_slice(part);
+        whole.data.0[0][start..start + part.len()].copy_from_slice(part);
         start += part.len();
     }
     assert!(start == N, "the parts are not the whole vector");
@@ -35,7 +36,9 @@ pub fn put<T: Scalar, const R: usize, const N: usize>(
     start: usize,
     part: &SVector<T, R>,
 ) {
-    vector.fixed_rows_mut::<R>(start).copy_from(part);
+    for i in 0..R {
+        vector.data.0[0][start + i] = part.data.0[0][i];
+    }
 }
 
 /// Replaces the block of a square matrix that stands on the diagonal from place `start` on.
@@ -45,7 +48,11 @@ pub fn put_block<T: Scalar, const R: usize, const N: usize>(
     start: usize,
     block: &SMatrix<T, R, R>,
 ) {
-    matrix.fixed_view_mut::<R, R>(start, start).copy_from(block);
+    for j in 0..R {
+        for i in 0..R {
+            matrix.data.0[start + j][start + i] = block.data.0[j][i];
+        }
+    }
 }
 
 /// `A B`.
@@ -54,7 +61,7 @@ pub(super) fn product<T: Scalar, const R: usize, const M: usize, const C: usize>
     a: &SMatrix<T, R, M>,
     b: &SMatrix<T, M, C>,
 ) -> SMatrix<T, R, C> {
-    SMatrix::from_fn(|i, j| dot(|k| (a[(i, k)], b[(k, j)]), M))
+    by_entry(|i, j| dot(|k| (a.data.0[k][i], b.data.0[j][k]), M))
 }
 
 /// `Aᵀ B`.
@@ -63,16 +70,18 @@ pub(super) fn transposed_product<T: Scalar, const R: usize, const M: usize, cons
     a: &SMatrix<T, M, R>,
     b: &SMatrix<T, M, C>,
 ) -> SMatrix<T, R, C> {
-    SMatrix::from_fn(|i, j| dot(|k| (a[(k, i)], b[(k, j)]), M))
+    by_entry(|i, j| dot(|k| (a.data.0[i][k], b.data.0[j][k]), M))
 }
 
 #[inline(always)]
 fn dot<T: Scalar>(pair: impl Fn(usize) -> (T, T), count: usize) -> T {
     let (a, b) = pair(count - 1);
-    (0..count - 1).rev().fold(a * b, |sum, k| {
+    let mut sum = a * b;
+    for k in (0..count - 1).rev() {
         let (a, b) = pair(k);
-        a.mul_add(b, sum)
-    })
+        sum = a.mul_add(b, sum);
+    }
+    sum
 }
 
 /// `A b + c`, to which the products are added one after the other, the last first.
@@ -82,12 +91,13 @@ pub(super) fn moved<T: Scalar, const R: usize, const M: usize>(
     b: &SVector<T, M>,
     c: &SVector<T, R>,
 ) -> SVector<T, R> {
-    let row = |i: usize, _| {
-        (0..M)
-            .rev()
-            .fold(c[i], |sum, k| a[(i, k)].mul_add(b[k], sum))
-    };
-    SVector::from_fn(row)
+    entries(|i| {
+        let mut sum = c.data.0[0][i];
+        for k in (0..M).rev() {
+            sum = a.data.0[k][i].mul_add(b.data.0[0][k], sum);
+        }
+        sum
+    })
 }
 
 /// Sum of the squares of the entries.
@@ -100,7 +110,7 @@ pub(super) fn squared<T: Scalar, const N: usize>(entries: &SVector<T, N>) -> T {
 #[inline]
 pub(super) fn unit<T: Scalar, const N: usize>(vector: &SVector<T, N>) -> SVector<T, N> {
     let inverse = T::one() / squared(vector).sqrt();
-    vector.map(|entry| entry * inverse)
+    map(vector, |entry| entry * inverse)
 }
 
 /// `(|q|² − 1)²`: the relation of the unit vectors, squared.

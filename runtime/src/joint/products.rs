@@ -9,6 +9,7 @@ use super::slices::{
     add_moved, add_product, combined, times, transposed_times, turned, turned_back,
 };
 use super::{Entry, Joint, Structure};
+use crate::matrix::{column, entries, map, product, set_column, zeros};
 use crate::scalar::{Dual, Scalar};
 use nalgebra::{SMatrix, SVector};
 
@@ -16,8 +17,8 @@ use nalgebra::{SMatrix, SVector};
 /// memory.
 macro_rules! gradient {
     ($joint:ident, $q:ident, $rows:tt, |$moved:ident| $value:expr) => {
-        match const { moving(&Self::PATTERNS.bias_gradient) } {
-            0 => SMatrix::zeros(),
+        match const { moving(&Self::PATTERNS.bias_gradient).1 } {
+            0 => zeros(),
             1 => along_each::<T, Self, N, K, S, C, $rows, 1>($joint, $q, |$moved| $value),
             2 => along_each::<T, Self, N, K, S, C, $rows, 2>($joint, $q, |$moved| $value),
             _ => along_each::<T, Self, N, K, S, C, $rows, 3>($joint, $q, |$moved| $value),
@@ -44,7 +45,7 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         let map = self.twist_map_child(q);
         match Self::STRUCTURES.velocity_map.is_identity() {
             true => map,
-            false => map * self.velocity_map(q),
+            false => product(&map, &self.velocity_map(q)),
         }
     }
 
@@ -59,16 +60,16 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         FirstOrder {
             map: match turns {
                 true => self.twist_map_child(q),
-                false => SMatrix::zeros(),
+                false => zeros(),
             },
             map_slices: match moves {
                 true => self.twist_map_child_gradient(q),
-                false => [SMatrix::zeros(); K],
+                false => [zeros(); K],
             },
             basis: self.speed_basis(q),
             basis_slices: match turns {
                 true => self.speed_basis_gradient(q),
-                false => [SMatrix::zeros(); K],
+                false => [zeros(); K],
             },
         }
     }
@@ -91,14 +92,14 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
     ) -> SMatrix<T, 6, K> {
         let patterns = const { &Self::PATTERNS };
         let velocity = times(&first.basis, &patterns.speed_basis, speeds);
-        let mut gradient = SMatrix::<T, 6, K>::zeros();
+        let mut gradient = zeros::<T, 6, K>();
         for k in 0..K {
             let pattern = &patterns.twist_map_child_gradient[k];
             let mut column = times(&first.map_slices[k], pattern, &velocity);
             let map = (&first.map, &patterns.twist_map_child);
             let slice = (&first.basis_slices[k], &patterns.speed_basis_gradient[k]);
             add_moved(&mut column, map, slice, speeds);
-            gradient.set_column(k, &column);
+            set_column(&mut gradient, k, &column);
         }
         gradient
     }
@@ -110,14 +111,14 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         let patterns = const { &Self::PATTERNS };
         let first = self.first_order(q);
         let moved = transposed_times(&first.map, &patterns.twist_map_child, h);
-        let mut gradient = SMatrix::<T, S, K>::zeros();
+        let mut gradient = zeros::<T, S, K>();
         for k in 0..K {
             let pattern = &patterns.twist_map_child_gradient[k];
             let efforts = transposed_times(&first.map_slices[k], pattern, h);
             let of_basis = &patterns.speed_basis_gradient[k];
             let column = transposed_times(&first.basis, &patterns.speed_basis, &efforts)
                 + transposed_times(&first.basis_slices[k], of_basis, &moved);
-            gradient.set_column(k, &column);
+            set_column(&mut gradient, k, &column);
         }
         gradient
     }
@@ -156,7 +157,7 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         let of_slices = combined(&first.map_slices, slices, local);
         let slices = &patterns.speed_basis_gradient;
         let of_bases = combined(&first.basis_slices, slices, local);
-        let mut rate = SMatrix::zeros();
+        let mut rate = zeros();
         let basis = (&first.basis, &patterns.speed_basis);
         add_product(&mut rate, (&of_slices, &of_map), basis);
         let map = (&first.map, &patterns.twist_map_child);
@@ -173,7 +174,7 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         speeds: &SVector<T, S>,
     ) -> SVector<T, 6> {
         let patterns = const { &Self::PATTERNS };
-        let mut bias = SVector::zeros();
+        let mut bias = zeros();
         if Self::STRUCTURES.bias_acceleration.is_zero() {
             return bias;
         }
@@ -205,7 +206,7 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         h: &SVector<T, 6>,
     ) -> SVector<T, S> {
         let patterns = const { &Self::PATTERNS };
-        let mut bias = SVector::zeros();
+        let mut bias = zeros();
         if Self::STRUCTURES.bias_momentum.is_zero() {
             return bias;
         }
@@ -243,7 +244,7 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
     fn local_rate<T: Scalar>(&self, q: &SVector<T, N>, velocity: &SVector<T, K>) -> SVector<T, K> {
         match Self::STRUCTURES.velocity_map.is_identity() {
             true => *velocity,
-            false => self.velocity_map_inverse(q) * velocity,
+            false => product(&self.velocity_map_inverse(q), velocity),
         }
     }
 
@@ -256,7 +257,7 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
     ) -> SMatrix<T, K, S> {
         match Self::STRUCTURES.velocity_map.is_identity() {
             true => *basis,
-            false => self.velocity_map_inverse(q) * basis,
+            false => product(&self.velocity_map_inverse(q), basis),
         }
     }
 
@@ -297,7 +298,7 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
     ) -> SMatrix<T, S, S> {
         let pattern = const { &local_pattern::<Self, N, K, S, C>() };
         let local = self.local_rates(q, &self.speed_basis(q));
-        let mut slope = SMatrix::zeros();
+        let mut slope = zeros();
         let full = [[Entry::Other; K]; S];
         let gradient = self.effort_gradient(q, h);
         add_product(&mut slope, (&gradient, &full), (&local, pattern));
@@ -312,10 +313,10 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         speeds: &SVector<T, S>,
     ) -> SMatrix<T, 6, K> {
         if Self::STRUCTURES.bias_acceleration.is_constant() {
-            return SMatrix::zeros();
+            return zeros();
         }
         gradient!(self, q, 6, |q| self
-            .bias_acceleration(q, &speeds.map(Dual::constant)))
+            .bias_acceleration(q, &map(speeds, Dual::constant)))
     }
 
     /// ∂(Ẋ̄^cᵀ h)/∂ϕ at fixed v̄ and h, of [`Joint::bias_momentum`].
@@ -327,12 +328,12 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         h: &SVector<T, 6>,
     ) -> SMatrix<T, S, K> {
         if Self::STRUCTURES.bias_momentum.is_constant() {
-            return SMatrix::zeros();
+            return zeros();
         }
         gradient!(self, q, S, |q| self.bias_momentum(
             q,
-            &speeds.map(Dual::constant),
-            &h.map(Dual::constant)
+            &map(speeds, Dual::constant),
+            &map(h, Dual::constant)
         ))
     }
 }
@@ -354,16 +355,17 @@ where
     }
 }
 
-/// How many of the entries are not known to be 0.
-const fn moving<const K: usize>(entries: &[Entry; K]) -> usize {
-    let (mut count, mut k) = (0, 0);
+/// The indices of the entries that are not known to be 0, and how many there are.
+const fn moving<const K: usize>(entries: &[Entry; K]) -> ([usize; K], usize) {
+    let (mut indices, mut count, mut k) = ([0; K], 0, 0);
     while k < K {
         if !matches!(entries[k], Entry::Zero) {
+            indices[count] = k;
             count += 1;
         }
         k += 1;
     }
-    count
+    (indices, count)
 }
 
 /// The derivatives of c or its dual along each ϕ_k at ϕ = 0, which moves Q with `Q̇(Q, S₀ e_k)`; `D` of them at once.
@@ -386,25 +388,26 @@ where
     T: Scalar,
     J: Joint<N, K, S, C>,
 {
-    let mut gradient = SMatrix::<T, R, K>::zeros();
+    let mut gradient = zeros::<T, R, K>();
     let velocities = joint.velocity_map(q);
-    let mut moving = (0..K).filter(|&k| J::PATTERNS.bias_gradient[k] != Entry::Zero);
-    while let Some(first) = moving.next() {
-        let mut directions = [first; D];
-        for direction in &mut directions[1..] {
-            *direction = moving.next().unwrap_or(first);
-        }
-        let mut moved = q.map(Dual::constant);
-        for (d, &k) in directions.iter().enumerate() {
-            let rate = joint.configuration_rate(q, &velocities.column(k).into_owned());
-            for (entry, rate) in moved.iter_mut().zip(&rate) {
-                entry.derivatives[d] = *rate;
+    let (indices, count) = const { moving(&J::PATTERNS.bias_gradient) };
+    let mut first = 0;
+    while first < count {
+        // Where fewer are left than fit, the first of them stands again.
+        let index = |d: usize| indices[if first + d < count { first + d } else { first }];
+        let mut moved = map(q, Dual::constant);
+        for d in 0..D {
+            let rate = joint.configuration_rate(q, &column(&velocities, index(d)));
+            for i in 0..N {
+                moved.data.0[0][i].derivatives[d] = rate.data.0[0][i];
             }
         }
         let value = function(&moved);
-        for (d, &k) in directions.iter().enumerate() {
-            gradient.set_column(k, &value.map(|entry| entry.derivatives[d]));
+        for d in 0..D {
+            let own = entries(|i| value.data.0[0][i].derivatives[d]);
+            set_column(&mut gradient, index(d), &own);
         }
+        first += D;
     }
     gradient
 }

@@ -1,6 +1,11 @@
 //! Products of matrices and of slices of derivatives, without what patterns know to be 0 or 1.
+#![expect(
+    clippy::needless_range_loop,
+    reason = "one index is of several matrices and patterns"
+)]
 
 use super::Entry;
+use crate::matrix::zeros;
 use crate::scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
@@ -11,12 +16,17 @@ pub fn combined<T: Scalar, const R: usize, const C: usize, const K: usize>(
     patterns: &[[[Entry; C]; R]; K],
     x: &SVector<T, K>,
 ) -> SMatrix<T, R, C> {
-    let mut sum = SMatrix::zeros();
+    let mut sum = zeros::<T, R, C>();
     for k in 0..K {
         for i in 0..R {
             for j in 0..C {
                 let known = patterns[k][i][j];
-                sum[(i, j)] = accumulated(sum[(i, j)], known, slices[k][(i, j)], x[k]);
+                sum.data.0[j][i] = accumulated(
+                    sum.data.0[j][i],
+                    known,
+                    slices[k].data.0[j][i],
+                    x.data.0[0][k],
+                );
             }
         }
     }
@@ -31,12 +41,12 @@ pub fn turned<T: Scalar, const R: usize, const C: usize, const K: usize>(
     y: &SVector<T, K>,
     x: &SVector<T, C>,
 ) -> SVector<T, R> {
-    let mut sum = SVector::zeros();
+    let mut sum = zeros::<T, R, 1>();
     for k in 0..K {
         let column = times(&slices[k], &patterns[k], x);
         for i in 0..R {
-            if patterns[k][i].iter().any(|entry| *entry != Entry::Zero) {
-                sum[i] = column[i].mul_add(y[k], sum[i]);
+            if is_any(&patterns[k][i]) {
+                sum.data.0[0][i] = column.data.0[0][i].mul_add(y.data.0[0][k], sum.data.0[0][i]);
             }
         }
     }
@@ -51,12 +61,16 @@ pub fn turned_back<T: Scalar, const R: usize, const C: usize, const K: usize>(
     y: &SVector<T, K>,
     x: &SVector<T, R>,
 ) -> SVector<T, C> {
-    let mut sum = SVector::zeros();
+    let mut sum = zeros::<T, C, 1>();
     for k in 0..K {
         let column = transposed_times(&slices[k], &patterns[k], x);
         for j in 0..C {
-            if patterns[k].iter().any(|row| row[j] != Entry::Zero) {
-                sum[j] = column[j].mul_add(y[k], sum[j]);
+            let mut known = [Entry::Zero; R];
+            for i in 0..R {
+                known[i] = patterns[k][i][j];
+            }
+            if is_any(&known) {
+                sum.data.0[0][j] = column.data.0[0][j].mul_add(y.data.0[0][k], sum.data.0[0][j]);
             }
         }
     }
@@ -72,15 +86,15 @@ pub fn add_moved<T: Scalar, const R: usize, const M: usize, const C: usize>(
     x: &SVector<T, C>,
 ) {
     for m in 0..M {
-        if of_b[m].iter().all(|entry| *entry == Entry::Zero) {
+        if !is_any(&of_b[m]) {
             continue;
         }
         let mut moved = T::zero();
         for j in 0..C {
-            moved = accumulated(moved, of_b[m][j], b[(m, j)], x[j]);
+            moved = accumulated(moved, of_b[m][j], b.data.0[j][m], x.data.0[0][j]);
         }
         for i in 0..R {
-            sum[i] = accumulated(sum[i], of_a[i][m], a[(i, m)], moved);
+            sum.data.0[0][i] = accumulated(sum.data.0[0][i], of_a[i][m], a.data.0[m][i], moved);
         }
     }
 }
@@ -95,11 +109,15 @@ pub fn add_product<T: Scalar, const R: usize, const M: usize, const C: usize>(
     for i in 0..R {
         for m in 0..M {
             for j in 0..C {
-                let entry = &mut sum[(i, j)];
+                let entry = &mut sum.data.0[j][i];
                 match of_a[i][m] {
                     Entry::Zero => {}
-                    Entry::One => *entry = accumulated(*entry, of_b[m][j], b[(m, j)], T::one()),
-                    Entry::Other => *entry = accumulated(*entry, of_b[m][j], b[(m, j)], a[(i, m)]),
+                    Entry::One => {
+                        *entry = accumulated(*entry, of_b[m][j], b.data.0[j][m], T::one())
+                    }
+                    Entry::Other => {
+                        *entry = accumulated(*entry, of_b[m][j], b.data.0[j][m], a.data.0[m][i])
+                    }
                 }
             }
         }
@@ -113,10 +131,15 @@ pub fn times<T: Scalar, const R: usize, const C: usize>(
     pattern: &[[Entry; C]; R],
     x: &SVector<T, C>,
 ) -> SVector<T, R> {
-    let mut product = SVector::zeros();
+    let mut product = zeros::<T, R, 1>();
     for i in 0..R {
         for j in 0..C {
-            product[i] = accumulated(product[i], pattern[i][j], matrix[(i, j)], x[j]);
+            product.data.0[0][i] = accumulated(
+                product.data.0[0][i],
+                pattern[i][j],
+                matrix.data.0[j][i],
+                x.data.0[0][j],
+            );
         }
     }
     product
@@ -129,13 +152,28 @@ pub fn transposed_times<T: Scalar, const R: usize, const C: usize>(
     pattern: &[[Entry; C]; R],
     x: &SVector<T, R>,
 ) -> SVector<T, C> {
-    let mut product = SVector::zeros();
+    let mut product = zeros::<T, C, 1>();
     for j in 0..C {
         for i in 0..R {
-            product[j] = accumulated(product[j], pattern[i][j], matrix[(i, j)], x[i]);
+            product.data.0[0][j] = accumulated(
+                product.data.0[0][j],
+                pattern[i][j],
+                matrix.data.0[j][i],
+                x.data.0[0][i],
+            );
         }
     }
     product
+}
+
+/// Whether any of the entries is not known to be 0.
+#[inline(always)]
+fn is_any<const C: usize>(entries: &[Entry; C]) -> bool {
+    let mut any = false;
+    for j in 0..C {
+        any |= !matches!(entries[j], Entry::Zero);
+    }
+    any
 }
 
 /// `sum + entry x`.

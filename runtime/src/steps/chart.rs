@@ -9,6 +9,7 @@ use super::directions::{along, columns, constant, derivative};
 use crate::erased::Store;
 use crate::finite::least_squares;
 use crate::joint::{Joint, Structure};
+use crate::matrix::{column, identity, product, set_column, zeros};
 use crate::scalar::{Dual, Scalar};
 use nalgebra::{SMatrix, SVector};
 
@@ -45,9 +46,9 @@ where
     pub(crate) fn fill(&self, out: &mut ChartDerivatives<'_, T>) {
         let there = self.joint.retract(&self.base, &self.phi);
         let flat = J::STRUCTURES.retract_differential.is_identity();
-        let one = SMatrix::<T, K, K>::identity();
+        let one = identity::<T, K, K>();
         let (mut carried, mut moved) = (one, one);
-        let (mut by_base, mut by_phi) = (SMatrix::<T, K, K>::zeros(), SMatrix::zeros());
+        let (mut by_base, mut by_phi) = (zeros::<T, K, K>(), zeros());
         if flat {
             if self.varies() {
                 by_phi = columns(|k| derivative(&self.local_rate(&self.pushed(&there, k))));
@@ -56,13 +57,13 @@ where
         } else {
             let tangent: SMatrix<T, N, K> = columns(|k| derivative(&self.pushed(&there, k)));
             let (base, phi) = (constant(&self.base), constant(&self.phi));
-            let dragged: [_; K] = core::array::from_fn(|k| {
+            let dragged: SMatrix<T, N, K> = columns(|k| {
                 let base = self.pushed(&self.base, k);
                 let (q, rate) = self.rate(&base, &phi);
-                by_base.set_column(k, &derivative(&rate));
+                set_column(&mut by_base, k, &derivative(&rate));
                 derivative(&q)
             });
-            carried = least_squares(&tangent, &SMatrix::from_columns(&dragged));
+            carried = least_squares(&tangent, &dragged);
             moved = self.joint.retract_differential(&self.base, &self.phi);
             by_phi = columns(|k| derivative(&self.rate(&base, &(phi + along(k))).1));
         }
@@ -86,10 +87,10 @@ where
 
     /// `S₀⁻¹ S̄ v̄` at `q`.
     fn local_rate(&self, q: &SVector<Dual<T>, N>) -> SVector<Dual<T>, K> {
-        let velocity = self.joint.speed_basis(q) * constant(&self.speeds);
+        let velocity = product(&self.joint.speed_basis(q), &constant(&self.speeds));
         match J::STRUCTURES.velocity_map.is_identity() {
             true => velocity,
-            false => self.joint.velocity_map_inverse(q) * velocity,
+            false => product(&self.joint.velocity_map_inverse(q), &velocity),
         }
     }
 
@@ -109,15 +110,15 @@ where
     fn by_speeds(&self, there: &SVector<T, N>, flat: bool) -> SMatrix<T, K, S> {
         let mut map = self.joint.speed_basis(there);
         if !J::STRUCTURES.velocity_map.is_identity() {
-            map = self.joint.velocity_map_inverse(there) * map;
+            map = product(&self.joint.velocity_map_inverse(there), &map);
         }
         if !flat {
             for j in 0..S {
-                let rate = map.column(j).into_owned();
+                let rate = column(&map, j);
                 let own = self
                     .joint
                     .retract_differential_inverse(&self.base, &self.phi, &rate);
-                map.set_column(j, &own);
+                set_column(&mut map, j, &own);
             }
         }
         map

@@ -4,6 +4,7 @@ use super::pattern::{Kernels, Pattern};
 use super::{Motion, Steps};
 use crate::erased::nan;
 use crate::joint::Joint;
+use crate::matrix::{product, zeros};
 use crate::scalar::Scalar;
 use crate::spatial::Pose;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector6};
@@ -95,13 +96,13 @@ where
     fn speed_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, S> {
         let map = self.0.twist_map_child(q);
         if J::STRUCTURES.speed_basis.is_identity() {
-            let mut same = SMatrix::zeros();
+            let mut same = zeros();
             for j in 0..S {
                 same.data.0[j] = map.data.0[j];
             }
             return same;
         }
-        map * self.0.speed_basis(q)
+        product(&map, &self.0.speed_basis(q))
     }
 
     /// The kernels that its motion is made of, at `q` and `speeds`.

@@ -6,8 +6,11 @@ use super::second::VirtualState;
 use super::{AtPort, RotorTerm, Steps};
 use crate::erased::nan;
 use crate::joint::{Joint, PortLaw, Products};
+use crate::matrix::{
+    by_rows, column, dot, entries, filled, map, product, set_column, transposed_product, zeros,
+};
 use crate::scalar::{Dual, Scalar};
-use crate::spatial::vee;
+use crate::spatial::{join, vee};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 /// What determines the efforts τ of something at one joint, as a function of Q and v.
@@ -61,7 +64,7 @@ fn moved<const S: usize>(
     inner: Option<usize>,
 ) -> SVector<HyperDual, S> {
     let rate = |i, of| if Some(i) == of { 1.0 } else { 0.0 };
-    SVector::from_fn(|i, _| {
+    entries(|i| {
         let value = Dual::new(vector[i], rate(i, outer));
         Dual::new(value, Dual::constant(rate(i, inner)))
     })
@@ -125,7 +128,7 @@ where
             EffortLaw::Axis { port, .. } => {
                 let (value, row) = self.axis(&state.q, *port);
                 let velocity = self.0.velocity(&state.q, &state.speeds);
-                [value, row.dot(&velocity)]
+                [value, dot(&row, &velocity)]
             }
             _ => [0.0; 2],
         }
@@ -136,8 +139,8 @@ where
         match port {
             Some(port) => self.port(q, port),
             None => (
-                q.get(0).copied().unwrap_or(nan()),
-                SVector::repeat(T::one()),
+                q.data.0[0].first().copied().unwrap_or(nan()),
+                filled(T::one()),
             ),
         }
     }
@@ -161,11 +164,11 @@ where
                 term: RotorTerm::Needed,
             };
             let term = self.rotor_term((q, speeds, accelerations), needed);
-            return -(T::from_f64(inertia) * term.dot(virtual_speeds));
+            return -(T::from_f64(inertia) * dot(&term, virtual_speeds));
         }
         let velocity = self.0.velocity(q, speeds);
         let effort = self.effort(q, &velocity, law, here);
-        self.0.velocity(q, virtual_speeds).dot(&effort)
+        dot(&self.0.velocity(q, virtual_speeds), &effort)
     }
 
     /// τ.
@@ -179,41 +182,44 @@ where
         match law {
             EffortLaw::Constant(efforts) => lifted(efforts),
             EffortLaw::Damper(coefficients) => {
-                -lifted::<T, K>(coefficients).component_mul(velocity)
+                let coefficients = lifted::<T, K>(coefficients);
+                entries(|k| -(coefficients[k] * velocity[k]))
             }
             EffortLaw::Spring { rest, stiffness } => match stiffness.len() == K * K {
                 true => {
-                    let stiffness = SMatrix::<f64, K, K>::from_row_slice(stiffness);
-                    self.spring_effort((q, &self.stored(rest)), &stiffness.map(T::from_f64))
+                    let stiffness = map(&by_rows(stiffness), T::from_f64);
+                    self.spring_effort((q, &self.stored(rest)), &stiffness)
                 }
-                false => SVector::repeat(nan()),
+                false => filled(nan()),
             },
             EffortLaw::RotationSpring { rest, stiffness } => {
-                let back = rest.transpose().map(T::from_f64);
+                let back = map(&rest.transpose(), T::from_f64);
                 self.turn_effort(q, &back, T::from_f64(*stiffness))
             }
             EffortLaw::Axis { port, law, product } => {
                 let (value, row) = self.axis(q, *port);
                 let [effort, stiffness, damping] = [law.effort, law.stiffness, law.damping];
                 let [here, here_rate] = here.map(T::from_f64);
-                let (way, rate) = (value - here, row.dot(velocity) - here_rate);
+                let (way, rate) = (value - here, dot(&row, velocity) - here_rate);
                 let change = T::from_f64(stiffness) * way
                     + T::from_f64(damping) * rate
                     + T::from_f64(*product) * way * rate;
                 row * (T::from_f64(effort) - change)
             }
             EffortLaw::Rotors(inertia) => {
-                -(self.0.gamma(q, velocity) * velocity.component_mul(&lifted(inertia)))
+                let inertia = lifted::<T, K>(inertia);
+                let momentum = entries(|k| velocity[k] * inertia[k]);
+                -product(&self.0.gamma(q, velocity), &momentum)
             }
-            EffortLaw::PortRotor { .. } => SVector::zeros(),
+            EffortLaw::PortRotor { .. } => zeros(),
         }
     }
 
     /// A stored configuration, with zeros for what is idle.
     fn stored<T: Scalar>(&self, q: &[f64]) -> SVector<T, N> {
         match q.len() + self.0.idle() == N {
-            true => SVector::from_fn(|i, _| T::from_f64(q.get(i).copied().unwrap_or(0.0))),
-            false => SVector::repeat(nan()),
+            true => entries(|i| T::from_f64(q.get(i).copied().unwrap_or(0.0))),
+            false => filled(nan()),
         }
     }
 
@@ -226,10 +232,11 @@ where
         let phi = self.0.local(rest, q);
         let mut rates = self.0.velocity_map_inverse(q);
         for j in 0..K {
-            let rate = rates.column(j).into_owned();
-            rates.set_column(j, &self.0.retract_differential_inverse(rest, &phi, &rate));
+            let rate = column(&rates, j);
+            let rate = self.0.retract_differential_inverse(rest, &phi, &rate);
+            set_column(&mut rates, j, &rate);
         }
-        -rates.tr_mul(&(stiffness * phi))
+        -transposed_product(&rates, &product(stiffness, &phi))
     }
 
     /// The effort of a rotational spring, `back` being the transpose of the rotation at rest.
@@ -240,15 +247,15 @@ where
         stiffness: T,
     ) -> SVector<T, K> {
         let turn = self.0.pose(q).rotation * back;
-        let moment: Vector3<T> = vee(&turn) * -stiffness;
-        self.0.twist_map(q).fixed_rows::<3>(0).tr_mul(&moment)
+        let moment = join(&(vee(&turn) * -stiffness), &Vector3::zeros());
+        transposed_product(&self.0.twist_map(q), &moment)
     }
 }
 
 /// Numbers of a law; NaN where they are of another size.
 fn lifted<T: Scalar, const K: usize>(values: &[f64]) -> SVector<T, K> {
     match values.len() == K {
-        true => SVector::from_fn(|i, _| T::from_f64(values[i])),
-        false => SVector::repeat(nan()),
+        true => entries(|i| T::from_f64(values[i])),
+        false => filled(nan()),
     }
 }

@@ -3,9 +3,10 @@
 //! p̄ = P S̄ is the row of a port, with w = p̄ v̄; p̄̇ is its rate along the motion at v̄.
 
 use super::Steps;
-use super::directions::{along, columns, constant, derivative};
+use super::directions::{along, columns, constant, derivative, moving};
 use crate::erased::nan;
 use crate::joint::Joint;
+use crate::matrix::{dot, filled, map, of_columns, product, transposed_product};
 use crate::scalar::{Dual, Scalar};
 use nalgebra::{SMatrix, SVector};
 
@@ -32,15 +33,17 @@ where
     J: Joint<N, K, S, C>,
 {
     /// The row of P of a port, as a column; NaN of a port that is not there.
-    fn port_row<T: Scalar>(&self, q: &SVector<T, N>, port: usize) -> SVector<T, K> {
+    pub(super) fn port_row<T: Scalar>(&self, q: &SVector<T, N>, port: usize) -> SVector<T, K> {
         let map = self.0.port_map(q);
-        let row = map.as_ref().get(port).copied();
-        row.map_or(SVector::repeat(nan()), SVector::from)
+        match map.as_ref().get(port) {
+            Some(row) => of_columns([*row]),
+            None => filled(nan()),
+        }
     }
 
     /// p̄ of a port, as a column.
     fn speed_row<T: Scalar>(&self, q: &SVector<T, N>, port: usize) -> SVector<T, S> {
-        self.0.speed_basis(q).tr_mul(&self.port_row(q, port))
+        transposed_product(&self.0.speed_basis(q), &self.port_row(q, port))
     }
 
     /// p̄ and p̄̇ of a port at v̄, as columns.
@@ -50,12 +53,10 @@ where
         speeds: &SVector<T, S>,
         port: usize,
     ) -> [SVector<T, S>; 2] {
-        let rate = self
-            .0
-            .configuration_rate(q, &(self.0.speed_basis(q) * speeds));
-        let moving = SVector::from_fn(|i, _| Dual::new(q[i], rate[i]));
-        let row: SVector<Dual<T>, S> = self.speed_row(&moving, port);
-        [row.map(|entry| entry.value), derivative(&row)]
+        let velocity = product(&self.0.speed_basis(q), speeds);
+        let rate = self.0.configuration_rate(q, &velocity);
+        let row: SVector<Dual<T>, S> = self.speed_row(&moving(q, &rate), port);
+        [map(&row, |entry| entry.value), derivative(&row)]
     }
 
     /// ∂P/∂ϕ of a port: column k is the derivative of its row along ϕ_k.
@@ -76,15 +77,15 @@ where
         match term {
             RotorTerm::Momentum => {
                 let row = self.speed_row(q, port);
-                row * row.dot(x)
+                row * dot(&row, x)
             }
             RotorTerm::Needed => {
                 let [row, rate] = self.port_row_motion(q, speeds, port);
-                row * (row.dot(x) + rate.dot(speeds))
+                row * (dot(&row, x) + dot(&rate, speeds))
             }
             RotorTerm::Turning => {
                 let [row, rate] = self.port_row_motion(q, speeds, port);
-                rate * row.dot(speeds)
+                rate * dot(&row, speeds)
             }
         }
     }
@@ -95,8 +96,7 @@ where
         (q, speeds, x): (&SVector<T, N>, &SVector<T, S>, &SVector<T, S>),
         at: AtPort,
     ) -> (SMatrix<T, S, K>, SMatrix<T, S, S>) {
-        let [speeds, x] = [speeds, x].map(constant);
-        let q = constant(q);
+        let (speeds, x, q) = (constant(speeds), constant(x), constant(q));
         let by_local = columns(|k| {
             let moved = self.0.retract(&q, &along(k));
             derivative(&self.rotor_term((&moved, &speeds, &x), at))

@@ -5,9 +5,10 @@
 //! fixed in the child frame: by dual numbers through the kernels of first order, with Q moved along `E_l = Q̇(Q, S₀ e_l)`.
 
 use super::Steps;
-use super::directions::{along, constant};
+use super::directions::{along, constant, derivative, moving};
 use super::motion_gradient::{Carrying, MotionGradient, OwnMotion, have_sizes};
 use crate::joint::{Joint, Products};
+use crate::matrix::{column, transposed_product, zeros};
 use crate::scalar::{Dual, Scalar};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector6};
 
@@ -37,9 +38,8 @@ where
 {
     /// Q as it moves along `E_l`.
     pub(super) fn moving<T: Scalar>(&self, q: &SVector<T, N>, l: usize) -> SVector<Dual<T>, N> {
-        let velocity = self.0.velocity_map(q).column(l).into_owned();
-        let rate = self.0.configuration_rate(q, &velocity);
-        SVector::from_fn(|i, _| Dual::new(q[i], rate[i]))
+        let velocity = column(&self.0.velocity_map(q), l);
+        moving(q, &self.0.configuration_rate(q, &velocity))
     }
 
     /// The derivatives of the products of `gradient` with the variations, both in child axes, along the joint's own ϕ and v̄. `carrying` is of the parent, in
@@ -70,7 +70,7 @@ where
             let (moved, carried) = match l < K {
                 true => {
                     let q = self.moving(&state.q, l);
-                    let carried = carrying.turned_back(&local.column(l).into_owned());
+                    let carried = carrying.turned_back(&column(&local, l));
                     (VirtualState { q, ..still }, carried)
                 }
                 false => {
@@ -80,10 +80,18 @@ where
             };
             let (of_local, of_speeds) = self.products(&moved, &carried, &gradient);
             match l.checked_sub(K) {
-                None => (0..K).for_each(|k| by_local[k * K + l] = of_local[k].derivative()),
+                None => {
+                    for k in 0..K {
+                        by_local[k * K + l] = of_local[k].derivative();
+                    }
+                }
                 Some(j) => {
-                    (0..K).for_each(|k| mixed[j * K + k] = of_local[k].derivative());
-                    (0..S).for_each(|i| by_speeds[i * S + j] = of_speeds[i].derivative());
+                    for k in 0..K {
+                        mixed[j * K + k] = of_local[k].derivative();
+                    }
+                    for i in 0..S {
+                        by_speeds[i * S + j] = of_speeds[i].derivative();
+                    }
                 }
             }
         }
@@ -111,7 +119,7 @@ where
             rate_slopes += joint.bias_acceleration_gradient(q, speeds);
         }
         let speed_slopes = match structures.bias_acceleration.is_zero() {
-            true => SMatrix::zeros(),
+            true => zeros(),
             false => joint.bias_acceleration_slope_at((q, speeds), &first, &twist_slopes),
         };
         let own = OwnMotion {
@@ -139,17 +147,17 @@ where
     ) -> SMatrix<f64, K, K> {
         let structures = J::STRUCTURES;
         let slices = self.0.velocity_map_gradient(q);
-        let mut terms = SMatrix::<f64, K, K>::zeros();
-        let weights = self.0.velocity_map_inverse(q).tr_mul(gradient);
+        let mut terms = zeros::<f64, K, K>();
+        let weights = transposed_product(&self.0.velocity_map_inverse(q), gradient);
         for (l, slice) in slices.iter().enumerate() {
             let mut change = *slice;
             if !structures.velocity_map.is_constant() {
-                change -= self
-                    .0
-                    .velocity_map(&self.moving(q, l))
-                    .map(|entry| entry.derivative());
+                change -= derivative(&self.0.velocity_map(&self.moving(q, l)));
             }
-            terms.set_row(l, &change.tr_mul(&weights).transpose());
+            let row = transposed_product(&change, &weights);
+            for k in 0..K {
+                terms[(l, k)] = row[k];
+            }
         }
         terms
     }
@@ -157,5 +165,9 @@ where
 
 /// The columns of a matrix.
 fn columns_of<T: Scalar, const M: usize>(matrix: &SMatrix<T, 6, M>) -> [Vector6<T>; M] {
-    matrix.data.0.map(Vector6::from)
+    let mut columns = [Vector6::zeros(); M];
+    for (j, own) in columns.iter_mut().enumerate() {
+        *own = column(matrix, j);
+    }
+    columns
 }

@@ -6,6 +6,7 @@ use super::Steps;
 use super::directions::{along, columns, constant, derivative};
 use crate::erased::nan;
 use crate::joint::{Joint, PortLaw};
+use crate::matrix::{by_rows, dot, entries, filled, map, product};
 use crate::scalar::{Dual, Scalar};
 use nalgebra::{Matrix3, SMatrix, SVector};
 
@@ -20,10 +21,10 @@ where
         stiffness: &[T],
     ) -> SMatrix<T, K, K> {
         if stiffness.len() != K * K {
-            return SMatrix::repeat(nan());
+            return filled(nan());
         }
         let rest = constant(rest);
-        let stiffness = SMatrix::<T, K, K>::from_row_slice(stiffness).map(Dual::constant);
+        let stiffness = map(&by_rows(stiffness), Dual::constant);
         self.slope(q, |q| self.spring_effort((q, &rest), &stiffness))
     }
 
@@ -34,7 +35,7 @@ where
         rest: &Matrix3<T>,
         stiffness: T,
     ) -> SMatrix<T, K, K> {
-        let back = rest.transpose().map(Dual::constant);
+        let back = map(&rest.transpose(), Dual::constant);
         let stiffness = Dual::constant(stiffness);
         self.slope(q, |q| self.turn_effort(q, &back, stiffness))
     }
@@ -48,7 +49,8 @@ where
     ) -> [SMatrix<T, K, K>; 2] {
         let (velocity, inertia) = (constant(velocity), constant(inertia));
         let force = |q: &SVector<Dual<T>, N>, v: &SVector<Dual<T>, K>| {
-            self.0.gamma(q, v) * v.component_mul(&inertia)
+            let momentum = entries(|k| v[k] * inertia[k]);
+            product(&self.0.gamma(q, v), &momentum)
         };
         let by_local = self.slope(q, |q| force(q, &velocity));
         let q = constant(q);
@@ -70,25 +72,26 @@ where
             stiffness,
             damping,
         } = law;
-        let [effort, stiffness, damping] = [effort, stiffness, damping].map(|n| Dual::constant(*n));
+        let [effort, stiffness, damping] = [*effort, *stiffness, *damping].map(Dual::constant);
         let here = self.port(&constant(q), port);
         let velocity = constant(velocity);
-        let here_rate = here.1.dot(&velocity);
+        let here_rate = dot(&here.1, &velocity);
         self.slope(q, |q| {
             let (value, row) = self.port(q, port);
             let spring = stiffness * (value - here.0);
-            let damper = damping * (row.dot(&velocity) - here_rate);
+            let damper = damping * (dot(&row, &velocity) - here_rate);
             row * (effort - spring - damper)
         })
     }
 
     /// The value of a port, and its row of P as a column.
     pub(super) fn port<T: Scalar>(&self, q: &SVector<T, N>, port: usize) -> (T, SVector<T, K>) {
-        let (values, map) = (self.0.port_values(q), self.0.port_map(q));
-        let value = values.as_ref().get(port).copied();
-        let row = map.as_ref().get(port).copied();
-        let row = row.map_or(SVector::repeat(nan()), SVector::from);
-        (value.unwrap_or(nan()), row)
+        let values = self.0.port_values(q);
+        let value = match values.as_ref().get(port) {
+            Some(value) => *value,
+            None => nan(),
+        };
+        (value, self.port_row(q, port))
     }
 
     /// `∂f/∂ϕ` of a function of the configuration.

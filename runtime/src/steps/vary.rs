@@ -3,6 +3,7 @@
 use super::{Motion, Steps};
 use crate::erased::nan;
 use crate::joint::{Joint, Products};
+use crate::matrix::column;
 use crate::scalar::Scalar;
 use crate::spatial::fused::cross;
 use crate::spatial::{bracket_product, join, shift_twist, split, turn_out};
@@ -86,7 +87,7 @@ where
             let variation = &mut out[b];
             match &local {
                 Some(local) => {
-                    let z = turn_out(&placement.rotation, &local.column(b).into_owned());
+                    let z = turn_out(&placement.rotation, &column(local, b));
                     variation.local = z;
                     variation.drift = bracket_product(&carried, &z);
                     variation.rate = bracket_product(&carried_rate, &z);
@@ -131,15 +132,15 @@ where
             of_rate += joint.bias_acceleration_gradient(q, speeds);
         }
         for (b, variation) in out.iter_mut().enumerate() {
-            let drift = turn_out(rotation, &of_twist.column(b).into_owned());
+            let drift = turn_out(rotation, &column(&of_twist, b));
             variation.drift += drift;
-            variation.rate += bracket_product(&own.twist, &drift)
-                + turn_out(rotation, &of_rate.column(b).into_owned());
+            variation.rate +=
+                bracket_product(&own.twist, &drift) + turn_out(rotation, &column(&of_rate, b));
         }
         if !structures.bias_acceleration.is_zero() {
             let slope = joint.bias_acceleration_slope_at((q, speeds), &first, &of_twist);
             for (a, variation) in out.iter_mut().enumerate().take(S) {
-                variation.speed_rate += turn_out(rotation, &slope.column(a).into_owned());
+                variation.speed_rate += turn_out(rotation, &column(&slope, a));
             }
         }
     }
