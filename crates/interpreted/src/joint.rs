@@ -1,13 +1,14 @@
 //! [`Interpreted`]: a joint whose kernels are tapes.
 
 use crate::kernels::{BodyKernels, KernelTape, Kernels};
+use crate::tape::Places;
 use hamel_codegen::derived::{KernelKind, Method, Structure};
 use hamel_runtime::erased::{Shared, erase};
 use hamel_runtime::finite;
 use hamel_runtime::joint::{
-    Facts, Joint, Patterns, Port, Products, Structures, Units, VelocityFrame,
+    Facts, Joint, Patterns, Port, Products, Structures, Units, VelocityFrame, from_rows,
 };
-use hamel_runtime::nalgebra::{SMatrix, SVector};
+use hamel_runtime::nalgebra::{ArrayStorage, SMatrix, SVector};
 use hamel_runtime::scalar::Scalar;
 use hamel_runtime::spatial::Pose;
 use std::fmt::{Debug, Formatter};
@@ -82,13 +83,24 @@ impl<const N: usize, const K: usize, const S: usize, const C: usize, const R: us
         kernel.is_none_or(|kernel| kernel.structure == Structure::Zero)
     }
 
+    /// Writes what the kernel gives into `out`, which keeps what it has where there is no such kernel.
     fn run<T: Scalar>(
         &self,
-        kernel: &KernelTape,
+        kernel: Option<&KernelTape>,
         arguments: &[&[T]],
-        mut output: impl FnMut(usize, T),
+        to: (&mut [T], Places),
     ) {
-        kernel.tape.run(arguments, &self.parameters, &mut output);
+        if let Some(kernel) = kernel {
+            kernel.tape.run(arguments, &self.parameters, to);
+        }
+    }
+
+    /// All that the kernel gives, one after the other.
+    fn values<T: Scalar>(&self, kernel: &KernelTape, arguments: &[&[T]]) -> Vec<T> {
+        let mut values = vec![T::zero(); kernel.tape.outputs()];
+        let to = (values.as_mut_slice(), Places::IN_ORDER);
+        kernel.tape.run(arguments, &self.parameters, to);
+        values
     }
 
     /// A column, with zeros behind what the kernel gives; zeros where there is no such kernel.
@@ -97,11 +109,10 @@ impl<const N: usize, const K: usize, const S: usize, const C: usize, const R: us
         kind: KernelKind,
         arguments: &[&[T]],
     ) -> SVector<T, D> {
-        let mut column = SVector::zeros();
-        if let Some(kernel) = self.kernel(kind) {
-            self.run(kernel, arguments, |i, value| column[i] = value);
-        }
-        column
+        let mut column = [[T::zero(); D]];
+        let to = (column.as_flattened_mut(), Places::IN_ORDER);
+        self.run(self.kernel(kind), arguments, to);
+        SMatrix::from_array_storage(ArrayStorage(column))
     }
 
     /// A matrix, with zeros beside and below what the kernel gives.
@@ -110,14 +121,15 @@ impl<const N: usize, const K: usize, const S: usize, const C: usize, const R: us
         kind: KernelKind,
         arguments: &[&[T]],
     ) -> SMatrix<T, ROWS, COLUMNS> {
-        let mut matrix = SMatrix::zeros();
-        if let Some(kernel) = self.kernel(kind) {
-            let (_, columns) = kernel.shapes.first().copied().unwrap_or((0, 0));
-            self.run(kernel, arguments, |i, value| {
-                matrix[(i / columns, i % columns)] = value;
-            });
-        }
-        matrix
+        let mut matrix = [[T::zero(); ROWS]; COLUMNS];
+        let kernel = self.kernel(kind);
+        let places = Places {
+            columns: kernel.map_or(1, KernelTape::columns),
+            rows: ROWS,
+            ..Places::IN_ORDER
+        };
+        self.run(kernel, arguments, (matrix.as_flattened_mut(), places));
+        SMatrix::from_array_storage(ArrayStorage(matrix))
     }
 
     /// A matrix for each ϕ_k.
@@ -126,21 +138,22 @@ impl<const N: usize, const K: usize, const S: usize, const C: usize, const R: us
         kind: KernelKind,
         arguments: &[&[T]],
     ) -> [SMatrix<T, ROWS, COLUMNS>; K] {
-        let mut slices = [SMatrix::zeros(); K];
-        if let Some(kernel) = self.kernel(kind).filter(|_| !self.is_zero(kind)) {
-            self.run(kernel, arguments, |i, value| {
-                let (slice, entry) = (i / (ROWS * COLUMNS), i % (ROWS * COLUMNS));
-                slices[slice][(entry / COLUMNS, entry % COLUMNS)] = value;
-            });
+        let mut slices = [[[T::zero(); ROWS]; COLUMNS]; K];
+        if !self.is_zero(kind) {
+            let places = Places {
+                columns: COLUMNS,
+                rows: ROWS,
+                matrix: ROWS * COLUMNS,
+            };
+            let out = slices.as_flattened_mut().as_flattened_mut();
+            self.run(self.kernel(kind), arguments, (out, places));
         }
-        slices
+        slices.map(|slice| SMatrix::from_array_storage(ArrayStorage(slice)))
     }
 
     /// The entries by rows.
     pub(crate) fn fill<T: Scalar>(&self, kind: KernelKind, arguments: &[&[T]], out: &mut [T]) {
-        if let Some(kernel) = self.kernel(kind) {
-            self.run(kernel, arguments, |i, value| out[i] = value);
-        }
+        self.run(self.kernel(kind), arguments, (out, Places::IN_ORDER));
     }
 
     /// Rows of a fixed size, as many as the kernel gives.
@@ -149,13 +162,9 @@ impl<const N: usize, const K: usize, const S: usize, const C: usize, const R: us
         kind: KernelKind,
         arguments: &[&[T]],
     ) -> Vec<[T; COLUMNS]> {
-        let mut rows = vec![];
-        if let Some(kernel) = self.kernel(kind) {
-            rows.resize(kernel.tape.outputs() / COLUMNS.max(1), [T::zero(); COLUMNS]);
-            self.run(kernel, arguments, |i, value| {
-                rows[i / COLUMNS][i % COLUMNS] = value
-            });
-        }
+        let outputs = self.kernel(kind).map_or(0, |kernel| kernel.tape.outputs());
+        let mut rows = vec![[T::zero(); COLUMNS]; outputs / COLUMNS.max(1)];
+        self.fill(kind, arguments, rows.as_flattened_mut());
         rows
     }
 
@@ -254,14 +263,20 @@ impl<const N: usize, const K: usize, const S: usize, const C: usize, const R: us
     }
 
     fn pose<T: Scalar>(&self, q: &SVector<T, N>) -> Pose<T> {
-        let mut pose = Pose::identity();
-        if let Some(kernel) = self.kernel(KernelKind::Pose) {
-            self.run(kernel, &[q.as_slice()], |i, value| match i.checked_sub(9) {
-                None => pose.rotation[(i / 3, i % 3)] = value,
-                Some(row) => pose.translation[row] = value,
-            });
+        let (zero, one) = (T::zero(), T::one());
+        // The rotation by rows, then the translation: the identity where there is no such kernel.
+        let mut rows = [
+            [one, zero, zero],
+            [zero, one, zero],
+            [zero, zero, one],
+            [zero; 3],
+        ];
+        self.fill(KernelKind::Pose, &[q.as_slice()], rows.as_flattened_mut());
+        let [x, y, z, translation] = rows;
+        Pose {
+            rotation: from_rows([x, y, z]),
+            translation: translation.into(),
         }
-        pose
     }
 
     fn twist_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K> {
@@ -313,10 +328,8 @@ impl<const N: usize, const K: usize, const S: usize, const C: usize, const R: us
     }
 
     fn port_values<T: Scalar>(&self, q: &SVector<T, N>) -> impl AsRef<[T]> {
-        self.rows::<T, 1>(KernelKind::PortValues, &[q.as_slice()])
-            .into_iter()
-            .flatten()
-            .collect::<Vec<T>>()
+        let kernel = self.kernel(KernelKind::PortValues);
+        kernel.map_or(vec![], |kernel| self.values(kernel, &[q.as_slice()]))
     }
 
     fn pins<T: Scalar>(&self, q: &SVector<T, N>) -> impl AsRef<[[T; 9]]> {
@@ -397,9 +410,9 @@ impl<const N: usize, const K: usize, const S: usize, const C: usize, const R: us
     fn residual<T: Scalar>(&self, q: &SVector<T, N>) -> T {
         let mut sum = T::zero();
         if let Some(kernel) = self.kernel(KernelKind::Residual) {
-            self.run(kernel, &[q.as_slice()], |_, relation| {
-                sum = relation.mul_add(relation, sum)
-            });
+            for relation in self.values(kernel, &[q.as_slice()]) {
+                sum = relation.mul_add(relation, sum);
+            }
         }
         match self.is_zero(KernelKind::Residual) {
             true => T::zero(),
@@ -410,14 +423,15 @@ impl<const N: usize, const K: usize, const S: usize, const C: usize, const R: us
     fn singularity<T: Scalar>(&self, q: &SVector<T, N>) -> T {
         let mut least = finite::least_absolute([]);
         if let Some(kernel) = self.kernel(KernelKind::Singularity) {
-            let functions = kernel.shapes.first().map_or(0, |(rows, _)| *rows);
-            self.run(kernel, &[q.as_slice()], |i, value| {
+            let functions = kernel.rows();
+            let values = self.values(kernel, &[q.as_slice()]);
+            for (i, value) in values.into_iter().enumerate() {
                 least = match i {
                     0 => finite::least_absolute([value]),
                     i if i < functions => finite::least_absolute([least, value]),
                     _ => T::select(T::zero().less(value), least, T::zero()),
                 };
-            });
+            }
         }
         least
     }

@@ -4,7 +4,7 @@ use crate::facts;
 use crate::joint::Interpreted;
 use crate::kernels::Kernels;
 use crate::sizes::{self, MOST_STORED, TooLarge};
-use crate::tape::{Inputs, Tape, assemble};
+use crate::tape::{Inputs, Places, Tape, assemble};
 use hamel_codegen::derived::Derived;
 use hamel_codegen::expr::Expr;
 use hamel_codegen::formula::{Program, factored};
@@ -147,9 +147,9 @@ impl JointType {
         let joint = self.name();
         check_values(joint, self.parameters, values)?;
         for (text, margin) in &self.requirements {
-            let mut found = f64::NAN;
-            margin.run::<f64>(&[], values, &mut |_, value| found = value);
-            check_requirement(joint, text, found, self.parameters, values)?;
+            let mut found = [f64::NAN];
+            margin.run(&[], values, (&mut found, Places::IN_ORDER));
+            check_requirement(joint, text, found[0], self.parameters, values)?;
         }
         for &place in &self.nonzero {
             if let (Some(info), Some(0.0)) = (self.parameters.get(place), values.get(place)) {

@@ -107,6 +107,19 @@ impl BodyKernels {
 }
 
 impl KernelTape {
+    /// Rows of its first result.
+    pub fn rows(&self) -> usize {
+        self.shapes.first().map_or(0, |(rows, _)| *rows)
+    }
+
+    /// Columns of its first result, 1 where it has none.
+    pub fn columns(&self) -> usize {
+        self.shapes
+            .first()
+            .map_or(1, |(_, columns)| *columns)
+            .max(1)
+    }
+
     fn new(derived: &Derived, kernel: &Kernel) -> Self {
         let signature = Signature::new(kernel, derived.shape);
         let arguments = signature.arguments.iter();

@@ -54,6 +54,31 @@ pub struct Tape {
     size: usize,
 }
 
+/// Where outputs, which are matrices by rows, one after the other, stand in a slice of matrices by columns.
+#[derive(Clone, Copy, Debug)]
+pub struct Places {
+    /// Columns of the outputs.
+    pub columns: usize,
+    /// Entries of a column in the slice.
+    pub rows: usize,
+    /// Entries of a matrix, where there are several.
+    pub matrix: usize,
+}
+
+impl Places {
+    /// One after the other.
+    pub const IN_ORDER: Self = Self {
+        columns: 1,
+        rows: 0,
+        matrix: usize::MAX,
+    };
+
+    const fn of(self, number: usize) -> usize {
+        let (before, entry) = (number / self.matrix, number % self.matrix);
+        before * self.matrix + entry % self.columns * self.rows + entry / self.columns
+    }
+}
+
 /// Results of so many operations stand on the stack.
 const FEW: usize = 48;
 const SOME: usize = 256;
@@ -64,36 +89,37 @@ impl Tape {
         self.outputs.len()
     }
 
-    /// Runs the operations on arguments and parameters, and hands over each output with its number, in order.
+    /// Runs the operations on arguments and parameters, and writes each output to its place in `out`.
     pub fn run<T: Scalar>(
         &self,
         arguments: &[&[T]],
         parameters: &[f64],
-        output: &mut dyn FnMut(usize, T),
+        (out, places): (&mut [T], Places),
     ) {
         let zero = T::zero();
+        let to = (out, places);
         match self.size {
-            size if size <= FEW => self.run_in(&mut [zero; FEW], arguments, parameters, output),
-            size if size <= SOME => self.run_in(&mut [zero; SOME], arguments, parameters, output),
-            size => self.run_in(&mut vec![zero; size], arguments, parameters, output),
+            size if size <= FEW => self.run_in(&mut [zero; FEW], arguments, parameters, to),
+            size if size <= SOME => self.run_in(&mut [zero; SOME], arguments, parameters, to),
+            size => self.run_in(&mut vec![zero; size], arguments, parameters, to),
         }
     }
 
-    /// Once for each scalar: a copy for each use of the outputs would make programs several times as large.
+    /// Once for each scalar: a copy for each size of results would make programs several times as large.
     #[inline(never)]
     fn run_in<T: Scalar>(
         &self,
         results: &mut [T],
         arguments: &[&[T]],
         parameters: &[f64],
-        output: &mut dyn FnMut(usize, T),
+        (out, places): (&mut [T], Places),
     ) {
         let mut next = 0;
         for operation in &self.operations {
             next += operation.run(results, next, arguments, parameters);
         }
         for (number, place) in self.outputs.iter().enumerate() {
-            output(number, results[*place as usize]);
+            out[places.of(number)] = results[*place as usize];
         }
     }
 }

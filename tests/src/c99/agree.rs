@@ -17,9 +17,6 @@ const LONG: usize = 20_000;
 /// The same where many scenes are compiled.
 const LONG_OF_MANY: usize = 5_000;
 
-/// Operations of a module from which on it is not optimised: compilers take more time for a long function than for many short ones.
-const OPTIMISED: usize = 10_000;
-
 /// States of each scene whose values are compared.
 const STATES: u64 = 3;
 
@@ -81,10 +78,8 @@ pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)]) {
             functions,
             lanes: &[],
             kernels: &[],
-            optimisation: match functions.iter().map(Function::written).sum::<usize>() {
-                ..OPTIMISED => "-O1",
-                _ => "-O0",
-            },
+            // Half of the time of these tests was optimising. The modules of the test `committed` are built with it.
+            optimisation: "-O0",
         })
         .collect();
     let Some(program) = Program::new(folder, &modules) else {
