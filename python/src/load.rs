@@ -15,8 +15,8 @@ use std::path::PathBuf;
 /// Args:
 ///     file_or_text: path of a robot in URDF, MJCF or SDF or of a scene in TOML, or its text: a `str` with several lines, or one that begins as XML does, is a text.
 ///     floating_base: whether the root link of a URDF moves freely; otherwise it is fixed to the world.
-///     lenient: whether a URDF is read although no rigid body has its masses: such an inertia becomes that of a ball with the mean of its moments, and joints that move nothing
-///         with mass are fixed. `Robot.notices` tells what was changed.
+///     lenient: whether a URDF is read although no rigid body has its masses: such an inertia becomes that of a ball with the mean of its moments, joints that move nothing
+///         with mass are fixed, and joints that mimic one that is not there move by themselves. `Robot.notices` tells what was changed.
 ///     posture: where joints of a robot in URDF, MJCF or SDF begin, by their names: angles in rad, displacements in m; others begin at home. Or the name of a state of an SRDF.
 ///     srdf: path of the SRDF with that state; without it the file of the robot's name that ends in ``.srdf``.
 ///     joints: joint types beside those of the library, as `Joint`s: a scene names them. They are interpreted, which is slower.

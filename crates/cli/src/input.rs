@@ -20,7 +20,7 @@ pub struct RobotArgs {
     #[arg(long, value_name = "STIFFNESS,DAMPING", value_parser = stops, allow_negative_numbers = true)]
     limits: Option<Stops>,
 
-    /// Read a robot in URDF although no rigid body has its masses: such an inertia becomes that of a ball with the mean of its moments, and joints that move nothing with mass are fixed. What was changed is told
+    /// Read a robot in URDF although no rigid body has its masses: such an inertia becomes that of a ball with the mean of its moments, joints that move nothing with mass are fixed, and those that mimic a joint that is not there move by themselves. What was changed is told
     #[arg(long)]
     lenient: bool,
 

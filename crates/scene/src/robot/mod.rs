@@ -30,8 +30,8 @@ pub struct Options {
     pub floating_base: bool,
     /// Acceleration of free fall, world axes, m/s²; an MJCF and a world in SDF say their own.
     pub gravity: Vector3<f64>,
-    /// Whether a URDF is read although no rigid body has its masses: such an inertia becomes that of a ball with the mean of its principal moments, and joints that move
-    /// nothing with mass are fixed. Each is told by a warning. An MJCF says itself what becomes of its masses (`balanceinertia`, `boundmass`, `boundinertia`).
+    /// Whether a URDF is read although no rigid body has its masses: such an inertia becomes that of a ball with the mean of its principal moments, joints that move
+    /// nothing with mass are fixed, and joints that mimic one that is not there move by themselves. Each is told by a warning. An MJCF says itself what becomes of its masses (`balanceinertia`, `boundmass`, `boundinertia`).
     pub lenient: bool,
     /// What makes compliant limits of the joints' limits of position; `None` leaves these out.
     pub limits: Option<Stops>,

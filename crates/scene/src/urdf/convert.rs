@@ -5,7 +5,7 @@ use super::joint;
 use super::masses::Part;
 use super::robot::Robot;
 use super::tree::{self, Links, name_span};
-use super::{Import, Options, Stops, mass, masses, shapes};
+use super::{Import, Options, Stops, lenient, mass, masses, shapes};
 use crate::coupling::Tie;
 use crate::description::{
     BodyDescription, InitialDescription, JointDescription, MimicDescription, SceneDescription,
@@ -38,7 +38,10 @@ pub(super) fn convert(
     sink: &mut Sink,
 ) -> Option<Import> {
     let errors_before = sink.len();
-    let mimics: Vec<_> = robot.joints.iter().map(joint::mimic).collect();
+    let mut mimics: Vec<_> = robot.joints.iter().map(joint::mimic).collect();
+    if options.lenient {
+        lenient::free(robot, &mut mimics, &mut notices);
+    }
     let links = tree::links(robot, &mimics, sink);
     let facts = facts(robot, version, sink);
     let links = links?;

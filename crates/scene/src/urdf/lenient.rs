@@ -1,11 +1,13 @@
-//! What [`Options::lenient`](super::Options::lenient) changes of a robot whose masses no rigid bodies have.
+//! What [`Options::lenient`](super::Options::lenient) changes of a robot whose masses no rigid bodies have, or whose joints mimic one that is not there.
 
 use super::document::attribute;
 use super::mass;
 use super::masses::Part;
 use super::robot::{JointType, Robot};
+use crate::description::MimicDescription;
 use crate::notice::Notices;
 use crate::robot::mass::is_nothing;
+use crate::source::Located;
 use hamel_runtime::spatial::MassProperties;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::{HashMap, HashSet};
@@ -44,6 +46,23 @@ pub(super) fn fix_massless(robot: &mut Robot<'_, '_>, notices: &mut Notices) {
         joint.kind = JointType::Fixed;
         let message = "joints that move nothing with mass are fixed";
         notices.warn(message, format!("joint `{}`", joint.name));
+    }
+}
+
+/// Has joints move by themselves that mimic one that the robot does not have, and tells which.
+pub(super) fn free(
+    robot: &Robot<'_, '_>,
+    mimics: &mut [Option<Located<MimicDescription>>],
+    notices: &mut Notices,
+) {
+    let names: HashSet<&str> = robot.joints.iter().map(|joint| joint.name).collect();
+    for (joint, mimic) in robot.joints.iter().zip(mimics) {
+        let followed = mimic.as_ref().map(|own| &*own.value.joint.value);
+        if followed.is_some_and(|followed| !names.contains(followed)) {
+            let message = "joints that mimic one that the robot does not have move by themselves";
+            notices.warn(message, format!("joint `{}`", joint.name));
+            *mimic = None;
+        }
     }
 }
 

@@ -24,7 +24,7 @@ fn a_lenient_reader_replaces_masses_and_tells_which() {
         empty("finger"),
         hinge("finger", "palm", "<mimic joint=\"palm_joint\"/>"),
         empty("between"),
-        hinge("between", "arm", ""),
+        hinge("between", "arm", "<mimic joint=\"gone\"/>"),
         format!("<link name=\"end\">{INERTIAL}</link>"),
         hinge("end", "between", ""),
     ]
@@ -45,6 +45,7 @@ fn a_lenient_reader_replaces_masses_and_tells_which() {
     let told = notices(&import);
     for wanted in [
         "warning: joints that move nothing with mass are fixed: joint `palm_joint`, joint `finger_joint`",
+        "warning: joints that mimic one that the robot does not have move by themselves: joint `between_joint`",
         "warning: no rigid body has such an inertia: it is taken as that of a ball with the mean of its moments: link `flat`",
     ] {
         assert!(told.iter().any(|notice| notice == wanted), "{told:?}");
