@@ -150,6 +150,9 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     /// The ports: angles and lengths of Q, besides v, at which efforts act and rates are read.
     const PORTS: &'static [Port] = &[];
 
+    /// Whether the joint can have ports: what is asked of ports is compiled for such joints alone. A joint that knows its ports when it is made says `true`.
+    const HAS_PORTS: bool = !Self::PORTS.is_empty();
+
     /// The pins: where the bodies hold each other.
     const PINS: &'static [Pin] = &[];
 

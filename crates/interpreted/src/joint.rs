@@ -200,6 +200,7 @@ impl<const N: usize, const K: usize, const S: usize, const C: usize, const R: us
     const VELOCITY_FRAME: VelocityFrame = VelocityFrame::Declared;
     const STRUCTURES: Structures = Structures::GENERAL;
     const PATTERNS: Patterns<K, S> = Patterns::DENSE;
+    const HAS_PORTS: bool = true;
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = &[];
 

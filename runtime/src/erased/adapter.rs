@@ -153,17 +153,17 @@ where
     }
 
     fn local_rate(&self, q: &[f64], phi: &[f64], moved: &[f64], speeds: &[f64], out: &mut [f64]) {
-        let (joint, structures) = (&self.0, J::STRUCTURES);
+        let joint = &self.0;
         let moved = stored(joint, moved);
-        let velocity: SVector<f64, K> = match structures.speed_basis.is_identity() {
+        let velocity: SVector<f64, K> = match const { J::STRUCTURES.speed_basis.is_identity() } {
             true => vector(speeds),
             false => product(&joint.speed_basis(&moved), &vector(speeds)),
         };
-        let rate = match structures.velocity_map.is_identity() {
+        let rate = match const { J::STRUCTURES.velocity_map.is_identity() } {
             true => velocity,
             false => product(&joint.velocity_map_inverse(&moved), &velocity),
         };
-        let local_rate = match structures.retract_differential.is_identity() {
+        let local_rate = match const { J::STRUCTURES.retract_differential.is_identity() } {
             true => rate,
             false => joint.retract_differential_inverse(&stored(&self.0, q), &vector(phi), &rate),
         };
@@ -172,7 +172,7 @@ where
 
     fn reduce_efforts(&self, q: &[f64], efforts: &[f64], out: &mut [f64]) {
         let efforts = vector::<f64, K>(efforts);
-        match J::STRUCTURES.speed_basis.is_identity() {
+        match const { J::STRUCTURES.speed_basis.is_identity() } {
             true => efforts.store(out),
             false => {
                 let basis = self.0.speed_basis(&stored(&self.0, q));

@@ -82,7 +82,7 @@ where
         let map = self.0.port_map(&q);
         let row = map.as_ref().get(port).copied().unwrap_or([nan(); K]);
         let row: SVector<Extended, K> = of_columns([row]);
-        match J::STRUCTURES.speed_basis.is_identity() {
+        match const { J::STRUCTURES.speed_basis.is_identity() } {
             true => row.store(out),
             false => transposed_product(&self.0.speed_basis(&q), &row).store(out),
         }

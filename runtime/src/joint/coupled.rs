@@ -191,6 +191,7 @@ impl<const K: usize> Joint<MOST_LINKS, K, K, 0> for Coupled<K> {
         ..Structures::TRIVIAL
     };
     const PATTERNS: Patterns<K, K> = Patterns::DENSE;
+    const HAS_PORTS: bool = true;
     const UNIDENTIFIABLE: &'static [[f64; 10]] = &[];
     const SINGULARITIES: &'static [&'static str] = closed::SINGULARITIES;
     const RELATIONS: &'static [&'static str] = closed::relations(MOST_LINKS - K);

@@ -43,7 +43,7 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
     #[inline]
     fn local_twist_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, K> {
         let map = self.twist_map_child(q);
-        match Self::STRUCTURES.velocity_map.is_identity() {
+        match const { Self::STRUCTURES.velocity_map.is_identity() } {
             true => map,
             false => product(&map, &self.velocity_map(q)),
         }
@@ -52,24 +52,19 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
     /// What the products below are made of, at one Q.
     #[inline]
     fn first_order<T: Scalar>(&self, q: &SVector<T, N>) -> FirstOrder<T, K, S> {
-        let structures = Self::STRUCTURES;
-        let (moves, turns) = (
-            !structures.twist_map_child_gradient.is_zero(),
-            !structures.speed_basis_gradient.is_zero(),
-        );
         FirstOrder {
-            map: match turns {
-                true => self.twist_map_child(q),
-                false => zeros(),
+            map: match const { Self::STRUCTURES.speed_basis_gradient.is_zero() } {
+                true => zeros(),
+                false => self.twist_map_child(q),
             },
-            map_slices: match moves {
-                true => self.twist_map_child_gradient(q),
-                false => [zeros(); K],
+            map_slices: match const { Self::STRUCTURES.twist_map_child_gradient.is_zero() } {
+                true => [zeros(); K],
+                false => self.twist_map_child_gradient(q),
             },
             basis: self.speed_basis(q),
-            basis_slices: match turns {
-                true => self.speed_basis_gradient(q),
-                false => [zeros(); K],
+            basis_slices: match const { Self::STRUCTURES.speed_basis_gradient.is_zero() } {
+                true => [zeros(); K],
+                false => self.speed_basis_gradient(q),
             },
         }
     }
@@ -175,12 +170,12 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
     ) -> SVector<T, 6> {
         let patterns = const { &Self::PATTERNS };
         let mut bias = zeros();
-        if Self::STRUCTURES.bias_acceleration.is_zero() {
+        if const { Self::STRUCTURES.bias_acceleration.is_zero() } {
             return bias;
         }
         let velocity = self.velocity(q, speeds);
         let local = self.local_rate(q, &velocity);
-        if !Self::STRUCTURES.twist_map_child_gradient.is_zero() {
+        if const { !Self::STRUCTURES.twist_map_child_gradient.is_zero() } {
             let slices = self.twist_map_child_gradient(q);
             bias += turned(
                 &slices,
@@ -189,7 +184,7 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
                 &velocity,
             );
         }
-        if !Self::STRUCTURES.speed_basis_gradient.is_zero() {
+        if const { !Self::STRUCTURES.speed_basis_gradient.is_zero() } {
             let slices = self.speed_basis_gradient(q);
             let moved = turned(&slices, &patterns.speed_basis_gradient, &local, speeds);
             bias += times(&self.twist_map_child(q), &patterns.twist_map_child, &moved);
@@ -207,16 +202,16 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
     ) -> SVector<T, S> {
         let patterns = const { &Self::PATTERNS };
         let mut bias = zeros();
-        if Self::STRUCTURES.bias_momentum.is_zero() {
+        if const { Self::STRUCTURES.bias_momentum.is_zero() } {
             return bias;
         }
         let local = self.local_rate(q, &self.velocity(q, speeds));
-        if !Self::STRUCTURES.twist_map_child_gradient.is_zero() {
+        if const { !Self::STRUCTURES.twist_map_child_gradient.is_zero() } {
             let slices = self.twist_map_child_gradient(q);
             let efforts = turned_back(&slices, &patterns.twist_map_child_gradient, &local, h);
             bias += self.reduced(q, &efforts);
         }
-        if !Self::STRUCTURES.speed_basis_gradient.is_zero() {
+        if const { !Self::STRUCTURES.speed_basis_gradient.is_zero() } {
             let map = self.twist_map_child(q);
             let efforts = transposed_times(&map, &patterns.twist_map_child, h);
             let slices = self.speed_basis_gradient(q);
@@ -242,7 +237,7 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
     /// `ϕ̇ = S₀⁻¹ v` at ϕ = 0.
     #[inline]
     fn local_rate<T: Scalar>(&self, q: &SVector<T, N>, velocity: &SVector<T, K>) -> SVector<T, K> {
-        match Self::STRUCTURES.velocity_map.is_identity() {
+        match const { Self::STRUCTURES.velocity_map.is_identity() } {
             true => *velocity,
             false => product(&self.velocity_map_inverse(q), velocity),
         }
@@ -255,7 +250,7 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         q: &SVector<T, N>,
         basis: &SMatrix<T, K, S>,
     ) -> SMatrix<T, K, S> {
-        match Self::STRUCTURES.velocity_map.is_identity() {
+        match const { Self::STRUCTURES.velocity_map.is_identity() } {
             true => *basis,
             false => product(&self.velocity_map_inverse(q), basis),
         }
@@ -312,7 +307,7 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         q: &SVector<T, N>,
         speeds: &SVector<T, S>,
     ) -> SMatrix<T, 6, K> {
-        if Self::STRUCTURES.bias_acceleration.is_constant() {
+        if const { Self::STRUCTURES.bias_acceleration.is_constant() } {
             return zeros();
         }
         gradient!(self, q, 6, |q| self
@@ -327,7 +322,7 @@ pub trait Products<const N: usize, const K: usize, const S: usize, const C: usiz
         speeds: &SVector<T, S>,
         h: &SVector<T, 6>,
     ) -> SMatrix<T, S, K> {
-        if Self::STRUCTURES.bias_momentum.is_constant() {
+        if const { Self::STRUCTURES.bias_momentum.is_constant() } {
             return zeros();
         }
         gradient!(self, q, S, |q| self.bias_momentum(

@@ -79,6 +79,7 @@ where
     const RELATION_UNITS: &'static [&'static str] = J::RELATION_UNITS;
     const UNITS: Units = J::UNITS;
     const PORTS: &'static [Port] = J::PORTS;
+    const HAS_PORTS: bool = J::HAS_PORTS;
     const PINS: &'static [Pin] = J::PINS;
     const BODIES: &'static [&'static str] = J::BODIES;
     const BODY: usize = B;

@@ -45,12 +45,11 @@ where
     /// Evaluates it.
     pub(crate) fn fill(&self, out: &mut ChartDerivatives<'_, T>) {
         let there = self.joint.retract(&self.base, &self.phi);
-        let flat = J::STRUCTURES.retract_differential.is_identity();
         let one = identity::<T, K, K>();
         let (mut carried, mut moved) = (one, one);
         let (mut by_base, mut by_phi) = (zeros::<T, K, K>(), zeros());
-        if flat {
-            if self.varies() {
+        if const { Self::is_flat() } {
+            if const { Self::varies() } {
                 by_phi = columns(|k| derivative(&self.local_rate(&self.pushed(&there, k))));
                 by_base = by_phi;
             }
@@ -71,13 +70,18 @@ where
         moved.store(out.moved);
         by_base.store(out.rate_by_base);
         by_phi.store(out.rate_by_phi);
-        self.by_speeds(&there, flat).store(out.rate_by_speeds);
+        self.by_speeds(&there).store(out.rate_by_speeds);
+    }
+
+    /// Whether the differential of Φ is the identity.
+    const fn is_flat() -> bool {
+        J::STRUCTURES.retract_differential.is_identity()
     }
 
     /// Whether `S₀⁻¹ S̄` depends on Q.
-    fn varies(&self) -> bool {
-        let structures = [J::STRUCTURES.velocity_map, J::STRUCTURES.speed_basis];
-        structures.contains(&Structure::General)
+    const fn varies() -> bool {
+        matches!(J::STRUCTURES.velocity_map, Structure::General)
+            || matches!(J::STRUCTURES.speed_basis, Structure::General)
     }
 
     /// Φ(q, ε e_k).
@@ -88,7 +92,7 @@ where
     /// `S₀⁻¹ S̄ v̄` at `q`.
     fn local_rate(&self, q: &SVector<Dual<T>, N>) -> SVector<Dual<T>, K> {
         let velocity = product(&self.joint.speed_basis(q), &constant(&self.speeds));
-        match J::STRUCTURES.velocity_map.is_identity() {
+        match const { J::STRUCTURES.velocity_map.is_identity() } {
             true => velocity,
             false => product(&self.joint.velocity_map_inverse(q), &velocity),
         }
@@ -107,12 +111,12 @@ where
     }
 
     /// `S⁻¹ S̄` at Q′.
-    fn by_speeds(&self, there: &SVector<T, N>, flat: bool) -> SMatrix<T, K, S> {
+    fn by_speeds(&self, there: &SVector<T, N>) -> SMatrix<T, K, S> {
         let mut map = self.joint.speed_basis(there);
-        if !J::STRUCTURES.velocity_map.is_identity() {
+        if const { !J::STRUCTURES.velocity_map.is_identity() } {
             map = product(&self.joint.velocity_map_inverse(there), &map);
         }
-        if !flat {
+        if const { !Self::is_flat() } {
             for j in 0..S {
                 let rate = column(&map, j);
                 let own = self

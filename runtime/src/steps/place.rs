@@ -95,7 +95,7 @@ where
     #[inline(always)]
     fn speed_map<T: Scalar>(&self, q: &SVector<T, N>) -> SMatrix<T, 6, S> {
         let map = self.0.twist_map_child(q);
-        if J::STRUCTURES.speed_basis.is_identity() {
+        if const { J::STRUCTURES.speed_basis.is_identity() } {
             let mut same = zeros();
             for j in 0..S {
                 same.data.0[j] = map.data.0[j];
@@ -108,11 +108,13 @@ where
     /// The kernels that its motion is made of, at `q` and `speeds`.
     #[inline(always)]
     fn kernels<T: Scalar>(&self, q: &SVector<T, N>, speeds: &SVector<T, S>) -> Kernels<T, S> {
-        let biased = !J::STRUCTURES.bias_acceleration.is_zero();
         Kernels {
             pose: self.0.pose(q),
             speed_map: self.speed_map(q),
-            bias: biased.then(|| self.0.bias_acceleration(q, speeds)),
+            bias: match const { J::STRUCTURES.bias_acceleration.is_zero() } {
+                true => None,
+                false => Some(self.0.bias_acceleration(q, speeds)),
+            },
         }
     }
 

@@ -53,6 +53,9 @@ where
         speeds: &SVector<T, S>,
         port: usize,
     ) -> [SVector<T, S>; 2] {
+        if const { !J::HAS_PORTS } {
+            return [filled(nan()); 2];
+        }
         let velocity = product(&self.0.speed_basis(q), speeds);
         let rate = self.0.configuration_rate(q, &velocity);
         let row: SVector<Dual<T>, S> = self.speed_row(&moving(q, &rate), port);
@@ -65,6 +68,9 @@ where
         q: &SVector<T, N>,
         port: usize,
     ) -> SMatrix<T, K, K> {
+        if const { !J::HAS_PORTS } {
+            return filled(nan());
+        }
         let q = constant(q);
         columns(|k| derivative(&self.port_row(&self.0.retract(&q, &along(k)), port)))
     }
@@ -74,6 +80,9 @@ where
         (q, speeds, x): (&SVector<T, N>, &SVector<T, S>, &SVector<T, S>),
         AtPort { port, term }: AtPort,
     ) -> SVector<T, S> {
+        if const { !J::HAS_PORTS } {
+            return filled(nan());
+        }
         match term {
             RotorTerm::Momentum => {
                 let row = self.speed_row(q, port);
@@ -96,6 +105,9 @@ where
         (q, speeds, x): (&SVector<T, N>, &SVector<T, S>, &SVector<T, S>),
         at: AtPort,
     ) -> (SMatrix<T, S, K>, SMatrix<T, S, S>) {
+        if const { !J::HAS_PORTS } {
+            return (filled(nan()), filled(nan()));
+        }
         let (speeds, x, q) = (constant(speeds), constant(x), constant(q));
         let by_local = columns(|k| {
             let moved = self.0.retract(&q, &along(k));

@@ -36,6 +36,14 @@ impl<J, const N: usize, const K: usize, const S: usize, const C: usize> Steps<'_
 where
     J: Joint<N, K, S, C>,
 {
+    /// Whether X̄ is constant, and ϕ̇ = v = v̄.
+    const fn has_constant_columns() -> bool {
+        let structures = J::STRUCTURES;
+        structures.speed_map.is_constant()
+            && structures.velocity_map.is_identity()
+            && structures.speed_basis.is_identity()
+    }
+
     /// Q as it moves along `E_l`.
     pub(super) fn moving<T: Scalar>(&self, q: &SVector<T, N>, l: usize) -> SVector<Dual<T>, N> {
         let velocity = column(&self.0.velocity_map(q), l);
@@ -54,11 +62,7 @@ where
         if !have_sizes(&mut out, [K * K, K * S, S * S]) {
             return;
         }
-        let structures = J::STRUCTURES;
-        if structures.speed_map.is_constant()
-            && structures.velocity_map.is_identity()
-            && structures.speed_basis.is_identity()
-        {
+        if const { Self::has_constant_columns() } {
             let columns = self.columns(&state.q, &Matrix3::identity());
             return gradient.constant_columns(&columns, carrying, out);
         }
@@ -110,15 +114,15 @@ where
             accelerations,
             virtual_speeds,
         } = state;
-        let (joint, structures) = (self.0, J::STRUCTURES);
+        let joint = self.0;
         let columns = self.columns(q, &Matrix3::identity());
         let first = joint.first_order(q);
         let twist_slopes = J::twist_gradient_at(&first, speeds);
         let mut rate_slopes = J::twist_gradient_at(&first, accelerations);
-        if !structures.bias_acceleration.is_constant() {
+        if const { !J::STRUCTURES.bias_acceleration.is_constant() } {
             rate_slopes += joint.bias_acceleration_gradient(q, speeds);
         }
-        let speed_slopes = match structures.bias_acceleration.is_zero() {
+        let speed_slopes = match const { J::STRUCTURES.bias_acceleration.is_zero() } {
             true => zeros(),
             false => joint.bias_acceleration_slope_at((q, speeds), &first, &twist_slopes),
         };
@@ -145,13 +149,12 @@ where
         q: &SVector<f64, N>,
         gradient: &SVector<f64, K>,
     ) -> SMatrix<f64, K, K> {
-        let structures = J::STRUCTURES;
         let slices = self.0.velocity_map_gradient(q);
         let mut terms = zeros::<f64, K, K>();
         let weights = transposed_product(&self.0.velocity_map_inverse(q), gradient);
         for (l, slice) in slices.iter().enumerate() {
             let mut change = *slice;
-            if !structures.velocity_map.is_constant() {
+            if const { !J::STRUCTURES.velocity_map.is_constant() } {
                 change -= derivative(&self.0.velocity_map(&self.moving(q, l)));
             }
             let row = transposed_product(&change, &weights);

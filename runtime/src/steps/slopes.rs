@@ -6,7 +6,7 @@ use super::Steps;
 use super::directions::{along, columns, constant, derivative};
 use crate::erased::nan;
 use crate::joint::{Joint, PortLaw};
-use crate::matrix::{by_rows, dot, entries, filled, map, product};
+use crate::matrix::{by_rows, dot, entries, filled, map, product, zeros};
 use crate::scalar::{Dual, Scalar};
 use nalgebra::{Matrix3, SMatrix, SVector};
 
@@ -47,6 +47,9 @@ where
         velocity: &SVector<T, K>,
         inertia: &SVector<T, K>,
     ) -> [SMatrix<T, K, K>; 2] {
+        if const { J::STRUCTURES.gamma.is_zero() } {
+            return [zeros(); 2];
+        }
         let (velocity, inertia) = (constant(velocity), constant(inertia));
         let force = |q: &SVector<Dual<T>, N>, v: &SVector<Dual<T>, K>| {
             let momentum = entries(|k| v[k] * inertia[k]);
@@ -67,6 +70,9 @@ where
         port: usize,
         law: &PortLaw<T>,
     ) -> SMatrix<T, K, K> {
+        if const { !J::HAS_PORTS } {
+            return filled(nan());
+        }
         let PortLaw {
             effort,
             stiffness,
@@ -86,6 +92,9 @@ where
 
     /// The value of a port, and its row of P as a column.
     pub(super) fn port<T: Scalar>(&self, q: &SVector<T, N>, port: usize) -> (T, SVector<T, K>) {
+        if const { !J::HAS_PORTS } {
+            return (nan(), filled(nan()));
+        }
         let values = self.0.port_values(q);
         let value = match values.as_ref().get(port) {
             Some(value) => *value,

@@ -79,25 +79,22 @@ where
         let placement = &own.placement;
         let carried = shift_twist(&parent.twist, &placement.offset);
         let carried_rate = shift_twist(&parent.rate, &placement.offset);
-        let structures = J::STRUCTURES;
         // Then ϕ̇ = v = v̄, and Z are the columns themselves.
-        let same = structures.velocity_map.is_identity() && structures.speed_basis.is_identity();
-        let local = (!same).then(|| self.0.local_twist_map(q));
-        for b in 0..K {
-            let variation = &mut out[b];
-            match &local {
-                Some(local) => {
-                    let z = turn_out(&placement.rotation, &column(local, b));
-                    variation.local = z;
-                    variation.drift = bracket_product(&carried, &z);
-                    variation.rate = bracket_product(&carried_rate, &z);
-                }
-                None => {
-                    let z = &columns[b];
-                    variation.local = *z;
-                    variation.drift = Self::bracket_of_column(b, &carried, z);
-                    variation.rate = Self::bracket_of_column(b, &carried_rate, z);
-                }
+        if const { J::STRUCTURES.velocity_map.is_identity() && J::STRUCTURES.speed_basis.is_identity() }
+        {
+            for b in 0..K {
+                let (variation, z) = (&mut out[b], &columns[b]);
+                variation.local = *z;
+                variation.drift = Self::bracket_of_column(b, &carried, z);
+                variation.rate = Self::bracket_of_column(b, &carried_rate, z);
+            }
+        } else {
+            let local = self.0.local_twist_map(q);
+            for (b, variation) in out.iter_mut().enumerate() {
+                let z = turn_out(&placement.rotation, &column(&local, b));
+                variation.local = z;
+                variation.drift = bracket_product(&carried, &z);
+                variation.rate = bracket_product(&carried_rate, &z);
             }
         }
         for variation in out.iter_mut() {
@@ -107,7 +104,7 @@ where
         for (a, column) in columns.iter().enumerate() {
             out[a].speed_rate = Self::bracket_of_column(a, &both, column);
         }
-        if !structures.speed_map.is_constant() {
+        if const { !J::STRUCTURES.speed_map.is_constant() } {
             self.vary_map((q, speeds, accelerations), own, out);
         }
         for variation in out.iter_mut() {
@@ -123,12 +120,12 @@ where
         own: &Motion<T>,
         out: &mut [Variation<T>; K],
     ) {
-        let (joint, structures) = (self.0, J::STRUCTURES);
+        let joint = self.0;
         let rotation = &own.placement.rotation;
         let first = joint.first_order(q);
         let of_twist = J::twist_gradient_at(&first, speeds);
         let mut of_rate = J::twist_gradient_at(&first, accelerations);
-        if !structures.bias_acceleration.is_constant() {
+        if const { !J::STRUCTURES.bias_acceleration.is_constant() } {
             of_rate += joint.bias_acceleration_gradient(q, speeds);
         }
         for (b, variation) in out.iter_mut().enumerate() {
@@ -137,7 +134,7 @@ where
             variation.rate +=
                 bracket_product(&own.twist, &drift) + turn_out(rotation, &column(&of_rate, b));
         }
-        if !structures.bias_acceleration.is_zero() {
+        if const { !J::STRUCTURES.bias_acceleration.is_zero() } {
             let slope = joint.bias_acceleration_slope_at((q, speeds), &first, &of_twist);
             for (a, variation) in out.iter_mut().enumerate().take(S) {
                 variation.speed_rate += turn_out(rotation, &column(&slope, a));
