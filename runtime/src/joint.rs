@@ -150,7 +150,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     /// The ports: angles and lengths of Q, besides v, at which efforts act and rates are read.
     const PORTS: &'static [Port] = &[];
 
-    /// Whether the joint can have ports: what is asked of ports is compiled for such joints alone. A joint that knows its ports when it is made says `true`.
+    /// Whether the joint can have ports: what is asked of ports is compiled for such joints alone. A joint that overrides [`Joint::ports`] says `true`.
     const HAS_PORTS: bool = !Self::PORTS.is_empty();
 
     /// The pins: where the bodies hold each other.
@@ -178,7 +178,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
         Self::UNITS
     }
 
-    /// The ports: [`Joint::PORTS`], but of a joint that knows them when it is made.
+    /// The ports: [`Joint::PORTS`], but of a joint that knows them when it is made. Such a joint says so by [`Joint::HAS_PORTS`].
     fn ports(&self) -> &'static [Port] {
         Self::PORTS
     }
@@ -335,7 +335,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     fn port_map<T: Scalar>(&self, _q: &SVector<T, N>) -> impl AsRef<[[T; K]]> {
         const {
             assert!(
-                Self::PORTS.is_empty(),
+                !Self::HAS_PORTS,
                 "the joint has ports: it must implement port_map"
             )
         };
@@ -347,7 +347,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     fn port_values<T: Scalar>(&self, _q: &SVector<T, N>) -> impl AsRef<[T]> {
         const {
             assert!(
-                Self::PORTS.is_empty(),
+                !Self::HAS_PORTS,
                 "the joint has ports: it must implement port_values"
             )
         };
@@ -385,7 +385,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     fn relation_ports<T: Scalar>(&self, _q: &SVector<T, N>) -> impl AsRef<[T]> {
         const {
             assert!(
-                Self::RELATIONS.is_empty() || Self::PORTS.is_empty(),
+                Self::RELATIONS.is_empty() || !Self::HAS_PORTS,
                 "the joint has relations and ports: it must implement relation_ports"
             )
         };

@@ -1,7 +1,7 @@
 //! Matrices of fixed sizes by plain loops over their columns.
 //!
-//! What is generic in a joint is compiled once more for each type of joint. There each of nalgebra's `from_fn`, `map`, `*` and `dot` is compiled to several hundred
-//! lines of LLVM IR for each size and scalar, and each of these to some thirty. They add in the order of the index, without fused operations.
+//! What is generic in a joint is compiled once more for each type of joint. nalgebra's `from_fn`, `map`, `*` and `dot` are several hundred lines of LLVM IR each, for
+//! each size and scalar; the functions here are some thirty. Sums run in the order of the index, without the fused multiply–adds of `group::parts` and `spatial::fused`.
 
 use crate::scalar::Scalar;
 use nalgebra::{ArrayStorage, SMatrix, SVector};

@@ -112,7 +112,7 @@ impl<const N: usize, const K: usize, const S: usize, const C: usize, const R: us
         let mut column = [[T::zero(); D]];
         let to = (column.as_flattened_mut(), Places::IN_ORDER);
         self.run(self.kernel(kind), arguments, to);
-        SMatrix::from_array_storage(ArrayStorage(column))
+        of_columns(column)
     }
 
     /// A matrix, with zeros beside and below what the kernel gives.
@@ -129,7 +129,7 @@ impl<const N: usize, const K: usize, const S: usize, const C: usize, const R: us
             ..Places::IN_ORDER
         };
         self.run(kernel, arguments, (matrix.as_flattened_mut(), places));
-        SMatrix::from_array_storage(ArrayStorage(matrix))
+        of_columns(matrix)
     }
 
     /// A matrix for each ϕ_k.
@@ -148,7 +148,7 @@ impl<const N: usize, const K: usize, const S: usize, const C: usize, const R: us
             let out = slices.as_flattened_mut().as_flattened_mut();
             self.run(self.kernel(kind), arguments, (out, places));
         }
-        slices.map(|slice| SMatrix::from_array_storage(ArrayStorage(slice)))
+        slices.map(of_columns)
     }
 
     /// The entries by rows.
@@ -188,6 +188,12 @@ impl<const N: usize, const K: usize, const S: usize, const C: usize, const R: us
             None => self.column(kind, &[]),
         }
     }
+}
+
+fn of_columns<T, const ROWS: usize, const COLUMNS: usize>(
+    columns: [[T; ROWS]; COLUMNS],
+) -> SMatrix<T, ROWS, COLUMNS> {
+    SMatrix::from_array_storage(ArrayStorage(columns))
 }
 
 impl<const N: usize, const K: usize, const S: usize, const C: usize, const R: usize, const G: usize>

@@ -188,10 +188,9 @@ where
     }
 
     fn port_row(&self, q: &[f64], port: usize, out: &mut [f64]) {
-        let q = stored(&self.0, q);
-        let map = self.0.port_map(&q);
-        let row = map.as_ref().get(port).copied().unwrap_or([nan(); K]);
-        of_columns([row]).store(out);
+        Steps(&self.0)
+            .port_row(&stored(&self.0, q), port)
+            .store(out);
     }
 
     fn pin_place(&self, q: &[f64], pin: usize) -> [f64; 9] {

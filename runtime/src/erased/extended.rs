@@ -4,12 +4,12 @@ use super::slices::{Store, array, array_mut, nan};
 use super::stored::{self, stored};
 use super::{FiniteMapError, Sizes};
 use crate::joint::Joint;
-use crate::matrix::{of_columns, transposed_product};
+use crate::matrix::of_columns;
 use crate::scalar::{Extended, Scalar};
 use crate::spatial::Pose;
 use crate::steps::{Motion, Steps};
 use core::fmt::Debug;
-use nalgebra::{SVector, Vector6};
+use nalgebra::Vector6;
 
 /// A joint of any type in numbers of 106 bits, as far as inverse dynamics goes; shapes and frames are as in [`AnyJoint`](super::AnyJoint).
 ///
@@ -78,13 +78,8 @@ where
     }
 
     fn port_speed_row(&self, q: &[Extended], port: usize, out: &mut [Extended]) {
-        let q = stored(&self.0, q);
-        let map = self.0.port_map(&q);
-        let row = map.as_ref().get(port).copied().unwrap_or([nan(); K]);
-        let row: SVector<Extended, K> = of_columns([row]);
-        match const { J::STRUCTURES.speed_basis.is_identity() } {
-            true => row.store(out),
-            false => transposed_product(&self.0.speed_basis(&q), &row).store(out),
-        }
+        Steps(&self.0)
+            .speed_row(&stored(&self.0, q), port)
+            .store(out);
     }
 }

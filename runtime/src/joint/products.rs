@@ -388,7 +388,7 @@ where
     let (indices, count) = const { moving(&J::PATTERNS.bias_gradient) };
     let mut first = 0;
     while first < count {
-        // Where fewer are left than fit, the first of them stands again.
+        // Where fewer are left than fit, the first of them fills the rest.
         let index = |d: usize| indices[if first + d < count { first + d } else { first }];
         let mut moved = map(q, Dual::constant);
         for d in 0..D {

@@ -206,6 +206,7 @@ where
                     + T::from_f64(*product) * way * rate;
                 row * (T::from_f64(effort) - change)
             }
+            EffortLaw::Rotors(_) if const { J::STRUCTURES.gamma.is_zero() } => zeros(),
             EffortLaw::Rotors(inertia) => {
                 let inertia = lifted::<T, K>(inertia);
                 let momentum = entries(|k| velocity[k] * inertia[k]);

@@ -6,7 +6,7 @@ use super::Steps;
 use super::directions::{along, columns, constant, derivative, moving};
 use crate::erased::nan;
 use crate::joint::Joint;
-use crate::matrix::{dot, filled, map, of_columns, product, transposed_product};
+use crate::matrix::{dot, entries, filled, map, of_columns, product, transposed_product};
 use crate::scalar::{Dual, Scalar};
 use nalgebra::{SMatrix, SVector};
 
@@ -33,7 +33,7 @@ where
     J: Joint<N, K, S, C>,
 {
     /// The row of P of a port, as a column; NaN of a port that is not there.
-    pub(super) fn port_row<T: Scalar>(&self, q: &SVector<T, N>, port: usize) -> SVector<T, K> {
+    pub(crate) fn port_row<T: Scalar>(&self, q: &SVector<T, N>, port: usize) -> SVector<T, K> {
         let map = self.0.port_map(q);
         match map.as_ref().get(port) {
             Some(row) => of_columns([*row]),
@@ -42,8 +42,12 @@ where
     }
 
     /// p̄ of a port, as a column.
-    fn speed_row<T: Scalar>(&self, q: &SVector<T, N>, port: usize) -> SVector<T, S> {
-        transposed_product(&self.0.speed_basis(q), &self.port_row(q, port))
+    pub(crate) fn speed_row<T: Scalar>(&self, q: &SVector<T, N>, port: usize) -> SVector<T, S> {
+        let row = self.port_row(q, port);
+        match const { J::STRUCTURES.speed_basis.is_identity() } {
+            true => entries(|j| row.data.0[0][j]),
+            false => transposed_product(&self.0.speed_basis(q), &row),
+        }
     }
 
     /// p̄ and p̄̇ of a port at v̄, as columns.

@@ -17,6 +17,9 @@ const LONG: usize = 20_000;
 /// The same where many scenes are compiled.
 const LONG_OF_MANY: usize = 5_000;
 
+/// Operations of a module from which on it is not optimised: half of the time of these tests was optimising long functions.
+const OPTIMISED: usize = 2_000;
+
 /// States of each scene whose values are compared.
 const STATES: u64 = 3;
 
@@ -78,8 +81,10 @@ pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)]) {
             functions,
             lanes: &[],
             kernels: &[],
-            // Half of the time of these tests was optimising. The modules of the test `committed` are built with it.
-            optimisation: "-O0",
+            optimisation: match functions.iter().map(Function::written).sum::<usize>() {
+                ..OPTIMISED => "-O1",
+                _ => "-O0",
+            },
         })
         .collect();
     let Some(program) = Program::new(folder, &modules) else {

@@ -16,12 +16,15 @@ use std::collections::{HashMap, HashSet};
 /// mass: those joints stay as they are.
 pub(super) fn fix_massless(robot: &mut Robot<'_, '_>, notices: &mut Notices) {
     let joints = || robot.joints.iter();
+    let names: HashSet<&str> = joints().map(|joint| joint.name).collect();
     let above: Neighbours<'_> = joints()
         .map(|joint| (joint.child, vec![joint.parent]))
         .collect();
     let mut coupled = Neighbours::new();
     for joint in joints() {
-        if let Some(followed) = attribute(joint.node, "mimic", "joint") {
+        let followed = attribute(joint.node, "mimic", "joint");
+        // Those that mimic one that is not there do not move together.
+        if let Some(followed) = followed.filter(|followed| names.contains(followed)) {
             coupled.entry(joint.name).or_default().push(followed);
             coupled.entry(followed).or_default().push(joint.name);
         }

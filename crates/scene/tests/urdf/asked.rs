@@ -27,6 +27,9 @@ fn a_lenient_reader_replaces_masses_and_tells_which() {
         hinge("between", "arm", "<mimic joint=\"gone\"/>"),
         format!("<link name=\"end\">{INERTIAL}</link>"),
         hinge("end", "between", ""),
+        // Moves nothing, and mimics the same joint that is not there as one that does.
+        empty("tip"),
+        hinge("tip", "end", "<mimic joint=\"gone\"/>"),
     ]
     .concat();
     let options = Options {
@@ -44,7 +47,7 @@ fn a_lenient_reader_replaces_masses_and_tells_which() {
     assert!((flat.inertia_com - ball).amax() <= 5.0 * f64::EPSILON);
     let told = notices(&import);
     for wanted in [
-        "warning: joints that move nothing with mass are fixed: joint `palm_joint`, joint `finger_joint`",
+        "warning: joints that move nothing with mass are fixed: joint `palm_joint`, joint `finger_joint`, joint `tip_joint`",
         "warning: joints that mimic one that the robot does not have move by themselves: joint `between_joint`",
         "warning: no rigid body has such an inertia: it is taken as that of a ball with the mean of its moments: link `flat`",
     ] {
