@@ -71,7 +71,7 @@ def damping(path):
     return found
 
 
-def states(robot, names):
+def states(names):
     random = np.random.default_rng(1)
     for _ in range(STATES):
         yield tuple(dict(zip(names, random.uniform(-1.0, 1.0, len(names)))) for _ in range(3))
@@ -81,7 +81,7 @@ def difference(robot, peer):
     """The largest difference of accelerations as a part of what is allowed, 1e-9 · max(1, |a|) or cond(M) · 1e-15 of it where that is more, and the largest relative one."""
     parts, relative = [0.0], [0.0]
     where = {name: robot.joint(name) for name in robot.joints}
-    for angles, rates, efforts in states(robot, peer.names):
+    for angles, rates, efforts in states(peer.names):
         v, tau = np.zeros(robot.sizes.speeds), np.zeros(robot.sizes.freedoms)
         for name, joint in where.items():
             v[joint.speeds], tau[joint.freedoms] = rates[name], efforts[name]
