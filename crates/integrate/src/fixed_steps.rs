@@ -32,6 +32,25 @@ impl FixedSteps {
     pub const fn time(&self) -> f64 {
         self.clock.time()
     }
+
+    /// Whether one of these steps ends at `time`, s, up to rounding: of a time from 0 to the end.
+    pub fn has_end_at(&self, time: f64) -> bool {
+        // Where that leaves less than is told from rounding, the last step takes it along.
+        let is_before_last = self.end - time > 2.0 * (STRETCH - 1.0) * self.dt;
+        let count = (time / self.dt).round();
+        time == self.end || is_before_last && is_rounding(count * self.dt - time, time, 4.0)
+    }
+
+    /// Whether the last step ends at `time`, s, up to rounding.
+    pub fn is_at(&self, time: f64) -> bool {
+        // The clock adds steps up: more roundings than a product has.
+        is_rounding(self.time() - time, time, 8.0)
+    }
+}
+
+/// Whether times that differ by `difference` are one: each is a decimal or a product of decimals, and together they have at most so many roundings.
+fn is_rounding(difference: f64, time: f64, roundings: f64) -> bool {
+    difference.abs() <= roundings * f64::EPSILON * time
 }
 
 impl Iterator for FixedSteps {
@@ -62,6 +81,31 @@ mod tests {
         assert_eq!(steps[..2], [0.4, 0.4]);
         // No sliver of a step where rounding leaves one.
         assert_eq!(FixedSteps::until(1.0, 0.1).count(), 10);
+    }
+
+    #[test]
+    fn steps_end_at_multiples_and_at_the_end() {
+        let steps = FixedSteps::until(1.0, 0.4);
+        assert!(
+            [0.0, 0.4, 0.8, 1.0]
+                .iter()
+                .all(|time| steps.has_end_at(*time))
+        );
+        assert!(
+            ![0.2, 0.4 + 1e-9, 0.999]
+                .iter()
+                .any(|time| steps.has_end_at(*time))
+        );
+        // 0.1 · 3 is not 0.3, and ten steps of 0.1 do not add up to 1.
+        let mut steps = FixedSteps::until(1.0, 0.1);
+        assert!(steps.has_end_at(0.3));
+        // The last step goes on to the end: none ends just before it.
+        assert!(!FixedSteps::until(1.0 + 1e-11, 0.1).has_end_at(1.0));
+        for number in 1..=10 {
+            steps.next();
+            assert!(steps.is_at(f64::from(number) * 0.1), "{number}");
+            assert!(!steps.is_at(f64::from(number) * 0.1 + 0.05), "{number}");
+        }
     }
 
     #[test]

@@ -37,6 +37,24 @@ pub struct Step<'a> {
     pub carried: Option<&'a Recursive>,
 }
 
+impl<'a> Step<'a> {
+    /// A state at the end of a step, without momenta and forces.
+    ///
+    /// `number` is how many steps led there, and `sample` the index of the last sample that falls on its time, if one does.
+    pub fn ending(state: &'a State, number: usize, sample: Option<usize>) -> Self {
+        Self {
+            time: state.time,
+            number,
+            configuration: &state.configuration,
+            speeds: &state.speeds,
+            momenta: None,
+            sample,
+            is_within: false,
+            carried: None,
+        }
+    }
+}
+
 /// The work done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Statistics {

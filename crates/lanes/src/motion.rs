@@ -13,8 +13,6 @@ use std::ops::Range;
 const FAR: f64 = 0.5;
 /// The ϕ beyond which a step says nothing: the tree judges what goes so fast.
 const TOO_FAR: f64 = 1.0;
-/// The part of a step that is taken along by the last one; a generous bound of what [`FixedSteps`] does.
-const SLIVER: f64 = 1e-9;
 /// Steps after which somebody may want to stop.
 const ASKED: usize = 64;
 
@@ -67,26 +65,12 @@ struct Group {
 }
 
 impl Group {
-    /// The sample that is taken at the end of the last step, which ends [at that time](ends_at).
+    /// The sample that is taken at the end of the last step, if one is.
     fn sample(&mut self) -> Option<usize> {
-        let wanted = self.times.get(self.sample)?;
-        // Where the clock is added up, rounding is another than where steps are multiplied.
-        let is_due = is_rounding(0.5 * (self.steps.time() - wanted), *wanted);
+        let is_due = self.steps.is_at(*self.times.get(self.sample)?);
         self.sample += usize::from(is_due);
         is_due.then(|| self.sample - 1)
     }
-}
-
-/// Whether one of the steps of `dt` until `end` ends at `time`, which is not after `end`.
-pub fn ends_at(time: f64, dt: f64, end: f64) -> bool {
-    // The last step takes a sliver along that would be left behind it.
-    let is_before_last = end - time > 2.0 * SLIVER * dt;
-    time == end || is_before_last && is_rounding((time / dt).round() * dt - time, time)
-}
-
-/// Whether two times that differ by so much are one: both are decimals and products of decimals, with two roundings each.
-fn is_rounding(difference: f64, time: f64) -> bool {
-    difference.abs() <= 4.0 * f64::EPSILON * time
 }
 
 /// Moves at most [`WIDTH`] scenes to their ends. A motion without an end is left to the tree; `None` where `stop` tells to stop.
@@ -275,16 +259,7 @@ impl<'a> Block<'a> {
     fn follow(&mut self, motion: usize, (time, number): (f64, usize), sample: Option<usize>) {
         let state = self.state(motion, time);
         let start = &mut self.starts[motion];
-        let step = Step {
-            time,
-            number,
-            configuration: &state.configuration,
-            speeds: &state.speeds,
-            momenta: None,
-            sample,
-            is_within: false,
-            carried: None,
-        };
+        let step = Step::ending(&state, number, sample);
         start.track.follow(&start.scene.mechanism, &step);
     }
 

@@ -13,7 +13,6 @@ use hamel_sweep::{Cells, Mover, Movers, Outcome, Row, Sweep, Watch};
 use std::borrow::Cow;
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
-use std::mem;
 use std::rc::Rc;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -125,10 +124,11 @@ impl Tree {
     }
 }
 
-/// A row on its way to a result.
-enum Way {
-    Lane(Rc<Built>, State),
+/// What is known of a row that does not go side by side.
+enum Apart {
+    /// It goes by the tree, for this reason.
     Tree(Cow<'static, str>),
+    /// Its result.
     Done(Row),
 }
 
@@ -157,17 +157,18 @@ impl Built {
     }
 
     /// The row from this state on.
-    fn way(self: Rc<Self>, state: State) -> Way {
+    fn starting_at(self: Rc<Self>, state: State) -> Result<(Rc<Self>, State), Apart> {
         let is_accepted = self.tree.borrow_mut().accepts(&state);
         match is_accepted {
-            true => Way::Lane(self, state),
-            false => Way::Tree(REFUSED.into()),
+            true => Ok((self, state)),
+            false => Err(Apart::Tree(REFUSED.into())),
         }
     }
 }
 
 impl Own<'_> {
-    fn way(&mut self, cells: &Cells) -> Way {
+    /// What goes side by side, and its first state.
+    fn start(&mut self, cells: &Cells) -> Result<(Rc<Built>, State), Apart> {
         let Lanes {
             sweep,
             registry,
@@ -177,44 +178,43 @@ impl Own<'_> {
         if let Some(built) = &self.last
             && let Some(state) = built.start(self.lanes, cells)
         {
-            return Rc::clone(built).way(state);
+            return Rc::clone(built).starting_at(state);
         }
-        match described(sweep, registry, &self.joints, cells) {
-            Ok(row) => match plan.numbers(&row) {
-                Ok(numbers) => {
-                    let state = row.scene.start();
-                    let built = Rc::new(Built {
-                        tree: RefCell::new(Tree::new(&row.scene)),
-                        row,
-                        cells: cells.clone(),
-                        numbers,
-                        starts: OnceCell::new(),
-                    });
-                    self.last = Some(Rc::clone(&built));
-                    built.way(state)
-                }
-                Err(reason) => Way::Tree(reason.into()),
-            },
-            Err(Alone::Refused(row)) => Way::Done(row),
-            Err(Alone::Tree(reason)) => Way::Tree(reason.into()),
-        }
+        let row = described(sweep, registry, &self.joints, cells).map_err(|alone| match alone {
+            Alone::Refused(row) => Apart::Done(row),
+            Alone::Tree(reason) => Apart::Tree(reason.into()),
+        })?;
+        let numbers = plan.numbers(&row);
+        let numbers = numbers.map_err(|reason| Apart::Tree(reason.into()))?;
+        let state = row.scene.start();
+        let built = Rc::new(Built {
+            tree: RefCell::new(Tree::new(&row.scene)),
+            row,
+            cells: cells.clone(),
+            numbers,
+            starts: OnceCell::new(),
+        });
+        self.last = Some(Rc::clone(&built));
+        built.starting_at(state)
     }
 
     fn block(&mut self, rows: &[Cells], watch: Watch<'_>) -> Option<Vec<Row>> {
         let lanes = self.lanes;
-        let mut ways: Vec<Way> = rows.iter().map(|cells| self.way(cells)).collect();
-        let refused = ways.iter().filter(|way| matches!(way, Way::Done(_)));
-        (watch.done)(refused.count());
-        // What goes side by side is the tree's until it has a result.
         let (mut going, mut states) = (vec![], vec![]);
-        for (place, way) in ways.iter_mut().enumerate() {
-            if let Way::Lane(..) = way
-                && let Way::Lane(built, state) = mem::replace(way, Way::Tree(LEFT.into()))
-            {
-                going.push((place, built));
-                states.push(state);
-            }
+        let mut apart = Vec::with_capacity(rows.len());
+        for (place, cells) in rows.iter().enumerate() {
+            apart.push(match self.start(cells) {
+                Ok((built, state)) => {
+                    going.push((place, built));
+                    states.push(state);
+                    // The tree's until it has a result.
+                    Apart::Tree(LEFT.into())
+                }
+                Err(apart) => apart,
+            });
         }
+        let refused = apart.iter().filter(|row| matches!(row, Apart::Done(_)));
+        (watch.done)(refused.count());
         let starts = going.iter().zip(states).map(|((_, built), state)| Start {
             scene: &built.row.scene,
             state,
@@ -237,15 +237,14 @@ impl Own<'_> {
             if row.outcome == Outcome::Ended {
                 (watch.done)(1);
                 moved_here += 1;
-                ways[*place] = Way::Done(row);
+                apart[*place] = Apart::Done(row);
             }
         }
         let mut counted = Ways::default();
-        let results = ways.into_iter().zip(rows).map(|(way, cells)| {
-            let reason = match way {
-                Way::Done(row) => return Some(row),
-                Way::Tree(reason) => reason,
-                Way::Lane(..) => LEFT.into(),
+        let results = apart.into_iter().zip(rows).map(|(row, cells)| {
+            let reason = match row {
+                Apart::Done(row) => return Some(row),
+                Apart::Tree(reason) => reason,
             };
             *counted.tree.entry(reason.into_owned()).or_default() += 1;
             let row = lanes

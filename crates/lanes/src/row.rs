@@ -1,8 +1,7 @@
 //! One row of a sweep, ready to move with others.
 
 use crate::joints::Joints;
-use crate::motion::ends_at;
-use hamel::integrate::{Form, Method, Tableau};
+use hamel::integrate::{FixedSteps, Form, Method, Tableau};
 use hamel::registry::JointRegistry;
 use hamel::scene::{Arithmetic, Scene, SceneDescription};
 use hamel_compiler::model::Model;
@@ -57,7 +56,8 @@ pub fn described(
     let (tableau, dt) = method(&scene).map_err(Alone::Tree)?;
     let end = scene.settings.t_end;
     let times = sweep.times_until(end);
-    if let Some(time) = times.iter().find(|time| !ends_at(**time, dt, end)) {
+    let steps = FixedSteps::until(end, dt);
+    if let Some(time) = times.iter().find(|time| !steps.has_end_at(**time)) {
         return Err(Alone::Tree(format!(
             "no step ends at {time} s, where a sample is taken"
         )));

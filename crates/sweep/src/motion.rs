@@ -276,8 +276,8 @@ impl Sweep {
             false => (simulation.run().map_err(told)?, None),
         };
         let work = (solution.statistics.steps, error.as_ref());
-        // What ends a motion within a step is not shown.
-        let end = end_of(&solution.state, work.0);
+        // What ends a motion within a step is not shown. Step 0 would begin another motion.
+        let end = Step::ending(&solution.state, work.0.max(1), None);
         track.borrow_mut().follow(&scene.mechanism, &end);
         let numbers = self
             .results
@@ -286,21 +286,6 @@ impl Sweep {
             outcome: outcome(scene, &solution),
             numbers,
         })
-    }
-}
-
-/// The last state as an observer sees it.
-fn end_of(state: &State, steps: usize) -> Step<'_> {
-    Step {
-        time: state.time,
-        // 0 would begin another motion.
-        number: steps.max(1),
-        configuration: &state.configuration,
-        speeds: &state.speeds,
-        momenta: None,
-        sample: None,
-        is_within: false,
-        carried: None,
     }
 }
 

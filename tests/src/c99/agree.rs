@@ -14,11 +14,11 @@ use std::sync::Arc;
 /// Operations of a function of derivatives from which on a compiler is not done with it soon.
 const LONG: usize = 20_000;
 
-/// The same where many scenes are compiled.
-const LONG_OF_MANY: usize = 5_000;
+/// The same where many scenes are compiled in each run of the tests.
+pub const SHORT: usize = 2_000;
 
-/// Operations of a module from which on it is not optimised: half of the time of these tests was optimising long functions.
-const OPTIMISED: usize = 2_000;
+/// The same where they are compiled before a release.
+pub const LONGER: usize = 10_000;
 
 /// States of each scene whose values are compared.
 const STATES: u64 = 3;
@@ -60,18 +60,18 @@ pub fn same(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && same.all(|same| same)
 }
 
-/// Builds modules of all functions that are not too long in `folder`: they have the bits of their evaluated lines, and the values of the tree.
+/// Builds modules of all functions in `folder`, of derivatives those of fewer operations than `long`: they have the bits of their evaluated lines, and the values of the tree.
 ///
 /// # Panics
 /// Where one has not.
-pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)]) {
+pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)], long: usize) {
     // As a module has them, and every other scene with all loops that there are, those over pairs of joints among them.
     let loops = [Loops::Long, Loops::Always];
     let models = scenes
         .iter()
         .map(|(_, model)| model)
         .zip(loops.into_iter().cycle());
-    let functions = models.map(|(model, loops)| functions_with(model, loops, LONG_OF_MANY));
+    let functions = models.map(|(model, loops)| functions_with(model, loops, long));
     let functions: Vec<Vec<Function>> = functions.collect();
     let named = scenes.iter().zip(&functions).enumerate();
     let modules: Vec<Module<'_>> = named
@@ -81,10 +81,8 @@ pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)]) {
             functions,
             lanes: &[],
             kernels: &[],
-            optimisation: match functions.iter().map(Function::written).sum::<usize>() {
-                ..OPTIMISED => "-O1",
-                _ => "-O0",
-            },
+            // Optimising long functions takes most of the time that these tests have; the committed modules are optimised.
+            optimisation: "-O0",
         })
         .collect();
     let Some(program) = Program::new(folder, &modules) else {

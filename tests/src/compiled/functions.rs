@@ -1,6 +1,6 @@
 //! Compiled functions of a model, kept: a test evaluates them at several states.
 
-use hamel_compiler::emit::Function;
+use hamel_compiler::emit::{Function, Lowered};
 use hamel_compiler::functions::{Kind, Loops, compile_with};
 use hamel_compiler::graph::Argument;
 use hamel_compiler::model::Model;
@@ -11,7 +11,7 @@ use std::cell::RefCell;
 pub struct Functions<'a> {
     model: &'a Model,
     links: Vec<Link>,
-    known: RefCell<Vec<((Kind, Loops), Function)>>,
+    known: RefCell<Vec<((Kind, Loops), Function, Lowered)>>,
 }
 
 impl<'a> Functions<'a> {
@@ -33,13 +33,15 @@ impl<'a> Functions<'a> {
         inputs: &[f64],
     ) -> Vec<f64> {
         let mut known = self.known.borrow_mut();
-        let place = known.iter().position(|(one, _)| *one == how);
+        let place = known.iter().position(|(one, ..)| *one == how);
         let place = place.unwrap_or_else(|| {
             let compiled = compile_with(self.model, &self.links, how.0, how.1);
-            known.push((how, compiled.function));
+            let lines = compiled.function.lines();
+            known.push((how, compiled.function, lines));
             known.len() - 1
         });
-        known[place].1.evaluate(|argument| match argument {
+        let (_, function, lines) = &known[place];
+        function.evaluate_lines(lines, |argument| match argument {
             Argument::Configuration => q.to_vec(),
             Argument::Speeds | Argument::Momenta => speeds.to_vec(),
             Argument::Efforts | Argument::Accelerations => inputs.to_vec(),

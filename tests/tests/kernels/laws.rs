@@ -65,10 +65,15 @@ mod everywhere {
 
                 #[test]
                 fn kernels_are_their_definitions() {
-                    check(match <$joint as Joint<$n, $k, $s, $c>>::RELATIONS {
-                        [] => Effort::PLAIN,
-                        _ => Effort::RELATIONS,
-                    });
+                    type Searched = $joint;
+                    let body = <Searched as Joint<$n, $k, $s, $c>>::BODY;
+                    check(
+                        match (<Searched as Joint<$n, $k, $s, $c>>::RELATIONS, body) {
+                            ([], _) => Effort::PLAIN,
+                            (_, 0) => Effort::RELATIONS,
+                            _ => Effort::FURTHER_BODY,
+                        },
+                    );
                 }
 
                 #[test]

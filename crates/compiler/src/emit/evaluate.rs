@@ -13,7 +13,20 @@ use std::collections::BTreeMap;
 impl Function {
     /// The results; `argument` holds the scalars of each argument. What is missing there is NaN.
     pub fn evaluate(&self, argument: impl Fn(Argument) -> Vec<f64>) -> Vec<f64> {
-        let lowered = Lowered::new(self, &[], &[]);
+        self.evaluate_lines(&self.lines(), argument)
+    }
+
+    /// Its lines, for more than one evaluation.
+    pub fn lines(&self) -> Lowered {
+        Lowered::new(self, &[], &[])
+    }
+
+    /// The results by [these lines of it](Self::lines).
+    pub fn evaluate_lines(
+        &self,
+        lowered: &Lowered,
+        argument: impl Fn(Argument) -> Vec<f64>,
+    ) -> Vec<f64> {
         let given = |&(name, _): &(Argument, usize)| (Read::Argument(name), argument(name));
         let arrays = lowered.arrays.iter();
         let mut state = State {

@@ -219,9 +219,9 @@ fn even(samples: &mut [Sample]) {
 
 /// An element by the parameters of all bodies in units of length of `unit` metres, with its sum at one configuration.
 fn element(parameters: &[Precise], places: &[Sample], unit: f64) -> Element {
+    let in_parent = rows(places, Sample::in_parent);
     let of_parent = |row: usize| {
-        let row = columns(places, |sample, n| sample.in_parent(n)[row].clone());
-        let products = row.iter().zip(parameters).map(|(a, b)| a * b);
+        let products = in_parent[row].iter().zip(parameters).map(|(a, b)| a * b);
         in_doubles(&products.fold(zero(), |sum, product| sum + product))
     };
     let of_body =
@@ -243,43 +243,51 @@ fn in_doubles(entry: &Precise) -> f64 {
 
 /// What must not depend on the configuration, by parameters: Σ N_b, or on the world the potential energy.
 fn constants(samples: &[Sample], gravity: Option<&Vector3<f64>>) -> Vec<Vec<Precise>> {
-    match gravity {
-        None => (0..10)
-            .map(|row| columns(samples, |sample, n| sample.in_parent(n)[row].clone()))
-            .collect(),
-        Some(gravity) => vec![columns(samples, |sample, n| {
-            let first = &sample.in_parent(n)[1..4];
-            // Its direction alone counts.
-            let size = gravity.amax().max(f64::MIN_POSITIVE);
-            let gravity = gravity.iter().map(|&g| Precise::from_f64(g / size, BITS));
-            gravity.zip(first).fold(zero(), |sum, (g, c)| sum + &g * c)
-        })],
-    }
+    let Some(gravity) = gravity else {
+        return rows(samples, Sample::in_parent);
+    };
+    // Its direction alone counts.
+    let size = gravity.amax().max(f64::MIN_POSITIVE);
+    let gravity: Vec<Precise> = gravity
+        .iter()
+        .map(|&g| Precise::from_f64(g / size, BITS))
+        .collect();
+    rows(samples, |sample, n| {
+        let first = &sample.in_parent(n)[1..4];
+        let products = gravity.iter().zip(first);
+        [products.fold(zero(), |sum, (g, c)| sum + g * c)]
+    })
 }
 
 /// What must be zero, by parameters: Σ N_b X_b, unless on the world, and Σ X_bᵀ N_b X_b.
 fn vanishing(samples: &[Sample], on_world: bool) -> Vec<Vec<Precise>> {
     let count = samples[0].twists.len();
-    let mut rows = vec![];
+    let mut all = vec![];
     for j in 0..count {
         if !on_world {
-            rows.extend((0..6).map(|row| {
-                columns(samples, |sample, n| {
-                    sample.wrench_on_parent(n, j)[row].clone()
-                })
-            }));
+            all.extend(rows(samples, |sample, n| sample.wrench_on_parent(n, j)));
         }
-        rows.extend((j..count).map(|k| columns(samples, |sample, n| sample.power(n, j, k))));
+        for k in j..count {
+            all.extend(rows(samples, |sample, n| [sample.power(n, j, k)]));
+        }
     }
-    rows
+    all
 }
 
-/// A row: a number for each of the ten parameters of each body.
-fn columns(samples: &[Sample], number: impl Fn(&Sample, usize) -> Precise) -> Vec<Precise> {
-    let entries = samples
-        .iter()
-        .flat_map(|sample| (0..10).map(move |n| (sample, n)));
-    entries.map(|(sample, n)| number(sample, n)).collect()
+/// Rows of a matrix that has a column for each of the ten parameters of each body.
+fn rows<const ROWS: usize>(
+    samples: &[Sample],
+    column: impl Fn(&Sample, usize) -> [Precise; ROWS],
+) -> Vec<Vec<Precise>> {
+    let mut rows = vec![Vec::with_capacity(10 * samples.len()); ROWS];
+    for sample in samples {
+        for n in 0..10 {
+            for (row, entry) in rows.iter_mut().zip(column(sample, n)) {
+                row.push(entry);
+            }
+        }
+    }
+    rows
 }
 
 /// Its binary logarithm.

@@ -64,13 +64,20 @@ impl Layer {
         for row in rows {
             for column in columns.clone() {
                 let at = [column as f64 + 0.5, row as f64 + 0.5];
-                let parts = [cross(&b, &c, at), cross(&c, &a, at), cross(&a, &b, at)]
-                    .map(|part| part * share);
-                // Those on an edge belong to the faces on both sides, so that no seam is left.
-                if parts.iter().any(|part| *part < 0.0) {
+                // Most pixels are outside, and known to be by one of three edges. Those on an edge belong to the faces on both sides, so that no seam is left.
+                let of_a = cross(&b, &c, at) * share;
+                if of_a < 0.0 {
                     continue;
                 }
-                let nearness = parts[0] * a[2] + parts[1] * b[2] + parts[2] * c[2];
+                let of_b = cross(&c, &a, at) * share;
+                if of_b < 0.0 {
+                    continue;
+                }
+                let of_c = cross(&a, &b, at) * share;
+                if of_c < 0.0 {
+                    continue;
+                }
+                let nearness = of_a * a[2] + of_b * b[2] + of_c * c[2];
                 let place = row * self.width + column;
                 if nearness as f32 > self.nearness[place] {
                     self.nearness[place] = nearness as f32;
