@@ -132,7 +132,7 @@ fn column<'a>(rows: &'a [csv::StringRecord], name: &str) -> Vec<&'a str> {
 
 /// What a stopped run has measured decides what comes next, as if it had not been stopped: the steps of the scene, and how many runs were slow.
 #[test]
-fn a_stopped_run_is_gone_on_with() {
+fn a_stopped_run_is_resumed() {
     let folder = folder("report_resumed");
     let place = folder.display().to_string();
     let measure = || {

@@ -11,7 +11,14 @@ use std::cell::RefCell;
 pub struct Functions<'a> {
     model: &'a Model,
     links: Vec<Link>,
-    known: RefCell<Vec<((Kind, Loops), Function, Lowered)>>,
+    known: RefCell<Vec<Known>>,
+}
+
+/// A compiled function.
+struct Known {
+    how: (Kind, Loops),
+    function: Function,
+    lines: Lowered,
 }
 
 impl<'a> Functions<'a> {
@@ -33,14 +40,19 @@ impl<'a> Functions<'a> {
         inputs: &[f64],
     ) -> Vec<f64> {
         let mut known = self.known.borrow_mut();
-        let place = known.iter().position(|(one, ..)| *one == how);
+        let place = known.iter().position(|one| one.how == how);
         let place = place.unwrap_or_else(|| {
-            let compiled = compile_with(self.model, &self.links, how.0, how.1);
-            let lines = compiled.function.lines();
-            known.push((how, compiled.function, lines));
+            let function = compile_with(self.model, &self.links, how.0, how.1).function;
+            known.push(Known {
+                how,
+                lines: function.lines(),
+                function,
+            });
             known.len() - 1
         });
-        let (_, function, lines) = &known[place];
+        let Known {
+            function, lines, ..
+        } = &known[place];
         function.evaluate_lines(lines, |argument| match argument {
             Argument::Configuration => q.to_vec(),
             Argument::Speeds | Argument::Momenta => speeds.to_vec(),

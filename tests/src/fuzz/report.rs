@@ -1,11 +1,7 @@
 //! What a run came to, told and checked.
 
-use super::run::{Figures, peak_memory};
-use std::time::Duration;
+use super::run::{Figures, LONGEST, peak_memory};
 
-/// What an input may take, of the thread's own time. An input without a bound takes minutes. The slowest that is known takes 2 s
-/// where the code is hardly optimised, and three times as long where another thread shares the core.
-const LONGEST: Duration = Duration::from_secs(if cfg!(debug_assertions) { 20 } else { 7 });
 /// What the whole run may hold, bytes.
 const LARGEST: u64 = 1 << 30;
 

@@ -22,7 +22,7 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// The folder `path` for what `manifest` tells: made, or gone on with. `is_block_open` leaves the rows of a part to one that is there.
+    /// The folder `path` for what `manifest` tells: made, or resumed. `is_block_open` leaves the rows of a part to one that is there.
     ///
     /// # Errors
     /// A folder that holds another sweep, or files that are none; one that another command writes, or that cannot be written.

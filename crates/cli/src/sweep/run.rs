@@ -86,7 +86,7 @@ fn sweep(
     })
 }
 
-/// The folder for the results, new or gone on with.
+/// The folder for the results, new or resumed.
 fn folder(
     args: &Args,
     scene: &str,
