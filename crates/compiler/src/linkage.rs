@@ -19,6 +19,8 @@ use super::ties::Ties;
 use hamel_runtime::joint::Link;
 use hamel_scene::Coupling;
 use num_traits::{One, Zero};
+use rustc_hash::FxHashMap;
+use std::cell::RefCell;
 use std::rc::Rc;
 
 /// The links of a joint, as one of its bodies sees them.
@@ -47,6 +49,10 @@ pub(super) struct At<'a> {
     followed: Vec<Vec<Sym>>,
     /// The columns of B.
     columns: Vec<Direction>,
+    /// D(B_k, B_l), by k and l, of those that were asked for.
+    bends: RefCell<FxHashMap<[usize; 2], Direction>>,
+    /// How column k of X^c changes along ϕ_l, in the same way.
+    moved: RefCell<FxHashMap<[usize; 2], Twist>>,
 }
 
 /// Rates of the coordinates, times a scalar: with one degree of freedom all are multiples of the one column of B.
@@ -113,6 +119,8 @@ impl Linkage {
             speeds: speeds.to_vec(),
             followed: vec![],
             columns: vec![],
+            bends: RefCell::default(),
+            moved: RefCell::default(),
         };
         at.fill();
         at
@@ -183,25 +191,38 @@ impl At<'_> {
         self.following(&self.ties(&d.rates, &[&e.rates]), d.times * e.times)
     }
 
-    /// `D(B x, B_l)`, of the D of all pairs of columns, which are symmetric.
+    /// D(B_k, B_l), which is symmetric.
+    fn bend_of_pair(&self, k: usize, l: usize) -> Direction {
+        let pair = [k.min(l), k.max(l)];
+        if let Some(known) = self.bends.borrow().get(&pair) {
+            return known.clone();
+        }
+        let bend = self.bend(&self.columns[pair[0]], &self.columns[pair[1]]);
+        self.bends.borrow_mut().insert(pair, bend.clone());
+        bend
+    }
+
+    /// `D(B x, B_l)`, of the D of all pairs of columns.
     fn bend_of_columns(&self, x: &[Sym], l: usize) -> Direction {
-        let columns = &self.columns;
-        let pair = |k: usize| self.bend(&columns[k.min(l)], &columns[k.max(l)]);
-        let bends: Vec<Direction> = (0..x.len()).map(pair).collect();
+        let bends: Vec<Direction> = (0..x.len()).map(|k| self.bend_of_pair(k, l)).collect();
         sum(&bends, x)
     }
 
     /// `F(d; e) + F(D(d, e))`.
-    fn moved(&self, d: &Direction, e: &Direction, bend: &Direction) -> Twist {
+    fn moved_along(&self, d: &Direction, e: &Direction, bend: &Direction) -> Twist {
         let of: Linear<'_> = &|d, along| self.twist(d, along);
         to_twist(&plus(value(of, d, &[e]), value(of, bend, &[])))
     }
 
     /// How column k of X^c changes along ϕ_l.
     fn column_moved(&self, k: usize, l: usize) -> Twist {
-        let columns = &self.columns;
-        let bend = self.bend(&columns[k.min(l)], &columns[k.max(l)]);
-        self.moved(&columns[k], &columns[l], &bend)
+        if let Some(known) = self.moved.borrow().get(&[k, l]) {
+            return known.clone();
+        }
+        let bend = self.bend_of_pair(k, l);
+        let twist = self.moved_along(&self.columns[k], &self.columns[l], &bend);
+        self.moved.borrow_mut().insert([k, l], twist.clone());
+        twist
     }
 
     /// The four terms of the derivative of `F(d; d) + F(D(d, d))` along column l, with D(d, B_l) and D(d, d).
@@ -268,14 +289,14 @@ impl At<'_> {
     /// `c = Ẋ^c v`.
     pub(super) fn bias(&self) -> Twist {
         let d = self.direction(&self.speeds);
-        self.moved(&d, &d, &self.bend(&d, &d))
+        self.moved_along(&d, &d, &self.bend(&d, &d))
     }
 
     /// `Ẋ^cᵀ h`, one per degree of freedom.
     pub(super) fn bias_momentum(&self, momentum: &Wrench) -> Vec<Sym> {
         let d = self.direction(&self.speeds);
         let columns = self.columns.iter();
-        let moved = columns.map(|column| self.moved(column, &d, &self.bend(column, &d)));
+        let moved = columns.map(|column| self.moved_along(column, &d, &self.bend(column, &d)));
         moved.map(|twist| twist.dot(momentum)).collect()
     }
 

@@ -11,10 +11,12 @@
 
 use super::chain::{Chain, Direction};
 use super::graph::Sym;
-use super::spatial::{Step, Vec3, cross};
+use super::spatial::{Step, Twist, Vec3, cross};
 use hamel_runtime::joint::{self, Link, Relation};
 use hamel_runtime::spatial::Pose;
 use num_traits::Zero;
+use rustc_hash::FxHashMap;
+use std::cell::{OnceCell, RefCell};
 
 /// The ties of a joint.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,12 +97,7 @@ impl Ties {
                 let terms = terms.iter();
                 vec![terms.map(|(k, weight)| Sym::from(*weight) * d[*k]).sum()]
             }
-            Tie::Closure(closure) => {
-                let relations = closure.relations.iter();
-                relations
-                    .map(|relation| closure.rate(*relation, q, d, along))
-                    .collect()
-            }
+            Tie::Closure(closure) => closure.rates(q, d, along),
         });
         rates.collect()
     }
@@ -120,7 +117,7 @@ fn turned(
 }
 
 /// Each set of the directions, with those that are not in it, in their order.
-fn sets<'a>(along: &[Direction<'a>]) -> Vec<[Vec<Direction<'a>>; 2]> {
+fn sets(along: &[usize]) -> Vec<[Vec<usize>; 2]> {
     let of = |set: usize| {
         [1, 0].map(|is_in: usize| {
             let directions = along.iter().enumerate();
@@ -131,20 +128,56 @@ fn sets<'a>(along: &[Direction<'a>]) -> Vec<[Vec<Direction<'a>>; 2]> {
     (0..1 << along.len()).map(of).collect()
 }
 
+/// A chain at one configuration, and directions, by number. What several relations ask for is worked out once.
+struct Motion<'a> {
+    chain: &'a Chain,
+    q: &'a [Sym],
+    directions: Vec<Direction<'a>>,
+    pose: OnceCell<Vec<Step>>,
+    twists: RefCell<FxHashMap<Vec<usize>, Twist>>,
+}
+
+impl Motion<'_> {
+    /// The pose of P in S, in factors.
+    fn pose(&self) -> &[Step] {
+        self.pose.get_or_init(|| self.chain.pose(self.q))
+    }
+
+    /// w at rates d, differentiated.
+    fn twist(&self, d: usize, along: &[usize]) -> Twist {
+        let key = [&[d], along].concat();
+        if let Some(known) = self.twists.borrow().get(&key) {
+            return known.clone();
+        }
+        let along: Vec<Direction<'_>> = along.iter().map(|&n| self.directions[n]).collect();
+        let twist = self.chain.twist(self.q, self.directions[d], &along);
+        self.twists.borrow_mut().insert(key, twist.clone());
+        twist
+    }
+}
+
 impl Closure {
-    /// A row of `G d`, differentiated.
-    fn rate(
-        &self,
-        relation: Relation,
-        q: &[Sym],
-        d: Direction<'_>,
-        along: &[Direction<'_>],
-    ) -> Sym {
-        let (i, mark) = match relation {
-            Relation::Meets(i) => (i, &self.origin),
-            Relation::Square(i, j) => (i, &self.axes[j]),
+    /// The rows of `G d`, differentiated.
+    fn rates(&self, q: &[Sym], d: Direction<'_>, along: &[Direction<'_>]) -> Vec<Sym> {
+        let motion = Motion {
+            chain: &self.chain,
+            q,
+            directions: [&[d], along].concat(),
+            pose: OnceCell::new(),
+            twists: RefCell::default(),
         };
-        mark.carried(&self.chain, q, d, along)[i]
+        let along: Vec<usize> = (1..=along.len()).collect();
+        let [x, y, z] = &self.axes;
+        let marks = [&self.origin, x, y, z];
+        let mut carried = [const { None::<Vec3> }; 4];
+        let rate = |relation: &Relation| {
+            let (i, mark) = match *relation {
+                Relation::Meets(i) => (i, 0),
+                Relation::Square(i, j) => (i, 1 + j),
+            };
+            carried[mark].get_or_insert_with(|| marks[mark].carried(&motion, 0, &along))[i]
+        };
+        self.relations.iter().map(rate).collect()
     }
 }
 
@@ -174,24 +207,24 @@ impl Mark {
     }
 
     /// `v + ω × p`, or `ω × c`, at rates d, differentiated.
-    fn carried(&self, chain: &Chain, q: &[Sym], d: Direction<'_>, along: &[Direction<'_>]) -> Vec3 {
+    fn carried(&self, motion: &Motion<'_>, d: usize, along: &[usize]) -> Vec3 {
         let still = match self.axis {
-            None => chain.twist(q, d, along).linear,
+            None => motion.twist(d, along).linear,
             Some(_) => Vec3::zeros(),
         };
         let parts = sets(along).into_iter().map(|[own, others]| {
-            let angular = chain.twist(q, d, &others).angular;
-            cross(&angular, &self.stands(chain, q, &own))
+            let angular = motion.twist(d, &others).angular;
+            cross(&angular, &self.stands(motion, &own))
         });
         parts.fold(still, |sum, part| sum + part)
     }
 
     /// p or c, differentiated.
-    fn stands(&self, chain: &Chain, q: &[Sym], along: &[Direction<'_>]) -> Vec3 {
+    fn stands(&self, motion: &Motion<'_>, along: &[usize]) -> Vec3 {
         let own = match along {
             _ if self.known.iter().all(Option::is_some) => Vec3::zeros(),
-            [] => self.value(&chain.pose(q)),
-            [first, others @ ..] => -self.carried(chain, q, first, others),
+            [] => self.value(motion.pose()),
+            [first, others @ ..] => -self.carried(motion, *first, others),
         };
         let entry = |i: usize| match self.known[i] {
             Some(_) if !along.is_empty() => Sym::zero(),
