@@ -60,11 +60,11 @@ where
     ("retract", flat(&joint.retract(&at.q, &at.phi)))
 }
 
-/// Kernels that are solutions of equations where Φ is not exp: each is computed when it is asked for.
+/// Kernels that are solutions of equations where Φ is not exp: each is computed when it is asked for. The first does not depend on the configuration.
 pub(crate) fn solutions<'a, T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
     joint: &'a J,
     at: &'a Arguments<T, N, K, S>,
-) -> [Box<dyn Fn() -> Output<T> + 'a>; 4]
+) -> [Box<dyn Fn() -> Output<T> + 'a>; 5]
 where
     T: Scalar,
     J: Joint<N, K, S, C>,
@@ -73,6 +73,7 @@ where
         q, target, phi, v, ..
     } = at;
     [
+        Box::new(|| ("home", flat(&joint.home()))),
         Box::new(|| ("local", flat(&joint.local(q, target)))),
         Box::new(|| {
             let differential = joint.retract_differential(q, phi);
@@ -98,7 +99,6 @@ where
     let (q, v) = (&at.q, &at.v);
     let pose = joint.pose(q);
     vec![
-        ("home", flat(&joint.home())),
         ("rotation", flat(&pose.rotation)),
         ("translation", flat(&pose.translation)),
         ("twist_map", flat(&joint.twist_map(q))),

@@ -84,12 +84,6 @@ impl Effort {
         samples: 4,
         cases: 60,
     };
-    /// The same of each further body of such a joint, whose poses and twists are its own alone.
-    pub const FURTHER_BODY: Self = Self {
-        lines: 2,
-        cases: 24,
-        ..Self::RELATIONS
-    };
     /// What the sweep takes: minutes a joint.
     pub const SWEEP: Self = Self {
         sets: 64,

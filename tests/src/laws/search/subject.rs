@@ -51,12 +51,13 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
     fn notes(&self, case: &Case) -> Vec<f64> {
         let at = self.arguments::<Traced>(case);
         let mut notes = notes_of(usize::MAX, || formulas(&self.0, &at));
-        let of_retract = match J::RELATIONS {
-            [] => usize::MAX,
-            _ => OF_SOLUTION,
+        // Where relations define the joint, to solve them for home would take most of the time, and along a line it is always the same.
+        let (of_retract, left_out) = match J::RELATIONS {
+            [] => (usize::MAX, 0),
+            _ => (OF_SOLUTION, 1),
         };
         notes.extend(notes_of(of_retract, || moved(&self.0, &at)));
-        for solution in solutions(&self.0, &at) {
+        for solution in solutions(&self.0, &at).into_iter().skip(left_out) {
             notes.extend(notes_of(OF_SOLUTION, solution));
         }
         notes
