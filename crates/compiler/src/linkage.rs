@@ -49,10 +49,10 @@ pub(super) struct At<'a> {
     followed: Vec<Vec<Sym>>,
     /// The columns of B.
     columns: Vec<Direction>,
-    /// D(B_k, B_l), by k and l, of those that were asked for.
+    /// D(B_k, B_l), by k ≤ l, of pairs that were asked for.
     bends: RefCell<FxHashMap<[usize; 2], Direction>>,
-    /// How column k of X^c changes along ϕ_l, in the same way.
-    moved: RefCell<FxHashMap<[usize; 2], Twist>>,
+    /// How column k of X^c changes along ϕ_l, by k and l, in the same way.
+    columns_moved: RefCell<FxHashMap<[usize; 2], Twist>>,
 }
 
 /// Rates of the coordinates, times a scalar: with one degree of freedom all are multiples of the one column of B.
@@ -120,7 +120,7 @@ impl Linkage {
             followed: vec![],
             columns: vec![],
             bends: RefCell::default(),
-            moved: RefCell::default(),
+            columns_moved: RefCell::default(),
         };
         at.fill();
         at
@@ -216,12 +216,14 @@ impl At<'_> {
 
     /// How column k of X^c changes along ϕ_l.
     fn column_moved(&self, k: usize, l: usize) -> Twist {
-        if let Some(known) = self.moved.borrow().get(&[k, l]) {
+        if let Some(known) = self.columns_moved.borrow().get(&[k, l]) {
             return known.clone();
         }
         let bend = self.bend_of_pair(k, l);
         let twist = self.moved_along(&self.columns[k], &self.columns[l], &bend);
-        self.moved.borrow_mut().insert([k, l], twist.clone());
+        self.columns_moved
+            .borrow_mut()
+            .insert([k, l], twist.clone());
         twist
     }
 

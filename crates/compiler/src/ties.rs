@@ -128,22 +128,23 @@ fn sets(along: &[usize]) -> Vec<[Vec<usize>; 2]> {
     (0..1 << along.len()).map(of).collect()
 }
 
-/// A chain at one configuration, and directions, by number. What several relations ask for is worked out once.
-struct Motion<'a> {
+/// A chain at one configuration, of which what several relations ask for is computed once.
+struct ChainAt<'a> {
     chain: &'a Chain,
     q: &'a [Sym],
+    /// The rates d, then the directions along which is differentiated. They are named by their places here.
     directions: Vec<Direction<'a>>,
     pose: OnceCell<Vec<Step>>,
     twists: RefCell<FxHashMap<Vec<usize>, Twist>>,
 }
 
-impl Motion<'_> {
+impl ChainAt<'_> {
     /// The pose of P in S, in factors.
     fn pose(&self) -> &[Step] {
         self.pose.get_or_init(|| self.chain.pose(self.q))
     }
 
-    /// w at rates d, differentiated.
+    /// w at the rates of place d, differentiated along those of the places `along`.
     fn twist(&self, d: usize, along: &[usize]) -> Twist {
         let key = [&[d], along].concat();
         if let Some(known) = self.twists.borrow().get(&key) {
@@ -159,7 +160,7 @@ impl Motion<'_> {
 impl Closure {
     /// The rows of `G d`, differentiated.
     fn rates(&self, q: &[Sym], d: Direction<'_>, along: &[Direction<'_>]) -> Vec<Sym> {
-        let motion = Motion {
+        let at = ChainAt {
             chain: &self.chain,
             q,
             directions: [&[d], along].concat(),
@@ -167,6 +168,7 @@ impl Closure {
             twists: RefCell::default(),
         };
         let along: Vec<usize> = (1..=along.len()).collect();
+        // The origin, then the axes.
         let [x, y, z] = &self.axes;
         let marks = [&self.origin, x, y, z];
         let mut carried = [const { None::<Vec3> }; 4];
@@ -175,7 +177,7 @@ impl Closure {
                 Relation::Meets(i) => (i, 0),
                 Relation::Square(i, j) => (i, 1 + j),
             };
-            carried[mark].get_or_insert_with(|| marks[mark].carried(&motion, 0, &along))[i]
+            carried[mark].get_or_insert_with(|| marks[mark].carried(&at, 0, &along))[i]
         };
         self.relations.iter().map(rate).collect()
     }
@@ -206,25 +208,25 @@ impl Mark {
         }
     }
 
-    /// `v + ω × p`, or `ω × c`, at rates d, differentiated.
-    fn carried(&self, motion: &Motion<'_>, d: usize, along: &[usize]) -> Vec3 {
+    /// `v + ω × p`, or `ω × c`, at the rates of place d, differentiated along those of the places `along`.
+    fn carried(&self, at: &ChainAt<'_>, d: usize, along: &[usize]) -> Vec3 {
         let still = match self.axis {
-            None => motion.twist(d, along).linear,
+            None => at.twist(d, along).linear,
             Some(_) => Vec3::zeros(),
         };
         let parts = sets(along).into_iter().map(|[own, others]| {
-            let angular = motion.twist(d, &others).angular;
-            cross(&angular, &self.stands(motion, &own))
+            let angular = at.twist(d, &others).angular;
+            cross(&angular, &self.stands(at, &own))
         });
         parts.fold(still, |sum, part| sum + part)
     }
 
     /// p or c, differentiated.
-    fn stands(&self, motion: &Motion<'_>, along: &[usize]) -> Vec3 {
+    fn stands(&self, at: &ChainAt<'_>, along: &[usize]) -> Vec3 {
         let own = match along {
             _ if self.known.iter().all(Option::is_some) => Vec3::zeros(),
-            [] => self.value(motion.pose()),
-            [first, others @ ..] => -self.carried(motion, *first, others),
+            [] => self.value(at.pose()),
+            [first, others @ ..] => -self.carried(at, *first, others),
         };
         let entry = |i: usize| match self.known[i] {
             Some(_) if !along.is_empty() => Sym::zero(),

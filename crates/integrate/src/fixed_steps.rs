@@ -33,17 +33,17 @@ impl FixedSteps {
         self.clock.time()
     }
 
-    /// Whether one of these steps ends at `time`, s, up to rounding: of a time from 0 to the end.
+    /// Whether `time`, s, is 0, where the first step begins, or the end of a step, up to rounding. Times are from 0 to the end.
     pub fn has_end_at(&self, time: f64) -> bool {
-        // Where that leaves less than is told from rounding, the last step takes it along.
+        // The last step absorbs a remainder below `STRETCH - 1` of a step. Twice that is asked for, to be safe.
         let is_before_last = self.end - time > 2.0 * (STRETCH - 1.0) * self.dt;
         let count = (time / self.dt).round();
-        time == self.end || is_before_last && is_rounding(count * self.dt - time, time, 4.0)
+        let is_multiple = is_before_last && is_rounding(count * self.dt - time, time, 4.0);
+        self.dt > 0.0 && (is_multiple || is_rounding(self.end - time, time, 4.0))
     }
 
-    /// Whether the last step ends at `time`, s, up to rounding.
+    /// Whether the steps so far end at `time`, s, up to rounding.
     pub fn is_at(&self, time: f64) -> bool {
-        // The clock adds steps up: more roundings than a product has.
         is_rounding(self.time() - time, time, 8.0)
     }
 }
@@ -86,25 +86,21 @@ mod tests {
     #[test]
     fn steps_end_at_multiples_and_at_the_end() {
         let steps = FixedSteps::until(1.0, 0.4);
-        assert!(
-            [0.0, 0.4, 0.8, 1.0]
-                .iter()
-                .all(|time| steps.has_end_at(*time))
-        );
-        assert!(
-            ![0.2, 0.4 + 1e-9, 0.999]
-                .iter()
-                .any(|time| steps.has_end_at(*time))
-        );
-        // 0.1 · 3 is not 0.3, and ten steps of 0.1 do not add up to 1.
-        let mut steps = FixedSteps::until(1.0, 0.1);
-        assert!(steps.has_end_at(0.3));
+        let has = |time: &f64| steps.has_end_at(*time);
+        assert!([0.0, 0.4, 0.8, 1.0].iter().all(has));
+        assert!(![0.2, 0.4 + 1e-9, 0.999].iter().any(has));
         // The last step goes on to the end: none ends just before it.
         assert!(!FixedSteps::until(1.0 + 1e-11, 0.1).has_end_at(1.0));
+        assert!(FixedSteps::until(9.0 * 0.002, 0.002).has_end_at(0.018));
+        assert!(!FixedSteps::until(1.0, 0.0).has_end_at(1.0));
+        let mut steps = FixedSteps::until(1.0, 0.1);
         for number in 1..=10 {
             steps.next();
-            assert!(steps.is_at(f64::from(number) * 0.1), "{number}");
-            assert!(!steps.is_at(f64::from(number) * 0.1 + 0.05), "{number}");
+            // Products of 0.1 are not the nearest numbers to 0.3, 0.6 and 0.7.
+            let time = f64::from(number) / 10.0;
+            assert!(steps.has_end_at(time), "{time}");
+            assert!(steps.is_at(time), "{time}");
+            assert!(!steps.is_at(time + 0.05), "{time}");
         }
     }
 

@@ -41,7 +41,7 @@ impl<'a> Step<'a> {
     /// A state at the end of a step, without momenta and forces.
     ///
     /// `number` is how many steps led there, and `sample` the index of the last sample that falls on its time, if one does.
-    pub fn ending(state: &'a State, number: usize, sample: Option<usize>) -> Self {
+    pub fn of_state(state: &'a State, number: usize, sample: Option<usize>) -> Self {
         Self {
             time: state.time,
             number,

@@ -259,7 +259,7 @@ impl<'a> Block<'a> {
     fn follow(&mut self, motion: usize, (time, number): (f64, usize), sample: Option<usize>) {
         let state = self.state(motion, time);
         let start = &mut self.starts[motion];
-        let step = Step::ending(&state, number, sample);
+        let step = Step::of_state(&state, number, sample);
         start.track.follow(&start.scene.mechanism, &step);
     }
 

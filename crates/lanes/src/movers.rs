@@ -124,9 +124,9 @@ impl Tree {
     }
 }
 
-/// What is known of a row that does not go side by side.
-enum Apart {
-    /// It goes by the tree, for this reason.
+/// What is known of a row.
+enum Known {
+    /// Why the tree is to move it.
     Tree(Cow<'static, str>),
     /// Its result.
     Done(Row),
@@ -157,18 +157,18 @@ impl Built {
     }
 
     /// The row from this state on.
-    fn starting_at(self: Rc<Self>, state: State) -> Result<(Rc<Self>, State), Apart> {
+    fn starting_at(self: Rc<Self>, state: State) -> Result<(Rc<Self>, State), Known> {
         let is_accepted = self.tree.borrow_mut().accepts(&state);
         match is_accepted {
             true => Ok((self, state)),
-            false => Err(Apart::Tree(REFUSED.into())),
+            false => Err(Known::Tree(REFUSED.into())),
         }
     }
 }
 
 impl Own<'_> {
     /// What goes side by side, and its first state.
-    fn start(&mut self, cells: &Cells) -> Result<(Rc<Built>, State), Apart> {
+    fn start(&mut self, cells: &Cells) -> Result<(Rc<Built>, State), Known> {
         let Lanes {
             sweep,
             registry,
@@ -181,11 +181,11 @@ impl Own<'_> {
             return Rc::clone(built).starting_at(state);
         }
         let row = described(sweep, registry, &self.joints, cells).map_err(|alone| match alone {
-            Alone::Refused(row) => Apart::Done(row),
-            Alone::Tree(reason) => Apart::Tree(reason.into()),
+            Alone::Refused(row) => Known::Done(row),
+            Alone::Tree(reason) => Known::Tree(reason.into()),
         })?;
         let numbers = plan.numbers(&row);
-        let numbers = numbers.map_err(|reason| Apart::Tree(reason.into()))?;
+        let numbers = numbers.map_err(|reason| Known::Tree(reason.into()))?;
         let state = row.scene.start();
         let built = Rc::new(Built {
             tree: RefCell::new(Tree::new(&row.scene)),
@@ -201,19 +201,19 @@ impl Own<'_> {
     fn block(&mut self, rows: &[Cells], watch: Watch<'_>) -> Option<Vec<Row>> {
         let lanes = self.lanes;
         let (mut going, mut states) = (vec![], vec![]);
-        let mut apart = Vec::with_capacity(rows.len());
+        let mut known = Vec::with_capacity(rows.len());
         for (place, cells) in rows.iter().enumerate() {
-            apart.push(match self.start(cells) {
+            known.push(match self.start(cells) {
                 Ok((built, state)) => {
                     going.push((place, built));
                     states.push(state);
                     // The tree's until it has a result.
-                    Apart::Tree(LEFT.into())
+                    Known::Tree(LEFT.into())
                 }
-                Err(apart) => apart,
+                Err(known) => known,
             });
         }
-        let refused = apart.iter().filter(|row| matches!(row, Apart::Done(_)));
+        let refused = known.iter().filter(|row| matches!(row, Known::Done(_)));
         (watch.done)(refused.count());
         let starts = going.iter().zip(states).map(|((_, built), state)| Start {
             scene: &built.row.scene,
@@ -237,14 +237,14 @@ impl Own<'_> {
             if row.outcome == Outcome::Ended {
                 (watch.done)(1);
                 moved_here += 1;
-                apart[*place] = Apart::Done(row);
+                known[*place] = Known::Done(row);
             }
         }
         let mut counted = Ways::default();
-        let results = apart.into_iter().zip(rows).map(|(row, cells)| {
+        let results = known.into_iter().zip(rows).map(|(row, cells)| {
             let reason = match row {
-                Apart::Done(row) => return Some(row),
-                Apart::Tree(reason) => reason,
+                Known::Done(row) => return Some(row),
+                Known::Tree(reason) => reason,
             };
             *counted.tree.entry(reason.into_owned()).or_default() += 1;
             let row = lanes

@@ -40,7 +40,7 @@ pub use finite::AtPhi;
 pub use grid::Grid;
 pub use jet::Jet;
 pub use node::Node;
-pub(crate) use outputs::{Arguments, arguments, formulas, moved, outputs, solutions};
+pub(crate) use outputs::{Arguments, arguments, formulas, home, moved, outputs, solutions};
 pub use outputs::{Output, check_lanes, measure_duals};
 pub(crate) use pinned::exact;
 pub use points::{Case, Points};

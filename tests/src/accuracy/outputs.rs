@@ -43,9 +43,21 @@ where
     J: Joint<N, K, S, C>,
 {
     let mut all = formulas(joint, at);
+    all.push(home(joint));
     all.push(moved(joint, at));
     all.extend(solutions(joint, at).map(|solution| solution()));
     all
+}
+
+/// The home configuration: numbers, or, where relations give it, found by Newton's method.
+pub(crate) fn home<T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
+    joint: &J,
+) -> Output<T>
+where
+    T: Scalar,
+    J: Joint<N, K, S, C>,
+{
+    ("home", flat(&joint.home()))
 }
 
 /// Φ(Q, ϕ): a formula, or, where relations alone give it, found by Newton's method.
@@ -60,11 +72,11 @@ where
     ("retract", flat(&joint.retract(&at.q, &at.phi)))
 }
 
-/// Kernels that are solutions of equations where Φ is not exp: each is computed when it is asked for. The first does not depend on the configuration.
+/// Kernels that are solutions of equations where Φ is not exp: each is computed when it is asked for.
 pub(crate) fn solutions<'a, T, J, const N: usize, const K: usize, const S: usize, const C: usize>(
     joint: &'a J,
     at: &'a Arguments<T, N, K, S>,
-) -> [Box<dyn Fn() -> Output<T> + 'a>; 5]
+) -> [Box<dyn Fn() -> Output<T> + 'a>; 4]
 where
     T: Scalar,
     J: Joint<N, K, S, C>,
@@ -73,7 +85,6 @@ where
         q, target, phi, v, ..
     } = at;
     [
-        Box::new(|| ("home", flat(&joint.home()))),
         Box::new(|| ("local", flat(&joint.local(q, target)))),
         Box::new(|| {
             let differential = joint.retract_differential(q, phi);

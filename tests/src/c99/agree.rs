@@ -14,11 +14,31 @@ use std::sync::Arc;
 /// Operations of a function of derivatives from which on a compiler is not done with it soon.
 const LONG: usize = 20_000;
 
-/// The same where many scenes are compiled in each run of the tests.
-pub const SHORT: usize = 2_000;
+/// Which functions of derivatives are compared, and how the compiler optimises.
+#[derive(Clone, Copy, Debug)]
+pub struct Extent {
+    /// Those of fewer operations; of second derivatives, of half as many.
+    operations: usize,
+    optimisation: &'static str,
+}
 
-/// The same where they are compiled before a release.
-pub const LONGER: usize = 10_000;
+impl Extent {
+    /// Many scenes, in each run of the tests: optimising long functions would take most of its time.
+    pub const MANY_SCENES: Self = Self {
+        operations: 2_000,
+        optimisation: "-O0",
+    };
+    /// A few scenes, in each run.
+    pub const FEW_SCENES: Self = Self {
+        operations: 5_000,
+        optimisation: "-O1",
+    };
+    /// Before a release.
+    pub const RELEASE: Self = Self {
+        operations: 10_000,
+        optimisation: "-O1",
+    };
+}
 
 /// States of each scene whose values are compared.
 const STATES: u64 = 3;
@@ -60,18 +80,18 @@ pub fn same(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && same.all(|same| same)
 }
 
-/// Builds modules of all functions in `folder`, of derivatives those of fewer operations than `long`: they have the bits of their evaluated lines, and the values of the tree.
+/// Builds modules of all functions in `folder`, of derivatives to this extent: they have the bits of their evaluated lines, and the values of the tree. Returns how many functions are compared.
 ///
 /// # Panics
 /// Where one has not.
-pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)], long: usize) {
+pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)], extent: Extent) -> usize {
     // As a module has them, and every other scene with all loops that there are, those over pairs of joints among them.
     let loops = [Loops::Long, Loops::Always];
     let models = scenes
         .iter()
         .map(|(_, model)| model)
         .zip(loops.into_iter().cycle());
-    let functions = models.map(|(model, loops)| functions_with(model, loops, long));
+    let functions = models.map(|(model, loops)| functions_with(model, loops, extent.operations));
     let functions: Vec<Vec<Function>> = functions.collect();
     let named = scenes.iter().zip(&functions).enumerate();
     let modules: Vec<Module<'_>> = named
@@ -81,12 +101,12 @@ pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)], long: usize) {
             functions,
             lanes: &[],
             kernels: &[],
-            // Optimising long functions takes most of the time that these tests have; the committed modules are optimised.
-            optimisation: "-O0",
+            optimisation: extent.optimisation,
         })
         .collect();
+    let count = functions.iter().map(Vec::len).sum();
     let Some(program) = Program::new(folder, &modules) else {
-        return;
+        return count;
     };
     let program = RefCell::new(program);
     for (i, (mechanism, model)) in scenes.iter().enumerate() {
@@ -133,4 +153,5 @@ pub fn agree(folder: &Path, scenes: &[(Arc<Mechanism>, Model)], long: usize) {
             }
         }
     }
+    count
 }

@@ -6,7 +6,7 @@
 mod agree;
 mod kernels;
 
-pub use agree::{LONGER, SHORT, agree, functions, same};
+pub use agree::{Extent, agree, functions, same};
 
 use hamel_compiler::emit::{Function, c99};
 use hamel_compiler::model::Model;

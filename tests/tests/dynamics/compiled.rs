@@ -145,13 +145,13 @@ fn trees_agree(largest: usize, count: u64, point: fn(random::Case) -> Point) {
     cases.into_par_iter().for_each(|case| point(case).agrees());
 }
 
-/// Each kind of joint is the root of one of them.
+/// Each kind of joint is the root of at least one of them.
 #[test]
 fn random_trees_agree() {
     trees_agree(40, 40, Point::bare);
 }
 
-/// Each kind of joint is the root of one of them.
+/// Each kind of joint is the root of at least one of them.
 #[test]
 fn random_trees_with_elements_agree() {
     trees_agree(12, 40, Point::with_elements);

@@ -9,7 +9,7 @@ use hamel::mechanism::Mechanism;
 use hamel_compiler::model::Model;
 use hamel_compiler::{Error, scene_of};
 use hamel_scene::{Scene, SceneDescription};
-use hamel_tests::c99::{LONGER, agree};
+use hamel_tests::c99::{Extent, agree};
 use hamel_tests::compiled::{Functions, Point};
 use std::path::Path;
 use std::sync::Arc;
@@ -320,7 +320,11 @@ fn compiled(ports: &str) -> Result<Model, Error> {
 fn compiled_scenes_in_c_are_the_tree() {
     let model = compiled(ALL).unwrap_or_else(|error| panic!("{error}"));
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c99/ports");
-    agree(&folder, &[(scene("", ALL).mechanism, model)], LONGER);
+    agree(
+        &folder,
+        &[(scene("", ALL).mechanism, model)],
+        Extent::FEW_SCENES,
+    );
 }
 
 #[test]

@@ -1,7 +1,9 @@
 //! A joint of any type and any parameters, as the search sees it: numbers in, numbers out.
 
 use super::traced::{Traced, notes_of};
-use crate::accuracy::{Arguments, Case, Output, arguments, formulas, moved, outputs, solutions};
+use crate::accuracy::{
+    Arguments, Case, Output, arguments, formulas, home, moved, outputs, solutions,
+};
 use hamel::joint::Joint;
 use hamel::nalgebra::SVector;
 use hamel::scalar::Scalar;
@@ -51,13 +53,18 @@ impl<J: Joint<N, K, S, C>, const N: usize, const K: usize, const S: usize, const
     fn notes(&self, case: &Case) -> Vec<f64> {
         let at = self.arguments::<Traced>(case);
         let mut notes = notes_of(usize::MAX, || formulas(&self.0, &at));
-        // Where relations define the joint, to solve them for home would take most of the time, and along a line it is always the same.
-        let (of_retract, left_out) = match J::RELATIONS {
-            [] => (usize::MAX, 0),
-            _ => (OF_SOLUTION, 1),
+        let of_retract = match J::RELATIONS {
+            [] => {
+                notes.extend(notes_of(usize::MAX, || {
+                    home::<Traced, _, N, K, S, C>(&self.0)
+                }));
+                usize::MAX
+            }
+            // To solve relations for home would take most of the time. It is compared at every set of parameters; features of it between these are not looked for.
+            _ => OF_SOLUTION,
         };
         notes.extend(notes_of(of_retract, || moved(&self.0, &at)));
-        for solution in solutions(&self.0, &at).into_iter().skip(left_out) {
+        for solution in solutions(&self.0, &at) {
             notes.extend(notes_of(OF_SOLUTION, solution));
         }
         notes

@@ -64,7 +64,7 @@ impl Layer {
         for row in rows {
             for column in columns.clone() {
                 let at = [column as f64 + 0.5, row as f64 + 0.5];
-                // Most pixels are outside, and known to be by one of three edges. Those on an edge belong to the faces on both sides, so that no seam is left.
+                // Most pixels are outside, and often one edge tells so. Those on an edge belong to the faces on both sides, so that no seam is left.
                 let of_a = cross(&b, &c, at) * share;
                 if of_a < 0.0 {
                     continue;
