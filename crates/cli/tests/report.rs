@@ -29,12 +29,15 @@ fn a_report_measures_each_curve_once() {
     assert!(told.contains("points of work and precision"), "{told}");
     let work = fs::read_to_string(folder.join("work.csv")).expect("a file");
     let rows: Vec<&str> = work.lines().skip(1).collect();
-    // Two methods: matrices in both forms, quaternions and Euler angles in one, at eleven tolerances each.
+    // Two methods: matrices in both forms; of the explicit one quaternions and Euler angles in one, which the page compares; at eleven tolerances each.
     let is_compiled = |row: &&&str| row.contains(",compiled,");
     assert_eq!(
         rows.iter().filter(|row| !is_compiled(row)).count(),
-        2 * 4 * 11
+        (2 * 2 + 2) * 11
     );
+    // Estimates of both in both forms, at five tolerances.
+    let estimates = fs::read_to_string(folder.join("estimates.csv")).expect("a file");
+    assert_eq!(estimates.lines().skip(1).count(), 2 * 2 * 5);
     // Where there is a C compiler, matrices compiled in the Lagrangian form.
     let compiled = fs::read_to_string(folder.join("compiled.csv"));
     match compiled {
@@ -57,9 +60,19 @@ fn a_report_measures_each_curve_once() {
         "Euler angles pass where they are singular: {euler:#?}"
     );
     let page = fs::read_to_string(folder.join("index.html")).expect("a page");
-    for expected in ["<svg", "top_lock", "radau5", "in floors"] {
+    let summary = [
+        "one body, free or on a pivot",
+        "best method, Lagrangian form",
+        "Of 20 motions",
+        "<strong>cannot</strong>",
+    ];
+    for expected in ["<svg", "top_lock", "radau5", "in floors"]
+        .iter()
+        .chain(&summary)
+    {
         assert!(page.contains(expected), "{expected}");
     }
+    assert!(!page.contains("Beside other libraries"));
     // Names of formats are no addresses.
     let addresses = page.replace("http://www.w3.org/", "");
     assert!(!addresses.contains("http"), "the page asks for a network");
@@ -96,6 +109,41 @@ fn a_report_measures_each_curve_once() {
     assert_eq!(fresh.lines().count(), both.lines().count());
     let aside = fs::read_to_string(folder.join("work.1.csv")).expect("a file");
     assert_eq!(aside, both);
+}
+
+/// The runs of other libraries that lie in the folder are in the summary and in the figures of their scenes; a file of something else is named.
+#[test]
+fn other_libraries_stand_beside_ours() {
+    let folder = folder("report_peers");
+    let place = folder.display().to_string();
+    let scene = ["--scenes", "top_slow", "--methods", "verner9"];
+    stdout(&[&["report", "--short", "--quiet", "-o", &place], &scene[..]].concat());
+    let peers = folder.join("peers.csv");
+    let runs = "scene,library,method,value,error,seconds_least,seconds_median,evaluations,steps,failure,version,machine
+top_slow,hamel,verner9,1e-6,1e-7,0.001,0.001,100,10,,hamel 1,here
+top_slow,hamel compiled,verner9,1e-6,1e-7,0.0005,0.0005,100,10,,hamel 1,here
+top_slow,other,rk4,64,1e-5,0.002,0.002,256,64,,other 2.5,here
+top_slow,other,rk4,128,1e-7,0.004,0.004,512,128,,other 2.5,here
+top_slow,other,rk4,8,inf,,,,,takes longer,other 2.5,here
+";
+    fs::write(&peers, runs).expect("the folder is there");
+    stdout(&["report", "--page-only", "-o", &place]);
+    let page = fs::read_to_string(folder.join("index.html")).expect("a page");
+    // Interpolated to 1e-6 the other one takes 2.83 ms, ours at most 1 ms; to 1e-9 nobody comes.
+    for expected in [
+        "other 2.5; here",
+        "2.83 … 2.83 … 2.83",
+        "5.66 … 5.66 … 5.66",
+        ">hamel compiled</text>",
+    ] {
+        let page = page.replace('\n', "");
+        assert!(page.contains(expected), "{expected}");
+    }
+    fs::write(&peers, "a,b\n1,2\n").expect("the folder is there");
+    let output = hamel(&["report", "--page-only", "-o", &place]);
+    assert!(!output.status.success());
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(told.contains("peers.csv"), "{told}");
 }
 
 /// Rows of a file of figures as their columns, those of names first.

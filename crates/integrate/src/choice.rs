@@ -230,9 +230,10 @@ impl Wanted {
         if followed <= PREFERENCE * self.steps(stiff.slow, 4) * work && !mode.is_damped() {
             return Err("it costs less to follow than to solve for".into());
         }
+        let most = (TRIAL * followed / work) as usize;
         let first = |scheme| {
             let method = Method::controlled(scheme, self.tolerance);
-            step_probe::step(mechanism, state, self.span, method)
+            step_probe::step(mechanism, state, (self.span, most), method)
         };
         let own = first(Scheme::Exponential).unwrap_or(0.0);
         // How far the work of one of its steps leads without it. Where that is far less by the rates alone, no other steps are tried.

@@ -8,7 +8,7 @@ Examples:
   hamel report --short
       a minute: some scenes and methods, to report/index.html and CSV files beside it
   hamel report
-      everything: each scene, form, method, representation, implementation and tolerance; two to four hours. What has been measured stays in the CSV files:
+      everything: each scene, form, method, representation, implementation and tolerance, in less than an hour. What has been measured stays in the CSV files:
       stopped and called again, it goes on where it was
   hamel report --scenes heavy_top,torsion_1e8 --methods verner9,exponential,radau5 -o stiff
       these scenes and methods alone, to the folder `stiff`
@@ -28,7 +28,8 @@ C compiler of this machine (CC, else cc, gcc, clang); a short report has the lat
 Run times are those of the thread on its processor: what else the machine does is not in them. A measurement that was stopped, one with --fresh too, goes on
 where it was when the same is asked for without --fresh.
 
-work.csv, drift.csv, stability.csv and compiled.csv hold the figures; docs/report.md tells their columns. Other files in the folder are left alone; an index.html
+work.csv, estimates.csv, drift.csv, stability.csv and compiled.csv hold the figures; docs/report.md tells their columns. Figures of other libraries are on the page where
+peers.csv lies in the folder. Other files in the folder are left alone; an index.html
 that is no such page is replaced with --force only. One command writes a folder at a time. After Ctrl-C the figures measured by then are in the files.
 
 Exit codes: 0 success, also where runs failed; 1 a file that cannot be read or written; 2 wrong options; 130 interrupted.";

@@ -1,6 +1,7 @@
 //! The method that is chosen for a scene beside the one that would have been the fastest.
 
 use super::case::Case;
+use super::curve::time_to;
 use super::row::Work;
 use hamel::registry::JointRegistry;
 use hamel_scene::{Company, Scene, Settings};
@@ -24,6 +25,39 @@ pub struct Choice {
     ratio: String,
 }
 
+/// What was measured of the choice for one tolerance.
+#[derive(Debug)]
+pub struct Measured {
+    /// Run time, the choosing included, s, and the worst error.
+    pub seconds: f64,
+    pub error: f64,
+    /// The method that is the fastest to the same error, and its run time, s.
+    pub best: String,
+    pub least: f64,
+}
+
+impl Measured {
+    /// Of the rows of one scene, form, representation and implementation; `None` where the choice was not measured, or failed.
+    pub fn of(rows: &[&Work], tolerance: f64) -> Option<Self> {
+        let own = rows.iter().find(|row| {
+            row.method == Settings::AUTO && (row.accuracy / tolerance - 1.0).abs() < 1e-6
+        })?;
+        let (error, seconds) = (own.error_worst?, own.seconds_least?);
+        let (best, least) = fastest(rows, error)?;
+        Some(Self {
+            seconds,
+            error,
+            best,
+            least,
+        })
+    }
+
+    /// How many times as long as the fastest method the choice takes.
+    pub fn ratio(&self) -> f64 {
+        self.seconds / self.least
+    }
+}
+
 /// The choices for the scene of a case, with what was measured of them, in the rows of one scene, form, representation and implementation.
 pub fn choices(case: &Case, registry: &JointRegistry, rows: &[&Work]) -> Vec<Choice> {
     let scene = case.description().ok();
@@ -31,25 +65,16 @@ pub fn choices(case: &Case, registry: &JointRegistry, rows: &[&Work]) -> Vec<Cho
     let end = case.reference().map_or(0.0, |reference| reference.end());
     let choices = ASKED.into_iter().filter_map(|tolerance| {
         let (method, reason) = chosen(scene.as_ref()?, tolerance, end)?;
-        let own = rows.iter().find(|row| {
-            row.method == Settings::AUTO && (row.accuracy / tolerance - 1.0).abs() < 1e-6
-        });
-        let own = own.and_then(|row| Some((row.error_worst?, row.seconds_least?)));
-        let best = own.and_then(|(error, _)| fastest(rows, error));
+        let measured = Measured::of(rows, tolerance);
+        let told = |tell: fn(&Measured) -> String| measured.as_ref().map_or(String::new(), tell);
         Some(Choice {
             tolerance: format!("{tolerance:.0e}"),
             method,
             reason,
-            time: own.map_or(String::new(), |(_, time)| format!("{:.3}", 1e3 * time)),
-            error: own.map_or(String::new(), |(error, _)| format!("{error:.1e}")),
-            best: best
-                .as_ref()
-                .map_or(String::new(), |(name, _)| name.clone()),
-            ratio: own
-                .zip(best)
-                .map_or(String::new(), |((_, own), (_, best))| {
-                    format!("{:.1}", own / best)
-                }),
+            time: told(|own| format!("{:.3}", 1e3 * own.seconds)),
+            error: told(|own| format!("{:.1e}", own.error)),
+            best: told(|own| own.best.clone()),
+            ratio: told(|own| format!("{:.1}", own.ratio())),
         })
     });
     choices.collect()
@@ -80,35 +105,4 @@ fn fastest(rows: &[&Work], error: f64) -> Option<(String, f64)> {
         ))
     });
     times.min_by(|a, b| a.1.total_cmp(&b.1))
-}
-
-/// The least time, s, to an error, of points in the order of their tolerances; `None` where the curve does not come so far.
-fn time_to(points: &[(f64, f64)], error: f64) -> Option<f64> {
-    // What is on the floor is as good as it.
-    let reached = points.iter().filter(|(own, _)| *own <= error.max(LEAST));
-    let between = points.windows(2).filter_map(|pair| {
-        let [(above, before), (below, after)] = [pair[0], pair[1]];
-        let part = (above / error).ln() / (above / below).ln();
-        (above > error && error > below).then(|| before * (after / before).powf(part))
-    });
-    let times = reached.map(|&(_, time)| time).chain(between);
-    times.reduce(f64::min)
-}
-
-/// Half a rounding.
-const LEAST: f64 = 0.5 * f64::EPSILON;
-
-#[cfg(test)]
-mod tests {
-    use super::time_to;
-
-    #[test]
-    fn times_are_between_those_of_the_points() {
-        let points = [(1e-2, 1.0), (1e-4, 2.0), (1e-8, 8.0)];
-        assert_eq!(time_to(&points, 1e-4), Some(2.0));
-        let middle = time_to(&points, 1e-6).expect("within the curve");
-        assert!((middle - 4.0).abs() < 1e-12, "{middle}");
-        assert_eq!(time_to(&points, 1.0), Some(1.0));
-        assert_eq!(time_to(&points, 1e-10), None);
-    }
 }

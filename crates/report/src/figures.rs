@@ -2,7 +2,8 @@
 
 use super::build_cost::{self, Cost};
 use super::machine::Machine;
-use super::row::{Build, Drift, Row, Stability, Work};
+use super::peers::{self, Peer};
+use super::row::{Build, Drift, Estimate, Row, Stability, Work};
 use super::store::read;
 use hamel_console::output::Failure;
 use itertools::Itertools;
@@ -18,6 +19,10 @@ pub struct Figures {
     pub costs: Vec<Cost>,
     /// What compiled scenes cost.
     pub builds: Vec<Build>,
+    /// Estimated errors beside true ones.
+    pub estimates: Vec<Estimate>,
+    /// Runs of other libraries, on whatever machine.
+    pub peers: Vec<Peer>,
     pub machine: Machine,
     /// Machines and versions whose rows are left out.
     pub others: Vec<String>,
@@ -33,6 +38,7 @@ impl Figures {
         let mut drift = read::<Drift>(folder)?;
         let mut stability = read::<Stability>(folder)?;
         let mut builds = read::<Build>(folder)?;
+        let mut estimates = read::<Estimate>(folder)?;
         let this = Machine::this().line();
         // The last one first.
         let rows = work.iter().rev().map(Row::machine);
@@ -49,6 +55,7 @@ impl Figures {
         drift.retain(|row| row.machine == shown);
         stability.retain(|row| row.machine == shown);
         builds.retain(|row| row.machine == shown);
+        estimates.retain(|row| row.machine == shown);
         Ok(Self {
             work: longest(work, |row| {
                 let Work {
@@ -76,6 +83,16 @@ impl Figures {
             stability,
             costs: build_cost::costs()?,
             builds,
+            estimates: longest(estimates, |row| {
+                let Estimate {
+                    scene,
+                    form,
+                    method,
+                    ..
+                } = row;
+                (format!("{scene} {form} {method}"), &row.budget)
+            }),
+            peers: peers::read(folder)?,
             machine: Machine::of(&shown),
             others: machines,
         })

@@ -1,12 +1,12 @@
 //! One run, timed, with its error.
 
 use super::case::Reference;
-use super::row::STOPPED;
+use super::row::{Cause, STOPPED};
 use super::score::{Errors, errors};
 use super::watch::Watch;
 use hamel::dynamics::Dynamics;
 use hamel::integrate::{
-    Form, Method, Options, Solution, State, Statistics, Step, integrate, no_inputs,
+    Form, IntegrateError, Method, Options, Solution, State, Statistics, Step, integrate, no_inputs,
 };
 use hamel_scene::{Company, Scene, Settings};
 use std::time::Duration;
@@ -25,8 +25,8 @@ pub struct Budget {
 impl Budget {
     /// For figures that are to be told.
     pub const FULL: Self = Self {
-        run: Duration::from_secs(3),
-        point: Duration::from_millis(200),
+        run: Duration::from_secs(1),
+        point: Duration::from_millis(50),
         repetitions: 30,
     };
     /// For a first look.
@@ -79,6 +79,8 @@ pub struct Failed {
     pub seconds: f64,
     /// Whether it was stopped for the time that it took.
     pub is_slow: bool,
+    /// Whether it would have come to its end.
+    pub cause: Cause,
 }
 
 impl Failed {
@@ -88,6 +90,7 @@ impl Failed {
             reason: reason.lines().next().unwrap_or_default().to_owned(),
             seconds: 0.0,
             is_slow: false,
+            cause: Cause::Cannot,
         }
     }
 }
@@ -103,13 +106,7 @@ pub fn point(
     let samples: Vec<f64> = reference.samples.iter().map(|sample| sample.t).collect();
     let start = Watch::start();
     let (solution, first) = run((scene, dynamics), form, way, &samples, budget.run)?;
-    let errors = errors(&scene.mechanism, reference, &solution);
-    let errors = errors.filter(|errors| errors.worst.is_finite());
-    let errors = errors.ok_or_else(|| Failed {
-        reason: "the result is not finite".into(),
-        seconds: first,
-        is_slow: false,
-    })?;
+    let errors = finite_errors(scene, reference, (&solution, first))?;
     let mut seconds = vec![first];
     while seconds.len() < budget.repetitions && start.elapsed() < budget.point {
         seconds.push(run((scene, dynamics), form, way, &samples, budget.run)?.1);
@@ -118,6 +115,25 @@ pub fn point(
         errors,
         statistics: solution.statistics,
         times: times(seconds),
+    })
+}
+
+/// The errors of a motion that took so many seconds.
+///
+/// # Errors
+/// A motion that is not finite.
+pub fn finite_errors(
+    scene: &Scene,
+    reference: &Reference,
+    (solution, seconds): (&Solution, f64),
+) -> Result<Errors, Failed> {
+    let errors = errors(&scene.mechanism, reference, solution);
+    let errors = errors.filter(|errors| errors.worst.is_finite());
+    errors.ok_or_else(|| Failed {
+        reason: "the result is not finite".into(),
+        seconds,
+        is_slow: false,
+        cause: Cause::Cannot,
     })
 }
 
@@ -165,8 +181,18 @@ pub fn run(
         t_end,
         samples: samples.to_vec(),
     };
+    integrated(dynamics, &initial, &options, (start, limit))
+}
+
+/// The motion of these options, stopped where the time since `start` exceeds the limit, and that time, s.
+pub fn integrated(
+    dynamics: &mut dyn Dynamics,
+    initial: &State,
+    options: &Options,
+    (start, limit): (Watch, Duration),
+) -> Result<(Solution, f64), Failed> {
     let mut observer = |step: &Step<'_>| start.allows(limit, step);
-    let result = integrate(dynamics, &initial, &options, &mut no_inputs, &mut observer);
+    let result = integrate(dynamics, initial, options, &mut no_inputs, &mut observer);
     let seconds = start.seconds();
     match result {
         Ok(solution) if !solution.stopped => Ok((solution, seconds)),
@@ -180,11 +206,16 @@ pub fn run(
             ),
             seconds,
             is_slow: true,
+            cause: Cause::TooSlow,
         }),
         Err(error) => Err(Failed {
             reason: error.to_string(),
             seconds,
             is_slow: false,
+            cause: match error {
+                IntegrateError::Hopeless { .. } => Cause::TooSlow,
+                _ => Cause::Cannot,
+            },
         }),
     }
 }

@@ -3,9 +3,12 @@
 use super::case::Case;
 use super::choice::{self, Choice};
 use super::figures::Figures;
-use super::plan::COMPARED;
+use super::peers::{Peer, fronts};
+use super::plan::{COMPARED, COMPARED_REPRESENTATIONS};
 use super::plots;
 use super::row::{Build, Work};
+use super::summary::Summary;
+use super::tables;
 use hamel::registry::JointRegistry;
 use hamel_console::files::first_line;
 use hamel_console::output::Failure;
@@ -33,6 +36,8 @@ struct Section {
     representations: String,
     /// That of the tree and of compiled equations; empty where there is one.
     implementations: String,
+    /// That of other libraries; empty where none was measured.
+    others: String,
     best: Vec<Best>,
     choices: Vec<Choice>,
     failures: Vec<Failing>,
@@ -100,11 +105,12 @@ pub fn is_own(file: &File) -> bool {
 /// Figures or texts that cannot be made.
 pub fn render(figures: &Figures, registry: &JointRegistry) -> Result<String, Failure> {
     let mut context = Context::new();
-    let sections = sections(&figures.work, registry)?;
+    let sections = sections(figures, registry)?;
     let methods = figures.work.iter().map(|row| row.method.as_str());
     let methods: Vec<&str> = methods.unique().collect();
     context.insert("machine", &figures.machine);
     context.insert("others", &figures.others);
+    context.insert("summary", &Summary::new(figures, registry));
     context.insert("lines", &overview(&figures.work, &methods));
     context.insert("methods", &methods);
     context.insert("sections", &sections);
@@ -117,6 +123,8 @@ pub fn render(figures: &Figures, registry: &JointRegistry) -> Result<String, Fai
         "stability",
         &drawings(&figures.stability, |row| &row.scene, plots::stability)?,
     );
+    context.insert("stability_table", &tables::stability(&figures.stability));
+    context.insert("drift_table", &tables::drift(&figures.drift));
     context.insert("costs", &figures.costs);
     context.insert("builds", &builds(&figures.builds));
     context.insert("points", &figures.work.len());
@@ -155,16 +163,21 @@ fn drawings<R>(
     drawings.collect()
 }
 
-fn sections(rows: &[Work], registry: &JointRegistry) -> Result<Vec<Section>, Failure> {
+fn sections(figures: &Figures, registry: &JointRegistry) -> Result<Vec<Section>, Failure> {
+    let rows = &figures.work;
     let names = rows.iter().map(|row| row.scene.as_str()).unique();
     let sections = names.map(|name| {
         let own: Vec<&Work> = rows.iter().filter(|row| row.scene == name).collect();
-        section(name.into(), &own, registry)
+        section(name.into(), (&own, &figures.peers), registry)
     });
     sections.collect()
 }
 
-fn section(name: String, rows: &[&Work], registry: &JointRegistry) -> Result<Section, Failure> {
+fn section(
+    name: String,
+    (rows, peers): (&[&Work], &[Peer]),
+    registry: &JointRegistry,
+) -> Result<Section, Failure> {
     let (description, source) = told(&name)?;
     let first = rows.first().map(|row| row.representation.clone());
     let all = rows.iter().copied();
@@ -173,7 +186,7 @@ fn section(name: String, rows: &[&Work], registry: &JointRegistry) -> Result<Sec
         .filter(|row| Some(&row.representation) == first.as_ref());
     let own: Vec<&Work> = own.collect();
     let main: Vec<&Work> = own.iter().copied().filter(|row| is_tree(row)).collect();
-    let in_others = all.filter(|row| is_tree(row) && is_compared(row, 2));
+    let in_others = all.filter(|row| is_tree(row) && is_compared(row, COMPARED_REPRESENTATIONS));
     let in_others: Vec<&Work> = in_others.collect();
     let ways = own
         .iter()
@@ -194,6 +207,10 @@ fn section(name: String, rows: &[&Work], registry: &JointRegistry) -> Result<Sec
             plots::representations,
         )?,
         implementations: drawn(&ways, |row| &row.implementation, plots::implementations)?,
+        others: match fronts(peers, &name) {
+            fronts if fronts.iter().all(|(_, points)| points.is_empty()) => String::new(),
+            fronts => plots::peers(&fronts)?,
+        },
         best: best(&own),
         choices: choices(&name, registry, &main),
         failures: failures(rows),
@@ -324,7 +341,7 @@ fn failures(rows: &[&Work]) -> Vec<Failing> {
 }
 
 /// A text without its figures.
-fn words(text: &str) -> String {
+pub fn words(text: &str) -> String {
     let is_figure = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | 'e');
     text.chars().filter(|&c| !is_figure(c)).collect()
 }

@@ -29,8 +29,10 @@ const SHORT_SCHEMES: [Scheme; 6] = [
     Scheme::Radau5,
     Scheme::Exponential,
 ];
-/// Methods whose implementations and representations the page compares: two explicit ones, for usual and for tight tolerances, and one for stiff scenes.
+/// Methods whose implementations the page compares: two explicit ones, for usual and for tight tolerances, and one for stiff scenes.
 pub const COMPARED: [Scheme; 3] = [Scheme::DormandPrince, Scheme::Verner9, Scheme::Radau5];
+/// Those of them, counted from the first, whose representations it compares.
+pub const COMPARED_REPRESENTATIONS: usize = 2;
 
 /// Tolerances of the diagrams.
 pub const TOLERANCES: [f64; 11] = [
@@ -72,7 +74,7 @@ impl Drift {
             true => (&["chain_2", "falling_disk"], 100_000, 0.3),
             false => {
                 let scenes = &["chain_2", "top_slow", "falling_disk", "free_generic"];
-                (scenes, 10_000_000, 30.0)
+                (scenes, 1_000_000, 3.0)
             }
         };
         let scenes = scenes.iter().copied();
@@ -153,8 +155,8 @@ impl Plan {
             && row.method().is_none_or(of_scheme)
     }
 
-    /// Forms in which a scheme is measured on a scene: both in the library's own representation, the Lagrangian one in others. A short report takes compiled
-    /// equations where the page compares them, and no further.
+    /// Forms in which a scheme is measured on a scene: by the tree in the library's own representation both; in other representations and compiled the Lagrangian
+    /// one, of the methods that the page compares there.
     pub fn forms_of(
         &self,
         scheme: Scheme,
@@ -162,18 +164,14 @@ impl Plan {
         implementation: Implementation,
     ) -> &'static [Form] {
         let forms = self.forms(scheme);
-        let is_short = self.budget_name != "full";
-        match implementation {
-            Implementation::Compiled if self.compiler.is_none() => &[],
-            Implementation::Compiled
-                if is_short && !(representation.is_first() && COMPARED.contains(&scheme)) =>
-            {
-                &[]
-            }
-            Implementation::Compiled if is_short => &forms[..1],
-            _ if representation.is_first() => forms,
-            _ => &forms[..1],
-        }
+        let is_among = |count: usize| COMPARED[..count].contains(&scheme);
+        let is_measured = match (representation.is_first(), implementation) {
+            (true, Implementation::Tree) => return forms,
+            (true, Implementation::Compiled) => self.compiler.is_some() && is_among(COMPARED.len()),
+            (false, Implementation::Tree) => is_among(COMPARED_REPRESENTATIONS),
+            (false, Implementation::Compiled) => false,
+        };
+        &forms[..usize::from(is_measured)]
     }
 
     /// Forms in which a scheme is measured.

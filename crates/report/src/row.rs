@@ -36,6 +36,16 @@ pub trait Row: Serialize + for<'a> Deserialize<'a> + Clone + Default {
 pub const STOPPED: &str = "stopped";
 pub const NOT_RUN: &str = "not run";
 
+/// Why a run does not come to its end.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Cause {
+    /// The method or the coordinates cannot do what the scene asks.
+    Cannot,
+    /// It would, with more time.
+    TooSlow,
+}
+
 /// A point of a work–precision diagram.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Work {
@@ -60,6 +70,8 @@ pub struct Work {
     pub seconds_least: Option<f64>,
     pub seconds_median: Option<f64>,
     pub seconds_spread: Option<f64>,
+    /// Of a run that did not come to its end.
+    pub cause: Option<Cause>,
     #[serde(with = "hamel_console::cells::rows")]
     pub failure: String,
     /// `full` or `short`: how long a point was measured.
@@ -254,5 +266,66 @@ impl Row for Stability {
 
     fn budget(&self) -> Option<&str> {
         None
+    }
+}
+
+/// What a motion was told its error is, beside the error that it has.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub struct Estimate {
+    pub scene: String,
+    pub form: String,
+    pub method: String,
+    pub tolerance: f64,
+    /// Against the reference: at the last sample, and over all samples.
+    pub error_final: Option<f64>,
+    pub error_worst: Option<f64>,
+    /// What is told of the last state: the part from steps and that from rounding.
+    pub told_steps: Option<f64>,
+    pub told_rounding: Option<f64>,
+    /// Why the estimate calls itself not reliable; empty where it is.
+    #[serde(with = "hamel_console::cells::rows")]
+    pub doubt: String,
+    /// Of the motion, and of the motions that the estimate takes.
+    pub evaluations: Option<usize>,
+    pub evaluations_of_estimate: Option<usize>,
+    pub seconds: Option<f64>,
+    pub seconds_of_estimate: Option<f64>,
+    #[serde(with = "hamel_console::cells::rows")]
+    pub failure: String,
+    pub budget: String,
+    /// Processor, system, compiler, flags and version, in one line.
+    #[serde(with = "hamel_console::cells::rows")]
+    pub machine: String,
+}
+
+impl Row for Estimate {
+    const FILE: &'static str = "estimates";
+
+    fn key(&self) -> String {
+        let Self {
+            scene,
+            form,
+            method,
+            tolerance,
+            budget,
+            ..
+        } = self;
+        format!("{scene} {form} {method} {tolerance:e} {budget}")
+    }
+
+    fn machine(&self) -> &str {
+        &self.machine
+    }
+
+    fn scene(&self) -> &str {
+        &self.scene
+    }
+
+    fn method(&self) -> Option<&str> {
+        Some(&self.method)
+    }
+
+    fn budget(&self) -> Option<&str> {
+        Some(&self.budget)
     }
 }

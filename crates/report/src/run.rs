@@ -5,9 +5,9 @@ use super::figures::Figures;
 use super::machine::Machine;
 use super::plan::Plan;
 use super::progress::Progress;
-use super::row::{Build, Drift, Stability, Work};
+use super::row::{Build, Drift, Estimate, Stability, Work};
 use super::store::{Store, Stores, set_aside};
-use super::{drift, page, stability, work};
+use super::{drift, estimate, page, stability, work};
 use hamel::registry::JointRegistry;
 use hamel_console::files::{Lock, Output, admit};
 use hamel_console::interrupt::Heed;
@@ -78,7 +78,8 @@ fn measure(
     registry: &JointRegistry,
     machine: &str,
 ) -> Result<(), Failure> {
-    let curves = work::count(plan)? + drift::count(plan) + stability::count(plan);
+    let curves =
+        work::count(plan)? + estimate::count(plan) + drift::count(plan) + stability::count(plan);
     let progress = Progress::new(curves, args.quiet);
     let tick = |what: &str| progress.at(what);
     let folder = &args.output;
@@ -87,12 +88,14 @@ fn measure(
     }
     let mut stores = Stores {
         work: Store::open(folder, machine)?,
+        estimates: Store::open(folder, machine)?,
         build: Store::open(folder, machine)?,
         stability: Store::open(folder, machine)?,
         drift: Store::open(folder, machine)?,
     };
     let heed = Heed::begin();
     let measured = work::measure(plan, registry, machine, &mut stores, tick)
+        .and_then(|()| estimate::measure(plan, registry, machine, &mut stores.estimates, tick))
         .and_then(|()| stability::measure(plan, registry, machine, &mut stores.stability, tick))
         .and_then(|()| drift::measure(plan, registry, machine, &mut stores.drift, tick));
     // What was measured stays, whatever came then.
@@ -110,6 +113,7 @@ fn begin_anew(folder: &Path, plan: &Plan, machine: &str) -> Result<(), Failure> 
     let drift = || plan.drift.scenes.iter().copied();
     set_aside::<Work>(folder, |row| plan.covers(row, machine, work()))?;
     set_aside::<Build>(folder, |row| plan.covers(row, machine, work()))?;
+    set_aside::<Estimate>(folder, |row| plan.covers(row, machine, work()))?;
     set_aside::<Stability>(folder, |row| plan.covers(row, machine, stability()))?;
     set_aside::<Drift>(folder, |row| plan.covers(row, machine, drift()))
 }

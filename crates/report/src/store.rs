@@ -1,6 +1,6 @@
 //! CSV files that grow as figures are measured, and are read again when the command goes on.
 
-use super::row::{Build, Drift, Row, Stability, Work};
+use super::row::{Build, Drift, Estimate, Row, Stability, Work};
 use hamel_console::files::{Output, admit, new_file};
 use hamel_console::interrupt;
 use hamel_console::output::Failure;
@@ -22,6 +22,7 @@ const LONGEST: u64 = 1 << 12;
 #[derive(Debug)]
 pub struct Stores {
     pub work: Store<Work>,
+    pub estimates: Store<Estimate>,
     pub build: Store<Build>,
     pub stability: Store<Stability>,
     pub drift: Store<Drift>,
@@ -35,6 +36,7 @@ impl Stores {
     pub fn save(&mut self) -> Result<(), Failure> {
         let saved = [
             self.work.save(),
+            self.estimates.save(),
             self.build.save(),
             self.stability.save(),
             self.drift.save(),
@@ -217,7 +219,8 @@ fn output<R: Row>(folder: &Path) -> Result<Output, Failure> {
     admitted.ok_or_else(|| Failure::write(&path, std::io::ErrorKind::NotFound.into()))
 }
 
-fn foreign(path: &Path, error: &dyn std::fmt::Display) -> Failure {
+/// A file that somebody else has written.
+pub fn foreign(path: &Path, error: &dyn std::fmt::Display) -> Failure {
     Failure::Page(format!(
         "{}: {error}; move the file away, or name another folder",
         path.display()

@@ -4,7 +4,7 @@ use super::case::{Case, Reference, accuracy};
 use super::measure::{self, Failed, Point, Way};
 use super::plan::{Plan, TOLERANCES};
 use super::representation::Representation;
-use super::row::{NOT_RUN, Row, Work, form_name};
+use super::row::{Cause, NOT_RUN, Row, Work, form_name};
 use super::store::{Store, Stores};
 use super::subject::{Implementation, Subject};
 use hamel::integrate::{Form, Method, Scheme};
@@ -207,6 +207,7 @@ fn not_run() -> Failed {
         reason: format!("{NOT_RUN}: {SLOW} coarser ones were stopped"),
         seconds: 0.0,
         is_slow: true,
+        cause: Cause::TooSlow,
     }
 }
 
@@ -238,6 +239,7 @@ fn row(plan: &Plan, curve: &Curve, way: Way, reference: &Reference, machine: &st
         seconds_least: None,
         seconds_median: None,
         seconds_spread: None,
+        cause: None,
         failure: String::new(),
         budget: plan.budget_name.into(),
         machine: machine.into(),
@@ -262,6 +264,7 @@ fn filled(row: Work, measured: Result<Point, Failed>) -> Work {
         },
         Err(failed) => Work {
             seconds_median: (failed.seconds > 0.0).then_some(failed.seconds),
+            cause: Some(failed.cause),
             failure: failed.reason,
             ..row
         },

@@ -210,6 +210,13 @@ def pinocchio_model(scene):
     return lines
 
 
+def processor():
+    """Name of the processor, as Linux tells it."""
+    lines = open('/proc/cpuinfo').read().split('\n')
+    names = [line.split(':', 1)[1].strip() for line in lines if line.startswith('model name')]
+    return names[0] if names else 'unknown'
+
+
 def references():
     folder = f'{ROOT}/scenes/report'
     for name in sorted(os.listdir(folder)):
@@ -279,7 +286,7 @@ def main():
     names += [f'{p.name}, ms (/ {", / ".join(own)})' for p in all_programs[len(own) :]]
     print('\n| ' + ' | '.join(names) + ' |\n|' + '---|' * len(names))
     table = csv.writer(open(f'{out}/work.csv', 'w'))
-    table.writerow('scene library method value error seconds_least seconds_median evaluations steps failure'.split())
+    table.writerow('scene library method value error seconds_least seconds_median evaluations steps failure version machine'.split())
     reasons = []
     for name, path, reference in references():
         if args.scenes and name not in args.scenes.split(','):
@@ -301,7 +308,7 @@ def main():
                 points += sweep(program, scene, method, knob, args.most)
         for p in points:
             done = [p.least, p.median, p.evaluations, p.steps, ''] if not p.failure else ['', '', '', '', p.failure]
-            table.writerow([name, p.program.name, p.method, p.value, p.error, *done])
+            table.writerow([name, p.program.name, p.method, p.value, p.error, *done, p.program.info, processor()])
         bare = bare_call(args.work, scenes.plain(scene), folder)
         for error in ASKED:
             chosen = {}

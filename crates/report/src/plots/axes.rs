@@ -16,6 +16,9 @@ const LEGEND: u32 = 190;
 const LINE: i32 = 20;
 const FIRST: i32 = 44;
 
+/// Opacity of lines that are to be dashed: the library for figures draws each dash as a line of its own, a page of them is megabytes.
+const DASHED: f64 = 0.999;
+
 /// Points of one colour.
 #[derive(Clone, Debug)]
 pub struct Curve {
@@ -57,10 +60,13 @@ pub fn figure(panels: &[Panel], width: u32, height: u32) -> Result<String, Failu
     Ok(responsive(&text, width, height))
 }
 
-/// The drawing with its size left to the page.
+/// The drawing with its size left to the page, with dashes, and without what SVG takes for granted.
 fn responsive(text: &str, width: u32, height: u32) -> String {
     let fixed = format!("<svg width=\"{width}\" height=\"{height}\" ");
+    let dashed = format!(" opacity=\"{DASHED}\"");
     text.replacen(&fixed, "<svg role=\"img\" ", 1)
+        .replace(&dashed, " stroke-dasharray=\"6 4\"")
+        .replace(" opacity=\"1\"", "")
 }
 
 /// Whole decades around positive finite values.
@@ -109,7 +115,7 @@ fn draw(area: &Area<'_>, panel: &Panel) -> Result<(), Failure> {
     if let Some((floor, label)) = &panel.floor {
         let line = [(across.start, *floor), (across.end, *floor)];
         chart
-            .draw_series(DashedLineSeries::new(line, 2, 3, QUIET.stroke_width(1)))
+            .draw_series(LineSeries::new(line, QUIET.mix(DASHED).stroke_width(1)))
             .map_err(refused)?;
         let place = (across.start, *floor);
         let letters = (FONT, LABEL - 2).into_font().color(&QUIET);
@@ -117,13 +123,9 @@ fn draw(area: &Area<'_>, panel: &Panel) -> Result<(), Failure> {
         chart.draw_series([written]).map_err(refused)?;
     }
     for curve in &panel.curves {
-        let style = curve.look.colour.stroke_width(2);
         let line = curve.points.iter().copied();
-        match curve.look.dashed {
-            true => chart.draw_series(DashedLineSeries::new(line, 6, 4, style)),
-            false => chart.draw_series(LineSeries::new(line, style)),
-        }
-        .map_err(refused)?;
+        let line = LineSeries::new(line, stroke(&curve.look));
+        chart.draw_series(line).map_err(refused)?;
         if panel.marks {
             for &at in &curve.points {
                 let mark = shape(at, &curve.look);
@@ -139,6 +141,12 @@ fn draw(area: &Area<'_>, panel: &Panel) -> Result<(), Failure> {
         chart.draw_series(crosses).map_err(refused)?;
     }
     Ok(())
+}
+
+/// How the line of a curve is drawn.
+fn stroke(look: &Look) -> ShapeStyle {
+    let opacity = if look.dashed { DASHED } else { 1.0 };
+    look.colour.mix(opacity).stroke_width(2)
 }
 
 /// Labels that a range of decades has room for.
@@ -188,17 +196,8 @@ fn known(panels: &[Panel]) -> Vec<&Curve> {
 fn legend(area: &Area<'_>, curves: &[&Curve]) -> Result<(), Failure> {
     for (i, curve) in curves.iter().enumerate() {
         let y = FIRST + LINE * i as i32;
-        let style = curve.look.colour.stroke_width(2);
-        let line = vec![(4, y), (34, y)];
-        match curve.look.dashed {
-            true => {
-                let parts = [[(4, y), (10, y)], [(14, y), (24, y)], [(28, y), (34, y)]];
-                for part in parts {
-                    area.draw(&PathElement::new(part, style)).map_err(refused)?;
-                }
-            }
-            false => area.draw(&PathElement::new(line, style)).map_err(refused)?,
-        }
+        let line = PathElement::new([(4, y), (34, y)], stroke(&curve.look));
+        area.draw(&line).map_err(refused)?;
         area.draw(&shape((19, y), &curve.look)).map_err(refused)?;
         let letters = (FONT, LABEL - 1).into_font();
         let text = Text::new(curve.label.clone(), (42, y - 7), letters);

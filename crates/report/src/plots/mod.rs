@@ -2,11 +2,13 @@
 
 mod axes;
 mod drift;
+mod peers;
 mod stability;
 mod style;
 mod work;
 
 pub use drift::drawing as drift;
+pub use peers::drawing as peers;
 pub use stability::drawing as stability;
 pub use work::{forms, implementations, representations};
 
