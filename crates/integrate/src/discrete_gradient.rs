@@ -27,6 +27,9 @@ use nalgebra::Vector6;
 /// always held against that of the beginning; to go after it would shake λ, by as much more as p̄ changes little.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
+/// As much is left at the end of a step, and as much may be of the step before.
+const BOTH_ENDS: f64 = 2.0;
+
 /// Changes of increments, as parts of the increments, from which on λ is adjusted: the energy of a stiff spring in increments further off would throw
 /// λ about.
 const NEAR: f64 = 1e-3;
@@ -35,6 +38,10 @@ const NEAR: f64 = 1e-3;
 pub(super) struct Correction {
     dynamics: Recursive,
     lambda: f64,
+    /// That of the last step taken.
+    last: f64,
+    /// What rounding of the energies may make of it.
+    scatter: f64,
     /// Whether the next increments were computed with λ, and have converged enough for their energy to mean something.
     is_in_force: bool,
     /// Whether λ needed no change when last looked at.
@@ -81,6 +88,8 @@ impl Correction {
         Self {
             dynamics: Recursive::new(Arc::clone(mechanism)),
             lambda: 0.0,
+            last: 0.0,
+            scatter: 0.0,
             is_in_force: false,
             is_settled: false,
             energy: f64::NAN,
@@ -115,6 +124,8 @@ impl Correction {
         if self.energy.is_nan() {
             self.energy = flow.energy(&step_state.configuration, &step_state.y)?;
         }
+        // What an iteration that failed has made of it is no beginning for another one.
+        self.lambda = self.last;
         (self.is_in_force, self.is_settled) = (false, false);
         Ok(())
     }
@@ -129,8 +140,17 @@ impl Correction {
         self.is_settled
     }
 
+    /// Takes what rounding of the energies makes of λ out of `difference` (ϕ, then p̄) of a point and the end of the step over `step` (s) that was just tried. In
+    /// a shorter step it is no smaller; near rest, where the energy hardly changes with p̄, it is large.
+    pub(super) fn forget_scatter(&self, step: f64, difference: &mut [f64]) {
+        let (turned, pushed) = difference.split_at_mut(self.phi.len());
+        let part = self.lambda.clamp(-self.scatter, self.scatter);
+        self.moved.add_to(step * part, turned, pushed);
+    }
+
     /// The step just tried is taken.
     pub(super) fn accept(&mut self) {
+        self.last = self.lambda;
         (self.energy, self.compensation) = add_exactly(self.energy, self.work + self.compensation);
     }
 
@@ -191,6 +211,7 @@ impl Correction {
         let carried = 2.0 * self.kinetic + own.map(|(p, v)| p * v).sum::<f64>();
         let error = (found - self.energy) - (self.work + self.compensation);
         let rounding = ROUNDING * (found.abs() + self.kinetic);
+        self.scatter = BOTH_ENDS * rounding / carried.abs();
         self.is_settled = error.abs() <= rounding || carried.abs() <= rounding;
         if !self.is_settled {
             self.lambda += error / carried;

@@ -107,7 +107,7 @@ impl Scheme {
                 "exponential Rosenbrock 4(3), step control: takes stiff springs exactly, undamped ones too"
             }
             Self::DiscreteGradient => {
-                "discrete gradient, order 2, fixed step, hamiltonian form alone: keeps the energy balance to rounding"
+                "discrete gradient, order 2, step control, hamiltonian form alone: keeps the energy balance to rounding"
             }
         }
     }
@@ -151,7 +151,7 @@ impl Scheme {
     /// Whether it estimates its own error, so that it can control its step.
     pub fn has_estimate(&self) -> bool {
         match self {
-            Self::Radau5 | Self::Exponential => true,
+            Self::Radau5 | Self::Exponential | Self::DiscreteGradient => true,
             _ => self
                 .tableau()
                 .is_some_and(|tableau| tableau.estimate != Estimate::None),
