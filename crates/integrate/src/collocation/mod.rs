@@ -1,6 +1,6 @@
 //! One step of an implicit method by collocation, in (ϕ, y).
 //!
-//! The increments Z of all stages over the state solve `Z = h A F(Z)`. Methods without step control are iterated until rounding stops them
+//! The increments Z of all stages over the state solve `Z = h A F(Z)`. Methods without step control, and the one that keeps the energy, are iterated until rounding stops them
 //! (E. Hairer, R. I. McLachlan and A. Razakarivony, *Achieving Brouwer's law with implicit Runge–Kutta methods*, 2008): by fixed points while
 //! these converge fast, and by Newton's method from then on. The first guess continues the polynomial of the step before.
 
@@ -33,7 +33,7 @@ const SLOW_CONTROLLED: f64 = 1e-3;
 /// A collocation method at work.
 pub(super) struct Collocation {
     method: &'static Coefficients,
-    /// What step control allows of a step; `None` to iterate to rounding.
+    /// The tolerance, where as much of a step may be left unsolved as it allows; `None` to iterate to rounding.
     tolerance: Option<f64>,
     freedoms: usize,
     /// Z_i: ϕ, then y.

@@ -77,25 +77,20 @@ fn errors_follow_the_tolerance() {
     let mixed = mixed();
     for (mechanism, initial, t_end) in [
         (&mixed, start(&mixed, 5), 0.2),
-        (&pendulums(&[2.0]), at(&[2.0], &[0.3]), 2.0),
-        (&pendulums(&[2.0, 300.0]), at(&[1.0, 0.4], &[0.3, 0.0]), 0.5),
+        (&pendulums(&[2.0, 30.0]), at(&[1.0, 0.4], &[0.3, 0.0]), 0.2),
     ] {
-        let error = |tolerance: f64| {
-            let found = run(
-                mechanism,
-                &initial,
-                &options(Form::Hamiltonian, to(tolerance), t_end),
-            );
-            let exact = Method::controlled(Scheme::Verner9, 1e-15);
-            let exact = run(
-                mechanism,
-                &initial,
-                &options(Form::Lagrangian, exact, t_end),
-            );
-            println!("{tolerance:e}: {:?}", found.statistics);
-            distance(&found.state, &exact.state)
-        };
-        let errors = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8].map(|tolerance| (tolerance, error(tolerance)));
+        let exact = Method::controlled(Scheme::Verner9, 1e-15);
+        let exact = run(
+            mechanism,
+            &initial,
+            &options(Form::Lagrangian, exact, t_end),
+        )
+        .state;
+        let errors = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8].map(|tolerance| {
+            let options = options(Form::Hamiltonian, to(tolerance), t_end);
+            let found = run(mechanism, &initial, &options).state;
+            (tolerance, distance(&found, &exact))
+        });
         println!("{errors:?}");
         let slope = (errors[0].1 / errors[4].1).log10() / 4.0;
         assert!((0.8..=1.2).contains(&slope), "{slope}: {errors:?}");
@@ -142,7 +137,7 @@ fn steps_grow_again_after_a_fast_phase() {
         last = step.time;
         ControlFlow::Continue(())
     };
-    let options = options(Form::Hamiltonian, to(1e-6), 4.4);
+    let options = options(Form::Hamiltonian, to(1e-5), 4.4);
     let mut dynamics = Recursive::new(Arc::clone(&mechanism));
     let solution = integrate(
         &mut dynamics,
