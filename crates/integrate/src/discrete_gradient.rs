@@ -10,7 +10,7 @@
 //! that rounding does not add up.
 //!
 //! None of this asks for steps of one length. λ is of the third power of the step, as the error of the midpoint rule is, and step control judges both together
-//! (`collocation::quadrature`). Rounding of the energies over p̄ᵀv̄ is in λ at any length of step; it is no error that shorter steps would make smaller, so that the
+//! (`collocation::quadrature`). Rounding of the energies over p̄ᵀv̄ is in λ at any length of step; shorter steps would not make it smaller, so that the
 //! estimate leaves it out ([`Correction::forget_scatter`]).
 
 use super::StepFailure;
@@ -31,9 +31,6 @@ use nalgebra::Vector6;
 /// always held against that of the beginning; to go after it would shake λ, by as much more as p̄ changes little.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// As much is left at the end of a step, and as much may be of the step before.
-const BOTH_ENDS: f64 = 2.0;
-
 /// Changes of increments, as parts of the increments, from which on λ is adjusted: the energy of a stiff spring in increments further off would throw
 /// λ about.
 const NEAR: f64 = 1e-3;
@@ -44,7 +41,10 @@ pub(super) struct Correction {
     lambda: f64,
     /// That of the last step taken.
     last: f64,
-    /// What rounding of the energies may make of it.
+    /// What the energy at the end of the step being tried is off from what it shall be, and what that of the last step taken was, J.
+    rest: f64,
+    last_rest: f64,
+    /// What rounding of the energies and the rest of the step before make of λ at most.
     scatter: f64,
     /// Whether the next increments were computed with λ, and have converged enough for their energy to mean something.
     is_in_force: bool,
@@ -54,6 +54,8 @@ pub(super) struct Correction {
     energy: f64,
     /// What it is too coarse to hold.
     compensation: f64,
+    /// The most that energies have come to, J: what dampers leave of them is known to no more digits than what they took.
+    largest: f64,
     /// Work of the step being tried, J.
     work: f64,
     /// Kinetic energy half-way, J.
@@ -93,11 +95,14 @@ impl Correction {
             dynamics: Recursive::new(Arc::clone(mechanism)),
             lambda: 0.0,
             last: 0.0,
+            rest: 0.0,
+            last_rest: 0.0,
             scatter: 0.0,
             is_in_force: false,
             is_settled: false,
             energy: f64::NAN,
             compensation: 0.0,
+            largest: 0.0,
             work: 0.0,
             kinetic: 0.0,
             change: speeds.clone(),
@@ -144,7 +149,7 @@ impl Correction {
         self.is_settled
     }
 
-    /// Takes what rounding of the energies makes of λ out of `difference` (ϕ, then p̄) of a point and the end of the step over `step` (s) that was just tried. In
+    /// Takes what rounding of the energies makes of λ, in this step or in the one before, out of `difference` (ϕ, then p̄) of a point and the end of the step over `step` (s) that was just tried. In
     /// a shorter step it is no smaller; near rest, where the energy hardly changes with p̄, it is large.
     pub(super) fn forget_scatter(&self, step: f64, difference: &mut [f64]) {
         let (turned, pushed) = difference.split_at_mut(self.phi.len());
@@ -154,7 +159,8 @@ impl Correction {
 
     /// The step just tried is taken.
     pub(super) fn accept(&mut self) {
-        self.last = self.lambda;
+        (self.last, self.last_rest) = (self.lambda, self.rest);
+        self.largest = self.largest.max(self.energy.abs() + self.kinetic);
         (self.energy, self.compensation) = add_exactly(self.energy, self.work + self.compensation);
     }
 
@@ -214,8 +220,9 @@ impl Correction {
         let own = self.change.iter().zip(&self.faster);
         let carried = 2.0 * self.kinetic + own.map(|(p, v)| p * v).sum::<f64>();
         let error = (found - self.energy) - (self.work + self.compensation);
-        let rounding = ROUNDING * (found.abs() + self.kinetic);
-        self.scatter = BOTH_ENDS * rounding / carried.abs();
+        let rounding = ROUNDING * self.largest.max(found.abs() + self.kinetic);
+        self.rest = error;
+        self.scatter = (rounding + self.last_rest.abs()) / carried.abs();
         self.is_settled = error.abs() <= rounding || carried.abs() <= rounding;
         if !self.is_settled {
             self.lambda += error / carried;

@@ -2,6 +2,7 @@
 
 use crate::common::joints;
 use crate::common::trees::body;
+use crate::stiff::wheel;
 use crate::support::{distance, mixed, options, start};
 use hamel_integrate::{
     Event, Form, GlobalError, Integration, Method, Options, Sampling, Scheme, Solution, State,
@@ -71,13 +72,13 @@ fn at(configuration: &[f64], speeds: &[f64]) -> State {
     }
 }
 
-/// The slope of the logarithm of the error over that of the tolerance is 1 from 1e-4 to 1e-8, and the error is of the size of the tolerance.
+/// The slope of the logarithm of the error over that of the tolerance is 1 from 1e-4 to 1e-7, and the error is of the size of the tolerance.
 #[test]
 fn errors_follow_the_tolerance() {
     let mixed = mixed();
     for (mechanism, initial, t_end) in [
-        (&mixed, start(&mixed, 5), 0.2),
-        (&pendulums(&[2.0, 30.0]), at(&[1.0, 0.4], &[0.3, 0.0]), 0.2),
+        (&mixed, start(&mixed, 5), 0.05),
+        (&pendulums(&[2.0, 30.0]), at(&[1.0, 0.4], &[0.3, 0.0]), 0.1),
     ] {
         let exact = Method::controlled(Scheme::Verner9, 1e-15);
         let exact = run(
@@ -86,13 +87,13 @@ fn errors_follow_the_tolerance() {
             &options(Form::Lagrangian, exact, t_end),
         )
         .state;
-        let errors = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8].map(|tolerance| {
+        let errors = [1e-4, 1e-5, 1e-6, 1e-7].map(|tolerance| {
             let options = options(Form::Hamiltonian, to(tolerance), t_end);
             let found = run(mechanism, &initial, &options).state;
             (tolerance, distance(&found, &exact))
         });
         println!("{errors:?}");
-        let slope = (errors[0].1 / errors[4].1).log10() / 4.0;
+        let slope = (errors[0].1 / errors[3].1).log10() / 3.0;
         assert!((0.8..=1.2).contains(&slope), "{slope}: {errors:?}");
         for (tolerance, error) in errors {
             assert!(error < 10.0 * tolerance, "{errors:?}");
@@ -100,12 +101,12 @@ fn errors_follow_the_tolerance() {
     }
 }
 
-/// Motions whose steps change by more than tenfold keep their energy as those of fixed steps do.
+/// Stiff and soft springs side by side, under step control, keep their energy as with fixed steps.
 #[test]
 fn steps_of_any_length_keep_the_energy() {
     for (stiffnesses, initial, t_end) in [
         // 1 rad/s and 400 rad/s.
-        (&[2.0, 3e4][..], at(&[1.0, 0.31], &[0.3, 0.0]), 0.5),
+        (&[2.0, 3e4][..], at(&[1.0, 0.31], &[0.3, 0.0]), 0.2),
         // A stiff joint below two soft ones.
         (
             &[0.0, 5.0, 1e6],
@@ -114,7 +115,7 @@ fn steps_of_any_length_keep_the_energy() {
         ),
     ] {
         let mechanism = pendulums(stiffnesses);
-        for tolerance in [1e-3, 1e-5] {
+        for tolerance in [1e-2, 1e-3] {
             let kept = crate::energy::drift_by(&mechanism, &initial, to(tolerance), t_end);
             println!("{stiffnesses:?}, {tolerance:e}: {kept:e}");
             // As for fixed steps: what comes to 16 roundings of energies of up to ten times the kinetic one.
@@ -123,14 +124,22 @@ fn steps_of_any_length_keep_the_energy() {
     }
 }
 
-/// A pendulum that falls from nearly upright creeps, swings through, and creeps again.
+/// A pendulum that falls from nearly upright creeps, swings through, and creeps again; its energy stays where it was.
 #[test]
 fn steps_grow_again_after_a_fast_phase() {
     let mechanism = pendulums(&[0.0]);
     let initial = at(&[PI - 1e-3], &[0.0]);
     let mut steps: Vec<(f64, f64)> = Vec::new();
-    let mut last = 0.0;
+    let energy = |step: &Step<'_>| {
+        let placed = mechanism.kinematics(step.configuration, step.speeds);
+        placed.expect("sizes fit").energy()
+    };
+    let (mut last, mut first, mut worst) = (0.0, f64::NAN, 0.0_f64);
     let mut observe = |step: &Step<'_>| {
+        if step.number == 0 {
+            first = energy(step);
+        }
+        worst = worst.max((energy(step) - first).abs());
         if step.number > 0 {
             steps.push((step.time - last, step.configuration[0]));
         }
@@ -160,6 +169,8 @@ fn steps_grow_again_after_a_fast_phase() {
         "{before:e}, {fast:e}, {after:e}"
     );
     assert!(statistics.rejected < 10, "{statistics:?}");
+    // The method leaves 16 roundings of 5 J and of the kinetic energy, 10 J; a few roundings of these are those of the energies here.
+    assert!(worst < 7e-14, "{worst:e}");
 }
 
 fn moved(mechanism: &Arc<Mechanism>, initial: &State, options: &Options) -> Solution {
@@ -225,5 +236,23 @@ fn the_error_is_estimated() {
         assert_eq!(told.doubt, None);
         let ratio = told.end.total() / error;
         assert!((1.0 / 3.0..=3.0).contains(&ratio), "{tolerance:e}: {ratio}");
+    }
+}
+
+/// A stiff damper takes nearly all of the energy away, so that rounding of what it took is much beside what is left.
+#[test]
+fn what_damps_away_is_followed_to_its_end() {
+    let mechanism = wheel(1e8, 2e4);
+    let initial = at(&[0.5], &[0.0]);
+    for tolerance in [1e-4, 1e-6] {
+        let found = run(
+            &mechanism,
+            &initial,
+            &options(Form::Hamiltonian, to(tolerance), 0.1),
+        );
+        println!("{:?}, {:?}", found.state, found.statistics);
+        // Critically damped at 1e4 rad/s: nothing is left of it.
+        assert!(found.state.configuration[0].abs() < tolerance);
+        assert!(found.state.speeds[0].abs() < tolerance);
     }
 }

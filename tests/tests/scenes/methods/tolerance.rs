@@ -129,10 +129,10 @@ fn errors_of_other_methods_follow_the_tolerance() {
     assert!(told.is_empty(), "{told:#?}");
 }
 
-/// Of order 2, it takes ten times as many steps two decades further: these two motions are short.
+/// Of order 2, it takes ten times as many steps two decades further: this motion is short.
 #[test]
 fn errors_of_the_discrete_gradient_follow_the_tolerance() {
-    let told = complaints(Scheme::DiscreteGradient, &["chaplygin_sleigh", "sleigh"]);
+    let told = complaints(Scheme::DiscreteGradient, &["chaplygin_sleigh"]);
     assert!(told.is_empty(), "{told:#?}");
 }
 
@@ -174,43 +174,4 @@ fn a_method_follows_the_tolerance_on_every_scene() {
     };
     let told: Vec<Vec<String>> = cases().iter().filter_map(told).collect();
     assert!(told.is_empty(), "{told:#?}");
-}
-
-#[test]
-#[ignore = "temporary"]
-fn explore() {
-    let only = std::env::var("ONLY").unwrap_or_default();
-    for name in cases() {
-        if !only.is_empty() && !only.split(',').any(|o| o == name) {
-            continue;
-        }
-        let (scene, reference) = (scene(&name), reference(&name));
-        let growth = growth(&reference);
-        for digits in 4..=8 {
-            let tolerance = 10.0_f64.powi(-digits);
-            let method = Method::controlled(Scheme::DiscreteGradient, tolerance);
-            let clock = std::time::Instant::now();
-            let run = run(&scene, &reference, Form::Hamiltonian, method);
-            let took = clock.elapsed().as_secs_f64();
-            match run {
-                Ok(Some(run)) => println!(
-                    "{name} {tolerance:e}: error {:.2e}, over growth*tol {:.3}, {} steps {} rejected {} eval {} iter, {took:.2} s",
-                    run.error,
-                    run.error / growth / tolerance,
-                    run.statistics.steps,
-                    run.statistics.rejected,
-                    run.statistics.evaluations,
-                    run.statistics.iterations
-                ),
-                Ok(None) => {
-                    println!("{name} {tolerance:e}: too many, {took:.2} s");
-                    break;
-                }
-                Err(e) => {
-                    println!("{name} {tolerance:e}: {e}");
-                    break;
-                }
-            }
-        }
-    }
 }
