@@ -8,6 +8,10 @@
 //!
 //! λ is chosen such that the energy at the end is what it shall be. The energy error has the derivative `−p̄ᵀv̄ − Δp̄ᵀM̄⁻¹Δp̄` by λ, which is zero only at rest: at top speed Δp̄ is small, at turning points p̄ is. The energy is held against that at the beginning of all steps and the work done since, so
 //! that rounding does not add up.
+//!
+//! None of this asks for steps of one length. λ is of the third power of the step, as the error of the midpoint rule is, and step control judges both together
+//! (`collocation::quadrature`). Rounding of the energies over p̄ᵀv̄ is in λ at any length of step; shorter steps would not make it smaller, so that the
+//! estimate leaves it out ([`Correction::forget_scatter`]).
 
 use super::StepFailure;
 use super::compensation::add_exactly;
@@ -35,6 +39,13 @@ const NEAR: f64 = 1e-3;
 pub(super) struct Correction {
     dynamics: Recursive,
     lambda: f64,
+    /// That of the last step taken.
+    last: f64,
+    /// What the energy at the end of the step being tried is off from what it shall be, and what that of the last step taken was, J.
+    rest: f64,
+    last_rest: f64,
+    /// What rounding of the energies and the rest of the step before make of λ at most.
+    scatter: f64,
     /// Whether the next increments were computed with λ, and have converged enough for their energy to mean something.
     is_in_force: bool,
     /// Whether λ needed no change when last looked at.
@@ -43,6 +54,8 @@ pub(super) struct Correction {
     energy: f64,
     /// What it is too coarse to hold.
     compensation: f64,
+    /// The most that energies have come to, J: what dampers leave of them is known to no more digits than what they took.
+    largest: f64,
     /// Work of the step being tried, J.
     work: f64,
     /// Kinetic energy half-way, J.
@@ -81,10 +94,15 @@ impl Correction {
         Self {
             dynamics: Recursive::new(Arc::clone(mechanism)),
             lambda: 0.0,
+            last: 0.0,
+            rest: 0.0,
+            last_rest: 0.0,
+            scatter: 0.0,
             is_in_force: false,
             is_settled: false,
             energy: f64::NAN,
             compensation: 0.0,
+            largest: 0.0,
             work: 0.0,
             kinetic: 0.0,
             change: speeds.clone(),
@@ -115,6 +133,8 @@ impl Correction {
         if self.energy.is_nan() {
             self.energy = flow.energy(&step_state.configuration, &step_state.y)?;
         }
+        // What an iteration that failed has made of it is no beginning for another one.
+        self.lambda = self.last;
         (self.is_in_force, self.is_settled) = (false, false);
         Ok(())
     }
@@ -129,8 +149,18 @@ impl Correction {
         self.is_settled
     }
 
+    /// Takes what rounding of the energies makes of λ, in this step or in the one before, out of `difference` (ϕ, then p̄) of a point and the end of the step over `step` (s) that was just tried. In
+    /// a shorter step it is no smaller; near rest, where the energy hardly changes with p̄, it is large.
+    pub(super) fn forget_scatter(&self, step: f64, difference: &mut [f64]) {
+        let (turned, pushed) = difference.split_at_mut(self.phi.len());
+        let part = self.lambda.clamp(-self.scatter, self.scatter);
+        self.moved.add_to(step * part, turned, pushed);
+    }
+
     /// The step just tried is taken.
     pub(super) fn accept(&mut self) {
+        (self.last, self.last_rest) = (self.lambda, self.rest);
+        self.largest = self.largest.max(self.energy.abs() + self.kinetic);
         (self.energy, self.compensation) = add_exactly(self.energy, self.work + self.compensation);
     }
 
@@ -190,7 +220,9 @@ impl Correction {
         let own = self.change.iter().zip(&self.faster);
         let carried = 2.0 * self.kinetic + own.map(|(p, v)| p * v).sum::<f64>();
         let error = (found - self.energy) - (self.work + self.compensation);
-        let rounding = ROUNDING * (found.abs() + self.kinetic);
+        let rounding = ROUNDING * self.largest.max(found.abs() + self.kinetic);
+        self.rest = error;
+        self.scatter = (rounding + self.last_rest.abs()) / carried.abs();
         self.is_settled = error.abs() <= rounding || carried.abs() <= rounding;
         if !self.is_settled {
             self.lambda += error / carried;

@@ -373,6 +373,7 @@ impl<'a> Driver<'a> {
             pacing.step = step * pacing.controller.reject(None);
             return Err(cause);
         }
+        let tolerance = stepper.allowed(tolerance);
         if let Some(weight) = stepper.estimate_weight()
             && pacing.rounding.is_due()
         {

@@ -42,7 +42,7 @@ pub enum Scheme {
     /// An exponential Rosenbrock method of order 4(3): solves the linearised equations exactly, undamped stiff springs among them. Inputs that follow
     /// the state are no part of them, so that the order is 2 there; dense output and events do not see what oscillates faster than its steps.
     Exponential,
-    /// A discrete-gradient method of order 2 on the port-Hamiltonian form: keeps the energy balance to rounding.
+    /// A discrete-gradient method of order 2 on the port-Hamiltonian form: keeps the energy balance to rounding, at steps of one length and under step control.
     DiscreteGradient,
 }
 
@@ -107,7 +107,7 @@ impl Scheme {
                 "exponential Rosenbrock 4(3), step control: takes stiff springs exactly, undamped ones too"
             }
             Self::DiscreteGradient => {
-                "discrete gradient, order 2, fixed step, hamiltonian form alone: keeps the energy balance to rounding"
+                "discrete gradient, order 2, fixed step or step control, hamiltonian form alone: keeps the energy balance to rounding"
             }
         }
     }
@@ -151,7 +151,7 @@ impl Scheme {
     /// Whether it estimates its own error, so that it can control its step.
     pub fn has_estimate(&self) -> bool {
         match self {
-            Self::Radau5 | Self::Exponential => true,
+            Self::Radau5 | Self::Exponential | Self::DiscreteGradient => true,
             _ => self
                 .tableau()
                 .is_some_and(|tableau| tableau.estimate != Estimate::None),

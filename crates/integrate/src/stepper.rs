@@ -27,13 +27,18 @@ pub(super) trait Stepper {
         span: Span,
     ) -> Result<(), StepFailure>;
 
-    /// Error of the step just tried over the tolerance, and the joint that has it.
+    /// What the estimated error of a step may come to so that the error of the motion is in proportion to `tolerance`.
+    fn allowed(&self, tolerance: f64) -> f64 {
+        tolerance
+    }
+
+    /// Estimated error of the step just tried over what is `allowed`, and the joint that has it.
     fn error(
         &mut self,
         step_state: &mut StepState,
         flow: &mut Flow<'_>,
         span: Span,
-        tolerance: f64,
+        allowed: f64,
     ) -> Result<(f64, usize), StepFailure>;
 
     /// Makes the end of the step just tried the state, at `time`, which is the end of `span` but for rounding.

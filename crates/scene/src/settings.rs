@@ -49,9 +49,9 @@ impl Settings {
     pub const DEFAULT_T_END: f64 = 1.0;
     /// Time between two samples where a scene gives none, s.
     pub const DEFAULT_SAMPLE_STEP: f64 = 0.01;
-    /// Step of methods without step control where a scene gives none, s.
+    /// Step of methods without step control, and of those of order 2, where a scene gives neither a step nor a tolerance, s.
     pub const DEFAULT_DT: f64 = 1e-3;
-    /// Tolerance of methods with step control where a scene gives none.
+    /// Tolerance of other methods where a scene gives neither. With one of order 2 it would take some hundred thousand steps a second.
     pub const DEFAULT_TOL: f64 = 1e-10;
 
     /// The method that `scheme`, a step and a tolerance ask for; a step alone asks for `rk4`. Where nothing but a tolerance is given at most, the choice is
@@ -65,7 +65,9 @@ impl Settings {
         match (dt, tol) {
             (Some(dt), _) => Some(Method::fixed(scheme, dt)),
             (None, Some(_)) if !scheme.has_estimate() => None,
-            (None, None) if !scheme.has_estimate() => Some(Method::fixed(scheme, Self::DEFAULT_DT)),
+            (None, None) if !scheme.has_estimate() || scheme.order() == 2 => {
+                Some(Method::fixed(scheme, Self::DEFAULT_DT))
+            }
             (None, tol) => {
                 let tol = tol.unwrap_or(Self::DEFAULT_TOL);
                 Some(Method::controlled(scheme, tol))

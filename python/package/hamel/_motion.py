@@ -200,7 +200,7 @@ def simulate(
         start: a ``State`` or a pair ``(q, v)`` at time 0, instead of the initial state of the file.
         method: name of a method, such as ``dop853`` or ``radau5``; ``auto`` chooses.
         tolerance: error allowed a step, for methods with step control.
-        dt: step, s, for methods without; alone it asks for ``rk4``. Not with ``tolerance``.
+        dt: step, s, for methods without; alone it asks for ``rk4``. Not with ``tolerance``. ``discrete_gradient`` takes either, and steps of 1e-3 s without both.
         accuracy: largest error that the last state shall have; the tolerance is searched for. Not with ``tolerance``, ``dt`` or a method of fixed steps.
         form: ``lagrangian`` or ``hamiltonian``.
         arithmetic: ``doubles``; ``refined``, accelerations by iterative refinement, for light bodies that carry heavy ones; ``auto``, refined where a motion in doubles

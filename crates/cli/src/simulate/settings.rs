@@ -69,8 +69,14 @@ fn method(settings: &Settings, args: &Args) -> Result<(Method, bool), Failure> {
         (None, Some(_), _) => Scheme::Rk4,
         (None, None, Some(tol)) => return Ok((Method::dormand_prince(tol), true)),
     };
+    let alone = Settings::method_of(Some(scheme), None, None);
+    let is_controlled = matches!(alone, Some(Method::Controlled { .. }))
+        || own_tol.is_some() && own == scheme && !settings.chooses
+        || args.accuracy.or(settings.accuracy).is_some();
     let (dt, tol) = match (dt, tol) {
-        (None, None) if scheme.has_estimate() => (None, own_tol),
+        (None, None) if is_controlled && scheme.has_estimate() => {
+            (None, own_tol.or(Some(Settings::DEFAULT_TOL)))
+        }
         (None, None) => (own_dt, None),
         given => given,
     };
@@ -171,6 +177,8 @@ mod tests {
         let (rk4, dopri5) = (Method::rk4(0.5), Method::dormand_prince(1e-5));
         let dop853 = Method::controlled(Scheme::DormandPrince8, 1e-12);
         let gauss = Method::fixed(Scheme::Gauss2, 0.5);
+        let gradient = Method::fixed(Scheme::DiscreteGradient, 0.5);
+        let gradient_to = |tol| Method::controlled(Scheme::DiscreteGradient, tol);
         let default_dt = Settings::DEFAULT_DT;
         for (scene, options, wanted) in [
             (rk4, "", rk4),
@@ -206,6 +214,27 @@ mod tests {
                 rk4,
                 "--method radau5 --tol 1e-7",
                 Method::controlled(Scheme::Radau5, 1e-7),
+            ),
+            (
+                dopri5,
+                "--method discrete_gradient",
+                Method::fixed(Scheme::DiscreteGradient, default_dt),
+            ),
+            (gradient, "--tol 1e-4", gradient_to(1e-4)),
+            (
+                gradient_to(1e-6),
+                "--method discrete_gradient",
+                gradient_to(1e-6),
+            ),
+            (
+                gradient,
+                "--accuracy 1e-3",
+                Method::dormand_prince(Settings::DEFAULT_TOL),
+            ),
+            (
+                gradient,
+                "--method discrete_gradient --accuracy 1e-3",
+                gradient_to(Settings::DEFAULT_TOL),
             ),
             (
                 rk4,

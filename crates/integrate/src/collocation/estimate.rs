@@ -4,11 +4,35 @@ use super::Collocation;
 use crate::StepFailure;
 use crate::flow::Flow;
 use crate::step_state::{StepState, add};
+use crate::stepper::Span;
 use num_traits::Float;
 
 impl Collocation {
+    /// The estimate of the step just tried, and a second one where the first is too large.
+    pub(super) fn estimate_twice(
+        &mut self,
+        step_state: &mut StepState,
+        flow: &mut Flow<'_>,
+        Span { time, step }: Span,
+        allowed: f64,
+    ) -> Result<(f64, usize), StepFailure> {
+        self.probe.copy_from(&step_state.rates);
+        self.estimate(step_state, step, allowed);
+        let found = self.judge(step_state, flow)?;
+        if found.0 <= 1.0 {
+            return Ok(found);
+        }
+        // Where the first estimate is of what is stiff alone, the second is not.
+        let (phi, y) = self.estimate.split_at_mut(self.freedoms);
+        add(phi, 1.0, &step_state.offset);
+        add(y, 1.0, &step_state.y);
+        flow.evaluate(time, &step_state.base, phi, y, self.probe.parts())?;
+        self.estimate(step_state, step, allowed);
+        self.judge(step_state, flow)
+    }
+
     /// `h f + Σ e_i Z_i` with the f of the probe, filtered, into the errors of `step_state`.
-    pub(super) fn estimate(&mut self, step_state: &mut StepState, step: f64, tolerance: f64) {
+    fn estimate(&mut self, step_state: &mut StepState, step: f64, allowed: f64) {
         let (Some(newton), Some(weights)) = (&mut self.newton, self.method.estimate) else {
             return;
         };
@@ -20,7 +44,7 @@ impl Collocation {
             add(estimate, *weight, increment);
         }
         newton.filter(estimate);
-        step_state.set_errors(1.0 / tolerance, estimate);
+        step_state.set_errors(1.0 / allowed, estimate);
     }
 
     pub(super) fn judge(
@@ -37,6 +61,6 @@ impl Collocation {
 /// step falls with its fifth root.
 ///
 /// RADAU5 has `0.1 ε^(2/3)`, by which the error falls with ε^(5/6) alone. The factor leaves loose tolerances, 1e-4, the steps that they have there.
-pub(super) fn of_estimate(tolerance: f64) -> f64 {
+pub(super) fn allowed(tolerance: f64) -> f64 {
     0.3 * Float::powf(tolerance, 0.8)
 }

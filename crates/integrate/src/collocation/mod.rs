@@ -1,6 +1,6 @@
 //! One step of an implicit method by collocation, in (ϕ, y).
 //!
-//! The increments Z of all stages over the state solve `Z = h A F(Z)`. Methods without step control are iterated until rounding stops them
+//! The increments Z of all stages over the state solve `Z = h A F(Z)`. Methods without step control, and the one that keeps the energy, are iterated until rounding stops them
 //! (E. Hairer, R. I. McLachlan and A. Razakarivony, *Achieving Brouwer's law with implicit Runge–Kutta methods*, 2008): by fixed points while
 //! these converge fast, and by Newton's method from then on. The first guess continues the polynomial of the step before.
 
@@ -10,6 +10,7 @@ mod estimate;
 mod iteration;
 mod modes;
 mod newton;
+mod quadrature;
 mod tree;
 
 pub(super) use coefficients::{Coefficients, GAUSS_2, GAUSS_3, MIDPOINT, RADAU_5};
@@ -17,11 +18,10 @@ pub(super) use coefficients::{Coefficients, GAUSS_2, GAUSS_3, MIDPOINT, RADAU_5}
 use super::StepFailure;
 use super::discrete_gradient::Correction;
 use super::flow::{Flow, Rates};
-use super::step_state::{StepState, add};
+use super::step_state::StepState;
 use super::stepper::{Solves, Span, StagePolynomial, Stepper};
 use alloc::vec;
 use alloc::vec::Vec;
-use estimate::of_estimate;
 use newton::Newton;
 
 /// The contraction from which on Newton's method takes less work than fixed points, and J has become too old.
@@ -33,7 +33,7 @@ const SLOW_CONTROLLED: f64 = 1e-3;
 /// A collocation method at work.
 pub(super) struct Collocation {
     method: &'static Coefficients,
-    /// What step control allows of a step; `None` to iterate to rounding.
+    /// The tolerance, where as much of a step may be left unsolved as it allows; `None` to iterate to rounding.
     tolerance: Option<f64>,
     freedoms: usize,
     /// Z_i: ϕ, then y.
@@ -166,27 +166,28 @@ impl Stepper for Collocation {
         }
     }
 
+    fn allowed(&self, tolerance: f64) -> f64 {
+        match &self.correction {
+            Some(_) => quadrature::allowed(tolerance),
+            None => estimate::allowed(tolerance),
+        }
+    }
+
+    fn estimate_weight(&self) -> Option<f64> {
+        self.correction.as_ref().map(|_| quadrature::WEIGHT)
+    }
+
     fn error(
         &mut self,
         step_state: &mut StepState,
         flow: &mut Flow<'_>,
         span: Span,
-        tolerance: f64,
+        allowed: f64,
     ) -> Result<(f64, usize), StepFailure> {
-        let tolerance = of_estimate(tolerance);
-        self.probe.copy_from(&step_state.rates);
-        self.estimate(step_state, span.step, tolerance);
-        let found = self.judge(step_state, flow)?;
-        if found.0 <= 1.0 {
-            return Ok(found);
+        match &self.correction {
+            Some(_) => self.compare_with_quadrature(step_state, flow, span, allowed),
+            None => self.estimate_twice(step_state, flow, span, allowed),
         }
-        // Where the first estimate is of what is stiff alone, the second is not.
-        let (phi, y) = self.estimate.split_at_mut(self.freedoms);
-        add(phi, 1.0, &step_state.offset);
-        add(y, 1.0, &step_state.y);
-        flow.evaluate(span.time, &step_state.base, phi, y, self.probe.parts())?;
-        self.estimate(step_state, span.step, tolerance);
-        self.judge(step_state, flow)
     }
 
     fn accept(
@@ -215,11 +216,11 @@ impl Stepper for Collocation {
     }
 
     fn order(&self) -> u32 {
-        // The estimate of Radau IIA is of order 3.
-        if self.method.estimate.is_some() {
-            4
-        } else {
-            self.method.order
+        match self.method.estimate {
+            // The estimate of Radau IIA is of order 3.
+            Some(_) => 4,
+            // The error of a step itself.
+            None => self.method.order + 1,
         }
     }
 

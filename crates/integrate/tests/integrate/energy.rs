@@ -11,16 +11,21 @@ use std::sync::Arc;
 
 /// The largest change of the energy over a run, as a part of the largest kinetic energy.
 fn drift(mechanism: &Arc<Mechanism>, initial: &State, scheme: Scheme, dt: f64, t_end: f64) -> f64 {
+    let method = Method::fixed(scheme, dt);
+    drift_by(mechanism, initial, method, t_end)
+}
+
+/// [`drift`] by any method.
+pub fn drift_by(mechanism: &Arc<Mechanism>, initial: &State, method: Method, t_end: f64) -> f64 {
     let torque = vec![0.0; mechanism.layout().freedoms];
-    drift_under(mechanism, initial, scheme, (dt, t_end), &torque)
+    drift_under(mechanism, initial, (method, t_end), &torque)
 }
 
 /// [`drift`] under constant torques about the axes of joints that count turns, with their potential `−τ · q`.
 fn drift_under(
     mechanism: &Arc<Mechanism>,
     initial: &State,
-    scheme: Scheme,
-    (dt, t_end): (f64, f64),
+    (method, t_end): (Method, f64),
     torque: &[f64],
 ) -> f64 {
     let work = |q: &[f64]| -> f64 {
@@ -45,7 +50,7 @@ fn drift_under(
         ControlFlow::Continue(())
     };
     let mut dynamics = Recursive::new(Arc::clone(mechanism));
-    let options = options(Form::Hamiltonian, Method::fixed(scheme, dt), t_end);
+    let options = options(Form::Hamiltonian, method, t_end);
     let mut held = |_: f64, _: &[f64], _: &[f64], tau: &mut [f64]| tau.copy_from_slice(torque);
     integrate(&mut dynamics, initial, &options, &mut held, &mut observe).expect("integrates");
     worst / kinetic
@@ -111,14 +116,9 @@ fn the_balance_with_constant_torques_holds() {
             configuration: vec![0.4],
             speeds: vec![-0.2],
         };
-        let span = (dt, 5_000.0 * dt);
-        let kept = drift_under(
-            &mechanism,
-            &initial,
-            Scheme::DiscreteGradient,
-            span,
-            &[torque],
-        );
+        let method = Method::fixed(Scheme::DiscreteGradient, dt);
+        let by = (method, 5_000.0 * dt);
+        let kept = drift_under(&mechanism, &initial, by, &[torque]);
         println!("{dt}, {torque} N m: {kept:e}");
         // Each of 5000 steps ends where its increments change by less than 4 roundings, which is work of up to 4 N m over kinetic energies of some 1 J.
         assert!(kept < 2e-11, "{dt}: {kept:e}");

@@ -3,6 +3,7 @@
 #[path = "../../../../runtime/tests/common/mod.rs"]
 mod common;
 
+mod adaptive;
 mod choice;
 mod coupled;
 mod dense;

@@ -14,7 +14,7 @@ use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
 /// A wheel of 1 kg m² on an axis through its centre, on a spring and a damper.
-fn wheel(stiffness: f64, damping: f64) -> Arc<Mechanism> {
+pub fn wheel(stiffness: f64, damping: f64) -> Arc<Mechanism> {
     let body = on_axis(Vector3::zeros(), Matrix3::identity());
     let mechanism = Mechanism::new(Vector3::zeros(), vec![body]).expect("one body");
     let elements: Vec<Arc<dyn Element>> = vec![

@@ -58,15 +58,12 @@ fn method(table: &mut Fields<'_>, sink: &mut Sink) -> Option<(Method, bool)> {
     table.at_most_one(&["dt", "tol", "accuracy"], sink);
     let is_open = name.is_none() && dt.is_none();
     let chooses = is_open || name == Some(Settings::AUTO);
-    let (key, other) = match Settings::method_of(scheme, dt, tol) {
+    let accuracy = table.optional("accuracy").map(|_| Settings::DEFAULT_TOL);
+    let (key, other) = match Settings::method_of(scheme, dt, tol.or(accuracy)) {
         Some(_) if chooses && dt.is_some() => ("dt", "tol"),
-        Some(method @ Method::Controlled { .. }) => return Some((method, chooses)),
-        // An accuracy beside a step is refused above.
-        Some(method) if dt.is_some() || table.optional("accuracy").is_none() => {
-            return Some((method, chooses));
-        }
-        Some(_) => ("accuracy", "dt"),
-        None => ("tol", "dt"),
+        Some(method) => return Some((method, chooses)),
+        None if tol.is_some() => ("tol", "dt"),
+        None => ("accuracy", "dt"),
     };
     let value = table.optional(key)?;
     let (path, name) = (value.path(), name.unwrap_or_default());
