@@ -8,9 +8,14 @@ use num_traits::Float;
 
 impl Collocation {
     /// `h f + Σ e_i Z_i` with the f of the probe, filtered, into the errors of `step_state`.
-    pub(super) fn estimate(&mut self, step_state: &mut StepState, step: f64, tolerance: f64) {
+    pub(super) fn estimate(
+        &mut self,
+        step_state: &mut StepState,
+        flow: &mut Flow<'_>,
+        (step, tolerance): (f64, f64),
+    ) -> Result<(), StepFailure> {
         let (Some(newton), Some(weights)) = (&mut self.newton, self.method.estimate) else {
-            return;
+            return Ok(());
         };
         let estimate = &mut self.estimate;
         estimate.fill(0.0);
@@ -19,8 +24,12 @@ impl Collocation {
         for (weight, increment) in weights.iter().zip(&self.increments) {
             add(estimate, *weight, increment);
         }
+        if let Some(forces) = self.forces.as_mut().filter(|forces| forces.matter()) {
+            forces.transfer(flow, (&self.here, newton.place()), &mut estimate[self.freedoms..])?;
+        }
         newton.filter(estimate);
         step_state.set_errors(1.0 / tolerance, estimate);
+        Ok(())
     }
 
     pub(super) fn judge(

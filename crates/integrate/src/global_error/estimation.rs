@@ -280,7 +280,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
         }
         let length = self.solution.state.time - self.initial.time;
         let step = length / self.solution.statistics.steps.max(1) as f64;
-        Float::sqrt(step) * accelerations::rounding(self.dynamics, times)
+        Float::sqrt(step) * accelerations::rounding(self.dynamics, self.initial.time, times)
     }
 
     /// What one rounding of the state amounts to: half an ulp, and of momenta what these do to speeds.
