@@ -16,7 +16,7 @@ pub(super) fn has_ends(joint: &dyn AnyJoint) -> bool {
     !joint.relations().is_empty() && !joint.singularities().is_empty()
 }
 
-/// By what the coordinates of such a joint scatter as relations determine them, as ϕ of one degree of freedom: a rounding of 1 rad, or of the longest of the lengths in Q.
+/// By what the coordinates of a joint scatter that are more than its degrees of freedom, as ϕ of one of these: a rounding of 1 rad, or of the longest of the lengths in Q.
 pub(super) fn rounding_of(body: &Body, freedom: usize, configuration: &[f64]) -> f64 {
     let units = body.joint().units();
     let unit = units.freedom(freedom);

@@ -6,7 +6,7 @@
 
 use super::StepFailure;
 use super::flow::{Flow, Rates};
-use super::rates_of_loops::{has_ends, rounding_of};
+use super::rates_of_loops::rounding_of;
 use super::step_state::StepState;
 use alloc::string::String;
 use alloc::vec;
@@ -150,7 +150,8 @@ impl Rounding {
 }
 
 impl Room {
-    /// Differences of the rates at the state, and at one that differs from it by a rounding in each of its numbers, in Q too where relations determine it: ϕ̇, then ẏ.
+    /// Differences of the rates at the state, and at one that differs from it by a rounding in each of its numbers: ϕ̇, then ẏ. Of Q as well, where it
+    /// is more numbers than ϕ: a rotation is rounded by as much where ϕ is small or 0, as at a base point.
     fn scatter(
         &mut self,
         step_state: &StepState,
@@ -160,11 +161,11 @@ impl Room {
         beside(&step_state.offset, &mut self.phi);
         beside(&step_state.y, &mut self.y);
         let mechanism = &flow.mechanism;
-        for (_, body) in mechanism
-            .joints()
-            .filter(|(_, body)| has_ends(body.joint()))
-        {
+        for (_, body) in mechanism.joints() {
             let freedoms = body.ranges().freedoms.clone();
+            if body.ranges().configuration.len() <= freedoms.len() {
+                continue;
+            }
             for (own, phi) in self.phi[freedoms].iter_mut().enumerate() {
                 *phi += rounding_of(body, own, &step_state.configuration);
             }

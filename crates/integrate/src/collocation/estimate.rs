@@ -17,7 +17,8 @@ impl Collocation {
         allowed: f64,
     ) -> Result<(f64, usize), StepFailure> {
         self.probe.copy_from(&step_state.rates);
-        self.estimate(step_state, step, allowed);
+        self.here.clone_from(&step_state.configuration);
+        self.estimate(step_state, flow, (step, allowed))?;
         let found = self.judge(step_state, flow)?;
         if found.0 <= 1.0 {
             return Ok(found);
@@ -27,14 +28,21 @@ impl Collocation {
         add(phi, 1.0, &step_state.offset);
         add(y, 1.0, &step_state.y);
         flow.evaluate(time, &step_state.base, phi, y, self.probe.parts())?;
-        self.estimate(step_state, step, allowed);
+        self.here.clear();
+        self.here.extend_from_slice(flow.configuration());
+        self.estimate(step_state, flow, (step, allowed))?;
         self.judge(step_state, flow)
     }
 
     /// `h f + Σ e_i Z_i` with the f of the probe, filtered, into the errors of `step_state`.
-    fn estimate(&mut self, step_state: &mut StepState, step: f64, allowed: f64) {
+    fn estimate(
+        &mut self,
+        step_state: &mut StepState,
+        flow: &mut Flow<'_>,
+        (step, allowed): (f64, f64),
+    ) -> Result<(), StepFailure> {
         let (Some(newton), Some(weights)) = (&mut self.newton, self.method.estimate) else {
-            return;
+            return Ok(());
         };
         let estimate = &mut self.estimate;
         estimate.fill(0.0);
@@ -43,8 +51,16 @@ impl Collocation {
         for (weight, increment) in weights.iter().zip(&self.increments) {
             add(estimate, *weight, increment);
         }
+        if let Some(forces) = self.forces.as_mut().filter(|forces| forces.matter()) {
+            forces.transfer(
+                flow,
+                (&self.here, newton.place()),
+                &mut estimate[self.freedoms..],
+            )?;
+        }
         newton.filter(estimate);
         step_state.set_errors(1.0 / allowed, estimate);
+        Ok(())
     }
 
     pub(super) fn judge(

@@ -65,17 +65,29 @@ impl Collocation {
         if let Some(correction) = &mut self.correction {
             correction.begin(step_state, flow)?;
         }
+        if let Some(forces) = &mut self.forces {
+            forces.begin();
+        }
         self.guess(step_state, span.step);
+        let allowed = unsolved(self.tolerance.unwrap_or(0.0));
+        let pace = step_state.rates.phi.iter();
+        let pace = pace.fold(0.0, |most: f64, rate| most.max(rate.abs()));
         let (mut last, mut least, mut idle) = (f64::INFINITY, f64::INFINITY, 0);
         for _ in 0..MOST_ITERATIONS {
             self.solves.iterations += 1;
             self.evaluate(step_state, flow, span)?;
             self.take_residuals(span.step);
+            if let Some(forces) = &mut self.forces {
+                forces.note(&self.changes);
+            }
             if let Some(newton) = &mut self.newton {
                 newton.solve(&mut self.changes);
             }
             let [size, whole] =
                 [&self.changes, &self.increments].map(|all| self.largest(all, step_state));
+            if let Some(forces) = &mut self.forces {
+                forces.see(&self.changes, span.step * pace, allowed);
+            }
             if let Some(correction) = &mut self.correction {
                 correction.see(size, whole);
             }
@@ -113,10 +125,7 @@ impl Collocation {
         let left = size * contraction / (1.0 - contraction);
         match self.tolerance {
             _ if size == 0.0 => self.is_settled() || stalled,
-            Some(tolerance) => {
-                let allowed = UNSOLVED * Float::powf(tolerance, 1.2);
-                contraction < 1.0 && left <= allowed.max(10.0 * f64::EPSILON)
-            }
+            Some(tolerance) => contraction < 1.0 && left <= unsolved(tolerance),
             // The next change would be lost in rounding; or rounding has stopped them.
             None if stalled => true,
             None => match &self.correction {
@@ -160,10 +169,18 @@ impl Collocation {
         span: Span,
     ) -> Result<(), StepFailure> {
         let Span { time, step } = span;
-        let stages = self.stages.iter_mut().zip(&self.increments);
-        for ((rates, increment), node) in stages.zip(self.method.nodes) {
+        let mut forces = self.forces.as_mut().filter(|forces| forces.matter());
+        let stages = self.stages.iter_mut().zip(&self.increments).enumerate();
+        for ((i, (rates, increment)), node) in stages.zip(self.method.nodes) {
             step_state.move_by_increment(flow, increment)?;
             step_state.evaluate_there(flow, time + step * node, rates.parts())?;
+            if let (Some(forces), Some(newton)) = (&mut forces, &self.newton) {
+                self.here.clear();
+                self.here.extend_from_slice(flow.configuration());
+                let places = (&*self.here, newton.place());
+                let increments = (&*self.increments, step);
+                forces.weigh(flow, (i, &mut *rates), places, increments)?;
+            }
             if let Some(correction) = &mut self.correction {
                 correction.apply(step_state, flow, span, increment, rates)?;
             }
@@ -233,6 +250,11 @@ impl Collocation {
             contraction: self.contraction,
         }
     }
+}
+
+/// What may be left unsolved of a step's equations under step control; some roundings at least.
+fn unsolved(tolerance: f64) -> f64 {
+    (UNSOLVED * Float::powf(tolerance, 1.2)).max(10.0 * f64::EPSILON)
 }
 
 /// Increments at `node` (in steps) beyond the end of the step before, by its polynomial through 0 and all stages.

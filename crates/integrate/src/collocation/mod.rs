@@ -7,6 +7,7 @@
 mod coefficients;
 mod dense;
 mod estimate;
+mod forces;
 mod iteration;
 mod modes;
 mod newton;
@@ -22,6 +23,7 @@ use super::step_state::StepState;
 use super::stepper::{Solves, Span, StagePolynomial, Stepper};
 use alloc::vec;
 use alloc::vec::Vec;
+use forces::Forces;
 use newton::Newton;
 
 /// The contraction from which on Newton's method takes less work than fixed points, and J has become too old.
@@ -44,12 +46,14 @@ pub(super) struct Collocation {
     /// What one unit of each speed adds to y; empty before the first step.
     units: Vec<f64>,
     newton: Option<Newton>,
+    forces: Option<Forces>,
     before: Before,
     /// How the last iteration contracted.
     contraction: f64,
     estimate: Vec<f64>,
-    /// The rates that the estimate is made with.
+    /// The rates that the estimate is made with, and Q there.
     probe: Rates,
+    here: Vec<f64>,
     solves: Solves,
     /// What makes the midpoint rule keep the energy.
     correction: Option<Correction>,
@@ -79,6 +83,7 @@ impl Collocation {
             stages: vec![flow.new_rates(); method.nodes.len()],
             units: Vec::new(),
             newton: is_stiff.then(|| Newton::new(method, flow)),
+            forces: Forces::new(method.matrix, flow),
             before: Before {
                 increments: increments.clone(),
                 step: 0.0,
@@ -86,6 +91,7 @@ impl Collocation {
             contraction: 0.0,
             estimate: vec![0.0; size],
             probe: flow.new_rates(),
+            here: Vec::new(),
             increments,
             solves: Solves::default(),
             correction: None,

@@ -35,6 +35,8 @@ pub(super) struct Newton {
     stale: bool,
     /// Whether they belong to the state at which the step begins.
     is_fresh: bool,
+    /// Q at the state that the matrices belong to.
+    place: Vec<f64>,
     /// How many steps on end the tree has been refused.
     refusals: usize,
 }
@@ -61,6 +63,7 @@ impl Newton {
             step: f64::NAN,
             stale: true,
             is_fresh: false,
+            place: Vec::new(),
             refusals: 0,
         }
     }
@@ -76,6 +79,7 @@ impl Newton {
         if self.stale {
             // Also where they cannot be evaluated: there is nothing newer to try.
             self.is_fresh = true;
+            self.place.clone_from(&step_state.configuration);
             if let System::Tree(tree) = &mut self.system {
                 tree.evaluate(step_state);
                 if tree.leaves_out() && flow.mechanism.layout().speeds < LARGE_COUPLED {
@@ -98,6 +102,11 @@ impl Newton {
         };
         self.step = step;
         Ok(())
+    }
+
+    /// Q at the state that the matrices belong to.
+    pub(super) fn place(&self) -> &[f64] {
+        &self.place
     }
 
     /// Asks for new matrices, and for better ones where the last were new already; whether that leaves anything to try. Where the step can be

@@ -16,17 +16,27 @@ const MOST_LOOKS: usize = 8;
 
 const HALF_ULP: f64 = 0.5 * f64::EPSILON;
 
-/// The root of the mean square of what rounding makes of the accelerations of bodies at some of these states, in the unit of errors of velocities, 1/s: that of the
-/// worst body. States at which the equations have no value do not count.
-pub(super) fn rounding(dynamics: &mut dyn Dynamics, states: &[State]) -> f64 {
+/// The root of the mean square, over the time from `start` on, of what rounding makes of the accelerations of bodies at some of these states, in the unit of errors
+/// of velocities, 1/s: that of the worst body. Each state stands for the time since the one before: the first steps of what is stiff are short, and many.
+/// States at which the equations have no value do not count.
+pub(super) fn rounding(dynamics: &mut dyn Dynamics, start: f64, states: &[State]) -> f64 {
     let mut refined = Refined::new(Arc::clone(dynamics.mechanism()));
     let stride = states.len().div_ceil(MOST_LOOKS).max(1);
-    let looks = states.iter().rev().step_by(stride);
-    let squares: Vec<f64> = looks
-        .filter_map(|state| difference(dynamics, &mut refined, state))
-        .map(|difference| difference * difference)
-        .collect();
-    num_traits::Float::sqrt(squares.iter().sum::<f64>() / squares.len().max(1) as f64)
+    // The last state is among them.
+    let first = (states.len().max(1) - 1) % stride;
+    let (mut sum, mut time, mut last) = (0.0, 0.0, start);
+    for state in states.iter().skip(first).step_by(stride) {
+        let span = state.time - last;
+        last = state.time;
+        if let Some(difference) = difference(dynamics, &mut refined, state) {
+            sum += span * difference * difference;
+            time += span;
+        }
+    }
+    match time > 0.0 {
+        true => num_traits::Float::sqrt(sum / time),
+        false => 0.0,
+    }
 }
 
 /// The largest difference over the bodies, as a part of max(1 SI unit, velocity).

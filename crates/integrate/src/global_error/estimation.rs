@@ -192,7 +192,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
         let used = observed.clamp(least * order, order);
         let by_steps = Float::powf(fine.steps / steps, used);
         if fine.steps > HARDLY_LONGER * steps || self.is_held(first, fine.steps / steps) {
-            self.doubt.get_or_insert(Doubt::Steps);
+            self.doubt.get_or_insert(self.held());
         }
         // Samples that cut steps short hide that errors fall with the tolerance.
         let slope = LEAST_SLOPE.min(used / (LEAST_ORDER * order));
@@ -220,6 +220,16 @@ impl<'a, 'r> Estimation<'a, 'r> {
         is_free && steps > Float::powf(expected, HELD)
     }
 
+    /// What else than the error holds the steps.
+    fn held(&self) -> Doubt {
+        match &self.solution.rounding {
+            Some(limit) => Doubt::Rounding {
+                joint: limit.joint.clone(),
+            },
+            None => Doubt::Steps,
+        }
+    }
+
     /// The tolerance over that of a companion, where there are tolerances.
     fn ratio(&self, companion: Method) -> Option<f64> {
         let own = self.options.method.control()?.tolerance;
@@ -245,7 +255,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
         let from_steps = self.distances(&fine.states, times);
         let is_alike = from_steps.iter().all(|&error| error < ALIKE);
         if is_alike && fine.steps <= self.solution.statistics.steps as f64 {
-            self.doubt.get_or_insert(Doubt::Steps);
+            self.doubt.get_or_insert(self.held());
         }
         Ok(self.with_rounding(from_steps, (self.options.method, &fine), times))
     }
@@ -280,7 +290,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
         }
         let length = self.solution.state.time - self.initial.time;
         let step = length / self.solution.statistics.steps.max(1) as f64;
-        Float::sqrt(step) * accelerations::rounding(self.dynamics, times)
+        Float::sqrt(step) * accelerations::rounding(self.dynamics, self.initial.time, times)
     }
 
     /// What one rounding of the state amounts to: half an ulp, and of momenta what these do to speeds.
