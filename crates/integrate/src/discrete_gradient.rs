@@ -153,7 +153,8 @@ impl Correction {
     /// a shorter step it is no smaller; near rest, where the energy hardly changes with p̄, it is large.
     pub(super) fn forget_scatter(&self, step: f64, difference: &mut [f64]) {
         let (turned, pushed) = difference.split_at_mut(self.phi.len());
-        let part = self.lambda.clamp(-self.scatter, self.scatter);
+        // Without any energy at all, that is 0/0, and nothing of λ counts.
+        let part = self.lambda.abs().min(self.scatter).copysign(self.lambda);
         self.moved.add_to(step * part, turned, pushed);
     }
 

@@ -23,7 +23,7 @@ pub(super) const WEIGHT: f64 = 1.224_744_871_391_589;
 
 /// What an error of the third power of the step may come to so that the error of the motion, which falls with its square, falls with the tolerance.
 ///
-/// At 1e-4 it is what a linear oscillation allows whose phase has that error after a radian, and less.
+/// The phase of a linear oscillation, whose steps have errors of (ωh)³/12, is then off by a fifth of the tolerance after each radian.
 pub(super) fn allowed(tolerance: f64) -> f64 {
     0.3 * Float::powf(tolerance, 1.5)
 }

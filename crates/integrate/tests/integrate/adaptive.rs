@@ -256,3 +256,13 @@ fn what_damps_away_is_followed_to_its_end() {
         assert!(found.state.speeds[0].abs() < tolerance);
     }
 }
+
+/// Without any energy λ is not determined.
+#[test]
+fn what_rests_stays_at_rest() {
+    let options = options(Form::Hamiltonian, to(1e-6), 10.0);
+    let found = run(&wheel(1e4, 0.0), &at(&[0.0], &[0.0]), &options);
+    assert_eq!(found.state.configuration, [0.0]);
+    assert_eq!(found.state.speeds, [0.0]);
+    assert!(found.statistics.steps < 20, "{:?}", found.statistics);
+}
