@@ -25,7 +25,11 @@ impl Collocation {
             add(estimate, *weight, increment);
         }
         if let Some(forces) = self.forces.as_mut().filter(|forces| forces.matter()) {
-            forces.transfer(flow, (&self.here, newton.place()), &mut estimate[self.freedoms..])?;
+            forces.transfer(
+                flow,
+                (&self.here, newton.place()),
+                &mut estimate[self.freedoms..],
+            )?;
         }
         newton.filter(estimate);
         step_state.set_errors(1.0 / tolerance, estimate);

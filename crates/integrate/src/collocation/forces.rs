@@ -5,10 +5,10 @@
 //! no change shows it, and it does not fall with the step as errors do. With `M̄(matrix)⁻¹ M̄(stage) r` in the place of a residual r both are the same, and a
 //! force that is rounded moves its own spring by ε alone. Increments that have no residuals are the same with either.
 
+use crate::Form;
 use crate::StepFailure;
 use crate::flow::{Flow, Rates};
 use crate::step_state::add;
-use crate::Form;
 use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::DMatrix;

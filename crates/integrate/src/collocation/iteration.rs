@@ -125,9 +125,7 @@ impl Collocation {
         let left = size * contraction / (1.0 - contraction);
         match self.tolerance {
             _ if size == 0.0 => self.is_settled() || stalled,
-            Some(tolerance) => {
-                contraction < 1.0 && left <= unsolved(tolerance)
-            }
+            Some(tolerance) => contraction < 1.0 && left <= unsolved(tolerance),
             // The next change would be lost in rounding; or rounding has stopped them.
             None if stalled => true,
             None => match &self.correction {
