@@ -8,6 +8,7 @@ use super::fixed_steps::is_last;
 use super::flow::Flow;
 use super::hybrid::{Guards, Hybrid};
 use super::kinks::Kinks;
+use super::loads::Loads;
 use super::options::{StepControl, least_step};
 use super::outputs::{Outputs, Passed};
 use super::pieces::{FirstPiece, resolving};
@@ -69,6 +70,7 @@ pub(super) struct Driver<'a> {
     pub(super) options: &'a Options,
     hold: Option<Hold>,
     kinks: Kinks,
+    loads: Loads,
     pub(super) bends: Bends,
     pub(super) clock: Clock,
     pub(super) start: f64,
@@ -168,6 +170,7 @@ impl<'a> Driver<'a> {
             cause: Box::new(cause),
             near: watch.nearest_at(&flow.mechanism, (time, &initial.configuration)),
         })?;
+        let loads = Loads::new(&flow);
         Ok(Self {
             watch,
             waypoints: Waypoints::new(flow.mechanism.layout()),
@@ -184,6 +187,7 @@ impl<'a> Driver<'a> {
                 count: 1,
             }),
             kinks,
+            loads,
             bends,
             clock: Clock::new(time),
             start: time,
@@ -356,6 +360,7 @@ impl<'a> Driver<'a> {
             step_state,
             flow,
             watch,
+            loads,
             ..
         } = self;
         let outcome = stepper
@@ -392,6 +397,11 @@ impl<'a> Driver<'a> {
             pacing.rounding.refuse();
             pacing.step = step * pacing.controller.reject(Some(part));
             return Err(self.inaccurate(joint, error));
+        }
+        // Where the equations have no value at the load's extreme, nothing is known of it.
+        if let Ok(Some(unresolved)) = loads.look(step_state, flow, span, tolerance) {
+            pacing.step = step * unresolved.part;
+            return Err(unresolved.cause);
         }
         pacing.rounding.accept(error, joint, tolerance);
         let factor = pacing.controller.accept(part);

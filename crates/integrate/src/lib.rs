@@ -48,6 +48,7 @@ mod integration;
 mod jacobian;
 mod kinks;
 mod linear;
+mod loads;
 mod lobatto;
 mod nearby;
 mod options;

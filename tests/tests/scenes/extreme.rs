@@ -2,7 +2,7 @@
 //! estimate says, or the estimate says that it is not reliable, or the scene is refused with the element that is the cause; and each ends after a bounded
 //! number of evaluations.
 
-use hamel::integrate::{Doubt, Method, Scheme, Solution};
+use hamel::integrate::{Doubt, Form, Method, Scheme, Solution};
 use hamel::scene::{Arithmetic, Scene};
 use hamel::{Model, Simulation};
 use hamel_tests::figures::state_distance;
@@ -145,7 +145,7 @@ fn check(name: &str, model: &Model, end: f64) {
 
 #[test]
 fn ratios_of_masses() {
-    for ratio in [1e8, 1e-8, 1e-12] {
+    for ratio in [1e8, 1e12, 1e-8, 1e-12] {
         check(
             &format!("2 links of ratio {ratio:e}"),
             &chain(2, ratio, 0.5, 1.0),
@@ -159,6 +159,27 @@ fn ratios_of_masses() {
             0.3,
         );
     }
+}
+
+/// In doubles no step resolves the accelerations of a light body that carries one 1e12 times as heavy: the motion ends all the same, with the cause.
+#[test]
+fn rounding_of_a_heavy_tip_is_named() {
+    let model = chain(2, 1e12, 0.5, 1.0);
+    let moved = motion(&model, 3.0).tolerance(1e-8).run_estimated();
+    let (found, estimate) = moved.unwrap_or_else(|error| panic!("{error}"));
+    assert!(found.rounding.is_some());
+    assert!(
+        matches!(estimate.doubt, Some(Doubt::Rounding { .. })),
+        "{:?}",
+        estimate.doubt
+    );
+    assert!(found.statistics.evaluations < MOST_EVALUATIONS);
+    let moved = motion(&model, 3.0)
+        .tolerance(1e-8)
+        .arithmetic(Arithmetic::Auto)
+        .run_estimated();
+    let (found, estimate) = moved.unwrap_or_else(|error| panic!("{error}"));
+    assert!(found.rounding.is_none() && estimate.doubt.is_none());
 }
 
 #[test]
@@ -244,6 +265,72 @@ fn stiff_springs_against_their_closed_form() {
         );
         // What a user would call right in any case.
         assert!(error < 1e-6, "{damping:e}: {error:e}");
+    }
+}
+
+/// Damping of 1e14 N m s holds a base from which a pendulum hangs. The rounding of its moment, some 1e-3 N m, must not turn the pendulum.
+#[test]
+fn rounding_of_a_stiff_base_stays_at_the_base() {
+    let base = "joint = { type = \"revolute\" }\nat = { rotation_vector = [0.0, 0.3, 0.0] }\ninitial.phi = [0.1]\n\
+                spring = { stiffness = 1e14 }\ndamping = 1e14\n";
+    let arm = "com = [0.1, 0.0, -0.3]\njoint = { type = \"ball_child\" }\nat = { position = [0.3, 0.0, 0.0] }\n\
+               initial.pose = { rotation_vector = [0.4, 0.2, 0.1] }\n";
+    let bodies =
+        body("base", "world", 1.0, [1.0; 3], base) + &body("arm", "base", 1.0, [0.1; 3], arm);
+    let model = model(&bodies, 9.81);
+    let moved = |form, tolerance| {
+        let simulation = motion(&model, 1.0).form(form);
+        let simulation = simulation.method(Method::controlled(Scheme::Radau5, tolerance));
+        simulation.run_estimated().expect("it comes to its end")
+    };
+    // Momenta are moved by moments themselves, which M̄⁻¹ does not spread.
+    let (expected, _) = moved(Form::Hamiltonian, 1e-12);
+    for tolerance in [1e-6, 1e-8, 1e-10] {
+        let (found, estimate) = moved(Form::Lagrangian, tolerance);
+        let (error, told) = (distance(&model, &found, &expected), estimate.end.total());
+        println!("{tolerance:e}: error {error:.1e}, told {told:.1e}");
+        assert!(estimate.doubt.is_none(), "{:?}", estimate.doubt);
+        // As for all motions: ten times the tolerance, and what the estimate tells.
+        assert!(error <= 10.0 * tolerance, "{tolerance:e}: {error:e}");
+        assert!(
+            error <= BELOW * told,
+            "{tolerance:e}: {error:e}, told {told:e}"
+        );
+    }
+}
+
+/// A disk of 1 kg m² under moments that stages of a step may miss: pulses between them, and turns faster than they are.
+#[test]
+fn loads_that_are_faster_than_steps_are_seen() {
+    let pulse = |width: f64| 1e3 * width * std::f64::consts::PI.sqrt();
+    for (effort, end, expected) in [
+        ("1e3*exp(-((t-0.7123)/1e-4)^2)", 1.0, pulse(1e-4)),
+        ("1e3*exp(-((t-0.7123)/1e-7)^2)", 1.0, pulse(1e-7)),
+        ("sin(1e9*t)", 1e-6, (1.0 - f64::cos(1e3)) * 1e-9),
+        // Of no consequence, and followed by no step.
+        ("1e-12*sin(1e9*t)", 1.0, 0.0),
+        (
+            "step(t-0.5)*sin(10*t)",
+            1.0,
+            0.1 * (f64::cos(5.0) - f64::cos(10.0)),
+        ),
+    ] {
+        let more = format!("joint = {{ type = \"revolute\" }}\neffort = [\"{effort}\"]\n");
+        let model = model(&body("disk", "world", 1.0, [1.0; 3], &more), 0.0);
+        let moved = motion(&model, end).run_estimated();
+        let (found, estimate) = moved.unwrap_or_else(|error| panic!("{effort}: {error}"));
+        let (error, told) = (
+            (found.state.speeds[0] - expected).abs(),
+            estimate.end.total(),
+        );
+        let steps = found.statistics.steps;
+        println!(
+            "{effort}: error {error:.1e}, told {told:.1e}, {steps} steps, {:?}",
+            estimate.doubt
+        );
+        let is_right = error <= BELOW * told.max(1e-12);
+        assert!(is_right, "{effort}: {error:e}, told {told:e}");
+        assert!(steps < 4096, "{effort}: {steps}");
     }
 }
 

@@ -46,6 +46,7 @@ pub(super) struct Collocation {
     /// What one unit of each speed adds to y; empty before the first step.
     units: Vec<f64>,
     newton: Option<Newton>,
+    /// For a method that is for stiff mechanisms.
     forces: Option<Forces>,
     before: Before,
     /// How the last iteration contracted.
@@ -83,7 +84,7 @@ impl Collocation {
             stages: vec![flow.new_rates(); method.nodes.len()],
             units: Vec::new(),
             newton: is_stiff.then(|| Newton::new(method, flow)),
-            forces: Forces::new(method.matrix, flow),
+            forces: is_stiff.then(|| Forces::new(method.matrix, flow)).flatten(),
             before: Before {
                 increments: increments.clone(),
                 step: 0.0,
