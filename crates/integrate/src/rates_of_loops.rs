@@ -16,13 +16,18 @@ pub(super) fn has_ends(joint: &dyn AnyJoint) -> bool {
     !joint.relations().is_empty() && !joint.singularities().is_empty()
 }
 
-/// By what the coordinates of a joint scatter that are more than its degrees of freedom, as ϕ of one of these: a rounding of 1 rad, or of the longest of the lengths in Q.
+/// The rounding of Q, as ϕ of one degree of freedom: that of the longest of the lengths in Q, or of 1 rad; where Q is as many numbers as ϕ, that of the
+/// largest of them.
 pub(super) fn rounding_of(body: &Body, freedom: usize, configuration: &[f64]) -> f64 {
     let units = body.joint().units();
     let unit = units.freedom(freedom);
     let q = body.configuration(configuration).iter().enumerate();
     let alike = q.filter(|(place, _)| units.coordinate(*place) == unit);
-    let least = if unit == Unit::LENGTH { 0.0 } else { 1.0 };
+    let is_bare = body.ranges().configuration.len() == body.ranges().freedoms.len();
+    let least = match is_bare || unit == Unit::LENGTH {
+        true => 0.0,
+        false => 1.0,
+    };
     f64::EPSILON * alike.fold(least, |most, (_, entry)| entry.abs().max(most))
 }
 

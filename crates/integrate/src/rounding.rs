@@ -150,8 +150,8 @@ impl Rounding {
 }
 
 impl Room {
-    /// Differences of the rates at the state, and at one that differs from it by a rounding in each of its numbers: ϕ̇, then ẏ. Of Q as well, where it
-    /// is more numbers than ϕ: a rotation is rounded by as much where ϕ is small or 0, as at a base point.
+    /// Differences of the rates at the state, and at one that differs from it by a rounding in each of its numbers, and in each of Q: ϕ̇, then ẏ.
+    /// What is rounded is Q, also where ϕ is small or 0, as at a base point.
     fn scatter(
         &mut self,
         step_state: &StepState,
@@ -163,9 +163,6 @@ impl Room {
         let mechanism = &flow.mechanism;
         for (_, body) in mechanism.joints() {
             let freedoms = body.ranges().freedoms.clone();
-            if body.ranges().configuration.len() <= freedoms.len() {
-                continue;
-            }
             for (own, phi) in self.phi[freedoms].iter_mut().enumerate() {
                 *phi += rounding_of(body, own, &step_state.configuration);
             }
