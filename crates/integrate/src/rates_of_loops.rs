@@ -16,8 +16,11 @@ pub(super) fn has_ends(joint: &dyn AnyJoint) -> bool {
     !joint.relations().is_empty() && !joint.singularities().is_empty()
 }
 
+/// Half a unit in the last place of a number, as a part of the next power of two: what storing a number rounds it by, at most.
+const STORED: f64 = 0.25 * f64::EPSILON;
+
 /// The rounding of Q, as ϕ of one degree of freedom: that of the longest of the lengths in Q, or of 1 rad; where Q is as many numbers as ϕ, that of the
-/// largest of them.
+/// largest of them. Coordinates that relations determine are known less well than they are stored.
 pub(super) fn rounding_of(body: &Body, freedom: usize, configuration: &[f64]) -> f64 {
     let units = body.joint().units();
     let unit = units.freedom(freedom);
@@ -28,7 +31,11 @@ pub(super) fn rounding_of(body: &Body, freedom: usize, configuration: &[f64]) ->
         true => 0.0,
         false => 1.0,
     };
-    f64::EPSILON * alike.fold(least, |most, (_, entry)| entry.abs().max(most))
+    let rounding = match has_ends(body.joint()) {
+        true => f64::EPSILON,
+        false => STORED,
+    };
+    rounding * alike.fold(least, |most, (_, entry)| entry.abs().max(most))
 }
 
 /// Room for the rates of a joint's configuration.
