@@ -29,11 +29,11 @@ fn a_report_measures_each_curve_once() {
     assert!(told.contains("points of work and precision"), "{told}");
     let work = fs::read_to_string(folder.join("work.csv")).expect("a file");
     let rows: Vec<&str> = work.lines().skip(1).collect();
-    // Two methods: matrices in both forms; of the explicit one quaternions and Euler angles in one, which the page compares; at eleven tolerances each.
+    // Two methods: matrices in both forms; of the explicit one quaternions and Euler angles in one, which the page compares; at six tolerances each.
     let is_compiled = |row: &&&str| row.contains(",compiled,");
     assert_eq!(
         rows.iter().filter(|row| !is_compiled(row)).count(),
-        (2 * 2 + 2) * 11
+        (2 * 2 + 2) * 6
     );
     // Estimates of both in both forms, at five tolerances.
     let estimates = fs::read_to_string(folder.join("estimates.csv")).expect("a file");
@@ -44,7 +44,7 @@ fn a_report_measures_each_curve_once() {
         Ok(costs) => {
             assert_eq!(costs.lines().count(), 2);
             let mut own = rows.iter().copied().filter(|row| is_compiled(&row));
-            assert_eq!(own.clone().count(), 2 * 11);
+            assert_eq!(own.clone().count(), 2 * 6);
             assert!(own.all(|row| row.contains(",matrix,compiled,")));
         }
         Err(_) => assert!(!rows.iter().any(|row| is_compiled(&row))),

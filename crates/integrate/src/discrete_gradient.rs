@@ -133,6 +133,15 @@ impl Correction {
         if self.energy.is_nan() {
             self.energy = flow.energy(&step_state.configuration, &step_state.y)?;
         }
+        // Energies of bodies may cancel, their roundings do not.
+        let kinematics = flow
+            .mechanism
+            .kinematics(&step_state.configuration, &self.speeds)?;
+        let potentials = kinematics
+            .bodies
+            .iter()
+            .map(|body| body.potential_energy.abs());
+        self.largest = self.largest.max(potentials.sum());
         // What an iteration that failed has made of it is no beginning for another one.
         self.lambda = self.last;
         (self.is_in_force, self.is_settled) = (false, false);

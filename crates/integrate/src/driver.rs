@@ -8,7 +8,6 @@ use super::fixed_steps::is_last;
 use super::flow::Flow;
 use super::hybrid::{Guards, Hybrid};
 use super::kinks::Kinks;
-use super::loads::Loads;
 use super::options::{StepControl, least_step};
 use super::outputs::{Outputs, Passed};
 use super::pieces::{FirstPiece, resolving};
@@ -70,7 +69,6 @@ pub(super) struct Driver<'a> {
     pub(super) options: &'a Options,
     hold: Option<Hold>,
     kinks: Kinks,
-    loads: Loads,
     pub(super) bends: Bends,
     pub(super) clock: Clock,
     pub(super) start: f64,
@@ -170,7 +168,6 @@ impl<'a> Driver<'a> {
             cause: Box::new(cause),
             near: watch.nearest_at(&flow.mechanism, (time, &initial.configuration)),
         })?;
-        let loads = Loads::new(&flow);
         Ok(Self {
             watch,
             waypoints: Waypoints::new(flow.mechanism.layout()),
@@ -187,7 +184,6 @@ impl<'a> Driver<'a> {
                 count: 1,
             }),
             kinks,
-            loads,
             bends,
             clock: Clock::new(time),
             start: time,
@@ -360,7 +356,6 @@ impl<'a> Driver<'a> {
             step_state,
             flow,
             watch,
-            loads,
             ..
         } = self;
         let outcome = stepper
@@ -378,32 +373,27 @@ impl<'a> Driver<'a> {
             pacing.step = step * pacing.controller.reject(None);
             return Err(cause);
         }
-        let tolerance = stepper.allowed(tolerance);
+        let least = stepper.allowed(tolerance);
         if let Some(weight) = stepper.estimate_weight()
             && pacing.rounding.is_due()
         {
             pacing.rounding.look(step_state, flow, span.time, weight);
         }
-        let (error, joint) = match stepper.error(step_state, flow, span, tolerance) {
+        let (error, joint) = match stepper.error(step_state, flow, span, least) {
             Ok(found) => found,
             Err(cause) => {
                 pacing.step = step * pacing.controller.reject(None);
                 return Err(cause);
             }
         };
-        let allowed = pacing.rounding.allowed(step, tolerance);
+        let allowed = pacing.rounding.allowed(step, least);
         let part = error / allowed;
         if part.is_nan() || part > 1.0 {
             pacing.rounding.refuse();
             pacing.step = step * pacing.controller.reject(Some(part));
             return Err(self.inaccurate(joint, error));
         }
-        // Where the equations have no value at the load's extreme, nothing is known of it.
-        if let Ok(Some(unresolved)) = loads.look(step_state, flow, span, tolerance) {
-            pacing.step = step * unresolved.part;
-            return Err(unresolved.cause);
-        }
-        pacing.rounding.accept(error, joint, tolerance);
+        pacing.rounding.accept(error, joint, least);
         let factor = pacing.controller.accept(part);
         // Rounding takes the same share of the tolerance at any length of step. Near the end of a joint, relations amplify it beyond what was measured; steps would shrink without end.
         let is_of_relations = has_ends(self.flow.mechanism.bodies()[joint].joint());

@@ -26,16 +26,6 @@ pub enum StepFailure {
         /// Its error over the tolerance.
         ratio: f64,
     },
-    /// A load changes faster than a step can see.
-    #[error(
-        "the load `{load}` changes at {rate:.1e} 1/s, which steps of this length do not see: take its mean if only that counts, or a shorter motion"
-    )]
-    Load {
-        /// The load, as it was given.
-        load: String,
-        /// Its rate, as [`Pace::rate`](hamel_runtime::time_function::Pace::rate).
-        rate: f64,
-    },
     /// A joint turns too far for one step.
     #[error("joint `{joint}` turns by {angle} rad within the step, more than pi", angle = Number(*.angle))]
     Turn {
@@ -126,7 +116,6 @@ impl StepFailure {
             | Self::State(_) => true,
             Self::Length { .. }
             | Self::Inaccurate { .. }
-            | Self::Load { .. }
             | Self::Event { .. }
             | Self::Kinks(_)
             | Self::Tableau { .. }

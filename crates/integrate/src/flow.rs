@@ -3,7 +3,6 @@
 use super::StepFailure;
 use super::hybrid::Sliding;
 use super::step_state::add;
-use super::stepper::Span;
 use super::{Form, InputBends, Inputs};
 use alloc::boxed::Box;
 use alloc::string::String;
@@ -14,7 +13,7 @@ use core::ops::{Deref, DerefMut};
 use hamel_runtime::dynamics::{Dynamics, DynamicsError};
 use hamel_runtime::mechanism::{CONSTRAINT_TOLERANCE, Mechanism, Space};
 use hamel_runtime::scalar::all_finite;
-use hamel_runtime::time_function::{Moment, Pace};
+use hamel_runtime::time_function::Moment;
 
 /// ϕ̇, ẏ and v̄ at one stage.
 #[derive(Clone, Debug)]
@@ -198,12 +197,6 @@ impl<'a> Flow<'a> {
             time,
             within: self.within,
         }
-    }
-
-    /// The load that changes fastest within a step of the present piece, if its rate is more than `least`, 1/s.
-    pub(super) fn pace(&self, Span { time, step }: Span, least: f64) -> Option<Pace> {
-        let span = (time, time + step);
-        self.mechanism.fastest(span, self.within, least)
     }
 
     /// The equations of motion.

@@ -48,7 +48,6 @@ mod integration;
 mod jacobian;
 mod kinks;
 mod linear;
-mod loads;
 mod lobatto;
 mod nearby;
 mod options;

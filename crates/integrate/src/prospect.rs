@@ -2,7 +2,6 @@
 
 use super::flow::Flow;
 use super::rounding::Rounding;
-use super::stepper::Span;
 use super::{Choice, IntegrateError, Method, Options, State, Statistics, Wanted};
 use alloc::format;
 use alloc::string::String;
@@ -21,9 +20,6 @@ const ENDLESS: f64 = 1e13;
 
 /// Steps that are less than this part of those before still shrink.
 const SHRINKS: f64 = 0.1;
-
-/// The product of step and rate from which on steps follow a load.
-const FOLLOWED: f64 = 0.03;
 
 /// What is known of the pace of a motion.
 #[derive(Debug)]
@@ -80,20 +76,13 @@ impl Prospect {
         if !is_long && other.is_none() {
             return Ok(());
         }
-        let load = || flow.pace(Span { time, step }, FOLLOWED / step);
         let advice = || match (options.method, rounding.limit(flow)) {
             (Method::Fixed { .. }, _) => "take a larger dt, or a method with step control".into(),
             (_, Some(limit)) => format!(
                 "rounding in doubles has decided the length of {} of them, first of all at joint `{}`: take refined arithmetic, or a larger tolerance",
                 limit.steps, limit.joint
             ),
-            _ => match load() {
-                Some(load) => format!(
-                    "the load `{}` changes at {:.1e} 1/s, which steps follow: take its mean if only that counts, or a shorter motion",
-                    load.function, load.rate
-                ),
-                None => "take a larger tolerance".into(),
-            },
+            _ => "take a larger tolerance".into(),
         };
         Err(IntegrateError::Hopeless {
             time,

@@ -31,7 +31,8 @@ pub struct RoundingLimit {
     pub steps: usize,
     /// The joint with the largest error in them.
     pub joint: String,
-    /// Its error, as that which a tolerance allows a step.
+    /// Its error, as that which a tolerance allows a step: as [`StepControl::tolerance`](crate::StepControl::tolerance), but of `discrete_gradient`, whose steps may
+    /// be off by a power of it.
     pub error: f64,
 }
 

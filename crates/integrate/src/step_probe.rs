@@ -69,6 +69,7 @@ pub(super) fn step(
     let mut dynamics = Recursive::new(Arc::clone(mechanism));
     integrate(&mut dynamics, state, &options, &mut no_inputs, &mut watch).ok()?;
     // A motion of few steps counts as a whole.
-    let is_whole = end.number <= middle.number || end.time >= options.t_end;
+    let is_short = end.number <= TAKEN && end.time >= options.t_end;
+    let is_whole = is_short || end.number <= middle.number;
     Some(end.mean_since(if is_whole { &start } else { &middle }))
 }

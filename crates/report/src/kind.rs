@@ -9,7 +9,7 @@ use itertools::{Itertools, MinMaxResult};
 /// Masses or principal moments whose ratio is larger than this are far apart: more than an ordinary robot has between its base and its last link.
 const FAR_APART: f64 = 1e4;
 
-/// Kinds, in the order of the page; a scene is of the first that describes it.
+/// Kinds, in the order in which they are tried: a scene is of the first that describes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Damped,
@@ -22,7 +22,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All of them.
+    /// All of them, in the order of the page.
     pub const ALL: [Self; 7] = [
         Self::OneBody,
         Self::Trees,

@@ -13,6 +13,9 @@ const FILE: &str = "peers.csv";
 /// How names of our own programs begin.
 const OWN: &str = "hamel";
 
+/// An error of nothing is a tenth of a rounding: it stands on logarithmic axes, and between others.
+const LEAST: f64 = 1e-17;
+
 /// A run of a library.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Peer {
@@ -35,8 +38,8 @@ impl Peer {
     /// The error and the run time, s, of a run that came to its end.
     pub fn point(&self) -> Option<(f64, f64)> {
         self.seconds_least
-            .map(|seconds| (self.error, seconds))
-            .filter(|(error, _)| error.is_finite())
+            .map(|seconds| (self.error.max(LEAST), seconds))
+            .filter(|(error, seconds)| error.is_finite() && *seconds > 0.0)
     }
 }
 

@@ -7,7 +7,7 @@ use crate::dynamics::Recursive;
 use crate::elements::{
     Drive, Element, ElementError, JointFriction, JointStop, PointConstraint, TimedEffort,
 };
-use crate::time_function::{KinkError, Moment, Pace, TimeFunction, first_kink};
+use crate::time_function::{KinkError, Moment, TimeFunction, first_kink};
 use alloc::format;
 use alloc::sync::Arc;
 use alloc::vec;
@@ -228,14 +228,6 @@ impl Mechanism {
     /// An expression whose switches cannot be followed.
     pub fn next_kink(&self, after: f64, until: f64) -> Result<Option<f64>, KinkError> {
         first_kink(self.time_functions(), after, until)
-    }
-
-    /// The effort, wrench or prescribed speed that changes fastest from one time to a later one within a piece, if its rate is more than `least`, 1/s: as
-    /// [`TimeFunction::pace`].
-    pub fn fastest(&self, span: (f64, f64), within: f64, least: f64) -> Option<Pace> {
-        let paces = self.time_functions();
-        let paces = paces.filter_map(|function| function.pace(span, within, least));
-        paces.max_by(|a, b| a.rate.total_cmp(&b.rate))
     }
 
     fn time_functions(&self) -> impl Iterator<Item = &TimeFunction> {

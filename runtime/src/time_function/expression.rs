@@ -51,7 +51,7 @@ pub(super) enum Node {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
     text: String,
-    pub(super) root: Node,
+    root: Node,
 }
 
 impl Expression {

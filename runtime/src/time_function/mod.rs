@@ -7,7 +7,6 @@ mod expression;
 mod interval;
 mod jet;
 mod law;
-mod pace;
 mod parse;
 mod spline;
 mod switches;
@@ -15,7 +14,6 @@ mod table;
 
 pub use expression::Expression;
 pub use law::Law;
-pub use pace::Pace;
 pub use parse::SyntaxError;
 pub use table::{Outside, Table, TableError, TableKind};
 

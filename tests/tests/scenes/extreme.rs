@@ -299,41 +299,6 @@ fn rounding_of_a_stiff_base_stays_at_the_base() {
     }
 }
 
-/// A disk of 1 kg m² under moments that stages of a step may miss: pulses between them, and turns faster than they are.
-#[test]
-fn loads_that_are_faster_than_steps_are_seen() {
-    let pulse = |width: f64| 1e3 * width * std::f64::consts::PI.sqrt();
-    for (effort, end, expected) in [
-        ("1e3*exp(-((t-0.7123)/1e-4)^2)", 1.0, pulse(1e-4)),
-        ("1e3*exp(-((t-0.7123)/1e-7)^2)", 1.0, pulse(1e-7)),
-        ("sin(1e9*t)", 1e-6, (1.0 - f64::cos(1e3)) * 1e-9),
-        // Of no consequence, and followed by no step.
-        ("1e-12*sin(1e9*t)", 1.0, 0.0),
-        (
-            "step(t-0.5)*sin(10*t)",
-            1.0,
-            0.1 * (f64::cos(5.0) - f64::cos(10.0)),
-        ),
-    ] {
-        let more = format!("joint = {{ type = \"revolute\" }}\neffort = [\"{effort}\"]\n");
-        let model = model(&body("disk", "world", 1.0, [1.0; 3], &more), 0.0);
-        let moved = motion(&model, end).run_estimated();
-        let (found, estimate) = moved.unwrap_or_else(|error| panic!("{effort}: {error}"));
-        let (error, told) = (
-            (found.state.speeds[0] - expected).abs(),
-            estimate.end.total(),
-        );
-        let steps = found.statistics.steps;
-        println!(
-            "{effort}: error {error:.1e}, told {told:.1e}, {steps} steps, {:?}",
-            estimate.doubt
-        );
-        let is_right = error <= BELOW * told.max(1e-12);
-        assert!(is_right, "{effort}: {error:e}, told {told:e}");
-        assert!(steps < 4096, "{effort}: {steps}");
-    }
-}
-
 /// Where doubles have no numbers for a mechanism it is refused, with the joint.
 #[test]
 fn lengths_below_the_normal_numbers_are_refused() {

@@ -51,10 +51,15 @@ fn method(settings: &Settings, args: &Args) -> Result<(Method, bool), Failure> {
     let (own_dt, own_tol) = accuracy(scene);
     let scheme = match (args.method, dt, tol) {
         // An accuracy is had by step control.
-        (None, None, None) if args.accuracy.is_some() && own_tol.is_none() => {
+        (None, None, None)
+            if args.accuracy.is_some() && own_tol.is_none() && !own.has_estimate() =>
+        {
             return Ok((Method::dormand_prince(Settings::DEFAULT_TOL), true));
         }
-        (None, None, None) => return Ok((scene, settings.chooses)),
+        (None, None, None) if args.accuracy.is_none() || own_tol.is_some() => {
+            return Ok((scene, settings.chooses));
+        }
+        (None, None, None) => own,
         (Some(MethodName::Auto), Some(_), _) => {
             return refuse("--dt means nothing to auto, whose accuracy is --tol".to_owned());
         }
@@ -229,7 +234,7 @@ mod tests {
             (
                 gradient,
                 "--accuracy 1e-3",
-                Method::dormand_prince(Settings::DEFAULT_TOL),
+                gradient_to(Settings::DEFAULT_TOL),
             ),
             (
                 gradient,

@@ -8,6 +8,7 @@ use super::plan::Plan;
 use comfy_table::{Cell, CellAlignment, Table, presets};
 use hamel::integrate::{Approach, Crossing, MethodChange, RoundingLimit};
 use hamel::mechanism::{BodyState, Kinematics, Mechanism};
+use hamel_scene::Arithmetic;
 use std::fmt;
 
 /// Numbers from here on are written with an exponent.
@@ -88,10 +89,14 @@ impl fmt::Display for Summary<'_> {
             error,
         }) = self.rounding
         {
+            // Refined arithmetic rounds coordinates as doubles do.
+            let advice = match self.plan.settings.arithmetic {
+                Arithmetic::Doubles => " in doubles; see `--arithmetic auto`",
+                _ => "",
+            };
             writeln!(
                 f,
-                "rounding    decided the length of {steps} steps, not the tolerance: at joint `{joint}` the error of a step is not below {error:.1e} in \
-                 doubles; see `--arithmetic auto`"
+                "rounding    decided the length of {steps} steps, not the tolerance: at joint `{joint}` the error of a step is not below {error:.1e}{advice}"
             )?;
         }
         for note in self.forces {

@@ -1,6 +1,6 @@
 //! One step of an implicit method by collocation, in (ϕ, y).
 //!
-//! The increments Z of all stages over the state solve `Z = h A F(Z)`. Methods without step control, and the one that keeps the energy, are iterated until rounding stops them
+//! The increments Z of all stages over the state solve `Z = h A F(Z)`. Methods without step control, and the discrete gradient, are iterated until rounding stops them
 //! (E. Hairer, R. I. McLachlan and A. Razakarivony, *Achieving Brouwer's law with implicit Runge–Kutta methods*, 2008): by fixed points while
 //! these converge fast, and by Newton's method from then on. The first guess continues the polynomial of the step before.
 

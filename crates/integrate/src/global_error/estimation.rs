@@ -2,7 +2,7 @@
 
 use super::companion::{Companion, Path, distance};
 use super::{Doubt, ErrorParts, GlobalError, Run, accelerations};
-use crate::{Form, Method, Options, Scheme, Solution, State, Step, StepControl};
+use crate::{Form, Method, Options, RoundingLimit, Scheme, Solution, State, Step, StepControl};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -222,7 +222,9 @@ impl<'a, 'r> Estimation<'a, 'r> {
 
     /// What else than the error holds the steps.
     fn held(&self) -> Doubt {
-        match &self.solution.rounding {
+        let steps = self.solution.statistics.steps;
+        let decides = |limit: &&RoundingLimit| 2 * limit.steps >= steps;
+        match self.solution.rounding.as_ref().filter(decides) {
             Some(limit) => Doubt::Rounding {
                 joint: limit.joint.clone(),
             },

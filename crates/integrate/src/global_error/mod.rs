@@ -51,7 +51,7 @@ pub enum Doubt {
     },
     /// A companion takes steps as short as those of the motion: something else than the error limits them.
     Steps,
-    /// The same, and it is the rounding of accelerations.
+    /// The same, and it is the rounding of accelerations that limits at least half of the steps.
     Rounding {
         /// The joint with the largest error of rounding in a step.
         joint: String,
@@ -87,7 +87,7 @@ impl Display for Doubt {
             ),
             Self::Rounding { joint } => write!(
                 f,
-                "rounding of accelerations in doubles decides how long steps are, first of all at joint `{joint}`: take refined arithmetic"
+                "rounding of accelerations in doubles decides how long steps are, first of all at joint `{joint}`"
             ),
             Self::Oscillations => f.write_str(
                 "the method takes steps longer than oscillations: how rounding adds up over these is not known",

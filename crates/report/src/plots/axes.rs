@@ -16,7 +16,8 @@ const LEGEND: u32 = 190;
 const LINE: i32 = 20;
 const FIRST: i32 = 44;
 
-/// Opacity of lines that are to be dashed: the library for figures draws each dash as a line of its own, a page of them is megabytes.
+/// Lines that are to be dashed are drawn with this opacity, which [`responsive`] replaces by dashes. The library for figures would draw each dash as a line of its own: a page
+/// of them is megabytes.
 const DASHED: f64 = 0.999;
 
 /// Points of one colour.

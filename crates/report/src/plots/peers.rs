@@ -14,8 +14,6 @@ pub fn drawing(fronts: &[(&str, Vec<(f64, f64)>)]) -> Result<String, Failure> {
         .enumerate()
         .map(|(number, (library, points))| {
             let points = points.iter().map(|&(error, seconds)| (seconds, error));
-            // An error of nothing cannot stand on a logarithmic axis: it is a tenth of a rounding.
-            let points = points.map(|(seconds, error)| (seconds, error.max(1e-17)));
             Curve {
                 label: (*library).to_owned(),
                 look: Look {

@@ -78,8 +78,10 @@ impl Estimates {
             let own = all.iter().filter(|told| which(told));
             own.map(Told::name).sorted().collect()
         };
-        let cost =
-            |own: fn(&Estimate) -> Option<f64>| median(all.iter().filter_map(|told| own(told.row)));
+        let cost = |own: fn(&Estimate) -> Option<f64>| {
+            let ratios = all.iter().filter_map(|told| own(told.row));
+            median(ratios.filter(|ratio| ratio.is_finite()))
+        };
         let evaluations =
             cost(|row| Some(row.evaluations_of_estimate? as f64 / row.evaluations? as f64));
         let seconds = cost(|row| Some(row.seconds_of_estimate? / row.seconds?));

@@ -68,7 +68,8 @@ pub fn classes(rows: &[Work]) -> Vec<Failures> {
 /// What makes a run wrong that came to its end.
 fn wrongness(row: &Work) -> Option<String> {
     let error = row.error_worst.filter(|_| row.knob == "tolerance")?;
-    let multiplied = row.floor / ROUNDING;
+    // A row without a floor is of nothing that is known.
+    let multiplied = (row.floor > 0.0).then_some(row.floor / ROUNDING)?;
     let promised = PROMISED * row.accuracy * multiplied + FLOORS * row.floor;
     (error > promised).then(|| {
         let by = (error / promised).log10().floor().max(0.0);
@@ -101,7 +102,7 @@ fn lines(rows: Vec<(&Work, String)>) -> Vec<Line> {
         .collect()
 }
 
-/// What reasons have in common that are one: the words before the first quantity that differs from run to run.
+/// What reasons have in common that are one: their text without figures.
 fn key(reason: &str) -> String {
     match reason.starts_with("error up to") {
         true => reason.to_owned(),
