@@ -23,7 +23,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use hamel_runtime::dynamics::{Dynamics, Recursive};
 use hamel_runtime::joint::MOST_FREEDOMS;
-use hamel_runtime::mechanism::Body;
+use hamel_runtime::mechanism::{Body, StateError};
 use hamel_runtime::spatial::bracket_dual_product;
 use nalgebra::Vector6;
 
@@ -74,6 +74,19 @@ pub(super) struct Correction {
     moved: Rates,
     composites: Vec<Vector6<f64>>,
     matrices: Matrices,
+}
+
+/// What potential energies of bodies at Q are rounded by, in roundings, J: the heights of frames and centres of mass may cancel, and energies of bodies too, but not their
+/// roundings.
+fn potentials(flow: &Flow<'_>, configuration: &[f64], speeds: &[f64]) -> Result<f64, StateError> {
+    let mechanism = &flow.mechanism;
+    let kinematics = mechanism.kinematics(configuration, speeds)?;
+    let bodies = kinematics.bodies.iter().zip(mechanism.bodies());
+    let sizes = bodies.map(|(state, body)| {
+        let mass = body.mass();
+        mass.mass * (state.pose.translation.norm() + mass.com.norm())
+    });
+    Ok(sizes.sum::<f64>() * mechanism.gravity().norm())
 }
 
 /// One joint's matrices.
@@ -133,15 +146,8 @@ impl Correction {
         if self.energy.is_nan() {
             self.energy = flow.energy(&step_state.configuration, &step_state.y)?;
         }
-        // Energies of bodies may cancel, their roundings do not.
-        let kinematics = flow
-            .mechanism
-            .kinematics(&step_state.configuration, &self.speeds)?;
-        let potentials = kinematics
-            .bodies
-            .iter()
-            .map(|body| body.potential_energy.abs());
-        self.largest = self.largest.max(potentials.sum());
+        let potentials = potentials(flow, &step_state.configuration, &self.speeds)?;
+        self.largest = self.largest.max(potentials);
         // What an iteration that failed has made of it is no beginning for another one.
         self.lambda = self.last;
         (self.is_in_force, self.is_settled) = (false, false);

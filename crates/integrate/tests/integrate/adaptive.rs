@@ -257,18 +257,23 @@ fn what_damps_away_is_followed_to_its_end() {
     }
 }
 
-/// Two pendulums whose potential energies cancel: what their energies are rounded by is that of each.
+/// Two pendulums whose potential energies cancel, and in each the heights of pivot and centre of mass: rounding is that of each height.
 #[test]
 fn energies_that_cancel_are_rounded_as_each() {
     let com = Vector3::new(0.3, -1.0, 0.0);
     let mass = || MassProperties::new(1.0, com, Matrix3::identity() * 0.1).expect("physical");
     let pendulum = |name: &str, height: f64| {
-        let at = Pose::from_translation(Vector3::new(0.0, height + 1.0, 0.0));
+        let at = Pose::from_translation(Vector3::new(0.0, height, 0.0));
         body(name, None, joints::revolute(), at, mass())
     };
-    let bodies = vec![pendulum("upper", 1.0), pendulum("lower", -1.0)];
+    let bodies = ["level", "upper", "lower"]
+        .into_iter()
+        .zip([1.0, 3.0, -1.0]);
+    let bodies = bodies
+        .map(|(name, height)| pendulum(name, height))
+        .collect();
     let mechanism = Arc::new(Mechanism::new(GRAVITY, bodies).expect("sound bodies"));
-    let initial = at(&[0.0, 0.0], &[0.0, 0.0]);
+    let initial = at(&[0.0; 3], &[0.0; 3]);
     for tolerance in [1e-6, 1e-8] {
         let options = options(Form::Hamiltonian, to(tolerance), 0.2);
         let found = run(&mechanism, &initial, &options);
