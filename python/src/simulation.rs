@@ -144,7 +144,9 @@ impl Plan {
                 Ok(Way::Tolerance(tolerance.unwrap_or(Settings::DEFAULT_TOL)))
             }
             (scheme, dt, tolerance) => {
-                let accuracy = request.accuracy.filter(|_| scheme.is_some_and(|own| own.has_estimate()));
+                let accuracy = request
+                    .accuracy
+                    .filter(|_| scheme.is_some_and(|own| own.has_estimate()));
                 let tolerance = tolerance.or(accuracy.map(|_| Settings::DEFAULT_TOL));
                 let method = Settings::method_of(scheme, dt, tolerance);
                 method.map(Way::Method).ok_or_else(|| {
