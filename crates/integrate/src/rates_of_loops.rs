@@ -16,26 +16,14 @@ pub(super) fn has_ends(joint: &dyn AnyJoint) -> bool {
     !joint.relations().is_empty() && !joint.singularities().is_empty()
 }
 
-/// Half a unit in the last place of a number, as a part of the next power of two: what storing a number rounds it by, at most.
-const STORED: f64 = 0.25 * f64::EPSILON;
-
-/// The rounding of Q, as ϕ of one degree of freedom: that of the longest of the lengths in Q, or of 1 rad; where Q is as many numbers as ϕ, that of the
-/// largest of them. Coordinates that relations determine are known less well than they are stored.
+/// By what the coordinates of such a joint scatter as relations determine them, as ϕ of one degree of freedom: a rounding of 1 rad, or of the longest of the lengths in Q.
 pub(super) fn rounding_of(body: &Body, freedom: usize, configuration: &[f64]) -> f64 {
     let units = body.joint().units();
     let unit = units.freedom(freedom);
     let q = body.configuration(configuration).iter().enumerate();
     let alike = q.filter(|(place, _)| units.coordinate(*place) == unit);
-    let is_bare = body.ranges().configuration.len() == body.ranges().freedoms.len();
-    let least = match is_bare || unit == Unit::LENGTH {
-        true => 0.0,
-        false => 1.0,
-    };
-    let rounding = match has_ends(body.joint()) {
-        true => f64::EPSILON,
-        false => STORED,
-    };
-    rounding * alike.fold(least, |most, (_, entry)| entry.abs().max(most))
+    let least = if unit == Unit::LENGTH { 0.0 } else { 1.0 };
+    f64::EPSILON * alike.fold(least, |most, (_, entry)| entry.abs().max(most))
 }
 
 /// Room for the rates of a joint's configuration.

@@ -6,7 +6,7 @@
 
 use super::StepFailure;
 use super::flow::{Flow, Rates};
-use super::rates_of_loops::rounding_of;
+use super::rates_of_loops::{has_ends, rounding_of};
 use super::step_state::StepState;
 use alloc::string::String;
 use alloc::vec;
@@ -31,8 +31,7 @@ pub struct RoundingLimit {
     pub steps: usize,
     /// The joint with the largest error in them.
     pub joint: String,
-    /// Its error, as that which a tolerance allows a step: as [`StepControl::tolerance`](crate::StepControl::tolerance), but of `discrete_gradient`, whose steps may
-    /// be off by a power of it.
+    /// Its error, as that which a tolerance allows a step.
     pub error: f64,
 }
 
@@ -151,8 +150,7 @@ impl Rounding {
 }
 
 impl Room {
-    /// Differences of the rates at the state, and at one that differs from it by a rounding in each of its numbers, and in each of Q: ϕ̇, then ẏ.
-    /// What is rounded is Q, also where ϕ is small or 0, as at a base point.
+    /// Differences of the rates at the state, and at one that differs from it by a rounding in each of its numbers, in Q too where relations determine it: ϕ̇, then ẏ.
     fn scatter(
         &mut self,
         step_state: &StepState,
@@ -162,7 +160,10 @@ impl Room {
         beside(&step_state.offset, &mut self.phi);
         beside(&step_state.y, &mut self.y);
         let mechanism = &flow.mechanism;
-        for (_, body) in mechanism.joints() {
+        for (_, body) in mechanism
+            .joints()
+            .filter(|(_, body)| has_ends(body.joint()))
+        {
             let freedoms = body.ranges().freedoms.clone();
             for (own, phi) in self.phi[freedoms].iter_mut().enumerate() {
                 *phi += rounding_of(body, own, &step_state.configuration);

@@ -25,8 +25,8 @@ pub struct Budget {
 impl Budget {
     /// For figures that are to be told.
     pub const FULL: Self = Self {
-        run: Duration::from_secs(1),
-        point: Duration::from_millis(50),
+        run: Duration::from_millis(500),
+        point: Duration::from_millis(30),
         repetitions: 30,
     };
     /// For a first look.

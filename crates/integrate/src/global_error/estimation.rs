@@ -2,7 +2,7 @@
 
 use super::companion::{Companion, Path, distance};
 use super::{Doubt, ErrorParts, GlobalError, Run, accelerations};
-use crate::{Form, Method, Options, RoundingLimit, Scheme, Solution, State, Step, StepControl};
+use crate::{Form, Method, Options, Scheme, Solution, State, Step, StepControl};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -192,7 +192,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
         let used = observed.clamp(least * order, order);
         let by_steps = Float::powf(fine.steps / steps, used);
         if fine.steps > HARDLY_LONGER * steps || self.is_held(first, fine.steps / steps) {
-            self.doubt.get_or_insert(self.held());
+            self.doubt.get_or_insert(Doubt::Steps);
         }
         // Samples that cut steps short hide that errors fall with the tolerance.
         let slope = LEAST_SLOPE.min(used / (LEAST_ORDER * order));
@@ -220,18 +220,6 @@ impl<'a, 'r> Estimation<'a, 'r> {
         is_free && steps > Float::powf(expected, HELD)
     }
 
-    /// What else than the error holds the steps.
-    fn held(&self) -> Doubt {
-        let steps = self.solution.statistics.steps;
-        let decides = |limit: &&RoundingLimit| 2 * limit.steps >= steps;
-        match self.solution.rounding.as_ref().filter(decides) {
-            Some(limit) => Doubt::Rounding {
-                joint: limit.joint.clone(),
-            },
-            None => Doubt::Steps,
-        }
-    }
-
     /// The tolerance over that of a companion, where there are tolerances.
     fn ratio(&self, companion: Method) -> Option<f64> {
         let own = self.options.method.control()?.tolerance;
@@ -257,7 +245,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
         let from_steps = self.distances(&fine.states, times);
         let is_alike = from_steps.iter().all(|&error| error < ALIKE);
         if is_alike && fine.steps <= self.solution.statistics.steps as f64 {
-            self.doubt.get_or_insert(self.held());
+            self.doubt.get_or_insert(Doubt::Steps);
         }
         Ok(self.with_rounding(from_steps, (self.options.method, &fine), times))
     }

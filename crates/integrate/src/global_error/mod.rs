@@ -51,11 +51,6 @@ pub enum Doubt {
     },
     /// A companion takes steps as short as those of the motion: something else than the error limits them.
     Steps,
-    /// The same, and it is the rounding of accelerations that limits at least half of the steps.
-    Rounding {
-        /// The joint with the largest error of rounding in a step.
-        joint: String,
-    },
     /// Steps are longer than oscillations, whose rounding no companion tells.
     Oscillations,
     /// Inputs or elements bend, as at the limit of an effort, under a method of high order: the error of the steps that end there does not fall as that of the others.
@@ -84,10 +79,6 @@ impl Display for Doubt {
             ),
             Self::Steps => f.write_str(
                 "something else than the error decides how long steps are: motions of other tolerances take steps that are hardly longer or shorter",
-            ),
-            Self::Rounding { joint } => write!(
-                f,
-                "rounding of accelerations in doubles decides how long steps are, first of all at joint `{joint}`"
             ),
             Self::Oscillations => f.write_str(
                 "the method takes steps longer than oscillations: how rounding adds up over these is not known",
