@@ -63,7 +63,7 @@ fn a_report_measures_each_curve_once() {
     let summary = [
         "one body, free or on a pivot",
         "best method, Lagrangian form",
-        "Of 20 motions",
+        "of the estimates of the last state are within",
         "<strong>cannot</strong>",
     ];
     for expected in ["<svg", "top_lock", "radau5", "in floors"]

@@ -230,16 +230,22 @@ impl Wanted {
         if followed <= PREFERENCE * self.steps(stiff.slow, 4) * work && !mode.is_damped() {
             return Err("it costs less to follow than to solve for".into());
         }
-        let most = (TRIAL * followed / work) as usize;
-        let first = |scheme| {
+        let first = |scheme, most| {
             let method = Method::controlled(scheme, self.tolerance);
             step_probe::step(mechanism, state, (self.span, most), method)
         };
-        let own = first(Scheme::Exponential).unwrap_or(0.0);
+        // Steps grow for long after what is damped has faded.
+        let most = match mode.is_damped() {
+            true => (TRIAL * followed / work) as usize,
+            false => step_probe::TAKEN,
+        };
+        let own = first(Scheme::Exponential, most).unwrap_or(0.0);
         // How far the work of one of its steps leads without it. Where that is far less by the rates alone, no other steps are tried.
         let expected = work * self.span / followed;
         let other = match self.implicit(stiff) {
-            None if own <= PREFERENCE * expected => work * first(self.pair().0).unwrap_or(0.0),
+            None if own <= PREFERENCE * expected => {
+                work * first(self.pair().0, step_probe::TAKEN).unwrap_or(0.0)
+            }
             _ => expected,
         };
         if own <= other {
