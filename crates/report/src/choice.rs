@@ -1,7 +1,7 @@
 //! The method that is chosen for a scene beside the one that would have been the fastest.
 
 use super::case::Case;
-use super::curve::time_to;
+use super::curve::run_times;
 use super::row::Work;
 use hamel::registry::JointRegistry;
 use hamel_scene::{Company, Scene, Settings};
@@ -91,18 +91,11 @@ fn chosen(scene: &Scene, tolerance: f64, t_end: f64) -> Option<(&'static str, St
     Some((method.scheme().name(), reason.unwrap_or_default()))
 }
 
-/// The method that takes the least time to this error, and the time, s; between two points of a curve as a power of the error.
+/// The method that takes the least time to this error, and the time, s.
 fn fastest(rows: &[&Work], error: f64) -> Option<(String, f64)> {
-    let mut names: Vec<&str> = rows.iter().map(|row| row.method.as_str()).collect();
-    names.dedup();
-    let named = names.into_iter().filter(|name| *name != Settings::AUTO);
-    let times = named.filter_map(|name| {
-        let curve = rows.iter().filter(|row| row.method == name);
-        let points = curve.filter_map(|row| Some((row.error_worst?, row.seconds_least?)));
-        Some((
-            name.to_owned(),
-            time_to(&points.collect::<Vec<_>>(), error)?,
-        ))
-    });
-    times.min_by(|a, b| a.1.total_cmp(&b.1))
+    let named = rows.iter().copied();
+    let named: Vec<&Work> = named.filter(|row| row.method != Settings::AUTO).collect();
+    let fastest = run_times(&named, error).into_iter();
+    let fastest = fastest.min_by(|a, b| a.1.total_cmp(&b.1));
+    fastest.map(|(name, time)| (name.to_owned(), time))
 }

@@ -1,5 +1,8 @@
 //! Curves of error against run time: what lies between their points.
 
+use super::row::Work;
+use itertools::Itertools;
+
 /// The least time, s, to an error, of points (error, time) in the order of their tolerances; between two of them as a power of the error. `None` where the curve does not
 /// come so far.
 pub fn time_to(points: &[(f64, f64)], error: f64) -> Option<f64> {
@@ -16,6 +19,17 @@ pub fn time_to(points: &[(f64, f64)], error: f64) -> Option<f64> {
 
 /// Half a rounding.
 const LEAST: f64 = 0.5 * f64::EPSILON;
+
+/// The least time of each method to an error, s, of rows of one scene, form, representation and implementation; methods that do not come so far are left out.
+pub fn run_times<'a>(rows: &[&'a Work], error: f64) -> Vec<(&'a str, f64)> {
+    let methods = rows.iter().map(|row| row.method.as_str()).unique();
+    let times = methods.filter_map(|method| {
+        let curve = rows.iter().filter(|row| row.method == method);
+        let points = curve.filter_map(|row| Some((row.error_worst?, row.seconds_least?)));
+        Some((method, time_to(&points.collect::<Vec<_>>(), error)?))
+    });
+    times.collect()
+}
 
 /// The points (error, time) that no other point beats in both, the fastest first.
 pub fn front(points: impl IntoIterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {

@@ -287,7 +287,7 @@ def main():
     print('\n| ' + ' | '.join(names) + ' |\n|' + '---|' * len(names))
     table = csv.writer(open(f'{out}/work.csv', 'w'))
     table.writerow('scene library method value error seconds_least seconds_median evaluations steps failure version machine'.split())
-    reasons = []
+    machine, reasons = processor(), []
     for name, path, reference in references():
         if args.scenes and name not in args.scenes.split(','):
             continue
@@ -308,7 +308,7 @@ def main():
                 points += sweep(program, scene, method, knob, args.most)
         for p in points:
             done = [p.least, p.median, p.evaluations, p.steps, ''] if not p.failure else ['', '', '', '', p.failure]
-            table.writerow([name, p.program.name, p.method, p.value, p.error, *done, p.program.info, processor()])
+            table.writerow([name, p.program.name, p.method, p.value, p.error, *done, p.program.info, machine])
         bare = bare_call(args.work, scenes.plain(scene), folder)
         for error in ASKED:
             chosen = {}

@@ -1,7 +1,7 @@
 //! Which method is the fastest for which kind of scene.
 
 use super::{is_main, times};
-use crate::curve::time_to;
+use crate::curve::run_times;
 use crate::kind::Kind;
 use crate::row::Work;
 use hamel::registry::JointRegistry;
@@ -92,7 +92,7 @@ fn cell(rows: &[&Work], scenes: &[&str], error: f64) -> String {
 fn records<'a>(rows: &[&'a Work], scenes: &[&str], error: f64) -> Vec<Record<'a>> {
     let mut logarithms: Vec<(&str, Vec<f64>)> = Vec::new();
     for scene in scenes {
-        let times = run_times(rows, scene, error);
+        let times = times_of(rows, scene, error);
         let least = { times.iter() }.map(|(_, time)| *time).reduce(f64::min);
         for (method, time) in times {
             let logarithm = (time / least.unwrap_or(time)).ln();
@@ -111,16 +111,9 @@ fn records<'a>(rows: &[&'a Work], scenes: &[&str], error: f64) -> Vec<Record<'a>
 }
 
 /// The run times, s, of the methods that have an error of some floors or of what is asked on a scene.
-fn run_times<'a>(rows: &[&'a Work], scene: &str, error: f64) -> Vec<(&'a str, f64)> {
+fn times_of<'a>(rows: &[&'a Work], scene: &str, error: f64) -> Vec<(&'a str, f64)> {
     let own = rows.iter().copied().filter(|row| row.scene == scene);
     let own: Vec<&Work> = own.collect();
     let floor = own.first().map_or(0.0, |row| row.floor);
-    let methods = own.iter().map(|row| row.method.as_str()).unique();
-    let times = methods.filter_map(|method| {
-        let curve = own.iter().filter(|row| row.method == method);
-        let points = curve.filter_map(|row| Some((row.error_worst?, row.seconds_least?)));
-        let points: Vec<(f64, f64)> = points.collect();
-        Some((method, time_to(&points, error.max(FLOORS * floor))?))
-    });
-    times.collect()
+    run_times(&own, error.max(FLOORS * floor))
 }
