@@ -164,8 +164,8 @@ impl Correction {
         self.is_settled
     }
 
-    /// Takes what rounding of the energies makes of λ, in this step or in the one before, out of `difference` (ϕ, then p̄) of a point and the end of the step over `step` (s) that was just tried. In
-    /// a shorter step it is no smaller; near rest, where the energy hardly changes with p̄, it is large.
+    /// Takes the part that rounding of the energies has in λ out of a `difference` (ϕ, then p̄) over the `step` (s) that was just tried. The rounding may be of this
+    /// step or of the one before. In a shorter step it is no smaller; near rest, where the energy hardly changes with p̄, it is large.
     pub(super) fn forget_scatter(&self, step: f64, difference: &mut [f64]) {
         let (turned, pushed) = difference.split_at_mut(self.phi.len());
         // Without any energy at all, that is 0/0, and nothing of λ counts.

@@ -22,8 +22,9 @@ pub(super) struct Forces {
     inverse: Vec<Vec<f64>>,
     /// The residuals of the last iteration, stage by stage.
     residuals: Vec<Vec<f64>>,
-    /// Whether rounding of stiff forces may show: in this step or the one before, in this step.
+    /// Whether rounding of stiff forces may show, by this step or the one before.
     matter: bool,
+    /// The same by this step alone.
     has_mattered: bool,
     residual: Vec<f64>,
     forces: Vec<f64>,
