@@ -148,6 +148,14 @@ impl Scheme {
         }
     }
 
+    /// The forms of the equations of motion that it integrates. The discrete gradient is a method for momenta.
+    pub fn forms(&self) -> &'static [Form] {
+        match self {
+            Self::DiscreteGradient => &[Form::Hamiltonian],
+            _ => &[Form::Lagrangian, Form::Hamiltonian],
+        }
+    }
+
     /// Whether it estimates its own error, so that it can control its step.
     pub fn has_estimate(&self) -> bool {
         match self {
@@ -345,20 +353,23 @@ impl Options {
             let scheme = scheme.name();
             return Err(IntegrateError::Scheme { scheme, reason });
         }
+        if !scheme.forms().contains(&self.form) {
+            return Err(IntegrateError::Scheme {
+                scheme: scheme.name(),
+                reason: "is one of the port-Hamiltonian form: choose that form".into(),
+            });
+        }
         if *scheme != Scheme::DiscreteGradient {
             return Ok(());
         }
         let drive = mechanism.drives().first();
         let constraint = mechanism.constraints().first();
-        let reason = match (self.form, drive, constraint) {
-            (Form::Lagrangian, ..) => {
-                "is one of the port-Hamiltonian form: choose that form".into()
-            }
-            (_, Some(drive), _) => format!(
+        let reason = match (drive, constraint) {
+            (Some(drive), _) => format!(
                 "takes no prescribed motion, whose work it does not know: `{}` is one",
                 drive.name
             ),
-            (.., Some(constraint)) => format!(
+            (_, Some(constraint)) => format!(
                 "takes no constraint that couples joints: `{}` is one",
                 constraint.name
             ),

@@ -34,7 +34,7 @@ pub fn measure(
         for case in Case::chosen(&[(*name).to_owned()])? {
             let scene = case.description()?.build(registry)?;
             for &scheme in &plan.schemes {
-                for &form in plan.forms(scheme) {
+                for &form in scheme.forms() {
                     tick(&format!("{name} {} drift", scheme.name()));
                     let empty = empty(plan, case.name, scheme, form, machine);
                     if store.find(&empty.key()).is_none() {
@@ -49,7 +49,7 @@ pub fn measure(
 
 /// How many runs there are, for the bar.
 pub fn count(plan: &Plan) -> usize {
-    let runs = plan.schemes.iter().map(|&scheme| plan.forms(scheme).len());
+    let runs = plan.schemes.iter().map(|&scheme| scheme.forms().len());
     runs.sum::<usize>() * plan.drift.scenes.len()
 }
 

@@ -83,7 +83,7 @@ pub fn count(plan: &Plan) -> usize {
 fn curves(plan: &Plan) -> impl Iterator<Item = (Scheme, Form)> {
     let schemes = SCHEMES.into_iter();
     let asked = schemes.filter(|scheme| plan.schemes.contains(scheme));
-    asked.flat_map(|scheme| plan.forms(scheme).iter().map(move |&form| (scheme, form)))
+    asked.flat_map(|scheme| scheme.forms().iter().map(move |&form| (scheme, form)))
 }
 
 /// The motion of a scene by the tree, and the estimate of its error, as `hamel simulate` makes it.

@@ -161,7 +161,7 @@ impl Plan {
         representation: Representation,
         implementation: Implementation,
     ) -> &'static [Form] {
-        let forms = self.forms(scheme);
+        let forms = scheme.forms();
         let is_among = |count: usize| COMPARED[..count].contains(&scheme);
         let is_measured = match (representation.is_first(), implementation) {
             (true, Implementation::Tree) => return forms,
@@ -170,13 +170,5 @@ impl Plan {
             (false, Implementation::Compiled) => false,
         };
         &forms[..usize::from(is_measured)]
-    }
-
-    /// Forms in which a scheme is measured.
-    pub fn forms(&self, scheme: Scheme) -> &'static [Form] {
-        match scheme {
-            Scheme::DiscreteGradient => &[Form::Hamiltonian],
-            _ => &[Form::Lagrangian, Form::Hamiltonian],
-        }
     }
 }

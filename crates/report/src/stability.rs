@@ -39,7 +39,7 @@ pub fn measure(
             for &scheme in &plan.schemes {
                 tick(&format!("{name} {} stability", scheme.name()));
                 for &stiffness in &plan.stiffnesses {
-                    let form = plan.forms(scheme)[0];
+                    let form = scheme.forms()[0];
                     let frequency = (stiffness / inertia).sqrt();
                     let mut row = row::Stability {
                         scene: name.into(),

@@ -136,7 +136,7 @@ fn curves(plan: &Plan, case: &Case, scene: &SceneDescription) -> Vec<Curve> {
         });
     // The choice does not depend on representation and implementation.
     let chosen = Representation::of(scene).first().map(|&representation| {
-        let forms = plan.forms(Scheme::DormandPrince).iter();
+        let forms = Scheme::DormandPrince.forms().iter();
         forms.map(move |&form| Curve {
             scene: case.name,
             representation,

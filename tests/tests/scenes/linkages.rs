@@ -165,12 +165,7 @@ fn residuals(
     let time = |sample: u32| f64::from(sample) * f64::from(steps_between) * STEP;
     let mut worst = Largest::new("residual of a loop");
     for &scheme in schemes {
-        // The discrete gradient is one of momenta.
-        let forms = match scheme {
-            Scheme::DiscreteGradient => &[Form::Hamiltonian][..],
-            _ => &[Form::Lagrangian, Form::Hamiltonian],
-        };
-        for &form in forms {
+        for &form in scheme.forms() {
             let options = Options {
                 form,
                 method: Method::Fixed { scheme, dt: STEP },

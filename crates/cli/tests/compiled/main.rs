@@ -8,7 +8,7 @@ mod common;
 mod compiler;
 
 use common::{hamel, stdout};
-use hamel::integrate::Scheme;
+use hamel::integrate::{Form, Scheme};
 use serde_json::Value;
 use std::io::Write;
 use std::path::Path;
@@ -152,9 +152,9 @@ fn every_method_takes_compiled_equations() {
     for scheme in Scheme::ALL {
         let scene = "scenes/double_ball_pendulum.toml";
         let method = scheme.name();
-        let form = match scheme {
-            Scheme::DiscreteGradient => "hamiltonian",
-            _ => "lagrangian",
+        let form = match scheme.forms()[0] {
+            Form::Lagrangian => "lagrangian",
+            Form::Hamiltonian => "hamiltonian",
         };
         moves_as_the_tree(&[
             scene, "--form", form, "--method", method, "--dt", "0.01", "--at", "0.05",

@@ -43,6 +43,7 @@ fn the_shortest_spans_end() {
         for scheme in Scheme::ALL.into_iter().filter(Scheme::has_estimate) {
             for sampling in [Sampling::Landing, Sampling::Dense] {
                 let options = Options {
+                    form: scheme.forms()[0],
                     samples: vec![0.0, t_end],
                     ..options(Method::controlled(scheme, 1e-8), t_end)
                 };

@@ -72,11 +72,8 @@ fn crossings_of_a_throw_come_in_order_and_to_rounding() {
         speed / GRAVITY,
         (speed + root) / GRAVITY,
     ];
-    for form in [Form::Lagrangian, Form::Hamiltonian] {
-        for scheme in Scheme::ALL {
-            if scheme == Scheme::DiscreteGradient && form == Form::Lagrangian {
-                continue;
-            }
+    for scheme in Scheme::ALL {
+        for &form in scheme.forms() {
             println!("{form:?}, {}", scheme.name());
             let options = options(form, Method::fixed(scheme, 1.0), 2.0);
             let events = vec![

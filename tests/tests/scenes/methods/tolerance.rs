@@ -74,10 +74,7 @@ fn is_known(complaint: &str) -> bool {
 
 /// What is wrong with the errors of a method on some scenes, in the first of its forms.
 fn complaints(scheme: Scheme, cases: &[&str]) -> Vec<String> {
-    let form = match scheme {
-        Scheme::DiscreteGradient => Form::Hamiltonian,
-        _ => Form::Lagrangian,
-    };
+    let form = scheme.forms()[0];
     let told = |name: &&str| {
         let told = complaint(name, scheme, form)?;
         Some(format!("{name}, {}: {told}", scheme.name()))
