@@ -170,7 +170,14 @@ impl Correction {
         let (turned, pushed) = difference.split_at_mut(self.phi.len());
         // Without any energy at all, that is 0/0, and nothing of λ counts.
         let part = self.lambda.abs().min(self.scatter).copysign(self.lambda);
-        self.moved.add_to(step * part, turned, pushed);
+        self.add_moved(step * part, turned, pushed);
+    }
+
+    /// Adds so much of what λ moves; none of it where it is 0, as p̄/h is infinite where a body moves over the shortest steps.
+    fn add_moved(&self, weight: f64, phi: &mut [f64], y: &mut [f64]) {
+        if weight != 0.0 {
+            self.moved.add_to(weight, phi, y);
+        }
     }
 
     /// The step just tried is taken.
@@ -211,8 +218,7 @@ impl Correction {
             self.adjust(step_state, flow, turned)?;
         }
         self.move_by_structure(step_state, flow, span.step, &rates.speeds);
-        add(&mut rates.phi, self.lambda, &self.moved.phi);
-        add(&mut rates.y, self.lambda, &self.moved.y);
+        self.add_moved(self.lambda, &mut rates.phi, &mut rates.y);
         Ok(())
     }
 
@@ -290,7 +296,10 @@ impl Correction {
                 .structure((body, bodies), &self.middle, momenta, rotors);
             multiply(structure, faster, out);
         }
-        add(&mut self.moved.y, -1.0 / step, &step_state.next_y);
+        // Over the shortest steps p̄/h is a number where 1/h is not.
+        for (rate, momentum) in self.moved.y.iter_mut().zip(&step_state.next_y) {
+            *rate -= momentum / step;
+        }
     }
 }
 

@@ -38,8 +38,16 @@ fn run(mechanism: &Arc<Mechanism>, state: &State, options: &Options) -> Result<f
 #[test]
 fn the_shortest_spans_end() {
     let mechanism = bare();
-    let state = state(&mechanism);
-    for t_end in [5e-324, 1e-323, 1e-310, f64::MIN_POSITIVE, 1e-300, 0.0] {
+    let rest = state(&mechanism);
+    let moving = State {
+        speeds: vec![0.3; rest.speeds.len()],
+        ..rest.clone()
+    };
+    let spans = [5e-324, 1e-323, 1e-310, f64::MIN_POSITIVE, 1e-300, 0.0];
+    for (t_end, state) in spans
+        .into_iter()
+        .flat_map(|t_end| [(t_end, &rest), (t_end, &moving)])
+    {
         for scheme in Scheme::ALL.into_iter().filter(Scheme::has_estimate) {
             for sampling in [Sampling::Landing, Sampling::Dense] {
                 let options = Options {
@@ -48,7 +56,7 @@ fn the_shortest_spans_end() {
                     ..options(Method::controlled(scheme, 1e-8), t_end)
                 };
                 let mut dynamics = Recursive::new(Arc::clone(&mechanism));
-                let solution = Integration::new(&mut dynamics, &state, &options)
+                let solution = Integration::new(&mut dynamics, state, &options)
                     .sampling(sampling)
                     .event(Event::new("never", |_, _, _| 1.0))
                     .run()
@@ -64,7 +72,7 @@ fn the_shortest_spans_end() {
             }
         }
         let fixed = options(Method::rk4(1e-3), t_end);
-        assert_eq!(run(&mechanism, &state, &fixed), Ok(t_end));
+        assert_eq!(run(&mechanism, state, &fixed), Ok(t_end));
     }
 }
 
