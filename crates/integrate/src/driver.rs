@@ -16,6 +16,7 @@ use super::rates_of_loops::has_ends;
 use super::reconsider::Reconsideration;
 use super::rounding::Rounding;
 use super::search::Search;
+use super::stalls;
 use super::step_control::StepController;
 use super::step_state::StepState;
 use super::stepper::{self, Span, Stepper};
@@ -209,7 +210,7 @@ impl<'a> Driver<'a> {
             let is_past = is_past.is_some_and(|end| end.time < self.clock.time());
             stopped = is_past || self.report(observer)? || self.end.is_some();
             if !stopped {
-                self.look_ahead(&pacing.rounding)?;
+                self.look_ahead(&mut pacing)?;
                 self.reconsider(&mut pacing)?;
             }
         }
@@ -231,8 +232,8 @@ impl<'a> Driver<'a> {
         })
     }
 
-    /// Whether the end is within reach at the present pace.
-    fn look_ahead(&mut self, rounding: &Rounding) -> Result<(), IntegrateError> {
+    /// Whether the end is within reach at the present pace. What takes many steps may do so for rounding in Q, which is looked at then.
+    fn look_ahead(&mut self, pacing: &mut Pacing) -> Result<(), IntegrateError> {
         let Self {
             prospect,
             flow,
@@ -240,6 +241,7 @@ impl<'a> Driver<'a> {
             options,
             statistics,
             step_state,
+            stepper,
             ..
         } = self;
         let time = clock.time();
@@ -248,7 +250,16 @@ impl<'a> Driver<'a> {
             configuration: step_state.configuration.clone(),
             speeds: step_state.speeds().to_vec(),
         };
-        prospect.check(flow, (options, statistics), (time, rounding), state)
+        if !prospect.check(flow, (options, statistics), (time, &pacing.rounding), state)? {
+            return Ok(());
+        }
+        pacing.rounding.count_configurations();
+        stalls::check(
+            (step_state, flow),
+            (time, pacing.step),
+            (&mut pacing.rounding, &mut **stepper),
+            statistics,
+        )
     }
 
     /// Adds the work of the stepper, which is not used any more.
@@ -370,6 +381,9 @@ impl<'a> Driver<'a> {
             return outcome;
         };
         if let Err(cause) = outcome {
+            if let StepFailure::NoConvergence { .. } = cause {
+                self.statistics.unconverged += 1;
+            }
             pacing.step = step * pacing.controller.reject(None);
             return Err(cause);
         }

@@ -281,6 +281,22 @@ pub enum IntegrateError {
         /// What makes them so short, where that is known, and what to do about it.
         advice: String,
     },
+    /// Rounding keeps the iteration of implicit steps from converging.
+    #[error(
+        "at {} s, rounding in doubles keeps the iteration of the implicit step from converging, in {count} of {attempts} attempts: at joint `{joint}` it comes to {ratio:.1e} times what a step may leave unsolved: take refined arithmetic, or an explicit method", Number(*.time)
+    )]
+    Unsolved {
+        /// When.
+        time: f64,
+        /// The joint whose rates scatter most.
+        joint: String,
+        /// What it changes in a step at most, over what a step may leave unsolved.
+        ratio: f64,
+        /// Attempts without convergence.
+        count: usize,
+        /// All attempts by then.
+        attempts: usize,
+    },
     /// Step control has come to steps that time cannot resolve.
     #[error("the step has shrunk to {step:e} s at {} s, the limit is {limit:e} s: {cause}{near}{advice}", Number(*.time))]
     StepUnderflow {

@@ -64,6 +64,7 @@ mod search;
 mod solution;
 mod spectrum;
 mod stages;
+mod stalls;
 mod step_control;
 mod step_probe;
 mod step_state;

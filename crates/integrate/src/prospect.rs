@@ -18,6 +18,9 @@ const HOPELESS: f64 = 3e3;
 /// So many steps still to come are too many for a stiff mechanism, from the first look on: half a month for the smallest one.
 const ENDLESS: f64 = 1e13;
 
+/// So many steps still to come are many enough to ask whether the rounding of Q makes them short: some seconds for the smallest mechanism.
+const MANY: f64 = 1e6;
+
 /// Steps that are less than this part of those before still shrink.
 const SHRINKS: f64 = 0.1;
 
@@ -41,7 +44,7 @@ impl Prospect {
         }
     }
 
-    /// Whether the steps so far have led far enough to `time`.
+    /// Whether the motion takes so many steps that their cause is worth a look, at `time`.
     ///
     /// # Errors
     /// If the remaining steps, at the present pace, would take a night or longer.
@@ -51,30 +54,30 @@ impl Prospect {
         (options, statistics): (&Options, &Statistics),
         (time, rounding): (f64, &Rounding),
         state: impl FnOnce() -> State,
-    ) -> Result<(), IntegrateError> {
+    ) -> Result<bool, IntegrateError> {
         let steps = statistics.steps;
         let taken = steps - self.steps;
         if taken < STEPS {
-            return Ok(());
+            return Ok(false);
         }
         let step = (time - self.time) / taken as f64;
         (self.time, self.steps) = (time, steps);
         let before = core::mem::replace(&mut self.step, step);
         // Steps that still shrink come to their own end soon, which tells what they shrink for.
         if step < SHRINKS * before || before == 0.0 {
-            return Ok(());
+            return Ok(false);
         }
         let to_go = (options.t_end - time) / step;
         let bodies = flow.mechanism.bodies().len();
         let work = flow.evaluations as f64 * bodies as f64;
         let is_long = work >= PATIENCE && to_go > HOPELESS * steps as f64;
         if !is_long && to_go < ENDLESS {
-            return Ok(());
+            return Ok(to_go > MANY);
         }
         let other = other_method(flow, options, &state());
         // Short steps may pass with what calls for them, unless it is the mechanism itself.
         if !is_long && other.is_none() {
-            return Ok(());
+            return Ok(true);
         }
         let advice = || match (options.method, rounding.limit(flow)) {
             (Method::Fixed { .. }, _) => "take a larger dt, or a method with step control".into(),

@@ -11,6 +11,7 @@ use super::step_state::StepState;
 use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
+use hamel_runtime::erased::AnyJoint;
 
 /// Attempts of one step that are refused before rounding is looked at again: the second one is of a step that the first estimate has chosen.
 const REFUSALS: usize = 2;
@@ -19,7 +20,7 @@ const REFUSALS: usize = 2;
 const LIFE: usize = 64;
 
 /// How many times what rounding comes to on average is still rounding.
-const MARGIN: f64 = 8.0;
+pub(super) const MARGIN: f64 = 8.0;
 
 /// What is left of an older look beside a new one, as one look at rounding may see little of it by chance.
 const MEMORY: f64 = 0.95;
@@ -44,6 +45,8 @@ pub(super) struct Rounding {
     /// Attempts of the present step that were refused.
     refusals: usize,
     limit: Option<Limit>,
+    /// Whether the roundings of Q count at all joints.
+    is_of_configurations: bool,
     room: Room,
 }
 
@@ -70,6 +73,7 @@ impl Rounding {
             age: None,
             refusals: 0,
             limit: None,
+            is_of_configurations: false,
             room: Room {
                 phi: beside.phi.clone(),
                 y: beside.y.clone(),
@@ -89,6 +93,16 @@ impl Rounding {
         self.refusals >= REFUSALS || self.age.is_none_or(|age| age >= LIFE)
     }
 
+    /// From now on the roundings of Q count at all joints, and not only where relations determine Q.
+    ///
+    /// They are small beside those of the speeds, but where masses differ by many orders of magnitude they decide the accelerations. Elsewhere they would lengthen
+    /// steps at the smallest tolerances, at the cost of digits; so they are left to motions that take more steps than anybody waits for.
+    pub(super) fn count_configurations(&mut self) {
+        if !core::mem::replace(&mut self.is_of_configurations, true) {
+            self.age = None;
+        }
+    }
+
     /// The present step was refused for its error.
     pub(super) const fn refuse(&mut self) {
         self.refusals += 1;
@@ -103,7 +117,8 @@ impl Rounding {
         time: f64,
         weight: f64,
     ) {
-        let found = self.room.scatter(step_state, flow, time);
+        let is_counted = |joint: &dyn AnyJoint| self.is_of_configurations || has_ends(joint);
+        let found = self.room.scatter(step_state, flow, time, is_counted);
         let found = found.and_then(|()| {
             step_state.set_scatter(flow, (MARGIN * weight, MEMORY), &mut self.room.difference);
             step_state.set_errors(1.0, &self.room.difference);
@@ -116,6 +131,17 @@ impl Rounding {
         };
         self.rate = rate.max(MEMORY * self.rate);
         (self.age, self.refusals) = (Some(0), 0);
+    }
+
+    /// What roundings of the state, in Q at all joints, make of the rates at it: ϕ̇, then ẏ.
+    pub(super) fn scatter_of_configurations(
+        &mut self,
+        step_state: &StepState,
+        flow: &mut Flow<'_>,
+        time: f64,
+    ) -> Result<&mut [f64], StepFailure> {
+        self.room.scatter(step_state, flow, time, |_| true)?;
+        Ok(&mut self.room.difference)
     }
 
     /// A step was accepted with this error of the joint under a body, over the tolerance.
@@ -150,19 +176,20 @@ impl Rounding {
 }
 
 impl Room {
-    /// Differences of the rates at the state, and at one that differs from it by a rounding in each of its numbers, in Q too where relations determine it: ϕ̇, then ẏ.
+    /// Differences of the rates at the state, and at one that differs from it by a rounding in each of its numbers, in Q too at the joints that `is_counted` takes: ϕ̇, then ẏ.
     fn scatter(
         &mut self,
         step_state: &StepState,
         flow: &mut Flow<'_>,
         time: f64,
+        is_counted: impl Fn(&dyn AnyJoint) -> bool,
     ) -> Result<(), StepFailure> {
         beside(&step_state.offset, &mut self.phi);
         beside(&step_state.y, &mut self.y);
         let mechanism = &flow.mechanism;
         for (_, body) in mechanism
             .joints()
-            .filter(|(_, body)| has_ends(body.joint()))
+            .filter(|(_, body)| is_counted(body.joint()))
         {
             let freedoms = body.ranges().freedoms.clone();
             for (own, phi) in self.phi[freedoms].iter_mut().enumerate() {

@@ -62,6 +62,8 @@ pub struct Statistics {
     pub steps: usize,
     /// Refused steps.
     pub rejected: usize,
+    /// Refused steps whose iteration did not converge.
+    pub unconverged: usize,
     /// Steps that end where inputs or elements bend, as at the limit of an effort.
     pub bends: usize,
     /// Evaluations of the equations of motion.

@@ -57,6 +57,17 @@ pub(super) trait Stepper {
         None
     }
 
+    /// What the iteration of an implicit step under step control makes of rounding of the rates (ϕ̇, then ẏ) over a `step`, over what it may leave unsolved, and the
+    /// row of (ϕ, y) that has most of it.
+    fn unsolved_by_rounding(
+        &mut self,
+        _step_state: &StepState,
+        _rounding: &mut [f64],
+        _step: f64,
+    ) -> Option<(f64, usize)> {
+        None
+    }
+
     /// The power of the step with which its estimated error falls.
     fn order(&self) -> u32;
 

@@ -63,6 +63,7 @@ impl Arithmetic {
             Err(
                 error @ (IntegrateError::StepUnderflow { .. }
                 | IntegrateError::Hopeless { .. }
+                | IntegrateError::Unsolved { .. }
                 | IntegrateError::AtState { .. }),
             ) => Some(format!("in doubles the motion does not come to its end: {error}")),
             Err(_) => None,

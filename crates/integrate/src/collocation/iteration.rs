@@ -216,6 +216,12 @@ impl Collocation {
         phi.iter().copied().chain(rates).map(f64::abs)
     }
 
+    /// The row of a change with the largest size, and the size.
+    pub(super) fn worst(&self, change: &[f64], step_state: &StepState) -> Option<(usize, f64)> {
+        let sizes = self.sizes(change, step_state).enumerate();
+        sizes.max_by(|(_, a), (_, b)| a.total_cmp(b))
+    }
+
     /// The largest size of changes or increments; NaN where one is.
     fn largest(&self, changes: &[Vec<f64>], step_state: &StepState) -> f64 {
         let sizes = changes
@@ -253,7 +259,7 @@ impl Collocation {
 }
 
 /// What may be left unsolved of a step's equations under step control; some roundings at least.
-fn unsolved(tolerance: f64) -> f64 {
+pub(super) fn unsolved(tolerance: f64) -> f64 {
     (UNSOLVED * Float::powf(tolerance, 1.2)).max(10.0 * f64::EPSILON)
 }
 

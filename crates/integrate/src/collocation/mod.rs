@@ -184,6 +184,19 @@ impl Stepper for Collocation {
         self.correction.as_ref().map(|_| quadrature::WEIGHT)
     }
 
+    fn unsolved_by_rounding(
+        &mut self,
+        step_state: &StepState,
+        rounding: &mut [f64],
+        step: f64,
+    ) -> Option<(f64, usize)> {
+        let (tolerance, newton) = (self.tolerance?, self.newton.as_mut()?);
+        self.method.estimate?;
+        newton.filter(rounding);
+        let (row, size) = self.worst(rounding, step_state)?;
+        Some((step * size / iteration::unsolved(tolerance), row))
+    }
+
     fn error(
         &mut self,
         step_state: &mut StepState,
