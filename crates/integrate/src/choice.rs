@@ -1,5 +1,6 @@
 //! Chooses a method from the eigenvalues at the initial state, with and without force elements, and from trial steps.
 
+use super::free_motion::FreeBodies;
 use super::{IntegrateError, Method, Mode, Scheme, Spectrum, State, step_probe};
 use alloc::format;
 use alloc::string::String;
@@ -68,6 +69,12 @@ impl Choice {
         state: &State,
         wanted: Wanted,
     ) -> Result<Self, IntegrateError> {
+        if !wanted.is_bound && FreeBodies::new(mechanism).is_some() {
+            return Ok(Self {
+                scheme: Scheme::Exponential,
+                reason: "nothing but gravity acts on any body, so that the exponential method takes steps of any length exactly".into(),
+            });
+        }
         if mechanism.elements().is_empty() {
             return Ok(wanted.explicit("no springs or dampers, so that nothing is stiff"));
         }

@@ -173,7 +173,11 @@ impl<'a> Driver<'a> {
             watch,
             waypoints: Waypoints::new(flow.mechanism.layout()),
             prospect: Prospect::new(time),
-            stepper: stepper::new(options.method.scheme(), tolerance, &flow),
+            stepper: stepper::new(
+                options.method.scheme(),
+                (tolerance, outputs.is_none()),
+                &flow,
+            ),
             scheme: *options.method.scheme(),
             reconsideration: is_open.then(Reconsideration::new),
             flow,

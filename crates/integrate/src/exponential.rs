@@ -2,10 +2,11 @@
 //! taken as in an explicit method.
 //!
 //! M. Hochbruck, A. Ostermann and J. Schweitzer, *Exponential Rosenbrock-type methods*, 2009: exprb43. A stiff spring at a joint is linear except for the curvature of the local coordinates, so that one step may span many periods, damped or not. The matrices are dense: made for up to some
-//! tens of degrees of freedom.
+//! tens of degrees of freedom. Bodies that nothing but uniform gravity acts on it takes in closed form ([`FreeBodies`]), over steps of any length.
 
 use super::StepFailure;
 use super::flow::{Flow, Rates};
+use super::free_motion::FreeBodies;
 use super::jacobian::Jacobian;
 use super::phi::Phi;
 use super::step_state::{StepState, add};
@@ -18,6 +19,8 @@ const PART_OF_STEP: f64 = 1e-3;
 
 /// The method at work. Vectors have ϕ first, then y.
 pub(super) struct Exponential {
+    /// Where all bodies are free, and nothing is asked for between the ends of steps.
+    free: Option<FreeBodies>,
     jacobian: Jacobian,
     phi: Phi,
     /// The matrix for which φ was evaluated last, by rows, and the step.
@@ -37,11 +40,15 @@ pub(super) struct Exponential {
 }
 
 impl Exponential {
-    pub(super) fn new(flow: &Flow<'_>) -> Self {
+    pub(super) fn new(flow: &Flow<'_>, lands: bool) -> Self {
+        let is_left_alone = lands && flow.is_left_alone();
         let jacobian = Jacobian::new(flow);
         let size = jacobian.size();
         let vector = vec![0.0; size];
         Self {
+            free: is_left_alone
+                .then(|| FreeBodies::new(&flow.mechanism))
+                .flatten(),
             phi: Phi::new(size),
             of: (vec![f64::NAN; size * size], f64::NAN),
             at: f64::NAN,
@@ -172,6 +179,12 @@ impl Stepper for Exponential {
         flow: &mut Flow<'_>,
         span: Span,
     ) -> Result<(), StepFailure> {
+        if let Some(free) = &mut self.free
+            && free.attempt(step_state, flow, span)?
+        {
+            self.error.fill(0.0);
+            return Ok(());
+        }
         self.linearize(step_state, flow, span)?;
         let Span { time, step } = span;
         let (phi, first, drift) = (&self.phi, &self.first, &self.drift);

@@ -187,8 +187,13 @@ impl<'a> Flow<'a> {
 
     /// Whether the rates at a state are the same at all times, until the next [`Flow::hold`].
     pub(super) fn is_autonomous(&self) -> bool {
-        let is_left_alone = self.inputs.is_none() || self.held.is_some();
-        is_left_alone && !self.mechanism.changes_with_time()
+        let is_constant = self.inputs.is_none() || self.held.is_some();
+        is_constant && !self.mechanism.changes_with_time()
+    }
+
+    /// Whether no inputs and no friction act.
+    pub(super) fn is_left_alone(&self) -> bool {
+        self.inputs.is_none() && self.friction.is_empty()
     }
 
     /// A time of the present step, for functions of time.

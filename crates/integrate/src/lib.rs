@@ -15,6 +15,7 @@
 //! | most | [`Scheme::DormandPrince`]; [`Scheme::DormandPrince8`] from 1e-6 down, [`Scheme::Verner9`] near rounding |
 //! | stiff and damped | [`Scheme::Radau5`]: its steps do not depend on the stiffness |
 //! | stiff and undamped | [`Scheme::Exponential`], which follows the oscillation; [`Scheme::Gauss2`] and [`Scheme::Midpoint`] step over it |
+//! | bodies that nothing but gravity acts on | [`Scheme::Exponential`]: in closed form, over any number of turns |
 //! | any of these | [`Choice`] looks at the first state, and says why |
 //! | long runs | [`Scheme::Gauss3`], or [`Scheme::DiscreteGradient`] where the balance of energy shall hold to rounding |
 #![forbid(unsafe_code)]
@@ -42,6 +43,7 @@ mod explicit;
 mod exponential;
 mod fixed_steps;
 mod flow;
+mod free_motion;
 mod global_error;
 mod hybrid;
 mod integration;

@@ -40,7 +40,8 @@ pub enum Scheme {
     /// Radau IIA with three stages, of order 5: implicit, damps what is stiff.
     Radau5,
     /// An exponential Rosenbrock method of order 4(3): solves the linearised equations exactly, undamped stiff springs among them. Inputs that follow
-    /// the state are no part of them, so that the order is 2 there; dense output and events do not see what oscillates faster than its steps.
+    /// the state are no part of them, so that the order is 2 there; dense output and events do not see what oscillates faster than its steps. Bodies that nothing but uniform gravity
+    /// acts on, each alone in the world on a joint of six degrees of freedom or about its centre of mass, it moves in closed form, where neither is asked for.
     Exponential,
     /// A discrete-gradient method of order 2 on the port-Hamiltonian form: keeps the energy balance to rounding, at steps of one length and under step control.
     DiscreteGradient,
@@ -104,7 +105,7 @@ impl Scheme {
             Self::Gauss3 => "Gauss with 3 stages, implicit, order 6, fixed step: for long runs",
             Self::Radau5 => "Radau IIA of order 5, implicit, step control: for stiff damped scenes",
             Self::Exponential => {
-                "exponential Rosenbrock 4(3), step control: takes stiff springs exactly, undamped ones too"
+                "exponential Rosenbrock 4(3), step control: takes stiff springs exactly, undamped ones too, and the flight and rotation of bodies without forces"
             }
             Self::DiscreteGradient => {
                 "discrete gradient, order 2, fixed step or step control, hamiltonian form alone: keeps the energy balance to rounding"

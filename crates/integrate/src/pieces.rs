@@ -117,7 +117,11 @@ impl Driver<'_> {
         self.count_solves();
         let method = &self.options.method;
         let tolerance = method.control().map(|control| control.tolerance);
-        self.stepper = stepper::new(&self.scheme, tolerance, &self.flow);
+        self.stepper = stepper::new(
+            &self.scheme,
+            (tolerance, self.outputs.is_none()),
+            &self.flow,
+        );
     }
 
     /// Ends the piece within the step just made, and begins the next; `clock` at that part of the step.

@@ -126,8 +126,12 @@ pub(super) struct Solves {
     pub(super) iterations: usize,
 }
 
-/// The stepper of a scheme; `tolerance` is that of the step control, if there is one.
-pub(super) fn new(scheme: &Scheme, tolerance: Option<f64>, flow: &Flow<'_>) -> Box<dyn Stepper> {
+/// The stepper of a scheme; `tolerance` is that of the step control, if there is one, and `lands` whether nothing is asked for between the ends of steps.
+pub(super) fn new(
+    scheme: &Scheme,
+    (tolerance, lands): (Option<f64>, bool),
+    flow: &Flow<'_>,
+) -> Box<dyn Stepper> {
     if let Some(tableau) = scheme.tableau() {
         return Box::new(Explicit::new(tableau, tolerance.is_some(), flow));
     }
@@ -136,7 +140,7 @@ pub(super) fn new(scheme: &Scheme, tolerance: Option<f64>, flow: &Flow<'_>) -> B
         Scheme::Gauss2 => Box::new(Collocation::new(&collocation::GAUSS_2, tolerance, flow)),
         Scheme::Gauss3 => Box::new(Collocation::new(&collocation::GAUSS_3, tolerance, flow)),
         Scheme::Radau5 => Box::new(Collocation::new(&collocation::RADAU_5, tolerance, flow)),
-        Scheme::Exponential => Box::new(Exponential::new(flow)),
+        Scheme::Exponential => Box::new(Exponential::new(flow, lands)),
         Scheme::DiscreteGradient => Box::new(Collocation::energy_keeping(flow)),
         _ => Box::new(CommutatorFree::new(flow)),
     }

@@ -8,6 +8,7 @@ mod estimates;
 mod extreme;
 mod formats;
 mod forms_agree;
+mod free_bodies;
 mod fuzz_scenes;
 mod humanoid;
 mod limits;

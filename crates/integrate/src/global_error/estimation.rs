@@ -123,7 +123,10 @@ impl<'a, 'r> Estimation<'a, 'r> {
             self.doubt.get_or_insert(Doubt::Large);
         }
         let is_exponential = *self.options.method.scheme() == Scheme::Exponential;
-        if is_exponential && errors.iter().any(|error| error.total() < OSCILLATIONS) {
+        if is_exponential
+            && !self.is_exact()
+            && errors.iter().any(|error| error.total() < OSCILLATIONS)
+        {
             self.doubt.get_or_insert(Doubt::Oscillations);
         }
         let count = self.solution.statistics.bends;
@@ -166,12 +169,18 @@ impl<'a, 'r> Estimation<'a, 'r> {
         times
     }
 
+    /// Whether all bodies were free, so that no step was an approximation: the exponential method evaluates no derivatives then.
+    fn is_exact(&self) -> bool {
+        let is_exponential = *self.options.method.scheme() == Scheme::Exponential;
+        is_exponential && self.solution.statistics.jacobians == 0
+    }
+
     fn order(&self) -> u32 {
         self.options.method.scheme().order()
     }
 
     fn compare(&mut self, times: &[State]) -> Result<(Vec<ErrorParts>, Option<f64>), Doubt> {
-        if self.solution.statistics.steps < FEW {
+        if self.solution.statistics.steps < FEW || self.is_exact() {
             return self.compare_with_finer(times);
         }
         let (first, second) = self.coarser();
@@ -244,7 +253,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
         let fine = self.companion(method, times, self.initial)?;
         let from_steps = self.distances(&fine.states, times);
         let is_alike = from_steps.iter().all(|&error| error < ALIKE);
-        if is_alike && fine.steps <= self.solution.statistics.steps as f64 {
+        if is_alike && !self.is_exact() && fine.steps <= self.solution.statistics.steps as f64 {
             self.doubt.get_or_insert(Doubt::Steps);
         }
         Ok(self.with_rounding(from_steps, (self.options.method, &fine), times))
@@ -275,7 +284,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
 
     /// What rounding of accelerations makes of velocities over the root of the time: it is another one at every step, so that it adds up as a random walk does.
     fn scatter(&mut self, times: &[State]) -> f64 {
-        if self.options.form == Form::Hamiltonian {
+        if self.options.form == Form::Hamiltonian || self.is_exact() {
             return 0.0;
         }
         let length = self.solution.state.time - self.initial.time;
