@@ -15,7 +15,7 @@ use alloc::vec::Vec;
 use hamel_runtime::mechanism::{Body, Mechanism};
 use hamel_runtime::spatial::Pose;
 use nalgebra::{DMatrix, DVector, Matrix3, MatrixXx3, Vector3};
-use rotation::Principal;
+use rotation::{Principal, Spin, Turned};
 
 /// What rounding of entries of about 1 makes of a relation between joints' maps, many times over.
 const ROUNDING: f64 = 1e-12;
@@ -28,17 +28,19 @@ const LOOKS: [f64; 2] = [0.17, -0.29];
 /// Every state is that of the whole time since the first step, so that rounding does not add up from step to step.
 pub(super) struct FreeBodies {
     bodies: Vec<FreeBody>,
-    /// Where the first step began.
-    start: Option<Start>,
+    start: Start,
     increment: Vec<f64>,
 }
 
-#[derive(Clone)]
+/// Where the first step begins.
+#[derive(Default)]
 struct Start {
-    /// s.
-    time: f64,
+    /// s; `None` before it.
+    time: Option<f64>,
     configuration: Vec<f64>,
     speeds: Vec<f64>,
+    /// How each body turns; `None` where one has no closed form.
+    spins: Option<Vec<Spin>>,
 }
 
 /// A body that turns about a point: its centre of mass, or a point that is fixed.
@@ -66,7 +68,7 @@ impl FreeBodies {
         let layout = mechanism.layout();
         (!bodies.is_empty()).then(|| Self {
             bodies,
-            start: None,
+            start: Start::default(),
             increment: vec![0.0; layout.freedoms + layout.speeds],
         })
     }
@@ -78,19 +80,23 @@ impl FreeBodies {
         flow: &mut Flow<'_>,
         Span { time, step }: Span,
     ) -> Result<bool, StepFailure> {
-        let start = self.start.get_or_insert_with(|| Start {
-            time,
-            configuration: step_state.configuration.clone(),
-            speeds: step_state.speeds().to_vec(),
-        });
-        let passed = time - start.time + step;
-        let Start {
-            mut configuration,
-            mut speeds,
-            ..
-        } = start.clone();
-        for body in &self.bodies {
-            if !body.advance(&flow.mechanism, passed, &mut configuration, &mut speeds)? {
+        let begins = self.start.time.is_none();
+        let start = *self.start.time.get_or_insert(time);
+        if begins {
+            self.begin(step_state, &flow.mechanism);
+        }
+        let Some(spins) = &self.start.spins else {
+            return Ok(false);
+        };
+        let mut configuration = self.start.configuration.clone();
+        let mut speeds = self.start.speeds.clone();
+        for (body, spin) in self.bodies.iter().zip(spins) {
+            let Some(turned) = spin.after(time - start + step) else {
+                return Ok(false);
+            };
+            let passed = (time - start + step, turned);
+            let state = (&mut *configuration, &mut *speeds);
+            if !body.advance(&flow.mechanism, passed, state)? {
                 return Ok(false);
             }
         }
@@ -114,6 +120,20 @@ impl FreeBodies {
         }
         step_state.move_by_increment(flow, &self.increment)?;
         Ok(true)
+    }
+
+    fn begin(&mut self, step_state: &StepState, mechanism: &Mechanism) {
+        let (configuration, speeds) = (
+            step_state.configuration.clone(),
+            step_state.speeds().to_vec(),
+        );
+        let spin = |own: &FreeBody| {
+            let body = &mechanism.bodies()[own.index];
+            let [angular, _] = own.velocities(body, &configuration, &speeds);
+            own.principal.spin(&angular)
+        };
+        self.start.spins = self.bodies.iter().map(spin).collect();
+        (self.start.configuration, self.start.speeds) = (configuration, speeds);
     }
 }
 
@@ -150,28 +170,32 @@ impl FreeBody {
         })
     }
 
-    /// Moves this body's Q and v̄ by so many seconds.
+    /// Angular and linear velocity of the child frame, in its own axes, rad/s and m/s.
+    fn velocities(&self, body: &Body, configuration: &[f64], speeds: &[f64]) -> [Vector3<f64>; 2] {
+        let map = twist_map(body, body.configuration(configuration));
+        let mut twist = [0.0; 6];
+        multiply(
+            map.as_slice(),
+            &speeds[body.ranges().speeds.clone()],
+            &mut twist,
+        );
+        [0, 3].map(|at| Vector3::from_column_slice(&twist[at..at + 3]))
+    }
+
+    /// Moves this body's Q and v̄ by so many seconds, in which it has turned; `false` where v̄ is not found.
     fn advance(
         &self,
         mechanism: &Mechanism,
-        step: f64,
-        configuration: &mut [f64],
-        speeds: &mut [f64],
+        (step, turned): (f64, Turned),
+        (configuration, speeds): (&mut [f64], &mut [f64]),
     ) -> Result<bool, StepFailure> {
         let body = &mechanism.bodies()[self.index];
-        let (own, ranges) = (body.joint(), body.ranges());
-        let q = &mut configuration[ranges.configuration.clone()];
-        let v = &mut speeds[ranges.speeds.clone()];
+        let [angular, linear] = self.velocities(body, configuration, speeds);
+        let q = &mut configuration[body.ranges().configuration.clone()];
         let Pose {
             rotation,
             translation,
-        } = own.pose(q);
-        let mut twist = [0.0; 6];
-        multiply(twist_map(body, q).as_slice(), v, &mut twist);
-        let [angular, linear] = [0, 3].map(|at| Vector3::from_column_slice(&twist[at..at + 3]));
-        let Some(turned) = self.principal.turn(&angular, step) else {
-            return Ok(false);
-        };
+        } = body.joint().pose(q);
         let mut place = rotation * self.point + translation;
         let mut velocity = Vector3::zeros();
         if self.flies {
@@ -189,7 +213,7 @@ impl FreeBody {
         let Ok(found) = found else {
             return Ok(false);
         };
-        v.copy_from_slice(found.as_slice());
+        speeds[body.ranges().speeds.clone()].copy_from_slice(found.as_slice());
         Ok(true)
     }
 }

@@ -5,6 +5,7 @@
 //! series has. So a million turns cost what one costs.
 
 use super::elliptic::Elliptic;
+use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 use nalgebra::{Matrix3, Rotation3, Vector3};
@@ -22,8 +23,23 @@ const MOST_ROTATIONS: usize = 30;
 pub(super) struct Principal {
     /// The axes, column by column, right-handed.
     axes: Matrix3<f64>,
-    /// In ascending order, kg m².
+    /// In ascending order, as parts of the greatest.
     moments: Vector3<f64>,
+}
+
+/// The rotation of a body from a first angular velocity on.
+#[derive(Clone, Debug)]
+pub(super) struct Spin {
+    /// Of [`Principal`].
+    axes: Matrix3<f64>,
+    kind: Kind,
+}
+
+#[derive(Clone, Debug)]
+enum Kind {
+    /// With an angular velocity that stays, in principal axes.
+    Steady(Vector3<f64>),
+    Periodic(Box<Motion>),
 }
 
 /// Where a body is after a time.
@@ -47,23 +63,21 @@ impl Principal {
         let is_solid = moments
             .iter()
             .all(|moment| *moment > 0.0 && moment.is_finite());
-        is_solid.then_some(Self { axes, moments })
+        is_solid.then(|| Self {
+            axes,
+            moments: moments / moments.z,
+        })
     }
 
-    /// After `time` seconds from an angular velocity in the body's axes (rad/s) on. `None` near the unstable rotation about the middle axis, where the period is infinite.
-    pub(super) fn turn(&self, angular: &Vector3<f64>, time: f64) -> Option<Turned> {
+    /// The rotation from an angular velocity in the body's axes (rad/s) on. `None` near the unstable rotation about the middle axis, where the period is infinite.
+    pub(super) fn spin(&self, angular: &Vector3<f64>) -> Option<Spin> {
         let own = self.axes.transpose() * angular;
-        let turned = match self.is_steady(&own) {
-            true => Turned {
-                rotation: Rotation3::from_scaled_axis(own * time).into_inner(),
-                angular: own,
-            },
-            false => Motion::new(&self.moments, &own)?.turned(time)?,
+        let kind = match self.is_steady(&own) {
+            true => Kind::Steady(own),
+            false => Kind::Periodic(Box::new(Motion::new(&self.moments, &own)?)),
         };
-        Some(Turned {
-            rotation: self.axes * turned.rotation * self.axes.transpose(),
-            angular: self.axes * turned.angular,
-        })
+        let axes = self.axes;
+        Some(Spin { axes, kind })
     }
 
     /// Whether an angular velocity in principal axes stays as it is: about one of them, or one of two with equal moments.
@@ -75,6 +89,25 @@ impl Principal {
             (i1 - i2) * w1 * w2,
         ];
         rates == [0.0; 3]
+    }
+}
+
+impl Spin {
+    /// After `time` seconds. `None` where it is not a number.
+    pub(super) fn after(&self, time: f64) -> Option<Turned> {
+        let turned = match &self.kind {
+            Kind::Steady(angular) => Turned {
+                rotation: Rotation3::from_scaled_axis(angular * time).into_inner(),
+                angular: *angular,
+            },
+            Kind::Periodic(motion) => motion.after(time),
+        };
+        let mut entries = turned.rotation.iter().chain(&turned.angular);
+        let is_finite = entries.all(|entry| entry.is_finite());
+        is_finite.then(|| Turned {
+            rotation: self.axes * turned.rotation * self.axes.transpose(),
+            angular: self.axes * turned.angular,
+        })
     }
 }
 
@@ -104,6 +137,7 @@ fn diagonalize(mut matrix: Matrix3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
 
 /// A periodic motion. The third axis is the one about which the angular momentum goes round, that of the greatest moment or of the least; the second is always that of the
 /// middle one.
+#[derive(Clone, Debug)]
 struct Motion {
     moments: Vector3<f64>,
     /// Principal axes in this order, as rows.
@@ -114,16 +148,17 @@ struct Motion {
     elliptic: Elliptic,
     /// k² and k′².
     squares: [f64; 2],
-    /// What dn is at the zeros of `I₁²ω₁² + I₂²ω₂²` in the complex plane.
-    at_zeros: f64,
     /// The argument of the elliptic functions over the time, 1/s.
     rate: f64,
+    /// The amplitude at first.
+    first: f64,
+    precession: Precession,
 }
 
 impl Motion {
     /// `None` where the period is infinite.
     fn new(moments: &Vector3<f64>, angular: &Vector3<f64>) -> Option<Self> {
-        // I₂ (2T I₂ − L²) by the first and the third axis: which of them the angular momentum goes round.
+        // L² − 2T I₂, by which the angular momentum goes round the third axis or the first.
         let beyond = |i: usize| moments[i] * (moments[i] - moments[1]) * angular[i] * angular[i];
         let excess = beyond(0) + beyond(2);
         let order = match excess >= 0.0 {
@@ -150,7 +185,11 @@ impl Motion {
         let rate = Float::sqrt(d32 / (i1 * i2 * i3)) * along;
         let modulus = Float::sqrt(d21 / d32) * across / along;
         let complement = Float::sqrt(d31 / d32 * excess.abs()) / along;
-        let elliptic = Elliptic::new(modulus.min(1.0), complement.min(1.0))?;
+        let squares = [modulus * modulus, complement * complement];
+        let at_zeros = Float::hypot(
+            complement,
+            Float::sqrt(i2 * d31 / (i3 * d32)) * across / along,
+        );
         let sense = Float::signum(angular.z) * Float::signum(i3 - i1);
         let amplitudes = Vector3::new(
             across / Float::sqrt(i1 * d31),
@@ -158,79 +197,104 @@ impl Motion {
             Float::signum(angular.z) * along / Float::sqrt(i3 * d31),
         );
         Some(Self {
+            elliptic: Elliptic::new(modulus.min(1.0), complement.min(1.0))?,
+            precession: Precession::new(&moments, squares, (rate, at_zeros))?,
+            first: Float::atan2(angular.y / amplitudes.y, angular.x / amplitudes.x),
             moments,
             order,
             angular,
             amplitudes,
-            elliptic,
-            squares: [modulus * modulus, complement * complement],
-            at_zeros: Float::hypot(
-                complement,
-                Float::sqrt(i2 * d31 / (i3 * d32)) * across / along,
-            ),
+            squares,
             rate,
         })
     }
 
-    fn turned(&self, time: f64) -> Option<Turned> {
-        let [c, s, _] = self.angular.component_div(&self.amplitudes).into();
-        let from = Float::atan2(s, c);
-        let to = self
-            .elliptic
-            .amplitude(self.elliptic.integral(from) + self.rate * time);
+    fn after(&self, time: f64) -> Turned {
+        let argument = self.elliptic.integral(self.first) + self.rate * time;
+        let to = self.elliptic.amplitude(argument);
         let momentum = self.moments.component_mul(&self.angular);
-        let about = momentum.norm() * self.precession(time, from, to)?;
+        let about = momentum.norm() * self.precession.between(time, self.first, to);
         let (sin, cos) = Float::sin_cos(to);
         let dn = Float::sqrt(self.squares[1] + self.squares[0] * cos * cos);
         let angular = self.amplitudes.component_mul(&Vector3::new(cos, sin, dn));
         let later = self.moments.component_mul(&angular);
         let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), about);
         let rotation = frame(&momentum).transpose() * turn.matrix() * frame(&later);
-        Some(Turned {
+        Turned {
             rotation: self.order.transpose() * rotation * self.order,
             angular: self.order.transpose() * angular,
-        })
+        }
     }
+}
 
-    /// The integral over the time of `w = (I₁ω₁² + I₂ω₂²) / (I₁²ω₁² + I₂²ω₂²)`, from one amplitude to another. `None` where the Fourier series is too long, near the unstable
-    /// rotation.
-    ///
-    /// It is that of 1/I of one of both moments, and a rest; of the two the one whose terms are smaller is taken. With roots `a² = I₁|I₃ − I₂|` and `b² = I₂|I₃ − I₁|` that is over the amplitude, but for constants,
-    /// `sin²φ / ((a² cos²φ + b² sin²φ) dn)` for I₁, and the same with cos²φ over it for I₂. At the zeros of its first factor dn is `dn_p`; with it the integral has a closed form, and what is left is
-    /// `k² sin²φ / (dn (dn + dn_p))`, or with cos²φ, whose Fourier series is short.
-    fn precession(&self, time: f64, from: f64, to: f64) -> Option<f64> {
-        let [i1, i2, i3] = self.moments.into();
+/// The integral over the time of `w = (I₁ω₁² + I₂ω₂²) / (I₁²ω₁² + I₂²ω₂²)`: the angle about the angular momentum, over its size.
+///
+/// It is that of 1/I of one of both moments, and a rest; of the two the one whose terms are smaller is taken. With roots `a² = I₁|I₃ − I₂|` and `b² = I₂|I₃ − I₁|` the rest is over
+/// the amplitude, but for constants, `sin²φ / ((a² cos²φ + b² sin²φ) dn)` for I₁, and the same with cos²φ over it for I₂. At the zeros of its first factor in the complex plane
+/// dn is `dn_p`; with that in its place the integral has a closed form, and what is left is `k² sin²φ / (dn (dn + dn_p))`, or with cos²φ, whose Fourier series is short.
+#[derive(Clone, Debug)]
+struct Precession {
+    /// The moment of inertia.
+    moment: f64,
+    constant: f64,
+    /// What the integral is over the amplitude on average.
+    mean: f64,
+    /// a, b, and what the angle with the tangent b/a tan φ counts.
+    roots: [f64; 3],
+    series: Vec<f64>,
+}
+
+impl Precession {
+    /// With k² and k′², the rate of the argument (1/s) and `dn_p`. `None` where the Fourier series is too long, near the unstable rotation.
+    fn new(
+        moments: &Vector3<f64>,
+        [k2, complement2]: [f64; 2],
+        (rate, at_zeros): (f64, f64),
+    ) -> Option<Self> {
+        let [i1, i2, i3] = (*moments).into();
         let [a, b] = [i1 * (i3 - i2), i2 * (i3 - i1)].map(|part| Float::sqrt(part.abs()));
-        let scale = (i3 * self.rate * self.at_zeros).recip();
+        let scale = (i3 * rate * at_zeros).recip();
         let ways = [
             (i1, (i1 - i3) / i1 * scale, -a / b),
             (i2, (i3 - i2) / i2 * scale, b / a),
         ];
-        let sizes = ways.map(|(own, constant, share)| {
-            time / own + constant.abs() * (1.0 + share.abs()) * (self.rate * time + PI)
+        // Over half a turn of the amplitude, but for π.
+        let sizes = ways.map(|(moment, constant, share)| {
+            (moment * rate).recip() + 2.0 * constant.abs() * (1.0 + share.abs())
         });
         let is_first = sizes[0] <= sizes[1];
-        let (own, constant, share) = ways[usize::from(!is_first)];
-        let [k2, complement2] = self.squares;
+        let (moment, constant, share) = ways[usize::from(!is_first)];
         let series = cosine_series(&|phi: f64| {
             let (sin, cos) = Float::sin_cos(phi);
             let dn = Float::sqrt(complement2 + k2 * cos * cos);
             let part = if is_first { sin } else { cos };
-            k2 * part * part / (dn * (dn + self.at_zeros))
+            k2 * part * part / (dn * (dn + at_zeros))
         })?;
-        let integral = |phi: f64| {
+        let sign = if is_first { 1.0 } else { -1.0 };
+        Some(Self {
+            moment,
+            constant,
+            mean: sign + share + series[0],
+            roots: [a, b, share],
+            series,
+        })
+    }
+
+    /// From one amplitude to another, which takes `time` seconds, 1/(kg m²) s.
+    fn between(&self, time: f64, from: f64, to: f64) -> f64 {
+        let [a, b, share] = self.roots;
+        let periodic = |phi: f64| {
             let (sin, cos) = Float::sin_cos(phi);
             // What the angle with the tangent b/a tan φ is beyond φ.
             let beyond = Float::atan2((b - a) * sin * cos, a * cos * cos + b * sin * sin);
-            let terms = series.iter().enumerate().skip(1).map(|(n, term)| {
+            let terms = self.series.iter().enumerate().skip(1).map(|(n, term)| {
                 let n = 2.0 * n as f64;
                 term * Float::sin(n * phi) / n
             });
             terms.sum::<f64>() + share * beyond
         };
-        let sign = if is_first { 1.0 } else { -1.0 };
-        let steady = (sign + share + series[0]) * (to - from);
-        Some(time / own + constant * (steady + integral(to) - integral(from)))
+        let rest = self.mean * (to - from) + periodic(to) - periodic(from);
+        time / self.moment + self.constant * rest
     }
 }
 
@@ -354,12 +418,13 @@ mod tests {
     fn rotations_are_those_of_the_equations() {
         for (principal, inertia, angular) in cases() {
             let told = format!("{principal:?}, {angular:?}");
-            let found = principal.turn(&angular, 3.0).expect(&told);
+            let spin = principal.spin(&angular).expect(&told);
+            let found = spin.after(3.0).expect(&told);
             let expected = followed(&inertia, &angular, 3.0);
             let error = (found.rotation - expected.rotation).norm();
             let error = error.max((found.angular - expected.angular).norm());
             // 2e4 roundings of the steps, and ten of the matrix of inertia times its condition.
-            let condition = principal.moments.z / principal.moments.x;
+            let condition = principal.moments.x.recip();
             let turned = 1.0 + 3.0 * angular.norm();
             let allowed = (2e4 + 10.0 * turned * condition) * f64::EPSILON;
             assert!(error < allowed, "{told}: {error:e}");
@@ -371,7 +436,10 @@ mod tests {
     fn long_rotations_are_compositions_of_shorter_ones() {
         for (principal, inertia, angular) in cases() {
             let told = format!("{principal:?}, {angular:?}");
-            let turn = |angular: &Vector3<f64>, time| principal.turn(angular, time).expect(&told);
+            let turn = |angular: &Vector3<f64>, time| {
+                let spin = principal.spin(angular).expect(&told);
+                spin.after(time).expect(&told)
+            };
             let (first, all) = (turn(&angular, 2.5e6), turn(&angular, 6.3e6));
             let second = turn(&first.angular, 3.8e6);
             let error = (first.rotation * second.rotation - all.rotation).norm();
@@ -389,8 +457,9 @@ mod tests {
         let principal = principal.expect("solid");
         // L² = 2T I₂.
         let angular = Vector3::new(3.0, 0.3, 1.0);
-        assert!(principal.turn(&angular, 1.0).is_none());
-        let steady = principal.turn(&Vector3::new(0.0, 0.3, 0.0), 1.0);
-        assert!(steady.is_some_and(|turned| turned.angular.y == 0.3));
+        assert!(principal.spin(&angular).is_none());
+        let steady = principal.spin(&Vector3::new(0.0, 0.3, 0.0));
+        let turned = steady.and_then(|spin| spin.after(1.0));
+        assert!(turned.is_some_and(|turned| turned.angular.y == 0.3));
     }
 }
