@@ -73,6 +73,7 @@ impl Collocation {
         let pace = step_state.rates.phi.iter();
         let pace = pace.fold(0.0, |most: f64, rate| most.max(rate.abs()));
         let (mut last, mut least, mut idle) = (f64::INFINITY, f64::INFINITY, 0);
+        self.sizes.fill(f64::INFINITY);
         for _ in 0..MOST_ITERATIONS {
             self.solves.iterations += 1;
             self.evaluate(step_state, flow, span)?;
@@ -108,7 +109,8 @@ impl Collocation {
                 LINGERS
             };
             let stalled = size < STALLED && idle >= patience;
-            if self.stands(size, whole, stalled) {
+            let left = self.note_sizes(step_state);
+            if self.stands((size, whole), left, stalled) {
                 return Ok(());
             }
             if size.is_nan() || (last.is_finite() && self.is_hopeless(size, whole, before)) {
@@ -119,13 +121,33 @@ impl Collocation {
         Err(self.no_convergence(step_state, flow))
     }
 
+    /// What the entries that contract most slowly have left, each by its own contraction; the sizes of the change just made stand for the next look.
+    ///
+    /// The largest change is at first often that of what is stiff, which the matrix solves for at once, and says nothing of how the others contract.
+    fn note_sizes(&mut self, step_state: &StepState) -> f64 {
+        let mut known = core::mem::take(&mut self.sizes);
+        let changes = self.changes.iter();
+        let sizes = changes.flat_map(|change| self.sizes_of(change, step_state));
+        let mut most = 0.0_f64;
+        for (before, size) in known.iter_mut().zip(sizes) {
+            let left = match size < *before {
+                true => size * size / (*before - size),
+                false => size,
+            };
+            *before = size;
+            most = most.max(left);
+        }
+        self.sizes = known;
+        most
+    }
+
     /// Whether the change just made was the last one needed.
-    fn stands(&self, size: f64, whole: f64, stalled: bool) -> bool {
+    fn stands(&self, (size, whole): (f64, f64), slowest: f64, stalled: bool) -> bool {
         let contraction = self.contraction;
         let left = size * contraction / (1.0 - contraction);
         match self.tolerance {
             _ if size == 0.0 => self.is_settled() || stalled,
-            Some(tolerance) => contraction < 1.0 && left <= unsolved(tolerance),
+            Some(tolerance) => contraction < 1.0 && left.max(slowest) <= unsolved(tolerance),
             // The next change would be lost in rounding; or rounding has stopped them.
             None if stalled => true,
             None => match &self.correction {
@@ -202,7 +224,7 @@ impl Collocation {
     }
 
     /// The sizes of a change: in radians and metres, then as parts of max(1, |v̄|).
-    fn sizes<'a>(
+    fn sizes_of<'a>(
         &'a self,
         change: &'a [f64],
         step_state: &'a StepState,
@@ -218,7 +240,7 @@ impl Collocation {
 
     /// The row of a change with the largest size, and the size.
     pub(super) fn worst(&self, change: &[f64], step_state: &StepState) -> Option<(usize, f64)> {
-        let sizes = self.sizes(change, step_state).enumerate();
+        let sizes = self.sizes_of(change, step_state).enumerate();
         sizes.max_by(|(_, a), (_, b)| a.total_cmp(b))
     }
 
@@ -226,7 +248,7 @@ impl Collocation {
     fn largest(&self, changes: &[Vec<f64>], step_state: &StepState) -> f64 {
         let sizes = changes
             .iter()
-            .flat_map(|change| self.sizes(change, step_state));
+            .flat_map(|change| self.sizes_of(change, step_state));
         // A NaN stays.
         sizes.fold(0.0, |most, size| match size > most || size.is_nan() {
             true => size,
@@ -238,7 +260,7 @@ impl Collocation {
     fn no_convergence(&self, step_state: &StepState, flow: &Flow<'_>) -> StepFailure {
         let mut worst = (0, 0.0);
         for change in &self.changes {
-            for (row, size) in self.sizes(change, step_state).enumerate() {
+            for (row, size) in self.sizes_of(change, step_state).enumerate() {
                 if !size.is_finite() {
                     return StepFailure::State(StateError::NoValue {
                         joint: flow.row_name(row),

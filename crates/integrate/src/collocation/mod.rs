@@ -43,6 +43,8 @@ pub(super) struct Collocation {
     /// Residuals, and the changes that come of them.
     changes: Vec<Vec<f64>>,
     stages: Vec<Rates>,
+    /// The sizes of the change before, of all stages.
+    sizes: Vec<f64>,
     /// What one unit of each speed adds to y; empty before the first step.
     units: Vec<f64>,
     newton: Option<Newton>,
@@ -82,6 +84,7 @@ impl Collocation {
             freedoms: layout.freedoms,
             changes: increments.clone(),
             stages: vec![flow.new_rates(); method.nodes.len()],
+            sizes: vec![0.0; method.nodes.len() * size],
             units: Vec::new(),
             newton: is_stiff.then(|| Newton::new(method, flow)),
             forces: is_stiff.then(|| Forces::new(method.matrix, flow)).flatten(),

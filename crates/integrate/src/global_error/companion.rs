@@ -13,6 +13,8 @@ pub(super) struct Companion {
     pub(super) steps: f64,
     /// Distances that speeds and configuration have gone, in the units of errors, at the times of comparison: what rounding of each step adds to.
     pub(super) paths: Vec<f64>,
+    /// Where its steps begin and end, s.
+    pub(super) spans: Vec<[f64; 2]>,
 }
 
 /// How far speeds and coordinates have gone.
@@ -22,6 +24,7 @@ pub(super) struct Path {
     /// Time and speeds of the step before; no speeds before the first.
     time: f64,
     speeds: Vec<f64>,
+    pub(super) spans: Vec<[f64; 2]>,
 }
 
 impl Path {
@@ -38,6 +41,7 @@ impl Path {
             let change = changes.fold(0.0, f64::max) / largest.max(1.0);
             self.length += change.max((step.time - self.time) * largest);
             self.speeds.copy_from_slice(step.speeds);
+            self.spans.push([self.time, step.time]);
         }
         self.time = step.time;
     }

@@ -203,11 +203,13 @@ impl<'a, 'r> Estimation<'a, 'r> {
         if fine.steps > HARDLY_LONGER * steps || self.is_held(first, fine.steps / steps) {
             self.doubt.get_or_insert(Doubt::Steps);
         }
-        // Samples that cut steps short hide that errors fall with the tolerance.
         let slope = LEAST_SLOPE.min(used / (LEAST_ORDER * order));
         let by_tolerance = self.ratio(first).map_or(1.0, |r| Float::powf(r, slope));
-        let left = by_steps.min(by_tolerance).min(0.5);
-        let left = left / (1.0 - left);
+        let left = match self.are_cut() {
+            true => self.left_by_samples(&fine, used, by_tolerance),
+            false => by_steps.min(by_tolerance),
+        };
+        let left = left.min(0.5) / (1.0 - left.min(0.5));
         let from_steps: Vec<f64> = near.iter().map(|near| near * left).collect();
         let errors = self.with_rounding(from_steps, (second, &coarse), times);
         let last = errors.0.last().map_or(0.0, |error| error.rounding);
@@ -217,6 +219,29 @@ impl<'a, 'r> Estimation<'a, 'r> {
             self.doubt.get_or_insert(Doubt::Order { observed, order });
         }
         Ok(errors)
+    }
+
+    /// Whether steps that end on samples are many.
+    fn are_cut(&self) -> bool {
+        let (samples, steps) = (self.solution.samples.len(), self.solution.statistics.steps);
+        // Dense output has no step end on a sample.
+        samples <= steps && 4 * samples >= steps
+    }
+
+    /// What is left of the error of a companion, whose steps are cut by fewer samples: each of its steps has a like share of it, and the motion has there a step that is no longer than
+    /// from one sample to the next, or as the tolerance has it. Where the motion is fast, samples cut nothing, however many steps they make elsewhere.
+    fn left_by_samples(&self, companion: &Companion, order: f64, by_tolerance: f64) -> f64 {
+        let (samples, end) = (&self.solution.samples, self.solution.state.time);
+        let shares = companion.spans.iter().map(|[from, to]| {
+            let next = samples.partition_point(|sample| sample.time <= 0.5 * (from + to));
+            let before = next
+                .checked_sub(1)
+                .map_or(self.initial.time, |i| samples[i].time);
+            let after = samples.get(next).map_or(end, |sample| sample.time);
+            let part = ((after - before) / (to - from)).min(1.0);
+            Float::powf(part, order).min(by_tolerance)
+        });
+        shares.sum::<f64>() / companion.spans.len().max(1) as f64
     }
 
     /// Whether steps of a companion are much shorter than its tolerance would have them, with few samples to land on: stability holds them, for one.
@@ -272,11 +297,14 @@ impl<'a, 'r> Estimation<'a, 'r> {
             false => (None, Vec::new()),
         };
         let scatter = self.scatter(times);
+        // What rounding has left in the estimate of a step is in the step as well.
+        let limit = self.solution.rounding.as_ref();
+        let least = limit.map_or(0.0, |limit| limit.error);
         let errors = from_steps.into_iter().enumerate().map(|(i, steps)| {
             let growth = growth.get(i).copied().unwrap_or(1.0);
             let length = times[i].time - self.initial.time;
             let rounding = self.unit(&times[i]) * growth.max(other.paths[i]).max(1.0);
-            let rounding = rounding.max(Float::sqrt(length) * scatter);
+            let rounding = rounding.max(Float::sqrt(length) * scatter).max(least);
             ErrorParts { steps, rounding }
         });
         (errors.collect(), conditioning)
@@ -373,6 +401,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
             steps: solution.statistics.steps as f64,
             states: solution.samples,
             paths,
+            spans: path.spans,
         })
     }
 
