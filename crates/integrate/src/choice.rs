@@ -69,7 +69,7 @@ impl Choice {
         state: &State,
         wanted: Wanted,
     ) -> Result<Self, IntegrateError> {
-        if !wanted.is_bound && FreeBodies::new(mechanism).is_some() {
+        if !wanted.is_bound && FreeBodies::have_form(mechanism, state) {
             return Ok(Self {
                 scheme: Scheme::Exponential,
                 reason: "nothing but gravity acts on any body, so that the exponential method takes steps of any length exactly".into(),

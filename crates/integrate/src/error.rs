@@ -237,7 +237,7 @@ pub enum IntegrateError {
     },
     /// A joint has come to a configuration that its spec excludes, where its relations do not determine how the motion goes on.
     #[error(
-        "at {} s: joint `{}` comes to a configuration that its spec excludes, where {} is 0 (it is {:.1e} here and was {:.1e}): its relations do not say there how it moves on; other independent coordinates, `basis` of the spec, may pass it",
+        "at {} s: joint `{}` comes to a configuration that its spec excludes, where {} is 0 (it is {:.1e} here and was {:.1e}): its relations do not say there how it moves on; other independent coordinates, `independent` of a loop in a scene or `basis` of a spec, may pass it",
         Number(.0.time), .0.joint, .0.loci, .0.value, .0.most
     )]
     Excluded(Approach),

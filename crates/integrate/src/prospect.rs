@@ -85,7 +85,7 @@ impl Prospect {
                 "rounding in doubles has decided the length of {} of them, first of all at joint `{}`: take refined arithmetic, or a larger tolerance",
                 limit.steps, limit.joint
             ),
-            _ => "take a larger tolerance".into(),
+            _ => "take a larger tolerance, or refined arithmetic".into(),
         };
         Err(IntegrateError::Hopeless {
             time,

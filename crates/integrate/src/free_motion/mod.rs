@@ -6,10 +6,10 @@
 mod elliptic;
 mod rotation;
 
-use super::StepFailure;
 use super::flow::{Flow, multiply};
 use super::step_state::StepState;
 use super::stepper::Span;
+use super::{State, StepFailure};
 use alloc::vec;
 use alloc::vec::Vec;
 use hamel_runtime::mechanism::{Body, Mechanism};
@@ -73,6 +73,14 @@ impl FreeBodies {
         })
     }
 
+    /// Whether a mechanism has none but free bodies, each with a closed form from a state on.
+    pub(super) fn have_form(mechanism: &Mechanism, state: &State) -> bool {
+        Self::new(mechanism).is_some_and(|mut free| {
+            free.begin(mechanism, &state.configuration, &state.speeds);
+            free.start.spins.is_some()
+        })
+    }
+
     /// Moves to the end of a step; `false` where a body has no closed form.
     pub(super) fn attempt(
         &mut self,
@@ -83,7 +91,8 @@ impl FreeBodies {
         let begins = self.start.time.is_none();
         let start = *self.start.time.get_or_insert(time);
         if begins {
-            self.begin(step_state, &flow.mechanism);
+            let (q, speeds) = (&step_state.configuration, step_state.speeds());
+            self.begin(&flow.mechanism, q, speeds);
         }
         let Some(spins) = &self.start.spins else {
             return Ok(false);
@@ -122,18 +131,15 @@ impl FreeBodies {
         Ok(true)
     }
 
-    fn begin(&mut self, step_state: &StepState, mechanism: &Mechanism) {
-        let (configuration, speeds) = (
-            step_state.configuration.clone(),
-            step_state.speeds().to_vec(),
-        );
+    fn begin(&mut self, mechanism: &Mechanism, configuration: &[f64], speeds: &[f64]) {
         let spin = |own: &FreeBody| {
             let body = &mechanism.bodies()[own.index];
-            let [angular, _] = own.velocities(body, &configuration, &speeds);
+            let [angular, _] = own.velocities(body, configuration, speeds);
             own.principal.spin(&angular)
         };
         self.start.spins = self.bodies.iter().map(spin).collect();
-        (self.start.configuration, self.start.speeds) = (configuration, speeds);
+        self.start.configuration = configuration.to_vec();
+        self.start.speeds = speeds.to_vec();
     }
 }
 
