@@ -109,7 +109,11 @@ impl Collocation {
                 LINGERS
             };
             let stalled = size < STALLED && idle >= patience;
-            let left = self.note_sizes(step_state);
+            // Without elements nothing is stiff, and the largest change tells enough.
+            let left = match self.forces {
+                Some(_) => self.note_sizes(step_state),
+                None => 0.0,
+            };
             if self.stands((size, whole), left, stalled) {
                 return Ok(());
             }
