@@ -110,9 +110,9 @@ impl Collocation {
             };
             let stalled = size < STALLED && idle >= patience;
             // Without elements nothing is stiff, and the largest change tells enough.
-            let left = match self.forces {
-                Some(_) => self.note_sizes(step_state),
-                None => 0.0,
+            let left = match flow.mechanism.elements().is_empty() {
+                false => self.note_sizes(step_state),
+                true => 0.0,
             };
             if self.stands((size, whole), left, stalled) {
                 return Ok(());
