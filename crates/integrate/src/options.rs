@@ -41,7 +41,7 @@ pub enum Scheme {
     Radau5,
     /// An exponential Rosenbrock method of order 4(3): solves the linearised equations exactly, undamped stiff springs among them. Inputs that follow
     /// the state are no part of them, so that the order is 2 there; dense output and events do not see what oscillates faster than its steps. Bodies that nothing but uniform gravity
-    /// acts on, each alone in the world on a joint of six degrees of freedom or about its centre of mass, it moves in closed form, where neither is asked for.
+    /// acts on move in closed form, without dense output and events. Each must be alone on a joint of six degrees of freedom, or on a ball joint about its centre of mass.
     Exponential,
     /// A discrete-gradient method of order 2 on the port-Hamiltonian form: keeps the energy balance to rounding, at steps of one length and under step control.
     DiscreteGradient,

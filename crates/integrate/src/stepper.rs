@@ -57,8 +57,8 @@ pub(super) trait Stepper {
         None
     }
 
-    /// What the iteration of an implicit step under step control makes of rounding of the rates (ϕ̇, then ẏ) over a `step`, over what it may leave unsolved, and the
-    /// row of (ϕ, y) that has most of it.
+    /// How rounding of the rates (ϕ̇, then ẏ) changes an implicit step under step control: the largest change, as a multiple of what the iteration may leave unsolved, and its
+    /// row of (ϕ, y).
     fn unsolved_by_rounding(
         &mut self,
         _step_state: &StepState,

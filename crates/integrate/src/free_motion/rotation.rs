@@ -1,8 +1,7 @@
 //! The rotation of a rigid body free of torques, in closed form.
 //!
-//! In principal axes the angular velocity is made of Jacobi's elliptic functions (L. D. Landau and E. M. Lifshitz, *Mechanics*, § 37). The attitude follows from it but for the
-//! angle by which the plane of the angular momentum and a principal axis has turned about the angular momentum, an integral over a periodic function, which its Fourier
-//! series has. So a million turns cost what one costs.
+//! In principal axes the angular velocity is made of Jacobi's elliptic functions (L. D. Landau and E. M. Lifshitz, *Mechanics*, § 37). The attitude follows from it but for one
+//! angle, that of the precession about the angular momentum. It is the integral of a periodic function, by its Fourier series. So a million turns cost what one costs.
 
 use super::elliptic::Elliptic;
 use alloc::boxed::Box;

@@ -13,7 +13,7 @@ pub(super) struct Companion {
     pub(super) steps: f64,
     /// Distances that speeds and configuration have gone, in the units of errors, at the times of comparison: what rounding of each step adds to.
     pub(super) paths: Vec<f64>,
-    /// Where its steps begin and end, s.
+    /// Where its steps begin and end, s; none where nobody asks.
     pub(super) spans: Vec<[f64; 2]>,
 }
 
@@ -24,10 +24,20 @@ pub(super) struct Path {
     /// Time and speeds of the step before; no speeds before the first.
     time: f64,
     speeds: Vec<f64>,
+    /// Whether the spans of steps are kept: a long motion has too many of them.
+    keeps_spans: bool,
     pub(super) spans: Vec<[f64; 2]>,
 }
 
 impl Path {
+    /// With the spans of steps kept, or not.
+    pub(super) fn new(keeps_spans: bool) -> Self {
+        Self {
+            keeps_spans,
+            ..Self::default()
+        }
+    }
+
     pub(super) fn follow(&mut self, step: &Step<'_>) {
         let largest = step
             .speeds
@@ -41,7 +51,9 @@ impl Path {
             let change = changes.fold(0.0, f64::max) / largest.max(1.0);
             self.length += change.max((step.time - self.time) * largest);
             self.speeds.copy_from_slice(step.speeds);
-            self.spans.push([self.time, step.time]);
+            if self.keeps_spans {
+                self.spans.push([self.time, step.time]);
+            }
         }
         self.time = step.time;
     }

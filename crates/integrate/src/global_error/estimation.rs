@@ -382,7 +382,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
             samples: times.iter().map(|state| state.time).collect(),
             ..self.options.clone()
         };
-        let mut path = Path::default();
+        let mut path = Path::new(self.are_cut());
         let mut paths = Vec::new();
         let solution = (self.run)(from, &options, &mut |step: &Step<'_>| {
             path.follow(step);
