@@ -36,7 +36,7 @@ pub use entry::Entry;
 pub use functions::{Function, Functions, WeightedFunction};
 pub use lanes::{LANES, Level, ManyStates, OfState, many_states};
 pub use layout::{Lanes, Quantities, States};
-pub use pairs::{Carrying, Pairing, Pairs};
+pub use pairs::{Aligned, BEHIND, Carrying, Meeting, Pairing, Pairs, Places, room_to_solve};
 #[cfg(feature = "alloc")]
 pub use tree::{Compiled, CompiledError};
 

@@ -1,7 +1,7 @@
 //! What a function leaves to loops over pairs of joints: the tables of [`hamel_compiled::Pairs`], as they are made.
 
 use super::graph::Operations;
-use hamel_compiled::{Carrying, Pairing, Pairs};
+use hamel_compiled::{Carrying, Meeting, Pairing, Pairs, Places, room_to_solve};
 
 /// What is made of the numbers of the bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +32,21 @@ impl Product {
             Self::SecondForward => "second_forward",
         }
     }
+
+    /// Whether numbers of each column are needed.
+    pub const fn has_columns(self) -> bool {
+        !matches!(self, Self::Mass | Self::InverseMass)
+    }
+
+    /// Whether first derivatives of inverse dynamics are made.
+    pub const fn has_slopes(self) -> bool {
+        matches!(self, Self::Inverse | Self::Forward | Self::SecondForward)
+    }
+
+    /// Whether second ones are.
+    pub const fn has_bends(self) -> bool {
+        matches!(self, Self::SecondInverse | Self::SecondForward)
+    }
 }
 
 /// The tables of one function.
@@ -41,10 +56,16 @@ pub struct Tables {
     pub product: Product,
     /// Rows and columns of the results.
     pub size: [usize; 2],
+    /// Where numbers stand.
+    pub places: Places,
     /// Joints.
     pub joints: Vec<Pairing>,
     /// Bodies that carry others.
     pub bodies: Vec<Carrying>,
+    /// Rows of slopes that X̄ of a speed has with wrenches, and its momentum with W and U.
+    pub slopes: Vec<Meeting>,
+    /// Rows of M̄ that the momentum of a speed has with X̄.
+    pub moved: Vec<Meeting>,
     /// For each speed the next one towards the root.
     pub above: Vec<Option<usize>>,
     /// Entries of rows that are added: row, column, place among the numbers of the bodies.
@@ -59,49 +80,43 @@ pub struct Tables {
     pub columns: Vec<[usize; 2]>,
     /// Entries that are added to what is solved: row, column, place among the numbers of the bodies.
     pub followed: Vec<[usize; 3]>,
-    /// For each speed which columns may differ from 0 when what hangs on it is eliminated: bits of words of 64 columns.
-    pub filled: Vec<Vec<u64>>,
-    /// For each speed those that reach it on their way to the root, the last one first.
-    pub below: Vec<Vec<usize>>,
+    /// For each speed those that reach it on their way to the root, the last one first, in ranges of speeds that follow each other.
+    pub below: Vec<Vec<[usize; 2]>>,
     /// Where M̄⁻¹ begins, of which half is found.
     pub mirrored: Option<usize>,
 }
 
 impl Tables {
-    /// Numbers that are needed for M̄, and for what else is made on the way.
-    pub fn room(&self) -> usize {
-        let (speeds, width) = (self.above.len(), self.size[1]);
-        let freedoms = width.saturating_sub(speeds) / 2;
-        let of_second = speeds * (width + freedoms) + width + 4 * (freedoms + speeds).pow(2);
+    /// Numbers that are needed for M̄, its factors and what is solved for, so many, and for what else is made on the way.
+    pub fn room(&self, solution: usize) -> usize {
+        let [freedoms, speeds] = self.places.sizes;
+        let width = self.size[1];
         match self.product {
             Product::Mass | Product::Inverse | Product::SecondInverse => 0,
-            Product::InverseMass | Product::Forward => speeds * speeds,
-            Product::SecondForward => speeds * speeds + of_second,
+            Product::InverseMass | Product::Forward => solution,
+            Product::SecondForward => {
+                let twice = 4 * (freedoms + speeds).pow(2);
+                solution + speeds * (width + freedoms) + width + twice
+            }
         }
     }
 
     /// For each speed those towards the root, the nearest first, in ranges of speeds that follow each other.
     pub fn ranges(&self) -> Vec<Vec<[usize; 2]>> {
-        let ranges = |speed: usize| {
-            let mut ranges: Vec<[usize; 2]> = vec![];
-            for i in std::iter::successors(self.above[speed], |&i| self.above[i]) {
-                match ranges.last_mut() {
-                    Some(last) if last[0] == i + 1 => last[0] = i,
-                    _ => ranges.push([i, i + 1]),
-                }
-            }
-            ranges
-        };
-        (0..self.above.len()).map(ranges).collect()
+        let carriers = |speed: usize| std::iter::successors(self.above[speed], |&i| self.above[i]);
+        let speeds = 0..self.above.len();
+        speeds.map(|speed| descending(carriers(speed))).collect()
     }
 
     /// What the runtime makes with them.
     fn with_pairs<R>(&self, make: impl FnOnce(&Pairs<'_>) -> R) -> R {
-        let filled: Vec<&[u64]> = self.filled.iter().map(Vec::as_slice).collect();
         let above: Vec<Vec<[usize; 2]>> = self.ranges();
         let above: Vec<&[[usize; 2]]> = above.iter().map(Vec::as_slice).collect();
-        let below: Vec<&[usize]> = self.below.iter().map(Vec::as_slice).collect();
+        let below: Vec<&[[usize; 2]]> = self.below.iter().map(Vec::as_slice).collect();
         make(&Pairs {
+            places: self.places,
+            slopes: &self.slopes,
+            moved: &self.moved,
             joints: &self.joints,
             bodies: &self.bodies,
             above: &above,
@@ -111,7 +126,6 @@ impl Tables {
             held: &self.held,
             columns: &self.columns,
             followed: &self.followed,
-            filled: &filled,
             below: &below,
             mirrored: self.mirrored,
         })
@@ -131,19 +145,19 @@ impl Tables {
     pub fn evaluate(&self, work: &[f64]) -> Vec<f64> {
         let [rows, width] = self.size;
         let mut results = vec![0.0; rows * width];
-        let mut matrix = vec![0.0; self.room()];
+        let mut room = vec![0.0; self.room(room_to_solve(self.above.len()))];
         self.with_pairs(|pairs| match self.product {
             Product::Mass => pairs.mass(work, &mut results),
             Product::InverseMass => {
-                pairs.inverse_mass(work, &mut matrix, &mut results);
+                pairs.inverse_mass(work, &mut room, &mut results);
             }
-            Product::Inverse => pairs.inverse(work, &mut results, width),
+            Product::Inverse => pairs.inverse(work, &mut results),
             Product::Forward => {
-                pairs.forward(work, &mut matrix, &mut results, width);
+                pairs.forward(work, &mut room, &mut results, width);
             }
             Product::SecondInverse => pairs.second_inverse(work, &mut results, width),
             Product::SecondForward => {
-                pairs.second_forward(work, &mut matrix, &mut results, width);
+                pairs.second_forward(work, &mut room, &mut results, width);
             }
         });
         results
@@ -161,11 +175,11 @@ impl Tables {
                 if !matches!(self.product, Product::Inverse | Product::SecondInverse) {
                     products(&mut count, speeds * others, 6);
                 }
-                if self.has_slopes() {
+                if self.product.has_slopes() {
                     products(&mut count, units * others, 6);
                     products(&mut count, speeds * other_units, 9);
                 }
-                if self.has_bends() {
+                if self.product.has_bends() {
                     let (locals, other_locals) = (units - speeds, other_units - others);
                     products(&mut count, units * other_units, 3);
                     products(&mut count, locals * (other_units + others), 6);
@@ -183,24 +197,10 @@ impl Tables {
             count.multiplications += terms;
             count.additions += terms + 2 * freedoms * width;
         }
-        if self.room() > 0 {
+        if self.room(1) > 0 {
             self.solution(&mut count);
         }
         count
-    }
-
-    /// Whether first derivatives of inverse dynamics are made.
-    pub fn has_slopes(&self) -> bool {
-        use Product::{Forward, Inverse, SecondForward};
-        matches!(self.product, Inverse | Forward | SecondForward)
-    }
-
-    /// Whether second ones are.
-    pub fn has_bends(&self) -> bool {
-        matches!(
-            self.product,
-            Product::SecondInverse | Product::SecondForward
-        )
     }
 
     /// Entries that come to others: those that stand alone are no additions.
@@ -227,6 +227,18 @@ impl Tables {
             count.additions += 2 * pairs(speeds);
         }
     }
+}
+
+/// Speeds from the last one to the first in ranges of those that follow each other: from the first to behind the last.
+pub fn descending(speeds: impl Iterator<Item = usize>) -> Vec<[usize; 2]> {
+    let mut ranges: Vec<[usize; 2]> = vec![];
+    for i in speeds {
+        match ranges.last_mut() {
+            Some(last) if last[0] == i + 1 => last[0] = i,
+            _ => ranges.push([i, i + 1]),
+        }
+    }
+    ranges
 }
 
 /// Speeds and units of a joint.

@@ -4,14 +4,17 @@
 //! whatever the joints are. So the length of a module grows with the number of bodies, while the work, which grows with the number of pairs, is done here in
 //! loops over tables. What no path of the tree connects stays 0.
 //!
-//! [`Pairs`] are the tables; `work` holds the numbers of one state: for each body that carries others the columns X̄ of its joint (six numbers a speed), then
-//! W and U of each unit (nine); for each joint that is carried the wrench that each of its units raises (six), then N X̄ and the angular part of Bᵀ X̄ of each
-//! speed (nine). Units of a joint are its local coordinates, then its speeds.
+//! [`Pairs`] are the tables; `work` holds the numbers of one state, as [`Places`] says. Numbers that columns beside each other need stand beside each other, so that
+//! compilers vectorise: eight columns of a row are found at once, and M̄⁻¹ is multiplied by up to 32 columns at once.
 
+mod meeting;
 mod second;
 mod solution;
 
 use hamel_runtime::scalar::Scalar;
+pub use meeting::{BEHIND, Meeting};
+use meeting::{Columns, NINE, SIX, meet};
+pub use solution::{Aligned, room_to_solve};
 
 /// A joint of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,8 +25,6 @@ pub struct Pairing {
     pub freedoms: [usize; 2],
     /// The body that carries it, in the tables.
     pub parent: Option<usize>,
-    /// Where in `work` that begins which it shows to those.
-    pub shown: usize,
 }
 
 /// A body that carries others, in the tables.
@@ -33,19 +34,79 @@ pub struct Carrying {
     pub joint: usize,
     /// The body that carries its joint.
     pub parent: Option<usize>,
-    /// Where in `work` that begins which others see of it.
-    pub seen: usize,
+    /// How many bodies of its joint that carry others stand before it.
+    pub layer: usize,
+}
+
+/// Where the numbers of one state stand in `work`.
+///
+/// A column is a degree of freedom, or behind all of these a speed. X̄ are the columns of a joint at a body that carries others, six numbers a speed; W and U, nine,
+/// are what a unit of a column changes there: of the body's twist, and the angular part of its acceleration. What others show to those that carry them are the
+/// wrench that a unit of a column raises, six numbers, and of each speed the momentum N X̄ and the angular part of Bᵀ X̄, nine.
+///
+/// X̄, W and U, and the wrenches are by component: the first numbers of all, then the second ones. Several bodies of one joint that carry others stand in layers, each
+/// as long as there are speeds or columns.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Places {
+    /// Degrees of freedom, and speeds.
+    pub sizes: [usize; 2],
+    /// Layers of X̄, and of W and U.
+    pub layers: usize,
+    /// Where X̄ begins.
+    pub columns: usize,
+    /// Where W and U begin.
+    pub variations: usize,
+    /// Where wrenches begin.
+    pub raised: usize,
+    /// Where momenta begin, speed after speed.
+    pub momenta: usize,
+    /// How many numbers each of them has: six for the mass matrix alone.
+    pub momentum: usize,
+    /// For second derivatives: where the virtual drifts p of ϕ begin, six numbers each, layer after layer.
+    pub drifts: usize,
+    /// For these: where that begins which W of carrying joints meets, six numbers for each ϕ.
+    pub by_rate: usize,
+    /// For these: where that begins which U meets, three for each column.
+    pub by_drift: usize,
+}
+
+impl Places {
+    /// Columns of derivatives.
+    #[must_use]
+    pub const fn width(&self) -> usize {
+        self.sizes[0] + self.sizes[1]
+    }
+
+    /// From one component of X̄ to the next.
+    #[must_use]
+    pub const fn column_stride(&self) -> usize {
+        self.layers * self.sizes[1]
+    }
+
+    /// From one component of W and U to the next.
+    #[must_use]
+    pub const fn variation_stride(&self) -> usize {
+        self.layers * self.width()
+    }
 }
 
 /// The tables of one function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pairs<'a> {
-    /// The joints.
+    /// Where numbers stand.
+    pub places: Places,
+    /// The joints: for second derivatives alone.
     pub joints: &'a [Pairing],
-    /// The bodies that carry others.
+    /// The bodies that carry others: for second derivatives alone.
     pub bodies: &'a [Carrying],
+    /// Rows of slopes: X̄ of a speed and wrenches that columns raise, or its momentum and W and U of columns.
+    pub slopes: &'a [Meeting],
+    /// Rows of M̄ left of the diagonal: the momentum of a speed and X̄ of others.
+    pub moved: &'a [Meeting],
     /// For each speed those towards the root, the nearest first, in ranges of speeds that follow each other: from the first to behind the last.
     pub above: &'a [&'a [[usize; 2]]],
+    /// For each speed those that reach it on their way to the root, the last one first, in such ranges.
+    pub below: &'a [&'a [[usize; 2]]],
     /// Entries of rows that are added: row, column, place in `work`.
     pub entries: &'a [[usize; 3]],
     /// The same of M̄.
@@ -56,143 +117,107 @@ pub struct Pairs<'a> {
     pub held: &'a [[usize; 2]],
     /// Columns of the right-hand sides that are not 0: from the first to behind the last.
     pub columns: &'a [[usize; 2]],
-    /// For each speed which columns may differ from 0 when what hangs on it is eliminated: bits of words of 64 columns.
-    pub filled: &'a [&'a [u64]],
-    /// For each speed those that its momentum reaches on the way from the leaves, the last one first.
-    pub below: &'a [&'a [usize]],
     /// Entries that are added to what is solved: row, column, place in `work`.
     pub followed: &'a [[usize; 3]],
     /// The column from which as many as there are speeds are M̄⁻¹, of which the upper triangle is found: the other one is its mirror image.
     pub mirrored: Option<usize>,
 }
 
-/// Numbers of a twist or wrench, and of what a unit or a speed has beside it.
-const SIX: usize = 6;
-const NINE: usize = 9;
-
 impl Pairs<'_> {
-    /// M̄ by rows, from `work` that has six numbers for each speed alone.
+    /// M̄ by rows, into zeros.
     pub fn mass<T: Scalar>(&self, work: &[T], matrix: &mut [T]) {
-        self.fill_mass(work, matrix, |joint, speed| joint.shown + SIX * speed);
+        let size = self.size();
+        self.fill_mass(work, matrix, size);
+        for &Meeting { row, columns, .. } in self.moved {
+            for column in columns[0]..columns[1] {
+                matrix[column * size + row] = matrix[row * size + column];
+            }
+        }
     }
 
-    /// M̄⁻¹ by rows, from the same `work`; rows of rates that are given are 0. `matrix` has room for M̄, and then holds its factors.
-    pub fn inverse_mass<T: Scalar>(&self, work: &[T], matrix: &mut [T], rows: &mut [T]) {
-        let size = self.above.len();
-        self.mass(work, matrix);
-        rows.fill(T::zero());
+    /// M̄⁻¹ by rows, into zeros; rows of rates that are given are 0. `room` has what [`room_to_solve`] says.
+    pub fn inverse_mass<T: Scalar>(&self, work: &[T], room: &mut [T], rows: &mut [T]) {
+        let size = self.size();
         for speed in 0..size {
             let given = self.held.iter().any(|&[held, _]| held == speed);
             rows[speed * size + speed] = if given { T::zero() } else { T::one() };
         }
-        self.fix(matrix);
-        self.factorise(matrix);
-        self.solve(matrix, rows, size);
+        let (mut factors, strip) = self.split(room);
+        self.fill_mass(work, factors.entries, factors.stride);
+        self.fix(&mut factors);
+        self.factorise(&mut factors);
+        self.solve(&factors, strip, rows, size);
     }
 
-    /// Rows of derivatives of inverse dynamics, `width` numbers each: in all degrees of freedom, then in all speeds.
-    pub fn inverse<T: Scalar>(&self, work: &[T], rows: &mut [T], width: usize) {
-        let freedoms = width.saturating_sub(self.above.len());
-        rows.fill(T::zero());
-        self.fill_slopes(work, rows, [width, freedoms]);
-        add(self.entries, work, rows, width);
+    /// Rows of derivatives of inverse dynamics, into zeros: in all degrees of freedom, then in all speeds.
+    pub fn inverse<T: Scalar>(&self, work: &[T], rows: &mut [T]) {
+        self.fill_slopes(work, rows, self.places.width(), |entry| entry);
     }
 
-    /// Rows of derivatives of forward dynamics, `width` numbers each: in all degrees of freedom, in all speeds, in all efforts, and the rates.
-    /// `matrix` has room for M̄, and then holds its factors.
-    pub fn forward<T: Scalar>(&self, work: &[T], matrix: &mut [T], rows: &mut [T], width: usize) {
-        let size = self.above.len();
-        if size == 0 || width == 0 {
-            return;
-        }
-        let freedoms = self.right_hand_sides(work, rows, width);
-        for row in rows.chunks_exact_mut(width) {
-            for entry in &mut row[..freedoms + size] {
-                // Zeros stay positive, so that it does not show whether they are skipped.
-                *entry = T::zero() - *entry;
-            }
-        }
-        self.fill_mass(work, matrix, |joint, speed| {
-            let units = joint.freedoms[1] + joint.speeds[1];
-            joint.shown + SIX * units + NINE * speed
-        });
-        self.hold(matrix, rows, width);
-        self.factorise(matrix);
-        self.solve(matrix, rows, width);
+    /// Rows of derivatives of forward dynamics, `width` numbers each, into zeros: in all degrees of freedom, in all speeds, in all efforts, and the rates.
+    /// `room` has what [`room_to_solve`] says.
+    pub fn forward<T: Scalar>(&self, work: &[T], room: &mut [T], rows: &mut [T], width: usize) {
+        self.right_hand_sides(work, rows, width);
+        let (mut factors, strip) = self.split(room);
+        self.fill_mass(work, factors.entries, factors.stride);
+        self.hold(&mut factors, rows, width);
+        self.factorise(&mut factors);
+        self.solve(&factors, strip, rows, width);
         add(self.followed, work, rows, width);
     }
 
-    /// What forward dynamics is solved for: derivatives of inverse dynamics, S̄ᵀ and the rates; the number of degrees of freedom.
-    pub fn right_hand_sides<T: Scalar>(&self, work: &[T], rows: &mut [T], width: usize) -> usize {
-        let freedoms = width.saturating_sub(self.above.len() + 1) / 2;
-        rows.fill(T::zero());
-        self.fill_slopes(work, rows, [width, freedoms]);
-        add(self.entries, work, rows, width);
-        freedoms
+    /// What forward dynamics is solved for: opposites of derivatives of inverse dynamics, S̄ᵀ and the rates.
+    pub fn right_hand_sides<T: Scalar>(&self, work: &[T], rows: &mut [T], width: usize) {
+        // Zeros stay positive, so that it does not show whether they are skipped.
+        self.fill_slopes(work, rows, width, |entry| T::zero() - entry);
     }
 
-    fn fill_mass<T: Scalar>(
+    /// Speeds.
+    fn size(&self) -> usize {
+        self.places.sizes[1]
+    }
+
+    /// M̄ on and left of the diagonal, by rows of `stride` numbers, all of which are assigned.
+    fn fill_mass<T: Scalar>(&self, work: &[T], matrix: &mut [T], stride: usize) {
+        matrix[..self.size() * stride].fill(T::zero());
+        let columns = Columns {
+            work,
+            stride: self.places.column_stride(),
+        };
+        for meeting in self.moved {
+            let own: &[T; SIX] = numbers(work, meeting.own);
+            meet(meeting, own, columns, (matrix, stride), |entry| entry);
+        }
+        add(self.masses, work, matrix, stride);
+    }
+
+    /// Slopes of inverse dynamics, or their opposites; what stands behind them in a row is no slope.
+    fn fill_slopes<T: Scalar>(
         &self,
         work: &[T],
-        matrix: &mut [T],
-        momentum: impl Fn(&Pairing, usize) -> usize,
+        rows: &mut [T],
+        width: usize,
+        sign: impl Fn(T) -> T + Copy,
     ) {
-        let size = self.above.len();
-        matrix.fill(T::zero());
-        for joint in self.joints {
-            let mut carrier = joint.parent;
-            while let Some(body) = carrier {
-                let Carrying {
-                    joint: above,
-                    parent,
-                    seen,
-                } = self.bodies[body];
-                let [other, others] = self.joints[above].speeds;
-                for speed in 0..joint.speeds[1] {
-                    let momentum = &work[momentum(joint, speed)..][..SIX];
-                    let row = joint.speeds[0] + speed;
-                    for k in 0..others {
-                        let entry = dot(&work[seen + SIX * k..][..SIX], momentum);
-                        matrix[row * size + other + k] = entry;
-                        matrix[(other + k) * size + row] = entry;
-                    }
-                }
-                carrier = parent;
+        let slopes = self.places.width();
+        let apart = self.places.column_stride();
+        let [raised, varied] =
+            [slopes, self.places.variation_stride()].map(|stride| Columns { work, stride });
+        for meeting in self.slopes {
+            if meeting.is_momentum {
+                let own: &[T; NINE] = numbers(work, meeting.own);
+                meet(meeting, own, varied, (rows, width), sign);
+            } else {
+                let own: [T; SIX] = core::array::from_fn(|i| work[meeting.own + apart * i]);
+                meet(meeting, &own, raised, (rows, width), sign);
             }
         }
-        add(self.masses, work, matrix, size);
-    }
-
-    fn fill_slopes<T: Scalar>(&self, work: &[T], rows: &mut [T], [width, freedoms]: [usize; 2]) {
-        for joint in self.joints {
-            let units = joint.freedoms[1] + joint.speeds[1];
-            let mut carrier = joint.parent;
-            while let Some(body) = carrier {
-                let Carrying {
-                    joint: above,
-                    parent,
-                    seen,
-                } = self.bodies[body];
-                let above = &self.joints[above];
-                for k in 0..above.speeds[1] {
-                    let column = &work[seen + SIX * k..][..SIX];
-                    let row = (above.speeds[0] + k) * width;
-                    for unit in 0..units {
-                        let raised = &work[joint.shown + SIX * unit..][..SIX];
-                        rows[row + joint.place(unit, freedoms)] = dot(column, raised);
-                    }
-                }
-                let (seen, shown) = (seen + SIX * above.speeds[1], joint.shown + SIX * units);
-                for speed in 0..joint.speeds[1] {
-                    let momentum = &work[shown + NINE * speed..][..NINE];
-                    let row = (joint.speeds[0] + speed) * width;
-                    for unit in 0..above.freedoms[1] + above.speeds[1] {
-                        let variation = &work[seen + NINE * unit..][..NINE];
-                        rows[row + above.place(unit, freedoms)] = dot(variation, momentum);
-                    }
-                }
-                carrier = parent;
-            }
+        for &[row, column, place] in self.entries {
+            let entry = &mut rows[row * width + column];
+            *entry += match column < slopes {
+                true => sign(work[place]),
+                false => work[place],
+            };
         }
     }
 }
@@ -208,13 +233,10 @@ impl Pairing {
     }
 }
 
+/// So many numbers from a place on.
 #[inline(always)]
-fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
-    let mut sum = a[0] * b[0];
-    for (&a, &b) in a[1..].iter().zip(&b[1..]) {
-        sum = a.mul_add(b, sum);
-    }
-    sum
+fn numbers<T: Scalar, const N: usize>(work: &[T], place: usize) -> &[T; N] {
+    &work[place..place + N].as_chunks().0[0]
 }
 
 #[inline(always)]

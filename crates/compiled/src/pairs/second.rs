@@ -1,22 +1,22 @@
 //! Second derivatives, contracted with weights, pair by pair of joints.
 //!
-//! Beside what first derivatives read, `work` holds of each body that carries others the virtual drift p of each ϕ (six numbers), after W and U; of each joint
-//! that is carried what W of those that carry it meets, for each ϕ (six), then the moment that U meets, for each unit (three), after N X̄ and Bᵀ X̄.
+//! Beside what first derivatives read, `work` holds of each body that carries others the virtual drift p of each ϕ; of each joint that is carried what W of those
+//! that carry it meets, for each ϕ, then the moment that U meets, for each unit.
 
-use super::{Carrying, NINE, Pairing, Pairs, SIX, add, dot};
+use super::{Carrying, Pairing, Pairs, SIX, add};
 use hamel_runtime::scalar::Scalar;
 
 /// Numbers of a moment.
 const THREE: usize = 3;
 
 impl Pairs<'_> {
-    /// The Hessian of contracted inverse dynamics by rows of `width`, over (ϕ, v̄, v̄̇).
+    /// The Hessian of contracted inverse dynamics by rows of `width`, over (ϕ, v̄, v̄̇), into zeros.
     pub fn second_inverse<T: Scalar>(&self, work: &[T], rows: &mut [T], width: usize) {
-        let freedoms = width.saturating_sub(2 * self.above.len());
-        self.fill_bends(work, rows, [width, freedoms]);
+        self.fill_bends(work, rows, width);
     }
 
-    /// The Hessian of contracted forward dynamics by rows of `width`, over (ϕ, v̄, τ); `room` has, with S speeds and K degrees of freedom, `S² + S width + S K + width + 4 (K + S)²` numbers.
+    /// The Hessian of contracted forward dynamics by rows of `width`, over (ϕ, v̄, τ); `room` has what [`super::room_to_solve`] says and, with S speeds and K degrees
+    /// of freedom, `S width + S K + width + 4 (K + S)²` numbers.
     pub fn second_forward<T: Scalar>(
         &self,
         work: &[T],
@@ -24,30 +24,25 @@ impl Pairs<'_> {
         rows: &mut [T],
         width: usize,
     ) {
-        let size = self.above.len();
-        let freedoms = width.saturating_sub(size) / 2;
+        let [freedoms, size] = self.places.sizes;
         let wide = 2 * (freedoms + size);
-        let (matrix, room) = room.split_at_mut(size * size);
-        let (needed, room) = room.split_at_mut(size * width);
-        let (solved, room) = room.split_at_mut(size * freedoms);
-        let (sums, bends) = room.split_at_mut(width);
-        self.fill_bends(work, bends, [wide, freedoms]);
+        let (room, more) = room.split_at_mut(super::room_to_solve(size));
+        let (needed, more) = more.split_at_mut(size * width);
+        let (solved, more) = more.split_at_mut(size * freedoms);
+        let (sums, bends) = more.split_at_mut(width);
+        bends.fill(T::zero());
+        self.fill_bends(work, bends, wide);
         needed.fill(T::zero());
-        self.fill_slopes(work, needed, [width, freedoms]);
-        add(self.entries, work, needed, width);
-        self.fill_mass(work, matrix, |joint, speed| {
-            let units = joint.freedoms[1] + joint.speeds[1];
-            joint.shown + SIX * units + NINE * speed
-        });
-        self.factorise(matrix);
+        self.fill_slopes(work, needed, width, |entry| entry);
+        let (mut factors, strip) = self.split(room);
+        self.fill_mass(work, factors.entries, factors.stride);
+        self.factorise(&mut factors);
         for speed in 0..size {
             for k in 0..freedoms {
                 solved[speed * freedoms + k] = bends[k * wide + freedoms + size + speed];
             }
         }
-        if freedoms > 0 {
-            self.solve(matrix, solved, freedoms);
-        }
+        self.solve(&factors, strip, solved, freedoms);
         // Efforts stand behind v̄̇ among what bends.
         let place = |x: usize| if x < freedoms + size { x } else { x + size };
         for (i, row) in rows.chunks_exact_mut(width.max(1)).enumerate() {
@@ -74,23 +69,21 @@ impl Pairs<'_> {
     }
 
     /// H between units of different joints, and the entries of the tables.
-    fn fill_bends<T: Scalar>(&self, work: &[T], rows: &mut [T], [width, freedoms]: [usize; 2]) {
-        rows.fill(T::zero());
+    fn fill_bends<T: Scalar>(&self, work: &[T], rows: &mut [T], width: usize) {
         for joint in self.joints {
             let mut carrier = joint.parent;
             while let Some(body) = carrier {
                 let Carrying {
                     joint: above,
                     parent,
-                    seen,
+                    layer,
                 } = self.bodies[body];
                 let bent = Bent {
+                    pairs: self,
                     work,
                     joint,
                     above: &self.joints[above],
-                    seen,
-                    freedoms,
-                    rates: freedoms + self.above.len(),
+                    layer,
                 };
                 bent.each(&mut |row, column, entry| {
                     rows[row * width + column] = entry;
@@ -103,60 +96,92 @@ impl Pairs<'_> {
     }
 }
 
-/// A joint, and one that carries it.
+/// A joint, and a body of one that carries it.
 struct Bent<'a, T> {
+    pairs: &'a Pairs<'a>,
     work: &'a [T],
     joint: &'a Pairing,
     above: &'a Pairing,
-    seen: usize,
-    freedoms: usize,
-    /// The first place of v̄̇.
-    rates: usize,
+    layer: usize,
 }
 
 impl<T: Scalar> Bent<'_, T> {
-    fn numbers<const N: usize>(&self, place: usize) -> &[T] {
-        &self.work[place..][..N]
+    /// Numbers that follow each other.
+    fn numbers<const N: usize>(&self, place: usize) -> [T; N] {
+        *super::numbers(self.work, place)
+    }
+
+    /// Numbers by component.
+    fn apart<const N: usize>(&self, place: usize, stride: usize) -> [T; N] {
+        core::array::from_fn(|i| self.work[place + stride * i])
+    }
+
+    /// W of a unit of the carrying joint, then U.
+    fn variation(&self, column: usize) -> ([T; SIX], [T; THREE]) {
+        let places = &self.pairs.places;
+        let stride = places.variation_stride();
+        let place = places.variations + self.layer * places.width() + column;
+        let drift = self.apart(place + SIX * stride, stride);
+        (self.apart(place, stride), drift)
     }
 
     /// All pairs of directions.
     #[inline(always)]
     fn each(&self, found: &mut impl FnMut(usize, usize, T)) {
         let Self { joint, above, .. } = self;
+        let places = &self.pairs.places;
+        let [freedoms, speeds] = places.sizes;
+        let rates = freedoms + speeds;
         let [own, others] = [joint, above].map(|of| of.freedoms[1] + of.speeds[1]);
-        let momenta = joint.shown + SIX * own;
-        let by_rate = momenta + NINE * joint.speeds[1];
-        let by_drift = by_rate + SIX * joint.freedoms[1];
-        let variations = self.seen + SIX * above.speeds[1];
-        let drifts = variations + NINE * others;
+        let by_rate =
+            |k: usize| self.numbers::<SIX>(places.by_rate + SIX * (joint.freedoms[0] + k));
         for l in 0..others {
-            let variation = self.numbers::<NINE>(variations + NINE * l);
-            let (rate, drift) = variation.split_at(SIX);
-            let row = above.place(l, self.freedoms);
+            let row = above.place(l, freedoms);
+            let (rate, drift) = self.variation(row);
+            let virtual_drift = (l < above.freedoms[1]).then(|| {
+                let freedom = self.layer * freedoms + above.freedoms[0] + l;
+                self.numbers::<SIX>(places.drifts + SIX * freedom)
+            });
             for k in 0..own {
-                let mut entry = dot(drift, self.numbers::<THREE>(by_drift + THREE * k));
+                let column = joint.place(k, freedoms);
+                let by_drift = self.numbers::<THREE>(places.by_drift + THREE * column);
+                let mut entry = dot(&drift, &by_drift);
                 if k < joint.freedoms[1] {
-                    entry += dot(rate, self.numbers::<SIX>(by_rate + SIX * k));
+                    entry += dot(&rate, &by_rate(k));
                 }
-                if l < above.freedoms[1] {
-                    let raised = self.numbers::<SIX>(joint.shown + SIX * k);
-                    entry += dot(self.numbers::<SIX>(drifts + SIX * l), raised);
+                if let Some(virtual_drift) = &virtual_drift {
+                    let raised = self.apart(places.raised + column, places.width());
+                    entry += dot(virtual_drift, &raised);
                 }
-                found(row, joint.place(k, self.freedoms), entry);
+                found(row, column, entry);
             }
-            for speed in (0..joint.speeds[1]).filter(|_| l < above.freedoms[1]) {
-                let momentum = self.numbers::<SIX>(momenta + NINE * speed);
-                let entry = dot(self.numbers::<SIX>(drifts + SIX * l), momentum);
-                found(row, self.rates + joint.speeds[0] + speed, entry);
+            let Some(virtual_drift) = virtual_drift else {
+                continue;
+            };
+            for speed in joint.speeds[0]..joint.speeds[0] + joint.speeds[1] {
+                let momentum = self.numbers(places.momenta + places.momentum * speed);
+                found(row, rates + speed, dot(&virtual_drift, &momentum));
             }
         }
-        for speed in 0..above.speeds[1] {
-            let column = self.numbers::<SIX>(self.seen + SIX * speed);
+        for speed in above.speeds[0]..above.speeds[0] + above.speeds[1] {
+            let place = places.columns + self.layer * speeds + speed;
+            let column = self.apart(place, places.column_stride());
             for k in 0..joint.freedoms[1] {
-                let entry = dot(column, self.numbers::<SIX>(by_rate + SIX * k));
-                let row = self.rates + above.speeds[0] + speed;
-                found(row, joint.freedoms[0] + k, entry);
+                found(
+                    rates + speed,
+                    joint.freedoms[0] + k,
+                    dot(&column, &by_rate(k)),
+                );
             }
         }
     }
+}
+
+#[inline(always)]
+fn dot<T: Scalar, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
+    let mut sum = a[0] * b[0];
+    for (&a, &b) in a[1..].iter().zip(&b[1..]) {
+        sum = a.mul_add(b, sum);
+    }
+    sum
 }

@@ -3,13 +3,53 @@
 use super::Pairs;
 use hamel_runtime::scalar::Scalar;
 
+/// Numbers that begin where a line of the cache begins.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub struct Aligned<T, const N: usize>(pub [T; N]);
+
+/// M̄, then its factors, by rows.
+pub(super) struct Factors<'a, T> {
+    pub(super) entries: &'a mut [T],
+    /// Numbers of a row: blocks of columns end within it.
+    pub(super) stride: usize,
+}
+
+/// Columns that are solved for at once, at most: what registers hold.
+const STRIP: usize = 48;
+/// Columns of the smallest block.
+const BLOCK: usize = 8;
+
+/// Numbers of a row of M̄ as it is factorised.
+const fn stride(size: usize) -> usize {
+    size.next_multiple_of(BLOCK)
+}
+
+/// Numbers that solving with M̄ of so many speeds needs room for.
+#[must_use]
+pub const fn room_to_solve(size: usize) -> usize {
+    size * (stride(size) + STRIP)
+}
+
 impl Pairs<'_> {
+    /// Room for M̄, and for the columns that are solved for.
+    pub(super) fn split<'r, T: Scalar>(&self, room: &'r mut [T]) -> (Factors<'r, T>, &'r mut [T]) {
+        let stride = stride(self.size());
+        let (entries, strip) = room.split_at_mut(self.size() * stride);
+        (Factors { entries, stride }, strip)
+    }
+
     /// Makes given rates known: what they take of others moves to the right-hand side.
-    pub(super) fn hold<T: Scalar>(&self, matrix: &mut [T], rows: &mut [T], width: usize) {
-        let size = self.above.len();
+    pub(super) fn hold<T: Scalar>(
+        &self,
+        matrix: &mut Factors<'_, T>,
+        rows: &mut [T],
+        width: usize,
+    ) {
         for &[speed, column] in self.held {
-            for row in 0..size {
-                rows[row * width + column] = -matrix[row * size + speed];
+            for row in 0..self.size() {
+                let place = row.max(speed) * matrix.stride + row.min(speed);
+                rows[row * width + column] = -matrix.entries[place];
             }
         }
         for &[speed, _] in self.held {
@@ -22,56 +62,90 @@ impl Pairs<'_> {
     }
 
     /// Rates that are given depend on nothing.
-    pub(super) fn fix<T: Scalar>(&self, matrix: &mut [T]) {
-        let size = self.above.len();
+    pub(super) fn fix<T: Scalar>(&self, matrix: &mut Factors<'_, T>) {
+        let stride = matrix.stride;
         for &[speed, _] in self.held {
-            for other in 0..size {
-                matrix[speed * size + other] = T::zero();
-                matrix[other * size + speed] = T::zero();
+            for other in 0..self.size() {
+                matrix.entries[speed * stride + other] = T::zero();
+                matrix.entries[other * stride + speed] = T::zero();
             }
-            matrix[speed * size + speed] = T::one();
+            matrix.entries[speed * stride + speed] = T::one();
         }
     }
 
-    /// `M̄ = LᵀDL`, which fills no zero of the tree: L in the lower triangle, D⁻¹ on the diagonal.
-    pub(super) fn factorise<T: Scalar>(&self, matrix: &mut [T]) {
-        let size = self.above.len();
-        for k in (0..size).rev() {
-            let (before, own) = matrix.split_at_mut(k * size);
-            let inverse = T::one() / own[k];
-            for i in self.above(k) {
-                let factor = own[i] * inverse;
-                let less = -factor;
-                let row = &mut before[i * size..][..size];
-                row[i] = less.mul_add(own[i], row[i]);
-                for &[from, to] in self.above[i] {
-                    for (entry, &own) in row[from..to].iter_mut().zip(&own[from..to]) {
-                        *entry = less.mul_add(own, *entry);
-                    }
-                }
-                own[i] = factor;
+    /// `M̄ = LᵀDL`, which fills no zero of the tree: L left of the diagonal, D⁻¹ on it. Right of it nothing is read.
+    pub(super) fn factorise<T: Scalar>(&self, matrix: &mut Factors<'_, T>) {
+        let stride = matrix.stride;
+        for i in (0..self.size()).rev() {
+            let end = (i + 1).next_multiple_of(BLOCK);
+            let mut from = 0;
+            while from < end {
+                from += match end - from {
+                    32.. => self.eliminate::<T, 32>(matrix, i, from),
+                    16.. => self.eliminate::<T, 16>(matrix, i, from),
+                    _ => self.eliminate::<T, BLOCK>(matrix, i, from),
+                };
             }
-            own[k] = inverse;
+            let pivot = &mut matrix.entries[i * stride + i];
+            *pivot = T::one() / *pivot;
         }
+        for (k, row) in matrix.entries.chunks_exact_mut(stride.max(1)).enumerate() {
+            let inverse = row[k];
+            for &[from, to] in self.above[k] {
+                for entry in &mut row[from..to] {
+                    *entry *= inverse;
+                }
+            }
+        }
+    }
+
+    /// Takes those below a row from its block of columns; how many these are.
+    #[inline(always)]
+    fn eliminate<T: Scalar, const N: usize>(
+        &self,
+        matrix: &mut Factors<'_, T>,
+        row: usize,
+        from: usize,
+    ) -> usize {
+        let Factors { entries, stride } = matrix;
+        let place = row * *stride + from;
+        let mut own: [T; N] = *super::numbers(entries, place);
+        for &[first, last] in self.below[row] {
+            for k in (first..last).rev() {
+                let below = k * *stride;
+                let factor = entries[below + row] * entries[below + k];
+                less(&mut own, factor, super::numbers(entries, below + from));
+            }
+        }
+        entries[place..][..N].copy_from_slice(&own);
+        N
     }
 
     /// `M̄⁻¹` times the columns of the tables, as many at once as registers take.
-    pub(super) fn solve<T: Scalar>(&self, factors: &[T], rows: &mut [T], width: usize) {
+    pub(super) fn solve<T: Scalar>(
+        &self,
+        factors: &Factors<'_, T>,
+        strip: &mut [T],
+        rows: &mut [T],
+        width: usize,
+    ) {
         for &[from, to] in self.columns {
-            let mut from = from;
-            while from < to {
-                from += match to - from {
-                    32.. => self.solve_block::<T, 32>(factors, rows, [width, from]),
-                    16.. => self.solve_block::<T, 16>(factors, rows, [width, from]),
-                    8.. => self.solve_block::<T, 8>(factors, rows, [width, from]),
-                    4.. => self.solve_block::<T, 4>(factors, rows, [width, from]),
-                    _ => self.solve_block::<T, 1>(factors, rows, [width, from]),
-                };
+            // Strips as wide as each other: a narrow one takes nearly as long as a wide one.
+            let count = (to - from).div_ceil((to - from).div_ceil(STRIP));
+            for from in (from..to).step_by(count) {
+                let columns = (from, count.min(to - from), width);
+                match count {
+                    41.. => self.solve_strip::<T, STRIP>(factors, strip, rows, columns),
+                    33.. => self.solve_strip::<T, 40>(factors, strip, rows, columns),
+                    25.. => self.solve_strip::<T, 32>(factors, strip, rows, columns),
+                    17.. => self.solve_strip::<T, 24>(factors, strip, rows, columns),
+                    9.. => self.solve_strip::<T, 16>(factors, strip, rows, columns),
+                    _ => self.solve_strip::<T, BLOCK>(factors, strip, rows, columns),
+                }
             }
         }
         if let Some(first) = self.mirrored {
-            let size = self.above.len();
-            for row in 0..size {
+            for row in 0..self.size() {
                 for column in 0..row {
                     rows[row * width + first + column] = rows[column * width + first + row];
                 }
@@ -79,72 +153,96 @@ impl Pairs<'_> {
         }
     }
 
-    /// The same of columns beside each other; how many these are.
-    fn solve_block<T: Scalar, const N: usize>(
+    /// The same of `count` columns beside each other, at most N.
+    #[inline(always)]
+    fn solve_strip<T: Scalar, const N: usize>(
         &self,
-        factors: &[T],
+        factors: &Factors<'_, T>,
+        strip: &mut [T],
         rows: &mut [T],
-        [width, from]: [usize; 2],
-    ) -> usize {
-        let size = self.above.len();
+        (from, count, width): (usize, usize, usize),
+    ) {
         // A column of M̄⁻¹ is a unit below its diagonal, and not wanted there.
         let wanted = self
             .mirrored
-            .and_then(|first| (from + N).checked_sub(first));
+            .and_then(|first| (from + count).checked_sub(first));
         let wanted = wanted
             .filter(|&wanted| wanted > 0)
-            .map_or(size, |wanted| wanted.min(size));
-        for i in (0..wanted).rev() {
-            let place = i * width + from;
-            let mut own: [T; N] = block(rows, place);
-            for &k in self.below[i] {
-                if k < wanted && self.is_filled(k, from, N) {
-                    let other = block(rows, k * width + from);
-                    less(&mut own, factors[k * size + i], &other);
+            .map_or(self.size(), |wanted| wanted.min(self.size()));
+        let strip = &mut strip.as_chunks_mut::<N>().0[..wanted];
+        for (i, own) in strip.iter_mut().enumerate() {
+            *own = load(&rows[i * width + from..]);
+        }
+        self.solve_up(factors, strip);
+        self.solve_down(factors, strip);
+        for (k, own) in strip.iter().enumerate() {
+            store(&mut rows[k * width + from..], own, count);
+        }
+    }
+
+    /// From the leaves to the root.
+    #[inline(always)]
+    fn solve_up<T: Scalar, const N: usize>(&self, factors: &Factors<'_, T>, strip: &mut [[T; N]]) {
+        for i in (0..strip.len()).rev() {
+            let mut own = strip[i];
+            for &[from, to] in self.below[i] {
+                for k in (from..to.min(strip.len())).rev() {
+                    less(&mut own, factors.entries[k * factors.stride + i], &strip[k]);
                 }
             }
-            rows[place..place + N].copy_from_slice(&own);
+            strip[i] = own;
         }
-        for k in 0..wanted {
-            let inverse = factors[k * size + k];
-            let place = k * width + from;
-            let mut own: [T; N] = block(rows, place).map(|entry| entry * inverse);
-            for i in self.above(k) {
-                let other = block(rows, i * width + from);
-                less(&mut own, factors[k * size + i], &other);
+    }
+
+    /// From the root to the leaves.
+    #[inline(always)]
+    fn solve_down<T: Scalar, const N: usize>(
+        &self,
+        factors: &Factors<'_, T>,
+        strip: &mut [[T; N]],
+    ) {
+        for k in 0..strip.len() {
+            let row = &factors.entries[k * factors.stride..][..factors.stride];
+            let mut own = strip[k];
+            for entry in &mut own {
+                *entry *= row[k];
             }
-            rows[place..place + N].copy_from_slice(&own);
+            for &[from, to] in self.above[k] {
+                for i in (from..to).rev() {
+                    less(&mut own, row[i], &strip[i]);
+                }
+            }
+            strip[k] = own;
         }
-        N
-    }
-
-    /// The speeds towards the root, the nearest first.
-    #[inline(always)]
-    fn above(&self, speed: usize) -> impl Iterator<Item = usize> {
-        let ranges = self.above[speed].iter();
-        ranges.flat_map(|&[from, to]| (from..to).rev())
-    }
-
-    /// Whether any of so many columns differs from 0 in the row of a speed, before it is divided.
-    #[inline(always)]
-    fn is_filled(&self, speed: usize, from: usize, count: usize) -> bool {
-        let words = self.filled[speed];
-        let (word, bit) = (from / WORD, from % WORD);
-        let mut bits = words[word] >> bit;
-        if bit > 0 && bit + count > WORD {
-            bits |= words[word + 1] << (WORD - bit);
-        }
-        bits & ((1 << count) - 1) != 0
     }
 }
 
-/// Columns of a word.
-const WORD: usize = u64::BITS as usize;
-
+/// N entries of a row, or what there is of them and zeros.
 #[inline(always)]
-fn block<T: Scalar, const N: usize>(rows: &[T], place: usize) -> [T; N] {
-    let found = rows[place..].first_chunk();
-    found.copied().unwrap_or([T::zero(); N])
+fn load<T: Scalar, const N: usize>(row: &[T]) -> [T; N] {
+    match row.first_chunk() {
+        Some(row) => *row,
+        None => {
+            let mut all = [T::zero(); N];
+            all[..row.len()].copy_from_slice(row);
+            all
+        }
+    }
+}
+
+/// Assigns the first `count` entries of a row.
+#[inline(always)]
+fn store<T: Scalar>(row: &mut [T], entries: &[T], count: usize) {
+    let (row, _) = row.split_at_mut(count);
+    let (blocks, rest) = row.as_chunks_mut::<BLOCK>();
+    let (full, others) = entries.as_chunks::<BLOCK>();
+    for (block, entries) in blocks.iter_mut().zip(full) {
+        *block = *entries;
+    }
+    let left = full.get(blocks.len()).map_or(others, |block| &block[..]);
+    for (place, &entry) in rest.iter_mut().zip(left) {
+        *place = entry;
+    }
 }
 
 #[inline(always)]

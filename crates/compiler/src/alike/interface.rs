@@ -41,8 +41,8 @@ enum Token {
     Number(usize),
     /// A node of the block is left for others.
     Left(usize),
-    /// A node of the block, or its opposite, is a result, so many entries after the first result.
-    Result(usize, bool, i64),
+    /// A node of the block, or its opposite, is a result.
+    Result(usize, bool),
 }
 
 /// What a block reads and leaves.
@@ -55,7 +55,7 @@ pub struct Interface {
     pub arrays: Vec<(Read, usize)>,
     /// Its numbers, as nodes.
     pub numbers: Vec<u32>,
-    /// Results of the function that it computes: the first entry, and its values.
+    /// Results of the function that it computes: places and values.
     pub results: Vec<(usize, Value)>,
 }
 
@@ -193,8 +193,7 @@ impl Reader<'_> {
             return;
         };
         self.interface.results.push((place, output));
-        let first = self.interface.results[0].0;
-        let result = Token::Result(own, output.negative, distance(first, place));
+        let result = Token::Result(own, output.negative);
         self.interface.structure.push(result);
     }
 }

@@ -167,10 +167,9 @@ impl Writer<'_> {
             .iter()
             .map(|&node| lowering.read(node.into()))
             .collect();
-        let results = &plan.interfaces[first].results;
-        let results: Vec<(i64, Formula)> = results
-            .iter()
-            .map(|&(place, value)| (place as i64 - results[0].0 as i64, lowering.read(value)))
+        let results = plan.interfaces[first].results.iter().enumerate();
+        let results: Vec<(Place, Formula)> = results
+            .map(|(i, &(_, value))| (tables.result(plan, group, i), lowering.read(value)))
             .collect();
         let mut lines = lowering.lines;
         let row = (!values.is_empty()).then(|| {
@@ -178,17 +177,8 @@ impl Writer<'_> {
             let place = tables.place(rows.collect());
             Line::Row(Row { place, values })
         });
-        if !results.is_empty() {
-            let starts = group
-                .iter()
-                .map(|&block| plan.interfaces[block].results[0].0);
-            let start = tables.place(starts.collect());
-            lines.extend(
-                results
-                    .into_iter()
-                    .map(|(by, formula)| Line::Result(start.plus(by), formula)),
-            );
-        }
+        let results = results.into_iter();
+        lines.extend(results.map(|(place, formula)| Line::Result(place, formula)));
         // Last: in Rust, the rows that results read are borrowed until then.
         lines.extend(row);
         self.leave_rows(group);
@@ -372,6 +362,26 @@ impl Tables {
             column: column(&mut self.places, &values),
             offset: 0,
         }
+    }
+
+    /// The place of a result that like blocks have: so far from that of an earlier result where it is as far in all of them.
+    fn result(&mut self, plan: &Plan, group: &[usize], result: usize) -> Place {
+        let places = |result: usize| -> Vec<usize> {
+            let blocks = group.iter();
+            blocks
+                .map(|&block| plan.interfaces[block].results[result].0)
+                .collect()
+        };
+        let own = places(result);
+        for earlier in 0..result {
+            let others = places(earlier);
+            let by = own[0] as i64 - others[0] as i64;
+            let mut both = own.iter().zip(&others);
+            if both.all(|(&own, &other)| own as i64 - other as i64 == by) {
+                return self.place(others).plus(by);
+            }
+        }
+        self.place(own)
     }
 
     /// A number that takes these values.

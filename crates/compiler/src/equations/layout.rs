@@ -1,11 +1,10 @@
 //! Where the numbers of the bodies stand that loops over pairs of joints read, and the tables of these loops.
-//!
-//! All numbers of a joint follow each other: like joints leave them at like places.
 
+use super::meetings;
 use super::{Tree, number};
 use crate::graph::{Sym, section};
-use crate::pairs::{Product, Tables};
-use hamel_compiled::{Carrying, Pairing};
+use crate::pairs::{Product, Tables, descending};
+use hamel_compiled::{BEHIND, Carrying, Pairing, Places};
 use num_traits::{One, Zero};
 
 /// Rows of derivatives, M̄, and half of the Hessian of contracted inverse dynamics; what is not wanted is empty.
@@ -13,6 +12,11 @@ type Entries<'a> = [&'a [Vec<Sym>]; 3];
 
 /// What each body of a joint shows to those it carries, and the joint to those that carry it.
 type Contribution<'a> = (&'a [(usize, Vec<Sym>)], &'a [Sym]);
+
+/// Numbers of a twist or wrench, of what a unit or a speed has beside it, and of a moment.
+const SIX: usize = 6;
+const NINE: usize = 9;
+const THREE: usize = 3;
 
 /// Numbers and tables as they grow.
 pub(super) struct Layout<'a> {
@@ -33,8 +37,14 @@ impl<'a> Layout<'a> {
             tables: Tables {
                 product,
                 size,
+                places: Places {
+                    sizes: [tree.model.sizes()[1], tree.model.sizes()[2]],
+                    ..Places::default()
+                },
                 joints: vec![],
                 bodies: vec![],
+                slopes: vec![],
+                moved: vec![],
                 above: carriers.map(|all| all.first().copied()).collect(),
                 entries: vec![],
                 masses: vec![],
@@ -42,31 +52,76 @@ impl<'a> Layout<'a> {
                 held: vec![],
                 columns: vec![],
                 followed: vec![],
-                filled: vec![],
                 below: vec![],
                 mirrored: None,
             },
         }
     }
 
-    /// The contributions of all joints, one per body, or none; after those of a joint the entries between its own units.
+    /// The contributions of all joints, one per body, or none; behind them, joint after joint, the entries between its own units.
     pub(super) fn place<'b>(
         &mut self,
         all: impl Iterator<Item = Contribution<'b>>,
         entries: Entries<'_>,
         rates: Option<&[Sym]>,
     ) {
-        let has_slopes = self.tables.has_slopes();
-        let mut all = all.fuse();
+        let all: Vec<Contribution<'b>> = all.collect();
+        self.give_places(&all);
+        let leading = all.iter().enumerate();
+        for (index, &contribution) in leading.filter(|&(i, _)| self.tree.model.bodies[i].leads()) {
+            section(number(index), "pairs");
+            self.contribution(index, contribution);
+        }
+        meetings::find(&mut self.tables);
+        self.own_entries(entries, rates);
+        self.others(entries);
+        let followed = rates.map(|rates| self.tree.followed_variations(rates));
+        for (column, row, value) in followed.into_iter().flatten() {
+            self.tables.followed.push([row, column, self.work.len()]);
+            self.work.push(value.settled());
+        }
+    }
+
+    /// Room for what bodies contribute.
+    fn give_places(&mut self, all: &[Contribution<'_>]) {
+        let Some(layers) = all.iter().map(|(seen, _)| seen.len()).max() else {
+            return;
+        };
+        let product = self.tables.product;
+        let places = &mut self.tables.places;
+        let [freedoms, speeds] = places.sizes;
+        places.layers = layers;
+        places.momentum = SIX;
+        let mut end = 0;
+        let mut next = |numbers: usize| {
+            end += numbers;
+            end - numbers
+        };
+        places.columns = next(SIX * places.column_stride());
+        if product.has_columns() {
+            places.momentum = NINE;
+            places.variations = next(NINE * places.variation_stride());
+            places.raised = next(SIX * places.width());
+        }
+        places.momenta = next(places.momentum * speeds);
+        if product.has_bends() {
+            places.drifts = next(SIX * layers * freedoms);
+            places.by_rate = next(SIX * freedoms);
+            places.by_drift = next(THREE * places.width());
+        }
+        // What stands by component is read eight numbers at once.
+        let least = places.momenta + BEHIND;
+        self.work = vec![Sym::zero(); end.max(least)];
+    }
+
+    /// Entries between the units of a joint, joint after joint.
+    fn own_entries(&mut self, entries: Entries<'_>, rates: Option<&[Sym]>) {
+        let has_slopes = self.tables.product.has_slopes();
         for (index, body) in self.tree.bodies.iter().enumerate() {
-            let contribution = all.next();
             if !self.tree.model.bodies[index].leads() {
                 continue;
             }
             section(number(index), "pairs");
-            if let Some(contribution) = contribution {
-                self.contribution(index, contribution);
-            }
             let (own, units) = (body.share.speeds.clone(), self.tree.places(index));
             for row in own.clone() {
                 for &column in units.iter().filter(|_| has_slopes) {
@@ -87,12 +142,6 @@ impl<'a> Layout<'a> {
             }
             self.bends(index, entries[2]);
         }
-        self.others(entries);
-        let followed = rates.map(|rates| self.tree.followed_variations(rates));
-        for (column, row, value) in followed.into_iter().flatten() {
-            self.tables.followed.push([row, column, self.work.len()]);
-            self.work.push(value.settled());
-        }
     }
 
     fn contribution(&mut self, index: usize, (seen, shown): Contribution<'_>) {
@@ -100,22 +149,83 @@ impl<'a> Layout<'a> {
         let joint = self.tables.joints.len();
         let share = &tree.bodies[index].share;
         let parent = |body: usize| tree.bodies[body].parent;
-        for (body, seen) in seen {
+        for (layer, (body, seen)) in seen.iter().enumerate() {
             self.carrying[*body] = Some(self.tables.bodies.len());
             self.tables.bodies.push(Carrying {
                 joint,
                 parent: parent(*body).and_then(|parent| self.carrying[parent]),
-                seen: self.work.len(),
+                layer,
             });
-            self.work.extend(seen);
+            self.seen(index, layer, seen);
         }
         self.tables.joints.push(Pairing {
             speeds: [share.speeds.start, share.speeds.len()],
             freedoms: [share.freedoms.start, share.freedoms.len()],
             parent: parent(index).and_then(|parent| self.carrying[parent]),
-            shown: self.work.len(),
         });
-        self.work.extend(shown);
+        self.shown(index, shown);
+    }
+
+    /// X̄, W and U, and virtual drifts of a body that carries others.
+    fn seen(&mut self, index: usize, layer: usize, numbers: &[Sym]) {
+        let places = self.tables.places;
+        let [freedoms, speeds] = places.sizes;
+        let (tree, mut numbers) = (self.tree, numbers.iter().copied());
+        let share = &tree.bodies[index].share;
+        for speed in share.speeds.clone() {
+            let first = places.columns + layer * speeds + speed;
+            self.put(first, places.column_stride(), numbers.by_ref().take(SIX));
+        }
+        if self.tables.product.has_columns() {
+            for column in tree.places(index) {
+                let first = places.variations + layer * places.width() + column;
+                let stride = places.variation_stride();
+                self.put(first, stride, numbers.by_ref().take(NINE));
+            }
+        }
+        if self.tables.product.has_bends() {
+            for freedom in share.freedoms.clone() {
+                let first = places.drifts + SIX * (layer * freedoms + freedom);
+                self.put(first, 1, numbers.by_ref().take(SIX));
+            }
+        }
+    }
+
+    /// What a joint shows to those that carry it: wrenches and momenta, and what second derivatives need of it.
+    fn shown(&mut self, index: usize, numbers: &[Sym]) {
+        let places = self.tables.places;
+        let (tree, mut numbers) = (self.tree, numbers.iter().copied());
+        let share = &tree.bodies[index].share;
+        if self.tables.product.has_columns() {
+            for column in tree.places(index) {
+                let first = places.raised + column;
+                self.put(first, places.width(), numbers.by_ref().take(SIX));
+            }
+        }
+        for speed in share.speeds.clone() {
+            let first = places.momenta + places.momentum * speed;
+            self.put(first, 1, numbers.by_ref().take(places.momentum));
+        }
+        if self.tables.product.has_bends() {
+            for freedom in share.freedoms.clone() {
+                self.put(
+                    places.by_rate + SIX * freedom,
+                    1,
+                    numbers.by_ref().take(SIX),
+                );
+            }
+            for column in tree.places(index) {
+                let first = places.by_drift + THREE * column;
+                self.put(first, 1, numbers.by_ref().take(THREE));
+            }
+        }
+    }
+
+    /// Numbers at places `stride` apart.
+    fn put(&mut self, first: usize, stride: usize, numbers: impl Iterator<Item = Sym>) {
+        for (i, number) in numbers.enumerate() {
+            self.work[first + stride * i] = number;
+        }
     }
 
     fn entry(&mut self, [row, column]: [usize; 2], value: Sym) {
@@ -216,7 +326,7 @@ impl<'a> Layout<'a> {
                 }
             }
         }
-        let has_slopes = self.tables.has_slopes();
+        let has_slopes = self.tables.product.has_slopes();
         for row in 0..speeds {
             let columns =
                 (0..freedoms + speeds).filter(|&c| has_slopes && by_column[c] != by_speed[row]);
@@ -231,78 +341,60 @@ impl<'a> Layout<'a> {
 
     /// The numbers and the tables.
     pub(super) fn finish(mut self) -> super::pairs::Paired {
-        let [_, freedoms, speeds] = self.tree.model.sizes();
+        let [freedoms, speeds] = self.tables.places.sizes;
         match self.tables.product {
             Product::Mass | Product::Inverse | Product::SecondInverse => {}
-            Product::SecondForward => {
-                self.tables.columns = vec![[0, freedoms]];
-                self.eliminated(vec![vec![true; freedoms]; speeds]);
-            }
+            Product::SecondForward => self.tables.columns = vec![[0, freedoms]],
             Product::InverseMass => {
                 let driven = (0..speeds).filter(|&speed| self.tree.is_driven(speed));
                 self.tables.held = driven.map(|speed| [speed, 0]).collect();
                 self.tables.mirrored = Some(0);
                 self.tables.columns = vec![[0, speeds]];
-                let unit = |row| (0..speeds).map(move |column| row == column).collect();
-                self.eliminated((0..speeds).map(unit).collect());
             }
             Product::Forward => {
                 let plain = self.tables.held.is_empty() && self.is_plain();
                 self.tables.mirrored = plain.then_some(freedoms + speeds);
-                let filled = self.filled();
-                let any = |column| filled.iter().any(|row: &Vec<bool>| row[column]);
-                let columns: Vec<bool> = (0..self.tables.size[1]).map(any).collect();
-                self.tables.columns = spans(&columns, self.tables.mirrored);
-                self.eliminated(filled);
+                self.tables.columns = spans(&self.filled(), self.tables.mirrored);
             }
+        }
+        if self.tables.room(1) > 0 {
+            self.tables.below = self.below();
         }
         (self.work, self.tables)
     }
 
-    /// Which entries of the right-hand sides are not 0, by rows.
-    fn filled(&self) -> Vec<Vec<bool>> {
+    /// Which columns of the right-hand sides are not 0.
+    fn filled(&self) -> Vec<bool> {
         let [_, width] = self.tables.size;
-        // Numbers that tell where something is: sums of what is positive are never 0.
+        // Numbers that tell where something is: sums of what has one sign are never 0.
         let marks = self
             .work
             .iter()
             .map(|sym| f64::from(u8::from(!sym.is_zero())));
         let marks = self.tables.right_hand_sides(&marks.collect::<Vec<f64>>());
-        let rows = marks.chunks(width).map(|row| {
-            let filled = row.iter().map(|&mark| mark != 0.0);
-            let mut filled: Vec<bool> = filled.collect();
-            self.tables
-                .held
-                .iter()
-                .for_each(|&[_, column]| filled[column] = true);
-            // The rates are found already.
-            filled[width - 1] = false;
-            filled
-        });
-        rows.collect()
-    }
-
-    /// The tables of what is eliminated from the leaves to the root, where these entries of the right-hand sides are not 0.
-    fn eliminated(&mut self, mut filled: Vec<Vec<bool>>) {
-        let carriers = self.tree.carriers();
-        self.tables.below = vec![vec![]; carriers.len()];
-        for (k, carriers) in carriers.iter().enumerate().rev() {
-            let own = filled[k].clone();
-            for &i in carriers {
-                self.tables.below[i].push(k);
-                for (filled, &own) in filled[i].iter_mut().zip(&own) {
-                    *filled |= own;
-                }
+        let mut filled = vec![false; width];
+        for row in marks.chunks(width) {
+            for (filled, &mark) in filled.iter_mut().zip(row) {
+                *filled |= mark != 0.0;
             }
         }
-        let word = |bits: &[bool]| {
-            let places = bits.iter().enumerate();
-            places.fold(0, |word, (place, &is_set)| {
-                word | u64::from(is_set) << place
-            })
-        };
-        let rows = filled.iter();
-        self.tables.filled = rows.map(|row| row.chunks(64).map(word).collect()).collect();
+        for &[_, column] in &self.tables.held {
+            filled[column] = true;
+        }
+        // The rates are found already.
+        filled[width - 1] = false;
+        filled
+    }
+
+    /// For each speed those that reach it on their way to the root.
+    fn below(&self) -> Vec<Vec<[usize; 2]>> {
+        let carriers = self.tree.carriers();
+        let mut below = vec![vec![]; carriers.len()];
+        for (k, carriers) in carriers.iter().enumerate().rev() {
+            carriers.iter().for_each(|&i| below[i].push(k));
+        }
+        let below = below.into_iter();
+        below.map(|all| descending(all.into_iter())).collect()
     }
 
     /// Whether efforts are generalised forces of the speeds, one by one: S̄ = 1.

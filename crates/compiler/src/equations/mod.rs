@@ -19,6 +19,7 @@ mod external;
 mod forward_derivatives;
 mod kinematics;
 mod layout;
+mod meetings;
 mod newton_euler;
 mod pairs;
 mod ports;

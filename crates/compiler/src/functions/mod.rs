@@ -208,8 +208,8 @@ const LOOPED: usize = 10_000;
 
 /// Operations of a function from which on pairs of joints are left to loops.
 ///
-/// Below, straight code is faster: derivatives of forward dynamics of anymal (17 900 operations) took 0.62 times as long as with loops, those of inverse
-/// dynamics of g1 (22 900) 0.56 times; and the Rust compiler took both in seconds.
+/// Below, straight code is faster: derivatives of forward dynamics of anymal (17 900 operations) took 0.74 times as long as with loops, those of inverse
+/// dynamics of g1 (22 900) 0.70 times; and the Rust compiler took both in seconds.
 const PAIRED: usize = 30_000;
 
 /// The same of M̄⁻¹, most of which is solving.

@@ -1,6 +1,7 @@
 //! Loops over pairs of joints in C: tables of numbers, and a call of a helper of the module.
 
 use crate::pairs::{Product, Tables};
+use hamel_compiled::Places;
 use serde::Serialize;
 
 /// As the templates see them. Numbers that are not there are −1.
@@ -19,6 +20,8 @@ pub struct Written {
     room: usize,
     is_wide: bool,
     mirrored: String,
+    /// Where numbers stand.
+    places: Vec<usize>,
     tables: Vec<Table>,
 }
 
@@ -37,24 +40,23 @@ impl Written {
         let joints = tables.joints.iter().map(|joint| {
             let [a, b] = joint.speeds;
             let [c, d] = joint.freedoms;
-            vec![
-                number(a),
-                number(b),
-                number(c),
-                number(d),
-                optional(joint.parent),
-                number(joint.shown),
-            ]
+            let parent = optional(joint.parent);
+            vec![number(a), number(b), number(c), number(d), parent]
         });
         let bodies = tables.bodies.iter();
-        let bodies =
-            bodies.map(|body| vec![number(body.joint), optional(body.parent), number(body.seen)]);
+        let bodies = bodies.map(|body| {
+            vec![
+                number(body.joint),
+                optional(body.parent),
+                number(body.layer),
+            ]
+        });
         let above = tables.above.iter().map(|&above| vec![optional(above)]);
         let plain = |rows: &[[usize; 3]]| rows.iter().map(|row| row.map(number).to_vec()).collect();
         let held = tables.held.iter().map(|row| row.map(number).to_vec());
         let columns = tables.columns.iter().map(|row| row.map(number).to_vec());
         let all: [(&'static str, usize, Vec<Vec<i64>>); 9] = [
-            ("joints", 6, joints.collect()),
+            ("joints", 5, joints.collect()),
             ("bodies", 3, bodies.collect()),
             ("above", 1, above.collect()),
             ("entries", 3, plain(&tables.entries)),
@@ -70,7 +72,8 @@ impl Written {
             is_empty: work == 0,
             size: tables.above.len(),
             width: tables.size[1],
-            room: tables.room(),
+            places: places(&tables.places),
+            room: tables.room(tables.above.len().pow(2)),
             is_wide: !matches!(tables.product, Product::Mass | Product::InverseMass),
             mirrored: optional(tables.mirrored).to_string(),
             tables: all.into_iter().map(Table::new).collect(),
@@ -97,6 +100,24 @@ impl Table {
             rows,
         }
     }
+}
+
+/// As the structure of the template has them.
+fn places(places: &Places) -> Vec<usize> {
+    vec![
+        places.sizes[0],
+        places.column_stride(),
+        places.variation_stride(),
+        places.width(),
+        places.columns,
+        places.variations,
+        places.raised,
+        places.momenta,
+        places.momentum,
+        places.drifts,
+        places.by_rate,
+        places.by_drift,
+    ]
 }
 
 fn number(number: usize) -> i64 {

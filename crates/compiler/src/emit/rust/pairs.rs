@@ -2,7 +2,7 @@
 
 use crate::pairs::{Product, Tables};
 use hamel_codegen::emit::rust::comment;
-use hamel_compiled::{Carrying, Pairing};
+use hamel_compiled::{Carrying, Meeting, Pairing, Places, room_to_solve};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -10,27 +10,23 @@ use quote::{format_ident, quote};
 pub fn rows(tables: &Tables) -> TokenStream {
     let [rows, width] = tables.size.map(Literal::usize_unsuffixed);
     let method = format_ident!("{}", tables.product.name());
-    let matrix = quote! { let mut matrix = [[n(0.0); #rows]; #rows]; };
+    let room = tables.room(room_to_solve(tables.above.len()));
+    let room = Literal::usize_unsuffixed(room);
+    let room = quote! { let mut room = ::hamel::compiled::Aligned([n(0.0); #room]); };
     let call = match tables.product {
-        Product::Mass => quote! { PAIRS.#method(&results, rows.as_flattened_mut()); },
+        Product::Mass | Product::Inverse => {
+            quote! { PAIRS.#method(&results, rows.as_flattened_mut()); }
+        }
         Product::InverseMass => quote! {
-            #matrix
-            PAIRS.#method(&results, matrix.as_flattened_mut(), rows.as_flattened_mut());
+            #room
+            PAIRS.#method(&results, &mut room.0, rows.as_flattened_mut());
         },
-        Product::Inverse => quote! { PAIRS.#method(&results, rows.as_flattened_mut(), #width); },
-        Product::Forward => quote! {
-            #matrix
-            PAIRS.#method(&results, matrix.as_flattened_mut(), rows.as_flattened_mut(), #width);
+        Product::Forward | Product::SecondForward => quote! {
+            #room
+            PAIRS.#method(&results, &mut room.0, rows.as_flattened_mut(), #width);
         },
         Product::SecondInverse => {
             quote! { PAIRS.#method(&results, rows.as_flattened_mut(), #width); }
-        }
-        Product::SecondForward => {
-            let room = Literal::usize_unsuffixed(tables.room());
-            quote! {
-                let mut matrix = [n(0.0); #room];
-                PAIRS.#method(&results, &mut matrix, rows.as_flattened_mut(), #width);
-            }
         }
     };
     let constants = constants(tables);
@@ -45,11 +41,21 @@ pub fn rows(tables: &Tables) -> TokenStream {
 }
 
 fn constants(tables: &Tables) -> TokenStream {
-    let joints = tables.joints.iter().map(pairing);
-    let bodies = tables.bodies.iter().map(carrying);
-    let above = tables.ranges().into_iter().map(|ranges| {
-        let ranges = ranges.iter().map(|range| numbers(range));
-        quote! { &[#(#ranges),*] }
+    let (joints, bodies) = match tables.product.has_bends() {
+        true => (&tables.joints[..], &tables.bodies[..]),
+        false => (&[][..], &[][..]),
+    };
+    let joints = joints.iter().map(pairing);
+    let bodies = bodies.iter().map(carrying);
+    let places = places(&tables.places);
+    let [slopes, moved] =
+        [&tables.slopes, &tables.moved].map(|all| all.iter().map(meeting).collect::<Vec<_>>());
+    let [above, below] = [&tables.ranges(), &tables.below].map(|all| {
+        let all = all.iter().map(|ranges| {
+            let ranges = ranges.iter().map(|range| numbers(range));
+            quote! { &[#(#ranges),*] }
+        });
+        all.collect::<Vec<_>>()
     });
     let [entries, masses, bends, followed] = [
         &tables.entries,
@@ -60,48 +66,89 @@ fn constants(tables: &Tables) -> TokenStream {
     .map(|table| table.iter().map(|row| numbers(row)).collect::<Vec<_>>());
     let columns = tables.columns.iter().map(|row| numbers(row));
     let held = tables.held.iter().map(|row| numbers(row));
-    let filled = tables.filled.iter().map(|row| {
-        let words = row.iter().map(|&word| Literal::u64_unsuffixed(word));
-        quote! { &[#(#words),*] }
-    });
-    let below = tables.below.iter().map(|row| {
-        let row = numbers(row);
-        quote! { &#row }
-    });
     let mirrored = optional(tables.mirrored);
     quote! {
         const PAIRS: ::hamel::compiled::Pairs<'static> = ::hamel::compiled::Pairs {
+            places: #places,
             joints: &[#(#joints),*],
             bodies: &[#(#bodies),*],
+            slopes: &[#(#slopes),*],
+            moved: &[#(#moved),*],
             above: &[#(#above),*],
+            below: &[#(#below),*],
             entries: &[#(#entries),*],
             masses: &[#(#masses),*],
             bends: &[#(#bends),*],
             held: &[#(#held),*],
             columns: &[#(#columns),*],
             followed: &[#(#followed),*],
-            filled: &[#(#filled),*],
-            below: &[#(#below),*],
             mirrored: #mirrored,
         };
     }
 }
 
+fn places(places: &Places) -> TokenStream {
+    let sizes = numbers(&places.sizes);
+    let [
+        layers,
+        columns,
+        variations,
+        raised,
+        momenta,
+        momentum,
+        drifts,
+        by_rate,
+        by_drift,
+    ] = [
+        places.layers,
+        places.columns,
+        places.variations,
+        places.raised,
+        places.momenta,
+        places.momentum,
+        places.drifts,
+        places.by_rate,
+        places.by_drift,
+    ]
+    .map(Literal::usize_unsuffixed);
+    quote! {
+        ::hamel::compiled::Places {
+            sizes: #sizes,
+            layers: #layers,
+            columns: #columns,
+            variations: #variations,
+            raised: #raised,
+            momenta: #momenta,
+            momentum: #momentum,
+            drifts: #drifts,
+            by_rate: #by_rate,
+            by_drift: #by_drift,
+        }
+    }
+}
+
+fn meeting(meeting: &Meeting) -> TokenStream {
+    let [row, own, others] =
+        [meeting.row, meeting.own, meeting.others].map(Literal::usize_unsuffixed);
+    let columns = numbers(&meeting.columns);
+    let is_momentum = meeting.is_momentum;
+    quote! {
+        ::hamel::compiled::Meeting { row: #row, columns: #columns, own: #own, others: #others, is_momentum: #is_momentum }
+    }
+}
+
 fn pairing(joint: &Pairing) -> TokenStream {
     let (speeds, freedoms) = (numbers(&joint.speeds), numbers(&joint.freedoms));
-    let (parent, shown) = (
-        optional(joint.parent),
-        Literal::usize_unsuffixed(joint.shown),
-    );
+    let parent = optional(joint.parent);
     quote! {
-        ::hamel::compiled::Pairing { speeds: #speeds, freedoms: #freedoms, parent: #parent, shown: #shown }
+        ::hamel::compiled::Pairing { speeds: #speeds, freedoms: #freedoms, parent: #parent }
     }
 }
 
 fn carrying(body: &Carrying) -> TokenStream {
-    let [joint, seen] = [body.joint, body.seen].map(Literal::usize_unsuffixed);
+    let [joint, layer] = [body.joint, body.layer].map(Literal::usize_unsuffixed);
     let parent = optional(body.parent);
-    quote! { ::hamel::compiled::Carrying { joint: #joint, parent: #parent, seen: #seen } }
+    quote! { ::hamel::compiled::Carrying { joint: #joint, parent: #parent, layer: #layer } }
 }
 
 fn numbers(row: &[usize]) -> TokenStream {
