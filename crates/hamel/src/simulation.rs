@@ -239,7 +239,10 @@ impl<'a> Simulation<'a> {
         let (start, options) = (self.start.clone(), self.options()?);
         let (mut own, mut others) = (self.dynamics(), self.dynamics());
         let mut companion = |start: &State, options: &Options, observer: &mut Observer<'_>| {
-            let motion = self.integrate(&mut *others, (start, options), vec![], observer);
+            // A companion changes its method where the motion did.
+            let chooses = self.settings.chooses && !solution.method_changes.is_empty();
+            let of = (start, options, chooses);
+            let motion = self.integrate(&mut *others, of, vec![], observer);
             motion.map_err(|error| error.to_string())
         };
         Ok(GlobalError::estimate(
@@ -272,7 +275,8 @@ impl<'a> Simulation<'a> {
         let events = own.chain(others_again).collect();
         let start = self.start.clone();
         let mut sight = self.sight.take();
-        let moved = self.integrate(dynamics, (&start, options), events, &mut |step| {
+        let of = (&start, options, self.settings.chooses);
+        let moved = self.integrate(dynamics, of, events, &mut |step| {
             if let Some(sight) = &mut sight {
                 sight(step);
             }
@@ -283,11 +287,11 @@ impl<'a> Simulation<'a> {
         moved
     }
 
-    /// One motion under the inputs, or a controller that begins with it.
+    /// One motion under the inputs, or a controller that begins with it; whether its method may change on the way.
     fn integrate(
         &mut self,
         dynamics: &mut dyn Dynamics,
-        (start, options): (&State, &Options),
+        (start, options, chooses): (&State, &Options, bool),
         events: Vec<Event<'_>>,
         observer: &mut Observer<'_>,
     ) -> Result<Solution, Error> {
@@ -313,7 +317,7 @@ impl<'a> Simulation<'a> {
                     false => observer(step),
                 }
             });
-        if self.settings.chooses {
+        if chooses {
             motion = motion.choosing();
         }
         for event in events {

@@ -11,7 +11,7 @@ use super::kinks::Kinks;
 use super::options::{StepControl, least_step};
 use super::outputs::{Outputs, Passed};
 use super::pieces::{FirstPiece, resolving};
-use super::prospect::{Prospect, other_method};
+use super::prospect::{Prospect, chosen_method, other_method};
 use super::rates_of_loops::has_ends;
 use super::reconsider::Reconsideration;
 use super::rounding::Rounding;
@@ -350,6 +350,22 @@ impl<'a> Driver<'a> {
 
     /// The step to try, and whether it ends on the target.
     fn choose_step(&self, step: f64) -> (f64, bool) {
+        let (step, lands) = self.step_to_target(step);
+        if let Method::Fixed { .. } = self.options.method {
+            return (step, lands);
+        }
+        let time = self.clock.time();
+        let end = time + step;
+        let motion = [self.start, self.options.t_end];
+        let seen = self.flow.mechanism.end_before_pulse([time, end], motion);
+        match seen < end && seen - time > least_step(time, end) {
+            true => (seen - time, false),
+            false => (step, lands),
+        }
+    }
+
+    /// The same, however what acts changes with time.
+    fn step_to_target(&self, step: f64) -> (f64, bool) {
         let (remaining, step) = (self.clock.until(self.target()), step.min(self.resolving));
         match self.options.method {
             Method::Fixed { .. } if is_last(remaining, step) => (remaining, true),
@@ -474,7 +490,12 @@ impl<'a> Driver<'a> {
         if let Some(search) = &pacing.search {
             return search.failure();
         }
-        let advice = other_method(&self.flow, self.options, &self.state());
+        let find = match cause {
+            // Of a step that has no solution, the length is not to blame alone.
+            StepFailure::NoConvergence { .. } => chosen_method,
+            _ => other_method,
+        };
+        let advice = find(&self.flow, self.options, &self.state());
         IntegrateError::StepUnderflow {
             time: self.clock.time(),
             step: pacing.step,

@@ -56,6 +56,7 @@ mod options;
 mod outputs;
 mod phi;
 mod pieces;
+mod product;
 mod prospect;
 mod rates_of_loops;
 mod reconsider;

@@ -6,6 +6,7 @@
 //! In place of φ₀ stands `φ₀ − 1`. Of a slow mode beside a fast one φ₀ is nearly 1 before the doublings, each of which doubles the error of that; the
 //! difference from 1 has a small relative error and keeps it.
 
+use super::product::multiply;
 use alloc::vec;
 use alloc::vec::Vec;
 use nalgebra::DMatrix;
@@ -141,7 +142,7 @@ impl Phi {
         work.fill(0.0);
         for group in (0..GROUPS).rev() {
             if group + 1 < GROUPS {
-                fourth.mul_to(&whole[last], work);
+                multiply(fourth, &whole[last], work);
             }
             let first = last + 4 * group;
             for (term, power) in [&*matrix, square, third].into_iter().enumerate() {
@@ -153,7 +154,7 @@ impl Phi {
         }
         for k in (0..last).rev() {
             let (lower, upper) = whole.split_at_mut(k + 1);
-            matrix.mul_to(&upper[0], &mut lower[k]);
+            multiply(matrix, &upper[0], &mut lower[k]);
             if k > 0 {
                 add_to_diagonal(&mut lower[k], 1.0 / factorial(k));
             }
@@ -163,16 +164,16 @@ impl Phi {
     fn raise(&mut self) {
         let Self { matrix, powers, .. } = self;
         let [square, third, fourth] = powers;
-        matrix.mul_to(matrix, square);
-        matrix.mul_to(square, third);
-        square.mul_to(square, fourth);
+        multiply(matrix, matrix, square);
+        multiply(matrix, square, third);
+        multiply(square, square, fourth);
     }
 
     /// `φ_k(2z) = 2⁻ᵏ (φ₀(z) φ_k(z) + Σ_{j=1}^{k} φ_j(z)/(k−j)!)`, and `φ₀(2z) − 1 = (φ₀(z) − 1)² + 2 (φ₀(z) − 1)`.
     fn double(&mut self) {
         let Self { whole, work, .. } = self;
         for k in (1..COUNT).rev() {
-            whole[0].mul_to(&whole[k], work);
+            multiply(&whole[0], &whole[k], work);
             *work += &whole[k];
             for (j, lower) in whole.iter().enumerate().take(k + 1).skip(1) {
                 let weight = 1.0 / factorial(k - j);
@@ -181,7 +182,7 @@ impl Phi {
             *work *= Float::powi(0.5, k as i32);
             core::mem::swap(&mut whole[k], work);
         }
-        whole[0].mul_to(&whole[0], work);
+        multiply(&whole[0], &whole[0], work);
         work.zip_apply(&whole[0], |sum, x| *sum += 2.0 * x);
         core::mem::swap(&mut whole[0], work);
     }

@@ -97,8 +97,18 @@ impl Prospect {
     }
 }
 
-/// The method that a state calls for, and why, where it is another one than that of `options`.
+/// The method that solves for what is stiff at a state, and why, where it is another one than that of `options`.
 pub(super) fn other_method(flow: &Flow<'_>, options: &Options, state: &State) -> Option<String> {
+    let choice = choice(flow, options, state)?;
+    choice.scheme.takes_derivatives().then(|| advice(&choice))
+}
+
+/// The method that is chosen at a state, and why, where it is another one than that of `options`.
+pub(super) fn chosen_method(flow: &Flow<'_>, options: &Options, state: &State) -> Option<String> {
+    choice(flow, options, state).as_ref().map(advice)
+}
+
+fn choice(flow: &Flow<'_>, options: &Options, state: &State) -> Option<Choice> {
     let Method::Controlled { scheme, control } = options.method else {
         return None;
     };
@@ -107,12 +117,14 @@ pub(super) fn other_method(flow: &Flow<'_>, options: &Options, state: &State) ->
         span: options.t_end - state.time,
         is_bound: true,
     };
-    let choice = Choice::new(&flow.mechanism, state, wanted).ok()?;
-    (choice.scheme.takes_derivatives() && choice.scheme != scheme).then(|| {
-        format!(
-            "{}: take the method `{}`",
-            choice.reason,
-            choice.scheme.name()
-        )
-    })
+    let choice = Choice::new(&flow.mechanism, state, wanted).ok();
+    choice.filter(|choice| choice.scheme != scheme)
+}
+
+fn advice(choice: &Choice) -> String {
+    format!(
+        "{}: take the method `{}`",
+        choice.reason,
+        choice.scheme.name()
+    )
 }

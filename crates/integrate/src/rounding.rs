@@ -176,7 +176,8 @@ impl Rounding {
 }
 
 impl Room {
-    /// Differences of the rates at the state, and at one that differs from it by a rounding in each of its numbers, in Q too at the joints that `is_counted` takes: ϕ̇, then ẏ.
+    /// Differences of the rates at the state, and at one that differs from it by a rounding in each of its numbers and in the time, in Q too at the joints that
+    /// `is_counted` takes: ϕ̇, then ẏ.
     fn scatter(
         &mut self,
         step_state: &StepState,
@@ -197,7 +198,7 @@ impl Room {
             }
         }
         flow.evaluate(
-            time,
+            time * (1.0 + f64::EPSILON),
             &step_state.base,
             &self.phi,
             &self.y,

@@ -230,6 +230,14 @@ impl Mechanism {
         first_kink(self.time_functions(), after, until)
     }
 
+    /// The end of a step of a motion in which no pulse of what acts lies unseen ([`TimeFunction::end_before_pulse`]): that of the step, or an earlier time.
+    pub fn end_before_pulse(&self, [from, until]: [f64; 2], motion: [f64; 2]) -> f64 {
+        let functions = self.time_functions();
+        functions.fold(until, |until, function| {
+            function.end_before_pulse([from, until], motion)
+        })
+    }
+
     fn time_functions(&self) -> impl Iterator<Item = &TimeFunction> {
         let Actuation {
             elements,

@@ -3,8 +3,7 @@
 use super::interval::Interval;
 use super::jet::{Jet, Real};
 use super::parse::{SyntaxError, parse};
-use super::switches;
-use super::{KinkError, Moment};
+use super::{KinkError, Moment, pulses, switches};
 use alloc::boxed::Box;
 use alloc::string::String;
 
@@ -89,6 +88,10 @@ impl Expression {
         self.root.contains(&is_step).then_some("`step`")
     }
 
+    pub(super) fn end_before_pulse(&self, step: [f64; 2], motion: [f64; 2]) -> f64 {
+        pulses::end_before(&self.root, step, motion)
+    }
+
     pub(super) fn next_kink(&self, after: f64, until: f64) -> Result<Option<f64>, KinkError> {
         switches::first(&self.root, after, until).map_err(|switch| KinkError {
             function: self.text.clone(),
@@ -100,7 +103,7 @@ impl Expression {
 }
 
 impl Node {
-    fn at(&self, at: Moment) -> Jet<f64> {
+    pub(super) fn at(&self, at: Moment) -> Jet<f64> {
         self.evaluate(Jet {
             value: at.time,
             slope: 1.0,

@@ -8,6 +8,7 @@ mod interval;
 mod jet;
 mod law;
 mod parse;
+mod pulses;
 mod spline;
 mod switches;
 mod table;
@@ -96,6 +97,18 @@ impl TimeFunction {
             Self::Constant(_) | Self::Sine(_) => Ok(None),
             Self::Expression(expression) => expression.next_kink(after, until),
             Self::Table(table) => Ok(table.next_kink(after).filter(|kink| *kink <= until)),
+        }
+    }
+
+    /// The end of a step of a motion in which no pulse of the function lies unseen: that of the step, or an earlier time. Both are told by their ends, s.
+    ///
+    /// A pulse is what is far from all that values and slopes at both ends tell, as that of `exp(-((t - 5) / 0.01)^2)` within a step of a second, or a value of a cubic
+    /// table. Steps end at all times of other tables, and a [`Law`] has none.
+    pub fn end_before_pulse(&self, step: [f64; 2], motion: [f64; 2]) -> f64 {
+        match self {
+            Self::Expression(expression) => expression.end_before_pulse(step, motion),
+            Self::Table(table) => table.end_before_pulse(step),
+            Self::Constant(_) | Self::Sine(_) => step[1],
         }
     }
 

@@ -1,7 +1,7 @@
 //! Values at given times, and what lies between them.
 
 use super::Moment;
-use super::spline;
+use super::{pulses, spline};
 use alloc::vec::Vec;
 use num_traits::Float;
 
@@ -215,7 +215,7 @@ impl Table {
     }
 
     /// How many whole periods lie before a time.
-    fn periods(&self, time: f64) -> f64 {
+    pub(super) fn periods(&self, time: f64) -> f64 {
         match self.outside {
             Outside::Repeat => Float::floor((time - self.start()) / (self.end() - self.start())),
             _ => 0.0,
@@ -223,7 +223,10 @@ impl Table {
     }
 
     fn place(&self, at: Moment) -> Place {
-        let past = self.periods(at.within) * (self.end() - self.start());
+        let repeats_smoothly = self.kind == TableKind::Cubic && self.outside == Outside::Repeat;
+        // A cubic that repeats has no kinks: the time within a piece, which is all of the motion then, may be in another period.
+        let period = self.periods(if repeats_smoothly { at.time } else { at.within });
+        let past = period * (self.end() - self.start());
         let (time, within) = (at.time - past, at.within - past);
         if self.outside != Outside::Repeat {
             if within < self.start() {
@@ -278,6 +281,13 @@ impl Table {
                 let slope = first + part * (2.0 * lean + 3.0 * part * bend);
                 (a + length * part * rise, slope)
             }
+        }
+    }
+
+    pub(super) fn end_before_pulse(&self, step: [f64; 2]) -> f64 {
+        match self.kind {
+            TableKind::Cubic => pulses::end_before_in_table(self, step),
+            TableKind::Constant | TableKind::Linear => step[1],
         }
     }
 

@@ -285,3 +285,96 @@ fn numbers_that_make_no_table_are_refused() {
         "{found}"
     );
 }
+
+/// Steps end before pulses, however short these are beside them, and within reach of their beginning.
+#[test]
+fn pulses_within_a_step_are_found() {
+    for width in [1e-1, 1e-3, 1e-6, 1e-9] {
+        for at in [3.0, 61.7, 999.0] {
+            let pulses = [
+                format!("exp(-((t - {at})/{width})^2)"),
+                format!("2 + 0.3/(1 + ((t - {at})/{width})^4)"),
+                format!("sin(50*t)*exp(-((t - {at})/{width})^2)"),
+            ];
+            for text in pulses {
+                let end = formula(&text).end_before_pulse([0.0, 1000.0], [0.0, 1000.0]);
+                assert!(end < at && end > 0.0, "{text}: {end}");
+            }
+            // A step from within a pulse is no longer than this.
+            let text = format!("exp(-((t - {at})/{width})^2)");
+            let next = formula(&text).end_before_pulse([at - width, 1000.0], [0.0, 1000.0]);
+            assert!(next < at + 30.0 * width, "{text}: {next}");
+        }
+    }
+}
+
+/// Where nothing bends, the piece is the whole motion, and tells nothing of the period.
+#[test]
+fn cubics_that_repeat_have_their_period_by_the_time() {
+    let points = [
+        (0.5, 0.0),
+        (0.75, 1.0),
+        (1.0, 0.0),
+        (1.25, -1.0),
+        (1.5, 0.0),
+    ];
+    let function = table(&points, TableKind::Cubic, Outside::Repeat).expect("a table");
+    assert_eq!(function.next_kink(0.0, 1e3), Ok(None));
+    for (time, expected) in [
+        (0.75, 1.0),
+        (7.75, 1.0),
+        (8.25, -1.0),
+        (-0.25, 1.0),
+        (100.0, 0.0),
+    ] {
+        let at = Moment {
+            time,
+            within: 500.0,
+        };
+        let (value, slope) = (function.value(at), function.slope(at));
+        assert!((value - expected).abs() < 1e-12, "{time}: {value}");
+        assert_eq!(slope, function.slope(time.into()), "{time}");
+    }
+}
+
+/// A peak between values of a cubic table that are 0 for long, once and again and again.
+#[test]
+fn pulses_of_cubic_tables_are_found() {
+    let points = (0..=100).map(|i| (f64::from(i), f64::from(u8::from(i == 50))));
+    let points: Vec<(f64, f64)> = points.collect();
+    for (outside, from, at) in [
+        (Outside::Hold, 1.0, 50.0),
+        (Outside::Zero, 1.0, 50.0),
+        (Outside::Repeat, 0.0, 50.0),
+        (Outside::Repeat, 60.0, 150.0),
+        (Outside::Repeat, 1060.0, 1150.0),
+    ] {
+        let function = table(&points, TableKind::Cubic, outside).expect("a table");
+        let end = function.end_before_pulse([from, from + 1000.0], [0.0, 5000.0]);
+        assert!(from < end && end < at, "{outside:?} from {from}: {end}");
+        let short = [from + 0.25, from + 0.75];
+        let end = function.end_before_pulse(short, [0.0, 5000.0]);
+        assert_eq!(end, short[1], "{outside:?} from {from}");
+    }
+}
+
+/// Steps that see what a function does are left as they are.
+#[test]
+fn smooth_steps_are_not_cut() {
+    let cases = [
+        ("sin(t)", 0.0, 1.0),
+        ("sin(t)", 1.0, 2.2),
+        ("sin(1000*t)", 0.0, 1e-3),
+        ("exp(-t)", 0.0, 2.0),
+        ("exp(-t)", 900.0, 1000.0),
+        ("3", 0.0, 1e9),
+        ("t^3 - 2*t", -5.0, 5.0),
+        ("exp(-((t - 5)/0.01)^2)", 6.0, 1000.0),
+        ("0*t", 0.0, 1e6),
+        ("1/(t - 2)", 3.0, 4.0),
+    ];
+    for (text, from, until) in cases {
+        let end = formula(text).end_before_pulse([from, until], [0.0, 1000.0]);
+        assert_eq!(end, until, "{text} from {from} to {until}");
+    }
+}

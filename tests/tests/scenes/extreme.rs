@@ -2,7 +2,7 @@
 //! estimate says, or the estimate says that it is not reliable, or the scene is refused with the element that is the cause; and each ends after a bounded
 //! number of evaluations.
 
-use hamel::integrate::{Doubt, Form, Method, Scheme, Solution};
+use hamel::integrate::{Doubt, Event, Form, Method, Scheme, Solution};
 use hamel::scene::{Arithmetic, Scene};
 use hamel::{Model, Simulation};
 use hamel_tests::figures::state_distance;
@@ -316,4 +316,32 @@ fn lengths_below_the_normal_numbers_are_refused() {
         error.contains("mass matrix is singular at joint `link1`"),
         "{error}"
     );
+}
+
+/// Beside a stiff damper, a motion with events keeps its explicit method. Companions without them went on with an implicit one, of far fewer steps, and their distance was taken to
+/// fall with the steps: 1e-5 was told as 1e-9.
+#[test]
+fn companions_keep_the_method_of_the_motion() {
+    let base = "joint = { type = \"prismatic\" }\ninitial = { speeds = [1.0] }\ndamping = 1e4\n";
+    let arm = "com = [0.1, 0.2, -0.3]\njoint = { type = \"ball_child\" }\ninitial = { phi = [0.5, 0.1, 0.2], speeds = [1.0, 2.0, 3.0] }\n";
+    let bodies =
+        body("base", "world", 1.0, [0.1; 3], base) + &body("arm", "base", 1.0, [0.1; 3], arm);
+    let model = model(&bodies, 9.81);
+    let end = 3.0;
+    let expected = other(&model, end);
+    for tolerance in [1e-4, 1e-6] {
+        let simulation = motion(&model, end).tolerance(tolerance);
+        let simulation = simulation.event(Event::new("never", |_, _, _| 1.0));
+        let (found, estimate) = simulation.run_estimated().expect("it comes to its end");
+        let (error, told) = (distance(&model, &found, &expected), estimate.end.total());
+        println!(
+            "{tolerance:e}: error {error:.1e}, told {told:.1e}, {:?}",
+            estimate.doubt
+        );
+        assert!(found.method_changes.is_empty() && !found.scheme.takes_derivatives());
+        assert!(
+            error <= BELOW * told,
+            "{tolerance:e}: {error:e}, told {told:e}"
+        );
+    }
 }

@@ -14,7 +14,7 @@ const BOUND: f64 = 1e-9;
 type Integrals = fn(f64) -> (f64, f64);
 
 /// Forces, and what they lead to.
-const FORCES: [(&str, Integrals); 6] = [
+const FORCES: [(&str, Integrals); 7] = [
     ("\"0.5*sin(2*pi*t) + exp(-t)\"", smooth),
     ("\"3*step(t - 0.3) - 2*step(0.7 - t)\"", steps),
     ("\"abs(sin(3*t))\"", rectified),
@@ -27,6 +27,10 @@ const FORCES: [(&str, Integrals); 6] = [
         blocks,
     ),
     ("\"max(0, min(t - 0.5, 0.25))\"", ramp),
+    (
+        "{ times = [0.0, 0.25, 0.5, 0.75, 1.0], values = [0.0, 1.0, 0.0, -1.0, 0.0], kind = \"cubic\", outside = \"repeat\" }",
+        wave,
+    ),
 ];
 
 fn smooth(t: f64) -> (f64, f64) {
@@ -98,6 +102,26 @@ fn ramp(t: f64) -> (f64, f64) {
     sum([(1.0, slope(t, 0.5)), (-1.0, slope(t, 0.75))])
 }
 
+/// The periodic spline is 6 t − 32 t³ in the first quarter, and odd and even about its zeros and peaks.
+fn wave(t: f64) -> (f64, f64) {
+    let first = |t: f64| 3.0 * t.powi(2) - 8.0 * t.powi(4);
+    let second = |t: f64| t.powi(3) - 1.6 * t.powi(5);
+    let peak = 2.0 * first(0.25);
+    let half = |t: f64| match t <= 0.25 {
+        true => (first(t), second(t)),
+        false => (peak - first(0.5 - t), peak * (t - 0.25) + second(0.5 - t)),
+    };
+    let (whole, part) = (t.floor(), t.fract());
+    let (speed, way) = match part <= 0.5 {
+        true => half(part),
+        false => {
+            let (speed, way) = half(part - 0.5);
+            (peak - speed, 0.25 * peak + peak * (part - 0.5) - way)
+        }
+    };
+    (speed, way + 0.5 * peak * whole)
+}
+
 #[test]
 fn forces_on_a_slide_have_their_integrals() {
     for (force, integrals) in FORCES {
@@ -114,6 +138,47 @@ fn forces_on_a_slide_have_their_integrals() {
             }
         }
     }
+}
+
+/// A pulse that is short beside the steps of what is at rest: none steps over it, and samples do not help to find it.
+#[test]
+fn pulses_are_not_stepped_over() {
+    for width in [1e-1, 1e-3, 1e-5] {
+        let scene = slide(&format!("effort = [\"3*exp(-((t - 61.7)/{width})^2)\"]"));
+        let speed = 3.0 * width * PI.sqrt() / 2.0;
+        for form in FORMS {
+            for method in fine_methods(1.0) {
+                if let Method::Fixed { .. } = method {
+                    continue;
+                }
+                let solution = run(&scene, form, method, &[100.0]);
+                let off = (solution.state.speeds[0] - speed).abs();
+                let evaluations = solution.statistics.evaluations;
+                println!("{width}, {form:?}, {method:?}: {off:.1e}, {evaluations} evaluations");
+                assert!(off < BOUND, "{width}, {form:?}, {method:?}: {off:e}");
+                assert!(off < 1e-4 * speed, "{width}, {form:?}, {method:?}: {off:e}");
+            }
+        }
+    }
+}
+
+/// The rounding of the time decides what a fast function of it is: below that, smaller tolerances do not shorten steps without end.
+#[test]
+fn roundings_of_the_time_are_known() {
+    let scene = slide("effort = [\"1e6*sin(2*pi*1000*t)\"]");
+    let steps = |tolerance: f64| {
+        let method = Method::controlled(Scheme::Verner9, tolerance);
+        let solution = run(&scene, Form::Lagrangian, method, &[0.5]);
+        let statistics = solution.statistics;
+        statistics.steps + statistics.rejected
+    };
+    // At 1e-12 the step is the tolerance's.
+    let (coarse, fine) = (steps(1e-12), steps(1e-14));
+    println!("{coarse} steps at 1e-12, {fine} at 1e-14");
+    assert!(
+        fine <= 3 * coarse,
+        "{coarse} steps at 1e-12, {fine} at 1e-14"
+    );
 }
 
 /// A free body of equal moments of inertia, pushed at its centre of mass and turned about a fixed axis: each on its own as a slide is.

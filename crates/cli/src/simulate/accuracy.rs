@@ -78,16 +78,17 @@ pub fn estimate(plan: &Plan, dynamics: &mut dyn Dynamics, solution: &Solution) -
     let (initial, options) = (plan.scene.start(), plan.options());
     let mut own = dynamics.of(Arc::clone(&plan.scene.mechanism));
     let mut companion = |initial: &State, options: &Options, observer: &mut Observer<'_>| {
-        run(plan, &mut *dynamics, (initial, options), observer).map_err(|error| error.to_string())
+        run(plan, &mut *dynamics, (initial, options, solution), observer)
+            .map_err(|error| error.to_string())
     };
     GlobalError::estimate(&mut *own, &initial, &options, solution, &mut companion)
 }
 
-/// One companion, which an interrupt ends.
+/// One companion of a motion, which an interrupt ends.
 fn run(
     plan: &Plan,
     dynamics: &mut dyn Dynamics,
-    (initial, options): (&State, &Options),
+    (initial, options, of): (&State, &Options, &Solution),
     observer: &mut Observer<'_>,
 ) -> Result<Solution, IntegrateError> {
     // It was begun for the motion before.
@@ -97,7 +98,7 @@ fn run(
         initial,
         options,
         control: control.as_ref(),
-        is_companion: true,
+        companion_of: Some(of),
     };
     move_unrecorded(&motion, dynamics, observer)
 }

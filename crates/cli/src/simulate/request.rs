@@ -147,7 +147,7 @@ fn attempt(plan: &Plan) -> Result<(Solution, Box<dyn Dynamics>), Ended> {
         initial: &initial,
         options: &options,
         control: control.as_ref(),
-        is_companion: false,
+        companion_of: None,
     };
     let moved = move_unrecorded(&motion, &mut *dynamics, &mut no_observer);
     if interrupt::is_requested() {

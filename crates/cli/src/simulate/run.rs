@@ -108,7 +108,7 @@ fn simulate(
         initial: &initial,
         options: &options,
         control: control.as_ref(),
-        is_companion: false,
+        companion_of: None,
     };
     let result = move_on(&motion, dynamics, &mut |step| {
         let mut tau = Vec::new();
@@ -162,8 +162,8 @@ pub struct Motion<'a> {
     pub options: &'a Options,
     /// The controller, if there is one.
     pub control: Option<&'a Loop>,
-    /// Whether it only tells the error of another one: without events, and with samples that end steps.
-    pub is_companion: bool,
+    /// The motion whose error it tells, if it is for that alone: without events, with samples that end steps, and with a method that changes where that of the other did.
+    pub companion_of: Option<&'a Solution>,
 }
 
 /// Integrates, with feedback where there is a controller: at every instant, or held over its period.
@@ -178,13 +178,15 @@ pub fn move_on(
     let plan = motion.plan;
     let mut integration =
         Integration::new(dynamics, motion.initial, motion.options).observer(observer);
-    if plan.is_open {
+    let is_companion = motion.companion_of.is_some();
+    let other = motion.companion_of;
+    if plan.is_open && other.is_none_or(|other| !other.method_changes.is_empty()) {
         integration = integration.choosing();
     }
-    if plan.forces && !motion.is_companion {
+    if plan.forces && !is_companion {
         integration = integration.telling_forces();
     }
-    if !motion.is_companion {
+    if !is_companion {
         integration = integration.sampling(plan.settings.sampling);
         for event in &plan.scene.events {
             integration = integration.event(event.event(&plan.scene.mechanism));

@@ -1,7 +1,7 @@
 //! What friction and limits of joints do not go with, and states that they do not allow.
 
 use super::{accurate, options, scene, slide, try_run};
-use hamel::integrate::Form;
+use hamel::integrate::{Form, Method, Scheme};
 use hamel_scene::Scene;
 
 #[test]
@@ -38,4 +38,16 @@ fn held_joints_that_depend_on_each_other_are_refused_by_name() {
     let expected =
         "constraint `track`: joint `wagon` has friction or limits, and so a speed of its own";
     assert!(message.contains(expected), "{message}");
+}
+
+/// A slide that sticks and slips on a stiff spring moves by less than its iteration can tell apart: a method is named that goes on.
+#[test]
+fn a_step_without_a_solution_names_another_method() {
+    let rest = "friction = 1.0\nspring = { stiffness = 1e6 }\neffort = [\"100*t\"]";
+    let scene = scene([0.0; 3], &slide("cart", "world", 1.0, rest));
+    let method = Method::controlled(Scheme::DiscreteGradient, 1e-6);
+    let stopped = try_run(&scene, &options(Form::Hamiltonian, method, 10.0));
+    let message = stopped.expect_err("no step has a solution").to_string();
+    let words = ["joint `cart` still changes by", ": take the method `"];
+    assert!(words.iter().all(|word| message.contains(word)), "{message}");
 }

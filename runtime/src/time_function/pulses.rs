@@ -1,0 +1,234 @@
+//! Pulses of an expression or a cubic table between the times at which a step evaluates it.
+//!
+//! A method sees a function of time at a few times of a step. What it does between them, values and slopes at both ends tell where it is smooth: a cubic polynomial
+//! has these. A pulse that is short beside the step is far from that polynomial, and no error estimate of the step knows of it. Where the distance is largest is
+//! searched by branch and bound: parts of the step are halved, that with the largest bound first, by the intervals of all values that the expression takes in each.
+//! So a pulse is found however short it is, after some tens of parts. Of a table, the distance is that at its times.
+
+use super::expression::Node;
+use super::{Moment, Outside, Table};
+use alloc::vec::Vec;
+
+/// Parts that are looked at: where intervals are much wider than what the expression does, the search ends without a pulse.
+const MOST_PARTS: usize = 200;
+
+/// Pulses of one step that are looked for.
+const MOST_PULSES: usize = 64;
+
+/// Distances from the polynomial that are no pulse, relative to the range of the polynomial: resolved oscillations have a part of this.
+const OF_RANGE: f64 = 0.5;
+
+/// That range at most, relative to the larger value at both ends: a polynomial with steep ends is no likeness.
+const MOST_RANGE: f64 = 4.0;
+
+/// Distances that are no pulse, relative to the larger value at both ends.
+const OF_VALUE: f64 = 1e-9;
+
+/// The same relative to all values of the expression over the whole motion.
+const OF_ALL: f64 = 1e-12;
+
+/// The search ends where no part can have a distance that is so many times as large as the one found.
+const NEARLY_LARGEST: f64 = 4.0;
+
+/// Where a function is about farthest from the polynomial, s.
+struct Pulse {
+    time: f64,
+    /// The length of the part in whose middle it was found.
+    length: f64,
+}
+
+/// A time up to the end of a step such that no pulse of the expression lies before it, and near enough to see one that begins: the end where there is none.
+pub(super) fn end_before(node: &Node, step: [f64; 2], motion: [f64; 2]) -> f64 {
+    let all = node.over(motion[0], motion[1]).value;
+    let largest = all.high.max(-all.low);
+    let negligible = match largest.is_finite() {
+        true => OF_ALL * largest,
+        false => 0.0,
+    };
+    shortened(step, |step| pulse(node, step, negligible))
+}
+
+/// The same for a cubic table: one that repeats is not followed further than a period.
+pub(super) fn end_before_in_table(table: &Table, [from, until]: [f64; 2]) -> f64 {
+    let times = table.times();
+    let (first, last) = (times[0], times[times.len() - 1]);
+    let until = match table.outside() {
+        Outside::Repeat => until.min(from + (last - first)),
+        Outside::Hold | Outside::Zero => until,
+    };
+    let values = table.values().iter();
+    let negligible = OF_ALL * values.fold(0.0, |most, value| value.abs().max(most));
+    shortened([from, until], |step| {
+        pulse_of_table(table, step, negligible)
+    })
+}
+
+/// The end of a step that is cut before each pulse that `find` finds in it.
+fn shortened([from, until]: [f64; 2], find: impl Fn([f64; 2]) -> Option<Pulse>) -> f64 {
+    let mut end = until;
+    for _ in 0..MOST_PULSES {
+        let Some(Pulse { time, length }) = find([from, end]) else {
+            return end;
+        };
+        // A step that ends where the pulse may begin; from there on, steps that see it.
+        let before = time - length;
+        end = match before - from > length {
+            true => before,
+            false => from + 0.5 * length,
+        };
+    }
+    end
+}
+
+/// The polynomial with the values and slopes of the expression at both ends of a step.
+struct Cubic {
+    from: f64,
+    length: f64,
+    ends: [f64; 2],
+    /// Slopes times the length.
+    rises: [f64; 2],
+}
+
+impl Cubic {
+    /// From the value and the slope of a function at a moment.
+    fn new([from, until]: [f64; 2], jet: impl Fn(Moment) -> [f64; 2]) -> Self {
+        let within = from + 0.5 * (until - from);
+        let [first, last] = [from, until].map(|time| jet(Moment { time, within }));
+        let length = until - from;
+        Self {
+            from,
+            length,
+            ends: [first[0], last[0]],
+            rises: [first[1] * length, last[1] * length],
+        }
+    }
+
+    /// Distances that are no pulse.
+    fn least(&self, negligible: f64) -> f64 {
+        let largest = self.ends[0].abs().max(self.ends[1].abs());
+        let range = self.range().min(MOST_RANGE * largest);
+        OF_RANGE * range + OF_VALUE * largest + negligible
+    }
+
+    /// The value, by Bernstein's form.
+    fn at(&self, time: f64) -> f64 {
+        let s = (time - self.from) / self.length;
+        let r = 1.0 - s;
+        let [a, b, c, d] = self.points();
+        r * r * (r * a + 3.0 * s * b) + s * s * (3.0 * r * c + s * d)
+    }
+
+    /// Its values are within the hull of these.
+    fn points(&self) -> [f64; 4] {
+        let [a, d] = self.ends;
+        [a, a + self.rises[0] / 3.0, d - self.rises[1] / 3.0, d]
+    }
+
+    fn range(&self) -> f64 {
+        let points = self.points();
+        let low = points.into_iter().fold(f64::INFINITY, f64::min);
+        points.into_iter().fold(f64::NEG_INFINITY, f64::max) - low
+    }
+
+    /// A bound on how fast it changes, per unit of its length.
+    fn pace(&self) -> f64 {
+        let points = self.points();
+        let differences = points
+            .windows(2)
+            .map(|pair| 3.0 * (pair[1] - pair[0]).abs());
+        differences.fold(0.0, f64::max)
+    }
+}
+
+/// A part of a step, with a bound on the distance from the polynomial.
+struct Part {
+    from: f64,
+    until: f64,
+    bound: f64,
+}
+
+impl Part {
+    fn new(node: &Node, cubic: &Cubic, [from, until]: [f64; 2]) -> Self {
+        let values = node.over(from, until).value;
+        let middle = cubic.at(from + 0.5 * (until - from));
+        let reach = 0.5 * (until - from) / cubic.length * cubic.pace();
+        Self {
+            from,
+            until,
+            bound: (values.high - middle + reach).max(middle + reach - values.low),
+        }
+    }
+}
+
+/// The largest pulse of an expression, if there is one.
+fn pulse(node: &Node, step: [f64; 2], negligible: f64) -> Option<Pulse> {
+    let cubic = Cubic::new(step, |at| {
+        let jet = node.at(at);
+        [jet.value, jet.slope]
+    });
+    let least = cubic.least(negligible);
+    // Nothing that is nearer is looked for.
+    let mut wanted = least;
+    let mut found = None;
+    let mut parts: Vec<Part> = [Part::new(node, &cubic, step)].into();
+    for _ in 0..MOST_PARTS {
+        let place = (0..parts.len()).max_by(|&a, &b| parts[a].bound.total_cmp(&parts[b].bound))?;
+        let part = parts.swap_remove(place);
+        // Not even the largest bound: the rest is nearer.
+        if part.bound <= wanted {
+            return found;
+        }
+        let middle = part.from + 0.5 * (part.until - part.from);
+        if middle <= part.from || middle >= part.until {
+            continue;
+        }
+        let at = Moment {
+            time: middle,
+            within: middle,
+        };
+        let distance = (node.at(at).value - cubic.at(middle)).abs();
+        if distance > least && NEARLY_LARGEST * distance > wanted {
+            wanted = NEARLY_LARGEST * distance;
+            found = Some(Pulse {
+                time: middle,
+                length: part.until - part.from,
+            });
+        }
+        parts.push(Part::new(node, &cubic, [part.from, middle]));
+        parts.push(Part::new(node, &cubic, [middle, part.until]));
+    }
+    found
+}
+
+/// The largest pulse of a table, at one of its times.
+fn pulse_of_table(table: &Table, [from, until]: [f64; 2], negligible: f64) -> Option<Pulse> {
+    let cubic = Cubic::new([from, until], |at| [table.value(at), table.slope(at)]);
+    let times = table.times();
+    let period = times[times.len() - 1] - times[0];
+    let shift = period * table.periods(from);
+    // A step of a period goes into the next one.
+    let shifts = match table.outside() {
+        Outside::Repeat => [shift, shift + period],
+        Outside::Hold | Outside::Zero => [0.0, f64::INFINITY],
+    };
+    let mut least = cubic.least(negligible);
+    let mut found = None;
+    for shift in shifts.into_iter().filter(|shift| shift.is_finite()) {
+        let first = times.partition_point(|time| time + shift <= from).max(1);
+        for pair in times[first - 1..].windows(2) {
+            let time = pair[1] + shift;
+            if time >= until {
+                break;
+            }
+            let distance = (table.value(time.into()) - cubic.at(time)).abs();
+            if distance > least {
+                least = distance;
+                found = Some(Pulse {
+                    time,
+                    length: pair[1] - pair[0],
+                });
+            }
+        }
+    }
+    found
+}
