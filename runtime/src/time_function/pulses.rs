@@ -39,6 +39,9 @@ struct Pulse {
 
 /// A time up to the end of a step such that no pulse of the expression lies before it, and near enough to see one that begins: the end where there is none.
 pub(super) fn end_before(node: &Node, step: [f64; 2], motion: [f64; 2]) -> f64 {
+    if pulse(node, step, 0.0).is_none() {
+        return step[1];
+    }
     let all = node.over(motion[0], motion[1]).value;
     let largest = all.high.max(-all.low);
     let negligible = match largest.is_finite() {
@@ -130,32 +133,50 @@ impl Cubic {
         points.into_iter().fold(f64::NEG_INFINITY, f64::max) - low
     }
 
-    /// A bound on how fast it changes, per unit of its length.
-    fn pace(&self) -> f64 {
+    /// The least and the largest slope that it may have.
+    fn slopes(&self) -> [f64; 2] {
         let points = self.points();
-        let differences = points
+        let slopes = points
             .windows(2)
-            .map(|pair| 3.0 * (pair[1] - pair[0]).abs());
-        differences.fold(0.0, f64::max)
+            .map(|pair| 3.0 * (pair[1] - pair[0]) / self.length);
+        slopes.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], slope| {
+            [low.min(slope), high.max(slope)]
+        })
     }
 }
 
-/// A part of a step, with a bound on the distance from the polynomial.
+/// A part of a step.
 struct Part {
     from: f64,
     until: f64,
+    middle: f64,
+    /// How far the expression is from the polynomial in the middle.
+    distance: f64,
+    /// How far it may be anywhere.
     bound: f64,
 }
 
 impl Part {
     fn new(node: &Node, cubic: &Cubic, [from, until]: [f64; 2]) -> Self {
-        let values = node.over(from, until).value;
-        let middle = cubic.at(from + 0.5 * (until - from));
-        let reach = 0.5 * (until - from) / cubic.length * cubic.pace();
+        let half = 0.5 * (until - from);
+        let middle = from + half;
+        let at = Moment {
+            time: middle,
+            within: middle,
+        };
+        let expected = cubic.at(middle);
+        let distance = (node.at(at).value - expected).abs();
+        let all = node.over(from, until);
+        let [least, most] = cubic.slopes();
+        let by_slopes = distance + half * (all.slope.high - least).max(most - all.slope.low);
+        let reach = half * most.max(-least);
+        let by_values = (all.value.high - expected).max(expected - all.value.low) + reach;
         Self {
             from,
             until,
-            bound: (values.high - middle + reach).max(middle + reach - values.low),
+            middle,
+            distance,
+            bound: by_slopes.min(by_values),
         }
     }
 }
@@ -172,30 +193,35 @@ fn pulse(node: &Node, step: [f64; 2], negligible: f64) -> Option<Pulse> {
     let mut found = None;
     let mut parts: Vec<Part> = [Part::new(node, &cubic, step)].into();
     for _ in 0..MOST_PARTS {
-        let place = (0..parts.len()).max_by(|&a, &b| parts[a].bound.total_cmp(&parts[b].bound))?;
+        let places = 0..parts.len();
+        let farthest = places.max_by(|&a, &b| parts[a].bound.total_cmp(&parts[b].bound));
+        let Some(place) = farthest else {
+            return found;
+        };
         let part = parts.swap_remove(place);
         // Not even the largest bound: the rest is nearer.
         if part.bound <= wanted {
             return found;
         }
-        let middle = part.from + 0.5 * (part.until - part.from);
-        if middle <= part.from || middle >= part.until {
+        let Part {
+            from,
+            until,
+            middle,
+            distance,
+            ..
+        } = part;
+        if middle <= from || middle >= until {
             continue;
         }
-        let at = Moment {
-            time: middle,
-            within: middle,
-        };
-        let distance = (node.at(at).value - cubic.at(middle)).abs();
         if distance > least && NEARLY_LARGEST * distance > wanted {
             wanted = NEARLY_LARGEST * distance;
             found = Some(Pulse {
                 time: middle,
-                length: part.until - part.from,
+                length: until - from,
             });
         }
-        parts.push(Part::new(node, &cubic, [part.from, middle]));
-        parts.push(Part::new(node, &cubic, [middle, part.until]));
+        parts.push(Part::new(node, &cubic, [from, middle]));
+        parts.push(Part::new(node, &cubic, [middle, until]));
     }
     found
 }
