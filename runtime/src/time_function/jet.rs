@@ -23,6 +23,8 @@ pub(super) trait Real:
     fn powf(self, exponent: f64) -> Self;
     /// Whether it is negative; `None` where that cannot be told.
     fn is_negative(self) -> Option<bool>;
+    /// The larger one of two; not a number where one is not.
+    fn larger(self, other: Self) -> Self;
     /// Both, where it cannot be told which is meant.
     fn hull(self, other: Self) -> Self;
     /// The slope of what jumps somewhere.
@@ -56,6 +58,13 @@ impl Real for f64 {
     }
     fn is_negative(self) -> Option<bool> {
         Some(self < 0.0)
+    }
+    fn larger(self, other: Self) -> Self {
+        match self.partial_cmp(&other) {
+            Some(core::cmp::Ordering::Less) => other,
+            Some(_) => self,
+            None => Self::NAN,
+        }
     }
     fn hull(self, _other: Self) -> Self {
         self
@@ -93,6 +102,9 @@ impl Real for Interval {
     }
     fn is_negative(self) -> Option<bool> {
         self.is_negative()
+    }
+    fn larger(self, other: Self) -> Self {
+        Self::new(self.low.max(other.low), self.high.max(other.high))
     }
     fn hull(self, other: Self) -> Self {
         self.hull(other)
@@ -198,7 +210,7 @@ impl<T: Real> Jet<T> {
 
     /// `|x|`.
     pub(super) fn abs(self) -> Self {
-        self.choose(self, self.negate())
+        self.larger(self.negate())
     }
 
     /// 0 before its argument is 0, and 1 from then on.
@@ -210,12 +222,16 @@ impl<T: Real> Jet<T> {
         chosen
     }
 
+    /// The slope is that of the piece that is meant. The value is that of the larger one at the time itself: roundings beyond the piece do not make it the smaller one, of
+    /// which there may be no root.
     pub(super) fn larger(self, other: Self) -> Self {
-        self.subtract(other).choose(self, other)
+        let chosen = self.subtract(other).choose(self, other);
+        let value = self.value.larger(other.value);
+        Self { value, ..chosen }
     }
 
     pub(super) fn smaller(self, other: Self) -> Self {
-        self.subtract(other).choose(other, self)
+        self.negate().larger(other.negate()).negate()
     }
 
     /// One of two, by the sign of this.

@@ -187,6 +187,10 @@ fn pulse(node: &Node, step: [f64; 2], negligible: f64) -> Option<Pulse> {
         let jet = node.at(at);
         [jet.value, jet.slope]
     });
+    // Where a root begins, no polynomial has the slope.
+    if !cubic.rises.iter().all(|rise| rise.is_finite()) {
+        return None;
+    }
     let least = cubic.least(negligible);
     // Nothing that is nearer is looked for.
     let mut wanted = least;

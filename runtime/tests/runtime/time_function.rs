@@ -308,6 +308,27 @@ fn pulses_within_a_step_are_found() {
     }
 }
 
+/// A time that is beyond its piece by a rounding has the values of both pieces there, and roots have one.
+#[test]
+fn roundings_beyond_a_piece_leave_values_as_they_are() {
+    for text in [
+        "sqrt(abs(t - 1))",
+        "abs(t - 1)^0.5",
+        "sqrt(max(0, t - 1))",
+        "sqrt(-min(0, t - 1))",
+    ] {
+        for (time, within) in [
+            (1.0 - 4e-15, 1.5),
+            (1.0 + 4e-15, 0.5),
+            (1.0, 0.5),
+            (1.0, 1.5),
+        ] {
+            let value = formula(text).value(Moment { time, within });
+            assert!((0.0..1e-7).contains(&value), "{text} at {time}: {value}");
+        }
+    }
+}
+
 /// Where nothing bends, the piece is the whole motion, and tells nothing of the period.
 #[test]
 fn cubics_that_repeat_have_their_period_by_the_time() {

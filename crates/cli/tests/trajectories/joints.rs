@@ -144,3 +144,62 @@ fn no_two_columns_have_one_name() {
         assert_eq!(read_csv(&files.csv).len(), names, "{scene}");
     }
 }
+
+/// A rotor whose rate grows by thousands within steps of many turns, as a joint that stores its angle and as one that counts turns.
+#[test]
+fn turns_are_counted_where_the_rate_changes_within_a_step() {
+    let text = r#"
+hamel = 1
+gravity = [0.0, 0.0, 0.0]
+[[body]]
+name = "rotor"
+parent = "world"
+mass = 1.0
+inertia = [[0.01, 0.0, 0.0], [0.0, 0.01, 0.0], [0.0, 0.0, 0.03]]
+joint = { name = "circle", type = "revolute_circle" }
+effort = ["3*(t - 1)^2"]
+[[body]]
+name = "driven"
+parent = "world"
+mass = 1.0
+inertia = [[0.01, 0.0, 0.0], [0.0, 0.01, 0.0], [0.0, 0.0, 0.03]]
+joint = { name = "wheel", type = "revolute_circle" }
+motion.speeds = ["100*t^2"]
+"#;
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("rotors.toml");
+    fs::write(&path, text).expect("a folder for tests");
+    let scene = path.display().to_string();
+    // 100 (τ⁴/12 + τ/3) from τ = −1 on, with τ = t − 1, and 100 t³/3.
+    let expected = |t: f64| {
+        let integral = |s: f64| 100.0 * (s.powi(4) / 12.0 + s / 3.0);
+        [integral(t - 1.0) - integral(-1.0), 100.0 * t.powi(3) / 3.0]
+    };
+    for options in [
+        &[][..],
+        &["--tol", "1e-6"],
+        &["--method", "dopri5"],
+        &["--method", "dop853", "--tol", "1e-4"],
+        &["--method", "radau5", "--tol", "1e-5"],
+        &["--form", "hamiltonian"],
+        &["--sample-step", "0.5"],
+        &["--sample-step", "0.1", "--sampling", "dense"],
+    ] {
+        let mut all = vec!["--t-end", "3"];
+        if !options.contains(&"--sample-step") {
+            all.extend(["--sample-step", "3"]);
+        }
+        all.extend(options);
+        let columns = read_csv(&simulate(&scene, "rotors", &all).csv);
+        for (name, right) in ["circle.q.q_rad", "wheel.q.q_rad"]
+            .into_iter()
+            .zip(expected(3.0))
+        {
+            let found = *columns[name].last().expect("a sample");
+            // A hundred times the largest tolerance; a turn is 6.3.
+            assert!(
+                (found - right).abs() < 1e-2,
+                "{name}, {options:?}: {found} for {right}"
+            );
+        }
+    }
+}
