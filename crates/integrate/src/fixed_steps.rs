@@ -1,6 +1,7 @@
 //! Lengths of the steps of a motion with steps of one length.
 
 use super::clock::Clock;
+use num_traits::Float;
 
 /// A remainder that exceeds a fixed step by less than this is taken as that step: it is rounding of the step count.
 const STRETCH: f64 = 1.0 + 1e-9;
@@ -37,7 +38,7 @@ impl FixedSteps {
     pub fn has_end_at(&self, time: f64) -> bool {
         // The last step absorbs a remainder below `STRETCH - 1` of a step. Twice that is asked for, to be safe.
         let is_before_last = self.end - time > 2.0 * (STRETCH - 1.0) * self.dt;
-        let count = (time / self.dt).round();
+        let count = Float::round(time / self.dt);
         let is_multiple = is_before_last && is_rounding(count * self.dt - time, time, 4.0);
         self.dt > 0.0 && (is_multiple || is_rounding(self.end - time, time, 4.0))
     }
