@@ -102,8 +102,8 @@ impl TimeFunction {
 
     /// The end of a step of a motion in which no pulse of the function lies unseen: that of the step, or an earlier time. Both are told by their ends, s.
     ///
-    /// A pulse is what is far from all that values and slopes at both ends tell, as that of `exp(-((t - 5) / 0.01)^2)` within a step of a second, or a value of a cubic
-    /// table. Steps end at all times of other tables, and a [`Law`] has none.
+    /// A pulse is a value far from the cubic polynomial through the values and slopes at both ends of the step. `exp(-((t - 5) / 0.01)^2)` has one within a step of ten
+    /// seconds, and a cubic table may. Steps end at all times of other tables, and a [`Law`] has no pulse.
     pub fn end_before_pulse(&self, step: [f64; 2], motion: [f64; 2]) -> f64 {
         match self {
             Self::Expression(expression) => expression.end_before_pulse(step, motion),

@@ -2,7 +2,7 @@
 //!
 //! A method sees a function of time at a few times of a step. What it does between them, values and slopes at both ends tell where it is smooth: a cubic polynomial
 //! has these. A pulse that is short beside the step is far from that polynomial, and no error estimate of the step knows of it. Where the distance is largest is
-//! searched by branch and bound: parts of the step are halved, that with the largest bound first, by the intervals of all values that the expression takes in each.
+//! searched by branch and bound: parts of the step are halved, that with the largest bound first, by the intervals of all values and slopes that the expression has in each.
 //! So a pulse is found however short it is, after some tens of parts. Of a table, the distance is that at its times.
 
 use super::expression::Node;
@@ -235,15 +235,15 @@ fn pulse_of_table(table: &Table, [from, until]: [f64; 2], negligible: f64) -> Op
     let cubic = Cubic::new([from, until], |at| [table.value(at), table.slope(at)]);
     let times = table.times();
     let period = times[times.len() - 1] - times[0];
-    let shift = period * table.periods(from);
     // A step of a period goes into the next one.
-    let shifts = match table.outside() {
-        Outside::Repeat => [shift, shift + period],
-        Outside::Hold | Outside::Zero => [0.0, f64::INFINITY],
+    let periods = match table.outside() {
+        Outside::Repeat => 2,
+        Outside::Hold | Outside::Zero => 1,
     };
     let mut least = cubic.least(negligible);
     let mut found = None;
-    for shift in shifts.into_iter().filter(|shift| shift.is_finite()) {
+    for next in 0..periods {
+        let shift = period * (table.periods(from) + f64::from(next));
         let first = times.partition_point(|time| time + shift <= from).max(1);
         for pair in times[first - 1..].windows(2) {
             let time = pair[1] + shift;

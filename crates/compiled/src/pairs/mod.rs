@@ -5,7 +5,7 @@
 //! loops over tables. What no path of the tree connects stays 0.
 //!
 //! [`Pairs`] are the tables; `work` holds the numbers of one state, as [`Places`] says. Numbers that columns beside each other need stand beside each other, so that
-//! compilers vectorise: eight columns of a row are found at once, and M̄⁻¹ is multiplied by up to 32 columns at once.
+//! compilers vectorise: eight columns of a row are found at once, and M̄⁻¹ is multiplied by up to 48 columns at once.
 
 mod meeting;
 mod second;
