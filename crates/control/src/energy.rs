@@ -8,7 +8,7 @@ use alloc::format;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
-use hamel_runtime::dynamics::{Dynamics, Recursive};
+use hamel_runtime::dynamics::{Dynamics, EffortAtPort, Recursive};
 use hamel_runtime::elements::{
     self, Action, Element, JointSpring, MotionList, RotationSpring, View,
 };
@@ -315,6 +315,30 @@ impl Controller for EnergyShaping {
         self.inject(q, speeds)?;
         for (port, input) in self.ports.iter().zip(&self.inputs) {
             bends.push(1.0 - length(&input[..self.size(port)]) / port.limit);
+        }
+        Ok(())
+    }
+
+    fn efforts_at_ports(
+        &mut self,
+        _time: f64,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &mut Vec<EffortAtPort>,
+    ) -> Result<(), ControlError> {
+        check_state(&self.mechanism, q, speeds, &self.exerted)?;
+        self.inject(q, speeds)?;
+        for (port, input) in self.ports.iter().zip(&self.inputs) {
+            let Some(index) = port.port else {
+                continue;
+            };
+            let mut effort = [input[0]];
+            shorten(port.limit, &mut effort);
+            efforts.push(EffortAtPort {
+                body: port.body,
+                port: index,
+                effort: effort[0],
+            });
         }
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 use super::{ControlError, Controller};
 use alloc::vec::Vec;
+use hamel_runtime::dynamics::EffortAtPort;
 
 /// Hands a controller to an integrator as [`Inputs`](hamel_integrate::Inputs), and keeps what it could not do.
 ///
@@ -33,6 +34,20 @@ impl<'a> Feedback<'a> {
     /// Where τ bends, as [`Controller::bends`]; nothing where the controller fails, which its efforts tell as well.
     pub fn bends(&mut self, time: f64, q: &[f64], speeds: &[f64], bends: &mut Vec<f64>) {
         if let Err(cause) = self.controller.bends(time, q, speeds, bends) {
+            self.failure.get_or_insert((time, cause));
+        }
+    }
+
+    /// What of τ acts at ports, as [`Controller::efforts_at_ports`]; nothing where the controller fails, which its efforts tell as well.
+    pub fn efforts_at_ports(
+        &mut self,
+        time: f64,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &mut Vec<EffortAtPort>,
+    ) {
+        let found = self.controller.efforts_at_ports(time, q, speeds, efforts);
+        if let Err(cause) = found {
             self.failure.get_or_insert((time, cause));
         }
     }

@@ -46,6 +46,7 @@ pub use stabilizability::Motion;
 
 use alloc::vec::Vec;
 use core::fmt::Debug;
+use hamel_runtime::dynamics::EffortAtPort;
 
 /// A quantity by which a controller says how well it does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,6 +82,20 @@ pub trait Controller: Debug {
         _q: &[f64],
         _speeds: &[f64],
         _bends: &mut Vec<f64>,
+    ) -> Result<(), ControlError> {
+        Ok(())
+    }
+
+    /// What of τ acts at ports of joints, pushed onto `efforts`: what a joint's pins and relations carry depends on it ([`Integration::inputs_at_ports`](hamel_integrate::Integration::inputs_at_ports)).
+    ///
+    /// # Errors
+    /// As those of [`Controller::efforts`].
+    fn efforts_at_ports(
+        &mut self,
+        _time: f64,
+        _q: &[f64],
+        _speeds: &[f64],
+        _efforts: &mut Vec<EffortAtPort>,
     ) -> Result<(), ControlError> {
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 use super::StepFailure;
 use super::flow::Flow;
+use super::hybrid::Hybrid;
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec;
@@ -53,7 +54,7 @@ impl Carried {
     /// Inverse dynamics at time `time`, `q` and v̄, with all that acts there.
     pub(super) fn at(
         &mut self,
-        flow: &mut Flow<'_>,
+        (flow, hybrid): (&mut Flow<'_>, Option<&Hybrid<'_>>),
         time: f64,
         (q, speeds): (&[f64], &[f64]),
     ) -> Result<&Recursive, StepFailure> {
@@ -67,6 +68,11 @@ impl Carried {
         work.dynamics.forward_dynamics(q, speeds, efforts, rates)?;
         let (recursive, rates) = (&mut work.recursive, &work.accelerations);
         recursive.set_moment(moment);
+        let mut at_ports = flow.inputs_at_ports(time, q, speeds);
+        if let Some(hybrid) = hybrid {
+            at_ports.extend(hybrid.efforts_at_ports(flow, (time, q, speeds))?);
+        }
+        recursive.set_port_efforts(at_ports);
         match work.forces.as_mut_slice() {
             [] => recursive.inverse_dynamics(q, speeds, rates, &mut work.needed)?,
             forces => recursive.coupling_force(q, speeds, rates, efforts, forces)?,

@@ -34,8 +34,10 @@ pub(super) struct CommutatorFree {
     stages: Vec<Rates>,
     /// `S₀⁻¹ v` of the joints that are composed, at each stage.
     local_rates: Vec<Vec<f64>>,
-    /// ϕ at the stage that is being evaluated.
+    /// How far ϕ moves to the stage that is being evaluated.
     phi: Vec<f64>,
+    /// ϕ there as the sum of what it is composed of.
+    sum: Vec<f64>,
     /// One joint's Q, before and after a Φ.
     near: Vec<f64>,
     far: Vec<f64>,
@@ -57,6 +59,7 @@ impl CommutatorFree {
             stages: vec![flow.new_rates(); 3],
             local_rates: vec![vec![0.0; freedoms]; 4],
             phi: vec![0.0; freedoms],
+            sum: vec![0.0; freedoms],
             near: vec![0.0; longest],
             far: vec![0.0; longest],
             part: vec![0.0; widest],
@@ -74,12 +77,14 @@ impl CommutatorFree {
     ) -> Result<(), StepFailure> {
         let mut outcome = Ok(());
         self.phi.fill(0.0);
+        self.sum.copy_from_slice(&step_state.offset);
         for (index, body) in flow.mechanism.joints() {
             if self.composed[index] && outcome.is_ok() {
                 outcome = self.compose(body, step_state, step, path);
             }
         }
         outcome?;
+        step_state.check_turns(flow, &self.sum)?;
         let Self {
             composed,
             stages,
@@ -123,6 +128,7 @@ impl CommutatorFree {
             for (weight, rates) in weights.iter().zip(&self.local_rates) {
                 add(part, step * weight, &rates[own.clone()]);
             }
+            add(&mut self.sum[own.clone()], 1.0, part);
             joint.retract(near, part, far);
             near.copy_from_slice(far);
         }

@@ -34,8 +34,9 @@ pub(super) struct Dense {
     span: Span,
     /// When the step ends, as the clock has it.
     end: f64,
-    /// The points around which ϕ was measured in it.
+    /// The points around which ϕ was measured in it, and the sum of ϕ over those before them.
     base: Vec<f64>,
+    passed: Vec<f64>,
     /// ϕ, then y, at its beginning; what is added by its end; h times the rates at both ends.
     start: Vec<f64>,
     change: Vec<f64>,
@@ -63,6 +64,22 @@ pub(super) struct Instant<'a> {
     /// The points around which ϕ is measured, and ϕ.
     pub(super) base: &'a [f64],
     pub(super) phi: &'a [f64],
+    /// The sum of ϕ over the base points before these, from the beginning of the motion.
+    pub(super) passed: &'a [f64],
+}
+
+impl Instant<'_> {
+    /// The time, Q and v̄.
+    pub(super) const fn state(&self) -> (f64, &[f64], &[f64]) {
+        (self.time, self.configuration, self.speeds)
+    }
+
+    /// [`Step::travel`](super::Step::travel) into `travel`.
+    pub(super) fn travel(&self, travel: &mut [f64]) {
+        for (travel, (passed, phi)) in travel.iter_mut().zip(self.passed.iter().zip(self.phi)) {
+            *travel = passed + phi;
+        }
+    }
 }
 
 impl Dense {
@@ -81,6 +98,7 @@ impl Dense {
             },
             end: 0.0,
             base: vec![0.0; layout.configuration],
+            passed: vec![0.0; layout.freedoms],
             start: room(),
             change: room(),
             first: room(),
@@ -100,6 +118,7 @@ impl Dense {
     pub(super) fn begin(&mut self, step_state: &StepState, span: Span) {
         self.span = span;
         self.base.copy_from_slice(&step_state.base);
+        self.passed.copy_from_slice(&step_state.passed);
         join(1.0, &step_state.offset, &step_state.y, &mut self.start);
         let Rates { phi, y, .. } = &step_state.rates;
         join(span.step, phi, y, &mut self.first);
@@ -156,6 +175,7 @@ impl Dense {
             speeds: &self.speeds,
             y,
             base: &self.base,
+            passed: &self.passed,
             phi,
         })
     }

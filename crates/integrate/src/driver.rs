@@ -5,7 +5,7 @@ use super::bends::Bends;
 use super::carried::Carried;
 use super::clock::Clock;
 use super::fixed_steps::is_last;
-use super::flow::Flow;
+use super::flow::{Flow, Given};
 use super::hybrid::{Guards, Hybrid};
 use super::kinks::Kinks;
 use super::options::{StepControl, least_step};
@@ -22,8 +22,8 @@ use super::step_state::StepState;
 use super::stepper::{self, Span, Stepper};
 use super::waypoints::Waypoints;
 use super::{
-    Crossing, Event, Form, InputBends, Inputs, IntegrateError, Method, Near, Observer, Options,
-    Sampling, Scheme, Solution, State, Statistics, Step, StepFailure,
+    Crossing, Event, Form, IntegrateError, Method, Near, Observer, Options, Sampling, Scheme,
+    Solution, State, Statistics, Step, StepFailure,
 };
 use alloc::boxed::Box;
 use alloc::format;
@@ -87,6 +87,8 @@ pub(super) struct Driver<'a> {
     pub(super) resolving: f64,
     /// Where something within a step has ended the integration.
     pub(super) end: Option<State>,
+    /// [`Step::travel`] of the state that was shown last, or at which the integration ends.
+    pub(super) travel: Vec<f64>,
     /// What the joints carry at samples, where that is asked for.
     pub(super) carried: Option<Carried>,
 }
@@ -117,7 +119,7 @@ impl<'a> Driver<'a> {
         initial: &State,
         options: &'a Options,
         period: Option<f64>,
-        (inputs, input_bends): (Option<&'a mut Inputs<'a>>, Option<&'a mut InputBends<'a>>),
+        inputs: Given<'a>,
         wanted: Wanted<'a>,
     ) -> Result<Self, IntegrateError> {
         let Wanted {
@@ -126,7 +128,7 @@ impl<'a> Driver<'a> {
             is_open,
             tells_forces,
         } = wanted;
-        let mut flow = Flow::new(dynamics, inputs, options.form).bending(input_bends);
+        let mut flow = Flow::new(dynamics, inputs, options.form);
         let watch = Watch::new(&flow.mechanism);
         let time = initial.time;
         let kinks = Kinks::new(&mut flow, time, options.t_end);
@@ -169,6 +171,7 @@ impl<'a> Driver<'a> {
             cause: Box::new(cause),
             near: watch.nearest_at(&flow.mechanism, (time, &initial.configuration)),
         })?;
+        let travel = step_state.passed.clone();
         Ok(Self {
             watch,
             waypoints: Waypoints::new(flow.mechanism.layout()),
@@ -199,6 +202,7 @@ impl<'a> Driver<'a> {
             hybrid,
             resolving: resolving(options.t_end - time, holds),
             end: None,
+            travel,
             carried: tells_forces.then(Carried::default),
         })
     }
@@ -222,6 +226,7 @@ impl<'a> Driver<'a> {
         self.statistics.evaluations = self.flow.evaluations;
         Ok(Solution {
             state: self.end.take().unwrap_or_else(|| self.state()),
+            travel: self.travel,
             samples: self.samples,
             waypoints: self.waypoints.finish(),
             scheme: *self.options.method.scheme(),
@@ -616,18 +621,21 @@ impl<'a> Driver<'a> {
             self.samples.push(self.state());
         }
         let carried = self.carried.as_mut().filter(|_| sample.is_some());
-        let carried = carried.map(|carried| carried.at(&mut self.flow, time, at));
+        let hybrid = self.hybrid.as_ref();
+        let carried = carried.map(|carried| carried.at((&mut self.flow, hybrid), time, at));
         let carried = carried.transpose();
         let carried = carried.map_err(|cause| IntegrateError::AtState {
             time,
             cause: Box::new(cause),
             near: (self.watch).nearest_at(&self.flow.mechanism, (time, at.0)),
         })?;
+        self.step_state.instant(time).travel(&mut self.travel);
         let step = Step {
             time: self.clock.time(),
             number: self.statistics.steps,
             configuration: &self.step_state.configuration,
             speeds: self.step_state.speeds(),
+            travel: &self.travel,
             momenta: (self.flow.form == Form::Hamiltonian).then_some(&*self.step_state.y),
             sample,
             is_within: false,

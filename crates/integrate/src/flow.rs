@@ -3,14 +3,14 @@
 use super::StepFailure;
 use super::hybrid::Sliding;
 use super::step_state::add;
-use super::{Form, InputBends, Inputs};
+use super::{Form, InputBends, Inputs, PortInputs};
 use alloc::boxed::Box;
 use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::{Deref, DerefMut};
-use hamel_runtime::dynamics::{Dynamics, DynamicsError};
+use hamel_runtime::dynamics::{Dynamics, DynamicsError, EffortAtPort};
 use hamel_runtime::mechanism::{CONSTRAINT_TOLERANCE, Mechanism, Space};
 use hamel_runtime::scalar::all_finite;
 use hamel_runtime::time_function::Moment;
@@ -106,13 +106,21 @@ impl DerefMut for Equations<'_> {
     }
 }
 
+/// What is given of inputs.
+#[derive(Default)]
+pub(super) struct Given<'a> {
+    /// Their efforts; `None` where there are none.
+    pub(super) inputs: Option<&'a mut Inputs<'a>>,
+    /// Where they bend, if they say so.
+    pub(super) bends: Option<&'a mut InputBends<'a>>,
+    /// What of them acts at ports, if they say so.
+    pub(super) at_ports: Option<&'a mut PortInputs<'a>>,
+}
+
 /// The equations of motion with their inputs, as a vector field.
 pub(super) struct Flow<'a> {
     dynamics: Equations<'a>,
-    /// `None` where there are none.
-    inputs: Option<&'a mut Inputs<'a>>,
-    /// Where the inputs bend, if they say so.
-    input_bends: Option<&'a mut InputBends<'a>>,
+    given: Given<'a>,
     pub(super) mechanism: Arc<Mechanism>,
     pub(super) form: Form,
     pub(super) evaluations: usize,
@@ -120,39 +128,42 @@ pub(super) struct Flow<'a> {
     efforts: Vec<f64>,
     /// The inputs of the last [`Flow::hold`], which stand until the next; `None` where inputs follow the state.
     held: Option<Vec<f64>>,
+    /// What of them acts at ports.
+    held_at_ports: Vec<EffortAtPort>,
     /// Efforts of friction at the joints that slide: they are added to the inputs.
     friction: Vec<Sliding>,
     /// A time within the piece of all functions of time that the present step is in.
     pub(super) within: f64,
 }
 
+impl Given<'_> {
+    /// What acts at ports at a time, `q` and v̄.
+    fn at_ports(&mut self, time: f64, q: &[f64], speeds: &[f64]) -> Vec<EffortAtPort> {
+        let mut efforts = Vec::new();
+        if let Some(at_ports) = &mut self.at_ports {
+            at_ports(time, q, speeds, &mut efforts);
+        }
+        efforts
+    }
+}
+
 impl<'a> Flow<'a> {
-    pub(super) fn new(
-        dynamics: &'a mut dyn Dynamics,
-        inputs: Option<&'a mut Inputs<'a>>,
-        form: Form,
-    ) -> Self {
+    pub(super) fn new(dynamics: &'a mut dyn Dynamics, given: Given<'a>, form: Form) -> Self {
         let mechanism = Arc::clone(dynamics.mechanism());
         let layout = *mechanism.layout();
         Self {
             dynamics: Equations::Lent(dynamics),
-            inputs,
-            input_bends: None,
+            given,
             form,
             evaluations: 0,
             configuration: vec![0.0; layout.configuration],
             efforts: vec![0.0; layout.freedoms],
             held: None,
+            held_at_ports: Vec::new(),
             friction: Vec::new(),
             within: 0.0,
             mechanism,
         }
-    }
-
-    /// The same with inputs that say where they bend.
-    pub(super) fn bending(mut self, input_bends: Option<&'a mut InputBends<'a>>) -> Self {
-        self.input_bends = input_bends;
-        self
     }
 
     /// Functions at whose zeros the inputs bend, at time `time`, `q` and the v̄ of `y`, in place of those in `bends`; none where inputs are held.
@@ -163,12 +174,12 @@ impl<'a> Flow<'a> {
         bends: &mut Vec<f64>,
     ) -> Result<(), DynamicsError> {
         bends.clear();
-        if self.input_bends.is_none() || self.held.is_some() {
+        if self.given.bends.is_none() || self.held.is_some() {
             return Ok(());
         }
         let mut speeds = y.to_vec();
         self.all_speeds_of(q, y, &mut speeds)?;
-        if let Some(input_bends) = &mut self.input_bends {
+        if let Some(input_bends) = &mut self.given.bends {
             input_bends(time, q, &speeds, bends);
         }
         Ok(())
@@ -179,21 +190,35 @@ impl<'a> Flow<'a> {
         let freedoms = self.mechanism.layout().freedoms;
         let mut held = self.held.take().unwrap_or_else(|| vec![0.0; freedoms]);
         held.fill(0.0);
-        if let Some(inputs) = &mut self.inputs {
+        if let Some(inputs) = &mut self.given.inputs {
             inputs(time, q, speeds, &mut held);
         }
         self.held = Some(held);
+        self.held_at_ports = self.given.at_ports(time, q, speeds);
+    }
+
+    /// What of the inputs acts at ports, at time `time`, `q` and v̄ or as held.
+    pub(super) fn inputs_at_ports(
+        &mut self,
+        time: f64,
+        q: &[f64],
+        speeds: &[f64],
+    ) -> Vec<EffortAtPort> {
+        match self.held {
+            Some(_) => self.held_at_ports.clone(),
+            None => self.given.at_ports(time, q, speeds),
+        }
     }
 
     /// Whether the rates at a state are the same at all times, until the next [`Flow::hold`].
     pub(super) fn is_autonomous(&self) -> bool {
-        let is_constant = self.inputs.is_none() || self.held.is_some();
+        let is_constant = self.given.inputs.is_none() || self.held.is_some();
         is_constant && !self.mechanism.changes_with_time()
     }
 
     /// Whether no inputs and no friction act.
     pub(super) fn is_left_alone(&self) -> bool {
-        self.inputs.is_none() && self.friction.is_empty()
+        self.given.inputs.is_none() && self.friction.is_empty()
     }
 
     /// A time of the present step, for functions of time.
@@ -366,7 +391,7 @@ impl<'a> Flow<'a> {
         efforts: &mut [f64],
     ) {
         let (held, moment) = (self.held.as_deref(), self.moment(time));
-        fill(&mut self.inputs, held, time, q, speeds, efforts);
+        fill(&mut self.given.inputs, held, time, q, speeds, efforts);
         add_friction(&self.friction, q, efforts);
         self.mechanism.add_timed_efforts(moment, efforts);
         self.dynamics.set_moment(moment);
@@ -409,7 +434,7 @@ impl<'a> Flow<'a> {
         let moment = self.moment(time);
         let Self {
             dynamics,
-            inputs,
+            given,
             mechanism,
             configuration,
             efforts,
@@ -420,7 +445,14 @@ impl<'a> Flow<'a> {
         dynamics.set_moment(moment);
         let mut fill = |speeds: &[f64], efforts: &mut [f64]| {
             let held = held.as_deref();
-            fill(inputs, held, time, configuration, speeds, efforts);
+            fill(
+                &mut given.inputs,
+                held,
+                time,
+                configuration,
+                speeds,
+                efforts,
+            );
             add_friction(friction, configuration, efforts);
             mechanism.add_timed_efforts(moment, efforts);
             mechanism.prescribe_accelerations(moment, efforts);

@@ -1,16 +1,17 @@
 //! An integration with all that may be asked of it.
 
 use super::driver::{Driver, Wanted};
+use super::flow::Given;
 use super::options::check_length;
 use super::{
-    Event, InputBends, Inputs, IntegrateError, Observer, Options, Solution, State, Step,
-    no_observer,
+    Event, InputBends, Inputs, IntegrateError, Observer, Options, PortInputs, Solution, State,
+    Step, no_observer,
 };
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::fmt::{Debug, Formatter};
 use core::ops::ControlFlow;
-use hamel_runtime::dynamics::Dynamics;
+use hamel_runtime::dynamics::{Dynamics, EffortAtPort};
 #[cfg(doc)]
 use hamel_runtime::mechanism::Mechanism;
 
@@ -46,6 +47,7 @@ pub struct Integration<'a> {
     options: &'a Options,
     inputs: Option<Box<Inputs<'a>>>,
     input_bends: Option<Box<InputBends<'a>>>,
+    port_inputs: Option<Box<PortInputs<'a>>>,
     period: Option<f64>,
     observer: Box<Observer<'a>>,
     sampling: Sampling,
@@ -63,6 +65,7 @@ impl<'a> Integration<'a> {
             options,
             inputs: None,
             input_bends: None,
+            port_inputs: None,
             period: None,
             observer: Box::new(no_observer),
             sampling: Sampling::Landing,
@@ -82,6 +85,16 @@ impl<'a> Integration<'a> {
     /// estimates of errors hold. They are pushed onto a list, as many at all times, each continuous and of the order of 1 away from its zero. Inputs that are held do not need them.
     pub fn bending(mut self, bends: impl FnMut(f64, &[f64], &[f64], &mut Vec<f64>) + 'a) -> Self {
         self.input_bends = Some(Box::new(bends));
+        self
+    }
+
+    /// With what of the inputs acts at ports of joints, pushed onto a list. The inputs hold it already, as what it does on v: it changes no motion. By it
+    /// [`Integration::telling_forces`] knows where the inputs act, which decides what lies between that port and v.
+    pub fn inputs_at_ports(
+        mut self,
+        efforts: impl FnMut(f64, &[f64], &[f64], &mut Vec<EffortAtPort>) + 'a,
+    ) -> Self {
+        self.port_inputs = Some(Box::new(efforts));
         self
     }
 
@@ -156,9 +169,13 @@ impl<'a> Integration<'a> {
         self.check_request()?;
         let hold = self.period;
         let inputs = self.inputs.as_mut();
-        let inputs = inputs.map(|inputs| -> &mut Inputs<'_> { &mut **inputs });
         let bends = self.input_bends.as_mut();
-        let bends = bends.map(|bends| -> &mut InputBends<'_> { &mut **bends });
+        let at_ports = self.port_inputs.as_mut();
+        let given = Given {
+            inputs: inputs.map(|inputs| -> &mut Inputs<'_> { &mut **inputs }),
+            bends: bends.map(|bends| -> &mut InputBends<'_> { &mut **bends }),
+            at_ports: at_ports.map(|efforts| -> &mut PortInputs<'_> { &mut **efforts }),
+        };
         let (dynamics, options) = (self.dynamics, self.options);
         let wanted = Wanted {
             sampling: self.sampling,
@@ -171,7 +188,7 @@ impl<'a> Integration<'a> {
             self.initial,
             options,
             hold,
-            (inputs, bends),
+            given,
             wanted,
         )?)
     }

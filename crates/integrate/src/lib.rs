@@ -94,7 +94,7 @@ pub use tableau::{Estimate, Tableau};
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
-use hamel_runtime::dynamics::Dynamics;
+use hamel_runtime::dynamics::{Dynamics, EffortAtPort};
 
 /// Efforts τ (one entry per degree of freedom) from time, q and v̄; entries are zero when it is called.
 pub type Inputs<'a> = dyn FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a;
@@ -102,6 +102,9 @@ pub type Inputs<'a> = dyn FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a;
 /// Functions of time, q and v̄ at whose zeros inputs bend, as at the limit of an effort, pushed onto a list that is empty when it is called: as many at all
 /// times, each continuous.
 pub type InputBends<'a> = dyn FnMut(f64, &[f64], &[f64], &mut Vec<f64>) + 'a;
+
+/// What of the inputs acts at ports of joints, from time, q and v̄, pushed onto a list that is empty when it is called.
+pub type PortInputs<'a> = dyn FnMut(f64, &[f64], &[f64], &mut Vec<EffortAtPort>) + 'a;
 
 /// Sees the initial state, every accepted step, and samples of dense output within them; breaks to end the integration there.
 pub type Observer<'a> = dyn FnMut(&Step<'_>) -> ControlFlow<()> + 'a;

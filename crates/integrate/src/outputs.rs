@@ -33,6 +33,8 @@ pub(super) struct PieceEnd {
     /// The part of the step that has been made.
     pub(super) part: f64,
     pub(super) state: State,
+    /// [`Step::travel`] there.
+    pub(super) travel: Vec<f64>,
     pub(super) guards: Vec<Guard>,
 }
 
@@ -190,10 +192,12 @@ impl Driver<'_> {
                     let guards = outputs.location.ended_by(found);
                     if !guards.is_empty() {
                         let part = found.part;
-                        let state = state_of(outputs.dense.at(&mut self.flow, part)?);
+                        let instant = outputs.dense.at(&mut self.flow, part)?;
+                        instant.travel(&mut self.travel);
                         return Ok(Passed::Until(PieceEnd {
                             part,
-                            state,
+                            state: state_of(instant),
+                            travel: self.travel.clone(),
                             guards,
                         }));
                     }
@@ -225,15 +229,18 @@ impl Driver<'_> {
             time,
             ..state_of(instant)
         };
+        instant.travel(&mut self.travel);
         let at = (instant.configuration, instant.speeds);
         let carried = self.carried.as_mut();
-        let carried = carried.map(|carried| carried.at(&mut self.flow, time, at));
+        let hybrid = self.hybrid.as_ref();
+        let carried = carried.map(|carried| carried.at((&mut self.flow, hybrid), time, at));
         let carried = carried.transpose()?;
         let step = Step {
             time,
             number: self.statistics.steps,
             configuration: instant.configuration,
             speeds: instant.speeds,
+            travel: &self.travel,
             momenta: (self.flow.form == Form::Hamiltonian).then_some(instant.y),
             sample: Some(index),
             is_within: true,
@@ -247,7 +254,9 @@ impl Driver<'_> {
     }
 
     fn record(&mut self, outputs: &mut Outputs<'_>, found: Found) -> Result<(), StepFailure> {
-        let state = state_of(outputs.dense.at(&mut self.flow, found.part)?);
+        let instant = outputs.dense.at(&mut self.flow, found.part)?;
+        instant.travel(&mut self.travel);
+        let state = state_of(instant);
         let event = &mut outputs.location.events[found.event];
         if let Some(condition) = &mut event.condition
             && !condition(state.time, &state.configuration, &state.speeds)

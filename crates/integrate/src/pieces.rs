@@ -139,7 +139,7 @@ impl Driver<'_> {
             time: self.clock.time(),
             ..end.state
         };
-        self.begin_piece(state, &end.guards)
+        self.begin_piece((state, end.travel), &end.guards)
     }
 
     /// Ends the piece where new inputs are more than what holds a joint; whether they are.
@@ -154,7 +154,8 @@ impl Driver<'_> {
         if broken.is_empty() {
             return Ok(false);
         }
-        self.begin_piece(self.state(), &broken)?;
+        instant.travel(&mut self.travel);
+        self.begin_piece((self.state(), self.travel.clone()), &broken)?;
         Ok(true)
     }
 
@@ -172,7 +173,12 @@ impl Driver<'_> {
         Ok(())
     }
 
-    fn begin_piece(&mut self, mut state: State, ended: &[Guard]) -> Result<(), IntegrateError> {
+    /// From a state and the travel up to it.
+    fn begin_piece(
+        &mut self,
+        (mut state, travel): (State, Vec<f64>),
+        ended: &[Guard],
+    ) -> Result<(), IntegrateError> {
         let Some(hybrid) = &mut self.hybrid else {
             return Ok(());
         };
@@ -181,6 +187,7 @@ impl Driver<'_> {
         let (q, speeds) = (&state.configuration, &state.speeds);
         let begun = StepState::new(&mut self.flow, state.time, q, speeds);
         self.step_state = begun.map_err(|cause| self.at_state(cause))?;
+        self.step_state.passed = travel;
         self.renew_stepper();
         // Speeds that have jumped may have taken inputs to the other side of a bend.
         let bends = Bends::new(&mut self.flow, &self.step_state, state.time);

@@ -26,6 +26,9 @@ pub struct Step<'a> {
     pub configuration: &'a [f64],
     /// v̄ of all joints.
     pub speeds: &'a [f64],
+    /// How far each joint has gone since the motion began, one entry per degree of freedom, in the units of ϕ: the sum of its ϕ over all steps, each around its own base
+    /// point. Of a joint that turns about one axis it counts the turns, which Q does not where it comes back to itself.
+    pub travel: &'a [f64],
     /// p̄ of all joints, in the Hamiltonian form.
     pub momenta: Option<&'a [f64]>,
     /// Index of the last sample that falls on this time, if one does.
@@ -40,13 +43,19 @@ pub struct Step<'a> {
 impl<'a> Step<'a> {
     /// A state at the end of a step, without momenta and forces.
     ///
-    /// `number` is how many steps led there, and `sample` the index of the last sample that falls on its time, if one does.
-    pub fn of_state(state: &'a State, number: usize, sample: Option<usize>) -> Self {
+    /// `travel` is [`Step::travel`], `number` is how many steps led there, and `sample` the index of the last sample that falls on its time, if one does.
+    pub fn of_state(
+        state: &'a State,
+        travel: &'a [f64],
+        number: usize,
+        sample: Option<usize>,
+    ) -> Self {
         Self {
             time: state.time,
             number,
             configuration: &state.configuration,
             speeds: &state.speeds,
+            travel,
             momenta: None,
             sample,
             is_within: false,
@@ -81,6 +90,8 @@ pub struct Statistics {
 pub struct Solution {
     /// Where it ended.
     pub state: State,
+    /// [`Step::travel`] there.
+    pub travel: Vec<f64>,
     /// The states at the sample times that were reached, in order.
     pub samples: Vec<State>,
     /// The states at the ends of some steps, evenly over them, at most 32: where [`GlobalError`](super::GlobalError) compares motions with few samples.

@@ -1,6 +1,6 @@
 //! How fast the motions about a state are: the eigenvalues of the linearised equations of motion.
 
-use super::flow::Flow;
+use super::flow::{Flow, Given};
 use super::jacobian::Jacobian;
 use super::step_state::StepState;
 use super::{Form, IntegrateError, State, StepFailure};
@@ -142,7 +142,7 @@ impl Spectrum {
 /// `∂(ϕ̇, v̄̇)/∂(ϕ, v̄)` at a state.
 fn linearized(mechanism: &Arc<Mechanism>, state: &State) -> Result<DMatrix<f64>, StepFailure> {
     let mut dynamics = Recursive::new(Arc::clone(mechanism));
-    let mut flow = Flow::new(&mut dynamics, None, Form::Lagrangian);
+    let mut flow = Flow::new(&mut dynamics, Given::default(), Form::Lagrangian);
     let (q, speeds) = (&state.configuration, &state.speeds);
     let step_state = StepState::new(&mut flow, state.time, q, speeds)?;
     let mut jacobian = Jacobian::new(&flow);

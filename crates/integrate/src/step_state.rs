@@ -40,6 +40,8 @@ pub(super) struct StepState {
     pub(super) base: Vec<f64>,
     /// ϕ at the state.
     pub(super) offset: Vec<f64>,
+    /// The sum of ϕ over the base points before these, from the beginning of the motion.
+    pub(super) passed: Vec<f64>,
     /// Rates at the state, always.
     pub(super) rates: Rates,
     /// ϕ at the point that a step has come to: a stage, or its end.
@@ -80,6 +82,7 @@ impl StepState {
             configuration: configuration.to_vec(),
             base: configuration.to_vec(),
             offset: vec![0.0; freedoms],
+            passed: vec![0.0; freedoms],
             rates: flow.new_rates(),
             phi: vec![0.0; freedoms],
             next_y: y.clone(),
@@ -111,6 +114,7 @@ impl StepState {
             speeds: self.speeds(),
             y: &self.y,
             base: &self.base,
+            passed: &self.passed,
             phi: &self.offset,
         }
     }
@@ -144,6 +148,11 @@ impl StepState {
         add_all_exactly(&self.offset, &mut self.phi, phi);
         add_all_exactly(&self.y, &mut self.next_y, y);
         self.turns.check(&flow.mechanism, &self.phi, &self.next_y)
+    }
+
+    /// Refuses a ϕ that turns a joint too far: of one that has been composed, where Φ and its inverse tell rotations within half a turn alone.
+    pub(super) fn check_turns(&self, flow: &Flow<'_>, phi: &[f64]) -> Result<(), StepFailure> {
+        self.turns.check(&flow.mechanism, phi, &self.next_y)
     }
 
     /// Moves the point to the state and one increment, ϕ first and then y.
@@ -328,6 +337,7 @@ impl StepState {
                 &mut self.configuration[own.clone()],
             );
             let phi = &mut self.offset[freedoms.clone()];
+            let passed = &mut self.passed[freedoms.clone()];
             let projected = body.joint().project(new);
             if projected.is_err() && has_ends(body.joint()) {
                 // Next to an end all gradients of the relations may be nearly parallel, as where a parallelogram folds. Φ is on the relations without it.
@@ -336,6 +346,7 @@ impl StepState {
             }
             projected.map_err(|cause| body.finite_map(cause))?;
             self.compensation.keep(body, old, new, phi);
+            add(passed, 1.0, phi);
             old.copy_from_slice(new);
             phi.fill(0.0);
             moved = true;

@@ -49,6 +49,8 @@ struct Block<'a> {
     is_left: Vec<bool>,
     /// Whether all steps of a motion are followed.
     follows: bool,
+    /// For each motion, the sum of ϕ over the base points before the last, one entry per degree of freedom.
+    passed: Vec<Vec<f64>>,
     /// Joints whose base points move.
     bent: Vec<(usize, &'a Position)>,
 }
@@ -155,6 +157,9 @@ impl<'a> Block<'a> {
             plan,
             machine: Machine::new(&plan.program),
             is_left: vec![false; starts.len()],
+            passed: (starts.iter())
+                .map(|start| vec![0.0; start.scene.mechanism.layout().freedoms])
+                .collect(),
             follows: starts.iter().any(|start| start.track.follows()),
             bent: bent.collect(),
             starts,
@@ -223,11 +228,16 @@ impl<'a> Block<'a> {
                 if size <= FAR || self.is_left[motion] {
                     continue;
                 }
-                let own = start.scene.mechanism.bodies()[*body].joint();
+                let body = &start.scene.mechanism.bodies()[*body];
+                let own = body.joint();
                 let mut moved = Vec::with_capacity(joint.base.len());
                 position(&self.machine, own, joint, motion, &mut moved);
                 if size > TOO_FAR || own.project(&mut moved).is_err() {
                     self.is_left[motion] = true;
+                }
+                let passed = &mut self.passed[motion][body.ranges().freedoms.clone()];
+                for (passed, row) in passed.iter_mut().zip(joint.offset.clone()) {
+                    *passed += self.machine.get(row, motion);
                 }
                 for (row, number) in joint.base.clone().zip(moved) {
                     self.machine.set(row, motion, number);
@@ -255,11 +265,30 @@ impl<'a> Block<'a> {
         }
     }
 
+    /// [`Step::travel`] of a motion.
+    fn travel(&self, motion: usize) -> Vec<f64> {
+        let start = &self.starts[motion];
+        let mut travel = self.passed[motion].clone();
+        let joints = start.scene.mechanism.joints();
+        for (joint, (_, body)) in self.plan.places.joints.iter().zip(joints) {
+            let own = &mut travel[body.ranges().freedoms.clone()];
+            let begun = body.configuration(&start.state.configuration);
+            for (i, travel) in own.iter_mut().enumerate() {
+                *travel += match joint.adds {
+                    true => self.machine.get(joint.base.start + i, motion) - begun[i],
+                    false => self.machine.get(joint.offset.start + i, motion),
+                };
+            }
+        }
+        travel
+    }
+
     /// Keeps what is to be kept of a motion.
     fn follow(&mut self, motion: usize, (time, number): (f64, usize), sample: Option<usize>) {
         let state = self.state(motion, time);
+        let travel = self.travel(motion);
         let start = &mut self.starts[motion];
-        let step = Step::of_state(&state, number, sample);
+        let step = Step::of_state(&state, &travel, number, sample);
         start.track.follow(&start.scene.mechanism, &step);
     }
 

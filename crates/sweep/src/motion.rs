@@ -277,7 +277,7 @@ impl Sweep {
         };
         let work = (solution.statistics.steps, error.as_ref());
         // What ends a motion within a step is not shown. Step 0 would begin another motion.
-        let end = Step::of_state(&solution.state, work.0.max(1), None);
+        let end = Step::of_state(&solution.state, &solution.travel, work.0.max(1), None);
         track.borrow_mut().follow(&scene.mechanism, &end);
         let numbers = self
             .results

@@ -17,9 +17,10 @@ pub mod reference;
 pub use error::DynamicsError;
 pub use recursive::LoadedMass;
 pub use recursive::{
-    ForwardDerivatives, ForwardSecondDerivatives, Frame, FrameReadings, HamiltonianDerivatives,
-    InverseDerivatives, InverseMassMatrix, InverseSecondDerivatives, JointTorqueRegressor,
-    MassMatrix, PinError, PinForce, Readings, Recursive, Refined, Sensitivity,
+    EffortAtPort, ForwardDerivatives, ForwardSecondDerivatives, Frame, FrameReadings,
+    HamiltonianDerivatives, InverseDerivatives, InverseMassMatrix, InverseSecondDerivatives,
+    JointTorqueRegressor, MassMatrix, PinError, PinForce, Readings, Recursive, Refined,
+    Sensitivity,
 };
 pub use reference::Reference;
 

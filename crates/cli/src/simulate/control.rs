@@ -2,6 +2,7 @@
 
 use super::plan::Plan;
 use hamel::control::{Controller, Measure};
+use hamel::dynamics::EffortAtPort;
 use hamel::integrate::Step;
 use hamel::shown::Number;
 use hamel_console::output::Failure;
@@ -128,6 +129,21 @@ impl Loop {
     pub fn bends(&self, time: f64, q: &[f64], speeds: &[f64], bends: &mut Vec<f64>) {
         let state = &mut *self.state.borrow_mut();
         if let Err(cause) = state.controller.bends(time, q, speeds, bends) {
+            state.fail(time, &cause);
+        }
+    }
+
+    /// What of the law's efforts acts at ports; nothing where it fails, which its efforts tell as well.
+    pub fn efforts_at_ports(
+        &self,
+        time: f64,
+        q: &[f64],
+        speeds: &[f64],
+        efforts: &mut Vec<EffortAtPort>,
+    ) {
+        let state = &mut *self.state.borrow_mut();
+        let found = state.controller.efforts_at_ports(time, q, speeds, efforts);
+        if let Err(cause) = found {
             state.fail(time, &cause);
         }
     }

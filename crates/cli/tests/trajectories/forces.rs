@@ -102,6 +102,100 @@ fn multipliers_and_pins_are_those_of_the_motion() {
     }
 }
 
+/// What turns the engine.
+const TURNING: &str = "initial = { speeds = [12.0] }\n";
+
+/// The motion of an engine with other first speeds and efforts than those of [`ENGINE`], and what else the file says.
+fn varied(name: &str, efforts: &str, rest: &str, options: &[&str]) -> Columns {
+    let own = "initial = { speeds = [12.0] }\neffort = [\"2 * sin(5 * t)\"]\nspring = { stiffness = 0.4 }\n";
+    assert!(ENGINE.contains(own));
+    let text = ENGINE.replace(own, efforts) + rest;
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.toml"));
+    fs::write(&path, text).expect("a folder for tests");
+    let options = [&["--forces", "--tol", "1e-12"], options].concat();
+    read_csv(&simulate(&path.display().to_string(), name, &options).csv)
+}
+
+/// Every multiplier and every force at a pin, in two motions.
+fn assert_same_forces(one: &Columns, other: &Columns) {
+    let forces =
+        |(name, _): &(&String, &Vec<f64>)| name.contains(".pin.") || name.contains(".lambda.");
+    let compared: Vec<_> = one.iter().filter(forces).collect();
+    assert_eq!(compared.len(), 2 + 4 * 6);
+    for (name, column) in compared {
+        assert_eq!(column.len(), other[name].len());
+        for (a, b) in column.iter().zip(&other[name]) {
+            // As between the forms.
+            let is_same = (a - b).abs() < 1e-8 * b.abs().max(100.0);
+            assert!(is_same || a.is_nan() && b.is_nan(), "{name}: {a} {b}");
+        }
+    }
+}
+
+/// The slider moves to the left all the time: its friction is a constant effort to the right.
+#[test]
+fn friction_that_slides_at_a_port_acts_there() {
+    let steps = ["--t-end", "0.05", "--sample-step", "1e-3"];
+    for sampling in ["landing", "dense"] {
+        let options = [&steps[..], &["--sampling", sampling]].concat();
+        let of = |name, ports: &str| {
+            varied(
+                name,
+                &format!("{TURNING}ports.slider = {{ {ports} }}\n"),
+                "",
+                &options,
+            )
+        };
+        let friction = of("port_friction", "friction = 30.0");
+        assert_same_forces(&friction, &of("port_effort", "effort = 30.0"));
+    }
+}
+
+/// A torque of 0.9 N m turns the crank, and friction at the slider holds it: torque, weight and the pin at the crank's end are in balance. Of friction at the crank beside it,
+/// each holds the same part of what it can hold.
+#[test]
+fn friction_that_holds_at_a_port_acts_there() {
+    let steps = ["--t-end", "0.01", "--sample-step", "5e-3"];
+    for (efforts, most) in [
+        ("ports.slider = { friction = 40.0 }", 0.0),
+        ("ports.slider = { friction = 8.0 }\nfriction = 1.92", 1.92),
+    ] {
+        let all = format!("effort = [0.9]\n{efforts}\n");
+        let columns = varied("port_holds", &all, "", &steps);
+        let first = |name: &str| columns[&format!("engine.{name}")][0];
+        let (sine, cosine) = first("q.a_rad").sin_cos();
+        let [across, along] = ["pin.crank_pin.fx_N", "pin.crank_pin.fy_N"].map(first);
+        let pin = 0.12 * (sine * across - cosine * along);
+        let weight = 1.3 * 9.81 * 0.05 * cosine;
+        let at_crank = -(0.9 + pin - weight);
+        let at_slider = first("pin.wrist.fx_N");
+        assert!(at_slider.abs() > 0.5, "{at_slider}");
+        let part = at_slider / if most > 0.0 { 8.0 } else { 40.0 };
+        // Efforts of 10 N m and 100 N, rounded a few times.
+        assert!((at_crank - most * part).abs() < 1e-12, "{at_crank} {part}");
+        for (name, column) in &columns {
+            let is_still = column
+                .iter()
+                .all(|x| (x - column[0]).abs() < 1e-12 || x.is_nan());
+            assert!(
+                is_still || name == "t_s" || !name.starts_with("engine."),
+                "{name}"
+            );
+        }
+    }
+}
+
+/// A controller that is a spring and a damper at the slider, at all times and by short periods.
+#[test]
+fn controllers_act_at_their_ports() {
+    let steps = ["--t-end", "0.05", "--sample-step", "1e-2"];
+    let elements = "ports.slider = { spring = { stiffness = 200.0 }, damping = 5.0 }\n";
+    let wanted = varied("port_spring", &(TURNING.to_owned() + elements), "", &steps);
+    let law = "[controller]\nkind = \"energy_shaping\"\n[[controller.port]]\njoint = \"engine\"\nport = \"slider\"\nstiffness = 200.0\ndamping = 5.0\n";
+    let found = varied("port_control", TURNING, law, &steps);
+    assert_same_forces(&found, &wanted);
+}
+
 #[test]
 fn json_and_the_summary_tell_what_is_open() {
     let run = |options: &[&str]| {

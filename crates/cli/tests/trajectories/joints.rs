@@ -89,6 +89,47 @@ fn angles_count_turns_and_every_name_says_its_unit() {
     }
 }
 
+/// A wheel on the circle and one that counts turns, under the same torques. Steps between the rare samples are of many turns, and the rates change unevenly within them. Friction
+/// holds both until the torque exceeds it, so that the motion has pieces.
+#[test]
+fn angles_count_turns_where_rates_change_unevenly() {
+    let wheel = |name: &str, kind: &str, effort: &str| {
+        format!(
+            r#"
+[[body]]
+name = "{name}"
+parent = "world"
+mass = 1.0
+inertia = [[0.01, 0.0, 0.0], [0.0, 0.01, 0.0], [0.0, 0.0, 0.02]]
+joint = {{ name = "{name}", type = "{kind}" }}
+effort = ["{effort}"]
+friction = {{ sliding = 0.05, sticking = 0.05 }}
+"#
+        )
+    };
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("twins.toml");
+    for effort in ["3*(t-1)^2*step(3-t)", "t^2 - 9*exp(-9*(t-3)^2)"] {
+        let twins = [("hub", "revolute_circle"), ("axle", "revolute")];
+        let wheels: String = twins.map(|(name, kind)| wheel(name, kind, effort)).concat();
+        let head = "hamel = 1\nname = \"twins\"\ngravity = [0.0, 0.0, 0.0]\n";
+        fs::write(&path, head.to_owned() + &wheels).expect("a folder for tests");
+        for sampling in ["landing", "dense"] {
+            let options = ["--t-end", "6", "--at", "3,6", "--sampling", sampling];
+            let files = simulate(&path.display().to_string(), "twins", &options);
+            let csv = read_csv(&files.csv);
+            assert!(csv["axle.q.q_rad"][1] > 1000.0);
+            for (row, counted) in csv["axle.q.q_rad"].iter().enumerate() {
+                let error = csv["hub.q.q_rad"][row] - counted;
+                let allowed = 1e-9 * counted;
+                assert!(
+                    error.abs() < allowed,
+                    "{effort}, {sampling}, row {row}: {error:e}"
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn json_and_parquet_tell_units_and_meanings_of_the_columns_of_the_csv() {
     let file = "scenes/ball_pendulum_upright.toml";

@@ -3,7 +3,7 @@
 //! Where a light body turns against a heavy one, as a rotor of 1e-13 kg m² in its link, both accelerations are 1e12 times that of the link, which is what rounding
 //! leaves of their sum. Beside accelerations whose residuals are in double-double it is seen how much the equations lose.
 
-use crate::flow::Flow;
+use crate::flow::{Flow, Given};
 use crate::{Form, State};
 use alloc::sync::Arc;
 use alloc::vec;
@@ -72,7 +72,7 @@ fn accelerations(dynamics: &mut dyn Dynamics, state: &State) -> Result<Vec<f64>,
     let layout = *dynamics.mechanism().layout();
     let (mut efforts, mut rates) = (vec![0.0; layout.freedoms], vec![0.0; layout.speeds]);
     let (q, speeds) = (&state.configuration, &state.speeds);
-    let mut flow = Flow::new(dynamics, None, Form::Lagrangian);
+    let mut flow = Flow::new(dynamics, Given::default(), Form::Lagrangian);
     flow.within = state.time;
     flow.efforts(state.time, q, speeds, &mut efforts);
     flow.dynamics()

@@ -4,6 +4,7 @@ use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::Range;
+use hamel_runtime::dynamics::EffortAtPort;
 use hamel_runtime::elements::LimitOf;
 use hamel_runtime::erased::AnyJoint;
 use hamel_runtime::mechanism::Mechanism;
@@ -96,8 +97,8 @@ enum Place {
 }
 
 impl Place {
-    /// By what an effort of one unit against the motion acts on v: `|P|`.
-    fn weight(&self, q: &[f64]) -> f64 {
+    /// The rate there over v: P of a port.
+    fn ratio(&self, q: &[f64]) -> f64 {
         match self {
             Self::Freedom => 1.0,
             Self::Port {
@@ -107,9 +108,14 @@ impl Place {
             } => {
                 let mut row = [f64::NAN];
                 joint.port_row(&q[configuration.clone()], *port, &mut row);
-                row[0].abs()
+                row[0]
             }
         }
+    }
+
+    /// By what an effort of one unit against the motion acts on v: `|P|`.
+    fn weight(&self, q: &[f64]) -> f64 {
+        self.ratio(q).abs()
     }
 }
 
@@ -218,6 +224,12 @@ impl Contact {
         !self.frictions.is_empty()
     }
 
+    /// Whether friction acts at one of its ports.
+    pub(super) fn has_friction_at_ports(&self) -> bool {
+        let mut frictions = self.frictions.iter();
+        frictions.any(|friction| matches!(friction.place, Place::Port { .. }))
+    }
+
     /// Efforts on v that may act on it at rest at the configuration `q` of all joints, by friction and limits.
     pub(super) fn bounds(&self, q: &[f64], is_slipping: bool) -> (f64, f64) {
         let each = self.frictions.iter().map(|friction| {
@@ -233,6 +245,45 @@ impl Contact {
             Some(Side::Lower) => (-most, f64::INFINITY),
             Some(Side::Upper) => (f64::NEG_INFINITY, most),
         }
+    }
+
+    /// The efforts of its friction at ports in motion.
+    pub(super) fn sliding_at_ports(
+        &self,
+        q: &[f64],
+        forward: bool,
+    ) -> impl Iterator<Item = EffortAtPort> {
+        let sign = if forward { -1.0 } else { 1.0 };
+        self.at_ports(q, move |friction| sign * friction.sliding)
+    }
+
+    /// The efforts of friction at ports that hold it by `effort` on v: each place takes as much of what it can hold as the others.
+    pub(super) fn sticking_at_ports(
+        &self,
+        q: &[f64],
+        effort: f64,
+    ) -> impl Iterator<Item = EffortAtPort> {
+        let (_, most) = self.bounds(q, false);
+        let part = if most > 0.0 { effort / most } else { 0.0 };
+        self.at_ports(q, move |friction| part * friction.sticking)
+    }
+
+    /// Efforts at those of its places that are ports, of friction that acts by `effort` towards larger v.
+    fn at_ports(
+        &self,
+        q: &[f64],
+        effort: impl Fn(&Friction) -> f64,
+    ) -> impl Iterator<Item = EffortAtPort> {
+        self.frictions.iter().filter_map(move |friction| {
+            let Place::Port { port, .. } = friction.place else {
+                return None;
+            };
+            Some(EffortAtPort {
+                body: self.body,
+                port,
+                effort: effort(friction) * friction.place.ratio(q).signum(),
+            })
+        })
     }
 
     /// The efforts of its friction in motion.

@@ -95,7 +95,7 @@ impl Guards {
     ) -> Result<f64, StepFailure> {
         let guard = self.list[index];
         if guard.is_of_holding() {
-            self.holding.find(flow, instant)?;
+            self.holding.find(flow, instant.state())?;
         }
         Ok(self.read(guard, instant))
     }
@@ -108,7 +108,7 @@ impl Guards {
         mut take: impl FnMut(usize, f64),
     ) -> Result<(), StepFailure> {
         if self.holds() {
-            self.holding.find(flow, instant)?;
+            self.holding.find(flow, instant.state())?;
         }
         for (index, guard) in self.list.iter().enumerate() {
             take(index, self.read(*guard, instant));

@@ -2,7 +2,6 @@
 
 use super::contact::Contact;
 use crate::StepFailure;
-use crate::dense::Instant;
 use crate::flow::Flow;
 use alloc::sync::Arc;
 use alloc::vec;
@@ -50,13 +49,22 @@ impl Holding {
         }
     }
 
-    /// Finds them for a state.
+    /// Those at a time, `q` and v̄, of the mechanism as it is in this piece.
+    pub(super) fn at(
+        flow: &mut Flow<'_>,
+        (time, q, speeds): (f64, &[f64], &[f64]),
+    ) -> Result<Self, StepFailure> {
+        let mut holding = Self::new(Arc::clone(&flow.mechanism));
+        holding.find(flow, (time, q, speeds))?;
+        Ok(holding)
+    }
+
+    /// Finds them for a time, `q` and v̄.
     pub(super) fn find(
         &mut self,
         flow: &mut Flow<'_>,
-        instant: &Instant<'_>,
+        (time, q, speeds): (f64, &[f64], &[f64]),
     ) -> Result<(), StepFailure> {
-        let (time, q, speeds) = (instant.time, instant.configuration, instant.speeds);
         flow.given_efforts(time, q, speeds, &mut self.tau);
         self.driven.copy_from_slice(&self.tau);
         let mechanism = Arc::clone(self.dynamics.mechanism());

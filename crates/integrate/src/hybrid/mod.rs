@@ -24,14 +24,17 @@ pub(super) use contact::Sliding;
 pub(super) use guards::{Guard, Guards};
 pub(super) use notes::Note;
 
+use super::StepFailure;
+use super::flow::Flow;
 use alloc::format;
 use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 use contact::{Contact, Phase};
-use hamel_runtime::dynamics::Recursive;
+use hamel_runtime::dynamics::{EffortAtPort, Recursive};
 use hamel_runtime::mechanism::Mechanism;
+use holding::Holding;
 use modes::Modes;
 
 /// How far a step reaches, as a part of a bounce.
@@ -89,6 +92,31 @@ impl Hybrid<'_> {
             (leaves > 0.0 && returns > 0.0).then(|| BEYOND * 2.0 * leaves / returns)
         });
         flights.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Efforts of friction at ports, at a time, `q` and v̄. Friction that holds a joint is shared out among its places by what each can hold; a joint at a limit is held by the
+    /// limit alone.
+    pub(super) fn efforts_at_ports(
+        &self,
+        flow: &mut Flow<'_>,
+        (time, q, speeds): (f64, &[f64], &[f64]),
+    ) -> Result<Vec<EffortAtPort>, StepFailure> {
+        let mut holding: Option<Holding> = None;
+        let mut efforts = Vec::new();
+        for (contact, phase) in self.contacts.iter().zip(&self.phases) {
+            match phase {
+                Phase::Slides { forward } => efforts.extend(contact.sliding_at_ports(q, *forward)),
+                Phase::Sticks if contact.has_friction_at_ports() => {
+                    let holding = match &mut holding {
+                        Some(holding) => holding,
+                        none => none.insert(Holding::at(flow, (time, q, speeds))?),
+                    };
+                    efforts.extend(contact.sticking_at_ports(q, holding.effort(contact)));
+                }
+                Phase::Sticks | Phase::Rests(_) | Phase::Free => {}
+            }
+        }
+        Ok(efforts)
     }
 
     /// Guards that tell by less time than this are trusted as they are, s.

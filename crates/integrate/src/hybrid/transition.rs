@@ -8,7 +8,6 @@ use super::holding::Holding;
 use super::notes::{Note, of_joint};
 use super::release::Resting;
 use super::{Hybrid, MOST_SHORT, names};
-use crate::dense::Instant;
 use crate::flow::Flow;
 use crate::{IntegrateError, State, StepFailure};
 use alloc::format;
@@ -262,17 +261,7 @@ impl<'a> Hybrid<'a> {
         let mut holding = Holding::new(Arc::clone(&flow.mechanism));
         let held: Vec<usize> = (0..phases.len()).filter(|&i| phases[i].is_held()).collect();
         if !held.is_empty() {
-            holding.find(
-                flow,
-                &Instant {
-                    time,
-                    configuration: q,
-                    speeds,
-                    y: speeds,
-                    base: q,
-                    phi: &[],
-                },
-            )?;
+            holding.find(flow, (time, q, speeds))?;
         }
         for &index in &held {
             let contact = &self.contacts[index];

@@ -4,10 +4,12 @@ use crate::common::joints;
 use crate::common::random::Random;
 use crate::common::trees::{GRAVITY, body, mass};
 use crate::support::{distance, mixed, options, run, start};
-use hamel_integrate::{Form, Method, State};
+use hamel_integrate::{Event, Form, Integration, Method, Sampling, Scheme, State};
+use hamel_runtime::dynamics::Reference;
 use hamel_runtime::mechanism::{BodySpec, Mechanism};
 use hamel_runtime::spatial::{MassProperties, Pose, so3};
 use nalgebra::{Matrix3, Vector3};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 #[test]
@@ -212,4 +214,60 @@ fn long_runs_stay_on_the_manifold() {
     assert_eq!(end.statistics.steps, 20_000);
     let rotation = Matrix3::from_row_slice(&end.state.configuration);
     assert!((rotation.transpose() * rotation - Matrix3::identity()).amax() < 4.0 * f64::EPSILON);
+}
+
+/// A disc on a plane that spins at 4 rad/s.
+fn spinning(rate: f64) -> (Arc<Mechanism>, State) {
+    let mass = MassProperties::new(1.0, Vector3::zeros(), Matrix3::identity()).expect("physical");
+    let disc = body("disc", None, joints::planar(), Pose::identity(), mass);
+    let mechanism = Arc::new(Mechanism::new(Vector3::zeros(), vec![disc]).expect("valid"));
+    let initial = State {
+        time: 0.0,
+        configuration: mechanism.home(),
+        speeds: vec![rate, 0.0, 0.0],
+    };
+    (mechanism, initial)
+}
+
+/// At the ends of steps, at samples within them, and where an event ends the motion, over base points that move after every half a radian.
+#[test]
+fn the_travel_of_a_joint_counts_its_turns() {
+    let (mechanism, initial) = spinning(4.0);
+    let mut options = options(Form::Lagrangian, Method::dormand_prince(1e-8), 10.0);
+    options.samples = vec![0.1, 3.3, 7.2];
+    let assert_turned = |time: f64, travel: &[f64]| {
+        // Thirty rad, rounded at each of some hundred base points.
+        let error = travel[0] - 4.0 * time;
+        assert!(error.abs() < 1e-12, "at {time} s: {error:e}");
+    };
+    let mut dynamics = Reference::new(Arc::clone(&mechanism));
+    let mut seen = 0;
+    let solution = Integration::new(&mut dynamics, &initial, &options)
+        .sampling(Sampling::Dense)
+        .event(Event::new("there", |time, _, _| time - 7.31).stopping())
+        .observer(|step| {
+            assert_turned(step.time, step.travel);
+            seen += usize::from(step.is_within);
+            ControlFlow::Continue(())
+        })
+        .run()
+        .expect("integrates");
+    assert_eq!((seen, solution.stopped), (3, true));
+    assert_turned(solution.state.time, &solution.travel);
+}
+
+/// Φ and its inverse tell rotations within half a turn alone.
+#[test]
+fn no_composed_step_turns_by_more_than_half_a_turn() {
+    let (mechanism, initial) = spinning(30.0);
+    let moved = |step: f64| {
+        let mut dynamics = Reference::new(Arc::clone(&mechanism));
+        let method = Method::fixed(Scheme::CommutatorFree4, step);
+        let options = options(Form::Lagrangian, method, 1.2);
+        Integration::new(&mut dynamics, &initial, &options).run()
+    };
+    let error = moved(0.12).expect_err("3.6 rad in a step").to_string();
+    assert!(error.contains("joint `disc joint` turns by 3.6"), "{error}");
+    let travel = moved(0.08).expect("integrates").travel;
+    assert!((travel[0] - 36.0).abs() < 1e-12, "{travel:?}");
 }

@@ -28,24 +28,22 @@ pub enum Angle {
     Port(usize),
 }
 
-/// The angles at the end of the last step that was seen.
+/// The angles at the state that was seen last.
 #[derive(Clone, Debug)]
 pub struct Turns {
     turns: Vec<Turn>,
     angles: Vec<f64>,
-    rates: Vec<f64>,
-    time: Option<f64>,
+    /// Q and the travel there; `None` before the first.
+    last: Option<[Vec<f64>; 2]>,
 }
 
 impl Turns {
     /// Follows these.
     pub fn new(turns: Vec<Turn>) -> Self {
-        let count = turns.len();
         Self {
+            angles: vec![0.0; turns.len()],
             turns,
-            angles: vec![0.0; count],
-            rates: vec![0.0; count],
-            time: None,
+            last: None,
         }
     }
 
@@ -54,47 +52,73 @@ impl Turns {
         &self.angles
     }
 
-    /// Goes on to the end of `step`.
+    /// Goes on to `step`.
     pub fn follow(&mut self, mechanism: &Mechanism, step: &Step<'_>) {
+        let here = [step.configuration, step.travel];
         // The first state begins another motion.
-        let last = self.time.replace(step.time).filter(|_| step.number > 0);
-        let states = self.angles.iter_mut().zip(&mut self.rates);
-        for (turn, (angle, rate)) in self.turns.iter().zip(states) {
+        let last = self.last.replace(here.map(<[f64]>::to_vec));
+        let last = last.filter(|_| step.number > 0);
+        for (turn, angle) in self.turns.iter().zip(&mut self.angles) {
             let body = &mechanism.bodies()[turn.body];
-            let (reduced, next) = turn.read(body, step);
-            *angle = match last {
+            let reduced = turn.read(body, body.configuration(step.configuration));
+            *angle = match &last {
                 None => reduced,
-                // A step may be longer than half a turn where the rate hardly changes: the rates say how many it was.
-                Some(last) => {
-                    let expected = *angle + 0.5 * (step.time - last) * (*rate + next);
+                // A step may be longer than half a turn: how far the joint goes says how many turns it was.
+                Some([configuration, travel]) => {
+                    let expected = *angle + turn.change(body, [configuration, travel], here);
                     reduced + TAU * ((expected - reduced) / TAU).round()
                 }
             };
-            *rate = next;
         }
     }
 }
 
 impl Turn {
-    /// The angle between −π and π, and its rate, rad/s.
-    fn read(&self, body: &Body, step: &Step<'_>) -> (f64, f64) {
-        let q = body.configuration(step.configuration);
-        let speeds = &step.speeds[body.ranges().speeds.clone()];
-        let velocity = velocity(body, q, speeds);
-        let joint = body.joint();
+    /// The angle between −π and π.
+    fn read(&self, body: &Body, q: &[f64]) -> f64 {
+        match self.angle {
+            Angle::Stored { cosine, sine } => q[sine].atan2(q[cosine]),
+            Angle::Port(port) => body.joint().port_value(q, port),
+        }
+    }
+
+    /// Its rate at v of the joint, rad/s.
+    fn rate(&self, body: &Body, q: &[f64], velocity: &[f64]) -> f64 {
         match self.angle {
             Angle::Stored { cosine, sine } => {
                 let mut rates = vec![0.0; q.len()];
-                joint.configuration_rate(q, &velocity, &mut rates);
-                let rate = q[cosine] * rates[sine] - q[sine] * rates[cosine];
-                (q[sine].atan2(q[cosine]), rate)
+                body.joint().configuration_rate(q, velocity, &mut rates);
+                q[cosine] * rates[sine] - q[sine] * rates[cosine]
             }
-            Angle::Port(port) => (
-                joint.port_value(q, port),
-                port_rate(body, q, &velocity, port),
-            ),
+            Angle::Port(port) => port_rate(body, q, velocity, port),
         }
     }
+
+    /// How far it goes within a step, rad, from the Q and travel before to those after: the change of ϕ by the mean of the angle's derivatives by ϕ at both ends. That is exact
+    /// of angles about one axis, of which a step may take many turns; no step takes other joints further than half a turn.
+    fn change(&self, body: &Body, before: [&[f64]; 2], after: [&[f64]; 2]) -> f64 {
+        let own = body.ranges().freedoms.clone();
+        let change: Vec<f64> = own.map(|i| after[1][i] - before[1][i]).collect();
+        let [first, last] = [before[0], after[0]].map(|configuration| {
+            let q = body.configuration(configuration);
+            self.rate(body, q, &at_once(body, q, &change))
+        });
+        0.5 * (first + last)
+    }
+}
+
+/// v = S₀ ϕ̇ of a joint at its Q.
+fn at_once(body: &Body, q: &[f64], rates: &[f64]) -> Vec<f64> {
+    let size = rates.len();
+    let mut map = vec![0.0; size * size];
+    body.joint().velocity_map(q, &mut map);
+    let mut velocity = vec![0.0; size];
+    for (column, rate) in map.chunks(size.max(1)).zip(rates) {
+        for (entry, part) in velocity.iter_mut().zip(column) {
+            *entry += part * rate;
+        }
+    }
+    velocity
 }
 
 /// The angles among the parts `factors` of the joint under the body of index `body`.

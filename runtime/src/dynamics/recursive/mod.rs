@@ -40,7 +40,7 @@ pub use derivatives::{
 pub use frames::FrameReadings;
 pub use loaded::LoadedMass;
 pub use mass::MassMatrix;
-pub use pins::{PinError, PinForce};
+pub use pins::{EffortAtPort, PinError, PinForce};
 pub use readings::{Frame, Readings};
 pub use refined::Refined;
 pub use regressor::JointTorqueRegressor;
@@ -103,6 +103,8 @@ pub struct Recursive {
     /// Prescribed rates of driven joints, one entry per speed; zero for the others.
     driven: Vec<f64>,
     coupling: Option<Coupling>,
+    /// Efforts at ports that are among the inputs.
+    port_efforts: Vec<EffortAtPort>,
     /// When elements act.
     moment: Moment,
 }
@@ -142,6 +144,7 @@ impl Recursive {
             external: vec![Vector6::zeros(); count],
             driven: vec![0.0; speeds],
             coupling: Coupling::new(&mechanism),
+            port_efforts: Vec::new(),
             moment: Moment::default(),
             mechanism,
         }

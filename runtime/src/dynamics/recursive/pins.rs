@@ -58,6 +58,17 @@ pub enum PinError {
     },
 }
 
+/// An effort of an input or of friction that acts at a port.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EffortAtPort {
+    /// The body whose joint it is.
+    pub body: usize,
+    /// Index of the port among those of the joint.
+    pub port: usize,
+    /// N m or N, positive towards larger values of the port.
+    pub effort: f64,
+}
+
 /// A pin at one configuration, in the frame that the joint hangs on.
 pub(super) struct Placed {
     pub(super) pin: &'static Pin,
@@ -70,6 +81,12 @@ pub(super) struct Placed {
 const NOTHING: f64 = 1.5e-8;
 
 impl Recursive {
+    /// From now on these efforts of inputs and friction at ports, beside those of elements and rotors: [`Recursive::pin_forces`] and [`Recursive::relation_forces`] count them where
+    /// they act. Without them an input is counted on v, whose efforts are the only ones that inverse dynamics knows.
+    pub fn set_port_efforts(&mut self, efforts: Vec<EffortAtPort>) {
+        self.port_efforts = efforts;
+    }
+
     /// What the bodies of the joint under `body` exert on each other at its pins, in the order of [`Joint::PINS`](crate::joint::Joint::PINS), as of the last
     /// [`Recursive::inverse_dynamics`] at `q` and v̄ (or [`Recursive::coupling_force`] where constraints couple joints). Empty for a joint without
     /// pins. Allocates.
@@ -198,7 +215,7 @@ impl Recursive {
         }
     }
 
-    /// What elements and rotors exert at one port, as of the last inverse dynamics.
+    /// What elements, rotors, and the inputs of [`Recursive::set_port_efforts`] exert at one port, as of the last inverse dynamics.
     pub(super) fn effort_at_port(
         &self,
         body: usize,
@@ -212,7 +229,10 @@ impl Recursive {
             let own = effort.filter(|(index, other, _)| bodies.contains(index) && *other == port);
             own.map_or(0.0, |(.., effort)| effort)
         });
-        elements + self.rotor_effort(bodies.start, port)
+        let given = self.port_efforts.iter();
+        let given = given.filter(|given| bodies.contains(&given.body) && given.port == port);
+        let given: f64 = given.map(|given| given.effort).sum();
+        elements + given + self.rotor_effort(bodies.start, port)
     }
 
     /// The first effort that acts at no pin, in words.
