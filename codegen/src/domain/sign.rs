@@ -25,6 +25,9 @@ const MOST_FACTORS: usize = 6;
 /// Most combinations of conditions that are tried.
 const MOST_TRIES: usize = 400;
 
+/// Most sums of which one is the least: each term that is bounded by a parameter of unknown sign doubles them.
+const MOST_LEAST: usize = 8;
+
 /// Most term operations for showing that an expression has one sign, where both are tried.
 const OF_ONE_SIGN: u64 = 6_000;
 
@@ -89,12 +92,14 @@ impl Signs {
             .iter()
             .flat_map(|f| bounded_coordinates(f.kind, &f.coordinates))
             .collect();
+        // Those of ends below 0 come last: products are formed of the first ones.
+        let of_ends = |is_below_zero: bool| {
+            let parameters = parameters.clone();
+            parameters.flat_map(move |p| conditions_of(p, is_below_zero))
+        };
         let conditions: Vec<(Expr, bool)> = required
-            .chain(
-                parameters
-                    .clone()
-                    .flat_map(|p| conditions_of(&p.symbol, &p.range)),
-            )
+            .chain(of_ends(false))
+            .chain(of_ends(true))
             .collect();
         Self {
             positive_parameters: positive_parameters(&space.parameters),
@@ -185,27 +190,39 @@ impl Signs {
 
     /// Whether the expression is positive, or, where that is `enough`, not negative.
     fn exceeds(&self, expression: &Expr, enough: bool) -> bool {
-        let mut constant = Expr::zero();
+        let mut least = vec![Expr::zero()];
         let mut strict = enough;
         for (monomial, coefficient) in expression.terms() {
-            if monomial.is_unit() {
-                constant += &Expr::term(coefficient.clone(), monomial.clone());
+            if monomial.main().is_empty() {
+                let term = Expr::term(coefficient.clone(), monomial.clone());
+                least.iter_mut().for_each(|sum| *sum += &term);
                 continue;
             }
             match (self.sign(monomial), coefficient.is_positive()) {
                 (Sign::Positive, true) => strict = true,
                 (Sign::NotNegative, true) => {}
                 _ => match self.bound(monomial, coefficient) {
-                    Some(bound) => constant -= &bound,
-                    None => return false,
+                    Some((bound, Sign::Unknown)) if least.len() < MOST_LEAST => {
+                        least = [-&bound, bound]
+                            .iter()
+                            .flat_map(|bound| least.iter().map(move |sum| sum + bound))
+                            .collect();
+                    }
+                    None | Some((_, Sign::Unknown)) => return false,
+                    Some((bound, _)) => least.iter_mut().for_each(|sum| *sum -= &bound),
                 },
             }
         }
-        let outweighs = |conditions: &[(Expr, bool)]| {
-            self.exceeds_zero(&constant, strict, conditions, MOST_CONDITIONS, &mut 0)
+        least.iter().all(|sum| self.exceeds_zero(sum, strict))
+    }
+
+    /// The same of a polynomial in the parameters.
+    fn exceeds_zero(&self, sum: &Expr, enough: bool) -> bool {
+        let by = |conditions: &[(Expr, bool)]| {
+            self.exceeds_by(sum, enough, conditions, MOST_CONDITIONS, &mut 0)
         };
         // Without conditions there are no products either.
-        outweighs(&self.conditions) || !self.conditions.is_empty() && outweighs(&self.with_products)
+        by(&self.conditions) || !self.conditions.is_empty() && by(&self.with_products)
     }
 
     /// Whether the expression is `D + a · n` with a unit vector n and D > |a|: then D and D² − |a|² are positive.
@@ -353,18 +370,16 @@ impl Signs {
         parameter().unwrap_or(false)
     }
 
-    /// A bound on the absolute value of a term, made of parameters.
-    fn bound(&self, monomial: &Monomial, coefficient: &Rational) -> Option<Expr> {
+    /// What a term is never less than minus, made of parameters, and its sign; where that is unknown, it may be never less than plus that instead.
+    fn bound(&self, monomial: &Monomial, coefficient: &Rational) -> Option<(Expr, Sign)> {
         let (_, units) = monomial.split();
-        if self.sign(&units) == Sign::Unknown {
-            return None;
-        }
+        let sign = self.sign(&units);
         let mut bound = coefficient.abs();
         for (atom, power) in monomial.main() {
             let size = self.bound_of_atom(atom)?;
             bound = (0..*power).fold(bound, |bound, _| bound * &size);
         }
-        Some(Expr::term(bound, units))
+        Some((Expr::term(bound, units), sign))
     }
 
     /// A number that the absolute value does not exceed.
@@ -383,8 +398,8 @@ impl Signs {
     }
 
     /// Whether a polynomial in the parameters is positive, or not negative where that is enough: by its terms, or after subtracting
-    /// multiples of conditions, each to cancel a negative term.
-    fn exceeds_zero(
+    /// multiples of conditions, each to cancel a term that may be negative.
+    fn exceeds_by(
         &self,
         rest: &Expr,
         enough: bool,
@@ -392,17 +407,19 @@ impl Signs {
         left: usize,
         tries: &mut usize,
     ) -> bool {
-        let negative = rest.terms().find(|(_, c)| c.is_negative());
-        let Some((monomial, coefficient)) = negative else {
+        let may_be_negative =
+            |(m, c): &(&Monomial, &Rational)| c.is_negative() || self.sign(m) == Sign::Unknown;
+        let Some((monomial, coefficient)) = rest.terms().find(may_be_negative) else {
             let positive = |(m, _): (&Monomial, &Rational)| self.sign(m) == Sign::Positive;
-            return self.has_one_sign(rest, true) && (enough || rest.terms().any(positive));
+            return enough || rest.terms().any(positive);
         };
         *tries += 1;
         if left == 0 || *tries > MOST_TRIES {
             return false;
         }
         conditions.iter().any(|(condition, strict)| {
-            let mut terms = condition.terms().filter(|(_, c)| c.is_negative());
+            let same_sign = |c: &Rational| c.is_negative() == coefficient.is_negative();
+            let mut terms = condition.terms().filter(|(_, c)| same_sign(c));
             terms.any(|(of_condition, c)| {
                 let Some(units) = of_condition.recip().map(|m| monomial.times(&m)) else {
                     return false;
@@ -416,7 +433,7 @@ impl Signs {
                 let sign = self.sign(&units);
                 let rest = rest - &condition.scaled(&(coefficient / c), &units);
                 sign != Sign::Unknown
-                    && self.exceeds_zero(
+                    && self.exceeds_by(
                         &rest,
                         enough || (*strict && sign == Sign::Positive),
                         conditions,
@@ -459,13 +476,16 @@ fn two() -> Rational {
     Rational::from_integer(2.into())
 }
 
-/// What the ends of a range say: `p − lower` and `upper − p` are not negative.
-fn conditions_of(symbol: &Symbol, range: &Interval) -> Vec<(Expr, bool)> {
-    let p = Expr::symbol(symbol);
-    let lower = range.lower.iter().filter(|end| end.value.is_positive());
-    let above = lower.map(|end| (&p - &Expr::rational(end.value.clone()), !end.included));
-    let upper = range.upper.iter();
-    let below = upper.map(|end| (&Expr::rational(end.value.clone()) - &p, !end.included));
+/// What the ends of a range say: `p − lower` and `upper − p` are not negative. Of a lower end below 0, or of the others; one that is 0 is the sign of the parameter.
+fn conditions_of(parameter: &Parameter, is_below_zero: bool) -> Vec<(Expr, bool)> {
+    let (p, Interval { lower, upper, .. }) = (Expr::symbol(&parameter.symbol), &parameter.range);
+    let above = lower.iter().filter(|end| match is_below_zero {
+        true => end.value.is_negative(),
+        false => end.value.is_positive(),
+    });
+    let above = above.map(|end| (&p - &Expr::rational(end.value.clone()), !end.included));
+    let below = upper.iter().filter(|_| !is_below_zero);
+    let below = below.map(|end| (&Expr::rational(end.value.clone()) - &p, !end.included));
     above.chain(below).collect()
 }
 

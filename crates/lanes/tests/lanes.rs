@@ -121,6 +121,25 @@ fn other_explicit_methods_move_as_by_the_tree() {
     }
 }
 
+/// Of the turns that a placement is made of, none is known to more than the rounding over the tilt, and their sum must be.
+#[test]
+fn axes_that_are_nearly_parallel_move_as_by_the_tree() {
+    let upper = "at = { position = [0.1, 0.2, 0.3], rpy = [0.8, 0.4, 0.3] }\nbody_at = { position = [0.2, 0.05, 0.1], rpy = [0.0, 0.0, 0.7] }\ninitial.speeds = [1.5]";
+    for half in [0.0, std::f64::consts::PI] {
+        for tilt in [0.0, 3e-16, 1e-15, 1e-14, 1e-12, 1e-10, 1e-8, 1e-5] {
+            let lower = format!(
+                "at = {{ position = [0.1, 0.5, 0.3], rpy = [{:?}, 0.0, 1.1] }}\nbody_at = {{ position = [0.2, 0.05, 0.1] }}\ninitial.speeds = [-2.0]",
+                half + tilt
+            );
+            let text = described(
+                &(body("upper", "world", "{ type = \"revolute\" }", upper)
+                    + &body("lower", "upper", "{ type = \"revolute\" }", &lower)),
+            );
+            check(&format!("{half} {tilt:e}"), &text, &MASSES);
+        }
+    }
+}
+
 #[test]
 fn balls_move_as_by_the_tree() {
     let initial = "at = { position = [0.0, 0.1, 0.3] }\nbody_at = { position = [0.2, 0.05, 0.1] }\ninitial.speeds = [1.5, -0.5, 3.0]";

@@ -49,6 +49,55 @@ fn a_parameter_that_may_vanish_has_squares_that_may() {
     assert!(!check("(a: 1 <= 0)", "1 + a"));
 }
 
+/// Ends below 0, and requirements on parameters of either sign.
+#[test]
+fn parameters_of_unknown_sign_have_their_conditions() {
+    for (parameters, require, pose, is_positive) in [
+        ("(p: 1 > -1)", "", "1 + p", true),
+        ("(p: 1 > -1)", "", "p + 0.9", false),
+        ("(p: 1 >= -1)", "", "1 + p", false),
+        ("(p: 1 > -2 < 2)", "", "4 - p * p", true),
+        ("(p: 1 > -2 < 2)", "", "3.9 - p * p", false),
+        ("(p: 1 > -1 < 1)", "", "1 + p * cos(q)", true),
+        ("(p: 1 > -1)", "", "1 + p * cos(q)", false),
+        ("(p: 1 > -1 < 1.1)", "", "1 + p * cos(q)", false),
+        (
+            "(p: 1 > -1 < 1, r: 1 > -1 < 1)",
+            "",
+            "2 + p * cos(q) - r * sin(2 * q)",
+            true,
+        ),
+        (
+            "(p: 1 > -1 < 1, r: 1 > -1 < 1)",
+            "",
+            "1.7 + p * cos(q) - r * sin(2 * q)",
+            false,
+        ),
+        ("(p: 1)", "require p > -2;", "p + 3", true),
+        ("(p: 1)", "require p > -2;", "p + 1", false),
+        ("(p: 1, r: 1)", "require p + r > 0;", "p + r", true),
+        ("(p: 1, r: 1)", "require p + r > 0;", "p - r", false),
+        ("(p: 1, r: 1)", "require p * r > 0;", "1 + p * r", true),
+        ("(p: 1, r: 1)", "require p * r > 1;", "p * r - 0.5", true),
+        ("(p: 1, r: 1)", "require p * r > 1;", "p + r", false),
+        (
+            "(p: 1 > 0, r: 1 >= -1 <= 1)",
+            "require p > 1;",
+            "p + r",
+            true,
+        ),
+        (
+            "(p: 1 > 0, r: 1 >= -1 <= 1)",
+            "require p > 0.5;",
+            "p + r",
+            false,
+        ),
+    ] {
+        let found = check_with(parameters, require, pose);
+        assert_eq!(found, is_positive, "{parameters} {require} {pose}");
+    }
+}
+
 #[test]
 fn conditions_between_parameters_are_multiplied_out() {
     for (parameters, require, pose) in [

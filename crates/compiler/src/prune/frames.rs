@@ -228,7 +228,7 @@ impl<'a> Placed<'a> {
             let to_joint = self.moved(index).inverse().compose(&body.child_placement);
             Link {
                 placement: self.steps(index),
-                after: (cos != 1.0)
+                after: ((cos, sin) != (1.0, 0.0))
                     .then_some(Fixed::Turn(2, cos, sin))
                     .into_iter()
                     .collect(),

@@ -15,9 +15,12 @@ pub fn turns(rotation: &Matrix3<f64>) -> Vec<Fixed> {
         let c = unit(r[(0, 0)], if cos_b > 0.0 { r[(1, 0)] } else { -r[(1, 0)] });
         [unit(1.0, 0.0), unit(cos_b.signum(), 0.0), c]
     } else {
+        let a = unit(-r[(1, 2)], r[(0, 2)]);
+        // The first row of Rz(-a) R = Rx(b) Rz(c). The last row of R has sin c and cos c as well, times sin b: where b is little, their rounding is not that of a, and a + c,
+        // which is what counts then, would be lost.
+        let row = |j: usize| a.0 * r[(0, j)] + a.1 * r[(1, j)];
+        let c = unit(row(0), -row(1));
         // A half turn about x more changes the signs of both others: the form with fewer of them.
-        let a = unit(-r[(1, 2)] / sin_b, r[(0, 2)] / sin_b);
-        let c = unit(r[(2, 1)] / sin_b, r[(2, 0)] / sin_b);
         let flip = a.0 < 0.0 && a.1 == 0.0;
         let sign = if flip { -1.0 } else { 1.0 };
         [
@@ -29,7 +32,7 @@ pub fn turns(rotation: &Matrix3<f64>) -> Vec<Fixed> {
     let axes = [2, 0, 2];
     let turns = axes.into_iter().zip(turns);
     turns
-        .filter(|(_, (cos, _))| *cos != 1.0)
+        .filter(|(_, turn)| *turn != (1.0, 0.0))
         .map(|(axis, (cos, sin))| Fixed::Turn(axis, cos, sin))
         .collect()
 }
@@ -66,6 +69,28 @@ mod tests {
             let vector = Vector3::new((1.3 * x).sin(), (2.1 * x).cos(), (0.7 * x).sin()) * 3.0;
             // Three products of entries of size 1: a few roundings.
             assert!(back(&Rotation3::new(vector).into_inner()) < 2e-15);
+        }
+    }
+
+    /// Axes that are parallel but for rounding, and for more than that.
+    #[test]
+    fn a_little_tilt_leaves_the_turn_beside_it() {
+        for k in 0..1000 {
+            let x = f64::from(k);
+            let tilt = 10.0_f64.powf(-17.0 + 14.0 * x / 999.0);
+            let (a, c) = (
+                Vector3::z() * 3.0 * (1.3 * x).sin(),
+                Vector3::z() * 3.0 * (2.1 * x).cos(),
+            );
+            for half in [0.0, std::f64::consts::PI] {
+                let tilted = Rotation3::new(Vector3::x() * (half + tilt));
+                let mut rotation = (Rotation3::new(a) * tilted * Rotation3::new(c)).into_inner();
+                // Entries of products of rounded rotations.
+                rotation[(2, 0)] += 1e-16 * (1.7 * x).sin();
+                rotation[(0, 2)] += 1e-16 * (2.3 * x).cos();
+                let error = back(&rotation);
+                assert!(error < 2e-15, "tilt {tilt:e}: {error:e}");
+            }
         }
     }
 

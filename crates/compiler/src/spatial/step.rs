@@ -58,7 +58,8 @@ impl Step {
     pub fn is_identity(&self) -> bool {
         match self {
             Self::Shift(by) => by.iter().all(Zero::is_zero),
-            Self::Turn { cos, .. } => cos.number() == Some(1.0),
+            // The cosine of a little angle is 1.
+            Self::Turn { cos, sin, .. } => cos.number() == Some(1.0) && sin.is_zero(),
             Self::Rotate(matrix) => *matrix == Mat3::identity(),
         }
     }
@@ -66,7 +67,9 @@ impl Step {
     /// Whether it is a turn by quarters, or none: such cost nothing.
     fn is_signed_permutation(&self) -> bool {
         match self {
-            Self::Turn { cos, sin, .. } => cos.is_unit() || sin.is_unit(),
+            Self::Turn { cos, sin, .. } => {
+                cos.is_unit() && sin.is_zero() || sin.is_unit() && cos.is_zero()
+            }
             _ => false,
         }
     }
