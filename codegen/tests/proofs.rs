@@ -125,8 +125,8 @@ fn true_claims_are_not_refuted_outside_of_the_domain() {
         ),
         format!(
             "(r: m > 0) {{ {circle}
-            A = [exp(-sqrt(p.x * p.x + 3 * r * r + p.y * p.y) / r) * exp(sin(2 * atan2(y, 1 + sqrt(1 + y * y)))); -1];
-            S_bar = [1; exp(-2) * exp(sin(atan(y)))];"
+            A = [exp(-sqrt(p.x * p.x + 3 * r * r + p.y * p.y) / r) * exp(2 * atan2(y, 1 + sqrt(1 + y * y))); -1];
+            S_bar = [1; exp(-2) * exp(atan(y))];"
         ),
         format!("(m: 1 in 0.1..=0.1) {{ {plane} A = [tanh(x) * m; -1]; S_bar = [1; tanh(x) / 10];"),
         format!("{{ {plane} A = [pow(exp(x), 1/2); -1]; S_bar = [1; exp(x / 2)];"),

@@ -141,7 +141,11 @@ impl Domain<'_> {
     /// Where the function is shown to be smooth; `None` where that is open.
     pub fn smooth(&self, critical: &Critical) -> Option<Smooth> {
         match (critical.function, critical.arguments.as_slice()) {
-            (Function::Recip, [x]) => self.nonzero(x).map(|_| Smooth::Everywhere),
+            (Function::Recip, [x]) => {
+                let is_nonzero = self.nonzero(x).is_some()
+                    || [x, &-x].into_iter().any(|x| self.has_positive_form(x));
+                is_nonzero.then_some(Smooth::Everywhere)
+            }
             (Function::Atan2, arguments) if critical.periodic => {
                 self.no_common_zero(arguments).map(|_| Smooth::Everywhere)
             }
@@ -167,7 +171,7 @@ impl Domain<'_> {
     }
 
     fn positive_off_loci(&self, x: &Expr) -> Option<Smooth> {
-        if self.is_positive(x) {
+        if self.is_positive(x) || self.has_positive_form(x) {
             return Some(Smooth::Everywhere);
         }
         let certificate = self.nonzero(x)?;

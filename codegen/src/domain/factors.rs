@@ -43,6 +43,20 @@ pub fn vanishing_arguments(expression: &Expr) -> Expr {
     }
 }
 
+/// Functions and scalars of Q that divide every term, with their powers.
+pub fn of_all_terms(expression: &Expr) -> Vec<(Atom, u32)> {
+    let mut terms = expression.terms().map(|(monomial, _)| monomial.main());
+    let mut common: Vec<(Atom, u32)> = terms.next().unwrap_or_default().to_vec();
+    for factors in terms {
+        common.retain_mut(|(atom, power)| {
+            let found = factors.iter().find(|(other, _)| other == atom);
+            *power = found.map_or(0, |(_, other)| *other.min(power));
+            *power > 0
+        });
+    }
+    common
+}
+
 /// The function of parameters by which all coefficients are multiples of it, where one of them is that, and what is left without it.
 pub fn content(expression: &Expr) -> Option<(Expr, Expr)> {
     let mut coefficients: BTreeMap<Monomial, Expr> = BTreeMap::new();

@@ -9,6 +9,7 @@ mod critical;
 mod factors;
 mod harmonics;
 mod parallel;
+mod quadratics;
 mod roots;
 mod sign;
 mod squares;
@@ -178,6 +179,11 @@ impl<'a> Domain<'a> {
     /// Whether the expression is one term of a rational and parameters that are never 0.
     pub fn is_unit(&self, e: &Expr) -> bool {
         e.is_unit() && !e.contains_any(&self.vanishing)
+    }
+
+    /// Whether a short expression is positive in some form of it.
+    pub(super) fn has_positive_form(&self, expression: &Expr) -> bool {
+        self.signs.is_positive_in_some_form(expression)
     }
 
     /// Whether the expression is positive everywhere.

@@ -5,6 +5,7 @@ use super::elimination;
 use crate::domain::Domain;
 use crate::expr::Expr;
 use crate::matrix::{Matrix, combinations, count_combinations};
+use std::collections::BTreeSet;
 
 /// Why the columns are independent everywhere, in words; `Err` holds det(MᵀM), whose zeros are where they may not be.
 pub fn full_column_rank(m: &Matrix, domain: &Domain<'_>) -> Result<String, Expr> {
@@ -85,7 +86,7 @@ fn whole(m: &Matrix, places: &[usize], domain: &Domain<'_>) -> Result<String, Ex
     if domain.is_unit(&gram) && gram.leading().is_some_and(|(_, c)| c.is_positive()) {
         return Ok(format!("det(MᵀM) = {gram}"));
     }
-    if let Some(certificate) = of_half(m, domain) {
+    if let Some(certificate) = of_half(m, places, domain) {
         return Ok(certificate);
     }
     if minors.is_empty() {
@@ -101,22 +102,24 @@ fn whole(m: &Matrix, places: &[usize], domain: &Domain<'_>) -> Result<String, Ex
     }
 }
 
-/// The same for the angular or the linear rows of a twist map: the speed of a point may be constant.
-fn of_half(m: &Matrix, domain: &Domain<'_>) -> Option<String> {
+/// The same for the angular or the linear rows of the twist map of one body: the speed of a point may be constant.
+fn of_half(m: &Matrix, places: &[usize], domain: &Domain<'_>) -> Option<String> {
     let simplify = |e: &Expr| domain.ideal().normal_form(e);
-    let half = |first: usize| {
-        let rows = m.block(first, 0, 3, m.columns());
+    let half = |number: usize| {
+        let own = (0..m.rows()).filter(|&i| places[i] / 3 == number);
+        let rows = m.select_rows(&own.collect::<Vec<_>>());
         let gram = simplify(&rows.transpose().times(&rows).determinant(&simplify));
-        let (from, to) = (first + 1, first + 3);
-        // Of a number, the sum of all rows tells as much.
-        let certificate = match gram.symbols().is_empty() {
-            true => return None,
-            false => domain.nonzero(&gram)?,
-        };
+        // Of a number, the sum of all rows of one body tells as much.
+        if gram.symbols().is_empty() && m.rows() <= LONGEST_WHOLE {
+            return None;
+        }
+        let certificate = domain.nonzero(&gram)?;
+        let (from, to) = (3 * number + 1, 3 * number + 3);
         Some(format!("det(MᵀM) of rows {from} to {to}: {certificate}"))
     };
-    (m.rows() == 6 && m.columns() <= 3)
-        .then(|| [0, 3].into_iter().find_map(half))
+    let halves: BTreeSet<usize> = places.iter().map(|place| place / 3).collect();
+    (m.columns() <= 3)
+        .then(|| halves.into_iter().find_map(half))
         .flatten()
 }
 

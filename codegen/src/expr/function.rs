@@ -215,8 +215,10 @@ fn cos_sin_of_term(monomial: &Monomial, coefficient: &Rational) -> (Expr, Expr) 
         None => size,
     };
     let angle = Expr::term(base, monomial.clone());
-    let cos = apply(Function::Cos, vec![angle.clone()]);
-    let sin = apply(Function::Sin, vec![angle]);
+    let (cos, sin) = cos_sin_of_point(&angle).unwrap_or_else(|| {
+        let of = |function| apply(function, vec![angle.clone()]);
+        (of(Function::Cos), of(Function::Sin))
+    });
     let (mut c, mut s) = (cos.clone(), sin.clone());
     for _ in 1..multiple.unwrap_or(1) {
         (c, s) = (&(&c * &cos) - &(&s * &sin), &(&s * &cos) + &(&c * &sin));
@@ -225,6 +227,21 @@ fn cos_sin_of_term(monomial: &Monomial, coefficient: &Rational) -> (Expr, Expr) 
         true => (c, -s),
         false => (c, s),
     }
+}
+
+/// Of the angle of a point at a distance of 1 from the origin, x and y: of an arcsine of s, `√(1 − s²)` and s. Of other points, cosine and sine stay what they are: x and y over
+/// their distance make long expressions of short ones.
+fn cos_sin_of_point(angle: &Expr) -> Option<(Expr, Expr)> {
+    let (Function::Atan2, [y, x]) = angle.applied_alone()? else {
+        return None;
+    };
+    let square = |e: &Expr| match e.applied_alone() {
+        Some((Function::Sqrt, [u])) => u.clone(),
+        _ => e.square(),
+    };
+    (&square(x) + &square(y))
+        .is_one()
+        .then(|| (x.clone(), y.clone()))
 }
 
 /// At multiples of a sixth and of a quarter of π, whose cosines and sines are halves of roots.

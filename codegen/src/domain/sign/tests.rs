@@ -10,12 +10,22 @@ fn check(parameters: &str, pose: &str) -> bool {
 }
 
 fn check_with(parameters: &str, require: &str, pose: &str) -> bool {
+    check_by(parameters, require, pose, |domain, e| domain.is_positive(e))
+}
+
+fn check_by(
+    parameters: &str,
+    require: &str,
+    pose: &str,
+    is_positive: impl Fn(&Domain<'_>, &Expr) -> bool,
+) -> bool {
     let source = format!(
         "hamel = 1;\njoint test{parameters} {{ {require} config q: R1; H = trans_z({pose} + 0 * q); }}"
     );
     let joint = spec::parse(&source, "test.joint").expect("a valid spec");
     let expression: Expr = joint.pose.value.translation.at(2, 0).clone();
-    Domain::new(&ConfigurationSpace::declared(&joint)).is_positive(&expression)
+    let space = ConfigurationSpace::declared(&joint);
+    is_positive(&Domain::new(&space), &expression)
 }
 
 #[test]
@@ -47,6 +57,57 @@ fn a_parameter_that_may_vanish_has_squares_that_may() {
     assert!(!check("(a: 1 >= 0)", "a * a + q * q"));
     assert!(check("(a: 1 >= 0)", "1 + a + a * a * a * q * q"));
     assert!(!check("(a: 1 <= 0)", "1 + a"));
+}
+
+/// By the discriminant, or at both ends of what is between them.
+#[test]
+fn quadratic_polynomials_in_one_function_have_the_sign_of_their_discriminant() {
+    let two = "(p: 1 > 0, r: 1 > 0)";
+    for (parameters, require, pose, is_positive) in [
+        (two, "", "(p + r * cos(q)) * (p + r * cos(q)) + r * r", true),
+        (two, "", "(p + r * cos(q)) * (p + r * cos(q))", false),
+        ("(p: 1 > 0)", "", "q * q + 2 * p * q + 2 * p * p", true),
+        ("(p: 1 > 0)", "", "q * q + 2 * p * q + p * p", false),
+        (
+            "(p: 1 > 0, r: 1 > 0, e: 1 > 0)",
+            "require p > r + e;",
+            "p * p - (r * sin(q) + e) * (r * sin(q) + e)",
+            true,
+        ),
+        (
+            "(p: 1 > 0, r: 1 > 0, e: 1 > 0)",
+            "require p > r;",
+            "p * p - (r * sin(q) + e) * (r * sin(q) + e)",
+            false,
+        ),
+        ("(p: 1 > 0)", "", "3 * p * p + p * q - q * q", false),
+        (
+            two,
+            "require p > r;",
+            "(p * p + p * r * sin(q)) / (p * p + 2 * p * r * sin(q) + r * r)",
+            true,
+        ),
+        (
+            two,
+            "",
+            "(p * p + p * r * sin(q)) / (p * p + 2 * p * r * sin(q) + r * r)",
+            false,
+        ),
+        ("", "", "2 * cosh(q) - 1.99", true),
+        ("", "", "2 * cosh(q) - 2", false),
+        ("(p: 1 > 0)", "", "p * cosh(q) * cosh(q) - p", false),
+        (
+            "(p: 1 > 0)",
+            "",
+            "p * cosh(q) * cosh(q) - 0.5 * p * sin(q)",
+            true,
+        ),
+    ] {
+        let found = check_by(parameters, require, pose, |domain, e| {
+            domain.has_positive_form(e)
+        });
+        assert_eq!(found, is_positive, "{parameters} {require} {pose}");
+    }
 }
 
 /// Ends below 0, and requirements on parameters of either sign.
