@@ -70,6 +70,18 @@ impl Critical {
         }));
     }
 
+    /// Those in the argument of a curve: angles that it has the same values at after every turn may jump by turns, beside other terms too.
+    fn of_argument(curve: Curve, x: &Expr, local: &[Symbol], found: &mut BTreeSet<Self>) {
+        for (monomial, coefficient) in x.terms() {
+            let term = Expr::term(coefficient.clone(), monomial.clone());
+            let turned = multiple(&term).filter(|(_, turns)| curve.repeats_after(turns));
+            match turned {
+                Some((atom, _)) => Self::of_atom(&atom, local, true, found),
+                None => Self::collect(&term, local, found),
+            }
+        }
+    }
+
     fn of_atom(atom: &Atom, local: &[Symbol], periodic: bool, found: &mut BTreeSet<Self>) {
         let Atom::Apply(application) = atom else {
             return;
@@ -80,17 +92,12 @@ impl Critical {
         {
             return Self::of_atom(&turned, local, true, found);
         }
-        if let (Function::Curve(curve, _), [angle]) = (function, arguments.as_slice())
-            && let Some((turned, turns)) = multiple(angle)
-            && curve.repeats_after(&turns)
-        {
-            return Self::of_atom(&turned, local, true, found);
+        if let (Function::Curve(curve, _), [x]) = (function, arguments.as_slice()) {
+            Self::of_argument(curve, x, local, found);
+            return Self::of_ends(curve, x, local, found);
         }
         for argument in arguments {
             Self::collect(argument, local, found);
-        }
-        if let (Function::Curve(curve, _), [x]) = (function, arguments.as_slice()) {
-            return Self::of_ends(curve, x, local, found);
         }
         if matches!(
             function,

@@ -76,12 +76,19 @@ impl RobotArgs {
                 Stance::State(_) => None,
             })
             .collect();
-        let mut state = Coordinates::new();
-        for part in &self.posture {
-            if let Stance::State(name) = part {
-                state.extend(self.state(path, name)?);
-            }
+        let names = self.posture.iter().filter_map(|part| match part {
+            Stance::State(name) => Some(name),
+            Stance::Joint(..) => None,
+        });
+        let states: Result<Vec<_>, _> = names.map(|name| self.state(path, name)).collect();
+        let states = states?;
+        if let (Some(file), []) = (&self.srdf, states.as_slice()) {
+            return Err(Failure::Options(format!(
+                "--srdf {}: no state of it is named; say by --posture in which one the robot begins",
+                file.display()
+            )));
         }
+        let mut state = states.concat();
         // What is said of a joint itself counts.
         state.retain(|(joint, _)| posture.iter().all(|(own, _)| own != joint));
         let options = robot::Options {

@@ -239,6 +239,16 @@ fn mistakes_are_told_in_words() {
             "--posture is for robots in URDF, MJCF and SDF",
         ),
         (
+            vec![
+                "simulate",
+                "tests/data/urdf/panda7.urdf",
+                "--srdf",
+                "panda7.srdf",
+            ],
+            2,
+            "--srdf panda7.srdf: no state of it is named; say by --posture in which one the robot begins",
+        ),
+        (
             vec!["simulate", "tests/data/urdf/panda7.urdf", "--posture", "a"],
             2,
             "write JOINT=NUMBER",

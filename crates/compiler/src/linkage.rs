@@ -37,6 +37,8 @@ pub(super) struct Whole {
     ties: Ties,
     /// Coordinate and ratio of each link.
     ports: Vec<(usize, f64)>,
+    /// The joint of the scene that each link moves by.
+    names: Vec<&'static str>,
     home: Vec<f64>,
 }
 
@@ -73,6 +75,7 @@ impl Whole {
         Self {
             ties: Ties::new(&coupling.links, &coupling.ties, &coupling.start),
             ports: links.map(port).collect(),
+            names: coupling.ports.iter().map(|port| port.name).collect(),
             home,
         }
     }
@@ -94,6 +97,13 @@ impl Linkage {
             chain: Chain::of(&coupling.links, body),
             joint: Rc::clone(joint),
         }
+    }
+
+    /// The joints of the scene that a coordinate moves, each with how many times the coordinate it goes.
+    pub(crate) fn moved_by(&self, coordinate: usize) -> impl Iterator<Item = (&'static str, f64)> {
+        let ports = self.joint.names.iter().zip(&self.joint.ports);
+        let own = ports.filter(move |(_, (own, _))| *own == coordinate);
+        own.map(|(name, (_, ratio))| (*name, *ratio))
     }
 
     /// Whether its body hangs on no other link.

@@ -35,6 +35,9 @@ pub struct Report<'a> {
     /// What came of the accuracy that was asked for; absent where a tolerance or a step was.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<&'a Request>,
+    /// When the user ended the motion, s; absent where it was not interrupted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub interrupted_at: Option<f64>,
     /// What the steps passed over; absent where they followed everything.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unresolved: Option<String>,
@@ -191,6 +194,7 @@ mod tests {
             arithmetic: "doubles",
             arithmetic_reason: None,
             accuracy: None,
+            interrupted_at: None,
             method_changes: &[],
             unresolved: None,
             columns: &[],

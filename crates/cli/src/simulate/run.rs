@@ -248,6 +248,7 @@ fn print_json(plan: &Plan, columns: &Columns<'_>, run: &Run) -> Result<(), Failu
         arithmetic: plan.settings.arithmetic.name(),
         arithmetic_reason: plan.arithmetic_reason.as_deref(),
         accuracy: plan.request.as_ref(),
+        interrupted_at: run.is_interrupted.then_some(run.solution.state.time),
         method_changes: &run
             .solution
             .method_changes

@@ -271,3 +271,24 @@ fn gears_of_large_ratio_move_as_on_the_tree() {
     let scene = scene.to_str().expect("text");
     moves_as_the_tree(&[scene, "--method", "rk4", "--dt", "0.02", "--at", "0.1,0.5"]);
 }
+
+/// Which entry of q is which joint of the file: nothing else says in which order those of a loop come.
+#[test]
+fn headers_name_the_joints_of_loops_and_of_couplings() {
+    for (file, said) in [
+        (
+            "loops/four_bar",
+            "q[0 .. 2]: q (rad) of `a`, y_1 (rad) of `b`, y_2 (rad) of `c`\n",
+        ),
+        ("mimic/adaptive_gripper", "q[3]: q (rad) of `finger_joint`"),
+    ] {
+        let name = file.replace('/', "_");
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(&name);
+        let (source, header) = (path.with_extension("c"), path.with_extension("h"));
+        let robot = format!("tests/data/urdf/{file}.urdf");
+        let source = source.display().to_string();
+        _ = stdout(&["compile", &robot, "-o", &source, "--force", "--quiet"]);
+        let text = std::fs::read_to_string(header).expect("a header");
+        assert!(text.contains(said), "{text}");
+    }
+}

@@ -69,10 +69,15 @@ fn ended(place: &Place, child: Child) -> Output {
 #[test]
 fn an_interrupted_simulation_leaves_whole_files_of_what_there_is() {
     let place = Place::new();
-    let mut child = start(&place, LONG);
+    let mut child = start(&place, &format!("{LONG} --json"));
     begun(&place, &mut child);
     send(&child, Signal::SIGINT);
-    let told = said(&ended(&place, child));
+    let output = ended(&place, child);
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let samples = report["samples"].as_array().expect("a list");
+    assert_eq!(report["interrupted_at"], samples[samples.len() - 1]["t"]);
+    assert!(report["interrupted_at"].is_number());
+    let told = said(&output);
     let count = rows(&place.read("a.csv"));
     assert!(count > 1 && count < 1_000_000, "{count}");
     assert!(

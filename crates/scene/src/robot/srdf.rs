@@ -46,7 +46,24 @@ fn of_document(root: Node<'_, '_>, state: &str, sink: &mut Sink) -> Coordinates 
         sink.push(unknown(root, state, states()));
     }
     let joints = own.flat_map(|found| found.children().filter(|child| child.has_tag_name("joint")));
-    joints.filter_map(|joint| coordinate(joint, sink)).collect()
+    let mut found = Coordinates::new();
+    for joint in joints {
+        let Some((name, value)) = coordinate(joint, sink) else {
+            continue;
+        };
+        match found.iter().find(|(other, _)| *other == name) {
+            None => found.push((name, value)),
+            Some((_, other)) if *other == value => {}
+            Some((_, other)) => {
+                let (name, state) = (visible_line(&name), visible_line(state));
+                let message = format!(
+                    "joint `{name}` stands at {other} in one <group_state> of the name `{state}`, and at {value} in another"
+                );
+                sink.push(Diagnostic::new(tag(joint), message));
+            }
+        }
+    }
+    found
 }
 
 fn unknown<'a>(
@@ -129,6 +146,19 @@ mod tests {
         assert!(said(TEXT, "raedy").contains("did you mean `ready`?"));
         assert!(said("<sdf/>", "ready").contains("a <sdf>, not the <robot> of an SRDF"));
         assert!(said("<robot/>", "ready").contains("it has no <group_state>"));
+        let twice = said(
+            &TEXT.replace("name='f' value='0.04'", "name='a' value='0.04'"),
+            "ready",
+        );
+        assert!(
+            twice.contains("joint `a` stands at 0.5 in one <group_state> of the name `ready`, and at 0.04 in another"),
+            "{twice}"
+        );
+        let same = TEXT.replace("name='f' value='0.04'", "name='a' value='0.5'");
+        assert_eq!(
+            state(&same, "panda.srdf", "ready").expect("a state").len(),
+            2
+        );
         assert!(said("<robot>", "ready").contains("not valid XML"));
     }
 }

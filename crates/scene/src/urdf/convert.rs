@@ -125,7 +125,9 @@ fn coupled(link: usize, links: &Links<'_, '_>) -> joint::Coupled {
     let group = links.group(link);
     let own = group.and_then(|group| group.members.iter().find(|(own, _)| *own == link));
     joint::Coupled {
-        home: own.map_or(0.0, |(_, law)| law.offset),
+        home: group
+            .is_none_or(|group| group.ties.is_empty())
+            .then(|| own.map_or(0.0, |(_, law)| law.offset)),
         by_one: group.is_none_or(|group| group.is_of_one() || !group.ties.is_empty()),
     }
 }

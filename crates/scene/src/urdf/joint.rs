@@ -150,8 +150,8 @@ fn is_beyond_at(home: f64, limit: &LimitDescription) -> bool {
 /// What a joint has of its coupling, which changes what is simulated of it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Coupled {
-    /// Its position where all joints that follow none are at home.
-    pub(super) home: f64,
+    /// Its position where all joints that follow none are at home; `None` where loops decide.
+    pub(super) home: Option<f64>,
     /// Whether all joints that are coupled with it follow one.
     pub(super) by_one: bool,
 }
@@ -164,8 +164,9 @@ pub(super) fn tell(
     notices: &mut Notices,
 ) {
     let limits = facts.limits.as_ref();
-    let stops = stop.as_ref();
-    let is_beyond = stops.is_some_and(|stop| is_beyond_at(coupled.home, stop));
+    let beyond = stop.as_ref().zip(coupled.home);
+    let beyond = beyond.filter(|(stop, home)| is_beyond_at(*home, stop));
+    let beyond = beyond.map(|(_, home)| home);
     let has = |name: &str| child(joint.node, name).is_some();
     let owner = format!("joint `{}`", joint.name);
     // What moves otherwise than the file says.
@@ -175,11 +176,11 @@ pub(super) fn tell(
             "limits of position are not simulated: the joint moves past them",
         ),
         (
-            is_beyond && coupled.home == 0.0,
+            beyond == Some(0.0),
             "the joint begins at home, 0, which is beyond its limits: the stop pushes it back",
         ),
         (
-            is_beyond && coupled.home != 0.0,
+            beyond.is_some_and(|home| home != 0.0),
             "the joint begins, by the offset of its mimic, beyond its limits: the stop pushes it back",
         ),
         (

@@ -3,6 +3,7 @@
 use super::INERTIAL;
 use super::coupled::joint;
 use hamel_scene::Diagnostics;
+use hamel_scene::robot::Stops;
 use hamel_scene::urdf::{Import, Options, load};
 use std::path::PathBuf;
 
@@ -159,4 +160,37 @@ fn files_of_other_kinds_may_have_the_words() {
         let import = import.unwrap_or_else(|errors| panic!("{errors}"));
         assert!(import.scene.loops.is_empty(), "{text}");
     }
+}
+
+/// Home is not where a joint of a loop begins: the loop decides, and what it came to is told.
+#[test]
+fn limits_of_joints_in_loops_are_looked_at_where_these_begin() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("limits_in_loop");
+    std::fs::create_dir_all(&folder).expect("a folder of the build");
+    std::fs::write(folder.join("robot.yaml"), LOOPS).expect("a file of the build");
+    let limit = "<limit lower=\"0.5\" upper=\"3\" effort=\"1\" velocity=\"1\"/>";
+    let turning = "name=\"rocker\" type=\"continuous\">";
+    let text = open().replace(
+        turning,
+        &format!("name=\"rocker\" type=\"revolute\">{limit}"),
+    );
+    assert!(text.contains(limit));
+    let path = folder.join("robot.urdf");
+    std::fs::write(&path, text).expect("a file of the build");
+    let limits = Some(Stops {
+        stiffness: 1e4,
+        damping: 0.5,
+    });
+    let options = Options {
+        limits,
+        ..Options::default()
+    };
+    let import = load(path, &options).unwrap_or_else(|errors| panic!("{errors}"));
+    let told: Vec<String> = import.notices.iter().map(ToString::to_string).collect();
+    assert!(
+        told.iter().all(|notice| !notice.contains("at home")),
+        "{told:?}"
+    );
+    let moved = "positions at time 0 are changed";
+    assert!(told.iter().any(|notice| notice.contains(moved)), "{told:?}");
 }

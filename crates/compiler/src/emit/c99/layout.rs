@@ -1,6 +1,7 @@
 //! Where each body's share lies in the arguments, for the header.
 
 use crate::model::Model;
+use crate::products::JointType;
 use hamel_codegen::derived::Derived;
 use hamel_codegen::emit::report::units::{of_coordinates, of_efforts, of_speed_rates};
 use hamel_codegen::model::VelocityFrame;
@@ -47,7 +48,7 @@ pub fn layout(model: &Model) -> Vec<Share> {
             is_driven: body.driven,
             leads: body.leads(),
             axes: axes(&body.joint.derived),
-            configuration: part(share.configuration, stored(&body.joint.derived)),
+            configuration: part(share.configuration, stored(&body.joint)),
             freedoms: part(share.freedoms, efforts(&body.joint.derived)),
             speeds: part(share.speeds, speeds(&body.joint.derived)),
         })
@@ -71,15 +72,31 @@ fn axes(derived: &Derived) -> &'static str {
     }
 }
 
-/// Stored scalars with their units: those of matrices, quaternions and unit vectors, which are numbers, stand without.
-fn stored(derived: &Derived) -> Vec<String> {
+/// Stored scalars with their units: those of matrices, quaternions and unit vectors, which are numbers, stand without. Those of several joints of the scene in one say which they
+/// move.
+fn stored(joint: &JointType) -> Vec<String> {
+    let derived = &joint.derived;
     let coordinates = derived.space.manifold.coordinates();
     let units = of_coordinates(derived).into_iter();
     let units = units.map(|unit| if unit == "1" { String::new() } else { unit });
-    let scalars = coordinates.iter().zip(units);
+    let scalars = coordinates.iter().zip(units).enumerate();
     scalars
-        .map(|(symbol, unit)| named(symbol.name(), &unit))
+        .map(|(k, (symbol, unit))| named(symbol.name(), &unit) + &moved_by(joint, k))
         .collect()
+}
+
+/// `` of `elbow`, 0.5 of `wrist` ``; nothing where the scene gives the joint as it is.
+fn moved_by(joint: &JointType, coordinate: usize) -> String {
+    let Some(linkage) = &joint.linkage else {
+        return String::new();
+    };
+    let joints = linkage
+        .moved_by(coordinate)
+        .map(|(name, ratio)| match ratio {
+            1.0 => format!("`{}`", one_line(name)),
+            _ => format!("`{}` (goes {ratio} times as far)", one_line(name)),
+        });
+    format!(" of {}", joints.collect::<Vec<_>>().join(" and "))
 }
 
 /// Efforts do work with velocities.
