@@ -9,6 +9,7 @@ use std::cell::Cell;
 thread_local! {
     static REMAINING: Cell<u64> = const { Cell::new(u64::MAX) };
     static TASK: Cell<&'static str> = const { Cell::new("") };
+    static CLAIM: Cell<&'static str> = const { Cell::new("") };
 }
 
 /// The bound on symbolic work was reached.
@@ -18,6 +19,8 @@ pub struct Exhausted {
     pub limit: u64,
     /// What was being worked on, as `begin` named it.
     pub task: &'static str,
+    /// The claim that was being proved, as `begin_claim` named it; empty before the first.
+    pub claim: &'static str,
 }
 
 /// Runs `work` with at most `limit` term operations, and no more than the scope around it has left. A term operation is the
@@ -32,6 +35,7 @@ pub fn scope<T>(limit: u64, work: impl FnOnce() -> T) -> Result<T, Exhausted> {
         0 => Err(Exhausted {
             limit,
             task: TASK.get(),
+            claim: CLAIM.get(),
         }),
         _ => Ok(result),
     }
@@ -48,6 +52,14 @@ pub fn measured<T>(work: impl FnOnce() -> T) -> (T, u64) {
 pub fn begin(task: &'static str) {
     if !is_exhausted() {
         TASK.set(task);
+        CLAIM.set("");
+    }
+}
+
+/// Names the claim that is proved from here within the task, in the same way.
+pub fn begin_claim(claim: &'static str) {
+    if !is_exhausted() {
+        CLAIM.set(claim);
     }
 }
 

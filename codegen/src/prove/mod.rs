@@ -28,7 +28,7 @@ pub use defined::retract_is_smooth;
 use crate::diagnostic::Diagnostic;
 use crate::domain::{Domain, LAST_PRECISION};
 use crate::expand::Expansion;
-use crate::expr::Expr;
+use crate::expr::{Expr, budget};
 use crate::kernel::Word;
 use crate::manifold::Ideal;
 use crate::matrix::Matrix;
@@ -243,6 +243,7 @@ impl<'a> Identities<'a> {
         difference: &Matrix,
         refuted: impl FnOnce(Matrix) -> Diagnostic,
     ) -> Attempt {
+        budget::begin_claim(name);
         let mut difference = difference.clone();
         let mut residual = self.residual(&difference);
         if !residual.is_zero() && !self.words.is_empty() {

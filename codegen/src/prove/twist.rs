@@ -4,6 +4,7 @@ use super::{Attempt, Prover, certified, degenerate, end_there, refuted};
 use crate::diagnostic::Diagnostic;
 use crate::domain::Domain;
 use crate::expand::{directions, in_child_frames, rank, twist_map_in_frame};
+use crate::expr::budget;
 use crate::matrix::Matrix;
 use crate::model::VelocityFrame;
 use crate::spec::code;
@@ -194,6 +195,7 @@ impl Prover<'_> {
         span: Range<usize>,
         what: &str,
     ) -> Attempt {
+        budget::begin_claim(name);
         match rank::full_column_rank(m, &self.domain_of_names()) {
             Ok(certificate) => Ok(Some(certified(
                 name,
