@@ -1,11 +1,15 @@
 //! Signs of expressions, from even powers, ranges of parameters, and atoms that are bounded by 1.
 
+mod conditions;
+mod forms;
+
+use self::conditions::{conditions_of, with_products};
 use super::constant::{self, ConstantSign};
 use super::factors;
 use super::harmonics;
 use super::subdivision;
 use super::unit_vectors;
-use super::{of_monomial, quadratics, roots};
+use super::{of_monomial, roots};
 use crate::expr::Number;
 use crate::expr::{Application, Atom, Expr, Function, Monomial, Rational, Symbol, budget};
 use crate::manifold::Kind;
@@ -18,23 +22,11 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// Most multiples of conditions that are taken together to show that a polynomial in the parameters is positive.
-const MOST_CONDITIONS: usize = 8;
-/// Most conditions of which products are formed.
-const MOST_FACTORS: usize = 6;
-/// Most combinations of conditions that are tried.
-const MOST_TRIES: usize = 400;
-
 /// Most sums of which one is the least: each term that is bounded by a parameter of unknown sign doubles them.
 const MOST_LEAST: usize = 8;
 
 /// Most term operations for showing that an expression has one sign, where both are tried.
 const OF_ONE_SIGN: u64 = 6_000;
-
-/// Most terms of expressions of which other forms are looked at.
-const MOST_TERMS: usize = 12;
-/// Most term operations for showing that an expression is positive by other forms of it.
-const OF_OTHER_FORMS: u64 = 20_000;
 
 /// How many bounds by unit vectors are nested: each squares what is left.
 const DEEPEST_BOUND: usize = 2;
@@ -84,14 +76,6 @@ impl Sign {
             _ => Self::NotNegative,
         }
     }
-}
-
-/// A search for multiples of conditions.
-struct Search<'a> {
-    conditions: &'a [(Expr, bool)],
-    /// Whether the multiples may have parameters in denominators: many more do nothing than without.
-    by_quotients: bool,
-    tries: usize,
 }
 
 impl Signs {
@@ -231,88 +215,6 @@ impl Signs {
             }
         }
         least.iter().all(|sum| self.exceeds_zero(sum, strict))
-    }
-
-    /// The same of a polynomial in the parameters.
-    fn exceeds_zero(&self, sum: &Expr, enough: bool) -> bool {
-        let by = |conditions, by_quotients| {
-            let mut search = Search {
-                conditions,
-                by_quotients,
-                tries: 0,
-            };
-            self.exceeds_by(sum, enough, &mut search, MOST_CONDITIONS)
-        };
-        // Without conditions there are no products either.
-        let all = [&self.conditions, &self.with_products];
-        let lists = if self.conditions.is_empty() {
-            &all[..1]
-        } else {
-            &all
-        };
-        let mut tried = [false, true].into_iter();
-        tried.any(|by_quotients| lists.iter().any(|list| by(list, by_quotients)))
-    }
-
-    /// Whether the expression is positive, also where that shows in another form of it: without functions and denominators that are positive, or as a quadratic polynomial. Searches ask for the
-    /// signs of many long expressions, which this would make longer.
-    pub fn is_positive_in_some_form(&self, expression: &Expr) -> bool {
-        let other_forms = || {
-            let rest = self.without_denominators(&self.without_positive_factors(expression));
-            let is_shorter = rest != *expression;
-            is_shorter && self.exceeds(&rest, false) || self.is_positive_quadratic(&rest)
-        };
-        self.is_positive(expression)
-            || expression.terms().len() <= MOST_TERMS
-                && budget::scope(OF_OTHER_FORMS, other_forms).unwrap_or(false)
-    }
-
-    /// The expression without functions that are positive and divide every term.
-    fn without_positive_factors(&self, expression: &Expr) -> Expr {
-        let common = factors::of_all_terms(expression).into_iter();
-        let positive = common.filter(|(atom, _)| self.sign_of_atom(atom) == Sign::Positive);
-        positive.fold(expression.clone(), |rest, (atom, power)| {
-            let factor = Expr::atom(atom).pow(power);
-            rest.exact_quotient(&factor).unwrap_or(rest)
-        })
-    }
-
-    /// The expression times powers of parameters that are positive, so that no parameter stands in a denominator.
-    fn without_denominators(&self, expression: &Expr) -> Expr {
-        let units = expression
-            .terms()
-            .flat_map(|(monomial, _)| monomial.units());
-        let mut powers: BTreeMap<Atom, i32> = BTreeMap::new();
-        for (atom, power) in units.filter(|(_, power)| *power < 0) {
-            let least = powers.entry(atom.clone()).or_default();
-            *least = (*least).min(*power);
-        }
-        let cleared = powers
-            .into_iter()
-            .fold(Monomial::one(), |all, (atom, power)| {
-                // Of a parameter of either sign an even power is positive.
-                let is_positive = self.sign_of_unit(&atom, 1) == Sign::Positive;
-                let size = power.unsigned_abs() + u32::from(!is_positive && power % 2 != 0);
-                (0..size).fold(all, |all, _| all.times(&Monomial::atom(atom.clone())))
-            });
-        expression.scaled(&Rational::from(1), &cleared)
-    }
-
-    /// Whether the expression is `a x² + b x + c` in one of its functions or scalars x, and positive: for every x, as a > 0 and 4ac > b²; or for every x from −1 to 1, as a ≤ 0
-    /// and it is positive at both ends.
-    fn is_positive_quadratic(&self, expression: &Expr) -> bool {
-        let positive =
-            |e: &Expr| self.exceeds(e, false) || constant::sign(e) == Some(ConstantSign::Positive);
-        quadratics::all(expression).iter().any(|(x, [c, b, a])| {
-            let bends_down = || self.is_not_negative(&-a);
-            let is_bounded = || {
-                self.bound_of_atom(x)
-                    .is_some_and(|bound| bound <= Rational::from(1))
-            };
-            let (ends, discriminant) = (a + c, &b.square() - &(&(a * c) * &Expr::integer(4)));
-            positive(a) && positive(&-&discriminant)
-                || is_bounded() && bends_down() && positive(&(&ends + b)) && positive(&(&ends - b))
-        })
     }
 
     /// Whether the expression is `D + a · n` with a unit vector n and D > |a|: then D and D² − |a|² are positive.
@@ -488,46 +390,6 @@ impl Signs {
         };
         is_bounded.then(|| Rational::from(1))
     }
-
-    /// Whether a polynomial in the parameters is positive, or not negative where that is enough: by its terms, or after subtracting
-    /// multiples of conditions, each to cancel a term that may be negative.
-    fn exceeds_by(&self, rest: &Expr, enough: bool, search: &mut Search<'_>, left: usize) -> bool {
-        let may_be_negative =
-            |(m, c): &(&Monomial, &Rational)| c.is_negative() || self.sign(m) == Sign::Unknown;
-        let Some((monomial, coefficient)) = rest.terms().find(may_be_negative) else {
-            let positive = |(m, _): (&Monomial, &Rational)| self.sign(m) == Sign::Positive;
-            return enough || rest.terms().any(positive);
-        };
-        search.tries += 1;
-        if left == 0 || search.tries > MOST_TRIES {
-            return false;
-        }
-        search.conditions.iter().any(|(condition, strict)| {
-            let same_sign = |c: &Rational| c.is_negative() == coefficient.is_negative();
-            let mut terms = condition.terms().filter(|(_, c)| same_sign(c));
-            terms.any(|(of_condition, c)| {
-                let Some(units) = of_condition.recip().map(|m| monomial.times(&m)) else {
-                    return false;
-                };
-                let is_refused = |(atom, power): &(Atom, i32)| {
-                    let vanishes = matches!(atom, Atom::Symbol(s) if self.vanishing.contains(s));
-                    *power < 0 && (vanishes || !search.by_quotients)
-                };
-                if units.units().iter().any(is_refused) {
-                    return false;
-                }
-                let sign = self.sign(&units);
-                let rest = rest - &condition.scaled(&(coefficient / c), &units);
-                sign != Sign::Unknown
-                    && self.exceeds_by(
-                        &rest,
-                        enough || (*strict && sign == Sign::Positive),
-                        search,
-                        left - 1,
-                    )
-            })
-        })
-    }
 }
 
 /// Whether a product is of parameters and hyperbolic cosines, which are 1 and more.
@@ -565,29 +427,6 @@ fn half_turn() -> Rational {
 
 fn two() -> Rational {
     Rational::from_integer(2.into())
-}
-
-/// What the ends of a range say: `p − lower` and `upper − p` are not negative. Of a lower end below 0, or of the others; one that is 0 is the sign of the parameter.
-fn conditions_of(parameter: &Parameter, is_below_zero: bool) -> Vec<(Expr, bool)> {
-    let (p, Interval { lower, upper, .. }) = (Expr::symbol(&parameter.symbol), &parameter.range);
-    let above = lower.iter().filter(|end| match is_below_zero {
-        true => end.value.is_negative(),
-        false => end.value.is_positive(),
-    });
-    let above = above.map(|end| (&p - &Expr::rational(end.value.clone()), !end.included));
-    let below = upper.iter().filter(|_| !is_below_zero);
-    let below = below.map(|end| (&Expr::rational(end.value.clone()) - &p, !end.included));
-    above.chain(below).collect()
-}
-
-/// The conditions, and the products of two each, squares among them.
-fn with_products(conditions: &[(Expr, bool)]) -> Vec<(Expr, bool)> {
-    let first = &conditions[..conditions.len().min(MOST_FACTORS)];
-    let with_later = first.iter().enumerate().flat_map(|(n, (a, strict))| {
-        let later = first[n..].iter();
-        later.map(move |(b, also)| (a * b, *strict && *also))
-    });
-    conditions.iter().cloned().chain(with_later).collect()
 }
 
 /// The parameters that are positive.

@@ -29,9 +29,19 @@ pub enum Error {
     #[error("the compiled scene cannot be loaded: {0}")]
     Load(#[from] LoadError),
     /// The library is not of the mechanism.
-    #[error("{0}")]
+    #[error("{}", of_mechanism(.0))]
     Mechanism(#[from] CompiledError),
     /// The folder cannot be written.
     #[error("cannot write: {0}")]
     Folder(#[source] io::Error),
+}
+
+/// They were compiled of the same scene a moment ago, so that nobody can compile it again.
+fn of_mechanism(cause: &CompiledError) -> String {
+    match cause {
+        CompiledError::NoValue { .. } => cause.to_string(),
+        _ => format!(
+            "compiled equations disagree with those of the tree, a fault of Hamel or of the C compiler: please report the scene; without compiled equations it is simulated by the tree ({cause})"
+        ),
+    }
 }

@@ -85,7 +85,7 @@ fn stored(joint: &JointType) -> Vec<String> {
         .collect()
 }
 
-/// `` of `elbow`, 0.5 of `wrist` ``; nothing where the scene gives the joint as it is.
+/// `` of `elbow` and `wrist` (goes 0.5 times as far) ``; nothing where the scene gives the joint as it is.
 fn moved_by(joint: &JointType, coordinate: usize) -> String {
     let Some(linkage) = &joint.linkage else {
         return String::new();
