@@ -181,6 +181,17 @@ impl<'a> Domain<'a> {
         e.is_unit() && !e.contains_any(&self.vanishing)
     }
 
+    /// Whether no parameter that may be 0 stands in a denominator.
+    fn is_finite_at_zeros(&self, expression: &Expr) -> bool {
+        let mut units = expression
+            .terms()
+            .flat_map(|(monomial, _)| monomial.units());
+        units.all(|(atom, power)| {
+            let vanishes = matches!(atom, Atom::Symbol(symbol) if self.vanishing.contains(symbol));
+            *power > 0 || !vanishes
+        })
+    }
+
     /// Whether a short expression is positive in some form of it.
     pub(super) fn has_positive_form(&self, expression: &Expr) -> bool {
         self.signs.is_positive_in_some_form(expression)
@@ -337,10 +348,11 @@ impl<'a> Domain<'a> {
             return Some(Certificate::Positive(all[found].clone()));
         }
         let is_beside_loci = |e: &Expr| never_zero(&&beside_loci(e));
-        // What divides a locus vanishes there alone.
+        // What divides a locus vanishes there alone, unless the quotient is infinite where a parameter is 0.
         let divides_locus = |e: &Expr| {
-            let mut loci = self.loci.iter().chain(&written);
-            loci.any(|locus| locus.exact_quotient(e).is_some())
+            let quotients = self.loci.iter().chain(&written);
+            let mut quotients = quotients.filter_map(|locus| locus.exact_quotient(e));
+            quotients.any(|quotient| self.is_finite_at_zeros(&quotient))
         };
         let mut as_written = expressions.iter().chain(&all);
         if generators.iter().any(is_beside_loci) || as_written.any(divides_locus) {

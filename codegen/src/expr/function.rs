@@ -155,6 +155,30 @@ impl Expr {
         }
     }
 
+    /// The same value with the coordinates of a point at a distance of 1 from the origin for the cosine and the sine of its angle: of an arcsine of s, `√(1 − s²)` and s. It is defined in more places: the
+    /// root may be gone.
+    pub fn without_arcsines(&self) -> Self {
+        let known = |atom: Atom| match &atom {
+            Atom::Apply(application) => {
+                let [angle] = application.arguments.as_slice() else {
+                    return None;
+                };
+                let (cos, sin) = cos_sin_of_point(angle)?;
+                match application.function {
+                    Function::Cos => Some((atom, cos)),
+                    Function::Sin => Some((atom, sin)),
+                    _ => None,
+                }
+            }
+            Atom::Symbol(_) => None,
+        };
+        let known: Vec<(Atom, Self)> = self.atoms().into_iter().filter_map(known).collect();
+        match known.is_empty() {
+            true => self.clone(),
+            false => self.replace_atoms(&known.into_iter().collect()),
+        }
+    }
+
     /// The polynomials that vanish because of what the functions in `self` are: `c² + s² − 1`, `r² − u`, `u/u − 1`.
     pub fn atom_relations(&self) -> Vec<Self> {
         self.atoms().iter().flat_map(relations_of_atom).collect()
@@ -215,10 +239,8 @@ fn cos_sin_of_term(monomial: &Monomial, coefficient: &Rational) -> (Expr, Expr) 
         None => size,
     };
     let angle = Expr::term(base, monomial.clone());
-    let (cos, sin) = cos_sin_of_point(&angle).unwrap_or_else(|| {
-        let of = |function| apply(function, vec![angle.clone()]);
-        (of(Function::Cos), of(Function::Sin))
-    });
+    let cos = apply(Function::Cos, vec![angle.clone()]);
+    let sin = apply(Function::Sin, vec![angle]);
     let (mut c, mut s) = (cos.clone(), sin.clone());
     for _ in 1..multiple.unwrap_or(1) {
         (c, s) = (&(&c * &cos) - &(&s * &sin), &(&s * &cos) + &(&c * &sin));
@@ -229,8 +251,7 @@ fn cos_sin_of_term(monomial: &Monomial, coefficient: &Rational) -> (Expr, Expr) 
     }
 }
 
-/// Of the angle of a point at a distance of 1 from the origin, x and y: of an arcsine of s, `√(1 − s²)` and s. Of other points, cosine and sine stay what they are: x and y over
-/// their distance make long expressions of short ones.
+/// x and y of a point at a distance of 1 from the origin, by its angle.
 fn cos_sin_of_point(angle: &Expr) -> Option<(Expr, Expr)> {
     let (Function::Atan2, [y, x]) = angle.applied_alone()? else {
         return None;

@@ -22,6 +22,7 @@ impl Prover<'_> {
             let [first, second] = pin.value.ends.each_ref().map(|end| point(spec, end));
             difference(&first, &second)
         });
+        let apart = apart.map(|entry| entry.without_arcsines());
         let residual = Matrix::column_vector(apart.collect());
         let statement = self.where_it_holds("both points of each pin are one");
         self.identity("pins_meet", &statement, &residual, |residual| {
@@ -46,8 +47,9 @@ impl Prover<'_> {
             let pin = pin.value.clone();
             (0..freedoms).flat_map(move |k| self.other_motion(&pin, k))
         };
-        let residual: Vec<Expr> = spec.pins.iter().flat_map(of_pin).collect();
-        let residual = Matrix::column_vector(residual);
+        let residual = spec.pins.iter().flat_map(of_pin);
+        let residual = residual.map(|entry| entry.without_arcsines());
+        let residual = Matrix::column_vector(residual.collect());
         let statement = self.where_it_holds("bodies turn and slide at each pin as it says");
         self.identity("pins_hold", &statement, &residual, |residual| {
             let (pin, entries) = first_of(&spec.pins, residual.entries(), ENTRIES * freedoms);
