@@ -332,6 +332,10 @@ impl<'a> Simulation<'a> {
             motion = motion.bending(|time, q, speeds, bends| {
                 feedback.borrow_mut().bends(time, q, speeds, bends);
             });
+            motion = motion.inputs_at_ports(|time, q, speeds, efforts| {
+                let feedback = &mut *feedback.borrow_mut();
+                feedback.efforts_at_ports(time, q, speeds, efforts);
+            });
         }
         if let Some(period) = control.and_then(|control| control.period) {
             motion = motion.held(period);

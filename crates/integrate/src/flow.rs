@@ -117,6 +117,13 @@ pub(super) struct Given<'a> {
     pub(super) at_ports: Option<&'a mut PortInputs<'a>>,
 }
 
+/// Inputs that stand for a time.
+struct Held {
+    /// τ beside what acts at ports, whose effort on v changes with the configuration.
+    efforts: Vec<f64>,
+    at_ports: Vec<EffortAtPort>,
+}
+
 /// The equations of motion with their inputs, as a vector field.
 pub(super) struct Flow<'a> {
     dynamics: Equations<'a>,
@@ -127,9 +134,7 @@ pub(super) struct Flow<'a> {
     configuration: Vec<f64>,
     efforts: Vec<f64>,
     /// The inputs of the last [`Flow::hold`], which stand until the next; `None` where inputs follow the state.
-    held: Option<Vec<f64>>,
-    /// What of them acts at ports.
-    held_at_ports: Vec<EffortAtPort>,
+    held: Option<Held>,
     /// Efforts of friction at the joints that slide: they are added to the inputs.
     friction: Vec<Sliding>,
     /// A time within the piece of all functions of time that the present step is in.
@@ -159,7 +164,6 @@ impl<'a> Flow<'a> {
             configuration: vec![0.0; layout.configuration],
             efforts: vec![0.0; layout.freedoms],
             held: None,
-            held_at_ports: Vec::new(),
             friction: Vec::new(),
             within: 0.0,
             mechanism,
@@ -187,14 +191,14 @@ impl<'a> Flow<'a> {
 
     /// Inputs at time `time`, `q` and v̄, held from now on.
     pub(super) fn hold(&mut self, time: f64, q: &[f64], speeds: &[f64]) {
-        let freedoms = self.mechanism.layout().freedoms;
-        let mut held = self.held.take().unwrap_or_else(|| vec![0.0; freedoms]);
-        held.fill(0.0);
+        let mut efforts = vec![0.0; self.mechanism.layout().freedoms];
         if let Some(inputs) = &mut self.given.inputs {
-            inputs(time, q, speeds, &mut held);
+            inputs(time, q, speeds, &mut efforts);
         }
-        self.held = Some(held);
-        self.held_at_ports = self.given.at_ports(time, q, speeds);
+        let at_ports = self.given.at_ports(time, q, speeds);
+        let taken_out: Vec<_> = at_ports.iter().map(EffortAtPort::reversed).collect();
+        (self.mechanism).add_efforts_at_ports(q, &taken_out, &mut efforts);
+        self.held = Some(Held { efforts, at_ports });
     }
 
     /// What of the inputs acts at ports, at time `time`, `q` and v̄ or as held.
@@ -204,8 +208,8 @@ impl<'a> Flow<'a> {
         q: &[f64],
         speeds: &[f64],
     ) -> Vec<EffortAtPort> {
-        match self.held {
-            Some(_) => self.held_at_ports.clone(),
+        match &self.held {
+            Some(held) => held.at_ports.clone(),
             None => self.given.at_ports(time, q, speeds),
         }
     }
@@ -390,8 +394,9 @@ impl<'a> Flow<'a> {
         speeds: &[f64],
         efforts: &mut [f64],
     ) {
-        let (held, moment) = (self.held.as_deref(), self.moment(time));
-        fill(&mut self.given.inputs, held, time, q, speeds, efforts);
+        let moment = self.moment(time);
+        let inputs = (&mut self.given, self.held.as_ref());
+        fill(inputs, &self.mechanism, (time, q, speeds), efforts);
         add_friction(&self.friction, q, efforts);
         self.mechanism.add_timed_efforts(moment, efforts);
         self.dynamics.set_moment(moment);
@@ -444,15 +449,8 @@ impl<'a> Flow<'a> {
         } = self;
         dynamics.set_moment(moment);
         let mut fill = |speeds: &[f64], efforts: &mut [f64]| {
-            let held = held.as_deref();
-            fill(
-                &mut given.inputs,
-                held,
-                time,
-                configuration,
-                speeds,
-                efforts,
-            );
+            let inputs = (&mut *given, held.as_ref());
+            fill(inputs, mechanism, (time, configuration, speeds), efforts);
             add_friction(friction, configuration, efforts);
             mechanism.add_timed_efforts(moment, efforts);
             mechanism.prescribe_accelerations(moment, efforts);
@@ -492,18 +490,19 @@ impl<'a> Flow<'a> {
 
 /// Inputs as they are held, or else as they follow the state.
 fn fill(
-    inputs: &mut Option<&mut Inputs<'_>>,
-    held: Option<&[f64]>,
-    time: f64,
-    q: &[f64],
-    speeds: &[f64],
+    (given, held): (&mut Given<'_>, Option<&Held>),
+    mechanism: &Mechanism,
+    (time, q, speeds): (f64, &[f64], &[f64]),
     efforts: &mut [f64],
 ) {
     match held {
-        Some(held) => efforts.copy_from_slice(held),
+        Some(held) => {
+            efforts.copy_from_slice(&held.efforts);
+            mechanism.add_efforts_at_ports(q, &held.at_ports, efforts);
+        }
         None => {
             efforts.fill(0.0);
-            if let Some(inputs) = inputs {
+            if let Some(inputs) = &mut given.inputs {
                 inputs(time, q, speeds, efforts);
             }
         }

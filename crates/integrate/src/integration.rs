@@ -88,8 +88,8 @@ impl<'a> Integration<'a> {
         self
     }
 
-    /// With what of the inputs acts at ports of joints, pushed onto a list. The inputs hold it already, as what it does on v: it changes no motion. By it
-    /// [`Integration::telling_forces`] knows where the inputs act, which decides what lies between that port and v.
+    /// With what of the inputs acts at ports of joints, pushed onto a list. The inputs have it already, as what it does on v. Where inputs are held, the efforts at ports are, and what
+    /// they do on v follows the configuration; without this, τ is held. By it [`Integration::telling_forces`] also knows where the inputs act, which decides what lies between that port and v.
     pub fn inputs_at_ports(
         mut self,
         efforts: impl FnMut(f64, &[f64], &[f64], &mut Vec<EffortAtPort>) + 'a,

@@ -3,10 +3,11 @@
 use super::armature::Armature;
 use super::check::Space;
 use super::{Mechanism, MechanismError, MechanismErrors, StateError};
-use crate::dynamics::Recursive;
+use crate::dynamics::{EffortAtPort, Recursive};
 use crate::elements::{
     Drive, Element, ElementError, JointFriction, JointStop, PointConstraint, TimedEffort,
 };
+use crate::joint::MOST_FREEDOMS;
 use crate::time_function::{KinkError, Moment, TimeFunction, first_kink};
 use alloc::format;
 use alloc::sync::Arc;
@@ -213,6 +214,21 @@ impl Mechanism {
             let own = &mut efforts[self.bodies[timed.body].ranges.freedoms.clone()];
             for (effort, function) in own.iter_mut().zip(&timed.efforts) {
                 *effort += function.value(at);
+            }
+        }
+    }
+
+    /// Adds efforts at ports to τ at the configuration `q` of all joints, as what they do on v: Pᵀ f, with w = P v the rate of a port.
+    pub fn add_efforts_at_ports(&self, q: &[f64], at_ports: &[EffortAtPort], efforts: &mut [f64]) {
+        for acting in at_ports {
+            let body = &self.bodies[acting.body];
+            let own = &mut efforts[body.ranges.freedoms.clone()];
+            let mut row = [0.0; MOST_FREEDOMS];
+            let row = &mut row[..own.len()];
+            body.joint()
+                .port_row(body.configuration(q), acting.port, row);
+            for (effort, weight) in own.iter_mut().zip(row) {
+                *effort += *weight * acting.effort;
             }
         }
     }

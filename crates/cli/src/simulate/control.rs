@@ -4,11 +4,13 @@ use super::plan::Plan;
 use hamel::control::{Controller, Measure};
 use hamel::dynamics::EffortAtPort;
 use hamel::integrate::Step;
+use hamel::mechanism::Mechanism;
 use hamel::shown::Number;
 use hamel_console::output::Failure;
 use serde::Serialize;
 use std::cell::RefCell;
 use std::fmt;
+use std::sync::Arc;
 
 /// A controller that is at work: the integrator asks it for efforts, the recorder shows it states.
 #[derive(Debug)]
@@ -27,6 +29,10 @@ struct State {
     /// τ as it was taken last, one entry per degree of freedom.
     efforts: Vec<f64>,
     largest_effort: f64,
+    mechanism: Arc<Mechanism>,
+    /// What is held: τ beside efforts at ports, and these.
+    held: Vec<f64>,
+    held_at_ports: Vec<EffortAtPort>,
 }
 
 /// What a controller did.
@@ -106,6 +112,9 @@ impl Loop {
             errors,
             efforts: vec![0.0; plan.scene.mechanism.layout().freedoms],
             largest_effort: 0.0,
+            held: vec![0.0; plan.scene.mechanism.layout().freedoms],
+            held_at_ports: Vec::new(),
+            mechanism: Arc::clone(&plan.scene.mechanism),
         };
         Ok(Some(Self {
             state: RefCell::new(state),
@@ -122,6 +131,9 @@ impl Loop {
     pub fn fill(&self, time: f64, q: &[f64], speeds: &[f64], efforts: &mut [f64]) {
         let state = &mut *self.state.borrow_mut();
         state.take(time, q, speeds);
+        if self.period.is_some() {
+            state.hold(time, q, speeds);
+        }
         efforts.copy_from_slice(&state.efforts);
     }
 
@@ -148,7 +160,7 @@ impl Loop {
         }
     }
 
-    /// τ from the end of `step` on: where it is held, as it was taken last, which is then at the latest.
+    /// τ from the end of `step` on: where efforts are held, those that were taken last, which is then at the latest.
     pub fn efforts(&self, step: &Step<'_>) -> Vec<f64> {
         let state = &mut *self.state.borrow_mut();
         state.bring(step, self.period);
@@ -192,11 +204,30 @@ impl Loop {
 }
 
 impl State {
-    /// Takes τ at the end of `step`, unless it is held.
+    /// Takes τ at the end of `step`, or makes it what the efforts that are held do there.
     fn bring(&mut self, step: &Step<'_>, period: Option<f64>) {
+        let q = step.configuration;
         if period.is_none() {
-            self.take(step.time, step.configuration, step.speeds);
+            return self.take(step.time, q, step.speeds);
         }
+        self.efforts.copy_from_slice(&self.held);
+        self.mechanism
+            .add_efforts_at_ports(q, &self.held_at_ports, &mut self.efforts);
+    }
+
+    /// Holds the τ just taken: at ports their efforts, whose τ follows the configuration.
+    fn hold(&mut self, time: f64, q: &[f64], speeds: &[f64]) {
+        self.held_at_ports.clear();
+        let at_ports = &mut self.held_at_ports;
+        let found = self.controller.efforts_at_ports(time, q, speeds, at_ports);
+        if let Err(cause) = found {
+            self.fail(time, &cause);
+        }
+        let taken_out = self.held_at_ports.iter().map(EffortAtPort::reversed);
+        let taken_out: Vec<_> = taken_out.collect();
+        self.held.copy_from_slice(&self.efforts);
+        self.mechanism
+            .add_efforts_at_ports(q, &taken_out, &mut self.held);
     }
 
     /// τ of the law; NaN where it fails.

@@ -199,11 +199,9 @@ pub fn move_on(
         integration = integration.bending(|time, q, speeds, bends| {
             control.bends(time, q, speeds, bends);
         });
-        if plan.forces {
-            integration = integration.inputs_at_ports(|time, q, speeds, efforts| {
-                control.efforts_at_ports(time, q, speeds, efforts);
-            });
-        }
+        integration = integration.inputs_at_ports(|time, q, speeds, efforts| {
+            control.efforts_at_ports(time, q, speeds, efforts);
+        });
         if let Some(period) = control.period() {
             integration = integration.held(period);
         }

@@ -107,9 +107,14 @@ const TURNING: &str = "initial = { speeds = [12.0] }\n";
 
 /// The motion of an engine with other first speeds and efforts than those of [`ENGINE`], and what else the file says.
 fn varied(name: &str, efforts: &str, rest: &str, options: &[&str]) -> Columns {
+    varied_from(ENGINE, name, efforts, rest, options)
+}
+
+/// The same of another text.
+fn varied_from(engine: &str, name: &str, efforts: &str, rest: &str, options: &[&str]) -> Columns {
     let own = "initial = { speeds = [12.0] }\neffort = [\"2 * sin(5 * t)\"]\nspring = { stiffness = 0.4 }\n";
-    assert!(ENGINE.contains(own));
-    let text = ENGINE.replace(own, efforts) + rest;
+    assert!(engine.contains(own));
+    let text = engine.replace(own, efforts) + rest;
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.toml"));
     fs::write(&path, text).expect("a folder for tests");
     let options = [&["--forces", "--tol", "1e-12"], options].concat();
@@ -185,7 +190,7 @@ fn friction_that_holds_at_a_port_acts_there() {
     }
 }
 
-/// A controller that is a spring and a damper at the slider, at all times and by short periods.
+/// A controller that is a spring and a damper at the slider.
 #[test]
 fn controllers_act_at_their_ports() {
     let steps = ["--t-end", "0.05", "--sample-step", "1e-2"];
@@ -194,6 +199,23 @@ fn controllers_act_at_their_ports() {
     let law = "[controller]\nkind = \"energy_shaping\"\n[[controller.port]]\njoint = \"engine\"\nport = \"slider\"\nstiffness = 200.0\ndamping = 5.0\n";
     let found = varied("port_control", TURNING, law, &steps);
     assert_same_forces(&found, &wanted);
+}
+
+/// A motor at the slider that pushes with its largest force in between the readings of the state does the work of a constant force, and nothing acts on the crank beside its pins.
+#[test]
+fn efforts_at_ports_are_held_there() {
+    let law = "[controller]\nkind = \"energy_shaping\"\nperiod = 0.1\n[[controller.port]]\njoint = \"engine\"\nport = \"slider\"\nstiffness = 1e6\nlimit = 30.0\n";
+    let times = ["--t-end", "0.19", "--at", "0.11,0.13,0.15,0.17,0.19"];
+    let weightless = ENGINE.replace("gravity = [0.0, -9.81, 0.0]", "gravity = [0.0, 0.0, 0.0]");
+    let columns = varied_from(&weightless, "held_motor", TURNING, law, &times);
+    let (energy, place) = (&columns["energy_J"], &columns["engine.q.s_m"]);
+    assert!((place[0] - place[4]).abs() > 0.01);
+    for row in 1..5 {
+        let work = 30.0 * (place[row] - place[0]).abs();
+        let gained = (energy[row] - energy[0]).abs();
+        // Joules, of a motion to 1e-12.
+        assert!((work - gained).abs() < 1e-9, "{work} {gained}");
+    }
 }
 
 #[test]

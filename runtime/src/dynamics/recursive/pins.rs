@@ -69,6 +69,17 @@ pub struct EffortAtPort {
     pub effort: f64,
 }
 
+impl EffortAtPort {
+    /// The opposite effort.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        Self {
+            effort: -self.effort,
+            ..*self
+        }
+    }
+}
+
 /// A pin at one configuration, in the frame that the joint hangs on.
 pub(super) struct Placed {
     pub(super) pin: &'static Pin,
