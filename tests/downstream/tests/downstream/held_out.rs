@@ -40,6 +40,7 @@ macro_rules! law_tests {
 
 // Joints with exceptions, half a turn or a radius away, take smaller steps than the others.
 law_tests! {
+    arcsine_crank: ArcsineCrank::new(0.3, 0.85, 0.2), HalfTurn;
     axle_wheel: AxleWheel::new(0.7, 0.85), HalfTurn;
     ball_along_bore: BallAlongBore::new(0.85, 0.3), Entries(0.5);
     ball_in_shell: BallInShell::new(0.85, 0.7), Entries(0.5);
@@ -58,11 +59,13 @@ law_tests! {
     moebius: Moebius::new(0.7), HalfTurn;
     named_root: NamedRoot, Entries(0.5);
     offset_wrist: OffsetWrist::new(0.7), HalfTurn;
+    phased_cam: PhasedCam, HalfTurn;
     plane_tilt: PlaneTilt::new(0.7), HalfTurn;
     polynomial_knee: PolynomialKnee, Entries(0.5);
     profile_roller: ProfileRoller::new(0.7, 0.85, 1.0), HalfTurn;
     rolling_cone: RollingCone::new(0.7), HalfTurn;
     screw_plane: ScrewPlane::new(0.7), HalfTurn;
+    signed_eccentric: SignedEccentric::new(0.7, -0.4, 0.5, 0.3), HalfTurn;
     slider_crank: SliderCrank::new(0.7, 0.85), HalfTurn;
     so3_about: So3About::new(0.7), HalfTurn;
     so3_norm: So3Norm::new(0.7), HalfTurn;
