@@ -251,12 +251,8 @@ fn spend_on_formulas(kernel: &Kernel) {
 }
 
 fn too_much_work(spec: &JointSpec, exhausted: Exhausted) -> Diagnostic {
-    let Exhausted { limit, task, claim } = exhausted;
-    let message = match claim {
-        "" => format!("{task}: more than {limit} term operations"),
-        _ => format!("{task} of `{claim}`: more than {limit} term operations"),
-    };
-    Diagnostic::new(spec::code::WORK, task::span(spec, task), message)
+    let span = task::span(spec, exhausted.task);
+    Diagnostic::new(spec::code::WORK, span, exhausted.to_string())
         .label("the bound on symbolic work is met here")
         .help("shorten the expressions of H, X and S_bar, or use let to name a simpler form")
 }

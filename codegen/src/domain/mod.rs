@@ -192,9 +192,9 @@ impl<'a> Domain<'a> {
         })
     }
 
-    /// Whether a short expression is positive in some form of it.
+    /// Whether another form of a short expression shows that it is positive.
     pub(super) fn has_positive_form(&self, expression: &Expr) -> bool {
-        self.signs.is_positive_in_some_form(expression)
+        self.signs.has_positive_form(expression)
     }
 
     /// Whether the expression is positive everywhere.

@@ -327,11 +327,15 @@ impl Signs {
                     _ => Sign::Unknown,
                 }
             }
-            (Function::Sqrt, [x]) if self.is_positive_in_some_form(x) => Sign::Positive,
+            (Function::Sqrt, [x]) if self.is_positive(x) || self.has_positive_form(x) => {
+                Sign::Positive
+            }
             (Function::Sqrt, _) => Sign::NotNegative,
             // A reciprocal is not 0, nor what it is of.
             (Function::Recip, [x])
-                if self.has_one_sign(x, true) || self.is_positive_in_some_form(x) =>
+                if self.has_one_sign(x, true)
+                    || self.is_positive(x)
+                    || self.has_positive_form(x) =>
             {
                 Sign::Positive
             }

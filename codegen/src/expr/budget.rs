@@ -23,6 +23,16 @@ pub struct Exhausted {
     pub claim: &'static str,
 }
 
+impl std::fmt::Display for Exhausted {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.task)?;
+        if !self.claim.is_empty() {
+            write!(f, " of `{}`", self.claim)?;
+        }
+        write!(f, ": more than {} term operations", self.limit)
+    }
+}
+
 /// Runs `work` with at most `limit` term operations, and no more than the scope around it has left. A term operation is the
 /// product of two short terms; others count as many of these as take the same time.
 pub fn scope<T>(limit: u64, work: impl FnOnce() -> T) -> Result<T, Exhausted> {

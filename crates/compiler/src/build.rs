@@ -121,12 +121,7 @@ impl std::fmt::Display for Error {
             Self::File(path, error) => write!(f, "{}: {error}", path.display()),
             Self::Scene(errors) => write!(f, "{errors}"),
             Self::Spec(errors) => write!(f, "{errors}"),
-            Self::Work(joint, Exhausted { limit, task, .. }) => {
-                write!(
-                    f,
-                    "joint type `{joint}`: {task}: more than {limit} term operations"
-                )
-            }
+            Self::Work(joint, exhausted) => write!(f, "joint type `{joint}`: {exhausted}"),
             Self::Refused(refused) => write!(f, "{refused}"),
             Self::TooLong(long) => write!(f, "{long}"),
             Self::Write(error) => write!(f, "{error}"),

@@ -12,17 +12,16 @@ const MOST_TERMS: usize = 12;
 const OF_OTHER_FORMS: u64 = 20_000;
 
 impl Signs {
-    /// Whether the expression is positive, also where that shows in another form of it: without functions and denominators that are positive, or as a quadratic polynomial. Searches ask for the
+    /// Whether another form of the expression shows that it is positive: that without functions and denominators that are positive, or as a quadratic polynomial. Searches ask for the
     /// signs of many long expressions, which this would make longer.
-    pub fn is_positive_in_some_form(&self, expression: &Expr) -> bool {
+    pub fn has_positive_form(&self, expression: &Expr) -> bool {
         let other_forms = || {
             let rest = self.without_denominators(&self.without_positive_factors(expression));
             let is_shorter = rest != *expression;
             is_shorter && self.exceeds(&rest, false) || self.is_positive_quadratic(&rest)
         };
-        self.is_positive(expression)
-            || expression.terms().len() <= MOST_TERMS
-                && budget::scope(OF_OTHER_FORMS, other_forms).unwrap_or(false)
+        expression.terms().len() <= MOST_TERMS
+            && budget::scope(OF_OTHER_FORMS, other_forms).unwrap_or(false)
     }
 
     /// The expression without functions that are positive and divide every term.

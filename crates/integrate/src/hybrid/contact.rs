@@ -253,7 +253,7 @@ impl Contact {
         q: &[f64],
         forward: bool,
     ) -> impl Iterator<Item = EffortAtPort> {
-        let sign = if forward { -1.0 } else { 1.0 };
+        let sign = against(forward);
         self.at_ports(q, move |friction| sign * friction.sliding)
     }
 
@@ -288,11 +288,16 @@ impl Contact {
 
     /// The efforts of its friction in motion.
     pub(super) fn sliding_efforts(&self, forward: bool) -> impl Iterator<Item = Sliding> {
-        let sign = if forward { -1.0 } else { 1.0 };
+        let sign = against(forward);
         self.frictions.iter().map(move |friction| Sliding {
             freedom: self.freedom,
             effort: sign * friction.sliding,
             place: friction.place.clone(),
         })
     }
+}
+
+/// The sign of what acts against the motion.
+const fn against(forward: bool) -> f64 {
+    if forward { -1.0 } else { 1.0 }
 }

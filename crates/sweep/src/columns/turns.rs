@@ -54,6 +54,10 @@ impl Turns {
 
     /// Goes on to `step`.
     pub fn follow(&mut self, mechanism: &Mechanism, step: &Step<'_>) {
+        // Most motions have none, and every step comes here.
+        if self.turns.is_empty() {
+            return;
+        }
         let here = [step.configuration, step.travel];
         // The first state begins another motion.
         let last = self.last.replace(here.map(<[f64]>::to_vec));
@@ -112,13 +116,7 @@ fn at_once(body: &Body, q: &[f64], rates: &[f64]) -> Vec<f64> {
     let size = rates.len();
     let mut map = vec![0.0; size * size];
     body.joint().velocity_map(q, &mut map);
-    let mut velocity = vec![0.0; size];
-    for (column, rate) in map.chunks(size.max(1)).zip(rates) {
-        for (entry, part) in velocity.iter_mut().zip(column) {
-            *entry += part * rate;
-        }
-    }
-    velocity
+    combined(&map, rates, size)
 }
 
 /// The angles among the parts `factors` of the joint under the body of index `body`.
@@ -146,11 +144,16 @@ pub fn velocity(body: &Body, q: &[f64], speeds: &[f64]) -> Vec<f64> {
     let freedoms = joint.layout().freedoms;
     let mut basis = vec![0.0; freedoms * speeds.len()];
     joint.speed_basis(q, &mut basis);
-    let mut velocity = vec![0.0; freedoms];
-    for (column, speed) in basis.chunks(freedoms.max(1)).zip(speeds) {
-        for (entry, part) in velocity.iter_mut().zip(column) {
-            *entry += part * speed;
+    combined(&basis, speeds, freedoms)
+}
+
+/// The sum of the columns of a matrix with so many rows, each times its weight.
+fn combined(matrix: &[f64], weights: &[f64], rows: usize) -> Vec<f64> {
+    let mut sum = vec![0.0; rows];
+    for (column, weight) in matrix.chunks(rows.max(1)).zip(weights) {
+        for (entry, part) in sum.iter_mut().zip(column) {
+            *entry += part * weight;
         }
     }
-    velocity
+    sum
 }
