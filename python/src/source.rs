@@ -46,7 +46,7 @@ pub struct RobotOptions {
 pub struct State {
     /// Its name.
     pub name: String,
-    /// Where it has joints, rad or m.
+    /// Where it has joints.
     pub coordinates: Coordinates,
 }
 

@@ -75,7 +75,11 @@ fn whole(m: &Matrix, places: &[usize], domain: &Domain<'_>) -> Result<String, Ex
                 .iter()
                 .map(|&row| (places[row] + 1).to_string())
                 .collect();
-            return Ok(format!("the minor of rows {} is {minor}", rows.join(", ")));
+            let which = if rows.len() == 1 { "row" } else { "rows" };
+            return Ok(format!(
+                "the minor of {which} {} is {minor}",
+                rows.join(", ")
+            ));
         }
         if !minor.is_zero() {
             minors.push(minor);

@@ -86,7 +86,7 @@ pub enum FunctionName {
     InverseDynamics,
     /// M̄(Q)
     MassMatrix,
-    /// Efforts at no acceleration
+    /// Efforts at zero acceleration
     BiasForces,
     /// v̄ and p̄̇ from Q, p̄ and τ
     MomentumRates,
@@ -210,6 +210,15 @@ fn is_own(file: &File) -> bool {
 
 /// What the module is to be written in, by the ending of its file; Rust where there is none.
 fn language(file: Option<&Path>) -> Result<Language, Failure> {
+    let is_hidden = |file: &Path| file.file_name()?.to_str()?.strip_prefix('.').map(drop);
+    if let Some(hidden) =
+        file.filter(|file| file.extension().is_none() && is_hidden(file).is_some())
+    {
+        return Err(Failure::Options(format!(
+            "{}: the file has no name before its ending, and a module is named after its file",
+            hidden.display()
+        )));
+    }
     let Some((file, ending)) = file.and_then(|file| Some((file, file.extension()?))) else {
         return Ok(Language::Rust);
     };

@@ -20,7 +20,7 @@ pub struct RobotArgs {
     #[arg(long, value_name = "STIFFNESS,DAMPING", value_parser = stops, allow_negative_numbers = true)]
     limits: Option<Stops>,
 
-    /// Read a robot in URDF although no rigid body has its masses: such an inertia becomes that of a ball with the mean of its moments, joints that move nothing with mass are fixed, and those that mimic a joint that is not there move by themselves. What was changed is told
+    /// Accept a robot in URDF with inertias that no rigid body has: each is replaced by that of a sphere with the mean of its principal moments. Joints that move no mass become fixed, and joints that mimic a missing joint move by themselves. What was changed is reported
     #[arg(long)]
     lenient: bool,
 
@@ -39,7 +39,7 @@ pub struct Reading {
     options: robot::Options,
     /// The states of its posture, and what is said of joints themselves.
     state: Coordinates,
-    posture: Coordinates,
+    posture: Vec<(String, f64)>,
 }
 
 impl Reading {
@@ -68,7 +68,7 @@ impl RobotArgs {
     /// # Errors
     /// States without an SRDF; those of reading it.
     pub fn of_file(&self, path: &Path) -> Result<Reading, Failure> {
-        let posture: Coordinates = self
+        let posture: Vec<(String, f64)> = self
             .posture
             .iter()
             .filter_map(|part| match part {

@@ -35,8 +35,8 @@ pub(crate) struct Linkage {
 #[derive(Debug)]
 pub(super) struct Whole {
     ties: Ties,
-    /// Coordinate and ratio of each link.
-    ports: Vec<(usize, f64)>,
+    /// Coordinate of each link, and ratio and offset: what its joint stands at is ratio times the coordinate, and the offset.
+    ports: Vec<(usize, [f64; 2])>,
     /// The joint of the scene that each link moves by.
     names: Vec<&'static str>,
     home: Vec<f64>,
@@ -71,7 +71,7 @@ impl Whole {
     /// Of a coupling whose joint has this home.
     pub(super) fn new(coupling: &Coupling, home: Vec<f64>) -> Self {
         let links = coupling.links.iter();
-        let port = |link: &Link| (link.coordinate, link.ratio);
+        let port = |link: &Link| (link.coordinate, [link.ratio, link.offset]);
         Self {
             ties: Ties::new(&coupling.links, &coupling.ties, &coupling.start),
             ports: links.map(port).collect(),
@@ -99,11 +99,14 @@ impl Linkage {
         }
     }
 
-    /// The joints of the scene that a coordinate moves, each with how many times the coordinate it goes.
-    pub(crate) fn moved_by(&self, coordinate: usize) -> impl Iterator<Item = (&'static str, f64)> {
+    /// The joints of the scene that a coordinate moves, each with ratio and offset: it stands at ratio times the coordinate, and the offset.
+    pub(crate) fn moved_by(
+        &self,
+        coordinate: usize,
+    ) -> impl Iterator<Item = (&'static str, [f64; 2])> {
         let ports = self.joint.names.iter().zip(&self.joint.ports);
         let own = ports.filter(move |(_, (own, _))| *own == coordinate);
-        own.map(|(name, (_, ratio))| (*name, *ratio))
+        own.map(|(name, (_, line))| (*name, *line))
     }
 
     /// Whether its body hangs on no other link.
@@ -358,7 +361,7 @@ impl At<'_> {
 
     /// P by rows, one per link.
     pub(super) fn port_map(&self) -> Vec<Vec<Sym>> {
-        let row = |&(coordinate, ratio): &(usize, f64)| {
+        let row = |&(coordinate, [ratio, _]): &(usize, [f64; 2])| {
             let columns = self.columns.iter();
             columns
                 .map(|column| Sym::from(ratio) * column.rates[coordinate])

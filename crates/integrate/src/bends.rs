@@ -4,8 +4,9 @@
 //! both sides, and a step that ends there has seen one of them alone.
 
 use super::StepFailure;
-use super::driver::{Driver, Pacing};
+use super::driver::Driver;
 use super::flow::{Flow, retract};
+use super::pacing::Pacing;
 use super::step_state::StepState;
 use alloc::sync::Arc;
 use alloc::vec;

@@ -4,59 +4,26 @@ use super::approach::Watch;
 use super::bends::Bends;
 use super::carried::Carried;
 use super::clock::Clock;
-use super::fixed_steps::is_last;
-use super::flow::{Flow, Given};
+use super::flow::Flow;
 use super::hybrid::{Guards, Hybrid};
+use super::inputs::{Given, Hold};
 use super::kinks::Kinks;
-use super::options::{StepControl, least_step};
 use super::outputs::{Outputs, Passed};
+use super::pacing::Pacing;
 use super::pieces::{FirstPiece, resolving};
-use super::prospect::{Prospect, chosen_method, other_method};
-use super::rates_of_loops::has_ends;
+use super::prospect::Prospect;
 use super::reconsider::Reconsideration;
-use super::rounding::Rounding;
-use super::search::Search;
 use super::stalls;
-use super::step_control::StepController;
 use super::step_state::StepState;
 use super::stepper::{self, Span, Stepper};
 use super::waypoints::Waypoints;
 use super::{
-    Crossing, Event, Form, IntegrateError, Method, Near, Observer, Options, Sampling, Scheme,
-    Solution, State, Statistics, Step, StepFailure,
+    Crossing, Event, Form, IntegrateError, Near, Observer, Options, Sampling, Scheme, Solution,
+    State, Statistics, Step, StepFailure,
 };
 use alloc::boxed::Box;
-use alloc::format;
-use alloc::string::String;
 use alloc::vec::Vec;
 use hamel_runtime::dynamics::Dynamics;
-use num_traits::Float;
-
-/// A remainder that exceeds a controlled step by less than this is taken at once: it saves a sliver of a step.
-const CONTROLLED_STRETCH: f64 = 1.01;
-
-/// An instant for new inputs that is nearer to a sample than this part of the period falls on it: the rest is rounding.
-const SAME_INSTANT: f64 = 1e-9;
-
-/// When inputs that are held are taken anew.
-struct Hold {
-    start: f64,
-    period: f64,
-    /// How many times they have been.
-    count: u64,
-}
-
-impl Hold {
-    /// The next instant.
-    fn next(&self) -> f64 {
-        self.start + self.period * self.count as f64
-    }
-
-    /// Whether the next instant is `time`, but for rounding.
-    fn falls_on(&self, time: f64) -> bool {
-        (self.next() - time).abs() <= SAME_INSTANT * self.period
-    }
-}
 
 /// An integration under way.
 pub(super) struct Driver<'a> {
@@ -68,15 +35,15 @@ pub(super) struct Driver<'a> {
     /// The choice of the scheme, where it was left open.
     pub(super) reconsideration: Option<Reconsideration>,
     pub(super) options: &'a Options,
-    hold: Option<Hold>,
-    kinks: Kinks,
+    pub(super) hold: Option<Hold>,
+    pub(super) kinks: Kinks,
     pub(super) bends: Bends,
     pub(super) clock: Clock,
     pub(super) start: f64,
     pub(super) statistics: Statistics,
     pub(super) samples: Vec<State>,
     pub(super) crossings: Vec<Crossing>,
-    watch: Watch,
+    pub(super) watch: Watch,
     waypoints: Waypoints,
     prospect: Prospect,
     /// What is wanted between the ends of steps, if anything is.
@@ -101,16 +68,6 @@ pub(super) struct Wanted<'a> {
     pub(super) is_open: bool,
     /// Whether samples tell what the joints carry.
     pub(super) tells_forces: bool,
-}
-
-/// How the next step is chosen.
-pub(super) struct Pacing {
-    /// The step to try where no sample time is in the way.
-    step: f64,
-    pub(super) controller: StepController,
-    rounding: Rounding,
-    /// Where a step of fixed size has failed: shorter ones, up to its end.
-    search: Option<Search>,
 }
 
 impl<'a> Driver<'a> {
@@ -186,11 +143,7 @@ impl<'a> Driver<'a> {
             flow,
             step_state,
             options,
-            hold: period.map(|period| Hold {
-                start: time,
-                period,
-                count: 1,
-            }),
+            hold: period.map(|period| Hold::new(time, period)),
             kinks,
             bends,
             clock: Clock::new(time),
@@ -279,37 +232,8 @@ impl<'a> Driver<'a> {
         self.statistics.factorizations += solves.factorizations;
     }
 
-    fn pacing(&mut self) -> Result<Pacing, IntegrateError> {
-        let order = self.stepper.order();
-        let step = match self.options.method {
-            Method::Fixed { dt, .. } => dt,
-            Method::Controlled { control, .. } => {
-                let first = control
-                    .first_step
-                    .map_or_else(|| self.first_step(control.tolerance, order), Ok);
-                first?.min(control.max_step)
-            }
-        };
-        Ok(Pacing {
-            step,
-            controller: StepController::new(order),
-            rounding: Rounding::new(&self.flow),
-            search: None,
-        })
-    }
-
-    /// A step over which the state changes by about `tolerance^(1/order)`.
-    fn first_step(&mut self, tolerance: f64, order: u32) -> Result<f64, IntegrateError> {
-        let span = self.options.t_end - self.start;
-        let change = 0.3 * Float::powf(tolerance, 1.0 / f64::from(order));
-        let pace = self.step_state.pace(&mut self.flow);
-        let pace = pace.map_err(|cause| self.at_state(cause))?;
-        // A hundredth of the shortest spans is nothing: these are one step.
-        Ok((change / pace).min(0.01 * span).max(f64::MIN_POSITIVE))
-    }
-
     /// The next sample time, or the end, or the next instant for new inputs, or the next kink of what changes with time.
-    fn target(&self) -> f64 {
+    pub(super) fn target(&self) -> f64 {
         let is_dense = self
             .outputs
             .as_ref()
@@ -350,164 +274,6 @@ impl<'a> Driver<'a> {
                     self.refuse(pacing, step, cause)?;
                 }
             }
-        }
-    }
-
-    /// The step to try, and whether it ends on the target.
-    fn choose_step(&self, step: f64) -> (f64, bool) {
-        let (step, lands) = self.step_to_target(step);
-        if let Method::Fixed { .. } = self.options.method {
-            return (step, lands);
-        }
-        let time = self.clock.time();
-        let end = time + step;
-        let motion = [self.start, self.options.t_end];
-        let seen = self.flow.mechanism.end_before_pulse([time, end], motion);
-        match seen < end && seen - time > least_step(time, end) {
-            true => (seen - time, false),
-            false => (step, lands),
-        }
-    }
-
-    /// The same, however what acts changes with time.
-    fn step_to_target(&self, step: f64) -> (f64, bool) {
-        let (remaining, step) = (self.clock.until(self.target()), step.min(self.resolving));
-        match self.options.method {
-            Method::Fixed { .. } if is_last(remaining, step) => (remaining, true),
-            Method::Fixed { .. } => (step, false),
-            _ if remaining <= step * CONTROLLED_STRETCH => (remaining, true),
-            // Two equal steps rather than a full one and a sliver.
-            _ if remaining < 2.0 * step => (0.5 * remaining, false),
-            _ => (step, false),
-        }
-    }
-
-    pub(super) fn attempt(&mut self, pacing: &mut Pacing, step: f64) -> Result<(), StepFailure> {
-        let span = Span {
-            time: self.clock.time(),
-            step,
-        };
-        let Self {
-            stepper,
-            step_state,
-            flow,
-            watch,
-            ..
-        } = self;
-        let outcome = stepper
-            .attempt(step_state, flow, span)
-            .and_then(|()| watch.check(flow, step_state, span));
-        let Some(StepControl {
-            tolerance,
-            max_step,
-            ..
-        }) = self.options.method.control()
-        else {
-            return outcome;
-        };
-        if let Err(cause) = outcome {
-            if let StepFailure::NoConvergence { .. } = cause {
-                self.statistics.unconverged += 1;
-            }
-            pacing.step = step * pacing.controller.reject(None);
-            return Err(cause);
-        }
-        let least = stepper.allowed(tolerance);
-        if let Some(weight) = stepper.estimate_weight()
-            && pacing.rounding.is_due()
-        {
-            pacing.rounding.look(step_state, flow, span.time, weight);
-        }
-        let (error, joint) = match stepper.error(step_state, flow, span, least) {
-            Ok(found) => found,
-            Err(cause) => {
-                pacing.step = step * pacing.controller.reject(None);
-                return Err(cause);
-            }
-        };
-        let allowed = pacing.rounding.allowed(step, least);
-        let part = error / allowed;
-        if part.is_nan() || part > 1.0 {
-            pacing.rounding.refuse();
-            pacing.step = step * pacing.controller.reject(Some(part));
-            return Err(self.inaccurate(joint, error));
-        }
-        pacing.rounding.accept(error, joint, least);
-        let factor = pacing.controller.accept(part);
-        // Rounding takes the same share of the tolerance at any length of step. Near the end of a joint, relations amplify it beyond what was measured; steps would shrink without end.
-        let is_of_relations = has_ends(self.flow.mechanism.bodies()[joint].joint());
-        let factor = match allowed > 1.0 && is_of_relations {
-            true => factor.max(1.0),
-            false => factor,
-        };
-        let next = step * factor;
-        // A step that was cut short to land says nothing against the step that was meant.
-        let cut = step < pacing.step;
-        pacing.step = if cut { next.max(pacing.step) } else { next }.min(max_step);
-        Ok(())
-    }
-
-    fn inaccurate(&self, joint: usize, ratio: f64) -> StepFailure {
-        StepFailure::Inaccurate {
-            joint: self.flow.joint_name(joint),
-            ratio,
-        }
-    }
-
-    /// Ends the integration where no smaller step can help.
-    fn refuse(
-        &self,
-        pacing: &mut Pacing,
-        step: f64,
-        cause: StepFailure,
-    ) -> Result<(), IntegrateError> {
-        let cause = cause.of_relations(&self.flow.mechanism);
-        let time = self.clock.time();
-        if let Method::Fixed { dt, .. } = self.options.method {
-            let failure = IntegrateError::Step {
-                time,
-                step,
-                cause: Box::new(cause.clone()),
-                near: self.near(),
-            };
-            if !cause.is_of_length() || !self.watch.knows_ends(&self.flow.mechanism) {
-                return Err(failure);
-            }
-            pacing.step = 0.5 * step;
-            (pacing.search).get_or_insert_with(|| Search::new(time + step, dt, failure));
-        }
-        // From where time does not move on; at time 0, where it always does, by what is nothing of the span.
-        let span = self.options.t_end - self.start;
-        let limit = least_step(time, f64::EPSILON * span);
-        match pacing.step > limit {
-            true => Ok(()),
-            false => Err(self.underflow(pacing, limit, cause)),
-        }
-    }
-
-    /// Why steps have become as short as they can be.
-    fn underflow(&self, pacing: &Pacing, limit: f64, cause: StepFailure) -> IntegrateError {
-        if let StepFailure::NotClosed { joint } | StepFailure::Excluded { joint, .. } = &cause
-            && let Some(end) = self.watch.end_of(&self.flow.mechanism, joint, self.at())
-        {
-            return IntegrateError::Excluded(end);
-        }
-        if let Some(search) = &pacing.search {
-            return search.failure();
-        }
-        let find = match cause {
-            // Of a step that has no solution, the length is not to blame alone.
-            StepFailure::NoConvergence { .. } => chosen_method,
-            _ => other_method,
-        };
-        let advice = find(&self.flow, self.options, &self.state());
-        IntegrateError::StepUnderflow {
-            time: self.clock.time(),
-            step: pacing.step,
-            limit,
-            cause: Box::new(cause),
-            near: self.near(),
-            advice: advice.map_or_else(String::new, |advice| format!("; {advice}")),
         }
     }
 
@@ -564,20 +330,11 @@ impl<'a> Driver<'a> {
         Ok(renewed && self.end_piece_at_jump()?)
     }
 
-    /// The first step of a piece of the motion.
-    pub(super) fn pace_anew(&mut self, pacing: &mut Pacing) -> Result<(), IntegrateError> {
-        if let Some(control) = self.options.method.control() {
-            let first = self.first_step(control.tolerance, self.stepper.order())?;
-            pacing.step = first.min(control.max_step);
-        }
-        Ok(())
-    }
-
     /// Takes new inputs and the next pieces of functions of time where it is time for them, and the rates that they make; whether it is.
     fn renew_inputs(&mut self, time: f64) -> Result<bool, StepFailure> {
         let is_bent = self.kinks.pass(&mut self.flow, time)?;
         let hold = self.hold.as_mut().filter(|hold| hold.falls_on(time));
-        let is_due = hold.map(|hold| hold.count += 1).is_some();
+        let is_due = hold.map(Hold::pass).is_some();
         if is_due {
             let (q, speeds) = (&self.step_state.configuration, self.step_state.speeds());
             self.flow.hold(time, q, speeds);
@@ -597,12 +354,12 @@ impl<'a> Driver<'a> {
     }
 
     /// The joint that is nearest to a singular set of its own.
-    fn near(&self) -> Near {
+    pub(super) fn near(&self) -> Near {
         self.watch.nearest_at(&self.flow.mechanism, self.at())
     }
 
     /// The time and Q of the state.
-    fn at(&self) -> (f64, &[f64]) {
+    pub(super) fn at(&self) -> (f64, &[f64]) {
         (self.clock.time(), &self.step_state.configuration)
     }
 

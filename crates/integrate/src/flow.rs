@@ -1,9 +1,10 @@
 //! The vector field in (ϕ, y) around a base point, for both forms.
 
+use super::Form;
 use super::StepFailure;
 use super::hybrid::Sliding;
+use super::inputs::{Given, HeldInputs};
 use super::step_state::add;
-use super::{Form, InputBends, Inputs, PortInputs};
 use alloc::boxed::Box;
 use alloc::string::String;
 use alloc::sync::Arc;
@@ -106,24 +107,6 @@ impl DerefMut for Equations<'_> {
     }
 }
 
-/// What is given of inputs.
-#[derive(Default)]
-pub(super) struct Given<'a> {
-    /// Their efforts; `None` where there are none.
-    pub(super) inputs: Option<&'a mut Inputs<'a>>,
-    /// Where they bend, if they say so.
-    pub(super) bends: Option<&'a mut InputBends<'a>>,
-    /// What of them acts at ports, if they say so.
-    pub(super) at_ports: Option<&'a mut PortInputs<'a>>,
-}
-
-/// Inputs that stand for a time.
-struct Held {
-    /// τ beside what acts at ports, whose effort on v changes with the configuration.
-    efforts: Vec<f64>,
-    at_ports: Vec<EffortAtPort>,
-}
-
 /// The equations of motion with their inputs, as a vector field.
 pub(super) struct Flow<'a> {
     dynamics: Equations<'a>,
@@ -134,22 +117,11 @@ pub(super) struct Flow<'a> {
     configuration: Vec<f64>,
     efforts: Vec<f64>,
     /// The inputs of the last [`Flow::hold`], which stand until the next; `None` where inputs follow the state.
-    held: Option<Held>,
+    held: Option<HeldInputs>,
     /// Efforts of friction at the joints that slide: they are added to the inputs.
     friction: Vec<Sliding>,
     /// A time within the piece of all functions of time that the present step is in.
     pub(super) within: f64,
-}
-
-impl Given<'_> {
-    /// What acts at ports at a time, `q` and v̄.
-    fn at_ports(&mut self, time: f64, q: &[f64], speeds: &[f64]) -> Vec<EffortAtPort> {
-        let mut efforts = Vec::new();
-        if let Some(at_ports) = &mut self.at_ports {
-            at_ports(time, q, speeds, &mut efforts);
-        }
-        efforts
-    }
 }
 
 impl<'a> Flow<'a> {
@@ -192,13 +164,9 @@ impl<'a> Flow<'a> {
     /// Inputs at time `time`, `q` and v̄, held from now on.
     pub(super) fn hold(&mut self, time: f64, q: &[f64], speeds: &[f64]) {
         let mut efforts = vec![0.0; self.mechanism.layout().freedoms];
-        if let Some(inputs) = &mut self.given.inputs {
-            inputs(time, q, speeds, &mut efforts);
-        }
+        self.given.fill(time, q, speeds, &mut efforts);
         let at_ports = self.given.at_ports(time, q, speeds);
-        let taken_out: Vec<_> = at_ports.iter().map(EffortAtPort::reversed).collect();
-        (self.mechanism).add_efforts_at_ports(q, &taken_out, &mut efforts);
-        self.held = Some(Held { efforts, at_ports });
+        self.held = Some(HeldInputs::new(&self.mechanism, q, efforts, at_ports));
     }
 
     /// What of the inputs acts at ports, at time `time`, `q` and v̄ or as held.
@@ -209,7 +177,7 @@ impl<'a> Flow<'a> {
         speeds: &[f64],
     ) -> Vec<EffortAtPort> {
         match &self.held {
-            Some(held) => held.at_ports.clone(),
+            Some(held) => held.at_ports().to_vec(),
             None => self.given.at_ports(time, q, speeds),
         }
     }
@@ -490,22 +458,14 @@ impl<'a> Flow<'a> {
 
 /// Inputs as they are held, or else as they follow the state.
 fn fill(
-    (given, held): (&mut Given<'_>, Option<&Held>),
+    (given, held): (&mut Given<'_>, Option<&HeldInputs>),
     mechanism: &Mechanism,
     (time, q, speeds): (f64, &[f64], &[f64]),
     efforts: &mut [f64],
 ) {
     match held {
-        Some(held) => {
-            efforts.copy_from_slice(&held.efforts);
-            mechanism.add_efforts_at_ports(q, &held.at_ports, efforts);
-        }
-        None => {
-            efforts.fill(0.0);
-            if let Some(inputs) = &mut given.inputs {
-                inputs(time, q, speeds, efforts);
-            }
-        }
+        Some(held) => held.efforts_at(mechanism, q, efforts),
+        None => given.fill(time, q, speeds, efforts),
     }
 }
 

@@ -1,7 +1,7 @@
 //! An integration with all that may be asked of it.
 
 use super::driver::{Driver, Wanted};
-use super::flow::Given;
+use super::inputs::Given;
 use super::options::check_length;
 use super::{
     Event, InputBends, Inputs, IntegrateError, Observer, Options, PortInputs, Solution, State,

@@ -46,6 +46,7 @@ mod flow;
 mod free_motion;
 mod global_error;
 mod hybrid;
+mod inputs;
 mod integration;
 mod jacobian;
 mod kinks;
@@ -54,6 +55,7 @@ mod lobatto;
 mod nearby;
 mod options;
 mod outputs;
+mod pacing;
 mod phi;
 mod pieces;
 mod product;
@@ -83,6 +85,7 @@ pub use error::{IntegrateError, StepFailure};
 pub use event::{Crossing, Direction, Event};
 pub use fixed_steps::FixedSteps;
 pub use global_error::{Doubt, ErrorParts, GlobalError, Tuned};
+pub use inputs::{HeldInputs, InputBends, Inputs, PortInputs};
 pub use integration::{Integration, Sampling};
 pub use linear::LinearStep;
 pub use options::{Form, Method, Options, Scheme, StepControl};
@@ -92,19 +95,8 @@ pub use solution::{Solution, State, Statistics, Step};
 pub use spectrum::{Mode, Spectrum};
 pub use tableau::{Estimate, Tableau};
 
-use alloc::vec::Vec;
 use core::ops::ControlFlow;
-use hamel_runtime::dynamics::{Dynamics, EffortAtPort};
-
-/// Efforts τ (one entry per degree of freedom) from time, q and v̄; entries are zero when it is called.
-pub type Inputs<'a> = dyn FnMut(f64, &[f64], &[f64], &mut [f64]) + 'a;
-
-/// Functions of time, q and v̄ at whose zeros inputs bend, as at the limit of an effort, pushed onto a list that is empty when it is called: as many at all
-/// times, each continuous.
-pub type InputBends<'a> = dyn FnMut(f64, &[f64], &[f64], &mut Vec<f64>) + 'a;
-
-/// What of the inputs acts at ports of joints, from time, q and v̄, pushed onto a list that is empty when it is called.
-pub type PortInputs<'a> = dyn FnMut(f64, &[f64], &[f64], &mut Vec<EffortAtPort>) + 'a;
+use hamel_runtime::dynamics::Dynamics;
 
 /// Sees the initial state, every accepted step, and samples of dense output within them; breaks to end the integration there.
 pub type Observer<'a> = dyn FnMut(&Step<'_>) -> ControlFlow<()> + 'a;

@@ -1,6 +1,7 @@
 //! The choice of the method, looked at again on the way: springs stiffen, stops are met, joints fold.
 
-use super::driver::{Driver, Pacing};
+use super::driver::Driver;
+use super::pacing::Pacing;
 use super::step_control::StepController;
 use super::{Choice, IntegrateError, Method, Scheme, Wanted};
 use alloc::string::String;

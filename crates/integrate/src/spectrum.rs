@@ -1,6 +1,7 @@
 //! How fast the motions about a state are: the eigenvalues of the linearised equations of motion.
 
-use super::flow::{Flow, Given};
+use super::flow::Flow;
+use super::inputs::Given;
 use super::jacobian::Jacobian;
 use super::step_state::StepState;
 use super::{Form, IntegrateError, State, StepFailure};

@@ -304,6 +304,6 @@ fn undeclared(freedoms: &Freedoms) -> Diagnostic {
     let error = Diagnostic::new(code::VELOCITY_MISSING, freedoms.list.span.clone(), message)
         .label("v belongs to this basis");
     error
-        .note("in the child frame the twist is Ad_H of the basis, in the parent frame it is the basis itself; they are different velocities")
+        .note("v multiplies the basis: in the child frame with `velocity in child`, in the parent frame with `velocity in parent`; these are different velocities")
         .help("add `velocity in child;` or `velocity in parent;`, or declare X")
 }

@@ -1,8 +1,8 @@
 //! `hamel joints list`.
 
 use super::{Library, source};
-use comfy_table::Table;
 use comfy_table::presets::UTF8_HORIZONTAL_ONLY;
+use comfy_table::{ContentArrangement, Table};
 use hamel_codegen::derived::Derived;
 use hamel_codegen::model::{Declared, Port};
 use hamel_console::output::{self, Failure};
@@ -94,6 +94,8 @@ fn entry(joint: &Derived) -> Entry {
 fn table(entries: &[Entry]) -> Table {
     let mut table = Table::new();
     table.load_style(UTF8_HORIZONTAL_ONLY);
+    // As wide as the terminal, where there is one.
+    table.set_content_arrangement(ContentArrangement::Dynamic);
     table.set_header(["joint", "Q", "v", "speeds", "parameters", "what it is"]);
     for entry in entries {
         let parameters: Vec<String> = entry

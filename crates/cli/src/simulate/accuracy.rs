@@ -7,6 +7,7 @@ use hamel::dynamics::Dynamics;
 use hamel::integrate::{
     ErrorParts, GlobalError, IntegrateError, Observer, Options, Solution, State,
 };
+use hamel_console::interrupt;
 use serde::Serialize;
 use std::fmt;
 use std::sync::Arc;
@@ -28,6 +29,9 @@ pub struct Accuracy {
     reason: Option<String>,
     /// Evaluations of the equations of motion that the estimate took.
     evaluations: usize,
+    /// Whether the user ended the estimate.
+    #[serde(skip)]
+    pub is_interrupted: bool,
 }
 
 /// An error, by where it comes from; `null` in JSON where it is not known.
@@ -55,7 +59,13 @@ impl From<ErrorParts> for Parts {
 impl Accuracy {
     /// That of `solution`, to which `dynamics` came under `plan`.
     pub fn estimate(plan: &Plan, dynamics: &mut dyn Dynamics, solution: &Solution) -> Self {
-        estimate(plan, dynamics, solution).into()
+        let mut own: Self = estimate(plan, dynamics, solution).into();
+        // Companions end at an interrupt; one that comes later has ended nothing.
+        if !own.reliable && interrupt::is_requested() {
+            own.is_interrupted = true;
+            own.reason = Some("the estimate was interrupted".into());
+        }
+        own
     }
 
     /// The error of the last state in a few words.
@@ -113,6 +123,7 @@ impl From<GlobalError> for Accuracy {
             reliable: error.doubt.is_none(),
             reason: error.doubt.map(|doubt| doubt.to_string()),
             evaluations: error.evaluations,
+            is_interrupted: false,
         }
     }
 }

@@ -20,7 +20,7 @@ Examples:
       as accurate as doubles allow: order 9, and sums that lose no rounding
   hamel simulate scenes/double_ball_pendulum.toml --accuracy 1e-8
       the last state to eight digits: the tolerance is searched for, and the summary tells the error
-  hamel simulate scenes/report/ball_spring.toml --tol 1e-8
+  hamel simulate scenes/report/ball_spring.toml --method auto --tol 1e-8
       with the method that the scene's springs and dampers call for; the summary says why
   hamel simulate scenes/rolling_disk.toml --html disk.html
       one page to open in a browser, with no network: the motion in three dimensions, and plots along the time

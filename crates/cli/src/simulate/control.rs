@@ -3,7 +3,7 @@
 use super::plan::Plan;
 use hamel::control::{Controller, Measure};
 use hamel::dynamics::EffortAtPort;
-use hamel::integrate::Step;
+use hamel::integrate::{HeldInputs, Step};
 use hamel::mechanism::Mechanism;
 use hamel::shown::Number;
 use hamel_console::output::Failure;
@@ -30,9 +30,8 @@ struct State {
     efforts: Vec<f64>,
     largest_effort: f64,
     mechanism: Arc<Mechanism>,
-    /// What is held: τ beside efforts at ports, and these.
-    held: Vec<f64>,
-    held_at_ports: Vec<EffortAtPort>,
+    /// The τ that was taken last, where it is held; `None` before.
+    held: Option<HeldInputs>,
 }
 
 /// What a controller did.
@@ -112,8 +111,7 @@ impl Loop {
             errors,
             efforts: vec![0.0; plan.scene.mechanism.layout().freedoms],
             largest_effort: 0.0,
-            held: vec![0.0; plan.scene.mechanism.layout().freedoms],
-            held_at_ports: Vec::new(),
+            held: None,
             mechanism: Arc::clone(&plan.scene.mechanism),
         };
         Ok(Some(Self {
@@ -210,24 +208,20 @@ impl State {
         if period.is_none() {
             return self.take(step.time, q, step.speeds);
         }
-        self.efforts.copy_from_slice(&self.held);
-        self.mechanism
-            .add_efforts_at_ports(q, &self.held_at_ports, &mut self.efforts);
+        if let Some(held) = &self.held {
+            held.efforts_at(&self.mechanism, q, &mut self.efforts);
+        }
     }
 
-    /// Holds the τ just taken: at ports their efforts, whose τ follows the configuration.
+    /// Holds the τ just taken.
     fn hold(&mut self, time: f64, q: &[f64], speeds: &[f64]) {
-        self.held_at_ports.clear();
-        let at_ports = &mut self.held_at_ports;
-        let found = self.controller.efforts_at_ports(time, q, speeds, at_ports);
+        let mut at_ports = Vec::new();
+        let found = (self.controller).efforts_at_ports(time, q, speeds, &mut at_ports);
         if let Err(cause) = found {
             self.fail(time, &cause);
         }
-        let taken_out = self.held_at_ports.iter().map(EffortAtPort::reversed);
-        let taken_out: Vec<_> = taken_out.collect();
-        self.held.copy_from_slice(&self.efforts);
-        self.mechanism
-            .add_efforts_at_ports(q, &taken_out, &mut self.held);
+        let efforts = self.efforts.clone();
+        self.held = Some(HeldInputs::new(&self.mechanism, q, efforts, at_ports));
     }
 
     /// τ of the law; NaN where it fails.

@@ -171,9 +171,17 @@ impl Plan {
         self.outputs().any(Output::is_stdout)
     }
 
+    /// The files that have all samples.
+    pub fn trajectories(&self) -> impl Iterator<Item = &Path> {
+        self.of_all_samples().map(Output::path)
+    }
+
+    fn of_all_samples(&self) -> impl Iterator<Item = &Output> {
+        [&self.csv, &self.parquet, &self.html].into_iter().flatten()
+    }
+
     fn outputs(&self) -> impl Iterator<Item = &Output> {
-        let files = [&self.csv, &self.parquet, &self.html];
-        files.into_iter().flatten().chain(self.pictures.files())
+        self.of_all_samples().chain(self.pictures.files())
     }
 
     /// Whether anything asks for the numbers of all columns.

@@ -49,8 +49,13 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
         (false, true) => {}
         (false, false) => print_summary(&plan, &columns, &run)?,
     }
-    match run.is_interrupted {
-        true => Err(interrupted(&plan, &run.solution)),
+    if run.is_interrupted {
+        return Err(interrupted(&plan, &run.solution));
+    }
+    match run.accuracy.as_ref().is_some_and(|own| own.is_interrupted) {
+        true => Err(Failure::Interrupted(
+            "the estimate of the error ended before it was known; the motion is complete".into(),
+        )),
         false => Ok(()),
     }
 }

@@ -8,6 +8,7 @@ use super::plan::Plan;
 use comfy_table::{Cell, CellAlignment, Table, presets};
 use hamel::integrate::{Approach, Crossing, MethodChange, RoundingLimit};
 use hamel::mechanism::{BodyState, Kinematics, Mechanism};
+use hamel_console::files::Output;
 use hamel_scene::Arithmetic;
 use std::fmt;
 
@@ -78,7 +79,9 @@ impl fmt::Display for Summary<'_> {
         } = self.statistics;
         writeln!(
             f,
-            "work        {steps} steps, {rejected} rejected, {evaluations} evaluations, {run_time_s:.3} s"
+            "work        {}, {rejected} rejected, {}, {run_time_s:.3} s",
+            counted(steps, "step", "steps"),
+            counted(evaluations, "evaluation", "evaluations"),
         )?;
         if let Some(unresolved) = self.unresolved {
             writeln!(f, "unresolved  {unresolved}")?;
@@ -96,7 +99,8 @@ impl fmt::Display for Summary<'_> {
             };
             writeln!(
                 f,
-                "rounding    decided the length of {steps} steps, not the tolerance: at joint `{joint}` the error of a step is not below {error:.1e}{advice}"
+                "rounding    decided the length of {}, not the tolerance: at joint `{joint}` the error of a step is not below {error:.1e}{advice}",
+                counted(*steps, "step", "steps"),
             )?;
         }
         for note in self.forces {
@@ -106,19 +110,25 @@ impl fmt::Display for Summary<'_> {
             writeln!(f, "singular    {approach}")?;
         }
         // Without a sample no file was written.
-        for path in self.plan.files().filter(|_| self.samples > 0) {
-            writeln!(
-                f,
-                "trajectory  {} samples in {}",
-                self.samples,
-                path.display()
-            )?;
+        if self.samples > 0 {
+            self.files(f)?;
         }
         Ok(())
     }
 }
 
 impl Summary<'_> {
+    fn files(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let samples = counted(self.samples, "sample", "samples");
+        for path in self.plan.trajectories() {
+            writeln!(f, "trajectory  {samples} in {}", path.display())?;
+        }
+        for path in self.plan.pictures.files().map(Output::path) {
+            writeln!(f, "picture     {}", path.display())?;
+        }
+        Ok(())
+    }
+
     fn scene(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Plan {
             scene, settings, ..

@@ -119,7 +119,7 @@ fn one_ignored_signal_leaves_the_others_heard() {
 #[test]
 fn a_simulation_that_reaches_its_end_is_done() {
     let place = Place::new();
-    let words = "simulate top.toml --method rk4 --dt 1e-3 --at 500 --csv a.csv";
+    let words = "simulate top.toml --method rk4 --dt 1e-3 --at 500 --no-error-estimate --csv a.csv";
     let mut child = start(&place, words);
     begun(&place, &mut child);
     send(&child, Signal::SIGINT);
@@ -130,6 +130,19 @@ fn a_simulation_that_reaches_its_end_is_done() {
         false => 130,
     };
     assert_eq!(output.status.code(), Some(code), "{}", said(&output));
+}
+
+/// The estimate of the error takes longer than the motion, of which one sample is far away.
+#[test]
+fn an_interrupted_estimate_is_told_and_leaves_the_motion() {
+    let place = Place::new();
+    let words = "simulate top.toml --method verner9 --tol 1e-9 --at 100000 --csv a.csv";
+    let child = start(&place, words);
+    // The file is written behind the estimate: the motion takes less than a second, the estimate some.
+    sleep(Duration::from_millis(1500));
+    send(&child, Signal::SIGINT);
+    let told = said(&ended(&place, child));
+    assert!(told.contains("estimate"), "{told}");
 }
 
 #[test]

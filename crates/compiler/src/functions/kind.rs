@@ -12,7 +12,7 @@ pub enum Kind {
     InverseDynamics,
     /// M̄(Q).
     MassMatrix,
-    /// The efforts τ̄ that no acceleration takes at Q and v̄.
+    /// The efforts τ̄ at which v̄̇ = 0 at Q and v̄: velocity and gravity terms.
     BiasForces,
     /// v̄ and p̄̇ from Q, p̄ and τ: (27), (35).
     MomentumRates,
@@ -102,7 +102,9 @@ impl Kind {
                 "Efforts τ̄ = S̄ᵀτ that the accelerations take at Q and v̄, (24), (34)."
             }
             Self::MassMatrix => "Mass matrix M̄ by rows.",
-            Self::BiasForces => "Efforts τ̄ = S̄ᵀτ that no acceleration takes at Q and v̄.",
+            Self::BiasForces => {
+                "Bias forces: efforts τ̄ = S̄ᵀτ at which v̄̇ = 0 at Q and v̄ (velocity and gravity terms)."
+            }
             Self::MomentumRates => "v̄ and p̄̇ from Q, p̄ and τ, (27), (35).",
             Self::Momenta => "Momenta p̄ = M̄ v̄.",
             Self::Speeds => "v̄ = M̄⁻¹ p̄.",

@@ -64,8 +64,8 @@ impl Kind {
                     |tree| vec![tree.hamiltonian(Tree::coupled_speeds)],
                 ],
             ),
-            Self::Energies => vec![("body by body", |tree| tree.energies())],
-            Self::Poses => vec![("body by body", |tree| tree.poses())],
+            Self::Energies => vec![("each body in turn", |tree| tree.energies())],
+            Self::Poses => vec![("each body in turn", |tree| tree.poses())],
             Self::ForwardDerivatives => match model.coupling.constraints.is_empty() {
                 true => vec![(
                     "of inverse dynamics, by M̄ factorised along the tree",

@@ -177,7 +177,7 @@ impl Output {
         let shown = self.named.display();
         if self.replaces_other() {
             return Some(format!(
-                "{shown} is there already, and not as this command writes its files: name another file, or replace it with --force"
+                "{shown} exists and was edited, or was not written by this command: name another file, or replace it with --force"
             ));
         }
         let Place::File(place) = &self.place else {

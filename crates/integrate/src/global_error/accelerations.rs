@@ -3,7 +3,8 @@
 //! Where a light body turns against a heavy one, as a rotor of 1e-13 kg m² in its link, both accelerations are 1e12 times that of the link, which is what rounding
 //! leaves of their sum. Beside accelerations whose residuals are in double-double it is seen how much the equations lose.
 
-use crate::flow::{Flow, Given};
+use crate::flow::Flow;
+use crate::inputs::Given;
 use crate::{Form, State};
 use alloc::sync::Arc;
 use alloc::vec;

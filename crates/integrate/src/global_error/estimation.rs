@@ -431,8 +431,9 @@ impl<'a, 'r> Estimation<'a, 'r> {
     ) -> (Option<f64>, Vec<f64>) {
         let tolerance = method.control().map_or(1e-6, |control| control.tolerance);
         let change = (10.0 * tolerance).clamp(1e-7, 1e-3);
-        let from = self.beside(change);
-        let Ok(moved) = self.companion(method, times, &from) else {
+        let moved = self.beside(change, times);
+        let moved = moved.and_then(|from| self.companion(method, times, &from).ok());
+        let Some(moved) = moved else {
             return (None, Vec::new());
         };
         let growth = self.distances(&moved.states, &beside.states);
@@ -441,24 +442,35 @@ impl<'a, 'r> Estimation<'a, 'r> {
     }
 
     /// The first state with other speeds: one larger by a part of the largest of its joint, the next one smaller. Where constraints couple joints, all of them
-    /// larger by a part of themselves, which these allow.
-    fn beside(&self, change: f64) -> State {
+    /// larger by a part of themselves, which these allow. A motion that begins at rest has no such part: there it is that of the speeds that it comes to at `times`; `None` where it never moves.
+    fn beside(&mut self, change: f64, times: &[State]) -> Option<State> {
         let mut from = self.initial.clone();
-        if !self.mechanism.constraints().is_empty() {
-            from.speeds
-                .iter_mut()
-                .for_each(|speed| *speed *= 1.0 + change);
-            return from;
+        let is_at_rest = from.speeds.iter().all(|&speed| speed == 0.0);
+        let of: &[State] = if is_at_rest {
+            times
+        } else {
+            core::slice::from_ref(self.initial)
+        };
+        if !is_at_rest && !self.mechanism.constraints().is_empty() {
+            let speeds = from.speeds.iter_mut();
+            speeds.for_each(|speed| *speed *= 1.0 + change);
+            return Some(from);
         }
-        for (_, body) in self.mechanism.joints() {
-            let speeds = &mut from.speeds[body.ranges().speeds.clone()];
-            let largest = speeds.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        for (index, body) in self.mechanism.joints() {
+            if is_at_rest && self.mechanism.is_driven(index) {
+                continue;
+            }
+            let own = body.ranges().speeds.clone();
+            let all = of.iter().flat_map(|state| &state.speeds[own.clone()]);
+            let largest = all.fold(0.0_f64, |most, v| most.max(v.abs()));
             let signs = [change, -change].into_iter().cycle();
-            for (speed, sign) in speeds.iter_mut().zip(signs) {
+            for (speed, sign) in from.speeds[own].iter_mut().zip(signs) {
                 *speed += sign * largest;
             }
         }
-        from
+        let completed = (self.dynamics).complete_speeds(&from.configuration, &mut from.speeds);
+        let is_moved = from.speeds != self.initial.speeds;
+        (completed.is_ok() && is_moved).then_some(from)
     }
 
     fn distances(&self, some: &[State], others: &[State]) -> Vec<f64> {

@@ -78,7 +78,7 @@ impl Display for Doubt {
                 "the error of coarser motions falls with order {observed:.1}, the method is of order {order}"
             ),
             Self::Steps => f.write_str(
-                "something else than the error decides how long steps are: motions of other tolerances take steps that are hardly longer or shorter",
+                "step sizes are limited by something else than the tolerance, such as samples or stability: motions of other tolerances take nearly the same steps",
             ),
             Self::Oscillations => f.write_str(
                 "the method takes steps longer than oscillations: how rounding adds up over these is not known",

@@ -89,7 +89,7 @@ fn parameter_values(
                 let error = Diagnostic::new(description.span.clone(), message);
                 sink.push(error.help(match parameter.description {
                     "" => format!("its unit is {}", parameter.unit),
-                    described => format!("{described}, {}", parameter.unit),
+                    described => format!("{}, {}", described.trim_end_matches('.'), parameter.unit),
                 }));
             }
         }

@@ -130,7 +130,7 @@ pub(crate) fn from_axis(
 }
 
 /// The rotation of `(w, x, y, z)`, normalised here.
-fn unit_quaternion(quaternion: &Vector4<f64>) -> Matrix3<f64> {
+pub(crate) fn unit_quaternion(quaternion: &Vector4<f64>) -> Matrix3<f64> {
     let unit = quaternion / quaternion.norm();
     let (w, v) = (unit.x, Vector3::new(unit.y, unit.z, unit.w));
     let hat = hat(&v);

@@ -1,7 +1,8 @@
 //! Postures that have names: the states of an SRDF, the XML format in which MoveIt says of a robot what its URDF does not.
 //!
-//! Of an SRDF only its `<group_state>` elements are read: `name`, and for each `<joint>` in it `name` and `value`, rad or m. Several groups may have a state of one name, such as an arm and its
-//! hand; it is then that of all of them.
+//! Of an SRDF only its `<group_state>` elements are read: `name`, and for each `<joint>` in it `name` and `value`. A value is one number, rad or m; four numbers, a unit quaternion (x, y, z, w); or
+//! seven, a position in m and then such a quaternion, as the states of robots that move freely have it. Several groups may have a state of one name, such as an arm and its hand; it is then that of all
+//! of them.
 
 use super::xml;
 use super::xml::{finite, tag};
@@ -9,10 +10,15 @@ use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::read::Sink;
 use crate::suggest::{nearest, one_of};
 use crate::text::{quoted, visible_line};
+use nalgebra::Vector4;
 use roxmltree::Node;
 
-/// Joints with their coordinates, rad or m.
-pub type Coordinates = Vec<(String, f64)>;
+/// Joints with the numbers that say where they stand: a coordinate, rad or m; a unit quaternion (x, y, z, w) of the child frame in the parent frame; or seven, the position of that frame, m, and
+/// such a quaternion.
+pub type Coordinates = Vec<(String, Vec<f64>)>;
+
+/// Largest deviation of a quaternion's length from 1 that passes for rounding of its digits.
+const QUATERNION_TOLERANCE: f64 = 1e-3;
 
 /// Where the state of that name in an SRDF has the joints of the robot. Messages call the text `source_name`.
 ///
@@ -48,7 +54,7 @@ fn of_document(root: Node<'_, '_>, state: &str, sink: &mut Sink) -> Coordinates 
     let joints = own.flat_map(|found| found.children().filter(|child| child.has_tag_name("joint")));
     let mut found = Coordinates::new();
     for joint in joints {
-        let Some((name, value)) = coordinate(joint, sink) else {
+        let Some((name, value)) = coordinates(joint, sink) else {
             continue;
         };
         match found.iter().find(|(other, _)| *other == name) {
@@ -56,6 +62,7 @@ fn of_document(root: Node<'_, '_>, state: &str, sink: &mut Sink) -> Coordinates 
             Some((_, other)) if *other == value => {}
             Some((_, other)) => {
                 let (name, state) = (visible_line(&name), visible_line(state));
+                let (other, value) = (shown(other), shown(&value));
                 let message = format!(
                     "joint `{name}` stands at {other} in one <group_state> of the name `{state}`, and at {value} in another"
                 );
@@ -82,7 +89,7 @@ fn unknown<'a>(
     }
 }
 
-fn coordinate(joint: Node<'_, '_>, sink: &mut Sink) -> Option<(String, f64)> {
+fn coordinates(joint: Node<'_, '_>, sink: &mut Sink) -> Option<(String, Vec<f64>)> {
     let mut attribute = |name: &str| {
         let found = joint.attribute_node(name);
         if found.is_none() {
@@ -93,18 +100,29 @@ fn coordinate(joint: Node<'_, '_>, sink: &mut Sink) -> Option<(String, f64)> {
     };
     let (name, value) = (attribute("name"), attribute("value"));
     let (name, value) = (name?, value?);
-    match finite(value.value()).as_deref() {
-        Some([number]) => Some((name.value().to_owned(), *number)),
-        _ => {
-            let shown = quoted(value.value());
-            let message = format!(
-                "joint `{}` stands at {shown}, not at one finite number",
-                visible_line(name.value())
-            );
-            sink.push(Diagnostic::new(value.range_value(), message));
-            None
+    let numbers = finite(value.value()).filter(|numbers| match numbers.as_slice() {
+        [_] => true,
+        [x, y, z, w] | [_, _, _, x, y, z, w] => {
+            let norm = Vector4::new(*x, *y, *z, *w).norm();
+            (norm - 1.0).abs() <= QUATERNION_TOLERANCE
         }
+        _ => false,
+    });
+    if numbers.is_none() {
+        let message = format!(
+            "joint `{}` stands at {}, not at a finite number, a unit quaternion (x, y, z, w), or a position and such a quaternion",
+            visible_line(name.value()),
+            quoted(value.value())
+        );
+        sink.push(Diagnostic::new(value.range_value(), message));
     }
+    Some((name.value().to_owned(), numbers?))
+}
+
+/// The numbers as a state has them.
+fn shown(numbers: &[f64]) -> String {
+    let numbers: Vec<String> = numbers.iter().map(f64::to_string).collect();
+    numbers.join(" ")
 }
 
 #[cfg(test)]
@@ -115,7 +133,8 @@ mod tests {
   <group name='arm'/>
   <group_state name='ready' group='arm'><joint name='a' value='0.5'/><joint name='b' value=' -1e-1 '/></group_state>
   <group_state name='ready' group='hand'><joint name='f' value='0.04'/></group_state>
-  <group_state name='odd' group='hand'><joint name='f' value='1 2'/><joint value='0'/></group_state>
+  <group_state name='odd' group='hand'><joint name='f' value='1 2'/><joint name='g' value='0 0 1 2'/><joint value='0'/></group_state>
+  <group_state name='up' group='all'><joint name='root_joint' value='0 0 0.5 0 0 1. 0'/><joint name='h' value='0 0.6 0 .8'/></group_state>
 </robot>";
 
     #[test]
@@ -124,8 +143,18 @@ mod tests {
         let wanted = [("a", 0.5), ("b", -0.1), ("f", 0.04)];
         assert_eq!(
             found,
-            wanted.map(|(name, number)| (name.to_owned(), number))
+            wanted.map(|(name, number)| (name.to_owned(), vec![number]))
         );
+    }
+
+    #[test]
+    fn poses_and_attitudes_have_several_numbers() {
+        let found = state(TEXT, "panda.srdf", "up").expect("a state");
+        let wanted = [
+            ("root_joint", vec![0.0, 0.0, 0.5, 0.0, 0.0, 1.0, 0.0]),
+            ("h", vec![0.0, 0.6, 0.0, 0.8]),
+        ];
+        assert_eq!(found, wanted.map(|(name, own)| (name.to_owned(), own)));
     }
 
     #[test]
@@ -136,7 +165,7 @@ mod tests {
         };
         let odd = said(TEXT, "odd");
         assert!(
-            odd.contains("joint `f` stands at \"1 2\", not at one finite number"),
+            odd.contains("joint `f` stands at \"1 2\", not at a finite number"),
             "{odd}"
         );
         assert!(

@@ -1,7 +1,9 @@
 //! What a reader may ask for beyond the file: masses that no rigid body has replaced, and a posture.
 
 use super::{INERTIAL, notices, robot, robot_with};
+use hamel_runtime::spatial::Pose;
 use hamel_scene::Position;
+use hamel_scene::robot::Import;
 use hamel_scene::urdf::{Options, read};
 use nalgebra::{Matrix3, Vector3};
 
@@ -141,6 +143,71 @@ fn a_posture_says_where_joints_begin() {
         "posture: joint `swing` is a `ball_child`: one number does not say where it stands",
         "posture: joint `wrist` is to stand at NaN",
         "posture: joint `wrist` is named twice",
+    ] {
+        assert!(told.contains(wanted), "{wanted} is not in {told}");
+    }
+}
+
+/// As the states of robots that move freely have it: position and quaternion (x, y, z, w) under a name that no joint has.
+#[test]
+fn a_state_places_the_root_and_ball_joints() {
+    let text = format!(
+        "<robot name=\"r\"><link name=\"base\">{INERTIAL}</link><link name=\"bob\">{INERTIAL}</link>\
+         <joint name=\"swing\" type=\"spherical\"><parent link=\"base\"/><child link=\"bob\"/></joint></robot>"
+    );
+    let robot = |floating_base: bool| {
+        let options = Options {
+            floating_base,
+            ..Options::default()
+        };
+        read(&text, "r.urdf", &options).unwrap_or_else(|errors| panic!("{errors}"))
+    };
+    let state = [
+        (
+            String::from("root_joint"),
+            vec![1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 0.0],
+        ),
+        (String::from("swing"), vec![0.6, 0.0, 0.0, 0.8]),
+    ];
+    let begins = |import: &Import, joint: &str| {
+        let mut bodies = import.scene.bodies.iter();
+        let body = bodies.find(|body| body.joint.name.value == joint);
+        match body.map(|body| &body.initial.position) {
+            Some(Position::Pose(pose)) => Some(pose.value),
+            _ => None,
+        }
+    };
+    // Half a turn about z; about x, twice the angle whose sine is 0.6.
+    let turned = Matrix3::from_diagonal(&Vector3::new(-1.0, -1.0, 1.0));
+    let swung = Matrix3::new(1.0, 0.0, 0.0, 0.0, 0.28, -0.96, 0.0, 0.96, 0.28);
+    let floating = robot(true)
+        .in_state(&state)
+        .unwrap_or_else(|errors| panic!("{errors}"));
+    let root = begins(&floating, "floating_base").expect("a pose");
+    assert_eq!(root, Pose::new(turned, Vector3::new(1.0, 2.0, 3.0)));
+    let swing = begins(&floating, "swing").expect("an attitude");
+    assert!((swing.rotation - swung).amax() < 1e-15, "{swing:?}");
+    assert_eq!(swing.translation, Vector3::zeros());
+
+    let fixed = robot(false)
+        .in_state(&state)
+        .unwrap_or_else(|errors| panic!("{errors}"));
+    let told = fixed.notices.iter().map(ToString::to_string);
+    assert!(
+        told.into_iter()
+            .any(|note| note.contains("the root is fixed"))
+    );
+
+    let wrong = [
+        (String::from("swing"), state[0].1.clone()),
+        (String::from("wing"), state[1].1.clone()),
+    ];
+    let told = robot(true)
+        .in_state(&wrong)
+        .map_or_else(|errors| errors.to_string(), |_| String::new());
+    for wanted in [
+        "joint `swing` is a `ball_child`: 7 numbers do not say where it stands",
+        "there is no joint `wing`",
     ] {
         assert!(told.contains(wanted), "{wanted} is not in {told}");
     }

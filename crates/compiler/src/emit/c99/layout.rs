@@ -81,22 +81,39 @@ fn stored(joint: &JointType) -> Vec<String> {
     let units = units.map(|unit| if unit == "1" { String::new() } else { unit });
     let scalars = coordinates.iter().zip(units).enumerate();
     scalars
-        .map(|(k, (symbol, unit))| named(symbol.name(), &unit) + &moved_by(joint, k))
+        .map(|(k, (symbol, unit))| {
+            named(symbol.name(), &unit) + &moved_by(joint, (k, symbol.name()))
+        })
         .collect()
 }
 
-/// `` of `elbow` and `wrist` (goes 0.5 times as far) ``; nothing where the scene gives the joint as it is.
-fn moved_by(joint: &JointType, coordinate: usize) -> String {
+/// `` of `elbow` and `wrist` (which is 0.5 q + 0.1) ``; nothing where the scene gives the joint as it is.
+fn moved_by(joint: &JointType, (coordinate, symbol): (usize, &str)) -> String {
     let Some(linkage) = &joint.linkage else {
         return String::new();
     };
-    let joints = linkage
-        .moved_by(coordinate)
-        .map(|(name, ratio)| match ratio {
-            1.0 => format!("`{}`", one_line(name)),
-            _ => format!("`{}` (goes {ratio} times as far)", one_line(name)),
-        });
+    let joints = linkage.moved_by(coordinate).map(|(name, line)| {
+        let name = one_line(name);
+        match line {
+            [1.0, 0.0] => format!("`{name}`"),
+            [ratio, offset] => format!("`{name}` (which is {})", of_line(symbol, ratio, offset)),
+        }
+    });
     format!(" of {}", joints.collect::<Vec<_>>().join(" and "))
+}
+
+/// `-1.7 q + 0.4`.
+fn of_line(symbol: &str, ratio: f64, offset: f64) -> String {
+    let scaled = match ratio {
+        1.0 => symbol.to_owned(),
+        -1.0 => format!("-{symbol}"),
+        _ => format!("{ratio} {symbol}"),
+    };
+    match offset {
+        0.0 => scaled,
+        0.0.. => format!("{scaled} + {offset}"),
+        _ => format!("{scaled} - {}", -offset),
+    }
 }
 
 /// Efforts do work with velocities.
