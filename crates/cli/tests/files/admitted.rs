@@ -101,7 +101,7 @@ fn what_other_programs_wrote_is_replaced_by_force_alone() {
         let words = words(command, read, "out");
         let told = place.refused(&words, 2);
         assert!(
-            told.contains("out is there already") && told.contains("--force"),
+            told.contains("out exists and was edited") && told.contains("--force"),
             "{told}"
         );
         assert_eq!(place.read("out"), b"t_s,energy_J,mine\n0,1,2\n");

@@ -54,7 +54,7 @@ fn metadata_of_a_csv_tell_its_columns_and_its_error() {
     );
     let told = place.refused("simulate top.toml --t-end 0.1 --csv b.csv", 2);
     assert!(
-        told.contains("b.csv-metadata.json is there already"),
+        told.contains("b.csv-metadata.json exists and was edited"),
         "{told}"
     );
     assert!(!place.names().contains(&"b.csv".to_owned()));

@@ -13,9 +13,12 @@ pub(super) struct Companion {
     pub(super) steps: f64,
     /// Distances that speeds and configuration have gone, in the units of errors, at the times of comparison: what rounding of each step adds to.
     pub(super) paths: Vec<f64>,
-    /// Where its steps begin and end, s; none where nobody asks.
+    /// Where its steps begin and end, s, without those that were cut short, which have less than their share of the error; none where nobody asks.
     pub(super) spans: Vec<[f64; 2]>,
 }
+
+/// Steps in which a motion finds the length of its steps.
+const FIRST_STEPS: usize = 3;
 
 /// How far speeds and coordinates have gone.
 #[derive(Default)]
@@ -51,7 +54,9 @@ impl Path {
             let change = changes.fold(0.0, f64::max) / largest.max(1.0);
             self.length += change.max((step.time - self.time) * largest);
             self.speeds.copy_from_slice(step.speeds);
-            if self.keeps_spans {
+            // The first steps grow to their length, and those that end on a sample are cut.
+            let is_whole = step.number > FIRST_STEPS && step.sample.is_none();
+            if self.keeps_spans && is_whole {
                 self.spans.push([self.time, step.time]);
             }
         }

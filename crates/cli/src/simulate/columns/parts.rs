@@ -69,7 +69,7 @@ pub const MECHANISM: [Part<Whole>; 4] = [
         key: "potential_energy",
         names: &["potential_energy"],
         unit: "J",
-        meaning: "potential energy of the bodies in gravity, zero at the world's origin",
+        meaning: "potential energy, of gravity (zero at the world's origin) and of springs",
         read: |whole, row| row.push(whole.potential_energy),
     },
 ];
