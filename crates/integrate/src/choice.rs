@@ -30,6 +30,9 @@ const ORDER_9: f64 = 3e-8;
 /// First steps of the exponential method are taken for what is damped too where they cost no more than this part of the work of an implicit one.
 const TRIAL: f64 = 0.25;
 
+/// Where nothing is stiff, so many first steps of the exponential method show whether it pays.
+const FEW: usize = 8;
+
 /// The most speeds for which the exponential method is tried: its first steps take a second or so there, and each that it saves costs as much as hundreds.
 const MOST_TRIED: usize = 32;
 
@@ -97,10 +100,7 @@ impl Choice {
         let slow = bare.modes().first().map_or(0.0, Mode::rate);
         let slow = slow.max(wanted.span.recip());
         let Some(modes) = Stiff::new(&all, slow) else {
-            let rate = all.modes().first().map_or(0.0, Mode::rate);
-            return Ok(wanted.explicit(&format!(
-                "no rate is far above that of the motion (fastest {rate:.3e} 1/s)"
-            )));
+            return Ok(wanted.choose_slow(mechanism, state, &all));
         };
         Ok(wanted.choose(mechanism, state, &modes))
     }
@@ -112,7 +112,7 @@ struct Stiff<'a> {
     fastest: &'a Mode,
     /// The fastest that is not damped, of those that are far above the motion.
     lasting: Option<&'a Mode>,
-    /// The rate of the motion, with that of its slower modes, 1/s.
+    /// The rate of the motion, with that of its slower modes that are not damped, 1/s: what is damped is over soon, and need not be followed.
     slow: f64,
 }
 
@@ -126,8 +126,8 @@ impl<'a> Stiff<'a> {
         Some(Self {
             spectrum,
             fastest: fast.first()?,
-            lasting: fast.iter().find(|mode| !mode.is_damped()),
-            slow: slow.max(others.first().map_or(0.0, Mode::rate)),
+            lasting: lasting(fast),
+            slow: slow.max(lasting(others).map_or(0.0, Mode::rate)),
         })
     }
 
@@ -164,6 +164,43 @@ impl Wanted {
         }
     }
 
+    /// Where nothing is stiff.
+    fn choose_slow(&self, mechanism: &Arc<Mechanism>, state: &State, all: &Spectrum) -> Choice {
+        let rate = all.modes().first().map_or(0.0, Mode::rate);
+        let nearly_linear = match self.is_bound {
+            true => None,
+            false => self.nearly_linear((mechanism, state), all, self.steps(rate, 8)),
+        };
+        nearly_linear.unwrap_or_else(|| {
+            self.explicit(&format!(
+                "no rate is far above that of the motion (fastest {rate:.3e} 1/s)"
+            ))
+        })
+    }
+
+    /// The exponential method, if springs and dampers are so nearly linear that its first steps lead further than those of explicit methods, which take the work `followed`.
+    fn nearly_linear(
+        &self,
+        (mechanism, state): (&Arc<Mechanism>, &State),
+        all: &Spectrum,
+        followed: f64,
+    ) -> Option<Choice> {
+        let work = exponential_work(all.speeds());
+        let is_cheap = all.speeds() <= MOST_TRIED && FEW as f64 * work < TRIAL * followed;
+        if !is_cheap || all.modes().iter().any(Mode::is_growing) {
+            return None;
+        }
+        let method = Method::controlled(Scheme::Exponential, self.tolerance);
+        let step = step_probe::step(mechanism, state, (self.span, FEW), method)?;
+        let pays = step > PREFERENCE * work * self.span / followed;
+        pays.then(|| Choice {
+            scheme: Scheme::Exponential,
+            reason: format!(
+                "springs and dampers are nearly linear, so that first steps of the exponential method are {step:.1e} s"
+            ),
+        })
+    }
+
     /// By what is stiff.
     fn choose(&self, mechanism: &Arc<Mechanism>, state: &State, stiff: &Stiff<'_>) -> Choice {
         let implicit = self.implicit(stiff);
@@ -182,7 +219,7 @@ impl Wanted {
 
     /// The mode for which the exponential method is tried: one that is not damped; one that is, where trying costs little beside what an implicit method takes.
     fn tried<'a>(&self, stiff: &Stiff<'a>, is_implicit: bool) -> Option<&'a Mode> {
-        let trial = step_probe::TAKEN as f64 * exponential_work(stiff);
+        let trial = step_probe::TAKEN as f64 * exponential_work(stiff.spectrum.speeds());
         let is_cheap = is_implicit && !self.is_bound && trial < TRIAL * self.implicit_work(stiff);
         stiff.lasting.or(is_cheap.then_some(stiff.fastest))
     }
@@ -228,14 +265,15 @@ impl Wanted {
                 "followed, as the exponential method is for {MOST_TRIED} speeds at most, and there are {speeds}"
             ));
         }
-        let work = exponential_work(stiff);
+        let work = exponential_work(stiff.spectrum.speeds());
         let held = self.span * stiff.fastest.rate() / STABLE;
         let followed = match self.implicit(stiff) {
             Some(_) => self.implicit_work(stiff),
             None => self.steps(mode.rate(), 8).max(held),
         };
         if followed <= PREFERENCE * self.steps(stiff.slow, 4) * work && !mode.is_damped() {
-            return Err("it costs less to follow than to solve for".into());
+            let nearly_linear = self.nearly_linear((mechanism, state), stiff.spectrum, followed);
+            return nearly_linear.ok_or_else(|| "it costs less to follow than to solve for".into());
         }
         let first = |scheme, most| {
             let method = Method::controlled(scheme, self.tolerance);
@@ -270,8 +308,13 @@ impl Wanted {
     }
 }
 
+/// The first mode that is not damped: the fastest one.
+fn lasting(modes: &[Mode]) -> Option<&Mode> {
+    modes.iter().find(|mode| !mode.is_damped())
+}
+
 /// Work of a step of the exponential method, in steps of an explicit one: functions of a matrix of 2n rows against n bodies.
-fn exponential_work(stiff: &Stiff<'_>) -> f64 {
-    let speeds = stiff.spectrum.speeds() as f64;
+fn exponential_work(speeds: usize) -> f64 {
+    let speeds = speeds as f64;
     IMPLICIT + 0.5 * speeds * speeds
 }

@@ -7,7 +7,7 @@ use core::ops::ControlFlow;
 use hamel_runtime::dynamics::Recursive;
 use hamel_runtime::mechanism::Mechanism;
 
-/// Steps taken at first. The second half of them counts, as the first ones grow to their length.
+/// Steps taken at first, where no fewer are wanted. The second half of them counts, as the first ones grow to their length.
 pub(super) const TAKEN: usize = 16;
 
 /// Steps still grow where the last one is longer than this times the mean of those that count.
@@ -45,7 +45,7 @@ pub(super) fn step(
         number: 0,
         time: state.time,
     };
-    let (mut middle, mut end, mut taken) = (start, start, TAKEN);
+    let (mut middle, mut end, mut taken) = (start, start, TAKEN.min(most));
     let mut watch = |step: &Step<'_>| {
         let before = end;
         end = Progress {
@@ -69,7 +69,7 @@ pub(super) fn step(
     let mut dynamics = Recursive::new(Arc::clone(mechanism));
     integrate(&mut dynamics, state, &options, &mut no_inputs, &mut watch).ok()?;
     // A motion of few steps counts as a whole.
-    let is_short = end.number <= TAKEN && end.time >= options.t_end;
+    let is_short = end.number <= taken && end.time >= options.t_end;
     let is_whole = is_short || end.number <= middle.number;
     Some(end.mean_since(if is_whole { &start } else { &middle }))
 }

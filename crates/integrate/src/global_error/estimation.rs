@@ -21,7 +21,7 @@ const LEAST_RATIO: f64 = 10.0;
 
 /// The motion is compared at this many times at most, and not more often than each so many steps of a companion: landing on them must not be what its steps are.
 const MOST_TIMES: usize = 64;
-const STEPS_BETWEEN: f64 = 4.0;
+const STEPS_BETWEEN: f64 = 8.0;
 
 /// Motions of fewer steps are compared with a finer companion, which costs little then: coarser ones would have too few steps to tell an order.
 const FEW: usize = 16;
@@ -61,9 +61,6 @@ const CROSSING: f64 = 0.3;
 
 /// The highest order of methods whose errors fall evenly where something bends: stages of higher ones come past the end of a step by more than the error that is told of it.
 const HIGHEST_AT_BENDS: u32 = 5;
-
-/// Tolerances up to this one are tight enough for those of higher order: at compliant limits and backlash, estimates were too low by a factor of 7 at most there, and of 130 at 1e-4.
-const TIGHT_AT_BENDS: f64 = 1e-6;
 
 /// Errors above this part of the motion are not small, so that nothing about them is linear.
 const LARGE: f64 = 1e-2;
@@ -133,9 +130,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
             self.doubt.get_or_insert(Doubt::Oscillations);
         }
         let count = self.solution.statistics.bends;
-        let control = self.options.method.control();
-        let is_tight = control.is_some_and(|control| control.tolerance <= TIGHT_AT_BENDS);
-        if count > 0 && self.order() > HIGHEST_AT_BENDS && !is_tight {
+        if count > 0 && self.order() > HIGHEST_AT_BENDS {
             self.doubt.get_or_insert(Doubt::Bends { count });
         }
         GlobalError {
@@ -222,7 +217,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
         };
         let left = left.min(0.5) / (1.0 - left.min(0.5));
         let from_steps: Vec<f64> = near.iter().map(|near| near * left).collect();
-        let errors = self.with_rounding(from_steps, (second, &coarse), times);
+        let errors = self.with_rounding(from_steps, [(first, &fine), (second, &coarse)], times);
         let last = errors.0.last().map_or(0.0, |error| error.rounding);
         let is_above_rounding = near.last().is_some_and(|&near| near > 100.0 * last);
         if is_above_rounding && observed < DOUBTED_ORDER * order {
@@ -302,19 +297,19 @@ impl<'a, 'r> Estimation<'a, 'r> {
         if is_alike && !self.is_exact() && fine.steps <= self.solution.statistics.steps as f64 {
             self.doubt.get_or_insert(Doubt::Steps);
         }
-        Ok(self.with_rounding(from_steps, (self.options.method, &fine), times))
+        Ok(self.with_rounding(from_steps, [(self.options.method, &fine); 2], times))
     }
 
-    /// Errors from steps with those from rounding, as a companion beside `other` tells them where they count.
+    /// Errors from steps with those from rounding, as a companion beside one of `others` tells them where they count.
     fn with_rounding(
         &mut self,
         from_steps: Vec<f64>,
-        (method, other): (Method, &Companion),
+        others: [(Method, &Companion); 2],
         times: &[State],
     ) -> (Vec<ErrorParts>, Option<f64>) {
         let is_near = from_steps.iter().any(|&error| error < FAR_ABOVE_ROUNDING);
         let (conditioning, growth) = match is_near {
-            true => self.conditioning(method, other, times),
+            true => self.conditioning(others, times),
             false => (None, Vec::new()),
         };
         let scatter = self.scatter(times);
@@ -324,7 +319,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
         let errors = from_steps.into_iter().enumerate().map(|(i, steps)| {
             let growth = growth.get(i).copied().unwrap_or(1.0);
             let length = times[i].time - self.initial.time;
-            let path = other.paths[i].max(1.0);
+            let path = others[1].1.paths[i].max(1.0);
             let rounding = self.unit(&times[i]) * growth.max(path);
             // Paths tell how errors of speeds add up in coordinates; what goes beyond is instability.
             let grown = (growth / path).max(1.0);
@@ -448,23 +443,19 @@ impl<'a, 'r> Estimation<'a, 'r> {
         }
     }
 
-    /// The conditioning, and how much a relative change of the speeds has grown at each time.
+    /// The conditioning, and how much a relative change of the speeds has grown at each time, by a neighbour of the coarser companion. Neighbours that are far apart in the end do not tell how those
+    /// go apart that are near: one of the finer companion is nearer to it.
     fn conditioning(
         &mut self,
-        method: Method,
-        beside: &Companion,
+        [fine, coarse]: [(Method, &Companion); 2],
         times: &[State],
     ) -> (Option<f64>, Vec<f64>) {
-        let tolerance = method.control().map_or(1e-6, |control| control.tolerance);
-        let change = (10.0 * tolerance).clamp(1e-7, 1e-3);
-        let found = self.growth((method, change), &beside.states, times);
+        let (change, least) = (change_of(coarse.0), change_of(fine.0));
+        let found = self.growth((coarse.0, change), &coarse.1.states, times);
         let is_small = |growth: &Vec<f64>| growth.iter().all(|&own| own * change < LARGE);
-        let least = self.options.method.control();
-        let least = least.map_or(change, |control| (10.0 * control.tolerance).max(1e-12));
-        // Neighbours that are far apart at the end do not tell how those go apart that are near.
         let found = match found {
-            Some(growth) if !is_small(&growth) && least < 1e-2 * change => {
-                let nearer = self.growth((self.options.method, least), times, times);
+            Some(growth) if !is_small(&growth) && least < change => {
+                let nearer = self.growth((fine.0, least), &fine.1.states, times);
                 nearer.or(Some(growth))
             }
             found => found,
@@ -515,6 +506,12 @@ impl<'a, 'r> Estimation<'a, 'r> {
             .collect()
     }
 }
+/// The part by which speeds of a neighbour differ, above the errors of a method.
+fn change_of(method: Method) -> f64 {
+    let tolerance = method.control().map_or(1e-6, |control| control.tolerance);
+    (10.0 * tolerance).clamp(1e-7, 1e-3)
+}
+
 /// Distances with those at the times beside them: two motions may cross by chance where they are far from each other a moment before and after.
 fn beside(distances: &[f64]) -> Vec<f64> {
     let at = |i: Option<usize>| i.and_then(|i| distances.get(i)).copied().unwrap_or(0.0);
