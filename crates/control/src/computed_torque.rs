@@ -1,6 +1,7 @@
 //! Computed torque: inverse dynamics at the accelerations of a reference, corrected by the error.
 
 use super::error::{positive, require};
+use super::held::Loop;
 use super::port_reference::OfJoint;
 use super::state::{check_state, deviation, largest, store_measures};
 use super::{ControlError, Controller, DEVIATIONS, Measure, PortReference, Reference};
@@ -9,6 +10,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use hamel_runtime::dynamics::Recursive;
 use hamel_runtime::joint::MOST_FREEDOMS;
+use nalgebra::DMatrix;
 
 /// How errors are to fade: as `ë + 2 ζ ω ė + ω² e = 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,9 +80,22 @@ impl ComputedTorque {
     /// The law whose efforts are held for `period` seconds each time: joints that are led by their ports are not led past a dead point in between.
     ///
     /// # Errors
-    /// A period that is not positive, or not finite.
+    /// A period that is not positive, or not finite, or over which errors grow: as long as v̇* is followed, e is that of a double integrator.
     pub fn held(mut self, period: f64) -> Result<Self, ControlError> {
-        positive("period", period)?;
+        let ErrorDynamics {
+            frequency,
+            damping_ratio,
+        } = self.error_dynamics;
+        let own = Loop {
+            a: &DMatrix::from_row_slice(2, 2, &[0.0, 1.0, 0.0, 0.0]),
+            b: &DMatrix::from_row_slice(2, 1, &[0.0, 1.0]),
+            gain: &DMatrix::from_row_slice(
+                1,
+                2,
+                &[frequency * frequency, 2.0 * damping_ratio * frequency],
+            ),
+        };
+        own.check(period)?;
         self.period = Some(period);
         Ok(self)
     }

@@ -137,6 +137,15 @@ pub enum ControlError {
         /// What their product may be.
         limit: f64,
     },
+    /// Efforts that are held over a period make deviations grow.
+    #[error(
+        "the period of {} s is too long: with efforts held over it, deviations grow from one period to the next. Make it less than {longest:.1e} s, or the gains smaller", Number(*.period))]
+    HeldTooLong {
+        /// The period, s.
+        period: f64,
+        /// The longest at which they do not grow, to first order, s.
+        longest: f64,
+    },
     /// The optimiser refuses the problem itself.
     #[error("the optimiser cannot be set up: {0}")]
     Optimizer(String),

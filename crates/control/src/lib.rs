@@ -21,6 +21,7 @@ mod computed_torque;
 mod energy;
 mod error;
 mod feedback;
+mod held;
 mod path;
 mod port_reference;
 #[cfg(feature = "predictive")]

@@ -1,6 +1,7 @@
 //! LQR: the feedback that holds an equilibrium at the least cost, to first order about it.
 
 use super::error::{require, size};
+use super::held::Loop;
 use super::riccati::{self, Optimum, Weighting};
 use super::state::{check_free, check_state, deviation, largest, store_measures};
 use super::{ControlError, Controller, DEVIATIONS, Measure};
@@ -334,6 +335,21 @@ impl Regulator {
             x: vec![0.0; equilibrium.states()],
             equilibrium,
         })
+    }
+
+    /// The law whose efforts are held for `period` seconds each time.
+    ///
+    /// # Errors
+    /// A period that is not positive, or not finite, or over which deviations grow, to first order about the goal; what [`Equilibrium::linearized`] refuses.
+    pub fn held(self, period: f64) -> Result<Self, ControlError> {
+        let (a, b) = self.equilibrium.linearized()?;
+        let own = Loop {
+            a: &a,
+            b: &b,
+            gain: &self.optimum.gain,
+        };
+        own.check(period)?;
+        Ok(self)
     }
 
     /// The equilibrium that it holds.

@@ -264,7 +264,11 @@ impl Control {
             }
             ControlLaw::Lqr(goal) => {
                 let equilibrium = goal.equilibrium(mechanism)?;
-                Box::new(Regulator::new(equilibrium, &goal.weights)?)
+                let law = Regulator::new(equilibrium, &goal.weights)?;
+                Box::new(match self.period {
+                    Some(period) => law.held(period)?,
+                    None => law,
+                })
             }
             ControlLaw::EnergyShaping { goal, ports, pump } => {
                 Box::new(EnergyShaping::new(mechanism, goal, ports.clone(), *pump)?)

@@ -21,7 +21,7 @@ const LEAST_RATIO: f64 = 10.0;
 
 /// The motion is compared at this many times at most, and not more often than each so many steps of a companion: landing on them must not be what its steps are.
 const MOST_TIMES: usize = 64;
-const STEPS_BETWEEN: f64 = 8.0;
+const STEPS_BETWEEN: f64 = 12.0;
 
 /// Motions of fewer steps are compared with a finer companion, which costs little then: coarser ones would have too few steps to tell an order.
 const FEW: usize = 16;
@@ -62,8 +62,12 @@ const CROSSING: f64 = 0.3;
 /// The highest order of methods whose errors fall evenly where something bends: stages of higher ones come past the end of a step by more than the error that is told of it.
 const HIGHEST_AT_BENDS: u32 = 5;
 
+/// Neighbours at this distance are too far apart to tell how those go apart that are near.
+const APART: f64 = 0.1;
+
 /// Errors above this part of the motion are not small, so that nothing about them is linear.
 const LARGE: f64 = 1e-2;
+
 /// An estimate that is being made.
 pub(super) struct Estimation<'a, 'r> {
     dynamics: &'a mut dyn Dynamics,
@@ -452,7 +456,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
     ) -> (Option<f64>, Vec<f64>) {
         let (change, least) = (change_of(coarse.0), change_of(fine.0));
         let found = self.growth((coarse.0, change), &coarse.1.states, times);
-        let is_small = |growth: &Vec<f64>| growth.iter().all(|&own| own * change < LARGE);
+        let is_small = |growth: &Vec<f64>| growth.iter().all(|&own| own * change < APART);
         let found = match found {
             Some(growth) if !is_small(&growth) && least < change => {
                 let nearer = self.growth((fine.0, least), &fine.1.states, times);

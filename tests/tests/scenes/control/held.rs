@@ -5,6 +5,7 @@ use hamel::dynamics::Recursive;
 use hamel::integrate::{
     Form, IntegrateError, Method, Options, integrate, integrate_held, no_observer,
 };
+use hamel_scene::Scene;
 use std::sync::Arc;
 
 fn options(form: Form, method: Method, t_end: f64, samples: &[f64]) -> Options {
@@ -101,5 +102,27 @@ fn periods_out_of_range_are_refused() {
             ),
             "{option}"
         );
+    }
+}
+
+/// A double integrator with ω = 10 rad/s and ζ = 1 is stable up to 0.1 s (Jury). The regulator of the pendulum brings it back at some 4 1/s.
+#[test]
+fn periods_over_which_deviations_grow_are_refused() {
+    for (name, kind, refused, taken) in [
+        ("panda7_tracking", "computed_torque", 0.11, 0.09),
+        ("ball_pendulum_upright", "lqr", 2.0, 0.01),
+    ] {
+        let kind = format!("kind = \"{kind}\"");
+        let with = |period: f64| {
+            let text = super::text(name).replace(&kind, &format!("{kind}\nperiod = {period:?}"));
+            Scene::parse(&text, "scene.toml", &hamel_joints::registry())
+        };
+        let told = with(refused).expect_err("deviations grow").to_string();
+        let period = format!("the period of {refused} s is too long");
+        assert!(
+            told.contains(&period) && told.contains("Make it less than"),
+            "{told}"
+        );
+        assert!(with(taken).is_ok(), "{name}");
     }
 }
