@@ -9,6 +9,7 @@ mod coupled;
 mod dense;
 mod elements;
 mod energy;
+mod estimates;
 mod events;
 mod finite;
 mod motion;
