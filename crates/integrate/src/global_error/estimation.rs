@@ -65,8 +65,8 @@ const HIGHEST_AT_BENDS: u32 = 5;
 /// Neighbours at this distance are too far apart to tell how those go apart that are near.
 const APART: f64 = 0.1;
 
-/// Errors above this part of the motion are not small, so that nothing about them is linear.
-const LARGE: f64 = 1e-2;
+/// Errors that are told as more than this part of the motion may be more than 1 % of it, and are not small, so that nothing about them is linear.
+const LARGE: f64 = 7e-3;
 
 /// An estimate that is being made.
 pub(super) struct Estimation<'a, 'r> {

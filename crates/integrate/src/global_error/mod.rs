@@ -72,7 +72,7 @@ pub enum Doubt {
 impl Display for Doubt {
     fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::Large => f.write_str("the error is more than 1 % of the motion"),
+            Self::Large => f.write_str("the error may be more than 1 % of the motion"),
             Self::Order { observed, order } => write!(
                 f,
                 "the error of coarser motions falls with order {observed:.1}, the method is of order {order}"
