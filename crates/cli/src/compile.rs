@@ -8,6 +8,7 @@ use hamel_compiler::functions::Kind;
 use hamel_compiler::{Build, Error, Language, explain};
 use hamel_console::files::{Force, admit, first_line, named};
 use hamel_console::output::{self, Failure};
+use std::ffi::OsStr;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
@@ -210,13 +211,14 @@ fn is_own(file: &File) -> bool {
 
 /// What the module is to be written in, by the ending of its file; Rust where there is none.
 fn language(file: Option<&Path>) -> Result<Language, Failure> {
-    let is_hidden = |file: &Path| file.file_name()?.to_str()?.strip_prefix('.').map(drop);
-    if let Some(hidden) =
-        file.filter(|file| file.extension().is_none() && is_hidden(file).is_some())
-    {
+    let has_no_name = |file: &&Path| {
+        let name = file.file_name().map(OsStr::as_encoded_bytes);
+        file.extension().is_none() && name.is_some_and(|name| name.starts_with(b"."))
+    };
+    if let Some(file) = file.filter(has_no_name) {
         return Err(Failure::Options(format!(
             "{}: the file has no name before its ending, and a module is named after its file",
-            hidden.display()
+            file.display()
         )));
     }
     let Some((file, ending)) = file.and_then(|file| Some((file, file.extension()?))) else {

@@ -30,7 +30,7 @@ const ORDER_9: f64 = 3e-8;
 /// First steps of the exponential method are taken for what is damped too where they cost no more than this part of the work of an implicit one.
 const TRIAL: f64 = 0.25;
 
-/// Where nothing is stiff, so many first steps of the exponential method show whether it pays.
+/// So many first steps of the exponential method show whether springs and dampers are nearly linear.
 const FEW: usize = 8;
 
 /// The most speeds for which the exponential method is tried: its first steps take a second or so there, and each that it saves costs as much as hundreds.
@@ -167,10 +167,7 @@ impl Wanted {
     /// Where nothing is stiff.
     fn choose_slow(&self, mechanism: &Arc<Mechanism>, state: &State, all: &Spectrum) -> Choice {
         let rate = all.modes().first().map_or(0.0, Mode::rate);
-        let nearly_linear = match self.is_bound {
-            true => None,
-            false => self.nearly_linear((mechanism, state), all, self.steps(rate, 8)),
-        };
+        let nearly_linear = self.nearly_linear((mechanism, state), all, self.steps(rate, 8));
         nearly_linear.unwrap_or_else(|| {
             self.explicit(&format!(
                 "no rate is far above that of the motion (fastest {rate:.3e} 1/s)"
@@ -187,7 +184,7 @@ impl Wanted {
     ) -> Option<Choice> {
         let work = exponential_work(all.speeds());
         let is_cheap = all.speeds() <= MOST_TRIED && FEW as f64 * work < TRIAL * followed;
-        if !is_cheap || all.modes().iter().any(Mode::is_growing) {
+        if self.is_bound || !is_cheap || all.modes().iter().any(Mode::is_growing) {
             return None;
         }
         let method = Method::controlled(Scheme::Exponential, self.tolerance);

@@ -45,7 +45,8 @@ pub(super) fn step(
         number: 0,
         time: state.time,
     };
-    let (mut middle, mut end, mut taken) = (start, start, TAKEN.min(most));
+    let few = TAKEN.min(most);
+    let (mut middle, mut end, mut taken) = (start, start, few);
     let mut watch = |step: &Step<'_>| {
         let before = end;
         end = Progress {
@@ -69,7 +70,7 @@ pub(super) fn step(
     let mut dynamics = Recursive::new(Arc::clone(mechanism));
     integrate(&mut dynamics, state, &options, &mut no_inputs, &mut watch).ok()?;
     // A motion of few steps counts as a whole.
-    let is_short = end.number <= taken && end.time >= options.t_end;
+    let is_short = end.number <= few && end.time >= options.t_end;
     let is_whole = is_short || end.number <= middle.number;
     Some(end.mean_since(if is_whole { &start } else { &middle }))
 }

@@ -19,7 +19,7 @@ pub struct Accuracy {
     end: Parts,
     /// Of each sample, steps and rounding together.
     samples: Vec<Option<f64>>,
-    /// Change of the last state per relative change of the initial speeds; absent where it was not found.
+    /// Change of the last state per change of the initial speeds, each as a part of the largest of its joint in the motion; absent where it was not found.
     #[serde(skip_serializing_if = "Option::is_none")]
     conditioning: Option<f64>,
     /// Whether it is likely to be right within a factor of ten.

@@ -1,8 +1,8 @@
 //! The way from companions to errors.
 
 use super::companion::{Companion, Path, distance};
-use super::{Doubt, ErrorParts, GlobalError, Run, accelerations};
-use crate::{Form, Method, Options, Scheme, Solution, State, Step, StepControl};
+use super::{Doubt, ErrorParts, GlobalError, Run};
+use crate::{Method, Options, Scheme, Solution, State, Step, StepControl};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -35,9 +35,6 @@ const OSCILLATIONS: f64 = 1e-11;
 /// Motions of as many steps that differ by less than this may have made the same steps.
 const ALIKE: f64 = 1e-11;
 
-/// Above this, what rounding amounts to is of no interest, and is not looked for by a companion of its own.
-const FAR_ABOVE_ROUNDING: f64 = 1e-9;
-
 /// Errors are taken to fall by no less than this part of the order of a method: what is observed between the two coarser motions is less than what follows.
 const LEAST_ORDER: f64 = 0.8;
 
@@ -62,19 +59,16 @@ const CROSSING: f64 = 0.3;
 /// The highest order of methods whose errors fall evenly where something bends: stages of higher ones come past the end of a step by more than the error that is told of it.
 const HIGHEST_AT_BENDS: u32 = 5;
 
-/// Neighbours at this distance are too far apart to tell how those go apart that are near.
-const APART: f64 = 0.1;
-
 /// Errors that are told as more than this part of the motion may be more than 1 % of it, and are not small, so that nothing about them is linear.
 const LARGE: f64 = 7e-3;
 
 /// An estimate that is being made.
 pub(super) struct Estimation<'a, 'r> {
-    dynamics: &'a mut dyn Dynamics,
-    mechanism: Arc<Mechanism>,
-    initial: &'a State,
-    options: &'a Options,
-    solution: &'a Solution,
+    pub(super) dynamics: &'a mut dyn Dynamics,
+    pub(super) mechanism: Arc<Mechanism>,
+    pub(super) initial: &'a State,
+    pub(super) options: &'a Options,
+    pub(super) solution: &'a Solution,
     run: &'a mut Run<'r>,
     evaluations: usize,
     doubt: Option<Doubt>,
@@ -158,11 +152,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
         inner.sort_by(|a, b| a.time.total_cmp(&b.time));
         inner.dedup_by_key(|state| state.time);
         let (_, coarsest) = self.coarser();
-        let longer = match self.ratio(coarsest) {
-            Some(ratio) => Float::powf(ratio, 1.0 / f64::from(self.order())),
-            None => 0.25,
-        };
-        let coarse = self.solution.statistics.steps as f64 * longer;
+        let coarse = self.solution.statistics.steps as f64 * self.shorter(coarsest);
         let most = ((coarse / STEPS_BETWEEN) as usize).clamp(1, MOST_TIMES);
         let stride = (inner.len() / most).max(1);
         let chosen = inner.iter().enumerate();
@@ -176,7 +166,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
     }
 
     /// Whether all bodies were free, so that no step was an approximation: the exponential method evaluates no derivatives then.
-    fn is_exact(&self) -> bool {
+    pub(super) fn is_exact(&self) -> bool {
         let is_exponential = *self.options.method.scheme() == Scheme::Exponential;
         is_exponential && self.solution.statistics.jacobians == 0
     }
@@ -211,12 +201,8 @@ impl<'a, 'r> Estimation<'a, 'r> {
         }
         let slope = LEAST_SLOPE.min(used / (LEAST_ORDER * order));
         let by_tolerance = self.ratio(first).map_or(1.0, |r| Float::powf(r, slope));
-        let wanted = match self.ratio(first) {
-            Some(ratio) => Float::powf(ratio, 1.0 / order),
-            None => 0.5,
-        };
         let left = match self.are_cut() {
-            true => self.left_by_samples(&fine, used, (wanted, by_tolerance)),
+            true => self.left_by_samples(&fine, used, (self.shorter(first), by_tolerance)),
             false => by_steps.min(by_tolerance),
         };
         let left = left.min(0.5) / (1.0 - left.min(0.5));
@@ -266,12 +252,20 @@ impl<'a, 'r> Estimation<'a, 'r> {
 
     /// Whether steps of a companion are much shorter than its tolerance would have them, with few samples to land on: stability holds them, for one.
     fn is_held(&self, companion: Method, steps: f64) -> bool {
-        let Some(ratio) = self.ratio(companion) else {
-            return false;
-        };
+        let is_controlled = self.options.method.control().is_some();
         let is_free = 4 * self.solution.samples.len() < self.solution.statistics.steps;
-        let expected = Float::powf(ratio, 1.0 / f64::from(self.order()));
-        is_free && steps > Float::powf(expected, HELD)
+        is_controlled && is_free && steps > Float::powf(self.shorter(companion), HELD)
+    }
+
+    /// The part by which steps of the motion are shorter than those of a companion, as tolerances or fixed steps have them.
+    fn shorter(&self, companion: Method) -> f64 {
+        match (self.options.method, companion) {
+            (Method::Fixed { dt, .. }, Method::Fixed { dt: other, .. }) => dt / other,
+            _ => {
+                let ratio = self.ratio(companion).unwrap_or(1.0);
+                Float::powf(ratio, 1.0 / f64::from(self.order()))
+            }
+        }
     }
 
     /// The tolerance over that of a companion, where there are tolerances.
@@ -304,75 +298,6 @@ impl<'a, 'r> Estimation<'a, 'r> {
         Ok(self.with_rounding(from_steps, [(self.options.method, &fine); 2], times))
     }
 
-    /// Errors from steps with those from rounding, as a companion beside one of `others` tells them where they count.
-    fn with_rounding(
-        &mut self,
-        from_steps: Vec<f64>,
-        others: [(Method, &Companion); 2],
-        times: &[State],
-    ) -> (Vec<ErrorParts>, Option<f64>) {
-        let is_near = from_steps.iter().any(|&error| error < FAR_ABOVE_ROUNDING);
-        let (conditioning, growth) = match is_near {
-            true => self.conditioning(others, times),
-            false => (None, Vec::new()),
-        };
-        let scatter = self.scatter(times);
-        // What rounding has left in the estimate of a step is in the step as well.
-        let limit = self.solution.rounding.as_ref();
-        let least = limit.map_or(0.0, |limit| limit.error);
-        let errors = from_steps.into_iter().enumerate().map(|(i, steps)| {
-            let growth = growth.get(i).copied().unwrap_or(1.0);
-            let length = times[i].time - self.initial.time;
-            let path = others[1].1.paths[i].max(1.0);
-            let rounding = self.unit(&times[i]) * growth.max(path);
-            // Paths tell how errors of speeds add up in coordinates; what goes beyond is instability.
-            let grown = (growth / path).max(1.0);
-            let rounding = rounding
-                .max(Float::sqrt(length) * scatter * grown)
-                .max(least);
-            ErrorParts { steps, rounding }
-        });
-        (errors.collect(), conditioning)
-    }
-
-    /// What rounding of accelerations makes of velocities over the root of the time: it is another one at every step, so that it adds up as a random walk does.
-    fn scatter(&mut self, times: &[State]) -> f64 {
-        if self.options.form == Form::Hamiltonian || self.is_exact() {
-            return 0.0;
-        }
-        let length = self.solution.state.time - self.initial.time;
-        let step = length / self.solution.statistics.steps.max(1) as f64;
-        Float::sqrt(step) * accelerations::rounding(self.dynamics, self.initial.time, times)
-    }
-
-    /// What one rounding of the state amounts to: half an ulp, and of momenta what these do to speeds.
-    fn unit(&mut self, state: &State) -> f64 {
-        let unit = 0.5 * f64::EPSILON;
-        if self.options.form == Form::Lagrangian {
-            return unit;
-        }
-        let mut rounded = state.clone();
-        let mut momenta = state.speeds.clone();
-        let found = self
-            .dynamics
-            .momenta(&state.configuration, &state.speeds, &mut momenta);
-        let signs = [unit, -unit].into_iter().cycle();
-        for (momentum, sign) in momenta.iter_mut().zip(signs) {
-            // A change of a rounding would be lost: this one is a thousand of them.
-            *momentum *= 1.0 + 1024.0 * sign;
-        }
-        let found = found.and_then(|()| {
-            self.dynamics
-                .speeds(&state.configuration, &momenta, &mut rounded.speeds)
-        });
-        match found {
-            Ok(()) => {
-                (distance(&self.mechanism, &rounded, state).unwrap_or(0.0) / 1024.0).max(unit)
-            }
-            Err(_) => unit,
-        }
-    }
-
     /// Two methods with coarser steps.
     fn coarser(&self) -> (Method, Method) {
         match self.options.method {
@@ -395,7 +320,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
         }
     }
 
-    fn companion(
+    pub(super) fn companion(
         &mut self,
         method: Method,
         times: &[State],
@@ -447,75 +372,13 @@ impl<'a, 'r> Estimation<'a, 'r> {
         }
     }
 
-    /// The conditioning, and how much a relative change of the speeds has grown at each time, by a neighbour of the coarser companion. Neighbours that are far apart in the end do not tell how those
-    /// go apart that are near: one of the finer companion is nearer to it.
-    fn conditioning(
-        &mut self,
-        [fine, coarse]: [(Method, &Companion); 2],
-        times: &[State],
-    ) -> (Option<f64>, Vec<f64>) {
-        let (change, least) = (change_of(coarse.0), change_of(fine.0));
-        let found = self.growth((coarse.0, change), &coarse.1.states, times);
-        let is_small = |growth: &Vec<f64>| growth.iter().all(|&own| own * change < APART);
-        let found = match found {
-            Some(growth) if !is_small(&growth) && least < change => {
-                let nearer = self.growth((fine.0, least), &fine.1.states, times);
-                nearer.or(Some(growth))
-            }
-            found => found,
-        };
-        let growth = found.unwrap_or_default();
-        (growth.last().copied(), growth)
-    }
-
-    /// How far a neighbour is carried away, as a part of the change of its speeds.
-    fn growth(
-        &mut self,
-        (method, change): (Method, f64),
-        from: &[State],
-        times: &[State],
-    ) -> Option<Vec<f64>> {
-        let moved = self.beside(change, times)?;
-        let moved = self.companion(method, times, &moved).ok()?;
-        let growth = self.distances(&moved.states, from);
-        Some(growth.iter().map(|distance| distance / change).collect())
-    }
-
-    /// The first state with other speeds, where something moves: one larger by a part of the largest that its joint has there or at `times`, the next one smaller, and what constraints make of these.
-    /// The speeds of driven joints are given.
-    fn beside(&mut self, change: f64, times: &[State]) -> Option<State> {
-        let mut from = self.initial.clone();
-        for (index, body) in self.mechanism.joints() {
-            if self.mechanism.is_driven(index) {
-                continue;
-            }
-            let own = body.ranges().speeds.clone();
-            let states = core::iter::once(self.initial).chain(times);
-            let all = states.flat_map(|state| &state.speeds[own.clone()]);
-            let largest = all.fold(0.0_f64, |most, v| most.max(v.abs()));
-            let signs = [change, -change].into_iter().cycle();
-            for (speed, sign) in from.speeds[own].iter_mut().zip(signs) {
-                *speed += sign * largest;
-            }
-        }
-        let completed = (self.dynamics).complete_speeds(&from.configuration, &mut from.speeds);
-        let is_moved = from.speeds != self.initial.speeds;
-        (completed.is_ok() && is_moved).then_some(from)
-    }
-
-    fn distances(&self, some: &[State], others: &[State]) -> Vec<f64> {
+    pub(super) fn distances(&self, some: &[State], others: &[State]) -> Vec<f64> {
         let pairs = some.iter().zip(others);
         pairs
             .map(|(a, b)| distance(&self.mechanism, a, b).unwrap_or(f64::NAN))
             .collect()
     }
 }
-/// The part by which speeds of a neighbour differ, above the errors of a method.
-fn change_of(method: Method) -> f64 {
-    let tolerance = method.control().map_or(1e-6, |control| control.tolerance);
-    (10.0 * tolerance).clamp(1e-7, 1e-3)
-}
-
 /// Distances with those at the times beside them: two motions may cross by chance where they are far from each other a moment before and after.
 fn beside(distances: &[f64]) -> Vec<f64> {
     let at = |i: Option<usize>| i.and_then(|i| distances.get(i)).copied().unwrap_or(0.0);

@@ -9,6 +9,7 @@ mod accelerations;
 mod companion;
 mod estimation;
 mod request;
+mod rounding;
 
 use super::{Observer, Options, Solution, State};
 use alloc::format;
@@ -110,7 +111,7 @@ pub struct GlobalError {
     pub samples: Vec<ErrorParts>,
     /// Of the last state.
     pub end: ErrorParts,
-    /// Change of the last state per relative change of the initial speeds; absent where that was not found.
+    /// Change of the last state per change of the initial speeds, each as a part of the largest of its joint in the motion; absent where that was not found.
     pub conditioning: Option<f64>,
     /// Why it may be wrong by more than a factor of ten, if so.
     pub doubt: Option<Doubt>,

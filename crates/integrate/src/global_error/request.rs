@@ -29,7 +29,7 @@ pub struct Tuned {
     pub tolerance: f64,
     /// The error at the end of the motion with that tolerance, as estimated.
     pub error: ErrorParts,
-    /// Change of the last state per relative change of the initial speeds, where that was found.
+    /// [`GlobalError::conditioning`], where that was found.
     pub conditioning: Option<f64>,
     /// Whether the error is as small as was asked.
     pub is_reached: bool,

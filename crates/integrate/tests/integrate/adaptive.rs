@@ -3,10 +3,10 @@
 use crate::common::joints;
 use crate::common::trees::body;
 use crate::stiff::wheel;
-use crate::support::{distance, mixed, options, start};
+use crate::support::{at, distance, estimate, mixed, options, start};
 use hamel_integrate::{
-    Event, Form, GlobalError, Integration, Method, Options, Sampling, Scheme, Solution, State,
-    Step, integrate, no_inputs, no_observer,
+    Event, Form, Integration, Method, Options, Sampling, Scheme, Solution, State, Step, integrate,
+    no_inputs, no_observer,
 };
 use hamel_runtime::dynamics::Recursive;
 use hamel_runtime::elements::{Element, JointSpring};
@@ -62,14 +62,6 @@ fn run(mechanism: &Arc<Mechanism>, initial: &State, options: &Options) -> Soluti
         &mut no_observer,
     );
     solution.expect("integrates")
-}
-
-fn at(configuration: &[f64], speeds: &[f64]) -> State {
-    State {
-        time: 0.0,
-        configuration: configuration.to_vec(),
-        speeds: speeds.to_vec(),
-    }
 }
 
 /// The slope of the logarithm of the error over that of the tolerance is 1 from 1e-4 to 1e-7, and the error is of the size of the tolerance.
@@ -219,18 +211,7 @@ fn the_error_is_estimated() {
     for tolerance in [1e-4, 1e-6] {
         let options = options(Form::Hamiltonian, to(tolerance), 2.0);
         let found = run(&mechanism, &initial, &options);
-        let mut dynamics = Recursive::new(Arc::clone(&mechanism));
-        let told = GlobalError::estimate(
-            &mut dynamics,
-            &initial,
-            &options,
-            &found,
-            &mut |start, options, observer| {
-                let mut dynamics = Recursive::new(Arc::clone(&mechanism));
-                let solution = integrate(&mut dynamics, start, options, &mut no_inputs, observer);
-                solution.map_err(|error| error.to_string())
-            },
-        );
+        let told = estimate(&mechanism, &initial, &options, &found);
         let error = distance(&found.state, &exact);
         println!("{tolerance:e}: {error:e}, {told:?}");
         assert_eq!(told.doubt, None);

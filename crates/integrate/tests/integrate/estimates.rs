@@ -1,42 +1,12 @@
 //! Errors as they are told beside those of closed forms: transients, samples that cut steps, motions that begin at rest.
 
-use crate::support::{on_axis, options, run};
-use hamel_integrate::{
-    Choice, Form, GlobalError, Method, Options, Scheme, State, Wanted, integrate, no_inputs,
-};
-use hamel_runtime::dynamics::Recursive;
-use hamel_runtime::elements::{Element, JointDamper, JointSpring};
+use crate::stiff::wheel;
+use crate::support::{at, estimate, on_axis, options, run};
+use hamel_integrate::{Choice, Form, GlobalError, Method, Options, Scheme, State, Wanted};
 use hamel_runtime::mechanism::{BodySpec, Mechanism};
 use hamel_runtime::spatial::Pose;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
-
-/// A wheel of 1 kg m² on a spring and a damper.
-fn wheel(stiffness: f64, damping: f64) -> Arc<Mechanism> {
-    let body = on_axis(Vector3::zeros(), Matrix3::identity());
-    let spring = JointSpring {
-        name: "spring".into(),
-        body: 0,
-        stiffness: vec![stiffness],
-        rest: vec![0.0],
-    };
-    let damper = JointDamper {
-        name: "damper".into(),
-        body: 0,
-        coefficients: vec![damping],
-    };
-    let elements: Vec<Arc<dyn Element>> = vec![Arc::new(spring), Arc::new(damper)];
-    let mechanism = Mechanism::new(Vector3::zeros(), vec![body]).expect("a mechanism");
-    Arc::new(mechanism.with_elements(elements).expect("they fit"))
-}
-
-fn at(angles: &[f64], speeds: &[f64]) -> State {
-    State {
-        time: 0.0,
-        configuration: angles.to_vec(),
-        speeds: speeds.to_vec(),
-    }
-}
 
 fn told(
     mechanism: &Arc<Mechanism>,
@@ -44,17 +14,7 @@ fn told(
     options: &Options,
 ) -> (Vec<State>, GlobalError) {
     let found = run(mechanism, initial, options);
-    let own = || Recursive::new(Arc::clone(mechanism));
-    let told = GlobalError::estimate(
-        &mut own(),
-        initial,
-        options,
-        &found,
-        &mut |start, options, observer| {
-            let solution = integrate(&mut own(), start, options, &mut no_inputs, observer);
-            solution.map_err(|error| error.to_string())
-        },
-    );
+    let told = estimate(mechanism, initial, options, &found);
     (found.samples, told)
 }
 

@@ -3,8 +3,11 @@
 use crate::common::joints;
 use crate::common::random::Random;
 use crate::common::trees::{configuration, tree};
-use hamel_integrate::{Form, Integration, Method, Options, Scheme, Solution, State};
-use hamel_runtime::dynamics::Reference;
+use hamel_integrate::{
+    Form, GlobalError, Integration, Method, Observer, Options, Scheme, Solution, State, integrate,
+    no_inputs,
+};
+use hamel_runtime::dynamics::{Recursive, Reference};
 use hamel_runtime::mechanism::{BodySpec, Mechanism};
 use hamel_runtime::spatial::{MassProperties, Pose};
 use nalgebra::{Matrix3, Vector3};
@@ -17,6 +20,30 @@ pub fn options(form: Form, method: Method, t_end: f64) -> Options {
         t_end,
         samples: Vec::new(),
     }
+}
+
+/// A state at time 0.
+pub fn at(configuration: &[f64], speeds: &[f64]) -> State {
+    State {
+        time: 0.0,
+        configuration: configuration.to_vec(),
+        speeds: speeds.to_vec(),
+    }
+}
+
+/// The error of a motion without inputs, as it is estimated.
+pub fn estimate(
+    mechanism: &Arc<Mechanism>,
+    initial: &State,
+    options: &Options,
+    solution: &Solution,
+) -> GlobalError {
+    let own = || Recursive::new(Arc::clone(mechanism));
+    let mut companion = |start: &State, options: &Options, observer: &mut Observer<'_>| {
+        let solution = integrate(&mut own(), start, options, &mut no_inputs, observer);
+        solution.map_err(|error| error.to_string())
+    };
+    GlobalError::estimate(&mut own(), initial, options, solution, &mut companion)
 }
 
 /// Dormand–Prince with steps of one size.

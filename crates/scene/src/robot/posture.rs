@@ -48,10 +48,8 @@ impl Import {
     /// # Errors
     /// Those of [`Import::in_posture`]; a pose for a joint that does not move freely, an attitude for one that is no ball joint.
     pub fn in_state(mut self, state: &[(String, Vec<f64>)]) -> Result<Self, Diagnostics> {
-        let follows = |joint: &str| {
-            let mut bodies = self.scene.bodies.iter();
-            bodies.any(|body| body.joint.name.value == *joint && body.mimic.is_some())
-        };
+        let bodies = &self.scene.bodies;
+        let follows = |joint| joint_body(bodies, joint).is_some_and(|i| bodies[i].mimic.is_some());
         let (mut coordinates, mut poses) = (vec![], vec![]);
         for (joint, numbers) in state.iter().filter(|(joint, _)| !follows(joint)) {
             match numbers.as_slice() {
@@ -76,9 +74,7 @@ impl Import {
             _ => (Vector3::from_column_slice(&numbers[..3]), &["free"]),
         };
         let bodies = &mut self.scene.bodies;
-        let own = bodies
-            .iter()
-            .position(|body| body.joint.name.value == joint);
+        let own = joint_body(bodies, joint);
         let is_root = own.is_none() && numbers.len() > 4;
         let root = |body: &BodyDescription| {
             is_root && body.parent.is_none() && body.joint.kind.value == "free"
@@ -120,12 +116,10 @@ impl Import {
 
     fn place(&mut self, joint: &str, coordinate: f64, sink: &mut Sink) {
         let bodies = &mut self.scene.bodies;
-        let found = bodies
-            .iter()
-            .position(|body| body.joint.name.value == joint);
-        let Some(body) = found.map(|index| &mut bodies[index]) else {
+        let Some(index) = joint_body(bodies, joint) else {
             return sink.push(unknown(joint, bodies));
         };
+        let body = &mut bodies[index];
         let kind = &body.joint.kind.value;
         if !OF_ONE.contains(&&**kind) {
             let message = format!(
@@ -144,6 +138,13 @@ impl Import {
         let span = body.joint.span.clone();
         body.initial.position = Position::Phi(Located::new(vec![coordinate], span));
     }
+}
+
+/// The body on the joint of a name.
+fn joint_body(bodies: &[BodyDescription], joint: &str) -> Option<usize> {
+    bodies
+        .iter()
+        .position(|body| body.joint.name.value == joint)
 }
 
 fn unknown(joint: &str, bodies: &[BodyDescription]) -> Diagnostic {
