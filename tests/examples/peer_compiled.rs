@@ -230,7 +230,7 @@ fn module(
     });
     let mut lanes = vec![];
     for (algorithm, kind) in asked {
-        match compile_in_lanes(&model, *kind) {
+        match compile_in_lanes(&model, *kind, true) {
             Ok(function) => lanes.push(function),
             Err(long) => eprintln!("{name}: {algorithm} for 8 lanes left out: {long}"),
         }

@@ -1,6 +1,9 @@
-//! What levels of SIMD instructions have: functions that may use them, and transposing by shuffles of registers, where gathers take several times as long.
+//! What levels of SIMD instructions have: functions that may use them, registers of eight numbers, and transposing by shuffles of registers, where gathers take
+//! several times as long.
 
 use super::LANES;
+use super::layout::Lanes;
+use hamel_runtime::scalar::{Lane, Scalar};
 
 /// Eight rows of eight.
 pub(super) type Block = [[f64; LANES]; LANES];
@@ -18,8 +21,32 @@ pub(super) trait Work {
     fn run(self) -> Self::Output;
 }
 
+/// Numbers of eight states in the registers of a level of instructions.
+pub trait Registers: Copy {
+    /// Eight numbers.
+    type Eight: Copy;
+
+    /// Reads them.
+    fn read(self, from: &Lanes) -> Self::Eight;
+
+    /// Leaves them in memory.
+    fn write(self, eight: Self::Eight, to: &mut Lanes);
+
+    /// The same number eight times.
+    fn all(self, number: f64) -> Self::Eight;
+
+    /// `a b`.
+    fn times(self, a: Self::Eight, b: Self::Eight) -> Self::Eight;
+
+    /// `a b + c`, rounded once where the level has that.
+    fn mul_add(self, a: Self::Eight, b: Self::Eight, c: Self::Eight) -> Self::Eight;
+
+    /// `1/a`.
+    fn reciprocal(self, a: Self::Eight) -> Self::Eight;
+}
+
 /// What a level of instructions has.
-pub(super) trait Instructions: Copy {
+pub(super) trait Instructions: Registers {
     /// Runs in a function that may use them.
     fn run<W: Work>(self, work: W) -> W::Output;
 
@@ -30,6 +57,52 @@ pub(super) trait Instructions: Copy {
 /// Without instructions of any level.
 #[derive(Clone, Copy)]
 pub(super) struct Plain;
+
+/// Numbers as the scalar of the baseline computes with them.
+type Own = Lane<{ cfg!(target_feature = "fma") }>;
+
+impl Registers for Plain {
+    type Eight = Lanes;
+
+    #[inline(always)]
+    fn read(self, from: &Lanes) -> Lanes {
+        *from
+    }
+
+    #[inline(always)]
+    fn write(self, eight: Lanes, to: &mut Lanes) {
+        *to = eight;
+    }
+
+    #[inline(always)]
+    fn all(self, number: f64) -> Lanes {
+        Lanes([number; LANES])
+    }
+
+    #[inline(always)]
+    fn times(self, mut a: Lanes, b: Lanes) -> Lanes {
+        for (a, b) in a.0.iter_mut().zip(b.0) {
+            *a *= b;
+        }
+        a
+    }
+
+    #[inline(always)]
+    fn mul_add(self, a: Lanes, b: Lanes, mut c: Lanes) -> Lanes {
+        for (lane, sum) in c.0.iter_mut().enumerate() {
+            *sum = Own::mul_add(Lane(a.0[lane]), Lane(b.0[lane]), Lane(*sum)).0;
+        }
+        c
+    }
+
+    #[inline(always)]
+    fn reciprocal(self, mut a: Lanes) -> Lanes {
+        for number in &mut a.0 {
+            *number = 1.0 / *number;
+        }
+        a
+    }
+}
 
 impl Instructions for Plain {
     #[inline(never)]
@@ -51,16 +124,56 @@ impl Instructions for Plain {
 
 #[cfg(all(feature = "levels", target_arch = "x86_64"))]
 mod x86 {
-    use super::{Block, HALF, Instructions, Work};
+    use super::{Block, HALF, Instructions, Lanes, Registers, Work};
     use core::arch::x86_64::{
         __m256d, __m512d, _mm256_permute2f128_pd, _mm256_setzero_pd, _mm256_unpackhi_pd,
         _mm256_unpacklo_pd, _mm512_shuffle_f64x2, _mm512_unpackhi_pd, _mm512_unpacklo_pd,
     };
     use fearless_simd::prelude::*;
-    use fearless_simd::{Avx2, Avx512, kernel};
+    use fearless_simd::{Avx2, Avx512, f64x8, kernel};
     use safe_unaligned_simd::x86_64::{
         _mm256_loadu_pd, _mm256_storeu_pd, _mm512_loadu_pd, _mm512_storeu_pd,
     };
+
+    macro_rules! implement_registers {
+        ($($level:ty),*) => {$(
+            impl Registers for $level {
+                type Eight = f64x8<Self>;
+
+                #[inline(always)]
+                fn read(self, from: &Lanes) -> f64x8<Self> {
+                    from.0.simd_into(self)
+                }
+
+                #[inline(always)]
+                fn write(self, eight: f64x8<Self>, to: &mut Lanes) {
+                    to.0 = eight.into();
+                }
+
+                #[inline(always)]
+                fn all(self, number: f64) -> f64x8<Self> {
+                    self.splat_f64x8(number)
+                }
+
+                #[inline(always)]
+                fn times(self, a: f64x8<Self>, b: f64x8<Self>) -> f64x8<Self> {
+                    a * b
+                }
+
+                #[inline(always)]
+                fn mul_add(self, a: f64x8<Self>, b: f64x8<Self>, c: f64x8<Self>) -> f64x8<Self> {
+                    a.mul_add(b, c)
+                }
+
+                #[inline(always)]
+                fn reciprocal(self, a: f64x8<Self>) -> f64x8<Self> {
+                    self.all(1.0) / a
+                }
+            }
+        )*};
+    }
+
+    implement_registers!(Avx2, Avx512);
 
     impl Instructions for Avx2 {
         fn run<W: Work>(self, work: W) -> W::Output {

@@ -1,11 +1,10 @@
-//! Eight states at a time: a loop over states whose body is one straight-line function, which the compiler vectorises for each level of
-//! instructions.
+//! Eight states at a time: loops over states whose bodies are straight, which the compiler vectorises for each level of instructions.
 //!
-//! The source is the one that serves single states, in the scalar [`Lane`]. What the loop computes for a state depends on that state alone, so
+//! The lines are those that serve single states, in the scalar [`Lane`]. What the loop computes for a state depends on that state alone, so
 //! that neither the number of states nor their order shows in any result. Levels with fused multiply–adds and those without
 //! differ by rounding.
 
-use super::instructions::{Instructions, Plain, Work};
+use super::instructions::{Instructions, Plain, Registers, Work};
 use super::layout::{Lanes, Quantities, States};
 use super::transpose::{apart, side_by_side};
 use core::hint::black_box;
@@ -14,15 +13,37 @@ use core::slice;
 #[cfg(all(feature = "levels", target_arch = "x86_64"))]
 use fearless_simd::Level as Detected;
 use hamel_runtime::scalar::{Lane, Scalar};
-use hamel_runtime::unrolled;
 
 /// States that go through together; a number that is no multiple of it is filled up with copies of the last state.
 pub const LANES: usize = 8;
 
-/// A function of one state for any scalar: Q, v̄ and inputs in, `R` results out. Its code must be inlined into `value`.
-pub trait OfState<const Q: usize, const V: usize, const U: usize, const R: usize> {
-    /// Puts each result in its place.
-    fn value<T: Scalar>(q: &[T; Q], v: &[T; V], u: &[T; U], put: impl FnMut(usize, T));
+/// A function of eight states side by side: Q, v̄ and inputs in, `R` results out.
+///
+/// Callers take it as a parameter, so that it is LLVM that inlines it: it then knows that results overlap no argument, without which it does not vectorise its
+/// loops. The Rust compiler, which inlines what it knows, forgets that.
+pub trait OfEight<const Q: usize, const V: usize, const U: usize, const R: usize> {
+    /// Assigns the results. It must be inlined, as all that it calls, into the function of each level; of a loop with more than 250 places in memory, LLVM
+    /// makes no SIMD code.
+    fn eight<T: LaneScalar, I: Registers>(
+        simd: I,
+        q: &[Lanes; Q],
+        v: &[Lanes; V],
+        u: &[Lanes; U],
+        results: &mut [Lanes; R],
+    );
+}
+
+/// The number of one state in a loop over states.
+pub trait LaneScalar: Scalar {
+    /// It as a double.
+    fn number(self) -> f64;
+}
+
+impl<const FUSED: bool> LaneScalar for Lane<FUSED> {
+    #[inline(always)]
+    fn number(self) -> f64 {
+        self.0
+    }
 }
 
 /// A function of many states at a level that the machine has; whether all results are finite.
@@ -74,39 +95,42 @@ pub fn many_states<F, const Q: usize, const V: usize, const U: usize, const R: u
     states: States<'_>,
 ) -> bool
 where
-    F: OfState<Q, V, U, R>,
+    F: OfEight<Q, V, U, R>,
 {
     #[cfg(all(feature = "levels", target_arch = "x86_64"))]
     match level {
         Level::Baseline => {}
         Level::Avx2 => {
             if let Some(simd) = Detected::new().as_avx2() {
-                return at::<Loop<F, true>, Q, V, U, R>(simd, states);
+                return at::<F, Lane<true>, Q, V, U, R>(simd, states);
             }
         }
         Level::Avx512 => {
             if let Some(simd) = Detected::new().as_avx512() {
-                return at::<Loop<F, true>, Q, V, U, R>(simd, states);
+                return at::<F, Lane<true>, Q, V, U, R>(simd, states);
             }
         }
     }
     // There is but one.
     #[cfg(not(all(feature = "levels", target_arch = "x86_64")))]
     let _ = level;
-    at::<Loop<F, { cfg!(target_feature = "fma") }>, Q, V, U, R>(Plain, states)
+    at::<F, Lane<{ cfg!(target_feature = "fma") }>, Q, V, U, R>(Plain, states)
 }
 
 /// The same by instructions that the machine has.
-fn at<E, const Q: usize, const V: usize, const U: usize, const R: usize>(
+fn at<E, T, const Q: usize, const V: usize, const U: usize, const R: usize>(
     simd: impl Instructions,
     states: States<'_>,
 ) -> bool
 where
     E: OfEight<Q, V, U, R>,
+    T: LaneScalar,
 {
     match states {
-        States::SideBySide(of) => simd.run(Groups::<E, Q, V, U, R>(whole(of), PhantomData)),
-        States::Rows(of) => rows::<E, Q, V, U, R>(simd, whole(of)),
+        States::SideBySide(of) => {
+            simd.run(Groups::<_, E, T, Q, V, U, R>(simd, whole(of), PhantomData))
+        }
+        States::Rows(of) => rows::<E, T, Q, V, U, R>(simd, whole(of)),
     }
 }
 
@@ -134,12 +158,13 @@ fn whole<N, const Q: usize, const V: usize, const U: usize, const R: usize>(
 }
 
 /// States in rows: eight at a time side by side, and back.
-fn rows<E, const Q: usize, const V: usize, const U: usize, const R: usize>(
+fn rows<E, T, const Q: usize, const V: usize, const U: usize, const R: usize>(
     simd: impl Instructions,
     rows: Whole<'_, f64, Q, V, U, R>,
 ) -> bool
 where
     E: OfEight<Q, V, U, R>,
+    T: LaneScalar,
 {
     let (mut q, mut v, mut u) = ([Lanes::ZERO; Q], [Lanes::ZERO; V], [Lanes::ZERO; U]);
     let mut results = [Lanes::ZERO; R];
@@ -156,7 +181,7 @@ where
             u: slice::from_ref(&u),
             results: slice::from_mut(&mut results),
         };
-        finite &= simd.run(Groups::<E, Q, V, U, R>(group, PhantomData));
+        finite &= simd.run(Groups::<_, E, T, Q, V, U, R>(simd, group, PhantomData));
         simd.run(Scatter(simd, &results, &mut rows.results[start..]));
     }
     finite
@@ -198,28 +223,31 @@ impl<S: Instructions, const N: usize> Work for Scatter<'_, S, N> {
 }
 
 /// `E` of states that lie side by side; whether all results are finite.
-struct Groups<'a, E, const Q: usize, const V: usize, const U: usize, const R: usize>(
+struct Groups<'a, I, E, T, const Q: usize, const V: usize, const U: usize, const R: usize>(
+    I,
     Whole<'a, Lanes, Q, V, U, R>,
-    PhantomData<E>,
+    PhantomData<(E, T)>,
 );
 
-impl<E, const Q: usize, const V: usize, const U: usize, const R: usize> Work
-    for Groups<'_, E, Q, V, U, R>
+impl<I, E, T, const Q: usize, const V: usize, const U: usize, const R: usize> Work
+    for Groups<'_, I, E, T, Q, V, U, R>
 where
+    I: Registers,
     E: OfEight<Q, V, U, R>,
+    T: LaneScalar,
 {
     type Output = bool;
 
     #[inline(always)]
     fn run(self) -> bool {
-        let Whole { q, v, u, results } = self.0;
+        let Self(simd, Whole { q, v, u, results }, _) = self;
         // A whole cache line on the stack aligns the frame, and with it what registers do not hold: without it each such load and store of eight doubles
         // would touch two lines, but for one place of the stack in four.
         black_box(Lanes::ZERO);
         // What x − x adds up to: 0, or NaN. Asked here, where the results still are at hand; reading them again takes a tenth of inverse dynamics.
         let mut differences = [0.0; LANES];
         for (group, results) in results.iter_mut().enumerate() {
-            E::eight(&q[group], &v[group], &u[group], results);
+            E::eight::<T, I>(simd, &q[group], &v[group], &u[group], results);
             for entry in results {
                 for (sum, x) in differences.iter_mut().zip(entry.0) {
                     #[expect(clippy::eq_op, reason = "not zero where x is not finite")]
@@ -229,57 +257,5 @@ where
             }
         }
         differences.iter().all(|&sum| sum == 0.0)
-    }
-}
-
-/// A function of eight states.
-///
-/// Callers take it as a parameter, so that it is LLVM that inlines it: it then knows that results overlap no argument, without which it does not vectorise the
-/// loop. The Rust compiler, which inlines what it knows, forgets that.
-trait OfEight<const Q: usize, const V: usize, const U: usize, const R: usize> {
-    /// The results.
-    fn eight(q: &[Lanes; Q], v: &[Lanes; V], u: &[Lanes; U], results: &mut [Lanes; R]);
-}
-
-/// `F` in a loop over states, which is vectorised.
-///
-/// Rows would do in place of lanes side by side, but longer ones keep the compiler from it.
-struct Loop<F, const FUSED: bool>(PhantomData<F>);
-
-impl<F, const FUSED: bool, const Q: usize, const V: usize, const U: usize, const R: usize>
-    OfEight<Q, V, U, R> for Loop<F, FUSED>
-where
-    F: OfState<Q, V, U, R>,
-{
-    #[inline(always)]
-    fn eight(q: &[Lanes; Q], v: &[Lanes; V], u: &[Lanes; U], results: &mut [Lanes; R]) {
-        for lane in 0..LANES {
-            // Read and written here, not by helpers: what these read, once they are inlined, LLVM may no longer know to be apart from the results.
-            let mut state = (
-                [Lane::<FUSED>(0.0); Q],
-                [Lane::<FUSED>(0.0); V],
-                [Lane::<FUSED>(0.0); U],
-            );
-            unrolled!(i in Q {
-                state.0[i] = Lane(q[i].0[lane]);
-            });
-            unrolled!(i in V {
-                state.1[i] = Lane(v[i].0[lane]);
-            });
-            unrolled!(i in U {
-                state.2[i] = Lane(u[i].0[lane]);
-            });
-            let mut value = [Lane::<FUSED>(0.0); R];
-            F::value(
-                &state.0,
-                &state.1,
-                &state.2,
-                #[inline(always)]
-                |place, result| value[place] = result,
-            );
-            unrolled!(i in R {
-                results[i].0[lane] = value[i].0;
-            });
-        }
     }
 }

@@ -34,9 +34,13 @@ pub use batch::{Batch, BatchError};
 pub use entry::Entry;
 #[cfg(feature = "alloc")]
 pub use functions::{Function, Functions, WeightedFunction};
-pub use lanes::{LANES, Level, ManyStates, OfState, many_states};
+pub use instructions::Registers;
+pub use lanes::{LANES, LaneScalar, Level, ManyStates, OfEight, many_states};
 pub use layout::{Lanes, Quantities, States};
-pub use pairs::{Aligned, BEHIND, Carrying, Meeting, Pairing, Pairs, Places, room_to_solve};
+pub use pairs::{
+    Aligned, BEHIND, Carrying, Meeting, Pairing, Pairs, Places, STRIP, Strip, room_in_lanes,
+    room_to_solve,
+};
 #[cfg(feature = "alloc")]
 pub use tree::{Compiled, CompiledError};
 

@@ -1,7 +1,10 @@
 //! Many states at once: the same as one by one, at every level, whatever their number and the threads; wrong sizes are named.
 #![cfg(all(feature = "alloc", feature = "rayon"))]
 
-use hamel_compiled::{Batch, BatchError, Equations, InLanes, Lanes, Level, OfState, many_states};
+use hamel_compiled::{
+    Batch, BatchError, Equations, InLanes, LANES, LaneScalar, Lanes, Level, OfEight, Registers,
+    many_states,
+};
 use hamel_runtime::scalar::Scalar;
 
 /// Two angles with speeds and three efforts: what a module holds, by hand.
@@ -13,12 +16,22 @@ fn forward<T: Scalar>(q: &[T; 2], v: &[T; 2], u: &[T; 3]) -> [T; 2] {
 }
 
 struct Forward;
-impl OfState<2, 2, 3, 2> for Forward {
+impl OfEight<2, 2, 3, 2> for Forward {
     #[inline(always)]
-    fn value<T: Scalar>(q: &[T; 2], v: &[T; 2], u: &[T; 3], mut put: impl FnMut(usize, T)) {
-        let [first, second] = forward(q, v, u);
-        put(0, first);
-        put(1, second);
+    fn eight<T: LaneScalar, I: Registers>(
+        _simd: I,
+        q: &[Lanes; 2],
+        v: &[Lanes; 2],
+        u: &[Lanes; 3],
+        results: &mut [Lanes; 2],
+    ) {
+        for lane in 0..LANES {
+            let n = |entry: &Lanes| T::from_f64(entry.0[lane]);
+            let (q, v) = ([n(&q[0]), n(&q[1])], [n(&v[0]), n(&v[1])]);
+            let [first, second] = forward(&q, &v, &[n(&u[0]), n(&u[1]), n(&u[2])]);
+            results[0].0[lane] = first.number();
+            results[1].0[lane] = second.number();
+        }
     }
 }
 

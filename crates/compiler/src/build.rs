@@ -292,7 +292,8 @@ impl Build {
                 .iter()
                 .any(|function| function.name == kind.name())
             {
-                match functions::compile_in_lanes(&model, *kind) {
+                let pairs = self.language == Language::Rust;
+                match functions::compile_in_lanes(&model, *kind, pairs) {
                     Ok(function) => lanes.push(function),
                     Err(long) => left_out.push(long),
                 }

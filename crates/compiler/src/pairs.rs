@@ -1,7 +1,7 @@
 //! What a function leaves to loops over pairs of joints: the tables of [`hamel_compiled::Pairs`], as they are made.
 
 use super::graph::Operations;
-use hamel_compiled::{Carrying, Meeting, Pairing, Pairs, Places, room_to_solve};
+use hamel_compiled::{Carrying, Meeting, Pairing, Pairs, Places, STRIP, room_to_solve};
 
 /// What is made of the numbers of the bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,6 +47,17 @@ impl Product {
     pub const fn has_bends(self) -> bool {
         matches!(self, Self::SecondInverse | Self::SecondForward)
     }
+}
+
+/// Columns that eight states side by side solve for at once: those of [`hamel_compiled::Strip`], as they are made.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Columns {
+    /// From the first to behind the last.
+    pub columns: [usize; 2],
+    /// Rows where they are not 0 once the rows below are eliminated.
+    pub rows: Vec<[usize; 2]>,
+    /// Behind the last row that is found.
+    pub end: usize,
 }
 
 /// The tables of one function.
@@ -201,6 +212,47 @@ impl Tables {
             self.solution(&mut count);
         }
         count
+    }
+
+    /// The columns that are solved for, in strips, where so many `numbers` of the bodies are read.
+    pub fn strips(&self, numbers: usize) -> Vec<Columns> {
+        let [rows, width] = self.size;
+        // Numbers that tell where something is: sums of what has one sign are never 0.
+        let sides = match self.product {
+            Product::Forward => self.right_hand_sides(&vec![1.0; numbers]),
+            _ => (0..rows * width)
+                .map(|i| f64::from(u8::from(i % (width + 1) == 0)))
+                .collect(),
+        };
+        let is_there = |row: usize, [from, to]: [usize; 2]| {
+            sides[row * width + from..row * width + to]
+                .iter()
+                .any(|&side| side != 0.0)
+        };
+        let mut strips = vec![];
+        for &[first, last] in &self.columns {
+            // As wide as each other.
+            let count = (last - first).div_ceil((last - first).div_ceil(STRIP));
+            for from in (first..last).step_by(count) {
+                let columns = [from, (from + count).min(last)];
+                let wanted = self
+                    .mirrored
+                    .and_then(|first| columns[1].checked_sub(first));
+                let end = wanted
+                    .filter(|&end| end > 0)
+                    .map_or(rows, |end| end.min(rows));
+                let mut filled: Vec<bool> = (0..rows).map(|row| is_there(row, columns)).collect();
+                // What is below is added to what is above: from the leaves to the root.
+                for row in (0..end).rev() {
+                    if let (true, Some(above)) = (filled[row], self.above[row]) {
+                        filled[above] = true;
+                    }
+                }
+                let rows = descending((0..end).rev().filter(|&row| filled[row]));
+                strips.push(Columns { columns, rows, end });
+            }
+        }
+        strips
     }
 
     /// Entries that come to others: those that stand alone are no additions.

@@ -289,7 +289,7 @@ fn many_states_agree() {
         let (scene, model) = loaded(file);
         let kinds = Kind::ALL.into_iter().filter(|kind| kind.is_batched());
         let lanes: Vec<Function> = kinds
-            .filter_map(|kind| compile_in_lanes(&model, kind).ok())
+            .filter_map(|kind| compile_in_lanes(&model, kind, false).ok())
             .collect();
         let mut single = functions(&model);
         single.retain(|one| lanes.iter().any(|other| other.name == one.name));

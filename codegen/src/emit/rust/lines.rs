@@ -204,11 +204,13 @@ fn going_on(text: &str) -> Option<&'static str> {
 /// The line that closes the pattern of an array, which the printer breaks after names.
 fn pattern_end(lines: &[String], i: usize) -> Option<usize> {
     let level = indent(&lines[i]);
-    let begins = content(&lines[i]).starts_with("let [") && lines[i].ends_with(',');
-    let mut rest = lines.iter().enumerate().skip(i + 1);
-    let (end, _) = rest.find(|(_, line)| content(line).starts_with(']'))?;
-    let within = lines[i + 1..=end].iter().all(|line| indent(line) == level);
-    (begins && within).then_some(end)
+    if !(content(&lines[i]).starts_with("let [") && lines[i].ends_with(',')) {
+        return None;
+    }
+    let rest = lines.iter().enumerate().skip(i + 1);
+    let mut within = rest.take_while(|(_, line)| indent(line) == level);
+    let (end, _) = within.find(|(_, line)| content(line).starts_with(']'))?;
+    Some(end)
 }
 
 /// Puts single names or numbers that follow each other on one line, as many as fit, in the array that the line `i` opens.

@@ -7,11 +7,13 @@
 //! [`Pairs`] are the tables; `work` holds the numbers of one state, as [`Places`] says. Numbers that columns beside each other need stand beside each other, so that
 //! compilers vectorise: eight columns of a row are found at once, and M̄⁻¹ is multiplied by up to 48 columns at once.
 
+mod lanes;
 mod meeting;
 mod second;
 mod solution;
 
 use hamel_runtime::scalar::Scalar;
+pub use lanes::{STRIP, Strip, room_in_lanes};
 pub use meeting::{BEHIND, Meeting};
 use meeting::{Columns, NINE, SIX, meet};
 pub use solution::{Aligned, room_to_solve};

@@ -183,7 +183,7 @@ impl State {
                 result.copied().unwrap_or(f64::NAN)
             }
             // Has a line of its own.
-            Formula::Several(..) => f64::NAN,
+            Formula::Several(..) | Formula::Lane(..) => f64::NAN,
         }
     }
 

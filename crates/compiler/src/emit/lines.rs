@@ -53,6 +53,8 @@ pub enum Formula {
     Column(usize),
     /// An entry of an argument, or of the sines and cosines of all angles.
     Input(Read, Place),
+    /// In a loop over states side by side: an entry of an array of theirs, by its name and place.
+    Lane(String, usize),
     /// In a loop: what another block left, by the loop's name for its row and the entry.
     Source(String, usize),
     /// What a block left: length of the row, row, entry.
@@ -108,7 +110,7 @@ impl Formula {
     }
 
     /// Visits the formula and all that stands in it.
-    pub fn each(&self, visit: &mut impl FnMut(&Self)) {
+    pub fn each<'f>(&'f self, visit: &mut impl FnMut(&'f Self)) {
         visit(self);
         match self {
             Self::Sum(terms) => terms.iter().for_each(|(_, term)| term.each(visit)),
@@ -123,6 +125,7 @@ impl Formula {
             Self::Number(_)
             | Self::Column(_)
             | Self::Input(..)
+            | Self::Lane(..)
             | Self::Source(..)
             | Self::Row(..)
             | Self::Name(_) => {}
@@ -136,6 +139,7 @@ impl Formula {
             Self::Number(_)
                 | Self::Column(_)
                 | Self::Input(..)
+                | Self::Lane(..)
                 | Self::Source(..)
                 | Self::Row(..)
                 | Self::Name(_)
@@ -183,7 +187,7 @@ pub struct Loop {
 
 impl Line {
     /// Visits its formulas, those in a loop too.
-    pub fn each_formula(&self, visit: &mut impl FnMut(&Formula)) {
+    pub fn each_formula<'f>(&'f self, visit: &mut impl FnMut(&'f Formula)) {
         match self {
             Self::Heading(_) => {}
             Self::Value(_, formula) | Self::SinCos(.., formula) | Self::Result(_, formula) => {

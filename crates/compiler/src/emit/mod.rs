@@ -9,6 +9,7 @@ mod evaluate;
 pub mod lines;
 mod looped;
 mod lower;
+mod parts;
 mod rust;
 mod straight;
 

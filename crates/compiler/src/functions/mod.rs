@@ -218,9 +218,8 @@ const PAIRED_SOON: usize = 10_000;
 /// Operations that a function in lanes may have: the Rust compiler takes them once for each level of instructions.
 const LONGEST_IN_LANES: usize = 30_000;
 
-/// Arguments and results of a function in lanes together: of a loop with more than 250 places in memory LLVM does not see that they are apart, and makes no SIMD
-/// code. The derivatives of anymal (18 degrees of freedom) took 1.6 times as long so as one by one.
-const WIDEST_IN_LANES: usize = 240;
+/// The same from which on pairs of joints are left to loops.
+const PAIRED_IN_LANES: usize = 20_000;
 
 /// Operations, those of loops once, that a function may have, so that no module keeps the Rust compiler busy without end: straight-line functions
 /// of 31 000 operations already took it more than 100 s.
@@ -271,7 +270,6 @@ pub fn compile(model: &Model, kind: Kind, loops: Loops) -> Result<Chosen, NotWri
             kind,
             in_lanes: false,
             operations,
-            numbers: 0,
         })
     };
     let least = least(model, kind);
@@ -286,29 +284,40 @@ pub fn compile(model: &Model, kind: Kind, loops: Loops) -> Result<Chosen, NotWri
     }
 }
 
-/// The function for many states side by side, which has no loops.
+/// The function for many states side by side, which has no loops over like bodies. Long ones leave `pairs` of joints to loops of the runtime where these may be, as
+/// in Rust.
 ///
 /// # Errors
-/// More operations than the Rust compiler takes in lanes within a minute, or more numbers than become SIMD code.
-pub fn compile_in_lanes(model: &Model, kind: Kind) -> Result<Function, TooLong> {
-    let refused = |operations, numbers| TooLong {
+/// More operations than the Rust compiler takes in lanes within a minute.
+pub fn compile_in_lanes(model: &Model, kind: Kind, pairs: bool) -> Result<Function, TooLong> {
+    let links = prune(model, Pruning::ALL);
+    let mut operations = least(model, kind);
+    let ways = kind.pairwise(model);
+    let most = match pairs && !ways.is_empty() {
+        true => PAIRED_IN_LANES,
+        false => LONGEST_IN_LANES,
+    };
+    if operations <= most {
+        let straight = compile_with(model, &links, kind, Loops::Never).function;
+        operations = straight.written();
+        if operations <= most {
+            return Ok(straight);
+        }
+    }
+    if let (true, Some(&way)) = (pairs, ways.first()) {
+        let paired = pair_by_pair(model, &links, (kind, way), Loops::Never);
+        let tables = paired.pairs.as_ref();
+        operations = paired.written();
+        // What is prescribed moves to the right-hand sides of single states alone.
+        if operations <= LONGEST_IN_LANES && tables.is_some_and(|tables| tables.held.is_empty()) {
+            return Ok(paired);
+        }
+    }
+    Err(TooLong {
         kind,
         in_lanes: true,
         operations,
-        numbers,
-    };
-    let least = least(model, kind);
-    if least > LONGEST_IN_LANES {
-        return Err(refused(least, 0));
-    }
-    let links = prune(model, Pruning::ALL);
-    let function = compile_with(model, &links, kind, Loops::Never).function;
-    let read: usize = function.arguments.iter().map(|(_, size)| size).sum();
-    let (operations, numbers) = (function.written(), read + function.results());
-    match operations <= LONGEST_IN_LANES && numbers <= WIDEST_IN_LANES {
-        true => Ok(function),
-        false => Err(refused(operations, numbers)),
-    }
+    })
 }
 
 /// At least so many operations has a function without loops.
@@ -402,7 +411,7 @@ fn pair_by_pair(
     let ((outputs, tables), graph) = record(numbers);
     let straight = paired(outputs, graph, None, tables);
     let whole = straight.written();
-    if loops == Loops::Long && whole < LOOPED {
+    if loops == Loops::Never || loops == Loops::Long && whole < LOOPED {
         return straight;
     }
     let ((outputs, tables), graph) = record_alike(numbers);

@@ -1,6 +1,6 @@
 //! Why a function is not written.
 
-use super::{Kind, LONGEST, LONGEST_IN_LANES, WIDEST_IN_LANES};
+use super::{Kind, LONGEST, LONGEST_IN_LANES};
 
 /// A function that would be too long.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -11,35 +11,21 @@ pub struct TooLong {
     pub in_lanes: bool,
     /// At least so many operations would be written.
     pub operations: usize,
-    /// Arguments and results, where it is left out in lanes.
-    pub numbers: usize,
 }
 
 impl std::fmt::Display for TooLong {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self {
-            operations,
-            numbers,
-            ..
-        } = self;
+        let Self { operations, .. } = self;
         let name = self.kind.name();
         match self.in_lanes {
             false => write!(
                 f,
                 "{name} would have {operations} operations, more than {LONGEST}: the tree computes it"
             ),
-            true => {
-                let much = match *operations > LONGEST_IN_LANES {
-                    true => format!("{operations} operations, more than {LONGEST_IN_LANES}"),
-                    false => {
-                        format!("{numbers} arguments and results, more than {WIDEST_IN_LANES}")
-                    }
-                };
-                write!(
-                    f,
-                    "{name} in lanes would have {much}: states are computed one by one"
-                )
-            }
+            true => write!(
+                f,
+                "{name} in lanes would have {operations} operations, more than {LONGEST_IN_LANES}: states are computed one by one"
+            ),
         }
     }
 }

@@ -34,8 +34,8 @@ fn lanes_of_long_chains_are_left_out_by_name() {
     let mechanism = random::chain(&mut ChaCha8Rng::seed_from_u64(7), &joint, 64);
     let model = compiled::model("chain", &mechanism);
     for kind in [Kind::MassMatrix, Kind::ForwardDynamics] {
-        let long =
-            compile_in_lanes(&model, kind).expect_err("its pairs and bodies are not looped over");
+        let long = compile_in_lanes(&model, kind, true)
+            .expect_err("its pairs and bodies are not looped over");
         let (name, operations, numbers) = (kind.name(), long.operations, long.numbers);
         let much = match operations > 30_000 {
             true => format!("{operations} operations, more than 30000"),

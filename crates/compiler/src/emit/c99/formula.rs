@@ -2,6 +2,7 @@
 
 use super::super::array;
 use super::super::lines::{Formula, Place};
+use super::lanes::LANES;
 use crate::alike::Read;
 use hamel_codegen::expr::Function as Known;
 use hamel_codegen::expr::curve::Curve;
@@ -12,6 +13,10 @@ pub fn value(formula: &Formula) -> String {
         Formula::Number(number) => literal(*number),
         Formula::Column(column) => format!("numbers[{column}]"),
         Formula::Input(array, place) => format!("{}[{}]", input(*array), index(*place)),
+        Formula::Lane(array, place) => match LANES * place {
+            0 => format!("{array}[lane]"),
+            first => format!("{array}[{first} + lane]"),
+        },
         Formula::Source(name, entry) => format!("{name}[{entry}]"),
         Formula::Row(width, row, entry) => format!("{}[{row}][{entry}]", array(*width)),
         Formula::Name(name) => name.clone(),

@@ -1,21 +1,20 @@
-//! Functions of many states side by side: types whose body a loop over states holds.
+//! Functions of many states side by side: types whose function of eight states is loops over them.
 
 use super::RESERVED;
 use super::lines::{line, value};
+use super::pairs;
+use crate::emit::parts::{Part, parts};
 use crate::emit::{Function, Lowered};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
-/// The type of a function, which puts each result in its place.
+/// The type of a function.
 pub fn item(function: &Function, bodies: &[String]) -> TokenStream {
     let kind = kind(function);
     let lowered = Lowered::new(function, bodies, &RESERVED);
-    let lines = lowered.lines.iter().map(line);
-    let outputs = lowered.outputs.iter().flatten().enumerate();
-    let outputs = outputs.map(|(place, output)| {
-        let (place, output) = (Literal::usize_unsuffixed(place), value(output));
-        quote! { put(#place, #output); }
-    });
+    let outputs = lowered.outputs.unwrap_or_default();
+    let parts = parts(&lowered.lines, &outputs);
+    let parts = parts.iter().map(part);
     let sizes = sizes(function);
     let own = function
         .arguments
@@ -25,21 +24,59 @@ pub fn item(function: &Function, bodies: &[String]) -> TokenStream {
     let parameters = [0, 1, 2].map(|i| {
         let name = own.get(i).copied().unwrap_or(["q", "_v", "_u"][i]);
         let (name, size) = (format_ident!("{name}"), &sizes[i]);
-        quote! { #name: &[T; #size] }
+        quote! { #name: &[::hamel::compiled::Lanes; #size] }
     });
-    let count = Literal::usize_unsuffixed(function.outputs.len());
+    let count = Literal::usize_unsuffixed(function.results());
+    let numbers = function.outputs.len();
+    let (target, before, after) = match &function.pairs {
+        None => (format_ident!("results"), quote! {}, quote! {}),
+        Some(tables) => {
+            let size = Literal::usize_unsuffixed(numbers);
+            let before = quote! {
+                let mut results = [::hamel::compiled::Lanes([0.0; ::hamel::compiled::LANES]); #size];
+            };
+            let after = pairs::rows_in_lanes(tables, numbers);
+            (format_ident!("rows"), before, after)
+        }
+    };
     let docs = format!(" `{}` of many states.", function.name);
     quote! {
         #[doc = #docs]
         struct #kind;
-        impl ::hamel::compiled::OfState<#(#sizes,)* #count> for #kind {
+        impl ::hamel::compiled::OfEight<#(#sizes,)* #count> for #kind {
             #[inline(always)]
             #[allow(clippy::all, unused_variables, reason = "written by a machine, for a machine")]
-            fn value<T: Scalar>(#(#parameters,)* mut put: impl FnMut(usize, T)) {
+            fn eight<T: ::hamel::compiled::LaneScalar, I: ::hamel::compiled::Registers>(simd: I, #(#parameters,)* #target: &mut [::hamel::compiled::Lanes; #count]) {
                 let n = T::from_f64;
-                #(#lines)*
-                #(#outputs)*
+                #before
+                #(#parts)*
+                #after
             }
+        }
+    }
+}
+
+/// A loop over the states.
+fn part(part: &Part) -> TokenStream {
+    let array = format_ident!("{}", part.array);
+    let size = Literal::usize_unsuffixed(part.kept.len());
+    let room = (!part.kept.is_empty())
+        .then(|| quote! { let mut #array = [::hamel::compiled::Lanes([0.0; ::hamel::compiled::LANES]); #size]; });
+    let lines = part.lines.iter().map(line);
+    let kept = part.kept.iter().enumerate().map(|(place, name)| {
+        let (place, name) = (Literal::usize_unsuffixed(place), format_ident!("{name}"));
+        quote! { #array[#place].0[lane] = #name.number(); }
+    });
+    let results = part.results.iter().map(|(place, result)| {
+        let (place, result) = (Literal::usize_unsuffixed(*place), value(result));
+        quote! { results[#place].0[lane] = (#result).number(); }
+    });
+    quote! {
+        #room
+        for lane in 0..::hamel::compiled::LANES {
+            #(#lines)*
+            #(#kept)*
+            #(#results)*
         }
     }
 }

@@ -192,6 +192,10 @@ pub fn value(formula: &Formula) -> TokenStream {
             let (name, index) = (format_ident!("{name}"), index(*place));
             quote! { #name[#index] }
         }
+        Formula::Lane(array, place) => {
+            let (array, place) = (format_ident!("{array}"), Literal::usize_unsuffixed(*place));
+            quote! { n(#array[#place].0[lane]) }
+        }
         Formula::Source(name, entry) => {
             let (name, entry) = (format_ident!("{name}"), Literal::usize_unsuffixed(*entry));
             quote! { #name[#entry] }

@@ -15,9 +15,9 @@ use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
 /// Names that lines must not take: arguments, and what the functions bind themselves.
-const RESERVED: [&str; 17] = [
+const RESERVED: [&str; 19] = [
     "q", "v", "p", "tau", "a", "lambda", "n", "i", "sines", "cosines", "results", "numbers",
-    "places", "matrix", "rows", "hamel", "core",
+    "places", "matrix", "rows", "lane", "simd", "hamel", "core",
 ];
 
 /// The module that holds `functions` of the model, and `lanes` of many states at a time, each of which is among the functions as well. `label` names the scene's file.

@@ -2,7 +2,7 @@
 
 use crate::pairs::{Product, Tables};
 use hamel_codegen::emit::rust::comment;
-use hamel_compiled::{Carrying, Meeting, Pairing, Places, room_to_solve};
+use hamel_compiled::{Carrying, Meeting, Pairing, Places, room_in_lanes, room_to_solve};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -38,6 +38,46 @@ pub fn rows(tables: &Tables) -> TokenStream {
         #call
         rows
     }
+}
+
+/// The rows of eight states side by side, made of the numbers in `results`, so many.
+pub fn rows_in_lanes(tables: &Tables, numbers: usize) -> TokenStream {
+    let constants = constants(tables);
+    let strips = strips(tables, numbers);
+    let width = Literal::usize_unsuffixed(tables.size[1]);
+    let room = Literal::usize_unsuffixed(tables.room(room_in_lanes(tables.above.len())));
+    let room = quote! {
+        const STRIPS: &[::hamel::compiled::Strip<'static>] = &[#(#strips),*];
+        let mut room = [::hamel::compiled::Lanes([0.0; ::hamel::compiled::LANES]); #room];
+    };
+    let call = match tables.product {
+        Product::Mass => quote! { PAIRS.mass_in_lanes(simd, &results, rows); },
+        Product::Inverse => quote! { PAIRS.inverse_in_lanes(simd, &results, rows); },
+        Product::InverseMass => quote! {
+            #room
+            PAIRS.inverse_mass_in_lanes(simd, STRIPS, &results, &mut room, rows);
+        },
+        // Second derivatives are of one state.
+        Product::Forward | Product::SecondInverse | Product::SecondForward => quote! {
+            #room
+            PAIRS.forward_in_lanes(simd, STRIPS, &results, &mut room, (rows, #width));
+        },
+    };
+    quote! {
+        #constants
+        #call
+    }
+}
+
+fn strips(tables: &Tables, numbers: usize) -> Vec<TokenStream> {
+    let strips = tables.strips(numbers).into_iter();
+    let strips = strips.map(|strip| {
+        let (columns, rows) = (self::numbers(&strip.columns), strip.rows.iter());
+        let rows = rows.map(|range| self::numbers(range));
+        let end = Literal::usize_unsuffixed(strip.end);
+        quote! { ::hamel::compiled::Strip { columns: #columns, rows: &[#(#rows),*], end: #end } }
+    });
+    strips.collect()
 }
 
 fn constants(tables: &Tables) -> TokenStream {
