@@ -282,7 +282,7 @@ fn a_name_of_the_spec_has_one_value_in_all_kernels() {
         "hamel = 1; joint angle_names(angle: rad, arm: 1 > 0) { config u: R1, w: R1;
            let cos_angle2 = sin(u + w + angle) * arm; let inverse_arm = cos(u - w) * sin(2 * u);
            let sin_w = sin(u - 2*w);
-           H = rot_z(u) * trans([cos_angle2, w*arm + cos(w), w + u]) * trans_x(sin_w + inverse_arm) * rot_x(w/arm + u/arm); }",
+           H = rot_z(u) * trans([cos_angle2, w*arm + cos(w), w + 1 * u]) * trans_x(sin_w + inverse_arm) * rot_x(w/arm + u/arm); }",
     );
     let code = text.split_once("impl Joint").expect("a joint").1;
     let code = code.split_once("pub const SPEC").expect("a spec").0;

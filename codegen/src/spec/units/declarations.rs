@@ -70,7 +70,7 @@ impl Analysis<'_> {
     }
 
     fn pose(&mut self, name: &str, pose: &PoseExpr, span: &Range<usize>) {
-        let rotation = Blame::new(format!("the rotation of {name}"), span);
+        let rotation = Blame::new(format!("the rotation of {name}"), span).of(Role::Rotation);
         for entry in pose.rotation.entries() {
             self.fixed(&rotation, entry, &Form::default());
         }

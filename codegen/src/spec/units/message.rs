@@ -3,7 +3,7 @@
 use super::system::System;
 use super::{Equation, Wanted};
 use crate::diagnostic::Diagnostic;
-use crate::expr::Rational;
+use crate::expr::{Rational, Symbol};
 use crate::spec::code;
 use crate::units::Dimension;
 
@@ -49,4 +49,13 @@ pub(super) fn error(equation: &Equation, excess: &Dimension, system: &System) ->
         None => "another unit",
     };
     Diagnostic::new(code::UNITS, equation.blame.span.clone(), message).label(label)
+}
+
+/// What to do where H turns and moves by the same coordinate.
+pub(super) fn scale(symbol: &Symbol) -> String {
+    let name = symbol.spelling();
+    format!(
+        "`{name}` alone is both the angle of a rotation of H and a length: multiply the length by metres per radian, a parameter, `lead * {name}` with `lead: m/rad`, or a number, \
+         `0.01 * {name}`; for 1 m per radian write `1 * {name}`"
+    )
 }

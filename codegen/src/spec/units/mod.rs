@@ -90,10 +90,14 @@ struct Blame {
 enum Role {
     /// An angle, because it is the argument of a sine.
     Angle,
+    /// The angle of a rotation of H, because the sine is an entry of that rotation.
+    Turn,
     /// A length, because H moves by it.
     Length,
     /// What is declared.
     Declared,
+    /// An entry of a rotation of H, a number.
+    Rotation,
     /// What a condition compares, where numbers may have units.
     Condition,
 }
@@ -112,12 +116,36 @@ impl Blame {
         Self { role, ..self }
     }
 
+    /// A part of it that is no term: a sine in it is no entry of a rotation.
+    fn of_part(&self) -> Self {
+        let role = match self.role {
+            Role::Rotation => Role::Declared,
+            other => other,
+        };
+        self.clone().of(role)
+    }
+
     /// The argument of a function in it.
     fn within(&self, function: &'static str) -> Self {
         Self {
             within: Some(function),
             ..self.clone()
         }
+    }
+}
+
+impl Role {
+    /// That of the argument of a function in an expression with this role.
+    fn of_argument(self) -> Self {
+        match self {
+            Self::Rotation => Self::Turn,
+            _ => Self::Angle,
+        }
+    }
+
+    /// Whether a coordinate alone may be a number of the unit that is missing.
+    fn admits_numbers(self) -> bool {
+        !matches!(self, Self::Declared | Self::Rotation)
     }
 }
 
@@ -141,6 +169,8 @@ struct Equation {
     term: String,
     /// The coordinate that this is, in some direction.
     alone: Option<Symbol>,
+    /// Whether a term of the same sum is only a number or a direction, so that the sum counts in multiples of one unit.
+    beside_number: bool,
 }
 
 /// What is known of units, and what is said of them.
@@ -223,16 +253,25 @@ impl<'s> Analysis<'s> {
             let is_number =
                 |symbol: &Symbol| numbers.contains(symbol) || symbol.role == expr::Role::Local;
             let is_number = equation.alone.as_ref().is_some_and(is_number);
-            let is_let_go = is_number && equation.blame.role != Role::Declared
+            let is_let_go = is_number && equation.blame.role.admits_numbers()
                 || statements.has_quantity(&equation.blame.span);
             equation.is_strict && !is_let_go
         };
-        let (strict, others): (Vec<_>, Vec<_>) = self.equations.iter().partition(is_strict);
+        let (strict, mut others): (Vec<_>, Vec<_>) = self.equations.iter().partition(is_strict);
+        // What moves H by a length is one, whatever functions take it as a number besides.
+        others.sort_by_key(|equation| {
+            let is_number = |symbol| numbers.contains(symbol);
+            equation.blame.role == Role::Angle && equation.alone.as_ref().is_some_and(is_number)
+        });
         for equation in strict {
             if let Err(excess) = system.say(&equation.unit)
                 && errors.iter().all(|error| error.span != equation.blame.span)
             {
-                errors.push(message::error(equation, &excess, &system));
+                let error = message::error(equation, &excess, &system);
+                errors.push(match self.unscaled(equation) {
+                    Some(symbol) => error.help(message::scale(symbol)),
+                    None => error,
+                });
             }
         }
         for equation in others {
@@ -243,18 +282,44 @@ impl<'s> Analysis<'s> {
     }
 
     /// Coordinates that stand alone both as an angle and as a length, as in `trans([x, sin(x), 0])`: they are numbers, of radians and of metres.
+    /// One by which H itself turns and moves is none: in `trans_x(x) * rot_z(x)` the metres per radian are missing.
     fn numbers(&self) -> BTreeSet<&Symbol> {
-        let of = |role| -> BTreeSet<&Symbol> {
-            let own = self
-                .equations
-                .iter()
-                .filter(|equation| equation.is_strict && equation.blame.role == role);
-            own.filter_map(|equation| equation.alone.as_ref()).collect()
+        let (turning, moving) = (self.alone_as(&[Role::Turn]), self.alone_as(&[Role::Length]));
+        let mut numbers = self.alone_as(&[Role::Angle, Role::Turn]);
+        numbers.retain(|symbol| {
+            let is_unscaled = self.is_displacement(symbol) && turning.contains(symbol);
+            moving.contains(symbol) && !is_unscaled
+        });
+        numbers
+    }
+
+    /// The coordinate that this equation takes for an angle of H and another one for a length, or the other way round.
+    fn unscaled<'e>(&self, equation: &'e Equation) -> Option<&'e Symbol> {
+        let other = match equation.blame.role {
+            Role::Turn => Role::Length,
+            Role::Length => Role::Turn,
+            _ => return None,
         };
-        of(Role::Angle)
-            .intersection(&of(Role::Length))
-            .copied()
-            .collect()
+        let symbol = equation.alone.as_ref()?;
+        self.alone_as(&[other]).contains(symbol).then_some(symbol)
+    }
+
+    /// Coordinates that stand alone with one of these roles.
+    fn alone_as(&self, roles: &[Role]) -> BTreeSet<&Symbol> {
+        let own = self
+            .equations
+            .iter()
+            .filter(|equation| equation.is_strict && roles.contains(&equation.blame.role));
+        own.filter_map(|equation| equation.alone.as_ref()).collect()
+    }
+
+    /// Whether H moves by this coordinate alone, and not by multiples of one unit.
+    fn is_displacement(&self, symbol: &Symbol) -> bool {
+        self.equations.iter().any(|equation| {
+            equation.blame.role == Role::Length
+                && equation.alone.as_ref() == Some(symbol)
+                && !equation.beside_number
+        })
     }
 
     /// Which of the quantities are angles: by equations between angles and numbers first, because a length may be that of an angle as well as of a number.
@@ -297,7 +362,16 @@ mod tests {
             (" { config q: R1; H = trans_z(0.3 * cos(q)); }", "rad"),
             (" { config x: R1; H = trans([x, x * x, 0]); }", "m"),
             (" { config x: R1; H = trans([x, sin(x), 0]); }", "m"),
-            (" { config q: R1; H = rot_z(q) * trans_z(q); }", "rad"),
+            (" { config q: R1; H = rot_z(q) * trans_z(1 * q); }", "rad"),
+            (
+                " { config x: R1; H = trans([x, sin(x), 0]) * rot_z(atan(cos(x))); }",
+                "m",
+            ),
+            // Lengths are multiples of the radius, which is 1 m.
+            (
+                " { config q: R1; H = trans([cos(q) + q * sin(q), sin(q) - q * cos(q), 0]) * rot_z(q); }",
+                "rad",
+            ),
             (
                 " { config q: R1; bodies rack, gear; H.rack = trans_x(0.02 * q); H.gear = rot_z(q); }",
                 "rad",

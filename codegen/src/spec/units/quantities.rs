@@ -18,6 +18,8 @@ pub(super) struct Term {
     has_length: bool,
     /// The coordinate that it is, in some direction.
     alone: Option<Symbol>,
+    /// Whether it is a number or a direction and nothing else, or stands beside one.
+    beside_number: bool,
 }
 
 impl Analysis<'_> {
@@ -33,6 +35,7 @@ impl Analysis<'_> {
                 blame: blame.clone(),
                 wanted: Wanted::Unit(unit.clone()),
                 alone: term.alone,
+                beside_number: term.beside_number,
                 term: term.text,
             });
         }
@@ -65,6 +68,7 @@ impl Analysis<'_> {
                 blame: blame.clone(),
                 wanted,
                 alone: term.alone,
+                beside_number: term.beside_number,
                 term: term.text,
             });
         }
@@ -78,7 +82,9 @@ impl Analysis<'_> {
             .collect();
         let all_have_lengths = terms.iter().all(|term| term.has_length);
         let some_have_lengths = terms.iter().any(|term| term.has_length);
+        let has_number = terms.iter().any(|term| term.beside_number);
         for term in &mut terms {
+            term.beside_number = has_number;
             term.is_strict |= match term.has_number {
                 true => blame.role != Role::Condition && all_have_lengths,
                 false => some_have_lengths,
@@ -109,6 +115,11 @@ impl Analysis<'_> {
             alone,
             has_number,
             has_length: declared.has_known(&COMPARED),
+            beside_number: monomial
+                .main()
+                .iter()
+                .all(|(atom, _)| self.is_direction(atom))
+                && !is_declared,
             text: shortened(&Expr::term(coefficient.clone(), monomial.clone())),
             unit,
         }
@@ -119,21 +130,25 @@ impl Analysis<'_> {
         if !monomial.units().is_empty() {
             return None;
         }
-        let is_direction = |atom: &Atom| match atom {
-            Atom::Symbol(symbol) => self.symbols.get(symbol) == Some(&Form::default()),
-            Atom::Apply(application) => {
-                matches!(application.function, Function::Cos | Function::Sin)
-            }
-        };
         let mut others = monomial
             .main()
             .iter()
-            .filter(|(atom, _)| !is_direction(atom));
+            .filter(|(atom, _)| !self.is_direction(atom));
         match (others.next(), others.next()) {
             (Some((Atom::Symbol(symbol), 1)), None) => {
                 self.quantities.contains(symbol).then(|| symbol.clone())
             }
             _ => None,
+        }
+    }
+
+    /// Whether it is an entry of a rotation, or a sine or cosine.
+    fn is_direction(&self, atom: &Atom) -> bool {
+        match atom {
+            Atom::Symbol(symbol) => self.symbols.get(symbol) == Some(&Form::default()),
+            Atom::Apply(application) => {
+                matches!(application.function, Function::Cos | Function::Sin)
+            }
         }
     }
 
@@ -146,23 +161,25 @@ impl Analysis<'_> {
 
     fn application(&mut self, blame: &Blame, application: &Application) -> Form {
         let arguments = application.arguments.as_slice();
+        let part = &blame.of_part();
         match (application.function, arguments) {
-            (Function::Group, [x]) => self.alike(blame, x),
-            (Function::Recip, [x]) => Form::default().over(&self.alike(blame, x)),
+            (Function::Group, [x]) => self.alike(part, x),
+            (Function::Recip, [x]) => Form::default().over(&self.alike(part, x)),
             (Function::Sqrt, [x]) => {
                 let mut root = Form::default();
                 let half = Rational::new(1.into(), 2.into());
-                root.multiply(&self.alike(blame, x), &half);
+                root.multiply(&self.alike(part, x), &half);
                 root
             }
             (Function::Atan2, [y, x]) => {
-                let unit = self.alike(blame, x);
-                let blame = blame.within("atan2");
+                let unit = self.alike(part, x);
+                let blame = part.within("atan2");
                 self.fixed(&blame, y, &unit);
                 Form::known(Dimension::angle())
             }
             (Function::Cos | Function::Sin, [x]) => {
-                let blame = blame.within("a sine or cosine").of(Role::Angle);
+                let role = blame.role.of_argument();
+                let blame = blame.within("a sine or cosine").of(role);
                 self.fixed(&blame, x, &Form::known(Dimension::angle()));
                 Form::default()
             }
