@@ -3,8 +3,8 @@
 use super::super::ast::{Curve, Knots, Name};
 use super::super::{Fallible, code, limits};
 use super::once::At;
-use super::table;
 use super::unit::{self, Written};
+use super::{period, table};
 use crate::diagnostic::Diagnostic;
 use crate::expr::Rational;
 use crate::expr::curve::{self, Definition, Ends, Kind, Outside};
@@ -142,11 +142,14 @@ fn check_knots(declared: &Curve, knots: &[Knot]) -> Fallible<()> {
         );
         return Err(Box::new(error(&last.span, message).label("another value")));
     }
-    Ok(())
+    match period::check(declared, knots) {
+        Some(error) => Err(Box::new(error)),
+        None => Ok(()),
+    }
 }
 
 /// A number as a spec would write it, where it is a short decimal.
-fn in_words(value: &Rational) -> String {
+pub(super) fn in_words(value: &Rational) -> String {
     match value.is_integer() {
         true => value.to_string(),
         false => value.decimal().unwrap_or_else(|| value.to_string()),

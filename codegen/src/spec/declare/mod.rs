@@ -13,6 +13,7 @@ mod loci;
 mod matrices;
 mod once;
 mod parameter;
+mod period;
 mod pins;
 mod ports;
 mod relations;
