@@ -254,5 +254,5 @@ fn too_much_work(spec: &JointSpec, exhausted: Exhausted) -> Diagnostic {
     let span = task::span(spec, exhausted.task);
     Diagnostic::new(spec::code::WORK, span, exhausted.to_string())
         .label("the bound on symbolic work is met here")
-        .help("shorten the expressions of H, X and S_bar, or use let to name a simpler form")
+        .help(task::advice(exhausted.task, exhausted.claim))
 }

@@ -132,7 +132,7 @@ pub fn cut_out(joint: &Prepared) -> usize {
 }
 
 /// Derivatives of the declared relations along the directions of the known manifolds: a row for each relation.
-fn relation_slopes(joint: &Prepared) -> Matrix {
+pub(super) fn relation_slopes(joint: &Prepared) -> Matrix {
     let manifold = &joint.space.manifold;
     let motion = Motion::of_known_manifold(manifold);
     let declared = manifold.declared();

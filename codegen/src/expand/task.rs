@@ -24,6 +24,25 @@ pub const KERNELS: &str = "the kernels";
 /// How they are written.
 pub const FORMULAS: &str = "the formulas of the kernels";
 
+/// What makes a part shorter, where `claim` is the claim that was being proved.
+pub fn advice(task: &str, claim: &str) -> String {
+    let statements = match (task, claim) {
+        (MOTION, _) => "Phi",
+        (TWIST_MAP | VELOCITY_MAP, _) => "X and H",
+        (PORTS, _) => "the ports",
+        (PINS, _) => "the pins",
+        (CONSTRAINT, _)
+        | (_, "speeds_meet_constraint" | "speed_basis_rank" | "constraint_rank") => "A and S_bar",
+        (_, "port_angles" | "port_rates" | "pins_meet" | "pins_hold") => "the pins and ports",
+        _ => "H, X and S_bar",
+    };
+    format!(
+        "shorten {statements}: `let` alone does not, since it is expanded\n\
+         sines of sums are multiplied out: store an angle as a factor of S1, and leave constant rotations to `at` and `body_at` of the scene\n\
+         split a long product of motions into several joints"
+    )
+}
+
 /// The statement of the spec that a part starts from; the joint's name for those that start from all.
 pub fn span(spec: &JointSpec, task: &str) -> Range<usize> {
     let pose = || spec.pose.span.clone();

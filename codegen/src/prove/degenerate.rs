@@ -26,6 +26,14 @@ pub fn zero(function: &Expr, joint: &Prepared, domain: &Domain<'_>) -> Option<St
     (!texts.is_empty()).then(|| texts.join(", "))
 }
 
+/// Whether the function is zero at home, where home is given and the function has a value there.
+pub fn is_at_home(function: &Expr, joint: &Prepared, domain: &Domain<'_>) -> bool {
+    let home = joint.space.home_values();
+    !home.is_empty()
+        && is_regular(function, &home, domain)
+        && domain.ideal().vanishes(&function.substitute(&home))
+}
+
 /// Home, and what is reached from it by quarter turns of the real and unit complex scalars on which the function depends.
 fn places(joint: &Prepared, held: &BTreeSet<Symbol>) -> Vec<Place> {
     let home = joint.space.home_values();

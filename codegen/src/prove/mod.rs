@@ -8,6 +8,7 @@
 //! undecided, unless it says `unproved` for that claim. Ranks, signs and invertibility need a certificate that holds at every
 //! configuration.
 
+mod advice;
 mod assembled;
 mod claim;
 mod defined;
@@ -340,18 +341,6 @@ const RIGID: usize = 10;
 
 fn refuted(code: &'static str, span: &Range<usize>, message: &str, label: &str) -> Diagnostic {
     Diagnostic::new(code, span.clone(), message).label(label)
-}
-
-/// What to do about the zeros of a function, of which `written` is a form for `except`.
-fn end_there(function: &Expr, written: &str) -> String {
-    match is_of_parameters(function) {
-        true => LEAVE_OUT.to_owned(),
-        false if written == "…" => {
-            "if the joint ends there, declare it: `except … = 0;` with a function that vanishes there"
-                .to_owned()
-        }
-        false => format!("if the joint ends there, declare it: `except {written} = 0;`"),
-    }
 }
 
 /// What to do about parameters for which there is no joint.

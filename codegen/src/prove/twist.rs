@@ -1,6 +1,6 @@
 //! Claims about X and S: they span the velocities of H, to first order in ϕ, at every configuration.
 
-use super::{Attempt, Prover, certified, degenerate, end_there, refuted};
+use super::{Attempt, Prover, certified, degenerate, refuted};
 use crate::diagnostic::Diagnostic;
 use crate::domain::Domain;
 use crate::expand::{directions, in_child_frames, rank, twist_map_in_frame};
@@ -181,7 +181,7 @@ impl Prover<'_> {
                     "here",
                 )
                 .note(format!("generic: it is singular where {determinant} = 0"))
-                .help(end_there(determinant, &determinant.to_string())),
+                .help(self.end_there(determinant)),
             )),
         }
     }
@@ -227,7 +227,7 @@ impl Prover<'_> {
                 .note(format!(
                     "generic rank: its columns become dependent where {gram} = 0"
                 ))
-                .help(end_there(&gram, "…")),
+                .help(self.full_rank(&gram, what)),
             )),
         }
     }

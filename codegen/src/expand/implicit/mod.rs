@@ -15,6 +15,7 @@ pub use system::without_content;
 
 use named::Named;
 
+use super::dimension::relation_slopes;
 use super::motion::Motion;
 use crate::algebra;
 use crate::diagnostic::Diagnostic;
@@ -24,7 +25,7 @@ use crate::kernel::Word;
 use crate::manifold::{Ideal, Kind};
 use crate::matrix::Matrix;
 use crate::model::{Freedom, Implicit};
-use crate::prepare::Prepared;
+use crate::prepare::{Prepared, insert};
 use crate::spec::code;
 
 /// How v moves Q, and how Φ comes back onto the manifold.
@@ -260,13 +261,49 @@ fn check(joint: &Prepared, implicit: &Implicit) -> Result<(), Vec<Diagnostic>> {
     );
     let help = match left > freedoms {
         true => format!(
-            "name {left} independent directions by `basis`, as in `basis turn of so2(a);`; all others follow by the relations"
+            "name {left} independent directions, as in `{}`; all others follow by the relations",
+            independent_directions(joint, left)
         ),
         false => "relations and degrees of freedom together are as many as the factors have dimensions: leave out relations that follow from \
               others, name independent directions by `basis`, or declare Phi"
             .to_owned(),
     };
     Err(vec![error(message).label("of these factors").help(help)])
+}
+
+/// Statements that name as many directions, such that at home the relations determine all others; the first ones where no such are found.
+fn independent_directions(joint: &Prepared, count: usize) -> String {
+    let manifold = &joint.space.manifold;
+    let home = joint.space.manifold.coordinates().into_iter();
+    let home = home.zip(joint.space.home.iter().cloned()).collect();
+    let slopes = relation_slopes(joint).map(|slope| slope.substitute(&home));
+    let (mut found, mut dependent) = (vec![], vec![]);
+    // From the last on, so that the directions that come first are named.
+    for direction in (0..slopes.columns()).rev() {
+        if !insert(&mut dependent, slopes.column(direction)) {
+            found.push(direction);
+        }
+    }
+    found.reverse();
+    if found.len() != count {
+        found = (0..count).collect();
+    }
+    let mut first = 0;
+    let mut statements = vec![];
+    for factor in manifold.factors() {
+        let own = first..first + factor.kind.dimension();
+        let named = found.iter().enumerate();
+        let named: Vec<String> = named
+            .filter(|(_, direction)| own.contains(direction))
+            .map(|(n, direction)| format!("v{} = e{}", n + 1, direction - own.start + 1))
+            .collect();
+        if let (false, Some(algebra)) = (named.is_empty(), factor.kind.algebra_name()) {
+            let named = named.join(", ");
+            statements.push(format!("basis {named} of {algebra}({});", factor.name));
+        }
+        first = own.end;
+    }
+    statements.join(" ")
 }
 
 fn dependent(joint: &Prepared) -> Diagnostic {

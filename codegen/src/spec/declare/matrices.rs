@@ -210,11 +210,16 @@ fn speed_names(
         list.push(name.text.clone());
     }
     let count = speed_count(freedoms, constraint, speed_basis);
+    let is_derived = constraint.is_some() && speed_basis.is_none();
     let of = |target| context.statements.target(target).is_none();
     let holonomic = of(Target::SpeedBasis) && of(Target::Constraint) && !context.file.partial;
     let message = match count {
         Some(count) if count != list.len() => {
-            Some(format!("{} names for {count} speeds", list.len()))
+            let names = match list.len() {
+                1 => "1 name".to_owned(),
+                several => format!("{several} names"),
+            };
+            Some(format!("{names} for {count} speeds"))
         }
         None if holonomic => Some("names of speeds without A or S_bar".to_owned()),
         _ => None,
@@ -222,7 +227,10 @@ fn speed_names(
     if let Some(message) = message {
         let error =
             Diagnostic::new(code::SPEEDS, speeds.span.clone(), message).label("these speeds");
-        evaluator.report(error.help("`speeds` names the columns of S_bar, in order"));
+        evaluator.report(error.help(match is_derived {
+            true => "A leaves as many speeds as v has entries and A no columns; S_bar is derived from A: give S_bar to choose its columns, which `speeds` names in order",
+            false => "`speeds` names the columns of S_bar, in order",
+        }));
     }
     Declared {
         value: list,
