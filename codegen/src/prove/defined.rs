@@ -1,6 +1,9 @@
 //! The claim that everything is defined: no quotient divides by zero, no root or logarithm leaves the positive numbers, no angle jumps.
 
-use super::{Attempt, Identities, LEAVE_OUT, Prover, certified, is_of_parameters, refuted};
+use super::advice::exception;
+use super::{
+    Attempt, Identities, LEAVE_OUT, Prover, certified, degenerate, is_of_parameters, refuted,
+};
 use crate::diagnostic::Diagnostic;
 use crate::domain::{Critical, Domain};
 use crate::expr::{Expr, Function};
@@ -37,7 +40,7 @@ impl Prover<'_> {
         match open {
             Some(open) => {
                 let span = self.statement_with(open);
-                let error = refusal(open, &span);
+                let error = self.with_other_end(refusal(open, &span), open, &declared);
                 let mut ports = self.joint.spec.ports.iter();
                 let is_port = ports.any(|port| port.span == span);
                 Err(Box::new(match is_port && open.function == Function::Atan2 {
@@ -46,6 +49,38 @@ impl Prover<'_> {
                 }))
             }
             None => Ok(None),
+        }
+    }
+
+    /// The error of a curve's end with that of its other end, where nothing keeps the joint from that one either; and whether home is at one.
+    fn with_other_end(
+        &self,
+        error: Diagnostic,
+        open: &Critical,
+        declared: &BTreeSet<Critical>,
+    ) -> Diagnostic {
+        let Function::Curve(curve, _) = open.function else {
+            return error;
+        };
+        let ends = declared.iter().filter(|f| f.function == open.function);
+        let others = ends.filter(|f| *f != open && self.domain.smooth(f).is_none());
+        let mut error = error;
+        let mut arguments = open.arguments.clone();
+        for other in others {
+            let Some(argument) = other.arguments.first() else {
+                continue;
+            };
+            let written = in_words(&exception(argument));
+            error = error.note(format!("it ends where {written} is 0 as well"));
+            arguments.push(argument.clone());
+        }
+        let mut arguments = arguments.iter();
+        match arguments.any(|end| degenerate::is_at_home(end, self.joint, &self.domain)) {
+            true => error.note(format!(
+                "home is at an end of `{}`: give another one by `home = …;`",
+                curve.name()
+            )),
+            false => error,
         }
     }
 
@@ -217,7 +252,10 @@ fn refusal(critical: &Critical, span: &Range<usize>) -> Diagnostic {
     if moves && vanishes {
         return at_base(critical, span);
     }
-    let written = in_words(argument);
+    let written = match critical.function {
+        Function::Curve(..) => in_words(&exception(argument)),
+        _ => in_words(argument),
+    };
     let message = match (critical.function, rest) {
         (Function::Recip, _) => format!("a quotient by {written}, which may be 0"),
         (Function::Curve(curve, _), _) => format!(
@@ -246,6 +284,8 @@ fn refusal(critical: &Critical, span: &Range<usize>) -> Diagnostic {
             short((&argument.square() + &x.square()).to_string())
         }
         (Function::Atan2, _) => "…".to_owned(),
+        (Function::Curve(..) | Function::Recip, _) => short(exception(argument).to_string()),
+        // Roots and logarithms have a value on the side where it is positive.
         _ => short(argument.to_string()),
     };
     let otherwise = match critical.function {

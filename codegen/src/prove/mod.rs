@@ -332,6 +332,10 @@ impl<'a> Identities<'a> {
                 "its rotation part is no rotation",
             )
             .note(format!("RᵀR − I =\n{gram}\ndet R − 1 = {}", entries[9]))
+            .help(match gram.is_zero() {
+                true => "the axes of this frame are left-handed: change the sign of one column",
+                false => "the columns of a rotation are perpendicular and of length 1: products of `rot_x`, `rot_y` and `rot_z` are rotations",
+            })
         })
     }
 }

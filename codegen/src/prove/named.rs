@@ -120,7 +120,7 @@ impl Relations<'_> {
         entries.chain(bends).collect()
     }
 
-    /// Both systems with the values of B and of λ, by Cramer's rule: entries and second derivatives are known by their names alone, but for those of λ that
+    /// Both systems with the values of B and of λ, by Cramer's rule: entries and second derivatives are known by their names alone, except for those of λ that
     /// follow from a constant entry of B.
     fn solutions(&self, systems: &Systems, ideal: &Ideal) -> Vec<Expr> {
         let bends = systems.bends.iter().flatten().flatten();

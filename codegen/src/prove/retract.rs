@@ -1,6 +1,7 @@
 //! Claims about Φ: it starts at Q, stays on the manifold, and is what the generator can invert.
 
 use super::Proof;
+use super::advice::exception;
 use super::named::Relations;
 use super::{
     Attempt, Identities, LEAVE_OUT, LONGEST, Prover, certified, is_of_parameters, refuted, symbolic,
@@ -67,6 +68,7 @@ impl Identities<'_> {
                 "does not start at Q",
             )
             .note(format!("Φ(Q, 0) − Q =\n{residual}"))
+            .help("at ϕ = 0 the value for each factor is the factor itself, as in `q + phi.q` or `Q * exp(phi.Q)`")
         })
     }
 }
@@ -273,7 +275,7 @@ impl Prover<'_> {
             "with these degrees of freedom",
         );
         let regular = self.where_irregular(&flow.regular);
-        let written = regular.to_string();
+        let written = exception(&regular).to_string();
         let help = match (is_cross_product, written.len() <= LONGEST) {
             _ if is_of_parameters(&regular) => LEAVE_OUT.to_owned(),
             (false, true) => format!(

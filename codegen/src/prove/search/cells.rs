@@ -61,7 +61,7 @@ impl Search<'_> {
             // Points beside every exception were drawn; which patterns they met is not known.
             return (
                 None,
-                Some("its domain has more components than can be told apart".into()),
+                Some("its domain has more components than can be distinguished".into()),
             );
         }
         let (found, open) = self.sorted(&conditions, whole);

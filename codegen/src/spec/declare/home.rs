@@ -112,6 +112,7 @@ fn check(
         error("home is not on the manifold")
             .label("not a configuration of this joint")
             .note(format!("residuals there:\n{}", residuals.join("\n")))
+            .help("give values that satisfy every relation for all parameters, or numbers near such values: `home near …;`")
     })
 }
 
