@@ -143,6 +143,27 @@ impl Derived {
             && outputs(KernelKind::VelocityMapGradient).iter().all(is_zero)
     }
 
+    /// Which columns of S̄ the spec's names of speeds are, in words, where S̄ is derived from A and the spec does not show it.
+    pub fn named_columns_in_words(&self) -> Option<String> {
+        let spec = &self.spec;
+        if spec.speed_names.is_none() || spec.speed_basis.is_some() || spec.constraint.is_none() {
+            return None;
+        }
+        let basis = self.kernel(KernelKind::SpeedBasis)?.outputs.first()?;
+        let names = self.speed_names.iter().enumerate();
+        let columns: Vec<String> = names
+            .map(|(j, name)| {
+                let entries = basis.column(j).into_iter();
+                let entries: Vec<String> = entries.map(|entry| entry.to_string()).collect();
+                format!("{name} = [{}]", entries.join(", "))
+            })
+            .collect();
+        Some(format!(
+            "S_bar is derived from A, and its columns are {}: give S_bar to choose others",
+            columns.join(", ")
+        ))
+    }
+
     /// What moves no body, in words: degrees of freedom, and the speeds that make these alone. `None` where everything moves it.
     pub fn still_in_words(&self) -> Option<String> {
         let named = |k: &usize| {

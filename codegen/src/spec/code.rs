@@ -96,8 +96,8 @@ codes! {
 /// What a code means: a title, why that is an error, a wrong and a right spec. `e305` and `305` are other spellings.
 ///
 /// # Errors
-/// The known code that is most like an unknown one.
-pub fn explain(code: &str) -> Result<String, &'static str> {
+/// A known code that differs from an unknown one in one digit, or by two that are exchanged; none where there is none.
+pub fn explain(code: &str) -> Result<String, Option<&'static str>> {
     let digits = code.trim_start_matches(['E', 'e']);
     let padded = format!("E{digits:0>4}");
     let position = ALL.iter().position(|(known, _)| *known == padded);
@@ -107,10 +107,7 @@ pub fn explain(code: &str) -> Result<String, &'static str> {
     }
 }
 
-fn nearest(code: &str) -> &'static str {
-    let distance = |known: &str| strsim::damerau_levenshtein(known, code);
-    let codes = ALL.iter().map(|(known, _)| *known);
-    codes
-        .min_by_key(|known| distance(known))
-        .unwrap_or_default()
+fn nearest(code: &str) -> Option<&'static str> {
+    let mut codes = ALL.iter().map(|(known, _)| *known);
+    codes.find(|known| strsim::damerau_levenshtein(known, code) == 1)
 }

@@ -201,6 +201,7 @@ fn unreadable(character: char, here: Range<usize>) -> Diagnostic {
     );
     let error = error.label("outside a comment");
     match character {
+        '#' => error.help("comments begin with `//`; a file whose comments begin with `#` may be a scene, for `hamel simulate`"),
         '\'' => error.help("names stand without quotes"),
         '²' | '³' => error.help("write pow(x, 2)"),
         '·' | '×' => error.help("a product is written `*`"),

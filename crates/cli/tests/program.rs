@@ -120,7 +120,50 @@ fn a_new_spec_can_be_checked_at_once_and_is_never_overwritten() {
     assert!(stdout(&["joints", "check", &file]).contains("rank X = k"));
     let again = hamel(&make);
     assert_eq!(again.status.code(), Some(1));
-    assert!(String::from_utf8_lossy(&again.stderr).contains("made_by_test.joint"));
+    let told = String::from_utf8_lossy(&again.stderr).into_owned();
+    assert!(told.contains("made_by_test.joint: it exists"), "{told}");
+}
+
+/// What is wrong is the option: no spec that the user never wrote is shown, and nothing is said twice.
+#[test]
+fn bodies_of_a_new_spec_have_different_names() {
+    let folder = env!("CARGO_TARGET_TMPDIR");
+    let twice = hamel(&[
+        "joints", "new", "pair", "--folder", folder, "--bodies", "a,b,a",
+    ]);
+    assert_eq!(twice.status.code(), Some(2));
+    assert_eq!(
+        String::from_utf8_lossy(&twice.stderr),
+        "error: --bodies names `a` twice: each body has a name of its own\n"
+    );
+}
+
+#[test]
+fn a_scene_is_not_imported() {
+    let scene = hamel(&["import", "scenes/heavy_top.toml"]);
+    assert_eq!(scene.status.code(), Some(1));
+    let told = String::from_utf8_lossy(&scene.stderr).into_owned();
+    assert!(told.contains("this is a scene, not a robot"), "{told}");
+    let spec = hamel(&["simulate", "joint-specs/screw.joint"]);
+    let told = String::from_utf8_lossy(&spec.stderr).into_owned();
+    assert!(
+        told.starts_with("error: this is the spec of a joint, not a scene"),
+        "{told}"
+    );
+    assert_eq!(told.matches("error").count(), 1, "{told}");
+}
+
+/// A spec that names speeds beside A alone does not show which motions these are.
+#[test]
+fn columns_of_a_derived_basis_are_shown_with_their_names() {
+    let checked = stdout(&[
+        "joints",
+        "check",
+        "codegen/tests/held-out/sphere_skate.joint",
+    ]);
+    let note =
+        "note: S_bar is derived from A, and its columns are glide = [0, 1, 0], turn = [0, 0, 1]";
+    assert!(checked.contains(note), "{checked}");
 }
 
 /// Anywhere: there are no joint-specs there.
@@ -208,7 +251,7 @@ fn a_base_floats_where_it_is_asked_to() {
     let report: Value = serde_json::from_str(&text).expect("JSON and nothing else");
     let velocity = report["samples"][0]["bodies"][0]["velocity_com_world"][2].as_f64();
     let fall = velocity.expect("a number") + 0.981;
-    // At rest and without contact the whole robot falls as one; dopri5 is exact for that but for rounding.
+    // At rest and without contact the whole robot falls as one; dopri5 is exact for that up to rounding.
     assert!(fall.abs() <= 1e-12, "{fall:e}");
 }
 
@@ -385,6 +428,11 @@ fn error_codes_are_explained() {
     assert_eq!(unknown.status.code(), Some(2));
     let message = String::from_utf8_lossy(&unknown.stderr).into_owned();
     assert!(message.contains("did you mean `E0305`?"), "{message}");
+    // No code is like this one: the ranges are named instead.
+    let unlike = hamel(&["joints", "explain-error", "E9999"]);
+    let message = String::from_utf8_lossy(&unlike.stderr).into_owned();
+    assert!(!message.contains("did you mean"), "{message}");
+    assert!(message.contains("E0101 to E0109, E0201 to"), "{message}");
 }
 
 #[test]

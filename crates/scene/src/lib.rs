@@ -15,6 +15,7 @@ mod description;
 mod diagnostics;
 mod event;
 mod forces;
+mod kind;
 pub mod mjcf;
 mod notice;
 mod parse;

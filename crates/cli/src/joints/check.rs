@@ -92,8 +92,9 @@ fn text(joint: &Derived) -> String {
         )
     };
     let lines: String = joint.claims.iter().map(line).collect();
-    let still = joint.still_in_words();
-    let note = still.map_or_else(String::new, |still| format!("  note: {still}\n"));
+    let notes = [joint.still_in_words(), joint.named_columns_in_words()];
+    let notes = notes.into_iter().flatten();
+    let notes: String = notes.map(|note| format!("  note: {note}\n")).collect();
     let bodies = match joint.spec.bodies.as_slice() {
         [] => String::new(),
         names => format!(" (bodies {})", names.join(", ")),
@@ -110,7 +111,7 @@ fn text(joint: &Derived) -> String {
         .map(|pin| format!("  pin {}: {}\n", pin.value.name, pin.value.text))
         .collect();
     format!(
-        "{}{bodies}\n{lines}{ports}{pins}{note}\n",
+        "{}{bodies}\n{lines}{ports}{pins}{notes}\n",
         joint.spec.name.value
     )
 }

@@ -19,11 +19,27 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         None => output::print(&list()),
         Some(code) => match code::explain(code) {
             Ok(page) => output::print(&page),
-            Err(nearest) => Err(Failure::Options(format!(
-                "no error has the code `{code}`: did you mean `{nearest}`? Without a code, all are listed"
-            ))),
+            Err(nearest) => Err(Failure::Options(unknown(code, nearest))),
         },
     }
+}
+
+/// The message of a code that no error has.
+fn unknown(code: &str, nearest: Option<&str>) -> String {
+    let advice = match nearest {
+        Some(nearest) => format!("did you mean `{nearest}`?"),
+        None => format!("codes of specs are {}.", ranges().join(", ")),
+    };
+    format!("no error has the code `{code}`: {advice} `hamel joints explain-error` lists all")
+}
+
+/// The first and the last code of each hundred.
+fn ranges() -> Vec<String> {
+    let hundred = |code: &str| code.chars().take(3).collect::<String>();
+    let groups = code::ALL.chunk_by(|(a, _), (b, _)| hundred(a) == hundred(b));
+    groups
+        .filter_map(|group| Some(format!("{} to {}", group.first()?.0, group.last()?.0)))
+        .collect()
 }
 
 fn list() -> String {

@@ -3,6 +3,7 @@
 use hamel_console::files::new_file;
 use hamel_console::output::{self, Failure};
 use hamel_console::terminal;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 /// Where specs of this repository are, which `cargo build` reads.
@@ -29,6 +30,7 @@ pub struct Args {
 
 /// Writes the file; one that exists is never touched.
 pub fn run(args: &Args) -> Result<(), Failure> {
+    check_bodies(&args.bodies)?;
     let text = match args.bodies.as_slice() {
         [] => template(&args.name),
         bodies => template_of_several(&args.name, bodies),
@@ -41,7 +43,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         None if library.is_dir() => library.join(&file),
         None => PathBuf::from(&file),
     };
-    new_file(&path)?.write(text)?;
+    let written = new_file(&path).and_then(|file| file.write(text));
+    written.map_err(explained)?;
     warn_of_namesake(&args.name);
     let next = match path.parent() == Some(library) {
         true => "`cargo build`, `cargo test`\nthe language: joint-specs/README.md",
@@ -55,6 +58,31 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         "wrote {}\nnext: change it to your joint, `hamel joints check {shown}`, {next}\n",
         place.display()
     ))
+}
+
+/// The template would name such a body twice, and declare its pose twice.
+fn check_bodies(bodies: &[String]) -> Result<(), Failure> {
+    let mut places = bodies.iter().enumerate();
+    match places.find(|(place, body)| bodies[..*place].contains(body)) {
+        Some((_, body)) => Err(Failure::Options(format!(
+            "--bodies names `{body}` twice: each body has a name of its own"
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Says what to do where there is such a file.
+fn explained(failure: Failure) -> Failure {
+    match failure {
+        Failure::Write { target, error } if error.kind() == ErrorKind::AlreadyExists => {
+            let advice = "it exists, and is never overwritten: change it, or give the new joint another name";
+            Failure::Write {
+                target,
+                error: io::Error::new(ErrorKind::AlreadyExists, advice),
+            }
+        }
+        other => other,
+    }
 }
 
 /// A registry takes one joint of a name, and `joints explain NAME` shows that of the library.

@@ -27,6 +27,7 @@ use crate::coupling::{Group, Movement, Node};
 use crate::description::{InitialDescription, JointDescription, MimicDescription, Part};
 use crate::diagnostics::Diagnostic;
 use crate::forces::JointForces;
+use crate::kind;
 use crate::read::{Fields, Sink};
 use crate::settings::Settings;
 use crate::source::Located;
@@ -130,7 +131,10 @@ pub(crate) fn draft(text: &str, sink: &mut Sink) -> Option<Draft> {
 fn table<'a>(text: &'a str, sink: &mut Sink) -> Option<Spanned<DeTable<'a>>> {
     let (root, errors) = DeTable::parse_recoverable(text);
     if !errors.is_empty() {
-        syntax::report(text, &errors, sink);
+        match kind::no_scene(text) {
+            Some(error) => sink.push(error),
+            None => syntax::report(text, &errors, sink),
+        }
         return None;
     }
     if root.get_ref().is_empty() {

@@ -1,6 +1,7 @@
 //! The XML under the file of a robot: a tree that knows the place of everything, or its syntax error; and numbers in texts.
 
 use crate::diagnostics::Diagnostic;
+use crate::kind;
 use crate::read::Sink;
 use crate::source::Span;
 use crate::urdf::of_prefix;
@@ -14,6 +15,9 @@ pub(crate) fn tree<'a>(text: &'a str, sink: &mut Sink) -> Option<Document<'a>> {
 }
 
 fn refusal(text: &str, error: &Error) -> Diagnostic {
+    if let Some(other) = kind::no_robot(text) {
+        return other;
+    }
     let position = error.pos();
     let message = error.to_string().replace(&format!(" at {position}"), "");
     let span = match error {
