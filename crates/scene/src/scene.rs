@@ -3,10 +3,11 @@
 use crate::build;
 use crate::control::Control;
 use crate::description::{
-    BodyDescription, CouplingDescription, LoopDescription, SceneDescription, Source,
+    BodyDescription, CouplingDescription, JointDescription, LoopDescription, SceneDescription,
+    Source,
 };
 use crate::diagnostics::{Diagnostic, Diagnostics};
-use crate::event::SceneEvent;
+use crate::event::{EventDescription, SceneEvent};
 use crate::notice::{Notice, Notices};
 use crate::parse::{self, BodyDraft, Draft, Tree};
 use crate::read::Sink;
@@ -17,6 +18,7 @@ use crate::text;
 use hamel_integrate::State;
 use hamel_runtime::mechanism::Mechanism;
 use hamel_runtime::registry::JointRegistry;
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -177,7 +179,16 @@ impl SceneDescription {
             notices: notices.into_vec(),
             ..scene
         });
-        scene.ok_or_else(|| self.refuse(sink))
+        scene.ok_or_else(|| {
+            let joints = coupled.bodies.iter().filter(|body| body.leads());
+            check_events(
+                &coupled.events,
+                joints.map(|body| &body.joint),
+                registry,
+                &mut sink,
+            );
+            self.refuse(sink)
+        })
     }
 
     pub(crate) fn refuse(&self, sink: Sink) -> Diagnostics {
@@ -194,6 +205,30 @@ fn check_joints(draft: &Draft, registry: &JointRegistry, sink: &mut Sink) {
             build::state(joint, &initial, &forces, registry, sink);
         }
     }
+    // Couplings and loops make one joint of several, whose names are known when they are made.
+    let is_coupled = draft.bodies.iter().any(|body| body.mimic.is_some()) || !draft.ties.is_empty();
+    if !is_coupled {
+        let joints = draft.bodies.iter().filter(|body| body.leads());
+        let joints = joints.filter_map(|body| body.joint.as_ref());
+        check_events(&draft.elements.events, joints, registry, sink);
+    }
+}
+
+/// Looks for events of what their joints do not have; of joints that cannot be built nothing is said here.
+fn check_events<'a>(
+    events: &[EventDescription],
+    joints: impl Iterator<Item = &'a JointDescription>,
+    registry: &JointRegistry,
+    sink: &mut Sink,
+) {
+    let joints: HashMap<&str, &JointDescription> = joints
+        .map(|joint| (joint.name.value.as_str(), joint))
+        .collect();
+    let built = |name: &str| {
+        let joint = joints.get(name)?;
+        build::joint(joint, registry, &mut Sink::default())
+    };
+    build::check_events(events, built, sink);
 }
 
 /// The description that a draft without errors makes.

@@ -174,7 +174,7 @@ impl Fit<'_> {
         sound.then_some((start, laws))
     }
 
-    /// Home, but for the joints that have goals.
+    /// Home, except for the joints that have goals.
     fn configuration(&self, goals: &[GoalDescription], sink: &mut Sink) -> Option<Vec<f64>> {
         let mut q = self.mechanism.home();
         let mut sound = unique(goals.iter().map(|goal| &goal.joint), sink);

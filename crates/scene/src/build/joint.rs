@@ -10,7 +10,7 @@ use hamel_runtime::registry::{JointEntry, JointRegistry};
 use std::sync::Arc;
 
 /// Builds the joint: of its type, or of its links where it is a coupling.
-pub(super) fn joint(
+pub(crate) fn joint(
     description: &JointDescription,
     registry: &JointRegistry,
     sink: &mut Sink,

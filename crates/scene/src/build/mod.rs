@@ -10,6 +10,8 @@ mod place;
 mod state;
 
 pub(crate) use control::control;
+pub(crate) use event::check as check_events;
+pub(crate) use joint::joint;
 pub(crate) use parts::states;
 pub(crate) use state::{Stand, State, stand, state};
 
@@ -70,7 +72,7 @@ pub(crate) fn scene(
         }
         None => None,
     };
-    let events = event::events(&description.events, &mechanism, sink)?;
+    let events = event::events(&description.events, &mechanism)?;
     Some(Scene {
         name: description.name.clone(),
         description: description.description.clone(),

@@ -19,7 +19,14 @@ pub(crate) struct TieDrafts {
     couplings: Vec<Draft<CouplingDescription>>,
 }
 
-/// What it is, but for the bodies, of which the names are known.
+impl TieDrafts {
+    /// Whether there is none.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.loops.is_empty() && self.couplings.is_empty()
+    }
+}
+
+/// All of a tie except its bodies, of which the names are known.
 #[derive(Debug)]
 struct Draft<D> {
     tie: D,
