@@ -43,7 +43,7 @@ pub enum Scheme {
     /// the state are no part of them, so that the order is 2 there; dense output and events do not see what oscillates faster than its steps. Bodies that nothing but uniform gravity
     /// acts on move in closed form, without dense output and events. Each must be alone on a joint of six degrees of freedom, or on a ball joint about its centre of mass.
     Exponential,
-    /// A discrete-gradient method of order 2 on the port-Hamiltonian form: keeps the energy balance to rounding, at steps of one length and under step control.
+    /// A discrete-gradient method of order 2 on the port-Hamiltonian form: keeps the energy balance to rounding, at a fixed step size and under step control.
     DiscreteGradient,
 }
 
@@ -357,7 +357,7 @@ impl Options {
         if !scheme.forms().contains(&self.form) {
             return Err(IntegrateError::Scheme {
                 scheme: scheme.name(),
-                reason: "is one of the port-Hamiltonian form: choose that form".into(),
+                reason: "takes the port-Hamiltonian form alone, which is `--form hamiltonian` of the program, `form = \"hamiltonian\"` of a scene or in Python, and `Form::Hamiltonian` in Rust".into(),
             });
         }
         if *scheme != Scheme::DiscreteGradient {
