@@ -292,7 +292,7 @@ pub struct Word {
     pub symbol: Symbol,
     /// Its value in stored scalars, parameters and the words before it.
     pub value: Expr,
-    /// The `let` or its entry: the name itself, but for derivatives.
+    /// The `let` or its entry: the name itself, except for derivatives.
     pub base: Symbol,
     /// The degrees of freedom along which a derivative is taken, one after the other.
     pub along: Vec<usize>,

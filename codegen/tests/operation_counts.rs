@@ -126,7 +126,7 @@ fn calls_group(block: &syn::Block) -> bool {
             .any(|group| text.contains(&format!("{group} :: ")))
 }
 
-/// The operations of `dot([a, b], [x, y])` but for those in its entries: n products, of which all but one are fused with a sum.
+/// The operations of `dot([a, b], [x, y])` except for those in its entries: n products, of which all but one are fused with a sum.
 fn count_dot(arguments: &TokenStream, counts: &mut Counts) {
     let first = arguments.clone().into_iter().next();
     if let Some(TokenTree::Group(entries)) = first {

@@ -71,7 +71,7 @@ impl<'py> Argument<'py> {
         self.array.py()
     }
 
-    /// Its dimensions but for the last one.
+    /// Its dimensions except for the last one.
     fn leading(&self) -> &[usize] {
         let shape = self.array.shape();
         &shape[..shape.len().saturating_sub(1)]

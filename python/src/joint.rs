@@ -26,7 +26,7 @@ type Given<'a, 'py> = &'a Bound<'py, PyAny>;
 /// joint, such as a pitch, are given by keyword, in SI units. Arguments are neither modified nor kept.
 ///
 /// Its formulas are evaluated operation by operation (`evaluation`), as they are in a robot that `hamel.load(scene, joints=[joint])` makes of it: slower than the joints of
-/// the library, which are compiled, and equal but for rounding.
+/// the library, which are compiled, and equal up to rounding.
 ///
 /// Args:
 ///     spec: the text of a spec, the path of a `.joint` file, or the name of a joint of the library.

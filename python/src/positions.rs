@@ -110,7 +110,7 @@ impl Robot {
         Ok(projected)
     }
 
-    /// An array of positions, zero but for those of the joints named.
+    /// An array of positions, zero except for those of the joints named.
     fn gathered<'py>(&self, named: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
         let py = named.py();
         let mut all = vec![0.0; self.sizes().freedoms];

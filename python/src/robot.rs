@@ -19,7 +19,7 @@ type Given<'a, 'py> = &'a Bound<'py, PyAny>;
 
 /// A robot or a scene: its equations of motion, evaluated on arrays. `hamel.load` makes one.
 ///
-/// With N, K and S of `sizes`, q is (..., N), efforts tau are (..., K), speeds v and accelerations are (..., S); K = S but for nonholonomic joints. The dimensions before the
+/// With N, K and S of `sizes`, q is (..., N), efforts tau are (..., K), speeds v and accelerations are (..., S); K = S except for nonholonomic joints. The dimensions before the
 /// last are a batch and broadcast as those of numpy do; large batches run on several threads, with the same bits as on one. Arguments may be of any real numbers in any
 /// order; they are neither modified nor kept, and must not be changed by another thread during a call.
 ///
@@ -122,7 +122,7 @@ impl Robot {
         PyTuple::new(py, self.model.joints().collect::<Vec<_>>())
     }
 
-    /// Names of the bodies: one per joint, but for joints that carry several. Links that are fixed to others are frames.
+    /// Names of the bodies: one per joint, except for joints that carry several. Links that are fixed to others are frames.
     #[getter]
     fn bodies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.model.bodies().collect::<Vec<_>>())

@@ -49,7 +49,7 @@ pub fn sample(rows: u64) -> Vec<u64> {
     hamel_lanes::sample(rows).collect()
 }
 
-/// A scene, the numbers of it that rows change, by which equations rows move, and what is told of their motions. Pickles as what it is made of.
+/// A scene, the numbers of it that rows change, by which equations rows move, and what is reported of their motions. Pickles as what it is made of.
 #[pyclass(frozen, module = "hamel._hamel")]
 pub struct Sweep {
     text: String,

@@ -15,7 +15,7 @@ PENDULUM = ROOT / "tests/data/scenes/double_pendulum.toml"
 
 
 def pendulums(count):
-    """Rows of `PENDULUM` that go side by side, but for one that fails and one that leaves the finite numbers. Masses are the same in two rows each."""
+    """Rows of `PENDULUM` that go side by side, except for one that fails and one that leaves the finite numbers. Masses are the same in two rows each."""
     random = np.random.default_rng(11)
     rows = {"body.lower.mass": np.repeat(random.uniform(0.8, 1.2, -(-count // 2)), 2)[:count]}
     rows["body.upper.initial.configuration.1"] = random.uniform(-0.5, 0.5, count)

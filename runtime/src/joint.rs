@@ -159,7 +159,7 @@ pub trait Joint<const N: usize, const K: usize, const S: usize, const C: usize>:
     /// Names of the bodies that the joint carries; empty where it carries one that has no name.
     const BODIES: &'static [&'static str] = &[];
 
-    /// Which of them this is the joint of: 0 but for a [`Member`].
+    /// Which of them this is the joint of: 0 except for a [`Member`].
     const BODY: usize = 0;
 
     /// The constants of the trait as a value. A joint that is built at run time overrides it.

@@ -153,7 +153,7 @@ pub fn weightless<'a>(
     (0..count).map(move |seed| rooted(kinds, root, Vector3::zeros(), size(seed), seed))
 }
 
-/// A tree of `size` joints, random but for the first.
+/// A tree of `size` joints, random except for the first.
 fn rooted(
     kinds: &[Arc<dyn AnyJoint>],
     root: &Arc<dyn AnyJoint>,

@@ -92,7 +92,7 @@ fn weight(number: &Rational) -> u64 {
 struct Pairs(BinaryHeap<Reverse<(Monomial, usize, usize)>>);
 
 impl Pairs {
-    /// Adds the pairs of an element with those before it, but for coprime leading monomials: these reduce to zero (Buchberger's first
+    /// Adds the pairs of an element with those before it, except for coprime leading monomials: these reduce to zero (Buchberger's first
     /// criterion).
     fn add(&mut self, basis: &[Expr], place: usize) {
         budget::spend(place as u64);

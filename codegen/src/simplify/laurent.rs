@@ -34,7 +34,7 @@ enum Meaning {
 pub struct Ring {
     meanings: Vec<Meaning>,
     numbers: FxHashMap<Meaning, u16>,
-    /// For a divisor that is the square of a root but for a factor: that root, and `divisor / root²`.
+    /// For a divisor that is the square of a root up to a factor: that root, and `divisor / root²`.
     roots: Vec<(Expr, Atom, Rational)>,
 }
 

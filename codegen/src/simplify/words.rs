@@ -182,7 +182,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// The expression with every word replaced by its value, but for those in which B was derived: what holds for any values of them holds.
+    /// The expression with every word replaced by its value, except for those in which B was derived: what holds for any values of them holds.
     fn expanded(&self, expression: &Expr) -> Expr {
         let mut value = expression.clone();
         for word in self.words.iter().skip(self.derived_in).rev() {

@@ -1,6 +1,6 @@
 //! `hamel`: simulates and compiles scenes and robots, and explains joints, from the command line.
 //!
-//! This library holds the program, so that tests can be built with all of its features, and so that the Python package has it too. Exit code 0 means success, 1 that something went wrong (told on stderr), 2 that the command line was not understood, 130 that it was interrupted.
+//! This library holds the program, so that tests can be built with all of its features, and so that the Python package has it too. Exit code 0 means success, 1 that something went wrong (reported on stderr), 2 that the command line was not understood, 130 that it was interrupted.
 
 mod compile;
 mod import;

@@ -330,7 +330,7 @@ impl Compiled {
         self.tree
             .inverse_dynamics_derivatives(q, speeds, speeds, &mut expected)?;
         self.inverse_dynamics_derivatives(q, speeds, speeds, &mut found)?;
-        // Beside the efforts themselves, so that what is 0 but for rounding is nothing.
+        // Beside the efforts themselves, so that what is 0 up to rounding is nothing.
         let mut efforts = vec![0.0; speeds.len()];
         let given = self.tree.inverse_dynamics(q, speeds, speeds, &mut efforts);
         given.map_err(DynamicsError::from)?;

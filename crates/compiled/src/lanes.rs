@@ -242,7 +242,7 @@ where
     fn run(self) -> bool {
         let Self(simd, Whole { q, v, u, results }, _) = self;
         // A whole cache line on the stack aligns the frame, and with it what registers do not hold: without it each such load and store of eight doubles
-        // would touch two lines, but for one place of the stack in four.
+        // would touch two lines, except for one place of the stack in four.
         black_box(Lanes::ZERO);
         // What x − x adds up to: 0, or NaN. Asked here, where the results still are at hand; reading them again takes a tenth of inverse dynamics.
         let mut differences = [0.0; LANES];

@@ -95,7 +95,7 @@ pub struct Compiled {
     both: Vec<f64>,
 }
 
-/// Efforts at ports that change with time, of which the functions are not told.
+/// Efforts at ports that change with time, which the functions are not given.
 #[derive(Clone, Debug)]
 pub(super) struct Timed {
     pub are_there: bool,

@@ -243,7 +243,7 @@ impl Held<'_> {
         self.near(given, projected)
     }
 
-    /// The nearest point of the manifold, where what is given is on it but for rounding.
+    /// The nearest point of the manifold, where what is given is on it up to rounding.
     fn near(&self, given: &[f64], projected: Vec<f64>) -> Result<Vec<f64>, String> {
         let away = given.iter().zip(&projected).map(|(a, b)| (a - b).abs());
         match away.fold(0.0, f64::max) {

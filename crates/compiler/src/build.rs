@@ -338,7 +338,7 @@ impl Build {
     /// What is compiled.
     ///
     /// # Errors
-    /// Those of [`Build::compile`], but for writing.
+    /// Those of [`Build::compile`], except for writing.
     pub fn model(&self) -> Result<Model, Error> {
         let description = self.description()?;
         let kinds: std::collections::BTreeSet<&str> = description

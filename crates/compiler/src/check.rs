@@ -16,7 +16,7 @@ pub(super) fn of_scene(scene: &SceneDescription) -> Vec<String> {
     reasons
 }
 
-/// A body as its mechanism is made from it, but for the joint.
+/// A body as its mechanism is made from it, except for the joint.
 fn rigid(body: &BodyDescription) -> RigidBody<'_> {
     RigidBody {
         name: &body.name.value,

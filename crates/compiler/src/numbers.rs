@@ -1,6 +1,6 @@
 //! The numbers of a pruned model in a fixed order, and what else of it equations depend on.
 //!
-//! Two models with the same [`Shape`] have the same equations but for their [`numbers`]. So the equations of many scenes that differ in numbers can be written once, with what
+//! Two models with the same [`Shape`] have the same equations except for their [`numbers`]. So the equations of many scenes that differ in numbers can be written once, with what
 //! differs given later.
 
 use super::model::{Body, Elements, Model};

@@ -1,4 +1,4 @@
-//! What goes wrong, and how it is told: in plain words on stderr.
+//! What goes wrong, and how it is reported: in plain words on stderr.
 
 use crate::interrupt;
 use crate::terminal::{self, Texts};
@@ -18,13 +18,13 @@ pub enum Failure {
     /// Mistakes in a spec.
     #[error("{0}")]
     Spec(Box<hamel_codegen::diagnostic::Diagnostics>),
-    /// Failures of several joints, each told in full.
+    /// Failures of several joints, each reported in full.
     #[error("{} joints were refused", .0.len())]
     Several(Vec<Failure>),
     /// A page that its template cannot show.
     #[error("the page cannot be rendered: {0}")]
     Page(String),
-    /// A scene that cannot be compiled, told in full.
+    /// A scene that cannot be compiled, with all its reasons.
     #[error("{0}")]
     Refused(String),
     /// Options that contradict each other or the scene.

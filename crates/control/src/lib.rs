@@ -10,7 +10,7 @@
 //!
 //! Deviations are read by each joint's own inverse Φ ([`AnyJoint::local`](hamel_runtime::erased::AnyJoint::local)), so that no angle wraps and no
 //! attitude is singular. A law is handed to [`integrate`](hamel_integrate::integrate), or to
-//! [`integrate_held`](hamel_integrate::integrate_held) as a digital controller, by [`Feedback`]. After construction nothing allocates, but for
+//! [`integrate_held`](hamel_integrate::integrate_held) as a digital controller, by [`Feedback`]. After construction nothing allocates, except for
 //! `PredictiveRegulator`, whose optimiser does.
 #![forbid(unsafe_code)]
 #![cfg_attr(not(feature = "std"), no_std)]

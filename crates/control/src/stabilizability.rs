@@ -70,7 +70,7 @@ pub fn beyond(a: &DMatrix<f64>, b: &DMatrix<f64>, time: Time) -> Option<Motion> 
     })
 }
 
-/// Whether the motion of an eigenvalue does not decay, or might not but for rounding: whether `A − μ` is regular at the nearest μ that does not.
+/// Whether the motion of an eigenvalue does not decay, or, up to rounding, might not: whether `A − μ` is regular at the nearest μ that does not.
 /// Nearby eigenvalues are each far less certain than that, by the root of a rounding where two are one; those into which rounding parts one that is double lie
 /// around it at like distances, so that one much nearer to μ tells of another motion.
 fn lasts(a: &DMatrix<f64>, value: Complex<f64>, all: &[Complex<f64>], time: Time) -> bool {

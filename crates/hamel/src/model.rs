@@ -34,7 +34,7 @@ pub fn load_with(path: impl AsRef<Path>, registry: &JointRegistry) -> Result<Mod
 /// A mechanism with named joints, bodies and frames, its initial state and the room for its dynamics.
 ///
 /// Methods take a [`State`] (Q, v̄) and give vectors and matrices of the right size, for all joints in the order of [`Model::joints`]. v̄ and v̄̇ have one entry
-/// per speed; efforts τ one per entry of a joint's velocity v, in N m or N. Both sizes are equal but for nonholonomic joints. Where a scene prescribes the motion of a
+/// per speed; efforts τ one per entry of a joint's velocity v, in N m or N. Both sizes are equal except for nonholonomic joints. Where a scene prescribes the motion of a
 /// joint, its entries of τ are accelerations, and those of v̄ are what the state says.
 ///
 /// Each call allocates its result; [`Recursive`] writes into slices and allocates nothing. Clones share the mechanism and have memory of their own: make one
@@ -81,7 +81,7 @@ impl Model {
         self.mechanism().joints().map(|(_, body)| body.joint_name())
     }
 
-    /// Names of the bodies: one per joint, but for joints that carry several.
+    /// Names of the bodies: one per joint, except for joints that carry several.
     pub fn bodies(&self) -> impl Iterator<Item = &str> + Clone {
         self.mechanism().bodies().iter().map(Body::name)
     }

@@ -1,4 +1,4 @@
-//! What is told of a joint beside its own coordinates: its ports, the forces that hold its relations, and those at its pins.
+//! What is reported of a joint beside its own coordinates: its ports, the forces that hold its relations, and those at its pins.
 
 use crate::{Error, Model, UnknownName};
 use hamel_integrate::State;

@@ -191,7 +191,7 @@ fn a_simulation_takes_inputs_events_and_times() -> Result<(), Error> {
     Ok(())
 }
 
-/// x = t² under 4 N on 2 kg is known, and so is a pendulum of small swings but for its tolerance.
+/// x = t² under 4 N on 2 kg is known, and so is a pendulum of small swings to within its tolerance.
 #[test]
 fn a_simulation_tells_its_error() -> Result<(), Error> {
     let rod = Body::new("rod", "revolute").mass(1.0, [0.5, 0.0, 0.0]);

@@ -3,7 +3,7 @@
 //! Bootstrapping, of W. H. Enright, K. R. Jackson, S. P. Nørsett and P. G. Thomsen (*Interpolants for Runge–Kutta formulas*, 1986), in the chart
 //! of the step: the cubic through (ϕ, y) and (ϕ̇, ẏ) at both ends has an error of h⁴; the equations of motion, evaluated on it at inner points, give
 //! slopes that are good enough for the polynomial of one degree more; and so on until the degree, and with it the local order, is that of the
-//! scheme. All polynomials pass through both ends, and Q comes out of them through Φ. Inner points are Lobatto's, but for the middle one, whose slope
+//! scheme. All polynomials pass through both ends, and Q comes out of them through Φ. Inner points are Lobatto's, except for the middle one, whose slope
 //! follows from the change over the step: that keeps the basis well conditioned, and the error small against that of the step.
 //!
 //! On stiff mechanisms an evaluation of the equations amplifies the interpolation error by more than the factor h reduces it: errors grow from degree to degree.

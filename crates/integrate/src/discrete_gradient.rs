@@ -9,7 +9,7 @@
 //! λ is chosen such that the energy at the end is what it shall be. The energy error has the derivative `−p̄ᵀv̄ − Δp̄ᵀM̄⁻¹Δp̄` by λ, which is zero only at rest: at top speed Δp̄ is small, at turning points p̄ is. The energy is held against that at the beginning of all steps and the work done since, so
 //! that rounding does not add up.
 //!
-//! None of this asks for steps of one length. λ is of the third power of the step, as the error of the midpoint rule is, and step control judges both together
+//! None of this asks for a fixed step size. λ is of the third power of the step, as the error of the midpoint rule is, and step control judges both together
 //! (`collocation::quadrature`). Rounding of the energies over p̄ᵀv̄ is in λ at any length of step; shorter steps would not make it smaller, so that the
 //! estimate leaves it out ([`Correction::forget_scatter`]).
 

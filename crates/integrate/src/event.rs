@@ -121,7 +121,7 @@ pub struct Crossing {
     pub name: String,
     /// Whether the function rises there; of a joint, whether it moves towards larger coordinates, before it where it is at rest after it.
     pub rising: bool,
-    /// The state, at the first time at which the function is known to be on the other side: the zero, but for the rounding of time. It lies on the dense
+    /// The state, at the first time at which the function is known to be on the other side: the zero, up to the rounding of time. It lies on the dense
     /// output, and has its accuracy. After an impact, with the speeds that it leaves.
     pub state: State,
 }

@@ -66,7 +66,7 @@ impl<'a> EventLocation<'a> {
             let value = values[PARTS];
             *side = if value == 0.0 { *side } else { value };
         }
-        // Where a piece begins, its guards are 0 or more, but for rounding.
+        // Where a piece begins, its guards are 0 or more, up to rounding.
         guards.fill(1.0);
         Ok(())
     }

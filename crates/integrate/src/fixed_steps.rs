@@ -1,4 +1,4 @@
-//! Lengths of the steps of a motion with steps of one length.
+//! Lengths of the steps of a motion with a fixed step size.
 
 use super::clock::Clock;
 use num_traits::Float;

@@ -83,7 +83,7 @@ impl Hold {
         self.start + self.period * self.count as f64
     }
 
-    /// Whether the next instant is `time`, but for rounding.
+    /// Whether the next instant is `time`, up to rounding.
     pub(super) fn falls_on(&self, time: f64) -> bool {
         (self.next() - time).abs() <= SAME_INSTANT * self.period
     }

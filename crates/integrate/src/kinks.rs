@@ -9,7 +9,7 @@ pub(super) struct Kinks {
     /// The next one, if there is one before the end.
     next: Option<f64>,
     end: f64,
-    /// Times that differ by no more are the same but for rounding, by which times of one instant differ that were computed in several ways.
+    /// Times that differ by no more are the same up to rounding, by which times of one instant differ that were computed in several ways.
     rounding: f64,
 }
 

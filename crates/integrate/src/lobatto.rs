@@ -1,6 +1,6 @@
 //! Lobatto's quadrature on [0, 1], and polynomials in the basis of Legendre.
 //!
-//! A polynomial z on a step of unit length is told by its change Δ over the step and its slopes ż at the nodes: with
+//! A polynomial z on a step of unit length is determined by its change Δ over the step and its slopes ż at the nodes: with
 //! `ż = Σ c_k P_k`, c₀ is Δ, and z is `z₀ + τ Δ + Σ_{k ≥ 1} c_k ∫P_k`, whose integrals vanish at both ends.
 
 use alloc::vec;

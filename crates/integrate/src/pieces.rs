@@ -55,7 +55,7 @@ impl<'a> FirstPiece<'a> {
     }
 }
 
-/// What is told of the end of a piece, after `events` that were asked for.
+/// What is reported of the end of a piece, after `events` that were asked for.
 fn crossings(notes: Vec<Note>, events: usize, state: &State) -> Vec<Crossing> {
     let notes = notes.into_iter();
     let crossings = notes.map(|note| Crossing {

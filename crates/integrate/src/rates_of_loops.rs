@@ -92,7 +92,7 @@ impl RatesOfLoops {
             let body = &mechanism.bodies()[index];
             let q = body.configuration(configuration);
             let (freedoms, own) = (&body.ranges().freedoms, &body.ranges().speeds);
-            // ϕ is a v times a time, but for S, which is near 1 at small ϕ.
+            // ϕ is a v times a time, except for S, which is near 1 at small ϕ.
             let moved = &mut self.rates[0];
             moved.resize(q.len(), 0.0);
             body.joint()

@@ -2,7 +2,7 @@
 
 use super::IntegrateError;
 
-/// A step of fixed size that failed where a joint's motion may end. Steps of any length come to that end, so that what is wrong with the step is told only where shorter ones lead past its end.
+/// A step of fixed size that failed where a joint's motion may end. Steps of any length come to that end, so that what is wrong with the step is reported only where shorter ones lead past its end.
 #[derive(Debug)]
 pub(super) struct Search {
     /// The end of the step that failed, s.

@@ -41,7 +41,7 @@ pub(super) trait Stepper {
         allowed: f64,
     ) -> Result<(f64, usize), StepFailure>;
 
-    /// Makes the end of the step just tried the state, at `time`, which is the end of `span` but for rounding.
+    /// Makes the end of the step just tried the state, at `time`, which is the end of `span` up to rounding.
     fn accept(
         &mut self,
         step_state: &mut StepState,

@@ -55,7 +55,7 @@ struct Block<'a> {
     bent: Vec<(usize, &'a Position)>,
 }
 
-/// Motions with steps of one length until one time.
+/// Motions with a fixed step size until one time.
 struct Group {
     steps: FixedSteps,
     step: f64,

@@ -82,7 +82,7 @@ pub fn described(
     })
 }
 
-/// The explicit method of steps of one length by which the scene moves.
+/// The explicit method of fixed step size by which the scene moves.
 fn method(scene: &Scene) -> Result<(&'static Tableau, f64), String> {
     let refused = |why: &str| Err(why.to_owned());
     let (settings, mechanism) = (&scene.settings, &scene.mechanism);

@@ -7,7 +7,7 @@ use hamel::registry::JointRegistry;
 use hamel_scene::{Company, Scene, Settings};
 use serde::Serialize;
 
-/// Tolerances at which the choice is told.
+/// Tolerances at which the choice is reported.
 pub const ASKED: [f64; 3] = [1e-4, 1e-8, 1e-12];
 
 /// The choice for one tolerance.

@@ -1,4 +1,4 @@
-//! What motions are told their errors are, beside the errors that they have.
+//! The errors that are estimated of motions, beside those that they have.
 
 use super::case::Reference;
 use super::measure::{Failed, finite_errors, integrated};

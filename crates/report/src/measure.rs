@@ -23,7 +23,7 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// For figures that are to be told.
+    /// For figures that are to be reported.
     pub const FULL: Self = Self {
         run: Duration::from_millis(500),
         point: Duration::from_millis(30),

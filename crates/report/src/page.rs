@@ -19,7 +19,7 @@ use tera::{Context, Tera};
 
 const TEMPLATE: &str = include_str!("page.html");
 
-/// Accuracies that run times are told for.
+/// Accuracies that run times are reported for.
 const ASKED: [f64; 2] = [1e-6, 1e-9];
 
 /// One scene's part of the page.

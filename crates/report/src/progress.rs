@@ -14,7 +14,7 @@ const RATE: Duration = Duration::from_secs(10);
 #[derive(Debug)]
 pub struct Progress {
     bar: ProgressBar,
-    /// Absent on a terminal, which shows the bar, and where nothing is to be told.
+    /// Absent on a terminal, which shows the bar, and where nothing is to be reported.
     lines: Option<Lines>,
 }
 

@@ -269,7 +269,7 @@ impl Row for Stability {
     }
 }
 
-/// What a motion was told its error is, beside the error that it has.
+/// The error that was estimated of a motion, beside the one that it has.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Estimate {
     pub scene: String,
@@ -279,7 +279,7 @@ pub struct Estimate {
     /// Against the reference: at the last sample, and over all samples.
     pub error_final: Option<f64>,
     pub error_worst: Option<f64>,
-    /// What is told of the last state: the part from steps and that from rounding.
+    /// What is reported of the last state: the part from steps and that from rounding.
     pub told_steps: Option<f64>,
     pub told_rounding: Option<f64>,
     /// Why the estimate calls itself not reliable; empty where it is.

@@ -1,4 +1,4 @@
-//! What a file says and the simulation leaves out: told beside the scene, never dropped in silence.
+//! What a file says and the simulation leaves out: reported beside the scene, never dropped in silence.
 
 use std::collections::HashMap;
 use std::fmt;

@@ -55,7 +55,7 @@ impl Settings {
     pub const DEFAULT_TOL: f64 = 1e-10;
 
     /// The method that `scheme`, a step and a tolerance ask for; a step alone asks for `rk4`. Where nothing but a tolerance is given at most, the choice is
-    /// left open, and the method that is told has the tolerance. `None` where the scheme cannot be told a tolerance. Of step and tolerance at most one is given.
+    /// left open, and the returned method has the tolerance. `None` where the scheme takes no tolerance. Of step and tolerance at most one is given.
     pub fn method_of(scheme: Option<Scheme>, dt: Option<f64>, tol: Option<f64>) -> Option<Method> {
         let implied = match dt {
             Some(_) => Scheme::Rk4,

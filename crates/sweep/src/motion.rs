@@ -29,7 +29,7 @@ pub enum SweepError {
     Times(Vec<String>),
 }
 
-/// A scene, the numbers of it that a table changes, and what is told of its motions.
+/// A scene, the numbers of it that a table changes, and what is reported of its motions.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     document: Document,

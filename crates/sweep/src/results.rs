@@ -1,4 +1,4 @@
-//! What is told of one motion: its last state in columns, and how it ended.
+//! What is reported of one motion: its last state in columns, and how it ended.
 
 use crate::columns::{Factor, Turns, coordinate_endings, speed_endings, suffix, turns};
 use crate::track::Track;
@@ -70,7 +70,7 @@ pub struct Row {
     pub numbers: Vec<f64>,
 }
 
-/// Names of what is told of every motion.
+/// Names of what is reported of every motion.
 const WHOLE: [&str; 4] = ["t_s", "energy_J", "kinetic_energy_J", "potential_energy_J"];
 const WORK: [&str; 1] = ["steps"];
 const ERROR: [&str; 2] = ["error", "error_is_reliable"];
@@ -89,10 +89,10 @@ struct Joint {
 pub(crate) struct Results {
     names: Vec<String>,
     joints: Vec<Joint>,
-    /// How many coordinates and speeds are told of a state.
+    /// How many coordinates and speeds are reported of a state.
     state: usize,
     has_error: bool,
-    /// When states are told besides the last one, s.
+    /// When states are reported besides the last one, s.
     times: Vec<f64>,
 }
 
@@ -140,7 +140,7 @@ impl Results {
         &self.times
     }
 
-    /// Places among the names of what is told of the last state, and of each sample behind it.
+    /// Places among the names of what is reported of the last state, and of each sample behind it.
     pub fn states(&self) -> impl Iterator<Item = Range<usize>> + '_ {
         let first = self.names.len() - self.state * (self.times.len() + 1);
         (0..=self.times.len()).map(move |number| {
@@ -149,7 +149,7 @@ impl Results {
         })
     }
 
-    /// Whether the same is told of the motions of `mechanism`: numbers decide which coordinates of a loop are told.
+    /// Whether the same is reported of the motions of `mechanism`: numbers decide which coordinates of a loop are reported.
     pub fn fit(&self, mechanism: &Mechanism) -> bool {
         let mut own = self.joints.iter();
         let fits = mechanism.joints().all(|(body, joint)| {
@@ -231,7 +231,7 @@ impl Results {
         Ok(numbers)
     }
 
-    /// What is told of a motion that failed.
+    /// What is reported of a motion that failed.
     pub fn failure(&self, cause: String) -> Row {
         Row {
             outcome: Outcome::Failed(cause),

@@ -11,10 +11,10 @@ pub const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 /// Columns from which on memory is saved by more passes.
 const MANY: usize = 100;
 
-/// The sum of 2⁴⁰ doubles times this is a double. It is a power of two: products with it are exact but for values below 1e-295.
+/// The sum of 2⁴⁰ doubles times this is a double. It is a power of two: products with it are exact except for values below 1e-295.
 const SCALE: f64 = 1.0 / (1_u64 << 40) as f64;
 
-/// Kinds of causes that are told apart.
+/// Kinds of causes that are distinguished.
 const MOST_CAUSES: usize = 1000;
 
 /// Of the finite values of one column.

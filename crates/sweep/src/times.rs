@@ -11,7 +11,7 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Columns of samples at most: the summary holds some ten kilobytes for each.
 const MOST_COLUMNS: usize = 20_000;
 
-/// Mistakes that are told in full.
+/// Mistakes that are reported in full.
 const MOST_TOLD: usize = 10;
 
 /// Time 0, every `step` seconds after it, and the end of the scene's motion.

@@ -38,7 +38,7 @@ _INSTALL = "pip install 'ray[data]>=2.60'"
 
 @dataclass(frozen=True)
 class Request:
-    """What is to be swept, but for the table."""
+    """What is to be swept, except for the table."""
 
     scene: Callable[[], tuple[str, str]]
     """Its text, and what messages call it."""

@@ -74,7 +74,7 @@ def sweep(
         floating_base: whether the root link of a URDF moves freely.
         level: instructions to compute by, on which last bits depend: ``x86-64-v3`` or ``x86-64``, which has no fused products; other processors have one level. Where it is None, that of this
             process, and with ``engine="ray"`` the lowest of the nodes.
-        equations: ``"auto"`` moves many rows side by side, in a fraction of the time, where scene and rows allow it, as ``hamel sweep`` does; that takes ``estimate=False`` and steps of one length.
+        equations: ``"auto"`` moves many rows side by side, in a fraction of the time, where scene and rows allow it, as ``hamel sweep`` does; that takes ``estimate=False`` and steps of fixed size.
             ``"lanes"`` refuses a sweep of which no row can. ``"tree"`` moves rows one by one; results differ from those side by side by rounding.
         at: times of samples, s, ascending: coordinates and speeds of all joints at these times too, such as ``elbow.q.q_rad@0.5``. They are NaN in rows whose motion ends before.
         engine: ``"ray"`` moves rows on the cluster that Ray is connected to, or on one of this machine that it starts. None moves them in this process.

@@ -75,7 +75,7 @@ impl Mechanism {
         Ok(self)
     }
 
-    /// What is wrong with a frame, but for its name.
+    /// What is wrong with a frame, except for its name.
     fn faults(&self, frame: &NamedFrame) -> [Option<FrameFault>; 2] {
         let count = self.bodies.len();
         let missing = frame.body.filter(|index| *index >= count);

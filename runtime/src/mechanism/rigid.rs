@@ -6,7 +6,7 @@ use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 use nalgebra::Vector3;
 
-/// A body, but for its joint; see [`BodySpec`].
+/// A body, except for its joint; see [`BodySpec`].
 #[derive(Clone, Copy, Debug)]
 pub struct RigidBody<'a> {
     /// Name of the body, unique in its mechanism.

@@ -21,11 +21,11 @@ pub(super) trait Real:
     fn sqrt(self) -> Self;
     fn powi(self, exponent: i32) -> Self;
     fn powf(self, exponent: f64) -> Self;
-    /// Whether it is negative; `None` where that cannot be told.
+    /// Whether it is negative; `None` where that cannot be determined.
     fn is_negative(self) -> Option<bool>;
     /// The larger one of two; not a number where one is not.
     fn larger(self, other: Self) -> Self;
-    /// Both, where it cannot be told which is meant.
+    /// Both, where it cannot be determined which is meant.
     fn hull(self, other: Self) -> Self;
     /// The slope of what jumps somewhere.
     fn unbounded() -> Self;

@@ -40,8 +40,8 @@ impl From<f64> for Moment {
 /// Why the kinks of a function cannot be followed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "`{function}`: between {from} s and {until} s the argument of `{switch}` changes its sign too often to be followed, or is 0 but for rounding: \
-     give a table, or an argument whose sign changes can be told apart"
+    "`{function}`: between {from} s and {until} s the argument of `{switch}` changes its sign too often to be followed, or is 0 up to rounding: \
+     give a table, or an argument whose sign changes can be distinguished"
 )]
 pub struct KinkError {
     /// The function.

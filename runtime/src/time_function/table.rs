@@ -304,7 +304,7 @@ impl Table {
             let next = knots.partition_point(|knot| *knot <= after);
             return knots.get(next).copied();
         }
-        // The period that `after` is in, and, should it end there but for rounding, the next.
+        // The period that `after` is in, and, should it end there up to rounding, the next.
         let past = self.periods(after);
         let later = [past, past + 1.0].into_iter();
         let later = later.flat_map(|past| knots.iter().map(move |knot| knot + past * period));

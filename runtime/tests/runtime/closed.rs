@@ -352,7 +352,7 @@ fn a_linkage_ends_where_its_dependent_coordinates_do_not_follow() {
     assert_eq!(joint.singularities().len(), 1);
 }
 
-/// A parallelogram that begins nearly folded ends by its own size, and one that begins folded but for half of the digits is refused.
+/// A parallelogram that begins nearly folded ends by its own size, and one that begins folded except for half of the digits is refused.
 #[test]
 fn a_linkage_ends_before_it_loses_half_of_its_digits() {
     use Relation::Meets;

@@ -26,7 +26,7 @@ impl Table {
         }
     }
 
-    /// Takes the errors of a joint in place of those it held, but for the `known` ones.
+    /// Takes the errors of a joint in place of those it held, except for the `known` ones.
     pub fn insert(
         &mut self,
         joint: &str,

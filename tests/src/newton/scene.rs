@@ -16,7 +16,7 @@ pub struct Unsupported(pub String);
 /// A system and its state at time 0.
 #[derive(Clone, Debug)]
 pub struct World {
-    /// The bodies, but for driven ones.
+    /// The bodies, except for driven ones.
     pub system: System,
     /// The state at time 0.
     pub state: Vec<Real>,

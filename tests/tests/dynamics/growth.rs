@@ -49,7 +49,7 @@ fn slope(counts: [(usize, f64); 2]) -> f64 {
 
 impl Shape {
     /// How much more a joint may take in a large mechanism than in a small one. Work that grows as the square would take four times as much. What a joint of
-    /// a chain takes is the same but for the first and the last; leaves and forks of random trees are not as frequent in small ones as in large ones.
+    /// a chain takes is the same except for the first and the last; leaves and forks of random trees are not as frequent in small ones as in large ones.
     const fn allowed(self) -> f64 {
         match self {
             Self::Chain => 1.1,

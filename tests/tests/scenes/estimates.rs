@@ -130,7 +130,7 @@ impl Count {
             let tolerance = method.control().map_or(0.0, |control| control.tolerance);
             let scheme = method.scheme().name();
             format!(
-                "{name}, {form:?}, {scheme} to {tolerance:e}: error {error:.1e}, told {told:.1e}, {:?}",
+                "{name}, {form:?}, {scheme} to {tolerance:e}: error {error:.1e}, estimated {told:.1e}, {:?}",
                 found.doubt
             )
         };

@@ -112,7 +112,7 @@ fn check_defaults(name: &str, model: &Model, end: f64) -> Solution {
     let (error, told) = (distance(model, &found, &expected), estimate.end.total());
     let evaluations = found.statistics.evaluations;
     println!(
-        "{name}: error {error:.1e}, told {told:.1e}, {}, {evaluations} evaluations",
+        "{name}: error {error:.1e}, estimated {told:.1e}, {}, {evaluations} evaluations",
         told_of(estimate.doubt.as_ref())
     );
     assert!(evaluations < MOST_EVALUATIONS, "{name}: {evaluations}");
@@ -256,7 +256,7 @@ fn stiff_springs_against_their_closed_form() {
             estimate.end.total(),
         );
         println!(
-            "damping {damping:e}: error {error:.1e}, told {told:.1e}, {:?}",
+            "damping {damping:e}: error {error:.1e}, estimated {told:.1e}, {:?}",
             estimate.doubt
         );
         assert!(found.statistics.evaluations < MOST_EVALUATIONS);
@@ -292,7 +292,7 @@ fn rounding_of_a_stiff_base_stays_at_the_base() {
     for tolerance in [1e-6, 1e-8, 1e-10] {
         let (found, estimate) = moved(Form::Lagrangian, tolerance);
         let (error, told) = (distance(&model, &found, &expected), estimate.end.total());
-        println!("{tolerance:e}: error {error:.1e}, told {told:.1e}");
+        println!("{tolerance:e}: error {error:.1e}, estimated {told:.1e}");
         assert!(estimate.doubt.is_none(), "{:?}", estimate.doubt);
         // As for all motions: ten times the tolerance, and what the estimate tells.
         assert!(error <= 10.0 * tolerance, "{tolerance:e}: {error:e}");
@@ -335,7 +335,7 @@ fn companions_keep_the_method_of_the_motion() {
         let (found, estimate) = simulation.run_estimated().expect("it comes to its end");
         let (error, told) = (distance(&model, &found, &expected), estimate.end.total());
         println!(
-            "{tolerance:e}: error {error:.1e}, told {told:.1e}, {:?}",
+            "{tolerance:e}: error {error:.1e}, estimated {told:.1e}, {:?}",
             estimate.doubt
         );
         assert!(found.method_changes.is_empty() && !found.scheme.takes_derivatives());

@@ -90,7 +90,7 @@ fn vector(body: &Value, key: &str) -> Vector3<f64> {
     Vector3::from_iterator(list(&body[key]).iter().map(number))
 }
 
-/// The motion as the scene says, arithmetic included, but for the form.
+/// The motion as the scene says, arithmetic included, except for the form.
 fn run(scene: &Scene, form: Form, samples: Vec<f64>) -> Solution {
     let mut dynamics = scene.settings.arithmetic.dynamics(&scene.mechanism);
     run_by(scene, &mut *dynamics, form, samples)

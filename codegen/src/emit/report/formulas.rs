@@ -326,7 +326,7 @@ fn whole_equations(
     }
 }
 
-/// The kernel's values with its lines in their places, but for those that are names of the spec.
+/// The kernel's values with its lines in their places, except for those that are names of the spec.
 fn in_words(derived: &Derived, kernel: &Kernel) -> Vec<Matrix> {
     let mut values: BTreeMap<Symbol, Expr> = BTreeMap::new();
     for step in &kernel.steps {

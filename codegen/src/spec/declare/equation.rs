@@ -47,7 +47,7 @@ pub(super) fn of_configuration(expression: &Expr) -> bool {
     symbols.iter().any(|symbol| symbol.role == Role::Coordinate)
 }
 
-/// As [`function_in`], but for roots, sines and cosines of numbers, as `sqrt(3)`: they are numbers too.
+/// As [`function_in`], except for roots, sines and cosines of numbers, as `sqrt(3)`: they are numbers too.
 pub(super) fn function_beside_numbers(expression: &Expr) -> Option<Application> {
     let is_number = |application: &Application| {
         let algebraic = [Function::Sqrt, Function::Cos, Function::Sin, Function::Pi];

@@ -73,7 +73,7 @@ pub struct Rounding<'a> {
 }
 
 impl<'a> Rounding<'a> {
-    /// What is told of it.
+    /// What is reported of it.
     pub fn of(limit: &'a RoundingLimit) -> Self {
         Self {
             steps: limit.steps,
@@ -95,7 +95,7 @@ pub struct MethodChange<'a> {
 }
 
 impl<'a> MethodChange<'a> {
-    /// What is told of it.
+    /// What is reported of it.
     pub fn of(change: &'a hamel::integrate::MethodChange) -> Self {
         Self {
             t: change.time,
@@ -117,7 +117,7 @@ pub struct Event<'a> {
 }
 
 impl<'a> Event<'a> {
-    /// What is told of a crossing.
+    /// What is reported of a crossing.
     pub fn of(crossing: &'a Crossing) -> Self {
         Self {
             name: &crossing.name,

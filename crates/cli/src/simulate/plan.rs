@@ -44,13 +44,13 @@ pub struct Plan {
     pub html: Option<Output>,
     /// The meshes that the page and pictures of pixels show.
     pub meshes: Meshes,
-    /// Whether the forces within joints are told.
+    /// Whether the forces within joints are reported.
     pub forces: bool,
     /// Whether it is printed as JSON.
     pub json: bool,
     /// Where pictures of it go.
     pub pictures: picture::Outputs,
-    /// Whether nothing but failures is told.
+    /// Whether nothing but failures is reported.
     pub quiet: bool,
 }
 
@@ -166,7 +166,7 @@ impl Plan {
         self.outputs().map(Output::path)
     }
 
-    /// Whether one of them is stdout, where nothing else can be told then.
+    /// Whether one of them is stdout, where nothing else can be reported then.
     pub fn writes_stdout(&self) -> bool {
         self.outputs().any(Output::is_stdout)
     }

@@ -231,7 +231,7 @@ pub fn stopped(plan: &Plan, recorded: Recorded, error: &dyn std::fmt::Display) -
     })
 }
 
-/// The failure of a sample that cannot be told.
+/// The failure of a sample that cannot be reported.
 pub fn without_value(time: f64, error: &StateError) -> Failure {
     Failure::Simulation(format!("at {} s: {error}", Number(time)))
 }

@@ -60,7 +60,7 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
     }
 }
 
-/// What is told of a simulation that the user has ended.
+/// What is reported of a simulation that the user has ended.
 fn interrupted(plan: &Plan, solution: &Solution) -> Failure {
     let (time, end) = (solution.state.time, plan.settings.t_end);
     let files = match solution.samples.len() {

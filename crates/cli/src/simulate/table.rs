@@ -15,7 +15,7 @@ use std::fmt;
 /// Numbers from here on are written with an exponent.
 const LARGEST_DECIMAL: f64 = 1e6;
 
-/// As many events are told.
+/// As many events are reported.
 const MOST_EVENTS: usize = 12;
 
 /// What a simulation came to.
@@ -176,7 +176,7 @@ impl Summary<'_> {
         if more.is_empty() {
             return Ok(());
         }
-        writeln!(f, "            and {} more; --json tells all", more.len())?;
+        writeln!(f, "            and {} more; --json lists all", more.len())?;
         for (name, count, last) in by_name(more).into_iter().take(MOST_EVENTS) {
             let times = counted(count, "time", "times");
             writeln!(f, "            {name} {times}, the last at {last:.9} s")?;

@@ -30,7 +30,7 @@ A column that names no number of the scene is refused before anything moves.
 
 The folder holds part-N.csv (or .parquet): for each row its number, from 1, the outcome (`ended`, `event NAME`, `failed: CAUSE`), the last time, energies, steps, the estimated error, and coordinates and speeds of all
 joints, under the names that `hamel simulate` gives them; with --at or --sample-step the same at these times, under the names with @ and the time. summary.csv has quantiles of them, failures.csv failures by cause, summary.html pictures; sweep.json says what was swept.
-Rows of a scene that moves by an explicit method of steps of one length (method rk4 with dt), without events, controllers, friction, limits of joints and functions of time, move side by side with
+Rows of a scene that moves by an explicit method of fixed step size (method rk4 with dt), without events, controllers, friction, limits of joints and functions of time, move side by side with
 --no-error-estimate: about a dozen times as many a second of a double pendulum. Their numbers differ from those of the tree by rounding. --equations tree moves all rows one by one.
 
 Parts are written whole. Stopped by Ctrl-C (after the rows that it has begun to write) or killed, the same command goes on where it was. A folder of another sweep is left as it is. Numbers do not depend on workers, blocks or

@@ -49,7 +49,7 @@ pub struct Manifest {
     /// By which equations rows move.
     #[serde(default = "tree")]
     pub equations: String,
-    /// When states are told besides the last one, s.
+    /// When states are reported besides the last one, s.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub samples: Vec<f64>,
     /// Which way the rows went that the last command moved; nothing before one has come to its end.
@@ -65,7 +65,7 @@ pub struct Options<'a> {
     pub error_estimate: bool,
     /// By which equations rows move.
     pub equations: Equations,
-    /// When states are told besides the last one, s.
+    /// When states are reported besides the last one, s.
     pub times: &'a [f64],
 }
 

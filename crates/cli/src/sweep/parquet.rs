@@ -335,7 +335,7 @@ fn writer(draft: Draft, fields: Vec<Arc<Type>>) -> Done<SerializedFileWriter<Dra
     let schema = Type::group_type_builder(RESULTS)
         .with_fields(fields)
         .build()?;
-    // Results hardly repeat, but for outcomes.
+    // Results hardly repeat, except for outcomes.
     let properties = WriterProperties::builder()
         .set_dictionary_enabled(false)
         .set_column_dictionary_enabled("outcome".into(), true)

@@ -22,7 +22,7 @@ const FIGURES: [&str; 9] = [
     "count", "mean", "min", "q05", "q25", "q50", "q75", "q95", "max",
 ];
 
-/// What is told of the results that a folder holds.
+/// What is reported of the results that a folder holds.
 pub struct Summary {
     folder: String,
     names: Vec<String>,

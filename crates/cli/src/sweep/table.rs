@@ -32,7 +32,7 @@ pub struct Part<'a> {
 }
 
 impl Table {
-    /// Opens a table; its format is told by the ending of its name.
+    /// Opens a table; its format is determined by the ending of its name.
     ///
     /// # Errors
     /// A file that cannot be read, or has no such ending; columns that hold no numbers.

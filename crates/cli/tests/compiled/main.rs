@@ -83,7 +83,7 @@ fn scenes_move_as_on_the_tree() {
     }
 }
 
-/// A body on its joint, without inertia but for these lines.
+/// A body on its joint, without inertia except for these lines.
 fn body(name: &str, parent: &str, joint: &str, more: &str) -> String {
     format!(
         "[[body]]\nname = \"{name}\"\nparent = \"{parent}\"\njoint = {{ type = \"{joint}\" }}\n{more}\n"

@@ -4,7 +4,7 @@ use super::{PENDULUM, pendulums, place::Place, rows};
 use serde_json::Value;
 use std::fs;
 
-/// The pendulums with steps of one length, and without the event: they go side by side.
+/// The pendulums with a fixed step size, and without the event: they go side by side.
 fn steady(count: usize) -> Place {
     let place = pendulums(count);
     let event = PENDULUM.find("[[event]]").expect("an event");

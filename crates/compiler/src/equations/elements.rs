@@ -182,7 +182,7 @@ impl Tree<'_> {
 /// What divides a number that is not positive, so that nothing is divided by 0: the smallest normal single.
 const NOTHING: f64 = f32::MIN_POSITIVE as f64;
 
-/// `max(0, x)`, as x times what is 1 where x is positive and 0 where it is not: exactly, but for x below the smallest single. That factor is made
+/// `max(0, x)`, as x times what is 1 where x is positive and 0 where it is not: exactly, except for x below the smallest single. That factor is made
 /// of scales, whose slopes count as 0, so that the slope of all is right as well.
 fn positive(x: Sym) -> Sym {
     let larger = |a, b| call_two(Function::Larger, a, b);

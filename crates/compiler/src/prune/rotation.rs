@@ -72,7 +72,7 @@ mod tests {
         }
     }
 
-    /// Axes that are parallel but for rounding, and for more than that.
+    /// Axes that are parallel up to rounding, and for more than that.
     #[test]
     fn a_little_tilt_leaves_the_turn_beside_it() {
         for k in 0..1000 {

@@ -42,7 +42,7 @@ pub fn is_stdout(path: &Path) -> bool {
     path == Path::new(STDOUT)
 }
 
-/// Files by which outputs are told apart.
+/// Files by which outputs are distinguished.
 struct Known {
     /// What is done with it.
     why: &'static str,

@@ -1,6 +1,6 @@
 //! The rotation of a rigid body free of torques, in closed form.
 //!
-//! In principal axes the angular velocity is made of Jacobi's elliptic functions (L. D. Landau and E. M. Lifshitz, *Mechanics*, § 37). The attitude follows from it but for one
+//! In principal axes the angular velocity is made of Jacobi's elliptic functions (L. D. Landau and E. M. Lifshitz, *Mechanics*, § 37). The attitude follows from it except for one
 //! angle, that of the precession about the angular momentum. It is the integral of a periodic function, by its Fourier series. So a million turns cost what one costs.
 
 use super::elliptic::Elliptic;
@@ -229,7 +229,7 @@ impl Motion {
 /// The integral over the time of `w = (I₁ω₁² + I₂ω₂²) / (I₁²ω₁² + I₂²ω₂²)`: the angle about the angular momentum, over its size.
 ///
 /// It is that of 1/I of one of both moments, and a rest; of the two the one whose terms are smaller is taken. With roots `a² = I₁|I₃ − I₂|` and `b² = I₂|I₃ − I₁|` the rest is over
-/// the amplitude, but for constants, `sin²φ / ((a² cos²φ + b² sin²φ) dn)` for I₁, and the same with cos²φ over it for I₂. At the zeros of its first factor in the complex plane
+/// the amplitude, up to constant factors, `sin²φ / ((a² cos²φ + b² sin²φ) dn)` for I₁, and the same with cos²φ over it for I₂. At the zeros of its first factor in the complex plane
 /// dn is `dn_p`; with that in its place the integral has a closed form, and what is left is `k² sin²φ / (dn (dn + dn_p))`, or with cos²φ, whose Fourier series is short.
 #[derive(Clone, Debug)]
 struct Precession {
@@ -257,7 +257,7 @@ impl Precession {
             (i1, (i1 - i3) / i1 * scale, -a / b),
             (i2, (i3 - i2) / i2 * scale, b / a),
         ];
-        // Over half a turn of the amplitude, but for π.
+        // Over half a turn of the amplitude, except for π.
         let sizes = ways.map(|(moment, constant, share)| {
             (moment * rate).recip() + 2.0 * constant.abs() * (1.0 + share.abs())
         });

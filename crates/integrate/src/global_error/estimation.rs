@@ -56,10 +56,10 @@ const DOUBTED_ORDER: f64 = 0.4;
 /// At least so much of the distance at the times beside it, two motions are taken to be from each other.
 const CROSSING: f64 = 0.3;
 
-/// The highest order of methods whose errors fall evenly where something bends: stages of higher ones come past the end of a step by more than the error that is told of it.
+/// The highest order of methods whose errors fall evenly where something bends: stages of higher ones come past the end of a step by more than the error that is reported of it.
 const HIGHEST_AT_BENDS: u32 = 5;
 
-/// Errors that are told as more than this part of the motion may be more than 1 % of it, and are not small, so that nothing about them is linear.
+/// Errors that are reported as more than this part of the motion may be more than 1 % of it, and are not small, so that nothing about them is linear.
 const LARGE: f64 = 7e-3;
 
 /// An estimate that is being made.

@@ -40,7 +40,7 @@ pub(super) struct Found {
     pub(super) places: Vec<Place>,
     /// x.
     pub(super) efforts: DVector<f64>,
-    /// Where a is 0 but for rounding.
+    /// Where a is 0 up to rounding.
     pub(super) is_still: Vec<bool>,
 }
 

@@ -1,4 +1,4 @@
-//! What is told of the ends of pieces.
+//! What is reported of the ends of pieces.
 
 use super::contact::{Contact, Phase, Side};
 use alloc::format;
@@ -17,7 +17,7 @@ pub(crate) struct Note {
     pub(crate) rising: bool,
 }
 
-/// What is told of one joint; `speeds` are its own before and after.
+/// What is reported of one joint; `speeds` are its own before and after.
 pub(super) fn of_joint(
     contact: &Contact,
     hit: Option<Side>,

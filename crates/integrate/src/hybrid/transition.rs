@@ -28,9 +28,9 @@ const TOGETHER: f64 = 64.0 * f64::EPSILON;
 const AGREEMENT: f64 = 1e-6;
 
 impl<'a> Hybrid<'a> {
-    /// Makes `state`, at which some of the guards end a piece, the beginning of the next one: what is to be told of it, and the guards of the next.
+    /// Makes `state`, at which some of the guards end a piece, the beginning of the next one: what is to be reported of it, and the guards of the next.
     ///
-    /// At the beginning of a motion no guard ends anything, and only impacts are told.
+    /// At the beginning of a motion no guard ends anything, and only impacts are reported.
     pub(crate) fn turn(
         &mut self,
         flow: &mut Flow<'a>,
@@ -89,7 +89,7 @@ impl<'a> Hybrid<'a> {
         Ok((notes, guards))
     }
 
-    /// Puts joints that have come to a limit, or to rest, exactly there: they are but for rounding.
+    /// Puts joints that have come to a limit, or to rest, exactly there: they are there already, up to rounding.
     fn snap(&self, time: f64, (q, speeds): (&mut [f64], &mut [f64]), ended: &[Guard]) {
         let largest = speeds.iter().fold(1.0_f64, |most, v| most.max(v.abs()));
         for (index, contact) in self.contacts.iter().enumerate() {

@@ -148,7 +148,7 @@ fn swings_of_every_amplitude_keep_their_energy() {
             let dt = step_in_radians / 100.0;
             let span = 2_000.0 * dt;
             let kept = drift(&mechanism, &initial, Scheme::DiscreteGradient, dt, span);
-            // The midpoint rule keeps energies that are quadratic, but for the rounding of each step.
+            // The midpoint rule keeps energies that are quadratic, up to the rounding of each step.
             let plain = drift(&mechanism, &initial, Scheme::Midpoint, dt, span);
             println!("{amplitude}, {step_in_radians}: {kept:e}, midpoint {plain:e}");
             // The method leaves what comes to 16 roundings of the energy and of the kinetic energy, and speeds and angles are rounded thereafter.

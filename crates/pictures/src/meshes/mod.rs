@@ -40,7 +40,7 @@ pub struct Meshes {
 }
 
 impl Meshes {
-    /// Those of `shapes`, whose files are named from `folder`; each file is read once for each scale. What cannot be drawn is told by [`Self::notices`].
+    /// Those of `shapes`, whose files are named from `folder`; each file is read once for each scale. What cannot be drawn is reported by [`Self::notices`].
     pub fn load(shapes: &[ShapeDescription], folder: &Path) -> Self {
         let mut own = Self::default();
         for shape in shapes {

@@ -1,4 +1,4 @@
-//! Files of meshes: STL and OBJ, COLLADA (`.dae`), and glTF, told by their endings.
+//! Files of meshes: STL and OBJ, COLLADA (`.dae`), and glTF, by their endings.
 
 use super::{Part, bytes, collada, gltf};
 use mesh_loader::Loader;

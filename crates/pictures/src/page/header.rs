@@ -1,4 +1,4 @@
-//! What a page is told of the mechanism and of the run, as JSON.
+//! The data of a page about the mechanism and the run, as JSON.
 
 use super::charts::Chart;
 use super::solids::{Ellipsoid, Shape};

@@ -1,6 +1,6 @@
 //! A motion as one page of HTML that needs nothing else: the bodies in three dimensions, moving, and plots along the time.
 //!
-//! The page is `crates/pictures/src/html/`: a frame, a style and scripts, put together with what is told of the mechanism (JSON) and the
+//! The page is `crates/pictures/src/html/`: a frame, a style and scripts, put together with the data of the mechanism (JSON) and the
 //! recorded numbers (base64). `docs/trajectories.md` says how these are laid out.
 
 mod blob;

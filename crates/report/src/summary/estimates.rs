@@ -60,7 +60,7 @@ impl<'a> Told<'a> {
             row, error, told, ..
         } = self;
         format!(
-            "{} {} {} at {:.0e}: error {error:.1e}, told {told:.1e}",
+            "{} {} {} at {:.0e}: error {error:.1e}, estimated {told:.1e}",
             row.scene, row.form, row.method, row.tolerance
         )
     }

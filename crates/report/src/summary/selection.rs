@@ -6,7 +6,7 @@ use crate::row::Work;
 use itertools::Itertools;
 use serde::Serialize;
 
-/// Points that are told, of those at which the choice takes longest.
+/// Points that are reported, of those at which the choice takes longest.
 const WORST: usize = 5;
 
 /// How the choice compares.

@@ -74,7 +74,7 @@ pub(crate) struct Group {
     pub(crate) base: Option<usize>,
     /// The nodes, each after what it hangs on, with their laws.
     pub(crate) members: Vec<(usize, Law)>,
-    /// The ties that hold them together, but for those that laws express, by place and name.
+    /// The ties that hold them together, except for those that laws express, by place and name.
     pub(crate) ties: Vec<(usize, String)>,
 }
 

@@ -50,7 +50,7 @@ pub(super) fn rate(
             };
             let mut rest = twist.value.twist;
             let rate = std::mem::take(&mut rest[axis]);
-            // About and along the common z axis a twist is the same in both frames, but for what it has beside.
+            // About and along the common z axis a twist is the same in both frames, except for what it has beside.
             if rest.amax() > CONFIGURATION_TOLERANCE * rate.abs().max(1.0) {
                 let frame = match twist.value.frame {
                     TwistFrame::Child => "child",

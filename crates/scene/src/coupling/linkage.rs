@@ -13,7 +13,7 @@ use hamel_runtime::joint::{LinkMotion, Tie};
 use hamel_runtime::shown::Number;
 use hamel_runtime::spatial::Pose;
 
-/// Most that a position at time 0 may differ from that of the closed loop without being told: digits that files leave out.
+/// Most that a position at time 0 may differ from that of the closed loop without being reported: digits that files leave out.
 const TOLD: f64 = 1e-6;
 
 /// The joint of a group that ties hold, whose links take their coordinates, and its state.
@@ -74,7 +74,7 @@ fn guess(owners: &[Owner<'_>], positions: &[Given], coordinates: usize) -> Vec<f
     values
 }
 
-/// Where the limits of joints leave coordinates, but for those whose position the scene gives: there it has the last word.
+/// Where the limits of joints leave coordinates, except for those whose position the scene gives: there it has the last word.
 fn ranges(owners: &[Owner<'_>], positions: &[Given], coordinates: usize) -> Vec<[f64; 2]> {
     let open = [f64::NEG_INFINITY, f64::INFINITY];
     let mut ranges = vec![open; coordinates];

@@ -37,9 +37,9 @@ impl SceneDescription {
     /// [`Coupling`]; bodies stand in the same places. Without these it is the scene as it is.
     ///
     /// # Errors
-    /// Everything that makes no coupling, each by the joint's name: joints that follow none that is there, or themselves; other joints than
-    /// turns and slides; too many of them; states at time 0 that contradict each other; what cannot act at a joint that follows; loops that do not close near their start, or whose relations
-    /// are not told to be independent.
+    /// Everything that makes no coupling, each by the joint's name: joints that follow none that is there, or themselves; joints other
+    /// than revolute and prismatic ones; too many of them; states at time 0 that contradict each other; what cannot act at a joint that follows; loops that do not close near their start, or whose relations
+    /// are not named as independent.
     pub fn coupled(&self) -> Result<Cow<'_, Self>, Diagnostics> {
         self.coupled_with(&mut Notices::default())
     }

@@ -1,4 +1,4 @@
-//! Actuators: efforts are inputs of a scene, and of motors their limits are read. What else they do is told.
+//! Actuators: efforts are inputs of a scene, and of motors their limits are read. What else they do is reported.
 
 use super::defaults::{Defaults, MAIN};
 use super::element::{Element, Lines, label};

@@ -1,4 +1,4 @@
-//! Equalities: joints that follow others, as mimic joints do. Others are told.
+//! Equalities: joints that follow others, as mimic joints do. Others are reported.
 
 use super::actuator::{Places, found};
 use super::defaults::{Defaults, MAIN};

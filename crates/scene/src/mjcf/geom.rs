@@ -169,7 +169,7 @@ impl Geom {
         );
         let error = Diagnostic::new(self.span.clone(), message);
         sink.push(error.help(
-            "STL in binary, OBJ and MSH are read from the files of a model that is read from its file, but for convex hulls (`inertia=\"convex\"`). \
+            "STL in binary, OBJ and MSH are read from the files of a model that is read from its file, except for convex hulls (`inertia=\"convex\"`). \
              Else give the body an <inertial>: MuJoCo writes one by `saveinertial=\"true\"` of <compiler>; or give the geom the mass 0",
         ));
     }

@@ -13,7 +13,7 @@
 //! | `gravcomp` | a constant force at the centre of mass |
 //! | `<equality>`'s `<joint>`, linear | `mimic`: the joint follows the other exactly |
 //! | actuators | not simulated: efforts are inputs; those of motors have limits ([`JointFacts`](crate::robot::JointFacts)) |
-//! | contacts, tendons, sensors, keyframes, other equalities, plugins | not simulated, and told as [`Notice`](crate::Notice)s with their lines |
+//! | contacts, tendons, sensors, keyframes, other equalities, plugins | not simulated, and reported as [`Notice`](crate::Notice)s with their lines |
 //!
 //! A robot begins as the file draws it: every joint is at its `ref`, free bodies are where they stand, and all are at rest.
 

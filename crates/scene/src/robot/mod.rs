@@ -31,7 +31,7 @@ pub struct Options {
     /// Acceleration of free fall, world axes, m/s²; an MJCF and a world in SDF say their own.
     pub gravity: Vector3<f64>,
     /// Whether a URDF is read although no rigid body has its masses: such an inertia becomes that of a ball with the mean of its principal moments, joints that move
-    /// nothing with mass are fixed, and joints that mimic one that is not there move by themselves. Each is told by a warning. An MJCF says itself what becomes of its masses (`balanceinertia`, `boundmass`, `boundinertia`).
+    /// nothing with mass are fixed, and joints that mimic one that is not there move by themselves. Each is reported by a warning. An MJCF says itself what becomes of its masses (`balanceinertia`, `boundmass`, `boundinertia`).
     pub lenient: bool,
     /// What makes compliant limits of the joints' limits of position; `None` leaves these out.
     pub limits: Option<Stops>,
@@ -69,10 +69,10 @@ pub struct Import {
     pub joints: Vec<JointFacts>,
 }
 
-/// The robot that a text describes, in URDF, MJCF or SDF, told by its root element. Messages call the text `source_name`.
+/// The robot that a text describes, in URDF, MJCF or SDF, which its root element says. Messages call the text `source_name`.
 ///
 /// # Errors
-/// Numbers of limits that are negative or not finite. All mistakes of the text: XML that is not well-formed, or in another format (xacro is told by name); missing or malformed elements and attributes; links and joints that
+/// Numbers of limits that are negative or not finite. All mistakes of the text: XML that is not well-formed, or in another format (xacro is named in the message); missing or malformed elements and attributes; links and joints that
 /// make no tree; mass properties that no body can have; a body without mass at the end of a moving joint. A floating base and leniency for a robot in MJCF or SDF, which say themselves what is free.
 pub fn read(text: &str, source_name: &str, options: &Options) -> Result<Import, Diagnostics> {
     let mut sink = Sink::default();

@@ -206,7 +206,7 @@ impl<'a> Joint<'a, '_> {
         rotation::from_axis(&path, Located::new(in_joint, span), sink).map(Pose::from_rotation)
     }
 
-    /// The frame in which an axis is told: that of the joint, where nothing else is said; before version 1.5 that of the model.
+    /// The frame in which an axis is reported: that of the joint, where nothing else is said; before version 1.5 that of the model.
     fn frame_of_axis(
         &self,
         axis: Option<Node<'_, '_>>,

@@ -17,7 +17,7 @@
 //! | `<mimic>` | `mimic`: the joint follows the other exactly |
 //! | `<gravity>` of a world, or of a link | the scene's gravity; a constant force at the centre of mass of a link without |
 //! | `<visual>` of a box, a sphere, a cylinder, a capsule or a mesh | a shape for pictures |
-//! | sensors, plugins, collision shapes, lights, settings of other simulators | not simulated, and told as [`Notice`](crate::Notice)s |
+//! | sensors, plugins, collision shapes, lights, settings of other simulators | not simulated, and reported as [`Notice`](crate::Notice)s |
 //! | `<include>` in a model, `gearbox`, grippers, masses of shapes (`auto`) | refused |
 //!
 //! A robot begins as the file draws it: every joint is at 0, links that move freely are where they stand, and all are at rest.

@@ -124,7 +124,7 @@ fn end(held: &[usize], mut own: usize) -> usize {
     own
 }
 
-/// Refuses ways that lead back to where they began, but for those that end at what `rests`.
+/// Refuses ways that lead back to where they began, except for those that end at what `rests`.
 fn refuse_cycles(
     content: &Content<'_, '_>,
     next: &[usize],

@@ -103,7 +103,7 @@ pub(super) const REFUSED: [(&str, &str, &str); 5] = [
     ),
 ];
 
-/// The element of that name in another. All of one name hold the same, but for `<gravity>`: a vector in a world, a switch in a link.
+/// The element of that name in another. All of one name hold the same, except for `<gravity>`: a vector in a world, a switch in a link.
 pub(super) fn of(name: &str, inside: &str) -> Option<&'static Tag> {
     match (inside, name) {
         ("link", "gravity") => Some(&OF_LINK),

@@ -1,4 +1,4 @@
-//! The visual shapes of links: simple ones are kept for pictures. They have no effect on the motion, so nothing in them is a mistake; what cannot be drawn is told.
+//! The visual shapes of links: simple ones are kept for pictures. They have no effect on the motion, so nothing in them is a mistake; what cannot be drawn is reported.
 
 use super::content::Content;
 use super::document::{child, children, number, pose, value, vector};

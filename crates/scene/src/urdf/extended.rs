@@ -324,7 +324,7 @@ impl Work<'_, '_> {
                 .any(|Edit(span, _)| *span == joint.range());
             if is_split {
                 self.errors.push(format!(
-                    "motor `{name}` of `name_mot` is several turns by `joint_type`: which of them it drives is not told"
+                    "motor `{name}` of `name_mot` is several turns by `joint_type`: the file does not say which of them it drives"
                 ));
             } else if is_in_loop && joint.attribute("independent").is_none() {
                 let at = tag(joint).end;

@@ -1,4 +1,4 @@
-//! Other formats in XML that files of robots come in, but for MJCF and SDF: they are not read, and errors say what makes a URDF of them.
+//! Other formats in XML that files of robots come in, except for MJCF and SDF: they are not read, and errors say what makes a URDF of them.
 
 use super::document::tag;
 use crate::diagnostics::Diagnostic;

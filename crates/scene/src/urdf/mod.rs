@@ -8,13 +8,13 @@
 //! | `planar` | `planar`: turns about the axis and slides across it, velocities in child axes; x and y of the plane are those of the joint's frame where its axis is z, else where the shortest rotation from z to the axis takes them |
 //! | root link | fixed to the world, or on a `free` joint: [`Options::floating_base`] |
 //! | `<inertial>` absent | no mass |
-//! | `<visual>` of a box, a sphere, a cylinder or a capsule | a shape for pictures; meshes are told as [`Notice`](crate::Notice)s |
+//! | `<visual>` of a box, a sphere, a cylinder or a capsule | a shape for pictures; meshes are reported as [`Notice`](crate::Notice)s |
 //! | `<limit lower upper>` of `revolute` and `prismatic` | compliant limits, if [`Options::limits`] gives their numbers |
 //! | `<dynamics damping friction>` | damping; dry friction of `revolute` and `prismatic` |
 //! | `<mimic>` | `mimic`: the joint follows the other exactly, and both are one joint of several bodies |
 //! | `<loop>`, `<coupling>`, `independent` of `<joint>` (URDF+, arXiv 2411.19753) | `[[loop]]`, `[[coupling]]`: the joints of a loop are one joint of several bodies |
 //! | a YAML file of the same name beside it (Extended URDF, arXiv 2504.04767): [`with_loops`] | loops, which joints are independent, universal and spherical joints |
-//! | other limits, safety controllers, transmissions, collision shapes, unknown elements | not simulated, and told as [`Notice`](crate::Notice)s |
+//! | other limits, safety controllers, transmissions, collision shapes, unknown elements | not simulated, and reported as [`Notice`](crate::Notice)s |
 //!
 //! A state is not part of a URDF: every joint is at home (angles, displacements 0) and at rest.
 

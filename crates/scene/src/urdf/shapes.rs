@@ -1,5 +1,5 @@
 //! The visual shapes of links: simple ones are kept for pictures. They have no effect on the motion, so nothing in them is a
-//! mistake; what cannot be drawn is told.
+//! mistake; what cannot be drawn is reported.
 
 use super::document::{child, numbers, parse};
 use crate::notice::Notices;
@@ -108,7 +108,7 @@ fn origin(visual: Node<'_, '_>) -> Option<Pose<f64>> {
     Some(Pose::new(rotation?, or_zero("xyz")?))
 }
 
-/// Reads without telling: an origin that makes no sense leaves the shape out, and that is told.
+/// Reads without telling: an origin that makes no sense leaves the shape out, and that is reported.
 fn quiet(read: impl FnOnce(&mut Sink) -> Option<Matrix3<f64>>) -> Option<Matrix3<f64>> {
     read(&mut Sink::default())
 }

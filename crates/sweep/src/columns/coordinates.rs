@@ -91,7 +91,7 @@ impl Kind {
         }
     }
 
-    /// Names and units of the quantities that it is told in; those of a scalar are the joint's.
+    /// Names and units of the quantities that it is reported in; those of a scalar are the joint's.
     pub const fn quantities(self) -> &'static [(&'static str, Unit)] {
         const ANGLE: Unit = Unit::ANGLE;
         const LENGTH: Unit = Unit::LENGTH;

@@ -51,7 +51,7 @@ const ROUNDING: f64 = 1e-14;
 pub enum ParameterError {
     /// A joint that can hardly be moved from home.
     #[error(
-        "joint `{joint}`: of {drawn} displacements from home only {found} lead to a configuration that is not singular: what it feels cannot be told"
+        "joint `{joint}`: of {drawn} displacements from home only {found} lead to a configuration that is not singular: its base parameters cannot be determined"
     )]
     NoConfiguration {
         /// The joint.

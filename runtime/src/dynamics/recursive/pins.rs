@@ -27,7 +27,7 @@ pub struct PinForce {
     pub moment: Vector3<f64>,
 }
 
-/// Why the forces at the pins of a joint are not told.
+/// Why the forces at the pins of a joint are not computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PinError {

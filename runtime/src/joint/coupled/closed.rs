@@ -301,7 +301,7 @@ impl<const K: usize> Coupled<K> {
         }
     }
 
-    /// The dependent rows of ∂B along a direction of the coordinates, but for their sign: `(∂g_d)⁻¹ (∂²g d) B`.
+    /// The dependent rows of ∂B along a direction of the coordinates, except for their sign: `(∂g_d)⁻¹ (∂²g d) B`.
     pub(super) fn bend<T: Scalar>(
         &self,
         q: &Coordinates<T>,

@@ -29,7 +29,7 @@ pub(super) const fn coordinates<const N: usize>(independent: usize) -> [&'static
     names
 }
 
-/// Coordinates whose units are told: those of all but the largest linkages.
+/// Coordinates whose units are reported: those of all but the largest linkages.
 const TOLD: usize = 6;
 
 /// All combinations of angles and lengths: coordinate k of combination n is a length where bit k of n is 1.

@@ -1,6 +1,6 @@
 //! The law suite catches false kernels: each kernel of two joints is made wrong, everywhere and at places that are easily missed.
 //!
-//! Kernels are planted together, but for those by which the suite itself gets about. One by one, minutes:
+//! Kernels are planted together, except for those by which the suite itself gets about. One by one, minutes:
 //! `cargo test --package hamel-downstream --test downstream plants -- --ignored`.
 
 use hamel_downstream::held_out::SphereSteer;

@@ -107,7 +107,7 @@ fn friction_at_the_port_of_a_degree_of_freedom_is_its_own() {
     assert_eq!(at_port.events.len(), at_freedom.events.len());
     for (one, other) in at_port.samples.iter().zip(&at_freedom.samples) {
         let error = (one.speeds[0] - other.speeds[0]).abs();
-        // The same but for the rounding of a factor 1.
+        // The same up to the rounding of a factor 1.
         assert!(error < 1e-12, "{error:e} at {}", one.time);
     }
 }

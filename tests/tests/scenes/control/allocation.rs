@@ -1,4 +1,4 @@
-//! After construction controllers allocate nothing, but for the predictive one.
+//! After construction controllers allocate nothing, except for the predictive one.
 
 use super::{controller, scene, watch};
 use allocation_counter::measure;

@@ -115,7 +115,7 @@ fn a_weak_moment_swings_the_pendulum_up() {
         // From 0.14 rad beside its lower rest: 2 m g l less a little.
         assert!((readings[0].1[0] + 19.62).abs() < 0.1, "{:?}", readings[0]);
         assert!(last(&readings, 0).abs() < 1e-3, "{:e}", last(&readings, 0));
-        // Energy is fed, never taken; but for rounding and the error of steps.
+        // Energy is fed, never taken, up to rounding and the error of steps.
         assert!(
             readings
                 .windows(2)

@@ -162,7 +162,7 @@ fn a_parallelogram_that_begins_nearly_folded_ends_where_it_folds() {
                 let IntegrateError::Excluded(end) = error else {
                     panic!("{speed} rad/s, {form:?}, {method:?}: {error}");
                 };
-                // Both cranks turn at one rate and the coupler at none, so that the energy keeps the rate but for the coupler's own inertia, which does not turn.
+                // Both cranks turn at one rate and the coupler at none, so that the energy keeps the rate except for the coupler's own inertia, which does not turn.
                 let away = end.time * 3.0 - expected;
                 assert!(away.abs() < 5e-4, "{speed} rad/s, {form:?}: {away}");
             }

@@ -35,7 +35,7 @@ fn a_loop_is_put_together_away_from_home() {
     }
 }
 
-/// Turns about axes that meet but for 5e-17 m: three of the relations of the hinge that closes them follow from two.
+/// Turns about axes that meet to within 5e-17 m: three of the relations of the hinge that closes them follow from two.
 #[test]
 fn lengths_that_are_rounding_are_none() {
     let bodies: String = [

@@ -153,7 +153,7 @@ fn samples_and_events_go_through_all_pieces() {
     }
 }
 
-/// An impact on a sample and on an instant for new inputs, but for rounding to either side.
+/// An impact on a sample and on an instant for new inputs, up to rounding to either side.
 #[test]
 fn an_impact_may_fall_on_a_sample() {
     let g = 10.0;

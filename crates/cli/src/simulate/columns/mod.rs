@@ -115,7 +115,7 @@ struct Quantity<'a> {
     read: Reader<'a>,
 }
 
-/// All that is told of one body, frame or joint, or of the mechanism.
+/// All that is reported of one body, frame or joint, or of the mechanism.
 struct Entry<'a> {
     list: Option<List>,
     name: &'a str,

@@ -1,4 +1,4 @@
-//! What is told of the mechanism, of each body and of each named frame.
+//! What is reported of the mechanism, of each body and of each named frame.
 
 use super::{Ending, suffix};
 use hamel::mechanism::{BodyState, Kinematics};

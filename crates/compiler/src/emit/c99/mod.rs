@@ -143,7 +143,7 @@ fn templates() -> tera::TeraResult<Tera> {
     Ok(tera)
 }
 
-/// What templates are filled with, but for the qualifier of functions.
+/// What templates are filled with, except for the qualifier of functions.
 fn context(
     model: &Model,
     (functions, in_lanes): (&[Function], &[Function]),

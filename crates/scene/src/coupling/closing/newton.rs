@@ -125,7 +125,7 @@ impl Loops<'_> {
         svd.solve(&-values, IMPLIED * largest).ok()
     }
 
-    /// The way from q to `aim` in free coordinates, but for what leads off the ties to first order.
+    /// The way from q to `aim` in free coordinates, except for what leads off the ties to first order.
     pub(super) fn tangent(&self, q: &[f64], aim: &[f64], free: &[bool]) -> Option<Vec<f64>> {
         let (_, slopes) = self.linear(q, free)?;
         let way = |k: usize| match free[k] {

@@ -1,4 +1,4 @@
-//! Ranks of sets of vectors, and the smallest Lie algebra that contains given twists. What is neither rounding nor clearly there is told, and never decided.
+//! Ranks of sets of vectors, and the smallest Lie algebra that contains given twists. What is neither rounding nor clearly there is reported, and never decided.
 
 use hamel_runtime::spatial::bracket_product;
 use nalgebra::Vector6;

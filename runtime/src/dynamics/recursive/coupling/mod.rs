@@ -142,7 +142,7 @@ impl Coupling {
     }
 
     /// x of `S̄ᵀMS̄ x = −S̄ᵀ (r + M p)`, with the dependent entries of p, after [`Recursive::coupled_accelerations`] or
-    /// [`Recursive::coupled_speeds`]. Prescribed entries are 0, but for
+    /// [`Recursive::coupled_speeds`]. Prescribed entries are 0, except for
     /// `prescribed`, a speed of the tree, which is 1.
     pub(super) fn answer(&self, r: &[f64], p: &[f64], prescribed: Option<usize>, x: &mut [f64]) {
         self.reduce(r, x);

@@ -64,7 +64,7 @@ impl ForwardSecondDerivatives {
         &self.contraction.branches
     }
 
-    /// `−(H_xx + H_xa v̄̇_x + v̄̇_xᵀ H_ax)`, but for the entries by ϕ and τ of H_xx.
+    /// `−(H_xx + H_xa v̄̇_x + v̄̇_xᵀ H_ax)`, except for the entries by ϕ and τ of H_xx.
     fn combine(&mut self) {
         let first = &self.first;
         let parts = [first.by_local(), first.by_speeds(), first.by_efforts()];
@@ -103,7 +103,7 @@ impl ForwardSecondDerivatives {
 impl Recursive {
     /// Second derivatives of v̄̇ at (q, v̄, τ) in ϕ, v̄ and τ, contracted with `weights` λ (one entry per speed), into `out`: `Σ_i λ_i ∂²v̄̇_i`; with them v̄̇ and the
     /// first derivatives. The first efforts of a driven joint are its accelerations, as in [`Recursive::forward_dynamics_derivatives`]. O(n · depth) beyond
-    /// the first derivatives, but for one product of matrices, O(n³).
+    /// the first derivatives, except for one product of matrices, O(n³).
     ///
     /// # Errors
     /// What [`Recursive::forward_dynamics_derivatives`] refuses; weights of the wrong size or not finite; an element that does not say how what it exerts
