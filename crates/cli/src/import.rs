@@ -25,10 +25,10 @@ Examples:
 The scene has a body for each link that moves by itself; fixed joints join links to one body, and keep their frames as [[frame]].
 Every joint is at home (angles and displacements 0) and at rest. Boxes, spheres, cylinders, capsules and meshes of <visual> become
 [[shape]], which pages show; the shapes of <collision> do not. Files of meshes that are found below the folder of the scene are named
-from there, others by their whole path. What the scene does not hold (limits, mimic joints, friction …) is told on stderr and in
+from there, others by their whole path. What the scene does not hold (limits, mimic joints, friction …) is reported on stderr and in
 comments. scenes/README.md says how each element of URDF, MJCF and SDF is read.
 
-The first line of the scene tells whether it was edited: an imported scene is replaced by another import, an edited one only with --force.
+The first line of the scene shows whether it was edited: an imported scene is replaced by another import, an edited one only with --force.
 
 Exit codes: 0 success; 1 a robot with mistakes, a file that cannot be written; 2 wrong options; 130 interrupted.";
 

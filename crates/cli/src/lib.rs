@@ -23,7 +23,7 @@ use std::ffi::OsString;
 /// What `hamel --help` ends with.
 const FEATURES: &str = "`hamel help COMMAND` explains a command with examples.
 
-What takes long to build is left out unless `cargo` is told otherwise, `cargo run --release -p hamel-cli --features full`:
+What takes long to build is left out unless its features are asked for, `cargo run --release -p hamel-cli --features full`:
   parquet     trajectories, tables and results as Parquet: `simulate --parquet`, `sweep`
   predictive  scenes whose controller is model predictive control, `kind = \"mpc\"`
   report      `hamel report`: error against run time, with plots

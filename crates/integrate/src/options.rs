@@ -108,7 +108,7 @@ impl Scheme {
                 "exponential Rosenbrock 4(3), step control: takes stiff springs exactly, undamped ones too, and the flight and rotation of bodies without forces"
             }
             Self::DiscreteGradient => {
-                "discrete gradient, order 2, fixed step or step control, hamiltonian form alone: keeps the energy balance to rounding"
+                "discrete gradient, order 2, fixed step or step control, only with --form hamiltonian: keeps the energy balance to rounding"
             }
         }
     }

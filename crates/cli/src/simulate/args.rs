@@ -19,7 +19,7 @@ Examples:
   hamel simulate scenes/heavy_top.toml --method verner9 --tol 2e-16
       as accurate as doubles allow: order 9, and sums that lose no rounding
   hamel simulate scenes/double_ball_pendulum.toml --accuracy 1e-8
-      the last state to eight digits: the tolerance is searched for, and the summary tells the error
+      the last state to eight digits: the tolerance is searched for, and the summary gives the error
   hamel simulate scenes/report/ball_spring.toml --method auto --tol 1e-8
       with the method that the scene's springs and dampers call for; the summary says why
   hamel simulate scenes/rolling_disk.toml --html disk.html

@@ -34,7 +34,7 @@ Rows of a scene that moves by an explicit method of fixed step size (method rk4 
 --no-error-estimate: about a dozen times as many a second of a double pendulum. Their numbers differ from those of the tree by rounding. --equations tree moves all rows one by one.
 
 Parts are written whole. Stopped by Ctrl-C (after the rows that it has begun to write) or killed, the same command goes on where it was. A folder of another sweep is left as it is. Numbers do not depend on workers, blocks or
-interruptions; their last bits depend on --level, which sweep.json tells: name x86-64 where machines of several kinds shall have the same ones.
+interruptions; their last bits depend on --level, which sweep.json names: take x86-64 where machines of several kinds shall have the same ones.
 
 Exit codes: 0 success, also where rows failed; 1 a scene with mistakes, a file that cannot be read or written; 2 wrong options, columns or folder; 130 interrupted.";
 
