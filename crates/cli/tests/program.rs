@@ -472,6 +472,34 @@ fn the_error_of_a_motion_is_told_unless_it_is_not_wanted() {
     );
 }
 
+/// Samples and stability, and not the tolerance, make the steps of an overdamped spring: an estimate that says so of itself reaches no accuracy, however small it is.
+#[test]
+fn an_accuracy_that_no_reliable_estimate_confirms_is_not_reached() {
+    let asked = [
+        "simulate",
+        "scenes/report/torsion_1e4_damped.toml",
+        "--accuracy",
+        "1e-7",
+    ];
+    let output = hamel(&[&asked[..], &["--json"]].concat());
+    assert!(output.status.success());
+    let report: Value = serde_json::from_slice(&output.stdout).expect("JSON and nothing else");
+    assert_eq!(report["error"]["reliable"], false, "{}", report["error"]);
+    let accuracy = &report["accuracy"];
+    assert_eq!(accuracy["reached"], false, "{accuracy}");
+    let reason = accuracy["reason"].as_str().expect("a reason");
+    assert!(reason.contains("the estimate is not reliable"), "{reason}");
+    // The motion is the one of the smallest tolerance that was tried.
+    assert!(accuracy["tolerance"].as_f64() < Some(1e-8), "{accuracy}");
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(told.contains("warning: not confirmed: "), "{told}");
+    let summary = stdout(&[&asked[..], &["--html", page().as_str(), "--force"]].concat());
+    assert!(
+        summary.contains("not confirmed: an error of at most 1.0e-7"),
+        "{summary}"
+    );
+}
+
 /// Impacts and stops are told in the summary, the first ones and how often each came after them, and all of them in JSON.
 #[test]
 fn impacts_and_stops_are_told() {

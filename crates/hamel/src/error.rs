@@ -1,7 +1,7 @@
 //! What goes wrong with a model.
 
 use hamel_control::ControlError;
-use hamel_integrate::IntegrateError;
+use hamel_integrate::{Doubt, IntegrateError};
 use hamel_runtime::dynamics::{DynamicsError, PinError};
 use hamel_runtime::mechanism::{MechanismErrors, StateError};
 use hamel_runtime::registry::DuplicateJoint;
@@ -48,7 +48,8 @@ pub enum Error {
     },
     /// An accuracy that no tolerance reaches.
     #[error(
-        "an error of at most {wanted:.1e} was asked for, and the least estimated is {error:.1e}, of which {rounding:.1e} is rounding in doubles"
+        "an error of at most {wanted:.1e} was asked for, and the least estimated is {error:.1e}, of which {rounding:.1e} is rounding in doubles{}",
+        not_reliable(.doubt.as_ref())
     )]
     Accuracy {
         /// The error that was asked for.
@@ -57,6 +58,8 @@ pub enum Error {
         error: f64,
         /// The part of it that is rounding.
         rounding: f64,
+        /// Why the estimate is not reliable, if it is not.
+        doubt: Option<Doubt>,
     },
     /// Samples that cannot be taken.
     #[error(transparent)]
@@ -126,4 +129,10 @@ impl std::error::Error for UnknownName {}
 fn lines(errors: &[BodyError]) -> String {
     let lines: Vec<String> = errors.iter().map(BodyError::to_string).collect();
     lines.join("\n")
+}
+
+fn not_reliable(doubt: Option<&Doubt>) -> String {
+    doubt.map_or_else(String::new, |doubt| {
+        format!("; the estimate is not reliable: {doubt}")
+    })
 }

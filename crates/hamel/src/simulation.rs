@@ -91,7 +91,8 @@ impl<'a> Simulation<'a> {
 
     /// With an error of the last state of at most `error`, as [`hamel_integrate::ErrorParts`] measures it: attitudes in rad, positions and velocities as parts
     /// of max(1 SI unit, size). The tolerance is searched for by motions that are integrated and estimated for this alone, two as a rule; inputs are asked for
-    /// their efforts too. [`Simulation::run`] refuses an accuracy that is not reached, [`Simulation::run_estimated`] tells the error.
+    /// their efforts too. [`Simulation::run`] refuses an accuracy that is not reached, or that no reliable
+    /// estimate confirms; [`Simulation::run_estimated`] tells the error, and whether its estimate is reliable.
     pub const fn accuracy(mut self, error: f64) -> Self {
         self.settings.accuracy = Some(error);
         if let Method::Fixed { .. } = self.settings.method {
@@ -157,6 +158,7 @@ impl<'a> Simulation<'a> {
                     wanted,
                     error,
                     rounding,
+                    doubt: found.doubt,
                 });
             }
         }

@@ -14,19 +14,47 @@ use serde::Serialize;
 use std::fmt;
 
 /// What came of an accuracy that was asked for.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Request {
     /// The error that was asked for.
     wanted: f64,
-    /// Whether the estimated error is as small.
+    /// Whether the estimated error is as small, and the estimate reliable.
     reached: bool,
     /// The tolerance that was found for it.
     tolerance: f64,
-    /// The part of the error that no tolerance makes smaller.
+    /// Why it is not reached, if it is not.
+    #[serde(skip_serializing_if = "Option::is_none", rename = "reason")]
+    shortfall: Option<String>,
+    /// Whether it may be reached all the same: the error is told as small enough, by an estimate that is not reliable.
     #[serde(skip)]
-    rounding: f64,
-    #[serde(skip)]
+    is_open: bool,
+}
+
+/// Why an accuracy is not reached.
+struct Shortfall<'a> {
+    wanted: f64,
+    found: &'a Tuned,
     is_refined: bool,
+}
+
+impl fmt::Display for Shortfall<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rounding = self.found.error.rounding;
+        match &self.found.doubt {
+            _ if rounding > self.wanted && self.is_refined => {
+                write!(f, "rounding of the state alone makes {rounding:.1e}")
+            }
+            _ if rounding > self.wanted => write!(
+                f,
+                "rounding in doubles alone makes {rounding:.1e}; `--arithmetic refined` leaves out that of the accelerations"
+            ),
+            Some(doubt) => write!(
+                f,
+                "the estimate is not reliable at any tolerance that was tried: {doubt}"
+            ),
+            None => write!(f, "no smaller tolerance makes it smaller"),
+        }
+    }
 }
 
 impl Request {
@@ -46,22 +74,27 @@ impl Request {
             }
             found => found,
         };
-        let Tuned {
-            tolerance,
-            error,
-            is_reached,
-            ..
-        } = found.map_err(Ended::into_failure)?;
+        let found = found.map_err(Ended::into_failure)?;
         plan.settle_arithmetic(None);
-        plan.choose(tolerance)?;
+        plan.choose(found.tolerance)?;
+        let shortfall = Shortfall {
+            wanted,
+            found: &found,
+            is_refined: plan.settings.arithmetic == Arithmetic::Refined,
+        };
         plan.request = Some(Self {
             wanted,
-            reached: is_reached,
-            tolerance,
-            rounding: error.rounding,
-            is_refined: plan.settings.arithmetic == Arithmetic::Refined,
+            reached: found.is_reached,
+            tolerance: found.tolerance,
+            shortfall: (!found.is_reached).then(|| shortfall.to_string()),
+            is_open: found.error.total() <= wanted,
         });
         Ok(())
+    }
+
+    /// Whether the estimated error is as small as was asked, and the estimate reliable.
+    pub const fn is_reached(&self) -> bool {
+        self.reached
     }
 }
 
@@ -168,24 +201,16 @@ fn attempt(plan: &Plan) -> Result<(Solution, Box<dyn Dynamics>), Ended> {
 
 impl fmt::Display for Request {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            wanted, rounding, ..
-        } = *self;
-        if self.reached {
-            return write!(f, "an error of at most {wanted:.1e} was asked for");
-        }
-        write!(
-            f,
-            "not reached: an error of at most {wanted:.1e} was asked for, "
-        )?;
-        match rounding > wanted {
-            false => write!(f, "and no smaller tolerance makes it smaller"),
-            true if self.is_refined => {
-                write!(f, "rounding of the state alone makes {rounding:.1e}")
-            }
-            true => write!(
+        let wanted = self.wanted;
+        let what = match self.is_open {
+            true => "not confirmed",
+            false => "not reached",
+        };
+        match &self.shortfall {
+            None => write!(f, "an error of at most {wanted:.1e} was asked for"),
+            Some(shortfall) => write!(
                 f,
-                "rounding in doubles alone makes {rounding:.1e}; `--arithmetic refined` leaves out that of the accelerations"
+                "{what}: an error of at most {wanted:.1e} was asked for, and {shortfall}"
             ),
         }
     }

@@ -49,6 +49,11 @@ pub fn run(args: &Args, registry: &JointRegistry) -> Result<(), Failure> {
         (false, true) => {}
         (false, false) => print_summary(&plan, &columns, &run)?,
     }
+    // The summary has said so.
+    let short = plan.request.as_ref().filter(|asked| !asked.is_reached());
+    if let Some(asked) = short.filter(|_| args.json || args.quiet) {
+        terminal::err(&format!("warning: {asked}"));
+    }
     if run.is_interrupted {
         return Err(interrupted(&plan, &run.solution));
     }

@@ -30,7 +30,7 @@ const FEW: usize = 16;
 const FINER: (f64, f64) = (1e3, 5.0);
 
 /// Below this, errors of the exponential method may be those of rounding in oscillations that its steps pass over.
-const OSCILLATIONS: f64 = 1e-11;
+pub(super) const OSCILLATIONS: f64 = 1e-11;
 
 /// Motions of as many steps that differ by less than this may have made the same steps.
 const ALIKE: f64 = 1e-11;

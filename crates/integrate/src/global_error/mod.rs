@@ -16,7 +16,7 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt::{Display, Formatter};
-use estimation::Estimation;
+use estimation::{Estimation, OSCILLATIONS};
 use hamel_runtime::dynamics::Dynamics;
 
 pub use request::Tuned;
@@ -121,7 +121,19 @@ pub struct GlobalError {
 
 /// Runs a companion from this state by these options, with the same inputs as the motion, and without its events; else why there is none.
 pub type Run<'a> = dyn FnMut(&State, &Options, &mut Observer<'_>) -> Result<Solution, String> + 'a;
+
 impl GlobalError {
+    /// Whether the error of the last state is at most `wanted`, and the estimate that says so reliable.
+    pub fn confirms(&self, wanted: f64) -> bool {
+        let is_reliable = match self.doubt {
+            None => true,
+            // Rounding that is not known is less than this.
+            Some(Doubt::Oscillations) => wanted >= OSCILLATIONS,
+            Some(_) => false,
+        };
+        is_reliable && self.end.total() <= wanted
+    }
+
     /// The error of `solution`, which was computed from `initial` by `options`, with equations of motion such as `dynamics` has.
     pub fn estimate(
         dynamics: &mut dyn Dynamics,
