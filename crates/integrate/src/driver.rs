@@ -299,6 +299,7 @@ impl<'a> Driver<'a> {
             .accept(&mut self.step_state, &mut self.flow, time, span);
         accepted.map_err(|cause| self.at_state(cause))?;
         self.statistics.steps += 1;
+        self.count_unseen(span);
         // Before the inputs change: what lies within the step moved under those that were held.
         let passed = self.pass(step, observer);
         let passed = passed.map_err(|cause| self.at_state(cause))?;

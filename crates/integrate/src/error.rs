@@ -2,6 +2,7 @@
 
 use super::{Approach, Near};
 use alloc::boxed::Box;
+use alloc::format;
 use alloc::string::String;
 use hamel_runtime::dynamics::DynamicsError;
 use hamel_runtime::mechanism::{Loci, Mechanism, StateError};
@@ -148,11 +149,11 @@ impl StepFailure {
     }
 }
 
-/// What to do about a step of fixed size, where its length can be the reason.
-fn advice(cause: &StepFailure) -> &'static str {
-    match cause.is_of_length() {
-        true => "; take a smaller dt",
-        false => "",
+/// Advice as the end of a sentence.
+fn after(advice: &str) -> String {
+    match advice {
+        "" => String::new(),
+        advice => format!("; {advice}"),
     }
 }
 
@@ -254,7 +255,7 @@ pub enum IntegrateError {
         reason: String,
     },
     /// A step of fixed size fails.
-    #[error("the step of {step:e} s at {} s fails: {cause}{near}{}", Number(*.time), advice(.cause))]
+    #[error("the step of {step:e} s at {} s fails: {cause}{near}{}", Number(*.time), after(.advice))]
     Step {
         /// When.
         time: f64,
@@ -264,6 +265,8 @@ pub enum IntegrateError {
         cause: Box<StepFailure>,
         /// The joint that is nearest to a singular set of its own there, if one has any.
         near: Near,
+        /// What to do about it; empty where nothing helps.
+        advice: String,
     },
     /// Steps are so short that the motion would take a night or more.
     #[error(

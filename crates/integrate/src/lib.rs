@@ -58,6 +58,7 @@ mod outputs;
 mod pacing;
 mod phi;
 mod pieces;
+mod positions;
 mod product;
 mod prospect;
 mod rates_of_loops;

@@ -3,13 +3,14 @@
 use super::driver::Driver;
 use super::fixed_steps::is_last;
 use super::options::{StepControl, least_step};
+use super::positions;
 use super::prospect::{chosen_method, other_method};
 use super::rates_of_loops::has_ends;
 use super::rounding::Rounding;
 use super::search::Search;
 use super::step_control::StepController;
 use super::stepper::Span;
-use super::{IntegrateError, Method, StepFailure};
+use super::{IntegrateError, Method, Scheme, StepFailure};
 use alloc::boxed::Box;
 use alloc::format;
 use alloc::string::String;
@@ -74,6 +75,20 @@ impl Driver<'_> {
         }
     }
 
+    /// Counts a step of fixed size that does not see what acts as a function of time: a method of one stage sees it once a step.
+    pub(super) fn count_unseen(&mut self, span: Span) {
+        let mechanism = &self.flow.mechanism;
+        if self.options.method.control().is_some() || !mechanism.changes_with_time() {
+            return;
+        }
+        let from = span.time;
+        let until = self.kinks.before(from + 2.0 * span.step);
+        let motion = [self.start, self.options.t_end];
+        if mechanism.end_before_pulse([from, until], motion) < until {
+            self.statistics.unseen += 1;
+        }
+    }
+
     /// The same, however what acts changes with time.
     fn step_to_target(&self, step: f64) -> (f64, bool) {
         let (remaining, step) = (self.clock.until(self.target()), step.min(self.resolving));
@@ -123,6 +138,7 @@ impl Driver<'_> {
         {
             pacing.rounding.look(step_state, flow, span.time, weight);
         }
+        let order = stepper.order();
         let (error, joint) = match stepper.error(step_state, flow, span, least) {
             Ok(found) => found,
             Err(cause) => {
@@ -135,12 +151,18 @@ impl Driver<'_> {
         if part.is_nan() || part > 1.0 {
             pacing.rounding.refuse();
             pacing.step = step * pacing.controller.reject(Some(part));
+            pacing.rounding.see(step, error);
+            return Err(self.inaccurate(joint, error));
+        }
+        // Rounding takes the same share of the tolerance at any length of step. Near the end of a joint, relations amplify it beyond what was measured; steps would shrink without end.
+        let is_of_relations = has_ends(self.flow.mechanism.bodies()[joint].joint());
+        if error > 1.0 && !is_of_relations && !pacing.rounding.is_all(step, error, order) {
+            pacing.rounding.see(step, error);
+            pacing.step = step * pacing.controller.reject(Some(error));
             return Err(self.inaccurate(joint, error));
         }
         pacing.rounding.accept(error, joint, least);
         let factor = pacing.controller.accept(part);
-        // Rounding takes the same share of the tolerance at any length of step. Near the end of a joint, relations amplify it beyond what was measured; steps would shrink without end.
-        let is_of_relations = has_ends(self.flow.mechanism.bodies()[joint].joint());
         let factor = match allowed > 1.0 && is_of_relations {
             true => factor.max(1.0),
             false => factor,
@@ -148,7 +170,11 @@ impl Driver<'_> {
         let next = step * factor;
         // A step that was cut short to land says nothing against the step that was meant.
         let cut = step < pacing.step;
-        pacing.step = if cut { next.max(pacing.step) } else { next }.min(max_step);
+        let next = if cut { next.max(pacing.step) } else { next };
+        pacing.step = match error > 1.0 && !is_of_relations {
+            true => next.min(pacing.rounding.longest()).min(max_step),
+            false => next.min(max_step),
+        };
         Ok(())
     }
 
@@ -169,11 +195,16 @@ impl Driver<'_> {
         let cause = cause.of_relations(&self.flow.mechanism);
         let time = self.clock.time();
         if let Method::Fixed { dt, .. } = self.options.method {
+            let advice = match self.advice_on_positions(&cause) {
+                None if cause.is_of_length() => "take a smaller dt".into(),
+                advice => advice.unwrap_or_default(),
+            };
             let failure = IntegrateError::Step {
                 time,
                 step,
                 cause: Box::new(cause.clone()),
                 near: self.near(),
+                advice,
             };
             if !cause.is_of_length() || !self.watch.knows_ends(&self.flow.mechanism) {
                 return Err(failure);
@@ -206,6 +237,7 @@ impl Driver<'_> {
             _ => other_method,
         };
         let advice = find(&self.flow, self.options, &self.state());
+        let advice = advice.or_else(|| self.advice_on_positions(&cause));
         IntegrateError::StepUnderflow {
             time: self.clock.time(),
             step: pacing.step,
@@ -214,6 +246,16 @@ impl Driver<'_> {
             near: self.near(),
             advice: advice.map_or_else(String::new, |advice| format!("; {advice}")),
         }
+    }
+
+    /// What to do about a step that is not solved, or that does not keep the energy, where rounding of positions may be the reason.
+    fn advice_on_positions(&self, cause: &StepFailure) -> Option<String> {
+        let is_implicit = match cause {
+            StepFailure::NoConvergence { .. } => true,
+            StepFailure::Inaccurate { .. } => self.scheme == Scheme::DiscreteGradient,
+            _ => false,
+        };
+        is_implicit.then(|| positions::advice(&self.flow.mechanism, self.at().1))?
     }
 
     /// The first step of a piece of the motion.

@@ -6,12 +6,13 @@
 
 use super::StepFailure;
 use super::flow::{Flow, Rates};
+use super::positions;
 use super::rates_of_loops::{has_ends, rounding_of};
-use super::step_state::StepState;
+use super::step_state::{StepState, add};
 use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
-use hamel_runtime::erased::AnyJoint;
+use num_traits::Float;
 
 /// Attempts of one step that are refused before rounding is looked at again: the second one is of a step that the first estimate has chosen.
 const REFUSALS: usize = 2;
@@ -21,6 +22,12 @@ const LIFE: usize = 64;
 
 /// How many times what rounding comes to on average is still rounding.
 pub(super) const MARGIN: f64 = 8.0;
+
+/// Steps that are longer by this factor than one whose error was rounding are taken without another look at that.
+const SETTLED: f64 = 1.2;
+
+/// Shorter steps are tried so often where the error may be rounding.
+const TRIES: usize = 2;
 
 /// What is left of an older look beside a new one, as one look at rounding may see little of it by chance.
 const MEMORY: f64 = 0.95;
@@ -44,6 +51,12 @@ pub(super) struct Rounding {
     age: Option<usize>,
     /// Attempts of the present step that were refused.
     refusals: usize,
+    /// The attempt of the present step before this one: its length, s, and its error over the tolerance.
+    before: Option<[f64; 2]>,
+    /// How often the present step has been refused for an error that may be rounding.
+    tried: usize,
+    /// The length of a step whose error was rounding, s, since rounding was looked at; 0 where there was none.
+    settled: f64,
     limit: Option<Limit>,
     /// Whether the roundings of Q count at all joints.
     is_of_configurations: bool,
@@ -72,6 +85,9 @@ impl Rounding {
             rate: 0.0,
             age: None,
             refusals: 0,
+            before: None,
+            tried: 0,
+            settled: 0.0,
             limit: None,
             is_of_configurations: false,
             room: Room {
@@ -103,6 +119,35 @@ impl Rounding {
         }
     }
 
+    /// Whether all of an error over the tolerance that rounding may have made is rounding, and no shorter step has less: at a longer step it was not larger as the order would have it. Rounding
+    /// is other than the error of a method: that adds up from step to step.
+    pub(super) fn is_all(&mut self, step: f64, error: f64, order: u32) -> bool {
+        let falls = 0.5 * f64::from(order);
+        let is_noise = |[longer, larger]: [f64; 2]| {
+            step < longer && error > larger * Float::powf(step / longer, falls)
+        };
+        if step <= self.longest() {
+            return true;
+        }
+        // Rounding of the time falls with the step as well, where stages come to have the same time.
+        let is_all = self.tried >= TRIES || self.before.is_some_and(is_noise);
+        match is_all {
+            true => self.settled = step,
+            false => self.tried += 1,
+        }
+        is_all
+    }
+
+    /// The longest step whose error is known to be rounding where it is more than the tolerance, s.
+    pub(super) const fn longest(&self) -> f64 {
+        SETTLED * self.settled
+    }
+
+    /// An attempt of the present step had this error over the tolerance.
+    pub(super) const fn see(&mut self, step: f64, error: f64) {
+        self.before = Some([step, error]);
+    }
+
     /// The present step was refused for its error.
     pub(super) const fn refuse(&mut self) {
         self.refusals += 1;
@@ -117,8 +162,10 @@ impl Rounding {
         time: f64,
         weight: f64,
     ) {
-        let is_counted = |joint: &dyn AnyJoint| self.is_of_configurations || has_ends(joint);
-        let found = self.room.scatter(step_state, flow, time, is_counted);
+        let found = match self.is_of_configurations {
+            true => self.room.scatter_of_all(step_state, flow, time),
+            false => self.room.scatter_of_loops(step_state, flow, time),
+        };
         let found = found.and_then(|()| {
             step_state.set_scatter(flow, (MARGIN * weight, MEMORY), &mut self.room.difference);
             step_state.set_errors(1.0, &self.room.difference);
@@ -130,7 +177,7 @@ impl Rounding {
             false => 0.0,
         };
         self.rate = rate.max(MEMORY * self.rate);
-        (self.age, self.refusals) = (Some(0), 0);
+        (self.age, self.refusals, self.settled) = (Some(0), 0, 0.0);
     }
 
     /// What roundings of the state, in Q at all joints, make of the rates at it: ϕ̇, then ẏ.
@@ -140,13 +187,13 @@ impl Rounding {
         flow: &mut Flow<'_>,
         time: f64,
     ) -> Result<&mut [f64], StepFailure> {
-        self.room.scatter(step_state, flow, time, |_| true)?;
+        self.room.scatter_of_all(step_state, flow, time)?;
         Ok(&mut self.room.difference)
     }
 
     /// A step was accepted with this error of the joint under a body, over the tolerance.
     pub(super) fn accept(&mut self, error: f64, body: usize, tolerance: f64) {
-        self.refusals = 0;
+        (self.refusals, self.tried, self.before) = (0, 0, None);
         self.age = self.age.map(|age| age + 1);
         if error <= 1.0 {
             return;
@@ -176,27 +223,45 @@ impl Rounding {
 }
 
 impl Room {
-    /// Differences of the rates at the state, and at one that differs from it by a rounding in each of its numbers and in the time, in Q too at the joints that
-    /// `is_counted` takes: ϕ̇, then ẏ.
-    fn scatter(
+    /// Differences of the rates at the state, and at one that differs from it by a rounding in each of its numbers and in the time, in Q too where relations determine it: ϕ̇, then ẏ.
+    fn scatter_of_loops(
         &mut self,
         step_state: &StepState,
         flow: &mut Flow<'_>,
         time: f64,
-        is_counted: impl Fn(&dyn AnyJoint) -> bool,
     ) -> Result<(), StepFailure> {
         beside(&step_state.offset, &mut self.phi);
-        beside(&step_state.y, &mut self.y);
-        let mechanism = &flow.mechanism;
-        for (_, body) in mechanism
-            .joints()
-            .filter(|(_, body)| is_counted(body.joint()))
-        {
+        let joints = flow.mechanism.joints();
+        for (_, body) in joints.filter(|(_, body)| has_ends(body.joint())) {
             let freedoms = body.ranges().freedoms.clone();
             for (own, phi) in self.phi[freedoms].iter_mut().enumerate() {
                 *phi += rounding_of(body, own, &step_state.configuration);
             }
         }
+        self.scatter(step_state, flow, time)
+    }
+
+    /// The same with a rounding in Q at all joints, and in where bodies are.
+    fn scatter_of_all(
+        &mut self,
+        step_state: &StepState,
+        flow: &mut Flow<'_>,
+        time: f64,
+    ) -> Result<(), StepFailure> {
+        beside(&step_state.offset, &mut self.phi);
+        let roundings = positions::roundings(&flow.mechanism, &step_state.configuration);
+        add(&mut self.phi, 1.0, &roundings);
+        self.scatter(step_state, flow, time)
+    }
+
+    /// The differences, with these roundings of ϕ.
+    fn scatter(
+        &mut self,
+        step_state: &StepState,
+        flow: &mut Flow<'_>,
+        time: f64,
+    ) -> Result<(), StepFailure> {
+        beside(&step_state.y, &mut self.y);
         flow.evaluate(
             time * (1.0 + f64::EPSILON),
             &step_state.base,

@@ -75,6 +75,8 @@ pub struct Statistics {
     pub unconverged: usize,
     /// Steps that end where inputs or elements bend, as at the limit of an effort.
     pub bends: usize,
+    /// Steps of fixed size that are too long for what acts on the mechanism as a function of time: two of them have a period of it or more, or a pulse between their ends.
+    pub unseen: usize,
     /// Evaluations of the equations of motion.
     pub evaluations: usize,
     /// Iterations of implicit steps.

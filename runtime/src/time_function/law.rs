@@ -23,6 +23,15 @@ impl Law {
         self.rate + self.amplitude * self.frequency * Float::cos(angle)
     }
 
+    /// The end of a step that has no more than a period of it, where it changes at all.
+    pub(super) fn end_within_period(&self, [from, until]: [f64; 2]) -> f64 {
+        let (rate, change) = (self.rate.abs(), (self.amplitude * self.frequency).abs());
+        match change > f64::EPSILON * rate {
+            true => until.min(from + core::f64::consts::TAU / self.frequency.abs()),
+            false => until,
+        }
+    }
+
     /// v̇ at time `t`.
     pub fn acceleration(&self, t: f64) -> f64 {
         let angle = self.frequency.mul_add(t, self.phase);

@@ -100,15 +100,17 @@ impl TimeFunction {
         }
     }
 
-    /// The end of a step of a motion in which no pulse of the function lies unseen: that of the step, or an earlier time. Both are told by their ends, s.
+    /// The end of a step of a motion in which no pulse of the function lies unseen, and no more than about a period: that of the step, or an earlier time. Both are told by
+    /// their ends, s.
     ///
-    /// A pulse is a value far from the cubic polynomial through the values and slopes at both ends of the step. `exp(-((t - 5) / 0.01)^2)` has one within a step of ten
-    /// seconds, and a cubic table may. Steps end at all times of other tables, and a [`Law`] has no pulse.
+    /// A pulse is a value far from the cubic polynomials through the values and slopes at both ends of each quarter of the step. `exp(-((t - 5) / 0.01)^2)` has one within a step of
+    /// ten seconds, and a cubic table may; `sin(1000 * t)` has many. Steps end at all times of other tables.
     pub fn end_before_pulse(&self, step: [f64; 2], motion: [f64; 2]) -> f64 {
         match self {
             Self::Expression(expression) => expression.end_before_pulse(step, motion),
             Self::Table(table) => table.end_before_pulse(step),
-            Self::Constant(_) | Self::Sine(_) => step[1],
+            Self::Constant(_) => step[1],
+            Self::Sine(law) => law.end_within_period(step),
         }
     }
 

@@ -1,9 +1,10 @@
-//! Pulses of an expression or a cubic table between the times at which a step evaluates it.
+//! Pulses and oscillations of an expression or a cubic table between the times at which a step evaluates it.
 //!
-//! A method sees a function of time at a few times of a step. What it does between them, values and slopes at both ends tell where it is smooth: a cubic polynomial
-//! has these. A pulse that is short beside the step is far from that polynomial, and no error estimate of the step knows of it. Where the distance is largest is
-//! searched by branch and bound: parts of the step are halved, that with the largest bound first, by the intervals of all values and slopes that the expression has in each.
-//! So a pulse is found however short it is, after some tens of parts. Of a table, the distance is that at its times.
+//! A method sees a function of time at a few times of a step. What it does between them, values and slopes at both ends of a quarter of the step tell where it is smooth: a
+//! cubic polynomial has these. A pulse that is short beside the step is far from that polynomial, as is an oscillation of which the step has more than a period, and no error
+//! estimate of the step knows of them. Where the distance is largest is searched by branch and bound: parts of the quarter are halved, that with the largest bound first, by
+//! the intervals of all values and slopes that the expression has in each. So a pulse is found however short it is, after some tens of parts. Of a table, the distance is that
+//! at its times.
 
 use super::expression::Node;
 use super::{Moment, Outside, Table};
@@ -15,13 +16,13 @@ const MOST_PARTS: usize = 200;
 /// Pulses of one step that are looked for.
 const MOST_PULSES: usize = 64;
 
-/// Distances from the polynomial that are no pulse, relative to the range of the polynomial: resolved oscillations have a part of this.
-const OF_RANGE: f64 = 0.5;
+/// Parts of a step that have a polynomial each: as many as the stages that methods under step control have at least.
+const QUARTERS: usize = 4;
 
-/// That range at most, relative to the larger value at both ends: a polynomial with steep ends is no likeness.
-const MOST_RANGE: f64 = 4.0;
+/// Distances from the polynomials that are no pulse, relative to how far the values at their ends are apart: a sine of 6 rad in a step has this.
+const OF_RANGE: f64 = 0.005;
 
-/// Distances that are no pulse, relative to the larger value at both ends.
+/// Distances that are no pulse, relative to the largest value at these ends.
 const OF_VALUE: f64 = 1e-9;
 
 /// The same relative to all values of the expression over the whole motion.
@@ -83,6 +84,34 @@ fn shortened([from, until]: [f64; 2], find: impl Fn([f64; 2]) -> Option<Pulse>) 
     end
 }
 
+/// What a step is compared with: polynomials one after the other.
+struct Quarters {
+    cubics: Vec<Cubic>,
+    /// Distances that are no pulse.
+    least: f64,
+}
+
+impl Quarters {
+    /// From the value and the slope of a function at a moment.
+    fn new([from, until]: [f64; 2], negligible: f64, jet: impl Fn(Moment) -> [f64; 2]) -> Self {
+        let length = until - from;
+        let at = |i: usize| match i {
+            QUARTERS => until,
+            _ => from + length * i as f64 / QUARTERS as f64,
+        };
+        let quarters = (0..QUARTERS).map(|i| [at(i), at(i + 1)]);
+        let cubics: Vec<Cubic> = quarters.map(|quarter| Cubic::new(quarter, &jet)).collect();
+        let ends = cubics.iter().flat_map(|cubic| cubic.ends);
+        let [low, high] = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+            [low.min(value), high.max(value)]
+        });
+        Self {
+            least: OF_RANGE * (high - low) + OF_VALUE * high.max(-low) + negligible,
+            cubics,
+        }
+    }
+}
+
 /// The polynomial with the values and slopes of the expression at both ends of a step.
 struct Cubic {
     from: f64,
@@ -94,7 +123,7 @@ struct Cubic {
 
 impl Cubic {
     /// From the value and the slope of a function at a moment.
-    fn new([from, until]: [f64; 2], jet: impl Fn(Moment) -> [f64; 2]) -> Self {
+    fn new([from, until]: [f64; 2], jet: &impl Fn(Moment) -> [f64; 2]) -> Self {
         let within = from + 0.5 * (until - from);
         let [first, last] = [from, until].map(|time| jet(Moment { time, within }));
         let length = until - from;
@@ -104,13 +133,6 @@ impl Cubic {
             ends: [first[0], last[0]],
             rises: [first[1] * length, last[1] * length],
         }
-    }
-
-    /// Distances that are no pulse.
-    fn least(&self, negligible: f64) -> f64 {
-        let largest = self.ends[0].abs().max(self.ends[1].abs());
-        let range = self.range().min(MOST_RANGE * largest);
-        OF_RANGE * range + OF_VALUE * largest + negligible
     }
 
     /// The value, by Bernstein's form.
@@ -125,12 +147,6 @@ impl Cubic {
     fn points(&self) -> [f64; 4] {
         let [a, d] = self.ends;
         [a, a + self.rises[0] / 3.0, d - self.rises[1] / 3.0, d]
-    }
-
-    fn range(&self) -> f64 {
-        let points = self.points();
-        let low = points.into_iter().fold(f64::INFINITY, f64::min);
-        points.into_iter().fold(f64::NEG_INFINITY, f64::max) - low
     }
 
     /// The least and the largest slope that it may have.
@@ -181,21 +197,27 @@ impl Part {
     }
 }
 
-/// The largest pulse of an expression, if there is one.
+/// A pulse of an expression in the first quarter of a step that has one: the largest there.
 fn pulse(node: &Node, step: [f64; 2], negligible: f64) -> Option<Pulse> {
-    let cubic = Cubic::new(step, |at| {
+    let quarters = Quarters::new(step, negligible, |at| {
         let jet = node.at(at);
         [jet.value, jet.slope]
     });
+    let mut cubics = quarters.cubics.iter();
+    cubics.find_map(|cubic| pulse_beside(node, cubic, quarters.least))
+}
+
+/// The largest distance from a polynomial, if it is more than `least`.
+fn pulse_beside(node: &Node, cubic: &Cubic, least: f64) -> Option<Pulse> {
     // Where a root begins, no polynomial has the slope.
     if !cubic.rises.iter().all(|rise| rise.is_finite()) {
         return None;
     }
-    let least = cubic.least(negligible);
+    let step = [cubic.from, cubic.from + cubic.length];
     // Nothing that is nearer is looked for.
     let mut wanted = least;
     let mut found = None;
-    let mut parts: Vec<Part> = [Part::new(node, &cubic, step)].into();
+    let mut parts: Vec<Part> = [Part::new(node, cubic, step)].into();
     for _ in 0..MOST_PARTS {
         let places = 0..parts.len();
         let farthest = places.max_by(|&a, &b| parts[a].bound.total_cmp(&parts[b].bound));
@@ -224,15 +246,17 @@ fn pulse(node: &Node, step: [f64; 2], negligible: f64) -> Option<Pulse> {
                 length: until - from,
             });
         }
-        parts.push(Part::new(node, &cubic, [from, middle]));
-        parts.push(Part::new(node, &cubic, [middle, until]));
+        parts.push(Part::new(node, cubic, [from, middle]));
+        parts.push(Part::new(node, cubic, [middle, until]));
     }
     found
 }
 
-/// The largest pulse of a table, at one of its times.
+/// The first pulse of a table, at one of its times.
 fn pulse_of_table(table: &Table, [from, until]: [f64; 2], negligible: f64) -> Option<Pulse> {
-    let cubic = Cubic::new([from, until], |at| [table.value(at), table.slope(at)]);
+    let quarters = Quarters::new([from, until], negligible, |at| {
+        [table.value(at), table.slope(at)]
+    });
     let times = table.times();
     let period = times[times.len() - 1] - times[0];
     // A step of a period goes into the next one.
@@ -240,8 +264,6 @@ fn pulse_of_table(table: &Table, [from, until]: [f64; 2], negligible: f64) -> Op
         Outside::Repeat => 2,
         Outside::Hold | Outside::Zero => 1,
     };
-    let mut least = cubic.least(negligible);
-    let mut found = None;
     for next in 0..periods {
         let shift = period * (table.periods(from) + f64::from(next));
         let first = times.partition_point(|time| time + shift <= from).max(1);
@@ -250,15 +272,15 @@ fn pulse_of_table(table: &Table, [from, until]: [f64; 2], negligible: f64) -> Op
             if time >= until {
                 break;
             }
-            let distance = (table.value(time.into()) - cubic.at(time)).abs();
-            if distance > least {
-                least = distance;
-                found = Some(Pulse {
+            let part = QUARTERS as f64 * (time - from) / (until - from);
+            let cubic = &quarters.cubics[(part as usize).min(QUARTERS - 1)];
+            if (table.value(time.into()) - cubic.at(time)).abs() > quarters.least {
+                return Some(Pulse {
                     time,
                     length: pair[1] - pair[0],
                 });
             }
         }
     }
-    found
+    None
 }

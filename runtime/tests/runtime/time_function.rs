@@ -1,7 +1,7 @@
 //! Functions of time: values and slopes of formulas and tables, their kinks, and what is refused.
 
 use hamel_runtime::time_function::{
-    Expression, Moment, Outside, Table, TableError, TableKind, TimeFunction,
+    Expression, Law, Moment, Outside, Table, TableError, TableKind, TimeFunction,
 };
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -376,6 +376,63 @@ fn pulses_of_cubic_tables_are_found() {
         let short = [from + 0.25, from + 0.75];
         let end = function.end_before_pulse(short, [0.0, 5000.0]);
         assert_eq!(end, short[1], "{outside:?} from {from}");
+    }
+}
+
+/// A pulse of a few per cent of what else changes within the step is no less one.
+#[test]
+fn pulses_on_a_slope_are_found() {
+    for (slow, at) in [("t", 7.3), ("100*sin(t/5)", 3.1), ("exp(t/10)", 12.9)] {
+        let text = format!("{slow} + 2*exp(-((t - {at})/0.001)^2)");
+        let end = formula(&text).end_before_pulse([0.0, 15.0], [0.0, 20.0]);
+        assert!(end < at && end > 0.0, "{text}: {end}");
+    }
+    let mut points: Vec<(f64, f64)> = (0..=2000).map(|i| (0.01 * f64::from(i), 0.0)).collect();
+    for (time, value) in &mut points {
+        *value = 10.0 * *time;
+    }
+    points[1000].1 += 20.0;
+    let function = table(&points, TableKind::Cubic, Outside::Hold).expect("a table");
+    let end = function.end_before_pulse([3.0, 18.0], [0.0, 20.0]);
+    assert!(end < 10.0 && end > 3.0, "{end}");
+}
+
+/// A step has a period of what oscillates at most, wherever it begins, and however many periods it was to have.
+#[test]
+fn steps_do_not_pass_over_periods() {
+    let period = core::f64::consts::TAU / 1000.0;
+    let law = TimeFunction::Sine(Law {
+        rate: 1.0,
+        amplitude: 1e-6,
+        frequency: 1000.0,
+        phase: 0.3,
+    });
+    let points = (0..=200).map(|i| {
+        let phase = f64::from(i) / 8.0;
+        (period * phase, (core::f64::consts::TAU * phase).sin())
+    });
+    let points: Vec<(f64, f64)> = points.collect();
+    let sampled = table(&points, TableKind::Cubic, Outside::Hold).expect("a table");
+    let functions = [
+        formula("sin(1000*t)"),
+        formula("5 + 0.1*cos(1000*t)*exp(-t)"),
+        law,
+        sampled,
+    ];
+    for (place, function) in functions.iter().enumerate() {
+        for start in 0..16 {
+            let from = period * f64::from(start) / 16.0;
+            for periods in [2.0, 4.0, 8.0, 9.5, 20.0] {
+                let until = from + periods * period;
+                let end = function.end_before_pulse([from, until], [0.0, 1.0]);
+                // A distance of a hundredth of the range is that of 1.1 periods.
+                assert!(
+                    end > from && end < from + 1.2 * period,
+                    "function {place} from {from}, {periods} periods: {}",
+                    (end - from) / period
+                );
+            }
+        }
     }
 }
 

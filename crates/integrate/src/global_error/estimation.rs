@@ -116,6 +116,9 @@ impl<'a, 'r> Estimation<'a, 'r> {
         });
         let samples = samples.collect();
         let end = errors.last().copied().unwrap_or_default();
+        if let count @ 1.. = self.solution.statistics.unseen {
+            self.doubt = Some(Doubt::Unseen { count });
+        }
         let is_small = |error: &ErrorParts| error.total() <= LARGE;
         if !errors.iter().all(is_small) {
             self.doubt.get_or_insert(Doubt::Large);

@@ -59,6 +59,11 @@ pub enum Doubt {
         /// Steps that end there.
         count: usize,
     },
+    /// Steps of fixed size are too long for what acts on the mechanism as a function of time.
+    Unseen {
+        /// Such steps.
+        count: usize,
+    },
     /// A companion goes through other impacts, stops and starts of joints, or through them in another order.
     Pieces {
         /// What the motion does where they first differ; nothing where it has no more.
@@ -87,6 +92,10 @@ impl Display for Doubt {
             Self::Bends { count } => write!(
                 f,
                 "efforts bend at {count} times, as at a limit: errors of methods of high order do not fall evenly there; take `dopri5` or `radau5`"
+            ),
+            Self::Unseen { count } => write!(
+                f,
+                "what acts on the mechanism changes with time faster than {count} of the steps see: take a smaller dt, or a method with step control"
             ),
             Self::Pieces { motion, companion } => {
                 let told = |what: &str| match what {

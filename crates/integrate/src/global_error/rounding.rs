@@ -3,15 +3,33 @@
 use super::companion::{Companion, distance};
 use super::estimation::Estimation;
 use super::{ErrorParts, accelerations};
-use crate::{Form, Method, State};
+use crate::flow::retract;
+use crate::{Form, Method, Spectrum, State, positions};
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 use num_traits::Float;
 
 /// Above this, what rounding amounts to is of no interest, and is not looked for by a companion of its own.
 const FAR_ABOVE_ROUNDING: f64 = 1e-9;
 
+/// Motions that part by more than this power of e in all have conditionings above 1e6.
+const PARTING: f64 = 14.0;
+
+/// The most speeds for which the modes of the first state are looked at: that takes no longer than some steps.
+const MOST_SPEEDS: usize = 32;
+
+/// Neighbours whose speeds differ by no more than this are not told from rounding, and each is nearer than the one before by the factor.
+const NEAREST: f64 = 1e-13;
+const NEARER: f64 = 1e-3;
+
 /// Neighbours at this distance are too far apart to tell how those go apart that are near.
 const APART: f64 = 0.1;
+
+/// Bodies that are farther away than this, m, have roundings of positions that are larger than those of speeds.
+const FAR: f64 = 10.0;
+
+/// A neighbour in the configuration is so many roundings away: well above those that the two motions make themselves.
+const ROUNDINGS: f64 = 256.0;
 
 impl Estimation<'_, '_> {
     /// Errors from steps with those from rounding, as a companion beside one of `others` tells them where they count.
@@ -22,24 +40,27 @@ impl Estimation<'_, '_> {
         times: &[State],
     ) -> (Vec<ErrorParts>, Option<f64>) {
         let is_near = from_steps.iter().any(|&error| error < FAR_ABOVE_ROUNDING);
-        let (conditioning, growth) = match is_near {
+        // What rounding has left in the estimate of a step is in the step as well.
+        let limit = self.solution.rounding.as_ref();
+        let least = limit.map_or(0.0, |limit| limit.error);
+        let (conditioning, growth) = match is_near || least > 0.0 || self.is_unstable() {
             true => self.conditioning(others, times),
             false => (None, Vec::new()),
         };
         let scatter = self.scatter(times);
-        // What rounding has left in the estimate of a step is in the step as well.
-        let limit = self.solution.rounding.as_ref();
-        let least = limit.map_or(0.0, |limit| limit.error);
+        let of_positions = self.of_positions(others[0], times);
         let errors = from_steps.into_iter().enumerate().map(|(i, steps)| {
             let growth = growth.get(i).copied().unwrap_or(1.0);
             let length = times[i].time - self.initial.time;
             let path = others[1].1.paths[i].max(1.0);
             let rounding = self.unit(&times[i]) * growth.max(path);
+            let placed = of_positions.get(i).copied().unwrap_or(0.0);
+            let rounding = rounding.max(placed);
             // Paths tell how errors of speeds add up in coordinates; what goes beyond is instability.
             let grown = (growth / path).max(1.0);
             let rounding = rounding
                 .max(Float::sqrt(length) * scatter * grown)
-                .max(least);
+                .max(least * grown);
             ErrorParts { steps, rounding }
         });
         (errors.collect(), conditioning)
@@ -84,24 +105,41 @@ impl Estimation<'_, '_> {
     }
 
     /// The conditioning, and how much a relative change of the speeds has grown at each time, by a neighbour of the coarser companion. Neighbours that are far apart in the end do not tell how those
-    /// go apart that are near: one of the finer companion is nearer to it.
+    /// go apart that are near: those of the finer companion are nearer to it, the more the farther they have come.
     fn conditioning(
         &mut self,
         [fine, coarse]: [(Method, &Companion); 2],
         times: &[State],
     ) -> (Option<f64>, Vec<f64>) {
-        let (change, least) = (change_of(coarse.0), change_of(fine.0));
-        let found = self.growth((coarse.0, change), &coarse.1.states, times);
-        let is_small = |growth: &Vec<f64>| growth.iter().all(|&own| own * change < APART);
-        let found = match found {
-            Some(growth) if !is_small(&growth) && least < change => {
-                let nearer = self.growth((fine.0, least), &fine.1.states, times);
-                nearer.or(Some(growth))
+        let mut change = change_of(coarse.0);
+        let mut nearer = change_of(fine.0);
+        let mut found = self.growth((coarse.0, change), &coarse.1.states, times);
+        while let Some(growth) = &found {
+            if nearer < NEAREST || growth.iter().all(|&own| own * change < APART) {
+                break;
             }
-            found => found,
-        };
+            if nearer < change {
+                let grown = self.growth((fine.0, nearer), &fine.1.states, times);
+                found = grown.or(found);
+                change = nearer;
+            }
+            nearer *= NEARER;
+        }
         let growth = found.unwrap_or_default();
         (growth.last().copied(), growth)
+    }
+
+    /// Whether motions beside the first state part so fast that rounding may be more than what steps make, however large that is.
+    fn is_unstable(&self) -> bool {
+        if self.mechanism.layout().speeds > MOST_SPEEDS {
+            return false;
+        }
+        let Ok(Some(spectrum)) = Spectrum::at(&self.mechanism, self.initial) else {
+            return false;
+        };
+        let fastest = spectrum.modes().iter().map(|mode| mode.growth);
+        let length = self.solution.state.time - self.initial.time;
+        fastest.fold(0.0, f64::max) * length > PARTING
     }
 
     /// How far a neighbour is carried away, as a part of the change of its speeds.
@@ -115,6 +153,43 @@ impl Estimation<'_, '_> {
         let moved = self.companion(method, times, &moved).ok()?;
         let growth = self.distances(&moved.states, from);
         Some(growth.iter().map(|distance| distance / change).collect())
+    }
+
+    /// What half an ulp of the configuration is at each time, where bodies are so far away that it counts: nothing elsewhere, where speeds tell of it. It is seen beside the finer companion: steps of the coarser one
+    /// may change with so little.
+    fn of_positions(
+        &mut self,
+        (method, companion): (Method, &Companion),
+        times: &[State],
+    ) -> Vec<f64> {
+        let (mechanism, q) = (Arc::clone(&self.mechanism), &self.initial.configuration);
+        if self.is_exact() || positions::largest(&mechanism, q) < FAR {
+            return Vec::new();
+        }
+        let mut from = self.initial.clone();
+        let mut moved = positions::roundings(&mechanism, q);
+        for (index, body) in mechanism.joints() {
+            let part = if mechanism.is_driven(index) {
+                0.0
+            } else {
+                ROUNDINGS
+            };
+            moved[body.ranges().freedoms.clone()]
+                .iter_mut()
+                .for_each(|phi| *phi *= part);
+        }
+        retract(&mechanism, q, &moved, &mut from.configuration);
+        let completed = self
+            .dynamics
+            .complete_speeds(&from.configuration, &mut from.speeds);
+        let found = completed
+            .ok()
+            .and_then(|()| self.companion(method, times, &from).ok());
+        let distances = found.map(|found| self.distances(&found.states, &companion.states));
+        let distances = distances.unwrap_or_default().into_iter();
+        distances
+            .map(|distance| 0.5 * distance / ROUNDINGS)
+            .collect()
     }
 
     /// The first state with other speeds, where something moves: one larger by a part of the largest that its joint has there or at `times`, the next one smaller, and what constraints make of these.

@@ -1,10 +1,14 @@
-//! Errors as they are told beside those of closed forms: transients, samples that cut steps, motions that begin at rest.
+//! Errors as they are told beside those of closed forms: transients, samples that cut steps, motions that begin at rest,
+//! bodies far from the origin of the world, forces that are faster than steps, rounding that grows.
 
+use crate::common::joints;
 use crate::stiff::wheel;
-use crate::support::{at, estimate, on_axis, options, run};
-use hamel_integrate::{Choice, Form, GlobalError, Method, Options, Scheme, State, Wanted};
+use crate::support::{at, distance, estimate, on_axis, options, run};
+use hamel_integrate::{Choice, Doubt, Form, GlobalError, Method, Options, Scheme, State, Wanted};
+use hamel_runtime::elements::{BodySpring, TimedEffort};
 use hamel_runtime::mechanism::{BodySpec, Mechanism};
 use hamel_runtime::spatial::Pose;
+use hamel_runtime::time_function::{Expression, Law, TimeFunction};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
@@ -130,4 +134,196 @@ fn a_slow_linear_spring_is_taken_exactly() {
         .steps
     };
     assert!(10 * steps(Scheme::Exponential) < steps(Scheme::Verner9));
+}
+
+/// Two bodies on a spring, so far away along x.
+fn far_away(away: f64) -> (Arc<Mechanism>, State) {
+    let body = |name: &str, along: f64| BodySpec {
+        name: name.into(),
+        joint_name: format!("{name} joint"),
+        joint: joints::planar(),
+        placement: Pose::from_translation(Vector3::x() * (away + along)),
+        ..on_axis(Vector3::zeros(), Matrix3::identity() * 0.1)
+    };
+    let spring = BodySpring {
+        name: "spring".into(),
+        bodies: [Some(0), Some(1)],
+        points: [Vector3::y() * 0.1, Vector3::x() * 0.2],
+        stiffness: 100.0,
+        damping: 0.0,
+        length: 1.0,
+    };
+    let bodies = vec![body("near", 0.0), body("far", 2.5)];
+    let mechanism = Mechanism::new(Vector3::zeros(), bodies).expect("a mechanism");
+    let mechanism = mechanism.with_elements(vec![Arc::new(spring)]);
+    let mechanism = Arc::new(mechanism.expect("it fits"));
+    let initial = at(&mechanism.home(), &[0.0, 0.0, 0.0, 0.3, 0.5, 0.4]);
+    (mechanism, initial)
+}
+
+/// Positions in the world are rounded to 1e-7 m at 1e9 m, and the spring makes accelerations of that: the motion is the one about the origin but for these.
+#[test]
+fn rounding_of_positions_far_away_is_told() {
+    let t_end = 5.0;
+    let (near, initial) = far_away(0.0);
+    let exact = Method::controlled(Scheme::Verner9, 1e-14);
+    let exact = run(&near, &initial, &options(Form::Lagrangian, exact, t_end)).state;
+    for away in [1e5, 1e7, 1e9] {
+        let (mechanism, initial) = far_away(away);
+        for (scheme, tolerance) in [
+            (Scheme::DormandPrince8, 1e-8),
+            (Scheme::DormandPrince8, 1e-12),
+            (Scheme::Verner9, 1e-10),
+            (Scheme::Radau5, 1e-9),
+        ] {
+            let method = Method::controlled(scheme, tolerance);
+            let options = options(Form::Lagrangian, method, t_end);
+            let found = run(&mechanism, &initial, &options);
+            let told = estimate(&mechanism, &initial, &options, &found);
+            let error = distance(&found.state, &exact);
+            println!(
+                "{away:e} m, {} to {tolerance:e}: {error:e}, told {:?}, {:?}, {} steps",
+                scheme.name(),
+                told.end,
+                told.doubt,
+                found.statistics.steps
+            );
+            assert!(
+                told.doubt.is_some() || error < 10.0 * told.end.total(),
+                "{away:e} m, {}: {error:e}, told {:e}",
+                scheme.name(),
+                told.end.total()
+            );
+            // Rounding does not make steps ever shorter.
+            assert!(found.statistics.steps < 200_000);
+        }
+    }
+}
+
+/// A wheel of 1 kg m² without springs, under an effort.
+fn driven(effort: TimeFunction) -> Arc<Mechanism> {
+    let timed = TimedEffort {
+        name: "effort".into(),
+        body: 0,
+        efforts: vec![effort],
+    };
+    let mechanism = Mechanism::clone(&wheel(0.0, 0.0)).with_timed_efforts(vec![timed]);
+    Arc::new(mechanism.expect("it fits"))
+}
+
+/// Steps of a period see a sine as a constant, as those of two and four periods do: the motion is wrong, and companions are as wrong.
+#[test]
+fn an_effort_that_is_faster_than_fixed_steps_makes_an_estimate_doubtful() {
+    let frequency = 100.0;
+    let mechanism = driven(TimeFunction::Sine(Law {
+        rate: 0.0,
+        amplitude: 1.0 / frequency,
+        frequency,
+        phase: 0.4,
+    }));
+    let period = core::f64::consts::TAU / frequency;
+    for method in [
+        Method::rk4,
+        |dt| Method::fixed(Scheme::Midpoint, dt),
+        |dt| Method::fixed(Scheme::Gauss3, dt),
+    ] {
+        let doubt = |parts: f64| {
+            let options = options(Form::Lagrangian, method(period / parts), 40.0 * period);
+            let initial = at(&[0.0], &[0.0]);
+            let found = run(&mechanism, &initial, &options);
+            let speed = ((100.0 * 40.0 * period + 0.4).sin() - 0.4_f64.sin()) / frequency;
+            let error = (found.state.speeds[0] - speed).abs();
+            let told = estimate(&mechanism, &initial, &options, &found);
+            println!("{parts}: {error:e}, told {:?}, {:?}", told.end, told.doubt);
+            told.doubt
+        };
+        let is_unseen = |parts| matches!(doubt(parts), Some(Doubt::Unseen { count: 1.. }));
+        assert!(is_unseen(1.0) && is_unseen(0.5) && is_unseen(1.37));
+        assert!(!is_unseen(20.0));
+    }
+}
+
+/// Under step control no step passes over a period, however small the effort is beside the tolerance: it would be taken for a constant one.
+#[test]
+fn no_controlled_step_passes_over_a_period() {
+    let frequency = 1e4;
+    let text = format!("1e-3*cos({frequency}*t)");
+    let expression = Expression::new(&text).expect("a formula");
+    let mechanism = driven(TimeFunction::Expression(Arc::new(expression)));
+    let t_end = 1.0;
+    for scheme in [Scheme::DormandPrince, Scheme::Verner9, Scheme::Radau5] {
+        let method = Method::controlled(scheme, 1e-3);
+        let options = options(Form::Lagrangian, method, t_end);
+        let found = run(&mechanism, &at(&[0.0], &[0.0]), &options);
+        let periods = frequency * t_end / core::f64::consts::TAU;
+        let steps = found.statistics.steps as f64;
+        // A quarter of a step is compared with a cubic to half a per cent: that is 0.9 periods in a step.
+        assert!(steps > 0.9 * periods, "{}: {steps}", scheme.name());
+        let error = (found.state.speeds[0] - 1e-3 * (frequency * t_end).sin() / frequency).abs();
+        // The whole amplitude of the speed is 1e-7; steps of a period leave a tenth of it.
+        assert!(error < 1e-8, "{}: {error:e}", scheme.name());
+    }
+}
+
+/// The speed after a pulse is its area, √π. Near 50 s the time is rounded to 7e-15 s, which is 7e-12 of a pulse of a millisecond, at each of its steps; a
+/// smaller tolerance does not make more of it.
+#[test]
+fn a_late_pulse_has_the_accuracy_of_the_time_at_any_tolerance() {
+    let expression = Expression::new("1000*exp(-((t - 50)/0.001)^2)").expect("a formula");
+    let mechanism = driven(TimeFunction::Expression(Arc::new(expression)));
+    for scheme in [Scheme::DormandPrince8, Scheme::Verner9] {
+        for tolerance in [1e-11, 1e-12, 1e-13, 1e-14, 1e-15] {
+            let method = Method::controlled(scheme, tolerance);
+            let options = options(Form::Lagrangian, method, 60.0);
+            let found = run(&mechanism, &at(&[0.1], &[0.3]), &options);
+            let speed = 0.3 + core::f64::consts::PI.sqrt();
+            let error = (found.state.speeds[0] - speed).abs();
+            println!(
+                "{} to {tolerance:e}: {error:e}, {} steps",
+                scheme.name(),
+                found.statistics.steps
+            );
+            // Some ten steps, and as many roundings as the largest slope of the pulse has over its mean.
+            assert!(
+                error < 2e-10,
+                "{} to {tolerance:e}: {error:e}",
+                scheme.name()
+            );
+        }
+    }
+}
+
+/// A body that turns about its axis of intermediate inertia but for a millionth leaves it and comes back again and again: how it does, its rounding decides, which two methods make
+/// differently.
+#[test]
+fn rounding_along_an_unstable_axis_is_told() {
+    let body = BodySpec {
+        joint: joints::ball(),
+        ..on_axis(
+            Vector3::zeros(),
+            Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 3.0)),
+        )
+    };
+    let mechanism = Mechanism::new(Vector3::zeros(), vec![body]).expect("a mechanism");
+    let mechanism = Arc::new(mechanism);
+    let initial = at(&mechanism.home(), &[5e-6, 5.0, 5e-6]);
+    for t_end in [17.0, 30.0] {
+        let motions = [(Scheme::DormandPrince8, 1e-12), (Scheme::Verner9, 1e-13)];
+        let [(a, told_a), (b, told_b)] = motions.map(|(scheme, tolerance)| {
+            let method = Method::controlled(scheme, tolerance);
+            let options = options(Form::Lagrangian, method, t_end);
+            let found = run(&mechanism, &initial, &options);
+            let told = estimate(&mechanism, &initial, &options, &found);
+            println!("{t_end} s, {}: {told:?}", scheme.name());
+            (found.state, told)
+        });
+        let apart = distance(&a, &b);
+        let told = told_a.end.total().max(told_b.end.total());
+        println!("{t_end} s: {apart:e} apart, told {told:e}");
+        let is_doubted = told_a.doubt.is_some() || told_b.doubt.is_some();
+        assert!(
+            is_doubted || apart < 10.0 * told,
+            "{apart:e}, told {told:e}"
+        );
+    }
 }
