@@ -60,6 +60,12 @@ fn main() -> Result<(), Error> {
     .lanes()
     .compile()?;
     compiled(
+        "../data/scenes/walker.toml",
+        [Kind::ForwardDerivatives, Kind::MassMatrix],
+    )
+    .lanes()
+    .compile()?;
+    compiled(
         "../data/urdf/loops/ankle.urdf",
         [
             Kind::ForwardDynamics,

@@ -54,9 +54,9 @@ pub(super) trait Instructions: Registers {
     fn transpose(self, rows: Block) -> Block;
 }
 
-/// Without instructions of any level.
-#[derive(Clone, Copy)]
-pub(super) struct Plain;
+/// Without instructions of any level: numbers in memory, and loops over the states.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Plain;
 
 /// Numbers as the scalar of the baseline computes with them.
 type Own = Lane<{ cfg!(target_feature = "fma") }>;

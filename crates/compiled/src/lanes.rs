@@ -46,6 +46,9 @@ impl<const FUSED: bool> LaneScalar for Lane<FUSED> {
     }
 }
 
+/// Sums that processors add to at once.
+const SUMS: usize = 4;
+
 /// A function of many states at a level that the machine has; whether all results are finite.
 pub type ManyStates = fn(Level, States<'_>) -> bool;
 
@@ -245,17 +248,26 @@ where
         // would touch two lines, except for one place of the stack in four.
         black_box(Lanes::ZERO);
         // What x − x adds up to: 0, or NaN. Asked here, where the results still are at hand; reading them again takes a tenth of inverse dynamics.
-        let mut differences = [0.0; LANES];
+        let mut differences = [[0.0; LANES]; SUMS];
         for (group, results) in results.iter_mut().enumerate() {
             E::eight::<T, I>(simd, &q[group], &v[group], &u[group], results);
-            for entry in results {
-                for (sum, x) in differences.iter_mut().zip(entry.0) {
-                    #[expect(clippy::eq_op, reason = "not zero where x is not finite")]
-                    let difference = x - x;
-                    *sum += difference;
-                }
+            let (entries, last) = results.as_chunks::<SUMS>();
+            for entries in entries {
+                add_differences(&mut differences, entries);
             }
+            add_differences(&mut differences, last);
         }
-        differences.iter().all(|&sum| sum == 0.0)
+        differences.as_flattened().iter().all(|&sum| sum == 0.0)
+    }
+}
+
+#[inline(always)]
+fn add_differences(sums: &mut [[f64; LANES]; SUMS], entries: &[Lanes]) {
+    for (sums, entry) in sums.iter_mut().zip(entries) {
+        for (sum, x) in sums.iter_mut().zip(entry.0) {
+            #[expect(clippy::eq_op, reason = "not zero where x is not finite")]
+            let difference = x - x;
+            *sum += difference;
+        }
     }
 }

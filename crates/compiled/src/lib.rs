@@ -34,7 +34,7 @@ pub use batch::{Batch, BatchError};
 pub use entry::Entry;
 #[cfg(feature = "alloc")]
 pub use functions::{Function, Functions, WeightedFunction};
-pub use instructions::Registers;
+pub use instructions::{Plain, Registers};
 pub use lanes::{LANES, LaneScalar, Level, ManyStates, OfEight, many_states};
 pub use layout::{Lanes, Quantities, States};
 pub use pairs::{

@@ -1,7 +1,10 @@
 //! What a function leaves to loops over pairs of joints: the tables of [`hamel_compiled::Pairs`], as they are made.
 
 use super::graph::Operations;
-use hamel_compiled::{Carrying, Meeting, Pairing, Pairs, Places, STRIP, room_to_solve};
+use hamel_compiled::{
+    Carrying, Lanes, Meeting, Pairing, Pairs, Places, Plain, STRIP, Strip, room_in_lanes,
+    room_to_solve,
+};
 
 /// What is made of the numbers of the bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -174,6 +177,33 @@ impl Tables {
         results
     }
 
+    /// The same of eight states side by side.
+    pub fn evaluate_in_lanes(&self, work: &[Lanes]) -> Vec<Lanes> {
+        let [rows, width] = self.size;
+        let mut results = vec![Lanes::default(); rows * width];
+        let mut factors = vec![Lanes::default(); self.room(room_in_lanes(self.above.len()))];
+        let columns = self.strips(work.len());
+        let strips = columns.iter().map(|strip| Strip {
+            columns: strip.columns,
+            rows: &strip.rows,
+            end: strip.end,
+        });
+        let strips: Vec<Strip<'_>> = strips.collect();
+        self.with_pairs(|pairs| match self.product {
+            Product::Mass => pairs.mass_in_lanes(Plain, work, &mut results),
+            Product::InverseMass => {
+                pairs.inverse_mass_in_lanes(Plain, &strips, work, &mut factors, &mut results);
+            }
+            Product::Inverse => pairs.inverse_in_lanes(Plain, work, &mut results),
+            // Second derivatives are of one state.
+            Product::Forward | Product::SecondInverse | Product::SecondForward => {
+                let rows = (&mut *results, width);
+                pairs.forward_in_lanes(Plain, &strips, work, &mut factors, rows);
+            }
+        });
+        results
+    }
+
     /// What the loops take.
     pub fn operations(&self) -> Operations {
         let mut count = Operations::default();
@@ -212,6 +242,11 @@ impl Tables {
             self.solution(&mut count);
         }
         count
+    }
+
+    /// Whether eight states side by side can have these loops. What is prescribed moves to the right-hand sides of single states alone.
+    pub const fn serves_lanes(&self) -> bool {
+        self.held.is_empty() && self.size[1] >= STRIP
     }
 
     /// The columns that are solved for, in strips, where so many `numbers` of the bodies are read.

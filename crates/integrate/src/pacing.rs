@@ -170,11 +170,7 @@ impl Driver<'_> {
         let next = step * factor;
         // A step that was cut short to land says nothing against the step that was meant.
         let cut = step < pacing.step;
-        let next = if cut { next.max(pacing.step) } else { next };
-        pacing.step = match error > 1.0 && !is_of_relations {
-            true => next.min(pacing.rounding.longest()).min(max_step),
-            false => next.min(max_step),
-        };
+        pacing.step = if cut { next.max(pacing.step) } else { next }.min(max_step);
         Ok(())
     }
 

@@ -122,25 +122,24 @@ impl Rounding {
     /// Whether all of an error over the tolerance that rounding may have made is rounding, and no shorter step has less: at a longer step it was not larger as the order would have it. Rounding
     /// is other than the error of a method: that adds up from step to step.
     pub(super) fn is_all(&mut self, step: f64, error: f64, order: u32) -> bool {
+        if step <= SETTLED * self.settled {
+            return true;
+        }
         let falls = 0.5 * f64::from(order);
-        let is_noise = |[longer, larger]: [f64; 2]| {
+        let is_noise = |&[longer, larger]: &[f64; 2]| {
             step < longer && error > larger * Float::powf(step / longer, falls)
         };
-        if step <= self.longest() {
+        if let Some([longer, _]) = self.before.filter(is_noise) {
+            self.settled = longer;
             return true;
         }
         // Rounding of the time falls with the step as well, where stages come to have the same time.
-        let is_all = self.tried >= TRIES || self.before.is_some_and(is_noise);
-        match is_all {
-            true => self.settled = step,
-            false => self.tried += 1,
+        if self.tried == TRIES {
+            self.settled = step;
+            return true;
         }
-        is_all
-    }
-
-    /// The longest step whose error is known to be rounding where it is more than the tolerance, s.
-    pub(super) const fn longest(&self) -> f64 {
-        SETTLED * self.settled
+        self.tried += 1;
+        false
     }
 
     /// An attempt of the present step had this error over the tolerance.

@@ -55,3 +55,7 @@ pub mod slider_crank_offset {
 /// Both forms of `scenes/snakeboard.toml`: constraints that couple joints, and a prescribed motion.
 #[rustfmt::skip]
 pub mod snakeboard;
+/// Derivatives and M̄ of `tests/data/scenes/walker.toml`, with lanes: pairs of joints in lanes.
+pub mod walker {
+    include!(concat!(env!("OUT_DIR"), "/walker.rs"));
+}

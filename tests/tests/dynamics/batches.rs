@@ -5,7 +5,7 @@ use chacha20::ChaCha8Rng;
 use hamel::compiled::{Batch, Entry, Equations, InLanes, LANES, Lanes, Level};
 use hamel::dynamics::{Dynamics, MassMatrix, Recursive};
 use hamel::mechanism::Mechanism;
-use hamel_emitted::{linkages, loops, plate_cart_arm as module};
+use hamel_emitted::{linkages, loops, plate_cart_arm as module, walker};
 use hamel_scene::Scene;
 use hamel_tests::{random, scenes};
 use rand::SeedableRng;
@@ -27,12 +27,13 @@ struct Subject {
     mechanism: Arc<Mechanism>,
 }
 
-/// A scene of the library's joints, loops on a base that moves, and loops within joints with rotors at ports.
-fn subjects() -> [Subject; 3] {
-    static ONE_BY_ONE: [Equations; 3] = [
+/// A scene of the library's joints, loops on a base that moves, loops within joints with rotors at ports, and two chains whose derivatives are written pair by pair.
+fn subjects() -> [Subject; 4] {
+    static ONE_BY_ONE: [Equations; 4] = [
         one_by_one(module::EQUATIONS),
         one_by_one(loops::EQUATIONS),
         one_by_one(linkages::EQUATIONS),
+        one_by_one(walker::EQUATIONS),
     ];
     let own = |name: &str| {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");
@@ -49,6 +50,7 @@ fn subjects() -> [Subject; 3] {
         subject(0, &module::EQUATIONS, arm),
         subject(1, &loops::EQUATIONS, own("loops.toml")),
         subject(2, &linkages::EQUATIONS, own("linkages.toml")),
+        subject(3, &walker::EQUATIONS, own("walker.toml")),
     ]
 }
 

@@ -8,7 +8,7 @@ use crate::LANES;
 use crate::instructions::Registers;
 use crate::layout::Lanes;
 
-/// Columns that are solved for at once: what the registers of AVX2 hold.
+/// Columns that are solved for at once: what the registers of AVX2 hold. Rows have as many at least.
 pub const STRIP: usize = 6;
 
 /// Columns beside each other that are solved for at once.
@@ -22,10 +22,10 @@ pub struct Strip<'a> {
     pub end: usize,
 }
 
-/// Numbers that solving with M̄ of so many speeds needs room for.
+/// Numbers that the factors of M̄ take, of so many speeds.
 #[must_use]
 pub const fn room_in_lanes(size: usize) -> usize {
-    size * (size + STRIP)
+    size * size
 }
 
 impl Pairs<'_> {
@@ -42,22 +42,22 @@ impl Pairs<'_> {
         }
     }
 
-    /// M̄⁻¹ by rows. `room` has what [`room_in_lanes`] says.
+    /// M̄⁻¹ by rows. `factors` are as many zeros as [`room_in_lanes`] says.
     #[inline(always)]
     pub fn inverse_mass_in_lanes(
         &self,
         simd: impl Registers,
         strips: &[Strip<'_>],
         work: &[Lanes],
-        room: &mut [Lanes],
+        factors: &mut [Lanes],
         rows: &mut [Lanes],
     ) {
         let size = self.size();
-        self.clear(strips, rows, size);
+        rows[..size * size].fill(Lanes::ZERO);
         for speed in 0..size {
             rows[speed * size + speed] = Lanes([1.0; LANES]);
         }
-        self.solve_in_lanes(simd, strips, (work, room), (rows, size));
+        self.solve_in_lanes(simd, strips, (work, factors), (rows, size));
     }
 
     /// Rows of derivatives of inverse dynamics: in all degrees of freedom, then in all speeds.
@@ -69,42 +69,21 @@ impl Pairs<'_> {
     }
 
     /// Rows of derivatives of forward dynamics, as many numbers each as is said behind them: in all degrees of freedom, in all speeds, in all efforts, and the
-    /// rates. `room` has what [`room_in_lanes`] says.
+    /// rates. `factors` are as many zeros as [`room_in_lanes`] says.
     #[inline(always)]
     pub fn forward_in_lanes(
         &self,
         simd: impl Registers,
         strips: &[Strip<'_>],
         work: &[Lanes],
-        room: &mut [Lanes],
+        factors: &mut [Lanes],
         (rows, width): (&mut [Lanes], usize),
     ) {
-        self.clear(strips, rows, width);
+        rows[..self.size() * width].fill(Lanes::ZERO);
         self.meet_slopes(simd, work, (rows, width), -1.0);
-        self.solve_in_lanes(simd, strips, (work, room), (rows, width));
+        self.solve_in_lanes(simd, strips, (work, factors), (rows, width));
         for &[row, column, place] in self.followed {
             add(simd, &mut rows[row * width + column], &work[place], 1.0);
-        }
-    }
-
-    /// Zeros wherever nothing is assigned, and where strips are solved.
-    #[inline(always)]
-    fn clear(&self, strips: &[Strip<'_>], rows: &mut [Lanes], width: usize) {
-        let mut clear = |row: usize, from: usize, to: usize| {
-            rows[row * width + from..row * width + to].fill(Lanes::ZERO);
-        };
-        for strip in strips {
-            for &[first, last] in strip.rows {
-                (first..last).for_each(|row| clear(row, strip.columns[0], strip.columns[1]));
-            }
-        }
-        for row in 0..self.size() {
-            let mut from = 0;
-            for &[first, last] in self.columns {
-                clear(row, from, first);
-                from = last;
-            }
-            clear(row, from, width);
         }
     }
 
@@ -154,21 +133,16 @@ impl Pairs<'_> {
         &self,
         simd: impl Registers,
         strips: &[Strip<'_>],
-        (work, room): (&[Lanes], &mut [Lanes]),
+        (work, factors): (&[Lanes], &mut [Lanes]),
         (rows, width): (&mut [Lanes], usize),
     ) {
         let size = self.size();
-        let (factors, room) = room.split_at_mut(size * size);
-        for row in 0..size {
-            for &[from, to] in self.above[row] {
-                factors[row * size + from..row * size + to].fill(Lanes::ZERO);
-            }
-            factors[row * size + row] = Lanes::ZERO;
-        }
+        let factors = &mut factors[..size * size];
         self.meet_masses(simd, work, factors);
         self.factorise_in_lanes(simd, factors);
         for strip in strips {
-            self.solve_strip_in_lanes(simd, strip, (factors, room), (rows, width));
+            self.eliminate_in_lanes(simd, strip, factors, (rows, width));
+            self.substitute_in_lanes(simd, strip, factors, (rows, width));
         }
         if let Some(first) = self.mirrored {
             for row in 0..size {
@@ -213,56 +187,114 @@ impl Pairs<'_> {
         }
     }
 
+    /// L⁻ᵀ times the columns of a strip, from the leaves to the root.
     #[inline(always)]
-    fn solve_strip_in_lanes(
+    fn eliminate_in_lanes(
         &self,
         simd: impl Registers,
         strip: &Strip<'_>,
-        (factors, room): (&[Lanes], &mut [Lanes]),
+        factors: &[Lanes],
         (rows, width): (&mut [Lanes], usize),
     ) {
-        let size = self.size();
-        let ([from, to], zero) = (strip.columns, simd.all(0.0));
-        let room = &mut room.as_chunks_mut::<STRIP>().0[..strip.end];
-        room.fill([Lanes::ZERO; STRIP]);
-        // From the leaves to the root.
+        let (size, start) = (self.size(), strip.start(width));
         for &[first, last] in strip.rows {
             for i in (first..last).rev() {
-                let mut own = [zero; STRIP];
-                let entries = &rows[i * width + from..i * width + to];
-                for (own, entry) in own.iter_mut().zip(entries) {
-                    *own = simd.read(entry);
-                }
+                let mut own = read(simd, entries(rows, i * width + start));
                 for &[first, last] in self.below[i] {
                     for &[least, most] in strip.rows {
                         for k in (first.max(least)..last.min(most)).rev() {
-                            less(simd, &mut own, &factors[k * size + i], &room[k]);
+                            let other = entries(rows, k * width + start);
+                            less(simd, &mut own, &factors[k * size + i], other);
                         }
                     }
                 }
-                write(simd, own, &mut room[i]);
+                strip.write(simd, own, (rows, i * width), start);
             }
         }
-        // From the root to the leaves.
+    }
+
+    /// L⁻¹D⁻¹ times the same, from the root to the leaves.
+    #[inline(always)]
+    fn substitute_in_lanes(
+        &self,
+        simd: impl Registers,
+        strip: &Strip<'_>,
+        factors: &[Lanes],
+        (rows, width): (&mut [Lanes], usize),
+    ) {
+        let (size, start) = (self.size(), strip.start(width));
         for k in 0..strip.end {
-            let row = &factors[k * size..][..size];
-            let inverse = simd.read(&row[k]);
-            let mut own = [zero; STRIP];
-            for (own, given) in own.iter_mut().zip(&room[k]) {
-                *own = simd.times(simd.read(given), inverse);
+            let factors = &factors[k * size..][..size];
+            let inverse = simd.read(&factors[k]);
+            let mut own = read(simd, entries(rows, k * width + start));
+            for own in &mut own {
+                *own = simd.times(*own, inverse);
             }
             for &[first, last] in self.above[k] {
                 for i in (first..last).rev() {
-                    less(simd, &mut own, &row[i], &room[i]);
+                    less(
+                        simd,
+                        &mut own,
+                        &factors[i],
+                        entries(rows, i * width + start),
+                    );
                 }
             }
-            write(simd, own, &mut room[k]);
-            let entries = &mut rows[k * width + from..k * width + to];
-            entries
-                .iter_mut()
-                .zip(room[k])
-                .for_each(|(entry, own)| *entry = own);
+            strip.write(simd, own, (rows, k * width), start);
         }
+    }
+}
+
+impl Strip<'_> {
+    /// The first of as many columns as registers hold, these among them. What stands in the others is computed with, and left as it is.
+    #[inline(always)]
+    fn start(&self, width: usize) -> usize {
+        self.columns[0].min(width.saturating_sub(STRIP))
+    }
+
+    /// Assigns the entries in a row that begins at this place, of those from the column `start` on.
+    #[inline(always)]
+    fn write<I: Registers>(
+        &self,
+        simd: I,
+        own: [I::Eight; STRIP],
+        (rows, place): (&mut [Lanes], usize),
+        start: usize,
+    ) {
+        let [from, to] = self.columns;
+        let entries = &mut rows[place + from..place + to];
+        if let Some(entries) = entries.first_chunk_mut::<STRIP>() {
+            write(simd, own, entries);
+        } else {
+            let mut all = [Lanes::ZERO; STRIP];
+            write(simd, own, &mut all);
+            entries.copy_from_slice(&all[from - start..to - start]);
+        }
+    }
+}
+
+/// As many entries from a place on as registers hold.
+#[inline(always)]
+fn entries(rows: &[Lanes], place: usize) -> &[Lanes; STRIP] {
+    const NONE: [Lanes; STRIP] = [Lanes::ZERO; STRIP];
+    rows.get(place..)
+        .and_then(<[Lanes]>::first_chunk)
+        .unwrap_or(&NONE)
+}
+
+#[inline(always)]
+fn read<I: Registers>(simd: I, entries: &[Lanes; STRIP]) -> [I::Eight; STRIP] {
+    let mut own = [simd.all(0.0); STRIP];
+    for (own, entry) in own.iter_mut().zip(entries) {
+        *own = simd.read(entry);
+    }
+    own
+}
+
+#[inline(always)]
+fn write<I: Registers>(simd: I, own: [I::Eight; STRIP], entries: &mut [Lanes; STRIP]) {
+    for (eight, entry) in own.into_iter().zip(entries) {
+        simd.write(eight, entry);
     }
 }
 
@@ -304,21 +336,14 @@ fn own<I: Registers, const N: usize>(
 }
 
 #[inline(always)]
-fn write<I: Registers>(simd: I, own: [I::Eight; STRIP], room: &mut [Lanes; STRIP]) {
-    for (eight, place) in own.into_iter().zip(room) {
-        simd.write(eight, place);
-    }
-}
-
-#[inline(always)]
 fn less<I: Registers>(
     simd: I,
     sums: &mut [I::Eight; STRIP],
     factor: &Lanes,
-    from: &[Lanes; STRIP],
+    others: &[Lanes; STRIP],
 ) {
     let factor = simd.times(simd.read(factor), simd.all(-1.0));
-    for (sum, other) in sums.iter_mut().zip(from) {
+    for (sum, other) in sums.iter_mut().zip(others) {
         *sum = simd.mul_add(factor, simd.read(other), *sum);
     }
 }

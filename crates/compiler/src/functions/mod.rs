@@ -216,10 +216,7 @@ const PAIRED: usize = 30_000;
 const PAIRED_SOON: usize = 10_000;
 
 /// Operations that a function in lanes may have: the Rust compiler takes them once for each level of instructions.
-const LONGEST_IN_LANES: usize = 30_000;
-
-/// The same from which on pairs of joints are left to loops.
-const PAIRED_IN_LANES: usize = 20_000;
+const LONGEST_IN_LANES: usize = 50_000;
 
 /// Operations, those of loops once, that a function may have, so that no module keeps the Rust compiler busy without end: straight-line functions
 /// of 31 000 operations already took it more than 100 s.
@@ -292,24 +289,18 @@ pub fn compile(model: &Model, kind: Kind, loops: Loops) -> Result<Chosen, NotWri
 pub fn compile_in_lanes(model: &Model, kind: Kind, pairs: bool) -> Result<Function, TooLong> {
     let links = prune(model, Pruning::ALL);
     let mut operations = least(model, kind);
-    let ways = kind.pairwise(model);
-    let most = match pairs && !ways.is_empty() {
-        true => PAIRED_IN_LANES,
-        false => LONGEST_IN_LANES,
-    };
-    if operations <= most {
+    if operations <= LONGEST_IN_LANES {
         let straight = compile_with(model, &links, kind, Loops::Never).function;
         operations = straight.written();
-        if operations <= most {
+        if operations <= LONGEST_IN_LANES {
             return Ok(straight);
         }
     }
-    if let (true, Some(&way)) = (pairs, ways.first()) {
+    if let (true, Some(&way)) = (pairs, kind.pairwise(model).first()) {
         let paired = pair_by_pair(model, &links, (kind, way), Loops::Never);
         let tables = paired.pairs.as_ref();
         operations = paired.written();
-        // What is prescribed moves to the right-hand sides of single states alone.
-        if operations <= LONGEST_IN_LANES && tables.is_some_and(|tables| tables.held.is_empty()) {
+        if operations <= LONGEST_IN_LANES && tables.is_some_and(Tables::serves_lanes) {
             return Ok(paired);
         }
     }
