@@ -1,6 +1,7 @@
-//! The same of eight states side by side, by loops that take neither entries between branches nor columns beyond the last.
+//! Mass matrices, their inverses and derivatives of eight states side by side, pair by pair of joints: what [`Pairs`] makes of the numbers of one state.
 //!
-//! Each number is that of eight states, so that nothing is gained by eight entries at once: rows have the lengths of the tree, and right-hand sides their zeros.
+//! Each number in `work` and in the results is that of eight states. So loops need no eight entries of a row at once: rows have the lengths of the tree, and
+//! right-hand sides their zeros. `simd` are the registers of a level of instructions; functions that take it are inlined into that of the level.
 
 use super::meeting::{NINE, SIX};
 use super::{Meeting, Pairs};
@@ -29,7 +30,7 @@ pub const fn room_in_lanes(size: usize) -> usize {
 }
 
 impl Pairs<'_> {
-    /// M̄ by rows.
+    /// M̄ by rows, from the numbers of the bodies.
     #[inline(always)]
     pub fn mass_in_lanes(&self, simd: impl Registers, work: &[Lanes], matrix: &mut [Lanes]) {
         let size = self.size();
