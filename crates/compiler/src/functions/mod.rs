@@ -13,6 +13,7 @@ use super::graph::{Argument, Graph, Sym, Value, record, record_alike};
 use super::model::Model;
 use super::pairs::Tables;
 use super::prune::{Link, Pruning, prune};
+use hamel_compiled::room_in_lanes;
 
 impl Kind {
     /// The recursions that compute it.
@@ -218,6 +219,9 @@ const PAIRED_SOON: usize = 10_000;
 /// Operations that a function in lanes may have: the Rust compiler takes them once for each level of instructions.
 const LONGEST_IN_LANES: usize = 50_000;
 
+/// Numbers that a function in lanes may have in memory, of eight states: 0.75 MB of the stack, besides what its loops keep for each other. Threads have 2 MB by default.
+const WIDEST_IN_LANES: usize = 12_000;
+
 /// Operations, those of loops once, that a function may have, so that no module keeps the Rust compiler busy without end: straight-line functions
 /// of 31 000 operations already took it more than 100 s.
 pub const LONGEST: usize = 100_000;
@@ -267,6 +271,7 @@ pub fn compile(model: &Model, kind: Kind, loops: Loops) -> Result<Chosen, NotWri
             kind,
             in_lanes: false,
             operations,
+            numbers: None,
         })
     };
     let least = least(model, kind);
@@ -285,30 +290,43 @@ pub fn compile(model: &Model, kind: Kind, loops: Loops) -> Result<Chosen, NotWri
 /// in Rust.
 ///
 /// # Errors
-/// More operations than the Rust compiler takes in lanes within a minute.
+/// More operations than the Rust compiler takes in lanes within a minute, more numbers than the stack should hold.
 pub fn compile_in_lanes(model: &Model, kind: Kind, pairs: bool) -> Result<Function, TooLong> {
     let links = prune(model, Pruning::ALL);
-    let mut operations = least(model, kind);
-    if operations <= LONGEST_IN_LANES {
-        let straight = compile_with(model, &links, kind, Loops::Never).function;
-        operations = straight.written();
-        if operations <= LONGEST_IN_LANES {
-            return Ok(straight);
-        }
-    }
-    if let (true, Some(&way)) = (pairs, kind.pairwise(model).first()) {
-        let paired = pair_by_pair(model, &links, (kind, way), Loops::Never);
-        let tables = paired.pairs.as_ref();
-        operations = paired.written();
-        if operations <= LONGEST_IN_LANES && tables.is_some_and(Tables::serves_lanes) {
-            return Ok(paired);
-        }
-    }
-    Err(TooLong {
+    let refused = |operations, numbers| TooLong {
         kind,
         in_lanes: true,
         operations,
-    })
+        numbers,
+    };
+    let mut operations = least(model, kind);
+    let mut found = None;
+    if operations <= LONGEST_IN_LANES {
+        let straight = compile_with(model, &links, kind, Loops::Never).function;
+        operations = straight.written();
+        found = (operations <= LONGEST_IN_LANES).then_some(straight);
+    }
+    if let (None, true, Some(&way)) = (&found, pairs, kind.pairwise(model).first()) {
+        let paired = pair_by_pair(model, &links, (kind, way), Loops::Never);
+        if paired.pairs.as_ref().is_some_and(Tables::serves_lanes) {
+            operations = paired.written();
+            found = (operations <= LONGEST_IN_LANES).then_some(paired);
+        }
+    }
+    let function = found.ok_or_else(|| refused(operations, None))?;
+    match numbers_in_lanes(&function) {
+        numbers if numbers > WIDEST_IN_LANES => Err(refused(operations, Some(numbers))),
+        _ => Ok(function),
+    }
+}
+
+/// Numbers that a function in lanes has in memory for each state: arguments and results, and for loops over pairs those of the bodies and the factors of M̄.
+fn numbers_in_lanes(function: &Function) -> usize {
+    let arguments: usize = function.arguments.iter().map(|(_, size)| size).sum();
+    let of_pairs = function.pairs.as_ref().map_or(0, |tables| {
+        function.outputs.len() + tables.room(room_in_lanes(tables.above.len()))
+    });
+    arguments + function.results() + of_pairs
 }
 
 /// At least so many operations has a function without loops.

@@ -1,6 +1,6 @@
 //! Why a function is not written.
 
-use super::{Kind, LONGEST, LONGEST_IN_LANES};
+use super::{Kind, LONGEST, LONGEST_IN_LANES, WIDEST_IN_LANES};
 
 /// A function that would be too long.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -11,20 +11,27 @@ pub struct TooLong {
     pub in_lanes: bool,
     /// At least so many operations would be written.
     pub operations: usize,
+    /// Numbers that it would have in memory for each of eight states, where it is these that are too many.
+    pub numbers: Option<usize>,
 }
 
 impl std::fmt::Display for TooLong {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { operations, .. } = self;
         let name = self.kind.name();
-        match self.in_lanes {
-            false => write!(
+        let one_by_one = "states are computed one by one";
+        match (self.in_lanes, self.numbers) {
+            (false, _) => write!(
                 f,
                 "{name} would have {operations} operations, more than {LONGEST}: the tree computes it"
             ),
-            true => write!(
+            (true, None) => write!(
                 f,
-                "{name} in lanes would have {operations} operations, more than {LONGEST_IN_LANES}: states are computed one by one"
+                "{name} in lanes would have {operations} operations, more than {LONGEST_IN_LANES}: {one_by_one}"
+            ),
+            (true, Some(numbers)) => write!(
+                f,
+                "{name} in lanes would have {numbers} numbers in memory, more than {WIDEST_IN_LANES}: {one_by_one}"
             ),
         }
     }

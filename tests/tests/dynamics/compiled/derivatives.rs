@@ -62,6 +62,25 @@ fn lanes_of_long_chains_are_left_out_by_name() {
     }
 }
 
+/// What would leave no room on the stack of a thread is named, and not written.
+#[test]
+fn wide_functions_in_lanes_are_left_out_by_name() {
+    let mut all = random::library().into_iter();
+    let joint = all.find(|joint| joint.name() == "ball");
+    let joint = joint.expect("a joint of the library");
+    let mechanism = random::chain(&mut ChaCha8Rng::seed_from_u64(7), &joint, 64);
+    let model = compiled::model("chain", &mechanism);
+    let Err(wide) = compile_in_lanes(&model, Kind::MassMatrix, true) else {
+        panic!("192 rows of as many entries are too many");
+    };
+    let numbers = wide.numbers.expect("it is not too long");
+    assert!(numbers > 192 * 192, "{numbers}");
+    let expected = format!(
+        "mass_matrix in lanes would have {numbers} numbers in memory, more than 12000: states are computed one by one"
+    );
+    assert_eq!(wide.to_string(), expected);
+}
+
 /// Pairs of joints grow as the square of a chain, what is written does not: its like links are looped over.
 #[test]
 fn long_chains_have_all_functions() {
