@@ -133,7 +133,7 @@ impl Rounding {
             self.settled = longer;
             return true;
         }
-        // Rounding of the time falls with the step as well, where stages come to have the same time.
+        // Stages of a step that is short enough have the same time.
         if self.tried == TRIES {
             self.settled = step;
             return true;
