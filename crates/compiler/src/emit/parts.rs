@@ -206,7 +206,8 @@ impl<'a> Cutter<'a> {
         let mut bound = FxHashSet::default();
         let mut bind = |name: &str| {
             let entry = || self.entries.get(name).copied().or(stored.get(name));
-            if self.is_outside(name, start) && bound.insert(name.to_owned()) {
+            let is_read = self.is_outside(name, start) || self.entries.contains_key(name);
+            if is_read && bound.insert(name.to_owned()) {
                 let entry = entry().cloned();
                 lines.extend(entry.map(|entry| Line::Value(name.to_owned(), entry)));
             }
@@ -221,7 +222,9 @@ impl<'a> Cutter<'a> {
         for (_, output) in &results {
             names_in(output, &mut bind);
         }
-        lines.extend(own.iter().cloned());
+        // Entries are read where they are used, which may be in other parts alone.
+        let is_entry = |line: &&Line| matches!(line, Line::Value(_, Formula::Lane(..)));
+        lines.extend(own.iter().filter(|line| !is_entry(line)).cloned());
         let kept = own.iter().flat_map(defined_by);
         let kept = kept.filter(|&name| {
             let named = self.named[name];
@@ -430,6 +433,47 @@ mod tests {
         for (found, result) in found.into_iter().zip(&results) {
             assert_eq!(found, Some(whole.value(&in_lane(result))));
         }
+    }
+
+    /// C compilers warn of variables that nothing reads.
+    #[test]
+    fn parts_define_what_they_read_alone() {
+        let mut lines = long(3000);
+        // As a cosine of the last joint: read at the end, and once more before.
+        lines.insert(0, Line::Value("cosine".to_owned(), input(0)));
+        let cosine = || Formula::Name("cosine".to_owned());
+        lines.insert(
+            1500,
+            Line::Value("middle".to_owned(), product(cosine(), name(1497))),
+        );
+        let last = product(cosine(), Formula::Name("middle".to_owned()));
+        lines.push(Line::Value("last".to_owned(), product(last, name(2999))));
+        let mut results: Vec<Formula> = (0..1500).map(|number| name(2 * number)).collect();
+        results.push(Formula::Name("last".to_owned()));
+        let parts = parts(&lines, &results);
+        assert!(parts.len() > 3, "{}", parts.len());
+        for part in &parts {
+            let mut read = FxHashSet::default();
+            let mut visit = |name: &str| {
+                read.insert(name.to_owned());
+            };
+            for line in &part.lines {
+                line.each_formula(&mut |formula| names_in(formula, &mut visit));
+            }
+            let results = part.results.iter();
+            results.for_each(|(_, of)| names_in(of, &mut visit));
+            read.extend(part.kept.iter().cloned());
+            for name in part.lines.iter().flat_map(defined_by) {
+                assert!(read.contains(name), "{name} is not read");
+            }
+        }
+        let defines = |part: &&Part| {
+            part.lines
+                .iter()
+                .flat_map(defined_by)
+                .any(|n| n == "cosine")
+        };
+        assert_eq!(parts.iter().filter(defines).count(), 2);
     }
 
     #[test]
