@@ -18,10 +18,6 @@ const PARTING: f64 = 14.0;
 /// The most speeds for which the modes of the first state are looked at: that takes no longer than some steps.
 const MOST_SPEEDS: usize = 32;
 
-/// Neighbours whose speeds differ by no more than this are not told from rounding, and each is nearer than the one before by the factor.
-const NEAREST: f64 = 1e-13;
-const NEARER: f64 = 1e-3;
-
 /// Neighbours at this distance are too far apart to tell how those go apart that are near.
 const APART: f64 = 0.1;
 
@@ -105,26 +101,22 @@ impl Estimation<'_, '_> {
     }
 
     /// The conditioning, and how much a relative change of the speeds has grown at each time, by a neighbour of the coarser companion. Neighbours that are far apart in the end do not tell how those
-    /// go apart that are near: those of the finer companion are nearer to it, the more the farther they have come.
+    /// go apart that are near: one of the finer companion is nearer to it.
     fn conditioning(
         &mut self,
         [fine, coarse]: [(Method, &Companion); 2],
         times: &[State],
     ) -> (Option<f64>, Vec<f64>) {
-        let mut change = change_of(coarse.0);
-        let mut nearer = change_of(fine.0);
-        let mut found = self.growth((coarse.0, change), &coarse.1.states, times);
-        while let Some(growth) = &found {
-            if nearer < NEAREST || growth.iter().all(|&own| own * change < APART) {
-                break;
+        let (change, least) = (change_of(coarse.0), change_of(fine.0));
+        let found = self.growth((coarse.0, change), &coarse.1.states, times);
+        let is_small = |growth: &Vec<f64>| growth.iter().all(|&own| own * change < APART);
+        let found = match found {
+            Some(growth) if !is_small(&growth) && least < change => {
+                let nearer = self.growth((fine.0, least), &fine.1.states, times);
+                nearer.or(Some(growth))
             }
-            if nearer < change {
-                let grown = self.growth((fine.0, nearer), &fine.1.states, times);
-                found = grown.or(found);
-                change = nearer;
-            }
-            nearer *= NEARER;
-        }
+            found => found,
+        };
         let growth = found.unwrap_or_default();
         (growth.last().copied(), growth)
     }
