@@ -4,7 +4,7 @@ use super::companion::{Companion, distance};
 use super::estimation::Estimation;
 use super::{ErrorParts, accelerations};
 use crate::flow::retract;
-use crate::{Form, Method, Spectrum, State, positions};
+use crate::{Form, Method, State, positions};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use num_traits::Float;
@@ -12,17 +12,11 @@ use num_traits::Float;
 /// Above this, what rounding amounts to is of no interest, and is not looked for by a companion of its own.
 const FAR_ABOVE_ROUNDING: f64 = 1e-9;
 
-/// Motions that part by more than this power of e in all have conditionings above 1e6.
-const PARTING: f64 = 14.0;
-
-/// The most speeds for which the modes of the first state are looked at: that takes no longer than some steps.
-const MOST_SPEEDS: usize = 32;
-
 /// Neighbours at this distance are too far apart to tell how those go apart that are near.
 const APART: f64 = 0.1;
 
 /// Bodies that are farther away than this, m, have roundings of positions that are larger than those of speeds.
-const FAR: f64 = 10.0;
+const FAR: f64 = 1e3;
 
 /// A neighbour in the configuration is so many roundings away: well above those that the two motions make themselves.
 const ROUNDINGS: f64 = 256.0;
@@ -39,7 +33,7 @@ impl Estimation<'_, '_> {
         // What rounding has left in the estimate of a step is in the step as well.
         let limit = self.solution.rounding.as_ref();
         let least = limit.map_or(0.0, |limit| limit.error);
-        let (conditioning, growth) = match is_near || least > 0.0 || self.is_unstable() {
+        let (conditioning, growth) = match is_near {
             true => self.conditioning(others, times),
             false => (None, Vec::new()),
         };
@@ -119,19 +113,6 @@ impl Estimation<'_, '_> {
         };
         let growth = found.unwrap_or_default();
         (growth.last().copied(), growth)
-    }
-
-    /// Whether motions beside the first state part so fast that rounding may be more than what steps make, however large that is.
-    fn is_unstable(&self) -> bool {
-        if self.mechanism.layout().speeds > MOST_SPEEDS {
-            return false;
-        }
-        let Ok(Some(spectrum)) = Spectrum::at(&self.mechanism, self.initial) else {
-            return false;
-        };
-        let fastest = spectrum.modes().iter().map(|mode| mode.growth);
-        let length = self.solution.state.time - self.initial.time;
-        fastest.fold(0.0, f64::max) * length > PARTING
     }
 
     /// How far a neighbour is carried away, as a part of the change of its speeds.
