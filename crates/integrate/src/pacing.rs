@@ -138,7 +138,6 @@ impl Driver<'_> {
         {
             pacing.rounding.look(step_state, flow, span.time, weight);
         }
-        let order = stepper.order();
         let (error, joint) = match stepper.error(step_state, flow, span, least) {
             Ok(found) => found,
             Err(cause) => {
@@ -157,8 +156,11 @@ impl Driver<'_> {
         // Rounding takes the same share of the tolerance at any length of step. Near the end of a joint, relations amplify it beyond what was measured; steps would shrink without end.
         let is_of_relations = has_ends(self.flow.mechanism.bodies()[joint].joint());
         // Rounding of the time, where forces change with it, is less in a shorter step.
-        let is_of_time = self.flow.mechanism.changes_with_time() && !is_of_relations;
-        if error > 1.0 && is_of_time && !pacing.rounding.is_all(step, error, order) {
+        if error > 1.0
+            && !is_of_relations
+            && self.flow.mechanism.changes_with_time()
+            && !pacing.rounding.is_all(step, error, stepper.order())
+        {
             pacing.rounding.see(step, error);
             pacing.step = step * pacing.controller.reject(Some(error));
             return Err(self.inaccurate(joint, error));
