@@ -7,6 +7,7 @@ use hamel::nalgebra::{Matrix3, Vector3};
 use hamel::registry::{JointEntry, JointRegistry};
 use hamel::spatial::{MassProperties, Pose, so3};
 use rand::{RngExt, SeedableRng};
+use std::cell::RefCell;
 use std::sync::Arc;
 
 /// Longest ϕ from home, rad and m: most of a half turn.
@@ -167,6 +168,11 @@ fn rooted(
         joints.push(Arc::clone(&kinds[random.random_range(0..kinds.len())]));
     }
     let mechanism = tree_in(&mut random, gravity, &joints);
+    moving(random, mechanism, seed)
+}
+
+/// A mechanism in a random state.
+fn moving(mut random: ChaCha8Rng, mechanism: Arc<Mechanism>, seed: u64) -> Case {
     let layout = *mechanism.layout();
     Case {
         seed,
@@ -223,6 +229,46 @@ pub fn chain(random: &mut ChaCha8Rng, joint: &Arc<dyn AnyJoint>, count: usize) -
         &vec![Arc::clone(joint); count],
         |_, last| last,
     )
+}
+
+/// A case of a trunk of one or two bodies with two to six like limbs of up to three joints, and up to three fingers of one joint on each.
+///
+/// # Panics
+/// Never, for joints that a mechanism accepts.
+pub fn limbs(kinds: &[Arc<dyn AnyJoint>], seed: u64) -> Case {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut any = |most: usize| -> Vec<Arc<dyn AnyJoint>> {
+        let count = random.random_range(1..=most);
+        let joints = (0..count).map(|_| Arc::clone(&kinds[random.random_range(0..kinds.len())]));
+        joints.collect()
+    };
+    let (trunk, limb, finger) = (any(2), any(3), any(1));
+    let count = random.random_range(2..=6);
+    let fingers = random.random_range(0..=3);
+    let mut joints: Vec<Arc<dyn AnyJoint>> = vec![];
+    let mut parents: Vec<usize> = vec![];
+    let mut size = 0;
+    let mut add = |own: &[Arc<dyn AnyJoint>], mut parent: usize| {
+        for joint in own {
+            joints.push(Arc::clone(joint));
+            parents.push(parent);
+            size += 1 + joint.more().len();
+            parent = size - 1;
+        }
+        parent
+    };
+    let top = add(&trunk, 0);
+    for _ in 0..count {
+        let end = add(&limb, top);
+        for _ in 0..fingers {
+            add(&finger, end);
+        }
+    }
+    // The first has none.
+    let parents = RefCell::new(parents.into_iter().skip(1));
+    let next = |_: &mut ChaCha8Rng, last| parents.borrow_mut().next().unwrap_or(last);
+    let mechanism = grow(&mut random, GRAVITY, &joints, next);
+    moving(random, mechanism, seed)
 }
 
 /// Bodies on the given joints; `parent` chooses among those up to the last.

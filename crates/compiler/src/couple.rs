@@ -82,6 +82,7 @@ impl Model {
             outputs: rows,
             columns: None,
             plan: None,
+            packs: None,
             pairs: None,
         };
         let entries = matrix.evaluate(|_| q.to_vec());

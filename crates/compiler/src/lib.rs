@@ -40,6 +40,7 @@ mod joint;
 mod linkage;
 pub mod model;
 pub mod numbers;
+pub mod packs;
 pub mod pairs;
 mod products;
 pub mod prune;

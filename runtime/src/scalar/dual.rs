@@ -163,6 +163,7 @@ fn turning<T: Scalar, const D: usize>(
 
 impl<T: Scalar, const D: usize> Scalar for Dual<T, D> {
     type Mask = T::Mask;
+    type Four = super::Each<Self>;
 
     fn from_f64(value: f64) -> Self {
         Self::constant(T::from_f64(value))

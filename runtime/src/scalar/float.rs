@@ -6,9 +6,10 @@ use nalgebra::{Matrix3, Vector3};
 use num_traits::Float;
 
 macro_rules! implement_scalar {
-    ($float:ident, $($batch:tt)*) => {
+    ($float:ident, $four:ty, $($batch:tt)*) => {
         impl Scalar for $float {
             type Mask = bool;
+            type Four = $four;
 
             #[inline]
             fn from_f64(value: f64) -> Self {
@@ -125,14 +126,21 @@ macro_rules! implement_scalar {
     };
 }
 
+/// Four doubles side by side.
+#[cfg(feature = "wide")]
+type FourDoubles = super::F64x4;
+#[cfg(not(feature = "wide"))]
+type FourDoubles = super::Each<f64>;
+
 implement_scalar!(
     f64,
+    FourDoubles,
     #[inline]
     fn sin_cos_all<const N: usize>(angles: &[f64; N]) -> ([f64; N], [f64; N]) {
         super::batch::sin_cos_all(angles)
     }
 );
-implement_scalar!(f32,);
+implement_scalar!(f32, super::Each<Self>,);
 
 /// Whether all are finite: `x − x` is 0 then, and NaN otherwise. Without a way out before the end, so that compilers compare several at once.
 #[cfg(feature = "alloc")]

@@ -75,6 +75,7 @@ impl<const FUSED: bool> One for Lane<FUSED> {
 
 impl<const FUSED: bool> Scalar for Lane<FUSED> {
     type Mask = bool;
+    type Four = super::Each<Self>;
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {

@@ -91,6 +91,7 @@ macro_rules! implement_lanes {
 
         impl Scalar for $name {
             type Mask = $mask;
+            type Four = super::Each<Self>;
 
             #[inline]
             fn from_f64(value: f64) -> Self {

@@ -8,6 +8,7 @@ mod batch;
 mod dual;
 mod extended;
 mod float;
+mod four;
 mod hyperbolic;
 mod lane;
 #[cfg(feature = "wide")]
@@ -19,6 +20,7 @@ pub use dual::Dual;
 pub use extended::Extended;
 #[cfg(feature = "alloc")]
 pub use float::all_finite;
+pub use four::{Each, Four};
 pub use lane::Lane;
 #[cfg(feature = "wide")]
 pub use lanes::{F64x4, F64x8, Mask4, Mask8};
@@ -46,6 +48,9 @@ pub trait Scalar:
 {
     /// The result of a comparison: `bool`, or one truth value a lane.
     type Mask: Copy;
+
+    /// Four of them side by side, for what a mechanism's like limbs share: in SIMD registers for `f64` with the feature `wide`.
+    type Four: Four<Self>;
 
     /// The constant `value`, in every lane.
     fn from_f64(value: f64) -> Self;

@@ -96,6 +96,7 @@ macro_rules! count_calls {
 
 impl Scalar for Counted {
     type Mask = bool;
+    type Four = hamel::scalar::Each<Self>;
 
     count_calls! { sqrt, exp, ln, ln_1p, sinh, cosh, sech, tanh, ln_cosh }
 

@@ -425,6 +425,7 @@ fn helpers_agree() {
         graph,
         outputs,
         plan: None,
+        packs: None,
         pairs: None,
     };
     let functions = [function];

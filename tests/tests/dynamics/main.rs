@@ -17,6 +17,7 @@ mod left_out;
 mod linear_step;
 mod newton_euler;
 mod numbers;
+mod packs;
 mod pairs_in_lanes;
 mod random_trees;
 mod reference_form;

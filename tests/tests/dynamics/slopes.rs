@@ -23,6 +23,7 @@ fn on_graph(of: impl Fn(Sym) -> Sym) -> Function {
         graph,
         outputs,
         plan: None,
+        packs: None,
         pairs: None,
     }
 }

@@ -6,6 +6,7 @@ use super::{Function, Lowered};
 use crate::alike::Read;
 use crate::graph::Argument;
 use crate::graph::known::{call, primitive};
+use crate::packs::WIDTH;
 use hamel_runtime::scalar::Scalar;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
@@ -19,6 +20,11 @@ impl Function {
     /// Its lines, for more than one evaluation.
     pub fn lines(&self) -> Lowered {
         Lowered::new(self, &[], &[])
+    }
+
+    /// Its lines with like limbs side by side, where it has them so, as they are written in Rust.
+    pub fn packed_lines(&self) -> Lowered {
+        Lowered::with_packs(self, &[], &[])
     }
 
     /// The results by [these lines of it](Self::lines).
@@ -38,6 +44,7 @@ impl Function {
             names: FxHashMap::default(),
             lists: FxHashMap::default(),
             turn: Turn::default(),
+            place: 0,
         };
         lowered.lines.iter().for_each(|line| state.line(line));
         let results = match &lowered.outputs {
@@ -65,10 +72,13 @@ struct State {
     inputs: BTreeMap<Read, Vec<f64>>,
     rows: BTreeMap<usize, Vec<Vec<f64>>>,
     results: Vec<f64>,
-    names: FxHashMap<String, f64>,
+    /// Values, and of what is side by side each number; a single one stands in all places.
+    names: FxHashMap<String, [f64; WIDTH]>,
     /// Results of functions that have several.
     lists: FxHashMap<String, Vec<f64>>,
     turn: Turn,
+    /// The place of the number that is evaluated among those side by side.
+    place: usize,
 }
 
 impl State {
@@ -81,8 +91,8 @@ impl State {
                 self.lists.insert(name.clone(), results);
             }
             Line::Value(name, formula) => {
-                let value = self.value(formula);
-                self.names.insert(name.clone(), value);
+                let values = self.values(formula);
+                self.names.insert(name.clone(), values);
             }
             Line::SinCos(sin, cos, angle) => self.sin_cos(sin, cos, angle),
             Line::SinCosAll(all) => all
@@ -108,6 +118,12 @@ impl State {
                     *result = value;
                 }
             }
+            Line::Apart(names, formula) => {
+                let values = self.values(formula);
+                for (name, value) in names.iter().zip(values) {
+                    self.names.insert(name.clone(), [value; WIDTH]);
+                }
+            }
             Line::Loop(looped) => (0..looped.bodies.len()).for_each(|turn| self.turn(looped, turn)),
         }
     }
@@ -128,8 +144,8 @@ impl State {
 
     fn sin_cos(&mut self, sin: &str, cos: &str, angle: &Formula) {
         let (sine, cosine) = self.value(angle).sin_cos();
-        self.names.insert(sin.to_owned(), sine);
-        self.names.insert(cos.to_owned(), cosine);
+        self.names.insert(sin.to_owned(), [sine; WIDTH]);
+        self.names.insert(cos.to_owned(), [cosine; WIDTH]);
     }
 
     fn place(&self, place: Place) -> usize {
@@ -148,6 +164,17 @@ impl State {
             .unwrap_or(f64::NAN)
     }
 
+    /// The numbers side by side.
+    fn values(&mut self, formula: &Formula) -> [f64; WIDTH] {
+        let mut values = [f64::NAN; WIDTH];
+        for (place, value) in values.iter_mut().enumerate() {
+            self.place = place;
+            *value = self.value(formula);
+        }
+        self.place = 0;
+        values
+    }
+
     fn value(&self, formula: &Formula) -> f64 {
         match formula {
             Formula::Number(number) => *number,
@@ -164,7 +191,8 @@ impl State {
                 source.map_or(f64::NAN, |&(width, row)| self.row(width, row, *entry))
             }
             Formula::Row(width, row, entry) => self.row(*width, *row, *entry),
-            Formula::Name(name) => self.names.get(name).copied().unwrap_or(f64::NAN),
+            Formula::Name(name) => self.names.get(name).map_or(f64::NAN, |of| of[self.place]),
+            Formula::Abreast(numbers) => self.value(&numbers[self.place]),
             Formula::Sum(terms) => self.sum(terms),
             Formula::Product(a, b) => self.value(a) * self.value(b),
             Formula::Quotient(a, b) => self.value(a) / self.value(b),

@@ -75,6 +75,8 @@ pub enum Formula {
     Several(Primitive, Vec<Formula>),
     /// One of the results that a name stands for.
     Part(Box<Formula>, usize),
+    /// Four numbers side by side.
+    Abreast(Vec<Formula>),
 }
 
 impl Formula {
@@ -119,7 +121,7 @@ impl Formula {
                 b.each(visit);
             }
             Self::Negative(of) | Self::Part(of, _) => of.each(visit),
-            Self::Call(_, arguments) | Self::Several(_, arguments) => {
+            Self::Call(_, arguments) | Self::Several(_, arguments) | Self::Abreast(arguments) => {
                 arguments.iter().for_each(|argument| argument.each(visit));
             }
             Self::Number(_)
@@ -144,6 +146,7 @@ impl Formula {
                 | Self::Row(..)
                 | Self::Name(_)
                 | Self::Part(..)
+                | Self::Abreast(_)
         )
     }
 }
@@ -190,7 +193,10 @@ impl Line {
     pub fn each_formula<'f>(&'f self, visit: &mut impl FnMut(&'f Formula)) {
         match self {
             Self::Heading(_) => {}
-            Self::Value(_, formula) | Self::SinCos(.., formula) | Self::Result(_, formula) => {
+            Self::Value(_, formula)
+            | Self::SinCos(.., formula)
+            | Self::Result(_, formula)
+            | Self::Apart(_, formula) => {
                 formula.each(visit);
             }
             Self::SinCosAll(all) => all.iter().for_each(|(.., angle)| angle.each(visit)),
@@ -224,4 +230,6 @@ pub enum Line {
     Result(Place, Formula),
     /// Like blocks.
     Loop(Loop),
+    /// Names for the first numbers of those that are side by side.
+    Apart(Vec<String>, Formula),
 }

@@ -28,6 +28,15 @@ pub fn partners(graph: &Graph, uses: &[u32]) -> FxHashMap<u32, u32> {
     partners
 }
 
+/// What stands between packs and other nodes.
+#[derive(Clone, Debug)]
+pub enum Crossing {
+    /// Nodes whose values are put side by side.
+    Abreast(Vec<u32>),
+    /// A pack that is taken apart, and the nodes of its parts, of which this is the first.
+    Apart(u32, Vec<u32>),
+}
+
 /// Nodes that become lines.
 pub struct Lowering<'a> {
     /// The graph.
@@ -40,6 +49,8 @@ pub struct Lowering<'a> {
     pub bodies: &'a dyn Fn(u32) -> String,
     /// What must have a name.
     pub left: FxHashSet<u32>,
+    /// Nodes that stand between packs and other nodes.
+    pub crossings: FxHashMap<u32, Crossing>,
     /// What stands for a node that is not lowered here.
     pub outside: &'a dyn Fn(u32) -> Formula,
     /// Names that are taken.
@@ -110,6 +121,9 @@ impl Lowering<'_> {
     }
 
     fn lower(&mut self, number: u32) {
+        if let Some(crossing) = self.crossings.get(&number).cloned() {
+            return self.cross(number, crossing);
+        }
         if let (true, Operation::Call(function, angle, _)) = (
             self.partners.contains_key(&number),
             &self.graph.nodes[number as usize].operation,
@@ -129,6 +143,41 @@ impl Lowering<'_> {
             (formula, length)
         };
         self.formulas.insert(number, formula);
+    }
+
+    /// Numbers that are the same for all limbs, or known, are put side by side where they are read: compilers find them.
+    fn cross(&mut self, number: u32, crossing: Crossing) {
+        match crossing {
+            Crossing::Abreast(sources) => {
+                let numbers: Vec<Formula> =
+                    sources.iter().map(|&source| self.part(source).0).collect();
+                let is_number = |formula: &Formula| matches!(formula, Formula::Number(_));
+                let is_plain = sources.iter().all(|&source| source == sources[0]);
+                let is_plain = is_plain || numbers.iter().all(is_number);
+                let mut formula = Formula::Abreast(numbers);
+                if !is_plain {
+                    let name = self.claim(number, "abreast");
+                    self.lines.push(Line::Value(name.clone(), formula));
+                    formula = Formula::Name(name);
+                }
+                self.formulas.insert(number, (formula, 0));
+            }
+            Crossing::Apart(source, parts) => {
+                let formula = self.part(source).0;
+                let claimed = parts.iter().map(|&part| {
+                    let label = self.graph.nodes[part as usize].label.clone();
+                    (part, label)
+                });
+                let claimed: Vec<(u32, String)> = claimed.collect();
+                let mut names = vec![];
+                for (part, label) in claimed {
+                    let name = self.claim(part, &label);
+                    names.push(name.clone());
+                    self.formulas.insert(part, (Formula::Name(name), 0));
+                }
+                self.lines.push(Line::Apart(names, formula));
+            }
+        }
     }
 
     fn claim(&mut self, number: u32, label: &str) -> String {

@@ -9,6 +9,7 @@ mod evaluate;
 pub mod lines;
 mod looped;
 mod lower;
+mod packed;
 mod parts;
 mod rust;
 mod straight;
@@ -18,6 +19,7 @@ pub use rust::module;
 use super::alike::Plan;
 use super::graph::{Argument, Graph, Operation, Operations, Value};
 use super::model::Model;
+use super::packs::Packs;
 use super::pairs::Tables;
 use hamel_codegen::expr::Function as Known;
 use hamel_codegen::expr::curve::Curve;
@@ -42,6 +44,8 @@ pub struct Function {
     pub columns: Option<usize>,
     /// Its like parts, where they are looped over.
     pub plan: Option<Plan>,
+    /// Its like limbs, where they are computed side by side: in Rust.
+    pub packs: Option<Packs>,
     /// What loops over pairs of joints make of the outputs; without, these are the results.
     pub pairs: Option<Tables>,
 }
@@ -92,10 +96,7 @@ pub struct Lowered {
 impl Lowered {
     /// The lines of a function; `bodies` are the names of the sections, `reserved` must not be used.
     pub fn new(function: &Function, bodies: &[String], reserved: &[&str]) -> Self {
-        let mut names = NameSet::default();
-        for name in reserved {
-            names.claim(name);
-        }
+        let mut names = taken(reserved);
         match &function.plan {
             None => straight::lowered(function, bodies, &mut names),
             Some(plan) => {
@@ -106,6 +107,23 @@ impl Lowered {
             }
         }
     }
+
+    /// The same with like limbs side by side, where the function has them so.
+    pub fn with_packs(function: &Function, bodies: &[String], reserved: &[&str]) -> Self {
+        match &function.packs {
+            None => Self::new(function, bodies, reserved),
+            Some(packs) => packed::lowered(packs, bodies, &mut taken(reserved)),
+        }
+    }
+}
+
+/// Names that must not be used.
+fn taken(reserved: &[&str]) -> NameSet {
+    let mut names = NameSet::default();
+    for name in reserved {
+        names.claim(name);
+    }
+    names
 }
 
 /// The curves that functions call, in one order on every machine.

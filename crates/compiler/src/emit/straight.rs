@@ -20,6 +20,7 @@ pub fn lowered(function: &Function, bodies: &[String], names: &mut NameSet) -> L
         partners: &partners(graph, &uses),
         bodies: &body,
         left: FxHashSet::default(),
+        crossings: FxHashMap::default(),
         outside: &|node| given(graph, node),
         names,
         formulas: FxHashMap::default(),
@@ -52,7 +53,7 @@ pub fn given(graph: &Graph, node: u32) -> Formula {
 }
 
 /// Sines and cosines of arguments come first and together.
-fn batch(lowering: &mut Lowering<'_>, blocks: &Blocks) {
+pub fn batch(lowering: &mut Lowering<'_>, blocks: &Blocks) {
     let mut calls: Vec<u32> = blocks.trigonometry.keys().copied().collect();
     calls.sort_unstable();
     let mut operations = Operations::default();

@@ -11,6 +11,7 @@ use super::emit::{Function, argument_size};
 use super::equations::{Bias, Paired, Tree};
 use super::graph::{Argument, Graph, Sym, Value, record, record_alike};
 use super::model::Model;
+use super::packs::Packs;
 use super::pairs::Tables;
 use super::prune::{Link, Pruning, prune};
 use hamel_compiled::room_in_lanes;
@@ -279,11 +280,36 @@ pub fn compile(model: &Model, kind: Kind, loops: Loops) -> Result<Chosen, NotWri
     if least > LONGEST && !is_looped {
         return Err(refused(least));
     }
-    let chosen = compile_with(model, &prune(model, Pruning::ALL), kind, loops);
+    let links = prune(model, Pruning::ALL);
+    let mut chosen = compile_with(model, &links, kind, loops);
+    if loops != Loops::Never {
+        chosen.function.packs = packs(model, &links, kind, &chosen);
+    }
     match chosen.function.written() {
         operations if operations > LONGEST => Err(refused(operations)),
         _ => Ok(chosen),
     }
+}
+
+/// The packs of a function as it was chosen, where they save operations.
+fn packs(model: &Model, links: &[Link], kind: Kind, chosen: &Chosen) -> Option<Packs> {
+    if chosen.function.plan.is_some() {
+        return None;
+    }
+    let (outputs, graph) = match &chosen.function.pairs {
+        None => {
+            let mut ways = kind.ways(model).into_iter();
+            let (_, way) = ways.find(|(name, _)| *name == chosen.way)?;
+            record_alike(|| run(model, links, way))
+        }
+        Some(_) => {
+            let mut ways = kind.pairwise(model).into_iter();
+            let (_, way) = ways.find(|(name, _)| *name == chosen.way)?;
+            let ((outputs, _), graph) = record_alike(|| numbers(model, links, way));
+            (outputs, graph)
+        }
+    };
+    Packs::new(model, graph, outputs)
 }
 
 /// The function for many states side by side, which has no loops over like bodies. Long ones leave `pairs` of joints to loops of the runtime where these may be, as
@@ -407,27 +433,37 @@ fn pair_by_pair(
     (kind, (_, way)): (Kind, PairedWay),
     loops: Loops,
 ) -> Function {
-    let numbers = || {
-        let tree = Tree::new(model, links.to_vec());
-        let (numbers, tables) = way(&tree);
-        let numbers: Vec<Value> = numbers.into_iter().map(Sym::value).collect();
-        (numbers, tables)
-    };
-    let paired = |outputs, graph, plan, tables: Tables| Function {
-        pairs: Some(tables),
-        ..function(model, kind, outputs, graph, plan)
-    };
-    let ((outputs, tables), graph) = record(numbers);
-    let straight = paired(outputs, graph, None, tables);
+    let straight = paired(model, kind, record(|| numbers(model, links, way)));
     let whole = straight.written();
     if loops == Loops::Never || loops == Loops::Long && whole < LOOPED {
         return straight;
     }
-    let ((outputs, tables), graph) = record_alike(numbers);
-    let plan = Plan::new(&graph, &outputs);
-    match loops == Loops::Always || 2 * plan.written(&graph) < whole {
-        true => paired(outputs, graph, Some(plan), tables),
+    let mut alike = paired(model, kind, record_alike(|| numbers(model, links, way)));
+    let plan = Plan::new(&alike.graph, &alike.outputs);
+    match loops == Loops::Always || 2 * plan.written(&alike.graph) < whole {
+        true => {
+            alike.plan = Some(plan);
+            alike
+        }
         false => straight,
+    }
+}
+
+/// What a way that leaves pairs of joints to loops finds for the bodies, with its tables.
+fn numbers(model: &Model, links: &[Link], way: fn(&Tree<'_>) -> Paired) -> (Vec<Value>, Tables) {
+    let (numbers, tables) = way(&Tree::new(model, links.to_vec()));
+    (numbers.into_iter().map(Sym::value).collect(), tables)
+}
+
+/// The function of such numbers.
+fn paired(
+    model: &Model,
+    kind: Kind,
+    ((outputs, tables), graph): ((Vec<Value>, Tables), Graph),
+) -> Function {
+    Function {
+        pairs: Some(tables),
+        ..function(model, kind, outputs, graph, None)
     }
 }
 
@@ -498,6 +534,7 @@ fn function(
         graph,
         outputs,
         plan,
+        packs: None,
         pairs: None,
     }
 }

@@ -97,6 +97,28 @@ pub enum Operation {
 }
 
 impl Operation {
+    /// The same with other nodes as operands, in the order of [`Operation::each_operand`].
+    #[must_use]
+    pub fn with_operands(self, mut other: impl FnMut(u32) -> u32) -> Self {
+        let mut value = |of: Value| Value {
+            node: other(of.node),
+            ..of
+        };
+        match self {
+            Self::Input(..) | Self::Constant(_) => self,
+            Self::Opposite(of) => Self::Opposite(other(of)),
+            Self::Part(of, result) => Self::Part(other(of), result),
+            Self::Sum(a, b) => Self::Sum(other(a), other(b)),
+            Self::Difference(a, b) => Self::Difference(other(a), other(b)),
+            Self::Product(a, b) => Self::Product(other(a), other(b)),
+            Self::Quotient(a, b) => Self::Quotient(other(a), other(b)),
+            Self::Call(function, a, b) => Self::Call(function, value(a), b.map(value)),
+            Self::Several(function, values) => {
+                Self::Several(function, values.into_iter().map(value).collect())
+            }
+        }
+    }
+
     /// Visits the nodes that it reads.
     pub fn each_operand(&self, mut visit: impl FnMut(u32)) {
         match self {

@@ -115,6 +115,7 @@ impl Extended {
 
 impl Scalar for Extended {
     type Mask = bool;
+    type Four = super::super::Each<Self>;
 
     #[inline]
     fn from_f64(value: f64) -> Self {

@@ -94,6 +94,7 @@ impl One for Traced {
 
 impl Scalar for Traced {
     type Mask = bool;
+    type Four = hamel::scalar::Each<Self>;
 
     fn from_f64(value: f64) -> Self {
         Self(value)

@@ -26,8 +26,8 @@ pub fn value(formula: &Formula) -> String {
         Formula::Negative(inner) => format!("-{}", factor(inner)),
         Formula::Call(function, arguments) => call(*function, arguments),
         Formula::Part(of, result) => format!("{}[{result}]", value(of)),
-        // A line of its own, which calls a helper.
-        Formula::Several(..) => literal(f64::NAN),
+        // A line of its own, which calls a helper; of functions in Rust alone.
+        Formula::Several(..) | Formula::Abreast(_) => literal(f64::NAN),
     }
 }
 

@@ -128,6 +128,8 @@ fn of_line(line: &Line, used: &Used) -> Vec<Statement> {
             value: value(formula),
         }],
         Line::Loop(looped) => vec![turns(looped, used)],
+        // Of functions in Rust alone.
+        Line::Apart(..) => vec![],
     }
 }
 

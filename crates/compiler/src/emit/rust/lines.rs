@@ -3,6 +3,7 @@
 use super::super::lines::{Formula, Line, Loop, Place};
 use super::super::{array, list};
 use crate::alike::Read;
+use crate::packs::WIDTH;
 use hamel_codegen::derived::Primitive;
 use hamel_codegen::emit::rust::comment;
 use hamel_codegen::expr::Function as Known;
@@ -56,6 +57,12 @@ pub fn line(line: &Line) -> TokenStream {
             quote! { results[#place] = #value; }
         }
         Line::Loop(looped) => turns(looped),
+        Line::Apart(names, formula) => {
+            let rest = (names.len() < WIDTH).then(|| quote! { .. });
+            let names = names.iter().map(|name| format_ident!("{name}"));
+            let value = factor(formula);
+            quote! { let [#(#names,)* #rest] = #value.apart(); }
+        }
     }
 }
 
@@ -227,6 +234,16 @@ pub fn value(formula: &Formula) -> TokenStream {
         }
         Formula::Call(function, arguments) => call(*function, arguments),
         Formula::Several(function, arguments) => several(*function, arguments),
+        Formula::Abreast(numbers) => match numbers.as_slice() {
+            [first, rest @ ..] if rest.iter().all(|number| number == first) => {
+                let (first, width) = (value(first), Literal::usize_unsuffixed(WIDTH));
+                quote! { four([#first; #width]) }
+            }
+            numbers => {
+                let numbers = numbers.iter().map(value);
+                quote! { four([#(#numbers),*]) }
+            }
+        },
         Formula::Part(of, result) => {
             let (of, result) = (value(of), Literal::usize_unsuffixed(*result));
             quote! { #of[#result] }

@@ -15,9 +15,9 @@ use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
 /// Names that lines must not take: arguments, and what the functions bind themselves.
-const RESERVED: [&str; 19] = [
+const RESERVED: [&str; 20] = [
     "q", "v", "p", "tau", "a", "lambda", "n", "i", "sines", "cosines", "results", "numbers",
-    "places", "matrix", "rows", "lane", "simd", "hamel", "core",
+    "places", "matrix", "rows", "lane", "simd", "hamel", "core", "four",
 ];
 
 /// The module that holds `functions` of the model, and `lanes` of many states at a time, each of which is among the functions as well. `label` names the scene's file.
@@ -47,8 +47,11 @@ pub fn module(
             &quote! { #[doc = #docs] },
         )
     });
+    let has_packs = functions.iter().any(|function| function.packs.is_some());
+    let four = has_packs.then(|| quote! { use ::hamel::scalar::Four; });
     let tokens = quote! {
         #uses
+        #four
         use ::hamel::scalar::Scalar;
         #sizes
         #(#tables)*
@@ -101,7 +104,11 @@ fn sizes_are_all_positive(model: &Model) -> bool {
 }
 
 fn item(function: &Function, bodies: &[String]) -> TokenStream {
-    let lowered = Lowered::new(function, bodies, &RESERVED);
+    let lowered = Lowered::with_packs(function, bodies, &RESERVED);
+    let four = function
+        .packs
+        .is_some()
+        .then(|| quote! { let four = <T::Four>::abreast; });
     let name = Ident::new(function.name, Span::call_site());
     let arguments = function.arguments.iter().map(|&(argument, size)| {
         let (name, size) = (
@@ -162,6 +169,7 @@ fn item(function: &Function, bodies: &[String]) -> TokenStream {
         #[must_use]
         pub fn #name<T: Scalar>(#(#arguments),*) -> #kind {
             let n = T::from_f64;
+            #four
             #(#arrays)*
             #results
             #(#lines)*

@@ -1,0 +1,113 @@
+//! Four numbers side by side within one state: what emitted functions compute the like limbs of a mechanism with.
+
+use super::Scalar;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+/// Four numbers of type `T` side by side; arithmetic is number by number.
+pub trait Four<T>:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// The four numbers beside each other.
+    fn abreast(numbers: [T; 4]) -> Self;
+
+    /// The numbers, each for itself.
+    fn apart(self) -> [T; 4];
+
+    /// `self * factor + addend`, as [`Scalar::mul_add`].
+    #[must_use]
+    fn mul_add(self, factor: Self, addend: Self) -> Self;
+
+    /// Square roots.
+    #[must_use]
+    fn sqrt(self) -> Self;
+}
+
+/// [`Four`] for every scalar: an array.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Each<T>([T; 4]);
+
+impl<T: Scalar> Each<T> {
+    #[inline(always)]
+    fn with(self, other: Self, operation: impl Fn(T, T) -> T) -> Self {
+        Self(core::array::from_fn(|i| operation(self.0[i], other.0[i])))
+    }
+}
+
+macro_rules! implement_operator {
+    ($trait:ident, $method:ident, $operator:tt) => {
+        impl<T: Scalar> $trait for Each<T> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                self.with(other, |a, b| a $operator b)
+            }
+        }
+    };
+}
+
+implement_operator!(Add, add, +);
+implement_operator!(Sub, sub, -);
+implement_operator!(Mul, mul, *);
+implement_operator!(Div, div, /);
+
+impl<T: Scalar> Neg for Each<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(self.0.map(|number| -number))
+    }
+}
+
+impl<T: Scalar> Four<T> for Each<T> {
+    #[inline(always)]
+    fn abreast(numbers: [T; 4]) -> Self {
+        Self(numbers)
+    }
+
+    #[inline(always)]
+    fn apart(self) -> [T; 4] {
+        self.0
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        Self(core::array::from_fn(|i| {
+            self.0[i].mul_add(factor.0[i], addend.0[i])
+        }))
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.map(Scalar::sqrt))
+    }
+}
+
+#[cfg(feature = "wide")]
+impl Four<f64> for super::F64x4 {
+    #[inline(always)]
+    fn abreast(numbers: [f64; 4]) -> Self {
+        Self::new(numbers)
+    }
+
+    #[inline(always)]
+    fn apart(self) -> [f64; 4] {
+        self.to_array()
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        Scalar::mul_add(self, factor, addend)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Scalar::sqrt(self)
+    }
+}
