@@ -12,8 +12,9 @@
 //!    ▼
 //! Graph             every value once; zeros, ones and signs folded; of several recursions the one with the fewest operations
 //!    │  alike       parts that repeat from body to body, where the whole would be long
+//!    │  packs       operations that are the same for like limbs, side by side
 //!    ▼
-//! Plan
+//! Plan or Packs
 //!    │  emit        lines with telling names, loops over like bodies → Rust, C99
 //!    ▼
 //! module

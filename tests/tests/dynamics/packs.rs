@@ -78,11 +78,11 @@ fn agree(case: &random::Case, has_elements: bool) -> usize {
 #[test]
 fn like_limbs_have_the_numbers_of_each() {
     let kinds = random::library();
-    let seeds = (0..24_u64).into_par_iter();
+    let seeds = (0..16_u64).into_par_iter();
     let counts = seeds.map(|seed| agree(&random::limbs(&kinds, seed), seed % 3 == 2));
     let count: usize = counts.sum();
     println!("{count} functions");
-    assert!(count > 100, "{count}");
+    assert!(count > 60, "{count}");
 }
 
 /// Bodies without like ones are computed one by one.

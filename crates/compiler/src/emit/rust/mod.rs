@@ -158,10 +158,14 @@ fn item(function: &Function, bodies: &[String]) -> TokenStream {
             quote! { [#(#rows),*] }
         }
     };
+    let abreast = match function.packs {
+        Some(_) => "; those of like limbs are side by side",
+        None => "",
+    };
     let docs = [
         format!(" {}", function.summary),
         String::new(),
-        format!(" Operations: {}.", function.operations()),
+        format!(" Operations: {}{abreast}.", function.operations()),
     ];
     quote! {
         #(#[doc = #docs])*
