@@ -17,6 +17,9 @@ pub fn packs(model: &Model, members: &[Option<Member>], graph: &Graph, uses: &[u
     let alike =
         likeness.alike(|node| uses[node] > 0 && can_be_packed(&graph.nodes[node].operation));
     let mut found: Vec<Vec<u32>> = alike.values().flat_map(|lists| together(lists)).collect();
+    // Colors are hashes: what packs rest on is looked at itself.
+    let depths = depths(graph);
+    found.retain(|nodes| is_sound(graph, &depths, nodes));
     found.sort_unstable();
     likeness.matched(found)
 }
@@ -33,6 +36,29 @@ fn together(lists: &[Vec<u32>]) -> Vec<Vec<u32>> {
     let all: Vec<u32> = lists.concat();
     let rows = all.chunks(WIDTH).map(<[u32]>::to_vec);
     rows.filter(|row| row.len() > 1).collect()
+}
+
+/// For each node the operations on the longest way to it.
+fn depths(graph: &Graph) -> Vec<u32> {
+    let mut depths: Vec<u32> = Vec::with_capacity(graph.nodes.len());
+    for node in &graph.nodes {
+        let mut depth = 0;
+        node.operation
+            .each_operand(|operand| depth = depth.max(depths[operand as usize] + 1));
+        depths.push(depth);
+    }
+    depths
+}
+
+/// Whether nodes do the same, and none needs another.
+fn is_sound(graph: &Graph, depths: &[u32], nodes: &[u32]) -> bool {
+    let does = |node: u32| std::mem::discriminant(&graph.nodes[node as usize].operation);
+    let depth = |node: u32| depths[node as usize];
+    let mut nodes = nodes.iter().copied();
+    let first = nodes.next();
+    first.is_none_or(|first| {
+        nodes.all(|node| does(node) == does(first) && depth(node) == depth(first))
+    })
 }
 
 /// Whether an operation has a form for several numbers side by side.
