@@ -1,6 +1,6 @@
 //! Packs that cost less than their nodes.
 
-use super::{Pack, Packs, WIDTH};
+use super::{Pack, Packs};
 use crate::graph::Operation;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -54,7 +54,7 @@ impl Packs {
         self.costs(uses)
     }
 
-    /// Nodes that what is no pack reads.
+    /// Nodes that are read one by one: by what is no pack, and by packs that put them side by side.
     fn given(&self, uses: &[u32]) -> FxHashSet<u32> {
         let mut given: FxHashSet<u32> = self.outputs.iter().map(|output| output.node).collect();
         for (number, node) in self.graph.nodes.iter().enumerate() {
@@ -64,23 +64,12 @@ impl Packs {
                 });
             }
         }
-        for operands in self.gathered().into_keys() {
-            given.extend(operands);
-        }
-        given
-    }
-
-    /// Nodes that packs put side by side, with the number of packs that read them so.
-    fn gathered(&self) -> FxHashMap<Vec<u32>, usize> {
-        let mut gathered = FxHashMap::default();
-        for number in 0..self.packs.len() {
-            for nodes in self.slots(number) {
-                if matches!(self.operands(&nodes), Operands::Several) {
-                    *gathered.entry(nodes).or_insert(0) += 1;
-                }
+        for nodes in (0..self.packs.len()).flat_map(|pack| self.slots(pack)) {
+            if matches!(self.operands(&nodes), Operands::Several) {
+                given.extend(nodes);
             }
         }
-        gathered
+        given
     }
 
     /// What a pack reads, place by place.
@@ -115,6 +104,16 @@ impl Packs {
         }
     }
 
+    /// The cost of putting nodes side by side that a pack reads in one place.
+    fn carried(&self, nodes: &[u32]) -> f64 {
+        match self.operands(nodes) {
+            Operands::Pack | Operands::Numbers => 0.0,
+            Operands::Same => SPREAD,
+            Operands::Packs(count) => count as f64,
+            Operands::Several => gathered(nodes.len()),
+        }
+    }
+
     /// How many packs read these nodes in one place.
     fn readers(&self) -> FxHashMap<Vec<u32>, usize> {
         let mut readers = FxHashMap::default();
@@ -137,13 +136,7 @@ impl Packs {
         let mut gain = own.len() as f64 - 1.0;
         for nodes in self.slots(pack) {
             let share = 1.0 / readers.get(&nodes).copied().unwrap_or(1) as f64;
-            gain -= share
-                * match self.operands(&nodes) {
-                    Operands::Pack | Operands::Numbers => 0.0,
-                    Operands::Same => SPREAD,
-                    Operands::Packs(count) => count as f64,
-                    Operands::Several => gathered(nodes.len()),
-                };
+            gain -= share * self.carried(&nodes);
         }
         if own.iter().any(|node| given.contains(node)) {
             gain -= apart(own.len());
@@ -168,15 +161,7 @@ impl Packs {
             needed.partition(|&node| self.home[node].is_some());
         let given = self.given(uses);
         let readers = self.readers();
-        let carried: f64 = readers
-            .keys()
-            .map(|nodes| match self.operands(nodes) {
-                Operands::Pack | Operands::Numbers => 0.0,
-                Operands::Same => SPREAD,
-                Operands::Packs(count) => count as f64,
-                Operands::Several => gathered(nodes.len()),
-            })
-            .sum();
+        let carried: f64 = readers.keys().map(|nodes| self.carried(nodes)).sum();
         let given = |pack: &&Pack| pack.nodes.iter().any(|node| given.contains(node));
         let apart: f64 = self
             .packs
@@ -184,7 +169,6 @@ impl Packs {
             .filter(given)
             .map(|pack| apart(pack.nodes.len()))
             .sum();
-        debug_assert!(self.packs.iter().all(|pack| pack.nodes.len() <= WIDTH));
         [
             (packed.len() + single.len()) as f64,
             (self.packs.len() + single.len()) as f64 + carried + apart,
