@@ -72,7 +72,8 @@ impl Lowering<'_> {
             }
             let node = &self.graph.nodes[number as usize];
             let here = (node.section, node.topic);
-            if heading != Some(here) {
+            // What stands between packs and other nodes computes nothing, and goes with what is around it.
+            if heading != Some(here) && !self.crossings.contains_key(&number) {
                 heading = Some(here);
                 place = self.lines.len();
                 self.lines.push(Line::Heading(Heading {

@@ -161,14 +161,14 @@ impl<'a> Writer<'a> {
     }
 
     fn pack(&mut self, pack: usize) {
-        let slots = self.packs.slots(pack);
-        let operands: Vec<u32> = slots
-            .into_iter()
-            .map(|nodes| self.side_by_side(nodes))
-            .collect();
         let own = &self.packs.packs[pack].nodes;
         let first = self.packs.graph.nodes[own[0] as usize].clone();
         let section = self.section(own);
+        let slots = self.packs.slots(pack);
+        let operands: Vec<u32> = slots
+            .into_iter()
+            .map(|nodes| self.side_by_side(nodes, section))
+            .collect();
         let mut operands = operands.into_iter();
         let operation = first.operation.clone();
         // One for each operand.
@@ -205,8 +205,8 @@ impl<'a> Writer<'a> {
         number
     }
 
-    /// What a pack reads in one place, as a new node.
-    fn side_by_side(&mut self, nodes: Vec<u32>) -> u32 {
+    /// What a pack of a section reads in one place, as a new node.
+    fn side_by_side(&mut self, nodes: Vec<u32>, section: u32) -> u32 {
         if let Some(pack) = self.packs.holding(&nodes) {
             return self.together[&pack];
         }
@@ -216,7 +216,15 @@ impl<'a> Writer<'a> {
         let mut sources: Vec<u32> = nodes.iter().map(|&node| self.single(node)).collect();
         sources.resize(WIDTH, sources[sources.len() - 1]);
         self.left.extend(&sources);
-        let new = self.crossing(nodes[0], sources[0], "abreast");
+        let first = self.packs.graph.nodes[nodes[0] as usize].clone();
+        let new = self.crossing(
+            sources[0],
+            Node {
+                section,
+                label: "abreast".to_owned(),
+                ..first
+            },
+        );
         self.crossings.insert(new, Crossing::Abreast(sources));
         self.order.push(new);
         self.abreast.insert(nodes, new);
@@ -238,8 +246,8 @@ impl<'a> Writer<'a> {
         let parts: Vec<u32> = nodes
             .iter()
             .map(|&node| {
-                let label = self.packs.graph.nodes[node as usize].label.clone();
-                self.crossing(node, source, &label)
+                let node = self.packs.graph.nodes[node as usize].clone();
+                self.crossing(source, node)
             })
             .collect();
         self.left.insert(source);
@@ -251,12 +259,10 @@ impl<'a> Writer<'a> {
         self.singles[&old]
     }
 
-    /// A node that `self.crossings` says more of; it stands for the old one, and reads the new `source`.
-    fn crossing(&mut self, old: u32, source: u32, label: &str) -> u32 {
-        let node = self.packs.graph.nodes[old as usize].clone();
+    /// A node that `self.crossings` says more of, as `node` but for what it reads: the new `source`.
+    fn crossing(&mut self, source: u32, node: Node) -> u32 {
         self.push(Node {
             operation: Operation::Opposite(source),
-            label: label.to_owned(),
             ..node
         })
     }
