@@ -34,7 +34,14 @@ pub struct Each<T>([T; 4]);
 impl<T: Scalar> Each<T> {
     #[inline(always)]
     fn with(self, other: Self, operation: impl Fn(T, T) -> T) -> Self {
-        Self(core::array::from_fn(|i| operation(self.0[i], other.0[i])))
+        // Written out: closures over indices are most of what a compiler would have to take apart.
+        let ([a, b, c, d], [e, f, g, h]) = (self.0, other.0);
+        Self([
+            operation(a, e),
+            operation(b, f),
+            operation(c, g),
+            operation(d, h),
+        ])
     }
 }
 
@@ -61,7 +68,8 @@ impl<T: Scalar> Neg for Each<T> {
 
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(self.0.map(|number| -number))
+        let [a, b, c, d] = self.0;
+        Self([-a, -b, -c, -d])
     }
 }
 
@@ -78,14 +86,19 @@ impl<T: Scalar> Four<T> for Each<T> {
 
     #[inline(always)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
-        Self(core::array::from_fn(|i| {
-            self.0[i].mul_add(factor.0[i], addend.0[i])
-        }))
+        let ([a, b, c, d], [e, f, g, h], [i, j, k, l]) = (self.0, factor.0, addend.0);
+        Self([
+            a.mul_add(e, i),
+            b.mul_add(f, j),
+            c.mul_add(g, k),
+            d.mul_add(h, l),
+        ])
     }
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Self(self.0.map(Scalar::sqrt))
+        let [a, b, c, d] = self.0;
+        Self([a.sqrt(), b.sqrt(), c.sqrt(), d.sqrt()])
     }
 }
 
