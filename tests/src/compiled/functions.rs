@@ -45,7 +45,7 @@ impl<'a> Functions<'a> {
             let function = compile_with(self.model, &self.links, how.0, how.1).function;
             known.push(Known {
                 how,
-                lines: function.lines(),
+                lines: function.packed_lines(),
                 function,
             });
             known.len() - 1

@@ -16,8 +16,8 @@ pub(super) const BOUND: f64 = 1e-12;
 /// Roundings of a solution with M̄ for each unit of its condition, as for the tree.
 const ROUNDINGS: f64 = 10.0;
 
-/// Without loops, and with all that there are.
-const BOTH: [Loops; 2] = [Loops::Never, Loops::Always];
+/// As by default, which is without loops in what is short, and with all that there are.
+const BOTH: [Loops; 2] = [Loops::Long, Loops::Always];
 
 /// Loops in every fourth case: few bodies of random trees are alike.
 fn loops(seed: u64) -> &'static [Loops] {

@@ -11,7 +11,7 @@ use super::emit::{Function, argument_size};
 use super::equations::{Bias, Paired, Tree};
 use super::graph::{Argument, Graph, Sym, Value, record, record_alike};
 use super::model::Model;
-use super::packs::Packs;
+use super::packs::{self, Packs};
 use super::pairs::Tables;
 use super::prune::{Link, Pruning, prune};
 use hamel_compiled::room_in_lanes;
@@ -232,7 +232,7 @@ pub const LONGEST: usize = 100_000;
 pub enum Loops {
     /// Never.
     Never,
-    /// In functions of more than 10 000 operations, if that halves what is written.
+    /// In functions of more than 10 000 operations, if that halves what is written; like limbs are side by side in what has no such loops.
     #[default]
     Long,
     /// Wherever there are any.
@@ -281,10 +281,7 @@ pub fn compile(model: &Model, kind: Kind, loops: Loops) -> Result<Chosen, NotWri
         return Err(refused(least));
     }
     let links = prune(model, Pruning::ALL);
-    let mut chosen = compile_with(model, &links, kind, loops);
-    if loops != Loops::Never {
-        chosen.function.packs = packs(model, &links, kind, &chosen);
-    }
+    let chosen = compile_with(model, &links, kind, loops);
     match chosen.function.written() {
         operations if operations > LONGEST => Err(refused(operations)),
         _ => Ok(chosen),
@@ -293,7 +290,7 @@ pub fn compile(model: &Model, kind: Kind, loops: Loops) -> Result<Chosen, NotWri
 
 /// The packs of a function as it was chosen, where they save operations.
 fn packs(model: &Model, links: &[Link], kind: Kind, chosen: &Chosen) -> Option<Packs> {
-    if chosen.function.plan.is_some() {
+    if chosen.function.plan.is_some() || !packs::may_have(model) {
         return None;
     }
     let (outputs, graph) = match &chosen.function.pairs {
@@ -392,6 +389,15 @@ fn pairs(model: &Model) -> usize {
 
 /// The same with links that are known, and however long.
 pub fn compile_with(model: &Model, links: &[Link], kind: Kind, loops: Loops) -> Chosen {
+    let mut chosen = choose(model, links, kind, loops);
+    if loops == Loops::Long {
+        chosen.function.packs = packs(model, links, kind, &chosen);
+    }
+    chosen
+}
+
+/// The same without packs.
+fn choose(model: &Model, links: &[Link], kind: Kind, loops: Loops) -> Chosen {
     let pairwise = kind.pairwise(model);
     if loops == Loops::Never || pairwise.is_empty() {
         return body_by_body(model, links, kind, loops);

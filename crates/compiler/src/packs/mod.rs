@@ -51,13 +51,15 @@ pub struct Packs {
 /// Operations with packs, as a part of those without, below which packs are taken: what they save beyond this was seen in every function that was measured.
 const WORTH: f64 = 0.8;
 
+/// Whether a model has like limbs.
+pub fn may_have(model: &Model) -> bool {
+    limbs::members(model).iter().any(Option::is_some)
+}
+
 impl Packs {
     /// The packs for what `outputs` need; none where they would save less than a fifth.
     pub fn new(model: &Model, graph: Graph, outputs: Vec<Value>) -> Option<Self> {
         let members = limbs::members(model);
-        if members.iter().all(Option::is_none) {
-            return None;
-        }
         let uses = graph.uses(&outputs);
         let mut packs = Self {
             packs: likeness::packs(model, &members, &graph, &uses),
