@@ -48,7 +48,7 @@ pub struct Packs {
     pub home: Vec<Option<usize>>,
 }
 
-/// Operations with packs, as a part of those without, below which packs are taken: what they save beyond this was seen in every function that was measured.
+/// Operations with packs, as a part of those without, below which packs are taken. Functions that were measured had 0.34 to 0.72, and took 0.35 to 0.94 of their time.
 const WORTH: f64 = 0.8;
 
 /// Whether a model has like limbs.
