@@ -13,10 +13,10 @@ pub trait Four<T>:
     + Neg<Output = Self>
 {
     /// The four numbers beside each other.
-    fn abreast(numbers: [T; 4]) -> Self;
+    fn from_array(numbers: [T; 4]) -> Self;
 
     /// The numbers, each for itself.
-    fn apart(self) -> [T; 4];
+    fn to_array(self) -> [T; 4];
 
     /// `self * factor + addend`, as [`Scalar::mul_add`].
     #[must_use]
@@ -34,7 +34,7 @@ pub struct Each<T>([T; 4]);
 impl<T: Scalar> Each<T> {
     #[inline(always)]
     fn with(self, other: Self, operation: impl Fn(T, T) -> T) -> Self {
-        // Written out: closures over indices are most of what a compiler would have to take apart.
+        // Written out: closures over indices are most of what a compiler would have to work through.
         let ([a, b, c, d], [e, f, g, h]) = (self.0, other.0);
         Self([
             operation(a, e),
@@ -75,12 +75,12 @@ impl<T: Scalar> Neg for Each<T> {
 
 impl<T: Scalar> Four<T> for Each<T> {
     #[inline(always)]
-    fn abreast(numbers: [T; 4]) -> Self {
+    fn from_array(numbers: [T; 4]) -> Self {
         Self(numbers)
     }
 
     #[inline(always)]
-    fn apart(self) -> [T; 4] {
+    fn to_array(self) -> [T; 4] {
         self.0
     }
 
@@ -105,12 +105,12 @@ impl<T: Scalar> Four<T> for Each<T> {
 #[cfg(feature = "wide")]
 impl Four<f64> for super::F64x4 {
     #[inline(always)]
-    fn abreast(numbers: [f64; 4]) -> Self {
+    fn from_array(numbers: [f64; 4]) -> Self {
         Self::new(numbers)
     }
 
     #[inline(always)]
-    fn apart(self) -> [f64; 4] {
+    fn to_array(self) -> [f64; 4] {
         self.to_array()
     }
 

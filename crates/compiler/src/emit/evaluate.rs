@@ -118,7 +118,7 @@ impl State {
                     *result = value;
                 }
             }
-            Line::Apart(names, formula) => {
+            Line::Extracted(names, formula) => {
                 let values = self.values(formula);
                 for (name, value) in names.iter().zip(values) {
                     self.names.insert(name.clone(), [value; WIDTH]);
@@ -192,7 +192,7 @@ impl State {
             }
             Formula::Row(width, row, entry) => self.row(*width, *row, *entry),
             Formula::Name(name) => self.names.get(name).map_or(f64::NAN, |of| of[self.place]),
-            Formula::Abreast(numbers) => self.value(&numbers[self.place]),
+            Formula::Gathered(numbers) => self.value(&numbers[self.place]),
             Formula::Sum(terms) => self.sum(terms),
             Formula::Product(a, b) => self.value(a) * self.value(b),
             Formula::Quotient(a, b) => self.value(a) / self.value(b),

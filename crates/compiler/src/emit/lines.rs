@@ -76,7 +76,7 @@ pub enum Formula {
     /// One of the results that a name stands for.
     Part(Box<Formula>, usize),
     /// Four numbers side by side.
-    Abreast(Vec<Formula>),
+    Gathered(Vec<Formula>),
 }
 
 impl Formula {
@@ -121,7 +121,7 @@ impl Formula {
                 b.each(visit);
             }
             Self::Negative(of) | Self::Part(of, _) => of.each(visit),
-            Self::Call(_, arguments) | Self::Several(_, arguments) | Self::Abreast(arguments) => {
+            Self::Call(_, arguments) | Self::Several(_, arguments) | Self::Gathered(arguments) => {
                 arguments.iter().for_each(|argument| argument.each(visit));
             }
             Self::Number(_)
@@ -146,7 +146,7 @@ impl Formula {
                 | Self::Row(..)
                 | Self::Name(_)
                 | Self::Part(..)
-                | Self::Abreast(_)
+                | Self::Gathered(_)
         )
     }
 }
@@ -196,7 +196,7 @@ impl Line {
             Self::Value(_, formula)
             | Self::SinCos(.., formula)
             | Self::Result(_, formula)
-            | Self::Apart(_, formula) => {
+            | Self::Extracted(_, formula) => {
                 formula.each(visit);
             }
             Self::SinCosAll(all) => all.iter().for_each(|(.., angle)| angle.each(visit)),
@@ -231,5 +231,5 @@ pub enum Line {
     /// Like blocks.
     Loop(Loop),
     /// Names for the first numbers of those that are side by side.
-    Apart(Vec<String>, Formula),
+    Extracted(Vec<String>, Formula),
 }

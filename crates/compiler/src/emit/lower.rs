@@ -32,9 +32,9 @@ pub fn partners(graph: &Graph, uses: &[u32]) -> FxHashMap<u32, u32> {
 #[derive(Clone, Debug)]
 pub enum Crossing {
     /// Nodes whose values are put side by side.
-    Abreast(Vec<u32>),
-    /// A pack that is taken apart, and the nodes of its parts, of which this is the first.
-    Apart(u32, Vec<u32>),
+    Gather(Vec<u32>),
+    /// A pack whose numbers are extracted, and their nodes, of which this is the first.
+    Extract(u32, Vec<u32>),
 }
 
 /// Nodes that become lines.
@@ -149,21 +149,21 @@ impl Lowering<'_> {
     /// Numbers that are the same for all limbs, or known, are put side by side where they are read: compilers find them.
     fn cross(&mut self, number: u32, crossing: Crossing) {
         match crossing {
-            Crossing::Abreast(sources) => {
+            Crossing::Gather(sources) => {
                 let numbers: Vec<Formula> =
                     sources.iter().map(|&source| self.part(source).0).collect();
                 let is_number = |formula: &Formula| matches!(formula, Formula::Number(_));
                 let is_plain = sources.iter().all(|&source| source == sources[0]);
                 let is_plain = is_plain || numbers.iter().all(is_number);
-                let mut formula = Formula::Abreast(numbers);
+                let mut formula = Formula::Gathered(numbers);
                 if !is_plain {
-                    let name = self.claim(number, "abreast");
+                    let name = self.claim(number, "gathered");
                     self.lines.push(Line::Value(name.clone(), formula));
                     formula = Formula::Name(name);
                 }
                 self.formulas.insert(number, (formula, 0));
             }
-            Crossing::Apart(source, parts) => {
+            Crossing::Extract(source, parts) => {
                 let formula = self.part(source).0;
                 let claimed = parts.iter().map(|&part| {
                     let label = self.graph.nodes[part as usize].label.clone();
@@ -176,7 +176,7 @@ impl Lowering<'_> {
                     names.push(name.clone());
                     self.formulas.insert(part, (Formula::Name(name), 0));
                 }
-                self.lines.push(Line::Apart(names, formula));
+                self.lines.push(Line::Extracted(names, formula));
             }
         }
     }

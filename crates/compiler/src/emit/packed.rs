@@ -1,7 +1,7 @@
 //! A function without loops whose like limbs are computed side by side.
 //!
 //! The graph of [`Packs`] is written anew: a pack becomes one node, and between packs and other nodes stand crossings, nodes of their own for four numbers that are put side by
-//! side and for each number of a pack that is taken apart.
+//! side and for each number that is extracted from a pack.
 
 use super::Lowered;
 use super::lower::{Crossing, Lowering, partners};
@@ -66,12 +66,12 @@ struct Writer<'a> {
     bodies: Vec<String>,
     /// The new graph.
     graph: Graph,
-    /// New nodes of old ones that are in no pack, and of each number of a pack that is taken apart.
+    /// New nodes of old ones that are in no pack, and of each number that is extracted from a pack.
     singles: FxHashMap<u32, u32>,
     /// New nodes of packs.
     together: FxHashMap<usize, u32>,
     /// New nodes of numbers that are put side by side.
-    abreast: FxHashMap<Vec<u32>, u32>,
+    gathered: FxHashMap<Vec<u32>, u32>,
     /// Sections of packs, by those of their nodes.
     sections: FxHashMap<Vec<u32>, u32>,
     crossings: FxHashMap<u32, Crossing>,
@@ -89,7 +89,7 @@ impl<'a> Writer<'a> {
             graph: Graph::default(),
             singles: FxHashMap::default(),
             together: FxHashMap::default(),
-            abreast: FxHashMap::default(),
+            gathered: FxHashMap::default(),
             sections: FxHashMap::default(),
             crossings: FxHashMap::default(),
             left: FxHashSet::default(),
@@ -210,7 +210,7 @@ impl<'a> Writer<'a> {
         if let Some(pack) = self.packs.holding(&nodes) {
             return self.together[&pack];
         }
-        if let Some(&known) = self.abreast.get(&nodes) {
+        if let Some(&known) = self.gathered.get(&nodes) {
             return known;
         }
         let mut sources: Vec<u32> = nodes.iter().map(|&node| self.single(node)).collect();
@@ -221,17 +221,17 @@ impl<'a> Writer<'a> {
             sources[0],
             Node {
                 section,
-                label: "abreast".to_owned(),
+                label: "gathered".to_owned(),
                 ..first
             },
         );
-        self.crossings.insert(new, Crossing::Abreast(sources));
+        self.crossings.insert(new, Crossing::Gather(sources));
         self.order.push(new);
-        self.abreast.insert(nodes, new);
+        self.gathered.insert(nodes, new);
         new
     }
 
-    /// A node for itself: its new node, or one of those of a pack that is taken apart.
+    /// A node for itself: its new node, or one of those that are extracted from a pack.
     fn single(&mut self, old: u32) -> u32 {
         if let Some(&known) = self.singles.get(&old) {
             return known;
@@ -255,7 +255,7 @@ impl<'a> Writer<'a> {
             .extend(nodes.iter().copied().zip(parts.iter().copied()));
         self.order.push(parts[0]);
         self.crossings
-            .insert(parts[0], Crossing::Apart(source, parts));
+            .insert(parts[0], Crossing::Extract(source, parts));
         self.singles[&old]
     }
 

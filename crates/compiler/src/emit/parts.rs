@@ -298,7 +298,7 @@ pub fn in_lane(formula: &Formula) -> Formula {
         Formula::Negative(of) => Formula::Negative(boxed(of)),
         Formula::Call(function, arguments) => Formula::Call(*function, all(arguments)),
         Formula::Several(function, arguments) => Formula::Several(*function, all(arguments)),
-        Formula::Abreast(numbers) => Formula::Abreast(all(numbers)),
+        Formula::Gathered(numbers) => Formula::Gathered(all(numbers)),
         Formula::Part(of, result) => Formula::Part(boxed(of), *result),
         Formula::Number(_)
         | Formula::Column(_)

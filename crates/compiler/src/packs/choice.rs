@@ -5,15 +5,15 @@ use crate::graph::Operation;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The cost in operations of a number that is put side by side with itself.
-const SPREAD: f64 = 0.25;
+const BROADCAST: f64 = 0.25;
 
 /// That of numbers that are put side by side.
 const fn gathered(count: usize) -> f64 {
     count as f64 - 1.0
 }
 
-/// That of taking a pack apart.
-const fn apart(count: usize) -> f64 {
+/// That of extracting the numbers of a pack.
+const fn extracted(count: usize) -> f64 {
     count as f64 / 2.0
 }
 
@@ -108,7 +108,7 @@ impl Packs {
     fn carried(&self, nodes: &[u32]) -> f64 {
         match self.operands(nodes) {
             Operands::Pack | Operands::Numbers => 0.0,
-            Operands::Same => SPREAD,
+            Operands::Same => BROADCAST,
             Operands::Packs(count) => count as f64,
             Operands::Several => gathered(nodes.len()),
         }
@@ -139,7 +139,7 @@ impl Packs {
             gain -= share * self.carried(&nodes);
         }
         if own.iter().any(|node| given.contains(node)) {
-            gain -= apart(own.len());
+            gain -= extracted(own.len());
         }
         // One by one, those that read the pack would have to put its nodes side by side.
         if readers.contains_key(own) {
@@ -163,15 +163,15 @@ impl Packs {
         let readers = self.readers();
         let carried: f64 = readers.keys().map(|nodes| self.carried(nodes)).sum();
         let given = |pack: &&Pack| pack.nodes.iter().any(|node| given.contains(node));
-        let apart: f64 = self
+        let extraction: f64 = self
             .packs
             .iter()
             .filter(given)
-            .map(|pack| apart(pack.nodes.len()))
+            .map(|pack| extracted(pack.nodes.len()))
             .sum();
         [
             (packed.len() + single.len()) as f64,
-            (self.packs.len() + single.len()) as f64 + carried + apart,
+            (self.packs.len() + single.len()) as f64 + carried + extraction,
         ]
     }
 }

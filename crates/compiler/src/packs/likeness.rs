@@ -12,8 +12,11 @@ use std::hash::{Hash, Hasher};
 /// The packs that there are, those that do not pay as well.
 pub fn packs(model: &Model, members: &[Option<Member>], graph: &Graph, uses: &[u32]) -> Vec<Pack> {
     let mut likeness = Likeness::new(model, members, graph);
-    // What sums over limbs begin with belongs to none of them: nodes after it show only then to which they belong.
-    while likeness.read() && likeness.disown(uses) {}
+    // Partial sums over limbs are taken for the limb that was added last, and so is all that reads the whole sum: it shows only without them to which limb that belongs.
+    likeness.read();
+    while likeness.unassign(uses) {
+        likeness.read();
+    }
     let alike =
         likeness.alike(|node| uses[node] > 0 && can_be_packed(&graph.nodes[node].operation));
     let mut found: Vec<Vec<u32>> = alike.values().flat_map(|lists| together(lists)).collect();
@@ -86,7 +89,7 @@ struct Likeness<'a> {
     /// Bodies of each class.
     sizes: BTreeMap<usize, usize>,
     /// Nodes that belong to no limb although they read of one.
-    disowned: FxHashSet<usize>,
+    unassigned: FxHashSet<usize>,
     /// For each node the body of like ones that it belongs to.
     limbs: Vec<Option<usize>>,
     /// For each node a number that those share which compute the same for different limbs.
@@ -121,22 +124,21 @@ impl<'a> Likeness<'a> {
             parents: model.bodies.iter().map(|body| body.parent).collect(),
             inputs,
             sizes,
-            disowned: FxHashSet::default(),
+            unassigned: FxHashSet::default(),
             limbs: vec![],
             colors: vec![],
         }
     }
 
     /// Finds limbs and colors of all nodes.
-    fn read(&mut self) -> bool {
+    fn read(&mut self) {
         self.limbs.clear();
         self.colors.clear();
         (0..self.graph.nodes.len()).for_each(|number| self.add(number));
-        true
     }
 
     /// Whether a node is in the section of a body that has like ones.
-    fn is_at_home(&self, number: usize) -> bool {
+    fn is_of_limb(&self, number: usize) -> bool {
         let section = self.graph.nodes[number].section as usize;
         matches!(self.members.get(section), Some(Some(_)))
     }
@@ -163,26 +165,27 @@ impl<'a> Likeness<'a> {
         Some((key, member.limb - first))
     }
 
-    /// Takes from limbs what stands outside of them and has nothing like it for another limb, if all that it reads has; whether there was any.
-    fn disown(&mut self, uses: &[u32]) -> bool {
+    /// Takes nodes from limbs that have nothing like them for another limb, while all that they read has: those outside of limbs, and those that are the only ones of their
+    /// color. Returns whether there was any.
+    fn unassign(&mut self, uses: &[u32]) -> bool {
         let alike = self.alike(|node| uses[node] > 0);
-        let is_alone = |node: usize, quite: bool| {
+        let is_alone = |node: usize, is_of_limb: bool| {
             let lists = self.key(node).and_then(|(key, _)| alike.get(&key));
-            lists.is_some_and(|lists| match quite {
+            lists.is_some_and(|lists| match is_of_limb {
                 true => lists.iter().map(Vec::len).sum::<usize>() == 1,
                 false => lists.iter().any(Vec::is_empty),
             })
         };
-        let before = self.disowned.len();
+        let before = self.unassigned.len();
         let first = (0..self.graph.nodes.len()).filter(|&node| {
             let operation = &self.graph.nodes[node].operation;
-            let mut is_first = uses[node] > 0 && is_alone(node, self.is_at_home(node));
+            let mut is_first = uses[node] > 0 && is_alone(node, self.is_of_limb(node));
             operation.each_operand(|operand| is_first &= !is_alone(operand as usize, false));
             is_first && !matches!(operation, Operation::Input(..))
         });
         let first: Vec<usize> = first.collect();
-        self.disowned.extend(first);
-        self.disowned.len() > before
+        self.unassigned.extend(first);
+        self.unassigned.len() > before
     }
 
     /// Adds the next node.
@@ -204,8 +207,8 @@ impl<'a> Likeness<'a> {
             }
             operation => {
                 self.structure(operation, &mut hasher);
-                match self.is_at_home(number) {
-                    _ if self.disowned.contains(&number) => None,
+                match self.is_of_limb(number) {
+                    _ if self.unassigned.contains(&number) => None,
                     true => Some(node.section as usize),
                     false => self.common(operation),
                 }

@@ -68,8 +68,8 @@ impl Packs {
             outputs,
         };
         packs.settle();
-        let [one_by_one, abreast] = packs.choose(&uses);
-        (abreast < WORTH * one_by_one).then_some(packs)
+        let [one_by_one, packed] = packs.choose(&uses);
+        (packed < WORTH * one_by_one).then_some(packs)
     }
 
     /// Finds the pack of each node anew.

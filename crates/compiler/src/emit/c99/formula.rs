@@ -27,7 +27,7 @@ pub fn value(formula: &Formula) -> String {
         Formula::Call(function, arguments) => call(*function, arguments),
         Formula::Part(of, result) => format!("{}[{result}]", value(of)),
         // A line of its own, which calls a helper; of functions in Rust alone.
-        Formula::Several(..) | Formula::Abreast(_) => literal(f64::NAN),
+        Formula::Several(..) | Formula::Gathered(_) => literal(f64::NAN),
     }
 }
 

@@ -129,7 +129,7 @@ fn of_line(line: &Line, used: &Used) -> Vec<Statement> {
         }],
         Line::Loop(looped) => vec![turns(looped, used)],
         // Of functions in Rust alone.
-        Line::Apart(..) => vec![],
+        Line::Extracted(..) => vec![],
     }
 }
 

@@ -57,11 +57,11 @@ pub fn line(line: &Line) -> TokenStream {
             quote! { results[#place] = #value; }
         }
         Line::Loop(looped) => turns(looped),
-        Line::Apart(names, formula) => {
+        Line::Extracted(names, formula) => {
             let rest = (names.len() < WIDTH).then(|| quote! { .. });
             let names = names.iter().map(|name| format_ident!("{name}"));
             let value = factor(formula);
-            quote! { let [#(#names,)* #rest] = #value.apart(); }
+            quote! { let [#(#names,)* #rest] = #value.to_array(); }
         }
     }
 }
@@ -234,7 +234,7 @@ pub fn value(formula: &Formula) -> TokenStream {
         }
         Formula::Call(function, arguments) => call(*function, arguments),
         Formula::Several(function, arguments) => several(*function, arguments),
-        Formula::Abreast(numbers) => match numbers.as_slice() {
+        Formula::Gathered(numbers) => match numbers.as_slice() {
             [first, rest @ ..] if rest.iter().all(|number| number == first) => {
                 let (first, width) = (value(first), Literal::usize_unsuffixed(WIDTH));
                 quote! { four([#first; #width]) }

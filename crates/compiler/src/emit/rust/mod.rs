@@ -108,7 +108,7 @@ fn item(function: &Function, bodies: &[String]) -> TokenStream {
     let four = function
         .packs
         .is_some()
-        .then(|| quote! { let four = <T::Four>::abreast; });
+        .then(|| quote! { let four = <T::Four>::from_array; });
     let name = Ident::new(function.name, Span::call_site());
     let arguments = function.arguments.iter().map(|&(argument, size)| {
         let (name, size) = (
@@ -158,14 +158,14 @@ fn item(function: &Function, bodies: &[String]) -> TokenStream {
             quote! { [#(#rows),*] }
         }
     };
-    let abreast = match function.packs {
+    let side_by_side = match function.packs {
         Some(_) => "; those of like limbs are side by side",
         None => "",
     };
     let docs = [
         format!(" {}", function.summary),
         String::new(),
-        format!(" Operations: {}{abreast}.", function.operations()),
+        format!(" Operations: {}{side_by_side}.", function.operations()),
     ];
     quote! {
         #(#[doc = #docs])*
