@@ -118,6 +118,15 @@ impl Model {
         first..first + 1 + self.bodies[first].joint.more.len()
     }
 
+    /// For each body how many carry it.
+    pub(crate) fn depths(&self) -> Vec<usize> {
+        let mut depths: Vec<usize> = vec![];
+        for body in &self.bodies {
+            depths.push(body.parent.map_or(0, |parent| depths[parent] + 1));
+        }
+        depths
+    }
+
     /// The share of each body: that of its joint.
     pub fn shares(&self) -> Vec<Share> {
         let mut end = [0; 3];

@@ -157,7 +157,7 @@ impl Lowering<'_> {
                 let is_plain = is_plain || numbers.iter().all(is_number);
                 let mut formula = Formula::Gathered(numbers);
                 if !is_plain {
-                    let name = self.claim(number, "gathered");
+                    let name = self.claim(number, &self.graph.nodes[number as usize].label);
                     self.lines.push(Line::Value(name.clone(), formula));
                     formula = Formula::Name(name);
                 }
@@ -165,14 +165,9 @@ impl Lowering<'_> {
             }
             Crossing::Extract(source, parts) => {
                 let formula = self.part(source).0;
-                let claimed = parts.iter().map(|&part| {
-                    let label = self.graph.nodes[part as usize].label.clone();
-                    (part, label)
-                });
-                let claimed: Vec<(u32, String)> = claimed.collect();
                 let mut names = vec![];
-                for (part, label) in claimed {
-                    let name = self.claim(part, &label);
+                for part in parts {
+                    let name = self.claim(part, &self.graph.nodes[part as usize].label);
                     names.push(name.clone());
                     self.formulas.insert(part, (Formula::Name(name), 0));
                 }

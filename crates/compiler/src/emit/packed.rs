@@ -191,14 +191,8 @@ impl<'a> Writer<'a> {
         if let Some(&known) = self.sections.get(&sections) {
             return known;
         }
-        let mut names: Vec<&str> = vec![];
-        for &section in &sections {
-            let name = self.bodies.get(section as usize).map_or("", String::as_str);
-            if !names.contains(&name) {
-                names.push(name);
-            }
-        }
-        let name = format!("each_{}", names.first().copied().unwrap_or_default());
+        let first = self.bodies.get(sections[0] as usize);
+        let name = format!("each_{}", first.map_or("", String::as_str));
         let number = u32::try_from(self.bodies.len()).unwrap_or(u32::MAX);
         self.bodies.push(name);
         self.sections.insert(sections, number);

@@ -377,10 +377,7 @@ const RESPONSE: usize = 2;
 
 /// Pairs of a speed and a joint that carries it.
 fn pairs(model: &Model) -> usize {
-    let mut depths: Vec<usize> = vec![];
-    for body in &model.bodies {
-        depths.push(body.parent.map_or(0, |parent| depths[parent] + 1));
-    }
+    let depths = model.depths();
     let joints = model.joints();
     joints
         .map(|(index, body)| body.joint.derived.shape.speeds * depths[index])

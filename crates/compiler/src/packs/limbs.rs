@@ -25,7 +25,7 @@ pub fn members(model: &Model) -> Vec<Option<Member>> {
     let mut members: Vec<Option<Member>> = vec![None; model.bodies.len()];
     let mut layer: BTreeMap<(Carrier, usize), Vec<usize>> = BTreeMap::new();
     let mut classes = 0;
-    let depths = depths(model);
+    let depths = model.depths();
     for depth in 0..=depths.iter().copied().max().unwrap_or(0) {
         layer.clear();
         for (body, _) in depths.iter().enumerate().filter(|&(_, &own)| own == depth) {
@@ -52,14 +52,6 @@ pub fn members(model: &Model) -> Vec<Option<Member>> {
         }
     }
     members
-}
-
-fn depths(model: &Model) -> Vec<usize> {
-    let mut depths: Vec<usize> = vec![];
-    for body in &model.bodies {
-        depths.push(body.parent.map_or(0, |parent| depths[parent] + 1));
-    }
-    depths
 }
 
 /// For each body a number that those share which carry alike: types of joints, to the leaves.
