@@ -3,6 +3,7 @@
 use super::companion::{Companion, Path, distance};
 use super::{Doubt, ErrorParts, GlobalError, Run};
 use crate::{Method, Options, Scheme, Solution, State, Step, StepControl};
+use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -184,8 +185,8 @@ impl<'a, 'r> Estimation<'a, 'r> {
         }
         let (first, second) = self.coarser();
         let steps = self.solution.statistics.steps as f64;
-        let fine = self.companion(first, times, self.initial)?;
-        let coarse = self.companion(second, times, self.initial)?;
+        let fine = self.companion(first, times)?;
+        let coarse = self.companion_from(second, times, self.initial)?;
         let order = f64::from(self.order());
         let [near, far] =
             [&fine, &coarse].map(|companion| beside(&self.distances(&companion.states, times)));
@@ -292,7 +293,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
                 },
             },
         };
-        let fine = self.companion(method, times, self.initial)?;
+        let fine = self.companion(method, times)?;
         let from_steps = self.distances(&fine.states, times);
         let is_alike = from_steps.iter().all(|&error| error < ALIKE);
         if is_alike && !self.is_exact() && fine.steps <= self.solution.statistics.steps as f64 {
@@ -323,7 +324,14 @@ impl<'a, 'r> Estimation<'a, 'r> {
         }
     }
 
-    pub(super) fn companion(
+    /// The motion by another method. Where it goes through other pieces, the distance from it tells little.
+    fn companion(&mut self, method: Method, times: &[State]) -> Result<Companion, Doubt> {
+        let companion = self.companion_from(method, times, self.initial)?;
+        self.compare_pieces(&companion.pieces);
+        Ok(companion)
+    }
+
+    pub(super) fn companion_from(
         &mut self,
         method: Method,
         times: &[State],
@@ -346,12 +354,12 @@ impl<'a, 'r> Estimation<'a, 'r> {
         });
         let solution = solution.map_err(Doubt::Companion)?;
         self.evaluations += solution.statistics.evaluations;
-        self.compare_pieces(&solution);
         if solution.samples.len() < times.len() || paths.len() < times.len() {
             return Err(Doubt::Companion("it was ended before".into()));
         }
         Ok(Companion {
             steps: solution.statistics.steps as f64,
+            pieces: pieces(&solution),
             states: solution.samples,
             paths,
             spans: path.spans,
@@ -359,17 +367,13 @@ impl<'a, 'r> Estimation<'a, 'r> {
     }
 
     /// Whether a companion's joints hit limits, stick and slide in the same order.
-    fn compare_pieces(&mut self, companion: &Solution) {
-        let told = |solution: &Solution| {
-            let own = solution.events.iter().filter(|event| event.joint.is_some());
-            own.map(|event| event.name.clone()).collect::<Vec<_>>()
-        };
-        let [motion, companion] = [self.solution, companion].map(told);
+    fn compare_pieces(&mut self, companion: &[String]) {
+        let motion = pieces(self.solution);
         let most = motion.len().max(companion.len());
         let differs = |i: &usize| motion.get(*i) != companion.get(*i);
         if let Some(first) = (0..most).find(differs) {
             let [motion, companion] =
-                [motion, companion].map(|told| told.get(first).cloned().unwrap_or_default());
+                [&motion, companion].map(|told| told.get(first).cloned().unwrap_or_default());
             self.doubt
                 .get_or_insert(Doubt::Pieces { motion, companion });
         }
@@ -382,6 +386,13 @@ impl<'a, 'r> Estimation<'a, 'r> {
             .collect()
     }
 }
+
+/// What the joints of a motion hit, and where they stick and slide, in the order of time.
+fn pieces(solution: &Solution) -> Vec<String> {
+    let own = solution.events.iter().filter(|event| event.joint.is_some());
+    own.map(|event| event.name.clone()).collect()
+}
+
 /// Distances with those at the times beside them: two motions may cross by chance where they are far from each other a moment before and after.
 fn beside(distances: &[f64]) -> Vec<f64> {
     let at = |i: Option<usize>| i.and_then(|i| distances.get(i)).copied().unwrap_or(0.0);
