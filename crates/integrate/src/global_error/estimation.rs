@@ -2,7 +2,7 @@
 
 use super::companion::{Companion, Path, distance};
 use super::{Doubt, ErrorParts, GlobalError, Run};
-use crate::{Method, Options, Scheme, Solution, State, Step, StepControl};
+use crate::{Method, Options, Scheme, Solution, Spectrum, State, Step, StepControl};
 use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -128,6 +128,7 @@ impl<'a, 'r> Estimation<'a, 'r> {
         if is_exponential
             && !self.is_exact()
             && errors.iter().any(|error| error.total() < OSCILLATIONS)
+            && self.passes_over_oscillations()
         {
             self.doubt.get_or_insert(Doubt::Oscillations);
         }
@@ -142,6 +143,20 @@ impl<'a, 'r> Estimation<'a, 'r> {
             doubt: self.doubt,
             evaluations: self.evaluations,
         }
+    }
+
+    /// Whether steps are longer than the fastest oscillations about the first state or the last one, or these are not known.
+    fn passes_over_oscillations(&self) -> bool {
+        let step = self.mean_step();
+        let is_passed = |state: &State| match Spectrum::at(&self.mechanism, state) {
+            Ok(Some(spectrum)) => {
+                (spectrum.modes().first()).is_some_and(|mode| mode.rate() * step > 1.0)
+            }
+            _ => true,
+        };
+        [self.initial, &self.solution.state]
+            .into_iter()
+            .any(is_passed)
     }
 
     /// The states of the solution at which it is compared: the last one, and some of the samples and of the states between them.
@@ -300,6 +315,11 @@ impl<'a, 'r> Estimation<'a, 'r> {
             self.doubt.get_or_insert(Doubt::Steps);
         }
         Ok(self.with_rounding(from_steps, [(self.options.method, &fine); 2], times))
+    }
+
+    fn mean_step(&self) -> f64 {
+        let length = self.solution.state.time - self.initial.time;
+        length / self.solution.statistics.steps.max(1) as f64
     }
 
     /// Two methods with coarser steps.
