@@ -12,6 +12,8 @@ pub(super) struct Companion {
     /// At the times of comparison.
     pub(super) states: Vec<State>,
     pub(super) steps: f64,
+    /// The sum of the estimated errors of its steps, each as a part of what its tolerance allows.
+    pub(super) errors: f64,
     /// What its joints hit, and where they stick and slide.
     pub(super) pieces: Vec<String>,
     /// Distances that speeds and configuration have gone, in the units of errors, at the times of comparison: what rounding of each step adds to.
