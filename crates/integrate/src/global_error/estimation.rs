@@ -31,7 +31,7 @@ const FEW: usize = 16;
 const FEW_ERRORS: f64 = 2.0;
 
 /// How many times finer that is, in the tolerance, or in the step.
-const FINER: (f64, f64) = (1e3, 5.0);
+const FINER: (f64, f64) = (100.0, 5.0);
 
 /// Below this, errors of the exponential method may be those of rounding in oscillations that its steps pass over.
 pub(super) const OSCILLATIONS: f64 = 1e-11;
@@ -135,10 +135,6 @@ impl<'a, 'r> Estimation<'a, 'r> {
         {
             self.doubt.get_or_insert(Doubt::Oscillations);
         }
-        let count = self.solution.statistics.bends;
-        if count > 0 && self.order() > HIGHEST_AT_BENDS {
-            self.doubt.get_or_insert(Doubt::Bends { count });
-        }
         GlobalError {
             samples,
             end,
@@ -193,6 +189,11 @@ impl<'a, 'r> Estimation<'a, 'r> {
         is_exponential && self.solution.statistics.jacobians == 0
     }
 
+    /// Whether steps of a high order end where something bends.
+    fn falls_unevenly(&self) -> bool {
+        self.solution.statistics.bends > 0 && self.order() > HIGHEST_AT_BENDS
+    }
+
     /// Whether few steps are as long as the tolerance allows: instants at which inputs are held decide that, for one, or impacts, after which steps begin anew.
     fn is_loose(&self) -> bool {
         let is_controlled = self.options.method.control().is_some();
@@ -204,7 +205,11 @@ impl<'a, 'r> Estimation<'a, 'r> {
     }
 
     fn compare(&mut self, times: &[State]) -> Result<(Vec<ErrorParts>, Option<f64>), Doubt> {
-        if self.solution.statistics.steps < FEW || self.is_exact() || self.is_loose() {
+        if self.solution.statistics.steps < FEW
+            || self.is_exact()
+            || self.is_loose()
+            || self.falls_unevenly()
+        {
             return self.compare_with_finer(times);
         }
         let (first, second) = self.coarser();
@@ -226,6 +231,8 @@ impl<'a, 'r> Estimation<'a, 'r> {
         let by_steps = Float::powf(fine.steps / steps, used);
         let slope = LEAST_SLOPE.min(used / (LEAST_ORDER * order));
         let by_tolerance = self.ratio(first).map_or(1.0, |r| Float::powf(r, slope));
+        // Errors fall as tolerances do, at most.
+        let by_steps = by_steps.max(self.ratio(first).unwrap_or(0.0));
         let left = match self.are_cut() {
             true => self.left_by_samples(&fine, used, (self.shorter(first), by_tolerance)),
             false => by_steps.min(by_tolerance),

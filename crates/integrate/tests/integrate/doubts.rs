@@ -1,4 +1,4 @@
-//! Estimates of errors that are right are not called doubtful: beside friction, held inputs, oscillations that steps follow.
+//! Estimates of errors that are right are not called doubtful: beside friction, held inputs, limits that give way, oscillations that steps follow.
 
 use crate::stiff::wheel;
 use crate::support::{at, distance, estimate, on_axis, options, run};
@@ -6,7 +6,7 @@ use hamel_integrate::{
     Form, GlobalError, Integration, Method, Observer, Options, Scheme, Solution, State,
 };
 use hamel_runtime::dynamics::Recursive;
-use hamel_runtime::elements::{JointFriction, TimedEffort};
+use hamel_runtime::elements::{JointFriction, JointLimit, TimedEffort};
 use hamel_runtime::mechanism::Mechanism;
 use hamel_runtime::time_function::{Expression, TimeFunction};
 use nalgebra::{Matrix3, Vector3};
@@ -142,6 +142,28 @@ fn inputs_that_are_held_leave_no_doubt() {
         let told = GlobalError::estimate(&mut own, &initial, &options, &found, &mut companion);
         let error = distance(&found.state, &at(&[q], &[v]));
         assert_right(&format!("{} to {tolerance:e}", scheme.name()), error, &told);
+    }
+}
+
+/// Errors of methods of high order do not fall evenly with the tolerance where something bends.
+#[test]
+fn a_limit_that_gives_way_leaves_no_doubt() {
+    let limit = JointLimit {
+        name: "limit".into(),
+        body: 0,
+        port: None,
+        lower: Some(-0.5),
+        upper: Some(0.3),
+        stiffness: 200.0,
+        damping: 0.3,
+    };
+    let mechanism = Mechanism::clone(&wheel(1.0, 0.02)).with_elements(vec![Arc::new(limit)]);
+    let mechanism = Arc::new(mechanism.expect("it fits"));
+    for scheme in [Scheme::DormandPrince8, Scheme::Verner9] {
+        for tolerance in [1e-4, 1e-6, 1e-8, 1e-10] {
+            let method = Method::controlled(scheme, tolerance);
+            compare(&mechanism, &at(&[0.0], &[2.0]), (method, 6.0));
+        }
     }
 }
 
