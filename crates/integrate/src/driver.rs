@@ -19,7 +19,7 @@ use super::stepper::{self, Span, Stepper};
 use super::waypoints::Waypoints;
 use super::{
     Crossing, Event, Form, IntegrateError, Near, Observer, Options, Sampling, Scheme, Solution,
-    State, Statistics, Step, StepFailure,
+    State, Statistics, Step, StepErrors, StepFailure,
 };
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -41,6 +41,7 @@ pub(super) struct Driver<'a> {
     pub(super) clock: Clock,
     pub(super) start: f64,
     pub(super) statistics: Statistics,
+    step_errors: StepErrors,
     pub(super) samples: Vec<State>,
     pub(super) crossings: Vec<Crossing>,
     pub(super) watch: Watch,
@@ -149,6 +150,7 @@ impl<'a> Driver<'a> {
             clock: Clock::new(time),
             start: time,
             statistics: Statistics::default(),
+            step_errors: StepErrors::default(),
             samples: Vec::with_capacity(options.samples.len()),
             crossings,
             outputs,
@@ -188,6 +190,7 @@ impl<'a> Driver<'a> {
                 .map_or_else(Vec::new, |own| own.changes),
             events: self.crossings,
             statistics: self.statistics,
+            step_errors: self.step_errors,
             approaches: self.watch.finish(),
             rounding: pacing.rounding.limit(&self.flow),
             stopped,
@@ -262,6 +265,7 @@ impl<'a> Driver<'a> {
                 Ok(taken) => {
                     let lands = lands && taken == step;
                     if self.accept(pacing, (taken, lands), observer)? {
+                        self.step_errors.see(pacing.error);
                         let search = pacing.search.as_ref();
                         let next = search.map(|own| own.goes_on(self.clock.time(), taken));
                         pacing.step = next.transpose()?.unwrap_or(pacing.step);

@@ -92,7 +92,7 @@ pub use linear::LinearStep;
 pub use options::{Form, Method, Options, Scheme, StepControl};
 pub use reconsider::MethodChange;
 pub use rounding::RoundingLimit;
-pub use solution::{Solution, State, Statistics, Step};
+pub use solution::{Solution, State, Statistics, Step, StepErrors};
 pub use spectrum::{Mode, Spectrum};
 pub use tableau::{Estimate, Tableau};
 

@@ -23,6 +23,8 @@ const CONTROLLED_STRETCH: f64 = 1.01;
 pub(super) struct Pacing {
     /// The step to try where no sample time is in the way.
     pub(super) step: f64,
+    /// The estimated error of the step tried last, over what is allowed; 0 without step control.
+    pub(super) error: f64,
     pub(super) controller: StepController,
     pub(super) rounding: Rounding,
     /// Where a step of fixed size has failed: shorter ones, up to its end.
@@ -43,6 +45,7 @@ impl Driver<'_> {
         };
         Ok(Pacing {
             step,
+            error: 0.0,
             controller: StepController::new(order),
             rounding: Rounding::new(&self.flow),
             search: None,
@@ -166,6 +169,7 @@ impl Driver<'_> {
             return Err(self.inaccurate(joint, error));
         }
         pacing.rounding.accept(error, joint, least);
+        pacing.error = part;
         let factor = pacing.controller.accept(part);
         let factor = match allowed > 1.0 && is_of_relations {
             true => factor.max(1.0),

@@ -87,6 +87,27 @@ pub struct Statistics {
     pub factorizations: usize,
 }
 
+/// Estimated errors of the accepted steps of a method with step control, each as a part of what the tolerance allows a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepErrors {
+    /// Of all steps together.
+    pub sum: f64,
+    /// Of those that are far less than is allowed: something else than the tolerance decides how long these steps are.
+    pub loose: f64,
+}
+
+impl StepErrors {
+    /// Errors below this part of what is allowed are far less.
+    const LOOSE: f64 = 1e-2;
+
+    pub(super) const fn see(&mut self, error: f64) {
+        self.sum += error;
+        if error < Self::LOOSE {
+            self.loose += error;
+        }
+    }
+}
+
 /// What an integration returns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
@@ -106,6 +127,8 @@ pub struct Solution {
     pub method_changes: Vec<MethodChange>,
     /// The work done.
     pub statistics: Statistics,
+    /// What the steps tell of their errors.
+    pub step_errors: StepErrors,
     /// How near each joint that has singular sets came to them, in the order of the joints.
     pub approaches: Vec<Approach>,
     /// The steps whose length rounding has decided, and not the tolerance: smaller tolerances make such motions no more accurate. `None` where there is none.

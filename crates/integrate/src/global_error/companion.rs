@@ -1,6 +1,7 @@
 //! Companion motions, and how far states are from each other.
 
 use crate::{State, Step};
+use alloc::string::String;
 use alloc::vec::Vec;
 use hamel_runtime::mechanism::{BodyState, Mechanism};
 use hamel_runtime::spatial::so3;
@@ -11,6 +12,10 @@ pub(super) struct Companion {
     /// At the times of comparison.
     pub(super) states: Vec<State>,
     pub(super) steps: f64,
+    /// The sum of the estimated errors of its steps, each as a part of what its tolerance allows.
+    pub(super) errors: f64,
+    /// What its joints hit, and where they stick and slide.
+    pub(super) pieces: Vec<String>,
     /// Distances that speeds and configuration have gone, in the units of errors, at the times of comparison: what rounding of each step adds to.
     pub(super) paths: Vec<f64>,
     /// Where its steps begin and end, s, without those that were cut short, which have less than their share of the error; none where nobody asks.

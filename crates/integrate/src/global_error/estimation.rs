@@ -2,7 +2,8 @@
 
 use super::companion::{Companion, Path, distance};
 use super::{Doubt, ErrorParts, GlobalError, Run};
-use crate::{Method, Options, Scheme, Solution, State, Step, StepControl};
+use crate::{Method, Options, Scheme, Solution, Spectrum, State, Step, StepControl, StepErrors};
+use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -26,14 +27,20 @@ const STEPS_BETWEEN: f64 = 12.0;
 /// Motions of fewer steps are compared with a finer companion, which costs little then: coarser ones would have too few steps to tell an order.
 const FEW: usize = 16;
 
+/// So are motions whose estimated errors of all steps are together less than so many times what the tolerance allows one.
+const FEW_ERRORS: f64 = 2.0;
+
 /// How many times finer that is, in the tolerance, or in the step.
-const FINER: (f64, f64) = (1e3, 5.0);
+const FINER: (f64, f64) = (100.0, 5.0);
 
 /// Below this, errors of the exponential method may be those of rounding in oscillations that its steps pass over.
 pub(super) const OSCILLATIONS: f64 = 1e-11;
 
-/// Motions of as many steps that differ by less than this may have made the same steps.
-const ALIKE: f64 = 1e-11;
+/// Estimated errors of steps are those of a method of lower order: they may be so many times what the steps add to the error of the motion.
+const OF_LOWER_ORDER: f64 = 1e3;
+
+/// Where errors of steps are together more than this part of those of a companion, the two have most of their steps in common.
+const SHARED: f64 = 0.5;
 
 /// Errors are taken to fall by no less than this part of the order of a method: what is observed between the two coarser motions is less than what follows.
 const LEAST_ORDER: f64 = 0.8;
@@ -46,9 +53,6 @@ const LEAST_SLOPE: f64 = 0.85;
 
 /// A coarser motion of more than this part of the steps has steps that are hardly longer.
 const HARDLY_LONGER: f64 = 0.95;
-
-/// A coarser motion of more steps than this power of what its tolerance would have is held to them.
-const HELD: f64 = 0.5;
 
 /// Where less than this part of it is observed, the estimate is not reliable.
 const DOUBTED_ORDER: f64 = 0.4;
@@ -127,12 +131,9 @@ impl<'a, 'r> Estimation<'a, 'r> {
         if is_exponential
             && !self.is_exact()
             && errors.iter().any(|error| error.total() < OSCILLATIONS)
+            && self.passes_over_oscillations()
         {
             self.doubt.get_or_insert(Doubt::Oscillations);
-        }
-        let count = self.solution.statistics.bends;
-        if count > 0 && self.order() > HIGHEST_AT_BENDS {
-            self.doubt.get_or_insert(Doubt::Bends { count });
         }
         GlobalError {
             samples,
@@ -141,6 +142,20 @@ impl<'a, 'r> Estimation<'a, 'r> {
             doubt: self.doubt,
             evaluations: self.evaluations,
         }
+    }
+
+    /// Whether steps are longer than the fastest oscillations about the first state or the last one, or these are not known.
+    fn passes_over_oscillations(&self) -> bool {
+        let step = self.mean_step();
+        let is_passed = |state: &State| match Spectrum::at(&self.mechanism, state) {
+            Ok(Some(spectrum)) => {
+                (spectrum.modes().first()).is_some_and(|mode| mode.rate() * step > 1.0)
+            }
+            _ => true,
+        };
+        [self.initial, &self.solution.state]
+            .into_iter()
+            .any(is_passed)
     }
 
     /// The states of the solution at which it is compared: the last one, and some of the samples and of the states between them.
@@ -174,18 +189,33 @@ impl<'a, 'r> Estimation<'a, 'r> {
         is_exponential && self.solution.statistics.jacobians == 0
     }
 
+    /// Whether steps of a high order end where something bends.
+    fn falls_unevenly(&self) -> bool {
+        self.solution.statistics.bends > 0 && self.order() > HIGHEST_AT_BENDS
+    }
+
+    /// Whether few steps are as long as the tolerance allows: instants at which inputs are held decide that, for one, or impacts, after which steps begin anew.
+    fn is_loose(&self) -> bool {
+        let is_controlled = self.options.method.control().is_some();
+        is_controlled && !self.are_cut() && self.solution.step_errors.sum < FEW_ERRORS
+    }
+
     fn order(&self) -> u32 {
         self.options.method.scheme().order()
     }
 
     fn compare(&mut self, times: &[State]) -> Result<(Vec<ErrorParts>, Option<f64>), Doubt> {
-        if self.solution.statistics.steps < FEW || self.is_exact() {
+        if self.solution.statistics.steps < FEW
+            || self.is_exact()
+            || self.is_loose()
+            || self.falls_unevenly()
+        {
             return self.compare_with_finer(times);
         }
         let (first, second) = self.coarser();
         let steps = self.solution.statistics.steps as f64;
-        let fine = self.companion(first, times, self.initial)?;
-        let coarse = self.companion(second, times, self.initial)?;
+        let fine = self.companion(first, times)?;
+        let coarse = self.companion_from(second, times, self.initial)?;
         let order = f64::from(self.order());
         let [near, far] =
             [&fine, &coarse].map(|companion| beside(&self.distances(&companion.states, times)));
@@ -199,11 +229,10 @@ impl<'a, 'r> Estimation<'a, 'r> {
         };
         let used = observed.clamp(least * order, order);
         let by_steps = Float::powf(fine.steps / steps, used);
-        if fine.steps > HARDLY_LONGER * steps || self.is_held(first, fine.steps / steps) {
-            self.doubt.get_or_insert(Doubt::Steps);
-        }
         let slope = LEAST_SLOPE.min(used / (LEAST_ORDER * order));
         let by_tolerance = self.ratio(first).map_or(1.0, |r| Float::powf(r, slope));
+        // Errors fall as tolerances do, at most.
+        let by_steps = by_steps.max(self.ratio(first).unwrap_or(0.0));
         let left = match self.are_cut() {
             true => self.left_by_samples(&fine, used, (self.shorter(first), by_tolerance)),
             false => by_steps.min(by_tolerance),
@@ -211,8 +240,13 @@ impl<'a, 'r> Estimation<'a, 'r> {
         let left = left.min(0.5) / (1.0 - left.min(0.5));
         let from_steps: Vec<f64> = near.iter().map(|near| near * left).collect();
         let errors = self.with_rounding(from_steps, [(first, &fine), (second, &coarse)], times);
-        let last = errors.0.last().map_or(0.0, |error| error.rounding);
-        let is_above_rounding = near.last().is_some_and(|&near| near > 100.0 * last);
+        let last = errors.0.last().copied().unwrap_or_default();
+        if self.is_held(first, &fine, last) {
+            self.doubt.get_or_insert(Doubt::Steps);
+        }
+        let is_above_rounding = near
+            .last()
+            .is_some_and(|&near| near > 100.0 * last.rounding);
         if is_above_rounding && observed < DOUBTED_ORDER * order {
             let order = self.order();
             self.doubt.get_or_insert(Doubt::Order { observed, order });
@@ -253,11 +287,19 @@ impl<'a, 'r> Estimation<'a, 'r> {
         shares.sum::<f64>() / companion.spans.len().max(1) as f64
     }
 
-    /// Whether steps of a companion are much shorter than its tolerance would have them, with few samples to land on: stability holds them, for one.
-    fn is_held(&self, companion: Method, steps: f64) -> bool {
-        let is_controlled = self.options.method.control().is_some();
-        let is_free = 4 * self.solution.samples.len() < self.solution.statistics.steps;
-        is_controlled && is_free && steps > Float::powf(self.shorter(companion), HELD)
+    /// Whether steps that have an error are no longer in a companion: the two motions differ by less than they have in error. Steps that have none, as those of what rests, do not count.
+    fn is_held(&self, method: Method, companion: &Companion, told: ErrorParts) -> bool {
+        let (Some(own), Some(other)) = (self.options.method.control(), method.control()) else {
+            return companion.steps > HARDLY_LONGER * self.solution.statistics.steps as f64;
+        };
+        let StepErrors { sum, loose } = self.solution.step_errors;
+        match self.are_cut() {
+            true => {
+                let of_steps = sum * own.tolerance;
+                of_steps > told.rounding && of_steps > SHARED * companion.errors * other.tolerance
+            }
+            false => loose * own.tolerance > OF_LOWER_ORDER * told.total(),
+        }
     }
 
     /// The part by which steps of the motion are shorter than those of a companion, as tolerances or fixed steps have them.
@@ -288,17 +330,19 @@ impl<'a, 'r> Estimation<'a, 'r> {
                 scheme,
                 control: StepControl {
                     tolerance: (control.tolerance / FINER.0).max(StepControl::LEAST_TOLERANCE),
+                    max_step: control.max_step.min(0.5 * self.mean_step()),
                     ..control
                 },
             },
         };
-        let fine = self.companion(method, times, self.initial)?;
+        let fine = self.companion(method, times)?;
         let from_steps = self.distances(&fine.states, times);
-        let is_alike = from_steps.iter().all(|&error| error < ALIKE);
-        if is_alike && !self.is_exact() && fine.steps <= self.solution.statistics.steps as f64 {
-            self.doubt.get_or_insert(Doubt::Steps);
-        }
         Ok(self.with_rounding(from_steps, [(self.options.method, &fine); 2], times))
+    }
+
+    fn mean_step(&self) -> f64 {
+        let length = self.solution.state.time - self.initial.time;
+        length / self.solution.statistics.steps.max(1) as f64
     }
 
     /// Two methods with coarser steps.
@@ -323,7 +367,14 @@ impl<'a, 'r> Estimation<'a, 'r> {
         }
     }
 
-    pub(super) fn companion(
+    /// The motion by another method. Where it goes through other pieces, the distance from it tells little.
+    fn companion(&mut self, method: Method, times: &[State]) -> Result<Companion, Doubt> {
+        let companion = self.companion_from(method, times, self.initial)?;
+        self.compare_pieces(&companion.pieces);
+        Ok(companion)
+    }
+
+    pub(super) fn companion_from(
         &mut self,
         method: Method,
         times: &[State],
@@ -346,12 +397,13 @@ impl<'a, 'r> Estimation<'a, 'r> {
         });
         let solution = solution.map_err(Doubt::Companion)?;
         self.evaluations += solution.statistics.evaluations;
-        self.compare_pieces(&solution);
         if solution.samples.len() < times.len() || paths.len() < times.len() {
             return Err(Doubt::Companion("it was ended before".into()));
         }
         Ok(Companion {
             steps: solution.statistics.steps as f64,
+            errors: solution.step_errors.sum,
+            pieces: pieces(&solution),
             states: solution.samples,
             paths,
             spans: path.spans,
@@ -359,17 +411,13 @@ impl<'a, 'r> Estimation<'a, 'r> {
     }
 
     /// Whether a companion's joints hit limits, stick and slide in the same order.
-    fn compare_pieces(&mut self, companion: &Solution) {
-        let told = |solution: &Solution| {
-            let own = solution.events.iter().filter(|event| event.joint.is_some());
-            own.map(|event| event.name.clone()).collect::<Vec<_>>()
-        };
-        let [motion, companion] = [self.solution, companion].map(told);
+    fn compare_pieces(&mut self, companion: &[String]) {
+        let motion = pieces(self.solution);
         let most = motion.len().max(companion.len());
         let differs = |i: &usize| motion.get(*i) != companion.get(*i);
         if let Some(first) = (0..most).find(differs) {
             let [motion, companion] =
-                [motion, companion].map(|told| told.get(first).cloned().unwrap_or_default());
+                [&motion, companion].map(|told| told.get(first).cloned().unwrap_or_default());
             self.doubt
                 .get_or_insert(Doubt::Pieces { motion, companion });
         }
@@ -382,6 +430,13 @@ impl<'a, 'r> Estimation<'a, 'r> {
             .collect()
     }
 }
+
+/// What the joints of a motion hit, and where they stick and slide, in the order of time.
+fn pieces(solution: &Solution) -> Vec<String> {
+    let own = solution.events.iter().filter(|event| event.joint.is_some());
+    own.map(|event| event.name.clone()).collect()
+}
+
 /// Distances with those at the times beside them: two motions may cross by chance where they are far from each other a moment before and after.
 fn beside(distances: &[f64]) -> Vec<f64> {
     let at = |i: Option<usize>| i.and_then(|i| distances.get(i)).copied().unwrap_or(0.0);

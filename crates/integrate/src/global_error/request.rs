@@ -101,8 +101,8 @@ impl Tuned {
         }
         let ErrorParts { steps, rounding } = self.error;
         let change = match &self.doubt {
-            // No tolerance changes these.
-            Some(Doubt::Bends { .. } | Doubt::Oscillations) if self.is_small(wanted) => None,
+            // No tolerance changes this.
+            Some(Doubt::Oscillations) if self.is_small(wanted) => None,
             Some(_) if self.is_small(wanted) => Some(DOUBTED),
             _ => Some((AIM * wanted).max(BESIDE_ROUNDING * rounding) / steps),
         }?;
@@ -151,9 +151,6 @@ mod tests {
         let (tried, found) = search_in_doubt(|_| Some(Doubt::Steps));
         assert!(!found.is_reached && found.doubt.is_some(), "{found:?}");
         assert_eq!(tried.len(), 1 + MOST_DOUBTED, "{tried:?}");
-        // Smaller tolerances do not help where efforts bend.
-        let (tried, found) = search_in_doubt(|_| Some(Doubt::Bends { count: 3 }));
-        assert!(!found.is_reached && tried.len() == 1, "{tried:?}");
         // This is a doubt of what is far below what is asked.
         let (tried, found) = search_in_doubt(|_| Some(Doubt::Oscillations));
         assert!(found.is_reached && tried.len() == 1, "{tried:?}");

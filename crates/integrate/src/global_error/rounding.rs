@@ -123,7 +123,7 @@ impl Estimation<'_, '_> {
         times: &[State],
     ) -> Option<Vec<f64>> {
         let moved = self.neighbour(change, times)?;
-        let moved = self.companion(method, times, &moved).ok()?;
+        let moved = self.companion_from(method, times, &moved).ok()?;
         let growth = self.distances(&moved.states, from);
         Some(growth.iter().map(|distance| distance / change).collect())
     }
@@ -157,7 +157,7 @@ impl Estimation<'_, '_> {
             .complete_speeds(&from.configuration, &mut from.speeds);
         let found = completed
             .ok()
-            .and_then(|()| self.companion(method, times, &from).ok());
+            .and_then(|()| self.companion_from(method, times, &from).ok());
         let distances = found.map(|found| self.distances(&found.states, &companion.states));
         let distances = distances.unwrap_or_default().into_iter();
         distances

@@ -7,6 +7,7 @@ mod adaptive;
 mod choice;
 mod coupled;
 mod dense;
+mod doubts;
 mod elements;
 mod energy;
 mod estimates;
