@@ -42,6 +42,9 @@ const OF_LOWER_ORDER: f64 = 1e3;
 /// Where errors of steps are together more than this part of those of a companion, the two have most of their steps in common.
 const SHARED: f64 = 0.5;
 
+/// A coarser motion of more steps than this power of what its tolerance would have is held to them.
+const HELD: f64 = 0.25;
+
 /// Errors are taken to fall by no less than this part of the order of a method: what is observed between the two coarser motions is less than what follows.
 const LEAST_ORDER: f64 = 0.8;
 
@@ -298,7 +301,11 @@ impl<'a, 'r> Estimation<'a, 'r> {
                 let of_steps = sum * own.tolerance;
                 of_steps > told.rounding && of_steps > SHARED * companion.errors * other.tolerance
             }
-            false => loose * own.tolerance > OF_LOWER_ORDER * told.total(),
+            // As parts of what the tolerance allows, errors count the steps whose length it decides. A looser tolerance needs fewer of them, but where stability holds them.
+            false => {
+                loose * own.tolerance > OF_LOWER_ORDER * told.total()
+                    || companion.errors > sum * Float::powf(self.shorter(method), HELD)
+            }
         }
     }
 
